@@ -1,0 +1,45 @@
+# Everything runs in .venv, which each target makes for itself. `make help` lists the targets.
+
+SHELL := /bin/bash
+PYTHON_VENV := .venv/bin/python
+ARGS ?=
+
+.DEFAULT_GOAL := help
+.PHONY: demo test bench lint extension clean help
+
+demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, the better .blend
+	@tools/demo.sh $(ARGS)
+
+test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
+	@$(PYTHON_VENV) -m pytest $(or $(ARGS),tests)
+
+bench: .venv/dev.stamp  ## measure speed
+	@$(PYTHON_VENV) -m benchmarks $(ARGS)
+
+lint: .venv/dev.stamp  ## style, format, types
+	@.venv/bin/ruff check --quiet .
+	@.venv/bin/ruff format --check --quiet . || \
+		{ echo "lint: not formatted; run .venv/bin/ruff format ." >&2; exit 1; }
+	@.venv/bin/mypy --no-error-summary
+	@echo "lint: clean"
+
+extension: .venv/run.stamp  ## build the Blender extension, dist/perception_entropy-VERSION.zip
+	@$(PYTHON_VENV) tools/build_extension.py
+
+# run.stamp: what a user needs. dev.stamp: what a developer needs on top, in the same environment.
+.venv/run.stamp: pyproject.toml tools/make_venv.sh
+	@tools/make_venv.sh blender
+	@touch $@
+
+.venv/dev.stamp: .venv/run.stamp
+	@tools/make_venv.sh blender,test,report,dev
+	@touch $@
+
+clean:  ## remove the environment and everything made
+	@rm -rf .venv build dist demo_output test_output *.egg-info
+	@rm -rf .pytest_cache .mypy_cache .ruff_cache
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+help:  ## this list
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | \
+		sed -E 's/^([a-z]+):.*## (.*)/make \1\t\2/' | expand -t 18

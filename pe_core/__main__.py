@@ -1,0 +1,7 @@
+"""``python -m pe_core``: the same as ``pe``."""
+
+import sys
+
+from .cli import main
+
+sys.exit(main())

@@ -1,0 +1,58 @@
+"""The command ``pe``: score and optimize study files without Blender."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from . import catalog
+from .command import DONE, INTERRUPTED, add_run_options, drive, run, summary, with_options
+from .jobs import Job, OptimizeJob, ScoreJob
+from .results import dump_json, prepare_folder, result_dict, write_outcome
+from .sensor_text import describe
+from .study_file import load_study
+from .version import __version__
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command and return its exit status: 0, 1 bad input, 2 usage, 130 interrupted."""
+    args = parser().parse_args(argv)
+    return run(lambda: args.function(args))
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    top = argparse.ArgumentParser(prog="pe", description="Perception entropy of vehicle sensors.")
+    top.add_argument("--version", action="version", version=f"pe {__version__}")
+    verbs = top.add_subparsers(required=True, metavar="VERB")
+    score = verbs.add_parser("score", help="score a study's rig")
+    optimize = verbs.add_parser("optimize", help="search for a better placement")
+    for verb, job in ((score, ScoreJob), (optimize, OptimizeJob)):
+        verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
+        add_run_options(verb, search=job is OptimizeJob)
+        verb.set_defaults(function=_run_job, job=job)
+    sensors = verbs.add_parser("sensors", help="list the catalogue, or show one sensor")
+    sensors.add_argument("name", nargs="?", help="a sensor's name")
+    sensors.set_defaults(function=_sensors)
+    return top
+
+
+def _run_job(args: argparse.Namespace) -> int:
+    study = with_options(load_study(args.study), args)
+    output = None if args.output is None else prepare_folder(args.output)
+    job: Job = args.job(study, args.workers)
+    outcome = drive(job, output)
+    data = result_dict(outcome) if output is None else write_outcome(outcome, output)
+    print(dump_json(data) if args.json else summary(outcome), end="" if args.json else "\n")
+    return INTERRUPTED if outcome.stopped else DONE
+
+
+def _sensors(args: argparse.Namespace) -> int:
+    if args.name:
+        catalog.load(args.name)
+        print(describe(catalog.entries()[args.name]))
+        return DONE
+    for entry in catalog.entries().values():
+        print(f"{entry.kind:7} {entry.name}")
+    return DONE

@@ -1,0 +1,63 @@
+"""The Evaluator: one problem, made ready to score many rigs."""
+
+from __future__ import annotations
+
+from .entropy import PerceptionModel
+from .fusion import Fusion
+from .gridded import GridScorer
+from .prior import Prior
+from .sampled import SampledScorer
+from .score import Score
+from .sensors import Rig
+from .space import PerceptionSpace
+from .vehicle import Vehicle
+
+
+class Evaluator:
+    """Scores rigs in one space, under one prior, on one vehicle.
+
+    Parameters
+    ----------
+    space : PerceptionSpace
+    prior : Prior
+    vehicle : Vehicle, optional
+        None: nothing hides anything, and no voxel is excluded.
+    samples : int, optional
+        Score on about this many voxels drawn from the prior instead of all of them. The sample is
+        fixed: two rigs are compared on the same voxels.
+    model : PerceptionModel, optional
+        AP curves and fusion rule; the paper's by default.
+    workers : int, optional
+        Threads for a grid score; all processors by default. The result does not depend on it.
+
+    Raises
+    ------
+    InputError
+        When the prior has no weight in the space outside the vehicle, or `samples` is too small.
+    """
+
+    def __init__(
+        self,
+        space: PerceptionSpace,
+        prior: Prior,
+        vehicle: Vehicle | None = None,
+        *,
+        samples: int | None = None,
+        model: PerceptionModel | None = None,
+        workers: int | None = None,
+    ) -> None:
+        self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
+        densities, fusion = prior.densities(space), Fusion(model or PerceptionModel())
+        self._scorer: GridScorer | SampledScorer
+        if samples is None:
+            self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
+        else:
+            self._scorer = SampledScorer(space, densities, vehicle, fusion, samples)
+
+    def score(self, rig: Rig) -> Score:
+        """Score a rig in full: entropy, coverage, by class, by sensor, ground map."""
+        return self._scorer.score(rig)
+
+    def entropy(self, rig: Rig) -> float:
+        """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for."""
+        return self._scorer.entropy(rig)

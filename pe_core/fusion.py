@@ -1,0 +1,48 @@
+"""From measurements to entropy with look-up tables: eqs. 4 to 8 for whole arrays.
+
+A LiDAR group's measurement is a whole number that soon saturates AP, so its 1 / sigma^2 is a table,
+and so is its entropy when it stands alone. `entropy` has the plain definitions this is held to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .entropy import PerceptionModel, entropy_of, late_fusion, precision_of
+
+Floats = NDArray[np.float64]
+Measurement = tuple[str, NDArray]
+"""Kind of sensor ("lidar" or "camera") and its beams (whole numbers) or pixels."""
+
+LONGEST_TABLE = (1 << 16) - 1
+"""Beam counts are kept in 16 bits."""
+
+
+class Fusion:
+    """Fuses measurements of fusion groups under one perception model."""
+
+    def __init__(self, model: PerceptionModel) -> None:
+        self.model = model
+        last = int(min(model.lidar.saturation, LONGEST_TABLE - 1)) + 1
+        self._precision = precision_of(np.arange(last + 1), model.lidar)
+        self._entropy = entropy_of(late_fusion([self._precision], model.blind))
+
+    def precision(self, m: NDArray, kind: str) -> Floats:
+        """1 / sigma^2 of a group's measurement."""
+        if kind == "lidar":
+            return np.take(self._precision, m, mode="clip")
+        return precision_of(m, self.model.camera)
+
+    def entropies(self, groups: Sequence[Measurement]) -> tuple[Floats, NDArray[np.bool_]]:
+        """Entropy H of every voxel [nats] and whether any group sees it."""
+        kind, m = groups[0]
+        seen = m > 0
+        if len(groups) == 1 and kind == "lidar":
+            return np.take(self._entropy, m, mode="clip"), seen
+        for _, more in groups[1:]:
+            seen = seen | (more > 0)
+        precisions = [self.precision(m, kind) for kind, m in groups]
+        return entropy_of(late_fusion(precisions, self.model.blind)), seen

@@ -1,0 +1,71 @@
+"""Pixel areas for many voxels: a closed form where it is good, the exact area where it is not.
+
+Seen from afar a face is a small flat patch: its image has the area ``f^2 |n . r| A / depth^3`` with
+n its normal, r the way to its centre and A its area. That misses the clipping at the image's border
+and the perspective inside the face; voxels on the border or nearer than NEAR_SIDES sides get the
+exact area instead.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import Pose, dot
+from ..sensors import Camera
+from ..vehicle import SeenMesh
+from .camera_area import clipped_pixel_area, frustum_distance, in_view
+
+Floats = NDArray[np.float64]
+
+NEAR_SIDES = 15.0
+"""Depth in voxel sides below which the exact area is taken: the closed form is then 0.3 % off at
+most."""
+
+
+def pixel_areas(
+    camera: Camera, pose: Pose, centers: Floats, side: float, seen: SeenMesh | None
+) -> Floats:
+    """(V,) pixels covered by each voxel; 0 where the vehicle `seen` hides its centre.
+
+    Parameters
+    ----------
+    camera : Camera
+    pose : Pose
+    centers : (V, 3) float
+        Ground frame [m].
+    side : float
+        Side of a voxel [m].
+    seen : SeenMesh, optional
+        The vehicle from the camera's position.
+    """
+    offsets = centers - np.asarray(pose.position)
+    depth, left, up = (dot(offsets, axis) for axis in pose.ground_from_sensor.T)
+    area = np.zeros(len(centers))
+    index = np.flatnonzero(in_view(camera, depth, left, up, side))
+    depth, left, up = depth[index], left[index], up[index]
+    plain = depth > NEAR_SIDES * side
+    plain &= frustum_distance(camera, depth, left, up) > side * np.sqrt(3.0) / 2.0
+    far, near = index[plain], index[~plain]
+    area[far] = _flat_area(camera, pose, offsets[far], depth[plain], side)
+    area[near] = clipped_pixel_area(camera, pose, centers[near], side)
+    if seen is not None:
+        visible = np.flatnonzero(area)
+        area[visible[_hidden(seen, offsets[visible])]] = 0.0
+    return area
+
+
+def _flat_area(camera: Camera, pose: Pose, offsets: Floats, depth: Floats, side: float) -> Floats:
+    forward = pose.ground_from_sensor[:, 0]
+    total = np.zeros(len(offsets))
+    for k in range(3):
+        away = np.abs(offsets[:, k])
+        face_depth = depth - np.sign(offsets[:, k]) * (side / 2.0) * forward[k]
+        total += np.maximum(away - side / 2.0, 0.0) / (face_depth * face_depth * face_depth)
+    return (camera.focal_px * side) ** 2 * total
+
+
+def _hidden(seen: SeenMesh, offsets: Floats) -> NDArray[np.bool_]:
+    distance = np.sqrt(dot(offsets, offsets))
+    hidden: NDArray[np.bool_] = seen.first_hit(offsets / distance[:, None]).distance < distance
+    return hidden

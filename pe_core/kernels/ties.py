@@ -1,0 +1,40 @@
+"""Beams that run exactly along a face or through an edge of a voxel.
+
+They are common: designers put sensors at round numbers, and azimuth 0 and elevation 0 are beams.
+So that the definition and every kernel give such a beam to the same voxel, all of them place the
+sensor by this one rule: its coordinate in voxels is rounded to SNAP_DECIMALS, which makes round
+numbers round again, and then nudged by NUDGE, which is too small to matter and too large for a
+rounding to undo. The effect is that a voxel owns its lower faces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+SNAP_DECIMALS = 9
+NUDGE = np.array([2e-8, 3e-8, 5e-8])
+"""In voxels: nanometres. Different along each axis, so that diagonals are decided as well."""
+NO_SPEED = 1e-30
+"""Stands for a direction component of exactly 0, so that dividing by it gives +-huge."""
+
+
+def offsets_in_voxels(centers: Floats, position: Sequence[float], side: float) -> Floats:
+    """(V, 3) centres seen from the sensor, in voxel sides."""
+    whole = np.round((centers - np.asarray(position)) / side - 0.5, SNAP_DECIMALS)
+    return whole + (0.5 - NUDGE)
+
+
+def position_in_voxels(position: Sequence[float], origin: Sequence[float], side: float) -> Floats:
+    """(3,) sensor position seen from the space's lowest corner, in voxel sides."""
+    cells = (np.asarray(position) - np.asarray(origin)) / side
+    return np.round(cells, SNAP_DECIMALS) + NUDGE
+
+
+def without_zeros(directions: Floats) -> Floats:
+    """Directions with components of exactly 0 replaced by `NO_SPEED`."""
+    return np.where(directions == 0.0, NO_SPEED, directions)

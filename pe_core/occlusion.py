@@ -1,0 +1,59 @@
+"""Where a LiDAR's beams end, and which part of the vehicle stops them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .measurement import beam_directions
+from .sensors import Lidar, Sensor
+from .vehicle import Vehicle
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class BeamField:
+    """The beams of a mounted LiDAR.
+
+    `directions` (B, 3) unit, ground frame; `ends` (B,) [m]; `stopped_by` (B,) index of the vehicle
+    part that stops the beam within its range, -1 where none does.
+    """
+
+    directions: Floats
+    ends: Floats
+    stopped_by: NDArray[np.int64]
+
+    def stopped_count(self, part_names: tuple[str, ...]) -> dict[str, int]:
+        """Stopped beams by part, most first."""
+        counts = np.bincount(self.stopped_by[self.stopped_by >= 0], minlength=len(part_names))
+        order = np.argsort(-counts, kind="stable")
+        return {part_names[i]: int(counts[i]) for i in order if counts[i]}
+
+
+def beam_field(sensor: Sensor, vehicle: Vehicle | None) -> BeamField:
+    """Cast all beams of a LiDAR against the vehicle (None: nothing stops them)."""
+    directions = beam_directions(sensor)
+    max_range = cast(Lidar, sensor.model).max_range
+    if vehicle is None:
+        free = np.full(len(directions), -1)
+        return BeamField(directions, np.full(len(directions), max_range), free)
+    hits = vehicle.first_hit(sensor.pose.position, directions)
+    stopped = hits.distance < max_range
+    parts = np.asarray(vehicle.parts)[hits.face]
+    return BeamField(
+        directions, np.minimum(hits.distance, max_range), np.where(stopped, parts, -1)
+    )
+
+
+def beam_counts(sensor: Sensor, vehicle: Vehicle | None) -> tuple[int, int, dict[str, int]]:
+    """Beams of a sensor, how many the vehicle stops, and by which parts; zeros for a camera."""
+    if sensor.kind != "lidar":
+        return 0, 0, {}
+    field = beam_field(sensor, vehicle)
+    names = () if vehicle is None else tuple(vehicle.part_names)
+    stopped_by = field.stopped_count(names)
+    return len(field.ends), sum(stopped_by.values()), stopped_by

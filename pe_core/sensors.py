@@ -1,0 +1,259 @@
+"""Sensors: intrinsics (Lidar, Camera), a mounted Sensor, and the Rig they form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import InputError
+from .geometry import Pose
+
+Floats = NDArray[np.float64]
+
+FULL_CIRCLE = (-math.pi, math.pi)
+DEFAULT_LIDAR_GROUP = "lidar"
+
+
+@dataclass(frozen=True, eq=False)
+class Lidar:
+    """Intrinsics of a LiDAR: the beams of one revolution (one frame).
+
+    A beam is a channel's elevation at an azimuth ``a_j = j * step + offset of the channel`` with
+    ``step = 360 deg / azimuth_count``; beams outside `horizontal_fov` do not exist.
+
+    Parameters
+    ----------
+    name : str
+        Catalogue name, or the user's own.
+    elevations : (C,) float
+        Elevation of each channel above the horizon [rad].
+    azimuth_count : int
+        Number of azimuth steps in a full circle.
+    max_range : float
+        Farthest distance at which a beam may enter a voxel [m].
+    azimuth_offsets : (C,) float, optional
+        Added to the azimuth of each channel, counter-clockwise seen from above [rad].
+    horizontal_fov : (low, high) float
+        Azimuths the sensor scans, before the offsets [rad].
+
+    Raises
+    ------
+    InputError
+        When there are no beams, or an angle or the range is not a finite number in its range.
+    """
+
+    name: str
+    elevations: Floats
+    azimuth_count: int
+    max_range: float
+    azimuth_offsets: Floats | None = None
+    horizontal_fov: tuple[float, float] = FULL_CIRCLE
+
+    def __post_init__(self) -> None:
+        elevations = _angles(self.name, "elevations", self.elevations, math.pi / 2)
+        offsets = np.zeros_like(elevations) if self.azimuth_offsets is None else _angles(
+            self.name, "azimuth_offsets", self.azimuth_offsets, math.pi
+        )
+        if offsets.shape != elevations.shape:
+            raise InputError(
+                self.name, "azimuth_offsets", f"{len(elevations)}, one a channel", len(offsets)
+            )
+        if int(self.azimuth_count) != self.azimuth_count or self.azimuth_count < 1:
+            raise InputError(self.name, "azimuth_count", "a whole number >= 1", self.azimuth_count)
+        if not (math.isfinite(self.max_range) and self.max_range > 0):
+            raise InputError(self.name, "max_range", "a positive number of metres", self.max_range)
+        object.__setattr__(self, "elevations", elevations)
+        object.__setattr__(self, "azimuth_offsets", offsets)
+        if not len(self.azimuth_steps):
+            raise InputError(self.name, "horizontal_fov", "room for a beam", self.horizontal_fov)
+
+    @property
+    def azimuth_step(self) -> float:
+        """Angle between two azimuths of a channel [rad]."""
+        return 2.0 * math.pi / self.azimuth_count
+
+    @cached_property
+    def azimuth_steps(self) -> NDArray[np.int64]:
+        """(A,) whole numbers j of the azimuths ``j * step`` that exist, ascending."""
+        low, high = self.horizontal_fov
+        if high - low >= 2.0 * math.pi - 1e-9:
+            return np.arange(self.azimuth_count)
+        margin = 1e-9  # a bound given in degrees may miss its own azimuth by a rounding
+        first = math.ceil(low / self.azimuth_step - margin)
+        return np.arange(first, math.floor(high / self.azimuth_step + margin) + 1)
+
+    @property
+    def beam_count(self) -> int:
+        """Number of beams B = C * A of a frame."""
+        return len(self.elevations) * len(self.azimuth_steps)
+
+    @cached_property
+    def directions(self) -> Floats:
+        """(B, 3) unit directions in the sensor frame, channel by channel (eq. 1).
+
+        Beam ``c * A + j`` is channel c at the j-th azimuth. Built from scalar sines: NumPy's
+        vectorised ones differ in the last bit between builds.
+        """
+        steps = self.azimuth_steps
+        rows = []
+        circles: dict[float, Floats] = {}
+        for elevation, offset in zip(self.elevations, self.azimuth_offsets, strict=True):
+            if offset not in circles:
+                angles = [j * self.azimuth_step + offset for j in steps.tolist()]
+                circles[offset] = np.array([(math.cos(a), math.sin(a)) for a in angles])
+            horizontal = math.cos(elevation) * circles[offset]
+            up = np.full((len(steps), 1), math.sin(elevation))
+            rows.append(np.hstack([horizontal, up]))
+        return np.concatenate(rows)
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """Intrinsics of a pinhole camera (eq. 2): square pixels, centred principal point.
+
+    Parameters
+    ----------
+    name : str
+        Catalogue name, or the user's own.
+    width, height : int
+        Active resolution [px].
+    hfov : float
+        Horizontal field of view [rad], below 180 degrees.
+
+    Raises
+    ------
+    InputError
+        When the resolution or the field of view is not possible.
+    """
+
+    name: str
+    width: int
+    height: int
+    hfov: float
+
+    def __post_init__(self) -> None:
+        for key in ("width", "height"):
+            if not (isinstance(getattr(self, key), int) and getattr(self, key) > 0):
+                raise InputError(self.name, key, "a whole number of pixels", getattr(self, key))
+        if not 0.0 < self.hfov < math.pi:
+            found = f"{math.degrees(self.hfov):g}"
+            raise InputError(self.name, "hfov", "above 0 and below 180 degrees", found)
+
+    @property
+    def focal_px(self) -> float:
+        """Focal length ``W / (2 tan(r_h / 2))`` [px], eq. 2."""
+        return self.width / (2.0 * math.tan(self.hfov / 2.0))
+
+    @property
+    def vfov(self) -> float:
+        """Vertical field of view [rad]."""
+        return 2.0 * math.atan(self.height / (2.0 * self.focal_px))
+
+
+@dataclass(frozen=True, eq=False)
+class Sensor:
+    """A sensor on the vehicle: intrinsics, extrinsics and the fusion group it belongs to.
+
+    Parameters
+    ----------
+    name : str
+        Unique in its rig.
+    model : Lidar or Camera
+    pose : Pose
+    fusion : str, optional
+        Measurements inside one group are summed (early fusion, eq. 6). LiDARs share the group
+        "lidar" unless told otherwise; a camera stands alone.
+    """
+
+    name: str
+    model: Lidar | Camera
+    pose: Pose = field(default_factory=lambda: Pose((0.0, 0.0, 0.0)))
+    fusion: str | None = None
+
+    @property
+    def kind(self) -> str:
+        """``"lidar"`` or ``"camera"``."""
+        return "lidar" if isinstance(self.model, Lidar) else "camera"
+
+    @property
+    def group(self) -> str:
+        """Name of the early-fusion group."""
+        if self.fusion:
+            return self.fusion
+        return DEFAULT_LIDAR_GROUP if self.kind == "lidar" else f"camera {self.name}"
+
+    def moved(self, pose: Pose) -> Sensor:
+        """Return the same sensor at another pose."""
+        return replace(self, pose=pose)
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """The sensors mounted on one vehicle.
+
+    Parameters
+    ----------
+    sensors : sequence of Sensor
+
+    Raises
+    ------
+    InputError
+        When there is no sensor, two share a name, or a fusion group mixes LiDARs and cameras.
+    """
+
+    sensors: Sequence[Sensor]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sensors", tuple(self.sensors))
+        if not self.sensors:
+            raise InputError("rig", "sensors", "at least one sensor", "none")
+        names = [s.name for s in self.sensors]
+        twice = sorted({n for n in names if names.count(n) > 1})
+        if twice:
+            raise InputError("rig", "sensor name", "a name used once", repr(twice[0]))
+        for group, members in self.groups.items():
+            if len({s.kind for s in members}) > 1:
+                raise InputError("rig", f"fusion group {group!r}", "one kind of sensor", "two")
+
+    def __iter__(self) -> Iterator[Sensor]:
+        return iter(self.sensors)
+
+    def __len__(self) -> int:
+        return len(self.sensors)
+
+    def __getitem__(self, name: str) -> Sensor:
+        """Return the sensor of that name."""
+        for sensor in self.sensors:
+            if sensor.name == name:
+                return sensor
+        raise KeyError(name)
+
+    @property
+    def groups(self) -> dict[str, list[Sensor]]:
+        """Sensors by early-fusion group, in the rig's order."""
+        groups: dict[str, list[Sensor]] = {}
+        for sensor in self.sensors:
+            groups.setdefault(sensor.group, []).append(sensor)
+        return groups
+
+    def with_poses(self, poses: Sequence[Pose]) -> Rig:
+        """Return the rig with new poses, one a sensor; a sensor that did not move stays itself."""
+        pairs = zip(self.sensors, poses, strict=True)
+        return Rig([s if s.pose == pose else s.moved(pose) for s, pose in pairs])
+
+
+def _angles(name: str, key: str, values: ArrayLike, limit: float) -> Floats:
+    """Return (C,) angles in [-limit, limit], or raise `InputError`."""
+    angles = np.atleast_1d(np.asarray(values, dtype=float))
+    if angles.ndim != 1 or not len(angles):
+        raise InputError(name, key, "at least one angle in a row", f"shape {angles.shape}")
+    bad = ~(np.abs(angles) <= limit)  # written so that NaN is bad
+    if bad.any():
+        found = f"{math.degrees(angles[bad][0]):g} (channel {int(np.flatnonzero(bad)[0])})"
+        raise InputError(name, key, f"angles within +-{math.degrees(limit):g} degrees", found)
+    return angles

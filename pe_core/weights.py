@@ -1,0 +1,39 @@
+"""Weights of the prior outside the vehicle (eq. 9: its own volume carries none)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import InputError
+from .prior import ClassDensity
+from .space import PerceptionSpace
+
+Floats = NDArray[np.float64]
+
+
+def outside_profile(density: ClassDensity, space: PerceptionSpace, tops: Floats) -> Floats:
+    """Sum of the class's height profile over voxels not below the vehicle's top, by column."""
+    above = np.append(np.cumsum(density.profile[::-1])[::-1], 0.0)
+    below = np.searchsorted(space.centers(2), tops.reshape(-1), side="left")
+    return above[below].reshape(tops.shape)
+
+
+def outside_shares(
+    densities: list[ClassDensity], space: PerceptionSpace, tops: Floats | None
+) -> list[float]:
+    """Each class's share of the prior outside the vehicle; they sum to 1.
+
+    Raises
+    ------
+    InputError
+        When the vehicle fills everything that had any weight.
+    """
+    masses = [
+        float(d.ground.sum() if tops is None else (d.ground * outside_profile(d, space, tops)).sum())
+        for d in densities
+    ]
+    total = sum(masses)
+    if not total > 0.0:
+        raise InputError("prior", "weights", "some weight outside the vehicle", "none")
+    return [m / total for m in masses]

@@ -1,0 +1,96 @@
+"""Run inside Blender's window: lays the screen out for the test and reports through files.
+
+``ready.json``   once our tab of the sidebar has been drawn: where the sidebar is
+``state.json``   again and again: what the scene holds
+``copied.txt``   what was copied by Ctrl+C, which tells the button under the mouse
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import bpy
+
+FOLDER = Path(sys.argv[-1])
+CATEGORY = "Perception"
+STEP_S = 0.5
+REPORT_S = 0.1
+
+
+def write(name, document):
+    """Write a file of which a reader never sees half."""
+    partial = FOLDER / f"{name}.partial"
+    partial.write_text(document if isinstance(document, str) else json.dumps(document))
+    partial.replace(FOLDER / name)
+
+
+def view3d():
+    """Return window, area and sidebar of the first 3D view."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    return window, area, next(region for region in area.regions if region.type == "UI")
+
+
+def fill_the_window():
+    """First step: one large 3D view with its sidebar."""
+    window, area, _ = view3d()
+    with bpy.context.temp_override(window=window, area=area):
+        bpy.ops.screen.screen_full_area()
+    bpy.app.timers.register(show_sidebar, first_interval=STEP_S)
+
+
+def show_sidebar():
+    """Second step, after the new layout was drawn."""
+    view3d()[1].spaces.active.show_region_ui = True
+    bpy.app.timers.register(show_tab, first_interval=STEP_S)
+
+
+def show_tab():
+    """Third step: the tab exists only after the sidebar was drawn; ask until it does."""
+    _, area, sidebar = view3d()
+    try:
+        sidebar.active_panel_category = CATEGORY
+    except (AttributeError, TypeError):
+        return STEP_S
+    area.tag_redraw()
+    bpy.app.timers.register(say_ready, first_interval=STEP_S)
+
+
+def say_ready():
+    """Last step: where the sidebar is, counted from the top left as X does."""
+    window, _, sidebar = view3d()
+    if sidebar.active_panel_category != CATEGORY:
+        return STEP_S
+    top = window.height - (sidebar.y + sidebar.height)
+    report_state()
+    place = {"left": sidebar.x, "top": top, "width": sidebar.width, "bottom": top + sidebar.height}
+    write("ready.json", {"sidebar": place})
+
+
+def report_state():
+    """Write what the scene holds, again and again."""
+    scene = bpy.context.window_manager.windows[0].scene
+    found = scene.perception_entropy
+    sensors = [each.name for each in scene.objects if each.perception_entropy.is_sensor]
+    state = {
+        "sensors": sensors,
+        "has_result": found.has_result,
+        "entropy": found.result_entropy,
+        "coverage": found.result_coverage,
+    }
+    write("state.json", state)
+    report_copied()
+    return REPORT_S
+
+
+def report_copied():
+    """Hand over what Ctrl+C copied, once."""
+    manager = bpy.context.window_manager
+    if copied := manager.clipboard:
+        manager.clipboard = ""
+        write("copied.txt", copied)
+
+
+bpy.context.preferences.view.show_splash = False
+bpy.app.timers.register(fill_the_window, first_interval=STEP_S, persistent=True)
+bpy.app.timers.register(report_state, first_interval=STEP_S, persistent=True)

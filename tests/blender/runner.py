@@ -1,0 +1,51 @@
+"""A real Blender, and a real Blender with the extension installed, as a user would have them."""
+
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tests.blender import process
+
+ADDON = "bl_ext.user_default.perception_entropy"
+RUN_TIMEOUT_S = 300
+
+
+@dataclass(frozen=True)
+class Blender:
+    """The command that starts Blender, and the environment it is started in."""
+
+    command: str
+    env: dict[str, str] = field(default_factory=dict)
+
+    def run(self, *arguments, timeout_s: float = RUN_TIMEOUT_S) -> subprocess.CompletedProcess[str]:
+        """Run ``blender ARGUMENTS`` to its end."""
+        return process.run([self.command, *map(str, arguments)], timeout_s, self.env)
+
+    def with_resources(self, folder: Path) -> "Blender":
+        """Return the same Blender with a user folder of its own."""
+        return Blender(self.command, {**self.env, "BLENDER_USER_RESOURCES": str(folder)})
+
+
+@dataclass(frozen=True)
+class Installed:
+    """A Blender whose user folder has the extension in it."""
+
+    blender: Blender
+
+    # Nothing of a user's own settings takes part.
+    START = ("--factory-startup", "--addons", ADDON)
+
+    def script(self, script: Path, *arguments) -> subprocess.CompletedProcess[str]:
+        """Run a Python script inside, without a window; an exception in it gives status 3."""
+        return self.blender.run(
+            *self.START, "-b", "--python-exit-code", 3, "--python", script, "--", *arguments
+        )
+
+    def pe(self, blend: Path, *arguments) -> subprocess.CompletedProcess[str]:
+        """Run ``blender -b BLEND --command pe ARGUMENTS``."""
+        return self.blender.run(*self.START, "-b", blend, "--command", "pe", *arguments)
+
+
+def output_of(answer: subprocess.CompletedProcess[str]) -> str:
+    """Return all that a run said, for the message of a failed assertion."""
+    return f"status {answer.returncode}\n{answer.stdout}\n{answer.stderr}"

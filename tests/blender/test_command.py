@@ -1,0 +1,70 @@
+"""``blender -b CAR.blend --command pe VERB``: files, exit status, and the engine's own numbers."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.blender.runner import output_of
+
+SCORE_TIMEOUT_S = 300
+FAST = ("--samples", 4096)
+
+
+def document_in(stdout: str) -> dict:
+    """Return the JSON document among what Blender itself prints; numbers stay text."""
+    start = stdout.find("\n{", stdout.find("{") - 1) + 1 if not stdout.startswith("{") else 0
+    decoder = json.JSONDecoder(parse_float=str)
+    return decoder.raw_decode(stdout[start:])[0]
+
+
+def read(path: Path) -> dict:
+    return json.loads(path.read_text("utf-8"))
+
+
+def complaint_in(answer: subprocess.CompletedProcess[str]) -> list[str]:
+    """Return the lines on stderr that are ours."""
+    return [line for line in answer.stderr.splitlines() if line.startswith("pe")]
+
+
+def test_score_writes_result_and_picture(installed, sedan, tmp_path):
+    answer = installed.pe(sedan, "score", *FAST, "--output", tmp_path)
+    assert answer.returncode == 0, output_of(answer)
+    assert isinstance(read(tmp_path / "result.json")["entropy"], float)
+    assert (tmp_path / "review.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_optimize_does_not_worsen(installed, sedan, tmp_path):
+    answer = installed.pe(sedan, "optimize", *FAST, "--candidates", 10, "--output", tmp_path)
+    assert answer.returncode == 0, output_of(answer)
+    result = read(tmp_path / "result.json")
+    assert result["entropy"] <= result["before"]["entropy"]
+    for name in ("optimized.blend", "review.png", "history.csv"):
+        assert (tmp_path / name).stat().st_size > 0, name
+
+
+def test_missing_file_is_one_line_and_status_1(installed, tmp_path):
+    missing = tmp_path / "nowhere.blend"
+    answer = installed.pe(missing, "score", "--output", tmp_path)
+    assert answer.returncode == 1, output_of(answer)
+    assert len(complaint_in(answer)) == 1, output_of(answer)
+    assert "Traceback" not in answer.stderr
+
+
+def test_wrong_usage_is_status_2(installed, sedan):
+    answer = installed.pe(sedan, "score", "--no-such-option")
+    assert answer.returncode == 2, output_of(answer)
+
+
+def test_blender_and_engine_agree_to_the_last_bit(installed, sedan, tmp_path):
+    inside = installed.pe(sedan, "score", *FAST, "--json", "--output", tmp_path / "inside")
+    assert inside.returncode == 0, output_of(inside)
+    exported = installed.pe(sedan, "export", "--output", tmp_path / "study")
+    assert exported.returncode == 0, output_of(exported)
+
+    (study,) = (tmp_path / "study").glob("*.toml")
+    command = [sys.executable, "-m", "pe_core", "score", study, *map(str, FAST), "--json"]
+    outside = subprocess.run(command, capture_output=True, text=True, timeout=SCORE_TIMEOUT_S)
+    assert outside.returncode == 0, output_of(outside)
+
+    assert document_in(inside.stdout)["entropy"] == document_in(outside.stdout)["entropy"]

@@ -1,0 +1,159 @@
+"""Blender in a real window on an X server of its own, worked with a real mouse and keyboard.
+
+Blender does not tell scripts where its buttons are. It does copy the Python call of the button
+under the mouse on Ctrl+C, so buttons are found by asking at places from top to bottom; no pixel
+of the theme and no order of the panels is assumed.
+"""
+
+import json
+import os
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from tests.blender import process
+from tests.blender.runner import Installed
+
+TOOLS = ("Xvfb", "xdotool", "import")
+WIDTH, HEIGHT = 1600, 900
+STARTUP = Path(__file__).resolve().parent / "inside_window.py"
+
+SCREEN_TIMEOUT_S = 20
+READY_TIMEOUT_S = 120  # the first start on a machine without a graphics card compiles shaders
+TOOL_TIMEOUT_S = 30
+POLL_S = 0.05
+SETTLE_S = 0.1  # between moving and pressing: Blender finds the button by the move
+
+# A button is 20 pixels high at this scale; steps of less can't miss one.
+ROW_STEP = 12
+# Where to ask in a row: its middle may be the gap between two buttons.
+COLUMNS = (0.7, 0.25, 0.5)
+# How long to wait for an answer; the second time around for a machine that is busy.
+PATIENCE_S = (0.25, 1.0)
+
+
+class Window:
+    """One screen with one Blender on it; call `close` whatever happened."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        self.log = folder / "window.log"
+        self._processes: list[subprocess.Popen] = []
+        self._env: dict[str, str] = {}
+
+    def open(self, installed: Installed, blend: Path) -> None:
+        """Start the screen and Blender, and wait until its sidebar shows our tab."""
+        self._env = {"DISPLAY": self._start_screen(), "LIBGL_ALWAYS_SOFTWARE": "1"}
+        blender = installed.blender
+        command = [blender.command, *installed.START, "--window-geometry", "0", "0"]
+        command += [str(WIDTH), str(HEIGHT), str(blend)]
+        command += ["--python-exit-code", "3", "--python", str(STARTUP), "--", str(self.folder)]
+        self._processes.append(process.start(command, self.log, {**blender.env, **self._env}))
+        self.wait_for(lambda: (self.folder / "ready.json").exists(), READY_TIMEOUT_S, "its window")
+
+    def close(self) -> None:
+        """End Blender, then the screen."""
+        for started in reversed(self._processes):
+            process.stop(started)
+        self._processes.clear()
+
+    @property
+    def state(self) -> dict:
+        """What the scene holds, as Blender wrote it a moment ago."""
+        return json.loads((self.folder / "state.json").read_text())
+
+    def wait_for(self, condition: Callable[[], object], timeout_s: float, what: str) -> None:
+        """Wait until the condition holds; fail after the time, or at once when Blender ended."""
+        deadline = time.monotonic() + timeout_s
+        while not condition():
+            ended = [each.args[0] for each in self._processes if each.poll() is not None]
+            if ended or time.monotonic() > deadline:
+                problem = f"{ended[0]} ended" if ended else f"{timeout_s:g} s passed"
+                raise AssertionError(f"{problem}, waiting for {what}\n{self._end_of_log()}")
+            time.sleep(POLL_S)
+
+    def click(self, x: int, y: int) -> None:
+        """Press and release the left button at a place, counted from the top left."""
+        self._move(x, y)
+        self._xdotool("click", "1")
+
+    def key(self, *names: str) -> None:
+        """Press keys by their X names: ``Return``, ``ctrl+z``."""
+        self._xdotool("key", *names)
+
+    def press(self, operator: str) -> None:
+        """Click the sidebar's button of an operator, by its name: ``pe.score``."""
+        self.click(*self.find_button(operator))
+
+    def find_button(self, operator: str) -> tuple[int, int]:
+        """Return a place inside the sidebar's button of an operator."""
+        call = f"bpy.ops.{operator}("
+        for patience_s in PATIENCE_S:
+            for x, y in self._sidebar_places():
+                # Asked twice: the first answer may be a late one, to the place before.
+                if call in self._call_at(x, y, patience_s) and call in self._call_at(x, y, 1.0):
+                    return x, y
+        self.screenshot(self.folder / "no_button.png")
+        raise AssertionError(
+            f"no button for {operator} in the sidebar; see {self.folder}/no_button.png\n"
+            f"{self._end_of_log()}"
+        )
+
+    def screenshot(self, path: Path) -> None:
+        """Keep a picture of the whole screen."""
+        self._tool("import", "-window", "root", str(path))
+
+    def _start_screen(self) -> str:
+        """Start an X server on a display that is free, by its own choice."""
+        reader, writer = os.pipe()
+        command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{WIDTH}x{HEIGHT}x24"]
+        command += ["-nolisten", "tcp"]
+        server = process.start(command, self.folder / "screen.log", pass_fds=[writer])
+        self._processes.append(server)
+        os.close(writer)
+        os.set_blocking(reader, False)
+        number = bytearray()
+
+        def answered() -> bool:
+            with suppress(BlockingIOError):
+                number.extend(os.read(reader, 16))
+            return number.endswith(b"\n")
+
+        self.wait_for(answered, SCREEN_TIMEOUT_S, "an X server")
+        os.close(reader)
+        return f":{int(number)}"
+
+    def _sidebar_places(self) -> Iterator[tuple[int, int]]:
+        """Yield places in the sidebar to look for buttons at, from its top down."""
+        sidebar = json.loads((self.folder / "ready.json").read_text())["sidebar"]
+        for column in COLUMNS:
+            for y in range(sidebar["top"] + ROW_STEP, sidebar["bottom"], ROW_STEP):
+                yield round(sidebar["left"] + column * sidebar["width"]), y
+
+    def _call_at(self, x: int, y: int, patience_s: float) -> str:
+        """Return the Python call of the button at a place, "" where there is none."""
+        copied = self.folder / "copied.txt"
+        copied.unlink(missing_ok=True)
+        self._move(x, y)
+        self.key("ctrl+c")
+        deadline = time.monotonic() + patience_s
+        while not copied.exists() and time.monotonic() < deadline:
+            time.sleep(POLL_S)
+        return copied.read_text() if copied.exists() else ""
+
+    def _move(self, x: int, y: int) -> None:
+        # Coming from one pixel aside: a move that changes nothing is no event.
+        self._xdotool("mousemove", str(x - 1), str(y), "mousemove", str(x), str(y))
+        time.sleep(SETTLE_S)
+
+    def _xdotool(self, *arguments: str) -> None:
+        self._tool("xdotool", *arguments)
+
+    def _tool(self, *command: str) -> None:
+        answer = process.run(command, TOOL_TIMEOUT_S, self._env)
+        assert answer.returncode == 0, f"{command}: {answer.stderr}"
+
+    def _end_of_log(self) -> str:
+        return self.log.read_text()[-2000:] if self.log.exists() else ""

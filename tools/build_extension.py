@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""Build the Blender extension: ``dist/perception_entropy-VERSION.zip``.
+
+``blender_addon/`` and a copy of ``pe_core/`` inside it are staged in a temporary folder, then
+validated and built by Blender's own tool. The same sources give the same bytes.
+"""
+
+import importlib.util
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+ADDON = ROOT / "blender_addon"
+ENGINE = ROOT / "pe_core"
+MANIFEST = ADDON / "blender_manifest.toml"
+
+# Of no use inside Blender, or in the way of the same bytes again.
+LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.pyc", "tests", "test_*.py", ".*", "*.blend1")
+
+TOOL_TIMEOUT_S = 300
+ZIP_TIME = (1980, 1, 1, 0, 0, 0)  # the earliest a zip can say
+ZIP_FILE_MODE = 0o100644 << 16
+
+
+class BuildError(Exception):
+    """The extension can't be built; the message is one line that says why."""
+
+
+def agreed_version() -> str:
+    """Return the version that manifest and pyproject.toml give; they must agree."""
+    for needed in (MANIFEST, ENGINE / "__init__.py"):
+        if not needed.exists():
+            raise BuildError(f"{needed.relative_to(ROOT)} is missing")
+    in_manifest = tomllib.loads(MANIFEST.read_text("utf-8"))["version"]
+    in_project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
+    if in_manifest != in_project:
+        raise BuildError(
+            f"version {in_manifest} in blender_addon/blender_manifest.toml, "
+            f"{in_project} in pyproject.toml: make them the same"
+        )
+    return in_project
+
+
+def stage(target: Path) -> None:
+    """Copy add-on, engine and licence; links become files, which Blender's tool would drop."""
+    shutil.copytree(ADDON, target, ignore=LEFT_OUT)
+    # A developer's link to the engine may stand in the add-on's folder.
+    shutil.rmtree(target / ENGINE.name, ignore_errors=True)
+    shutil.copytree(ENGINE, target / ENGINE.name, ignore=LEFT_OUT)
+    shutil.copy(ROOT / "LICENSE", target / "LICENSE")
+
+
+def bpy_tool() -> Path | None:
+    """Return Blender's extension tool as it comes with bpy, found without starting Blender."""
+    spec = importlib.util.find_spec("bpy")
+    if spec is None or spec.origin is None:
+        return None
+    pattern = "*/scripts/addons_core/bl_pkg/cli/blender_ext.py"
+    return next(iter(sorted(Path(spec.origin).parent.glob(pattern))), None)
+
+
+def extension_command() -> list[str]:
+    """Return the start of the command line of Blender's extension tool."""
+    if tool := bpy_tool():
+        return [sys.executable, str(tool)]
+    finder = [sys.executable, str(ROOT / "tools" / "real_blender.py")]
+    found = subprocess.run(finder, capture_output=True, text=True)
+    if found.returncode != 0:
+        raise BuildError("needs bpy in this Python (make extension sees to it) or a Blender")
+    # Blender would load its user's add-ons first; none of them matters here.
+    return [found.stdout.strip(), "--factory-startup", "--command", "extension"]
+
+
+def run_tool(command: list[str], *arguments: str) -> None:
+    """Run one step of Blender's tool; what it says is shown when it fails."""
+    answer = subprocess.run(
+        [*command, *arguments],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=TOOL_TIMEOUT_S,
+    )
+    if answer.returncode != 0:
+        sys.stderr.write(answer.stdout)
+        raise BuildError(f"Blender's extension tool refused: {arguments[0]}")
+
+
+def repack(source: Path, target: Path) -> None:
+    """Write the files of an archive again in a fixed order, without times and owners."""
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
+        for name in sorted(name for name in old.namelist() if not name.endswith("/")):
+            entry = zipfile.ZipInfo(name, ZIP_TIME)
+            entry.external_attr = ZIP_FILE_MODE
+            entry.create_system = 3  # Unix, on whatever system it is built
+            new.writestr(entry, old.read(name), zipfile.ZIP_DEFLATED, compresslevel=9)
+
+
+def build() -> Path:
+    """Build the archive and return its path."""
+    archive = ROOT / "dist" / f"perception_entropy-{agreed_version()}.zip"
+    archive.parent.mkdir(exist_ok=True)
+    command = extension_command()
+    with tempfile.TemporaryDirectory(prefix="pe-extension-") as scratch:
+        staged, built = Path(scratch, "perception_entropy"), Path(scratch, "built.zip")
+        stage(staged)
+        run_tool(command, "validate", str(staged))
+        run_tool(command, "build", f"--source-dir={staged}", f"--output-filepath={built}")
+        packed = Path(scratch, archive.name)
+        repack(built, packed)
+        run_tool(command, "validate", str(packed))
+        check_contents(packed)
+        shutil.copyfile(packed, archive)
+    return archive
+
+
+def check_contents(archive: Path) -> None:
+    """Make sure that the engine is in: Blender's tool leaves files out without a word."""
+    with zipfile.ZipFile(archive) as packed:
+        names = set(packed.namelist())
+    presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("catalog/*.toml")}
+    always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py"}
+    for wanted in sorted(always | presets):
+        if wanted not in names:
+            raise BuildError(f"{wanted} did not get into the archive")
+    for name in names:
+        if re.search(r"__pycache__|\.pyc$", name):
+            raise BuildError(f"{name} does not belong into the archive")
+
+
+def main() -> int:
+    """Run the command line."""
+    try:
+        print(build())
+    except BuildError as problem:
+        print(f"build_extension: {problem}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

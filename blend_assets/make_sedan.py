@@ -12,6 +12,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+import sedan_lines as lines
 import sedan_panels as panels
 import sedan_parts as parts
 import sedan_profile as profile
@@ -35,9 +36,10 @@ SHARP = np.radians(32)  # edges that fold more are drawn as creases
 
 def housings(skin: skinning.Skin) -> Part:
     """Inner walls of the wheel openings, and in place the openings themselves."""
-    skin.keep(panels.arch(skin.centres()) > 0)
+    skin.keep(lines.arch(skin.centres()) > 0)
     edges = skinning.boundary(skin.triangles)
-    on_arch = np.abs(panels.arch(skin.points[edges].reshape(-1, 3)).reshape(-1, 2)).max(axis=1) < 2e-3
+    off = np.abs(lines.arch(skin.points[edges].reshape(-1, 3)).reshape(-1, 2))
+    on_arch = off.max(axis=1) < 2e-3
     found = []
     for path in parts.chains(edges[on_arch]):
         outer = skin.points[path]
@@ -90,7 +92,7 @@ def vehicle() -> dict[str, Part]:
     result |= {"mirror_left": mirror, "mirror_right": parts.flipped(mirror)}
     for axle in profile.AXLES:
         result |= {f"wheel_{axle}_left": wheel, f"wheel_{axle}_right": parts.flipped(wheel)}
-    result["plate_front"], result["plate_rear"] = parts.plate(0.47, 1.0), parts.plate(0.66, -1.0)
+    result["plate_front"], result["plate_rear"] = parts.plate(0.48, 1.0), parts.plate(0.66, -1.0)
     return result
 
 
@@ -140,12 +142,15 @@ def fair_normals(mesh: bpy.types.Mesh) -> None:
     """Shade skin with the true normals of the surface, seen from inside each face at its corner."""
     corner = np.array([loop.vertex_index for loop in mesh.loops])
     points = np.array([vertex.co for vertex in mesh.vertices])[corner].reshape(-1, 3, 3)
-    points = (points * 0.99 + points.mean(axis=1, keepdims=True) * 0.01).reshape(-1, 3)
+    inward = points.mean(axis=1, keepdims=True) - points
+    inward *= 0.003 / np.linalg.norm(inward, axis=2, keepdims=True)  # 3 mm
+    points = (points + inward).reshape(-1, 3)
     mirror = np.where(points[:, 1:2] < 0, [[1, -1, 1]], [[1, 1, 1]])
     fair = profile.gradient(points * mirror) * mirror
     fair /= np.linalg.norm(fair, axis=1)[:, None]
     normals = np.array([normal.vector for normal in mesh.corner_normals])
-    skin = (np.sum(fair * normals, axis=1) > 0.85) & (np.abs(profile.solid(points)) < 5e-3)
+    facing = np.repeat([face.vector for face in mesh.polygon_normals], 3, axis=0)
+    skin = (np.sum(fair * facing, axis=1) > 0.35) & (np.abs(profile.solid(points)) < 5e-3)
     normals[skin] = fair[skin]
     mesh.normals_split_custom_set(normals.tolist())
 
@@ -180,6 +185,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=default, help="file to write")
     out = parser.parse_args(arguments).out.resolve()
     build()
+    bpy.context.preferences.filepaths.save_version = 0  # no backup beside it
     bpy.ops.wm.save_as_mainfile(filepath=str(out), compress=True)
 
 

@@ -53,7 +53,9 @@ def tube(rings: Array, material: str, caps: tuple[bool, bool] = (False, False)) 
     faces = faces // (columns + 1) * columns + faces % (columns + 1) % columns
     first = np.array([[0, i, i + 1] for i in range(1, columns - 1)])
     last = first[:, ::-1] + (rows - 1) * columns
-    faces = np.vstack([faces] + [cap for cap, want in zip((first, last), caps, strict=True) if want])
+    faces = np.vstack(
+        [faces, *(cap for cap, want in zip((first, last), caps, strict=True) if want)]
+    )
     return Part(rings.reshape(-1, 3), faces, [material] * len(faces))
 
 
@@ -68,7 +70,7 @@ def lathe(outline: list[tuple[float, float]], material: str, ends: tuple[bool, b
 def spoke(turn: float) -> Part:
     """One spoke: a face and two flanks."""
     rows = []
-    for radius, offset, half in SPOKE:
+    for _, offset, half in SPOKE:
         rows.append([(-half * 1.25, offset - 0.045), (-half, offset), (half, offset),
                      (half * 1.25, offset - 0.045)])  # fmt: skip
     flat = np.array(rows)
@@ -100,7 +102,8 @@ def mirror() -> Part:
     # y, centre x, centre z, half depth, half height
     stations = [(0.842, 0.672, 1.000, 0.026, 0.028), (0.862, 0.670, 1.006, 0.062, 0.056),
                 (0.900, 0.664, 1.010, 0.076, 0.068), (0.955, 0.654, 1.012, 0.074, 0.068),
-                (0.995, 0.644, 1.013, 0.060, 0.058), (1.015, 0.636, 1.013, 0.030, 0.034)]  # fmt: skip
+                (0.995, 0.644, 1.013, 0.060, 0.058),
+                (1.015, 0.636, 1.013, 0.030, 0.034)]  # fmt: skip
     angle = np.linspace(0, 2 * np.pi, 16, endpoint=False)
     cos, sin = np.cos(angle), np.sin(angle)
     cos, sin = np.sign(cos) * np.abs(cos) ** 0.8, np.sign(sin) * np.abs(sin) ** 0.8

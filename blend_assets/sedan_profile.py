@@ -7,6 +7,7 @@ union of a lower body and a greenhouse, each a smooth intersection of a few fair
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -70,9 +71,13 @@ TOP_CROWN = Curve((2.40, 0.090), (1.50, 0.055), (0.80, 0.050), (-0.80, 0.050), (
 NOSE = Curve((0.10, 0.130), (0.18, 0.055), (0.26, 0.017), (0.38, 0.006), (0.50, 0.007),
              (0.60, 0.020), (0.68, 0.054), (0.76, 0.115), (0.95, 0.330))  # fmt: skip
 TAIL = Curve((0.10, 0.200), (0.22, 0.085), (0.34, 0.020), (0.48, 0.000), (0.60, 0.010),
-             (0.72, 0.045), (0.86, 0.066), (0.98, 0.052), (1.07, 0.026), (1.20, 0.020))  # fmt: skip
-NOSE_PLAN = Curve((-0.30, 0.018), (0.00, 0.000), (0.30, 0.018), (0.55, 0.070), (0.75, 0.170), (0.95, 0.380))
-TAIL_PLAN = Curve((-0.30, 0.012), (0.00, 0.000), (0.30, 0.012), (0.55, 0.050), (0.75, 0.120), (0.95, 0.290))
+             (0.72, 0.036), (0.86, 0.064), (0.96, 0.064), (1.06, 0.038), (1.20, 0.010))  # fmt: skip
+NOSE_PLAN = Curve(
+    (-0.30, 0.018), (0.00, 0.000), (0.30, 0.018), (0.55, 0.070), (0.75, 0.170), (0.95, 0.380)
+)
+TAIL_PLAN = Curve(
+    (-0.30, 0.012), (0.00, 0.000), (0.30, 0.012), (0.55, 0.050), (0.75, 0.120), (0.95, 0.290)
+)
 FLOOR = Curve((-2.40, 0.240), (-1.60, 0.170), (0.00, 0.150), (1.60, 0.155), (2.40, 0.190))
 # The shoulder: a crease along the flank, this high (before the wedge) and this proud.
 CREASE_Z, CREASE = 0.705, 0.014
@@ -86,7 +91,10 @@ BELT_PLAN = Curve((1.30, 0.660), (0.90, 0.735), (0.30, 0.782), (-0.30, 0.795), (
 TUMBLEHOME = 0.46  # inward lean of the side glass, metres per metre
 WINDSCREEN = (1.03, 0.955, 0.560)  # foot x, foot z, slope dz / dx (29 degrees)
 REAR_GLASS = (-1.86, 1.055, 0.430)
-BELT = Curve((1.20, 0.930), (0.60, 0.947), (-0.40, 0.972), (-1.20, 1.010), (-2.00, 1.060))
+# Lower edge of the side windows, a little above the joint of greenhouse and lower body.
+BELT = Curve((1.20, 0.948), (0.80, 0.951), (0.40, 0.956), (0.00, 0.957), (-0.30, 0.961),
+             (-0.60, 0.972), (-0.90, 0.990), (-1.20, 1.022), (-1.50, 1.060),
+             (-2.00, 1.120))  # fmt: skip
 
 
 class Terms(NamedTuple):
@@ -132,15 +140,20 @@ def body_top(x: Array, y: Array) -> Array:
     return TOP(x) - crown + fold * step(x, 2.35, 1.9)
 
 
-def lower_body(x: Array, y: Array, z: Array) -> Array:
-    """The body below the windows."""
+def ends(x: Array, y: Array, z: Array) -> Array:
+    """The bumper faces, front and rear."""
     width = np.abs(y)
-    side = width - body_side(x, z)
     nose = x - (LENGTH / 2 - NOSE(z) - NOSE_PLAN(width))
     tail = -x - (LENGTH / 2 - TAIL(z) - TAIL_PLAN(width))
-    ends = smooth_max(nose * 0.9, tail * 0.9, 0.01)
-    shell = smooth_max(side, ends, 0.13)
-    return smooth_max(shell, z - body_top(x, y), 0.07 - 0.035 * step(np.abs(x), 1.7, 2.1))
+    return 0.9 * np.maximum(nose, tail)
+
+
+def lower_body(x: Array, y: Array, z: Array) -> Array:
+    """The body below the windows."""
+    side = np.abs(y) - body_side(x, z)
+    shell = smooth_max(side, ends(x, y, z), 0.13)
+    radius = 0.07 - 0.035 * step(x, 1.7, 2.1) - 0.02 * step(x, -1.7, -2.1)
+    return smooth_max(shell, z - body_top(x, y), radius)
 
 
 def cabin_top(x: Array, y: Array, z: Array) -> Array:
@@ -166,7 +179,8 @@ def terms(points: Array) -> Terms:
     """All named surfaces at points (n, 3)."""
     x, y, z = points.T
     side, top = cabin_side(x, y, z), cabin_top(x, y, z)
-    cabin = smooth_max(smooth_max(side, top, 0.07), 0.86 - z, 0.02)
+    hidden = 0.86 + 0.11 * step(x, -1.1, -1.7) - z  # the cabin ends inside the lower body
+    cabin = smooth_max(smooth_max(side, top, 0.07), hidden, 0.02)
     return Terms(lower_body(x, y, z), cabin, side, top)
 
 
@@ -177,19 +191,25 @@ def solid(points: Array) -> Array:
     return -smooth_max(-part.lower, -part.cabin, fillet)
 
 
-def gradient(points: Array) -> Array:
-    """Outward direction of the skin at points, not normalised."""
+def gradient(points: Array, function: Callable[[Array], Array] = solid) -> Array:
+    """Direction in which a function grows; that of the solid points outwards."""
     columns = []
     for axis in range(3):
         offset = np.eye(3)[axis] * 1e-5
-        columns.append((solid(points + offset) - solid(points - offset)) / 2e-5)
+        columns.append((function(points + offset) - function(points - offset)) / 2e-5)
     return np.stack(columns, axis=1)
 
 
-def onto_skin(points: Array) -> Array:
-    """Move points to the skin along its gradient; points of the centre plane stay in it."""
-    for _ in range(4):
-        slope = gradient(points)
-        slope[np.abs(points[:, 1]) < 1e-6, 1] = 0
-        points = points - slope * (solid(points) / np.sum(slope**2, axis=1))[:, None]
+def onto_skin(points: Array, line: Callable[[Array], Array]) -> Array:
+    """Move points to where a line lies on the skin; points of the centre plane stay in it."""
+    centre = np.abs(points[:, 1]) < 1e-6
+    for function in (solid, line) * 4 + (solid,):
+        slope = gradient(points, function)
+        if function is line:  # along the skin only
+            normal = gradient(points)
+            normal /= np.linalg.norm(normal, axis=1)[:, None]
+            slope -= normal * np.sum(slope * normal, axis=1)[:, None]
+        slope[centre, 1] = 0
+        square = np.maximum(np.sum(slope**2, axis=1), 1e-6)
+        points = points - slope * np.clip(function(points) / square, -0.02, 0.02)[:, None]
     return points

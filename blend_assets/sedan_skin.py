@@ -10,7 +10,11 @@ from sedan_profile import Array, Curve
 
 SIDE_CELLS, TOP_CELLS = 17, 9  # quads from the sill to the roof rail, and on to the centre line
 STATIONS = np.concatenate(
-    [np.linspace(-2.235, -1.80, 7)[:-1], np.linspace(-1.80, 1.90, 47), np.linspace(1.90, 2.26, 7)[1:]]
+    [
+        np.linspace(-2.235, -1.80, 7)[:-1],
+        np.linspace(-1.80, 1.90, 47),
+        np.linspace(1.90, 2.26, 7)[1:],
+    ]
 )
 # Plan curvature of the sampling sheets: straight amidships, bowed like the bumpers at the ends.
 SHEET_BOW = Curve((-2.30, -0.29), (-1.70, -0.14), (-1.00, 0.00), (0.60, 0.02), (1.50, 0.12),
@@ -96,7 +100,7 @@ def end_cap(outline: Array, station: float, forward: float) -> Array:
         ends = (flat[:-2, 1:-1], flat[2:, 1:-1], flat[1:-1, :-2], flat[1:-1, 2:])
         flat[1:-1, 1:-1] = sum(ends) / 4
     start = onto_sheet(station, flat.reshape(-1, 2))
-    grid = root(start, start + [forward, 0, 0]).reshape(TOP_CELLS + 1, SIDE_CELLS + 1, 3)
+    grid = root(start, start + np.array([forward, 0, 0])).reshape(TOP_CELLS + 1, SIDE_CELLS + 1, 3)
     grid[-1, :], grid[:, -1] = side, top
     return grid
 
@@ -104,13 +108,19 @@ def end_cap(outline: Array, station: float, forward: float) -> Array:
 def quads(rows: int, columns: int) -> Array:
     """Corner indices of a grid of points stored row by row."""
     index = np.arange(rows * columns).reshape(rows, columns)
-    return np.stack([index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]], -1).reshape(-1, 4)
+    corners = (index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:])
+    return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
 def split_quads(points: Array, faces: Array) -> Array:
-    """Each quad as two triangles across its shorter diagonal."""
+    """Each quad as two triangles, across the diagonal that leaves the larger smallest triangle."""
     a, b, c, d = faces.T
-    long = np.linalg.norm(points[a] - points[c], axis=1) > np.linalg.norm(points[b] - points[d], axis=1)
+
+    def smaller(*pair: tuple[Array, Array, Array]) -> Array:
+        area = [np.cross(points[j] - points[i], points[k] - points[i]) for i, j, k in pair]
+        return np.min([np.linalg.norm(vector, axis=1) for vector in area], axis=0)
+
+    long = smaller((a, b, d), (b, c, d)) > smaller((a, b, c), (a, c, d))
     first = np.where(long[:, None], np.column_stack([a, b, d]), np.column_stack([a, b, c]))
     second = np.where(long[:, None], np.column_stack([b, c, d]), np.column_stack([a, c, d]))
     return np.vstack([first, second])
@@ -180,18 +190,20 @@ def snap(skin: Skin, line: Line, value: Array, edges: Array) -> None:
         elif not free and t * size < 0.0015:
             value[near] = 0
     moved = best < 0.30
-    skin.points[moved] = profile.onto_skin(skin.points[moved])
+    skin.points[moved] = profile.onto_skin(skin.points[moved], line)
     skin.locked |= value == 0
 
 
 def split(triangle: Array, middle: dict[tuple[int, int], int]) -> list[tuple[int, int, int]]:
     """One triangle with new points on some of its edges as smaller triangles."""
     corners = [int(i) for i in triangle]
-    new = [middle.get((min(p), max(p))) for p in zip(corners, corners[1:] + corners[:1], strict=True)]
+    sides = zip(corners, corners[1:] + corners[:1], strict=True)
+    new = [middle.get((min(side), max(side))) for side in sides]
     count = sum(m is not None for m in new)
     if count == 0:
         return [tuple(corners)]
-    turn = next(i for i in range(3) if new[i] is not None and (count == 1 or new[i - 2] is not None))
+    both_new = [new[i] is not None and (count == 1 or new[i - 2] is not None) for i in range(3)]
+    turn = both_new.index(True)
     a, b, c = corners[turn:] + corners[:turn]
     ab, bc, _ = new[turn:] + new[:turn]
     if count == 1:
@@ -209,7 +221,7 @@ def cut(skin: Skin, line: Line, where: Callable[[Array], Array] | None = None) -
     edges, _, target = crossings(skin, line, value, edges)
     first = len(skin.points)
     middle = {(int(a), int(b)): first + i for i, (a, b) in enumerate(edges)}
-    skin.points = np.vstack([skin.points, profile.onto_skin(target)])
+    skin.points = np.vstack([skin.points, profile.onto_skin(target, line)])
     skin.locked = np.concatenate([skin.locked, np.ones(len(target), dtype=bool)])
     pieces = [piece for triangle in skin.triangles for piece in split(triangle, middle)]
     skin.triangles = np.array(pieces)

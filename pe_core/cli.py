@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
 from . import catalog
 from .command import DONE, INTERRUPTED, add_run_options, drive, run, summary, with_options

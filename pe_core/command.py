@@ -104,8 +104,8 @@ def _first_interrupt(stop: Callable[[], None]) -> Iterator[None]:
         return
     try:
         yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    finally:  # None: the handler before was not Python's own (inside Blender) and can't be named
+        signal.signal(signal.SIGINT, signal.default_int_handler if before is None else before)
 
 
 def _report(progress: Progress, stream: TextIO) -> None:

@@ -107,8 +107,8 @@ def rotate(rotation: Floats, points: Floats) -> Floats:
 
 def dot(a: Floats, b: Floats) -> Floats:
     """Row-wise scalar product of (..., 3) vectors."""
-    result: Floats = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
-    return result
+    product = a * b
+    return product[..., 0] + product[..., 1] + product[..., 2]
 
 
 def cross(a: Floats, b: Floats) -> Floats:

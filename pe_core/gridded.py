@@ -19,7 +19,7 @@ from .score import ClassScore, GroundMap, Score, SensorScore, rounded
 from .sensors import Camera, Rig, Sensor
 from .space import PerceptionSpace
 from .vehicle import Vehicle
-from .weights import outside_profile
+from .weights import outside_masses, outside_shares
 
 Floats = NDArray[np.float64]
 Counts = NDArray[np.uint16]
@@ -56,11 +56,8 @@ class GridScorer:
         self._grounds = np.stack([d.ground for d in densities], axis=-1)  # (nx, ny, C)
         self._profiles = np.stack([d.profile for d in densities], axis=-1)  # (nz, C)
         self._tops = None if vehicle is None else vehicle.top(space)
-        masses = [
-            (d.ground * (1.0 if self._tops is None else outside_profile(d, space, self._tops))).sum()
-            for d in densities
-        ]
-        self._masses = np.array(masses, dtype=float)
+        self._masses = np.array(outside_masses(densities, space, self._tops))
+        outside_shares(densities, space, self._tops)  # complains when nothing is left to weigh
 
     def entropy(self, rig: Rig) -> float:
         """Perception entropy alone."""
@@ -134,8 +131,8 @@ class GridScorer:
         )
 
     def _block(self, groups: Sequence[MeasuredGroup], planes: slice) -> Sums:
-        entropies, seen = self._fusion.entropies([group(planes) for group in groups])
-        seen = seen.astype(float)
+        entropies, visible = self._fusion.entropies([group(planes) for group in groups])
+        seen = visible.astype(float)
         outside = self._outside(planes)
         if outside is not None:
             entropies, seen = entropies * outside, seen * outside

@@ -11,6 +11,7 @@ from collections.abc import Generator, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass
+
 from .optimize import Step, optimize
 from .score import Score
 from .sensors import Rig
@@ -111,9 +112,7 @@ class ScoreJob(Job):
 
     def __iter__(self) -> Iterator[Progress]:
         score = yield from self._score(self.study, Progress("scoring", 0.0))
-        self.outcome = Outcome(
-            "score", self.study, self.study, score, score, seconds=self.seconds
-        )
+        self.outcome = Outcome("score", self.study, self.study, score, score, seconds=self.seconds)
         yield Progress("done", 1.0, score.entropy)
 
 

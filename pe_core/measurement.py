@@ -79,9 +79,7 @@ def beam_ends(sensor: Sensor, directions: Floats, vehicle: Vehicle | None) -> Fl
     return np.minimum(vehicle.first_hit(sensor.pose.position, directions).distance, max_range)
 
 
-def _count_beams(
-    sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
-) -> Floats:
+def _count_beams(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
     directions = beam_directions(sensor)
     ends = beam_ends(sensor, directions, vehicle) / side
     offsets = offsets_in_voxels(centers, sensor.pose.position, side)
@@ -102,7 +100,8 @@ def _near_pairs(offsets: Floats, directions: Floats) -> tuple[NDArray, NDArray]:
     safe = np.maximum(distance, BALL)
     least = np.where(distance > BALL, np.cos(np.arcsin(BALL / safe) + CULL_MARGIN_RAD), -2.0)
     cosine = offsets @ directions.T / safe[:, None]
-    return np.nonzero(cosine >= least[:, None])
+    voxel, beam = np.nonzero(cosine >= least[:, None])
+    return voxel, beam
 
 
 def cube_crossing(offsets: Floats, directions: Floats) -> tuple[Floats, Floats]:
@@ -116,9 +115,7 @@ def cube_crossing(offsets: Floats, directions: Floats) -> tuple[Floats, Floats]:
     return np.maximum(enter.max(axis=1), 0.0), leave.min(axis=1)
 
 
-def _count_pixels(
-    sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
-) -> Floats:
+def _count_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
     area = clipped_pixel_area(cast(Camera, sensor.model), sensor.pose, centers, side)
     seen = np.flatnonzero(area)
     if vehicle is not None and len(seen):

@@ -44,9 +44,7 @@ def beam_field(sensor: Sensor, vehicle: Vehicle | None) -> BeamField:
     hits = vehicle.first_hit(sensor.pose.position, directions)
     stopped = hits.distance < max_range
     parts = np.asarray(vehicle.parts)[hits.face]
-    return BeamField(
-        directions, np.minimum(hits.distance, max_range), np.where(stopped, parts, -1)
-    )
+    return BeamField(directions, np.minimum(hits.distance, max_range), np.where(stopped, parts, -1))
 
 
 def beam_counts(sensor: Sensor, vehicle: Vehicle | None) -> tuple[int, int, dict[str, int]]:

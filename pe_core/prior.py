@@ -56,10 +56,10 @@ ROAD_CLASSES = (
     ObjectClass("truck", (7.5, 2.55, 3.0), 0.785, 58.5, 20.1, 22.33, 0.365),
     ObjectClass("cone", (0.4, 0.4, 0.9), 0.232, 14.8, 34.25, 10.05, 0.024),
 )
-"""Positions: fitted by maximum likelihood to the boxes with a score of 0.4 and more that CenterPoint
-finds in the 150 scenes of nuScenes val (boxes from the public AB3DMOT repository). Sizes: rounded
-between the means of nuScenes, Argoverse 2 and Waymo's anchor boxes. Height spreads: the same boxes.
-"""
+"""Positions: fitted by maximum likelihood to the boxes with a score of 0.4 and more that
+CenterPoint finds in the 150 scenes of nuScenes val (boxes from the public AB3DMOT repository).
+Height spreads: the same boxes. Sizes: rounded between the means of nuScenes, Argoverse 2 and
+Waymo's anchor boxes."""
 
 
 @dataclass(frozen=True, slots=True)

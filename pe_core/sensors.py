@@ -51,13 +51,15 @@ class Lidar:
     elevations: Floats
     azimuth_count: int
     max_range: float
-    azimuth_offsets: Floats | None = None
+    azimuth_offsets: Floats = None  # type: ignore[assignment]  # zeros
     horizontal_fov: tuple[float, float] = FULL_CIRCLE
 
     def __post_init__(self) -> None:
         elevations = _angles(self.name, "elevations", self.elevations, math.pi / 2)
-        offsets = np.zeros_like(elevations) if self.azimuth_offsets is None else _angles(
-            self.name, "azimuth_offsets", self.azimuth_offsets, math.pi
+        offsets = (
+            np.zeros_like(elevations)
+            if self.azimuth_offsets is None
+            else _angles(self.name, "azimuth_offsets", self.azimuth_offsets, math.pi)
         )
         if offsets.shape != elevations.shape:
             raise InputError(

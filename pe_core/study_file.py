@@ -113,10 +113,10 @@ def _read_study(table: Table, folder: Path) -> Study:
 
 def _read_space(table: Table) -> PerceptionSpace:
     default = PerceptionSpace()
-    space = PerceptionSpace(
-        *(table.numbers(a, 2, getattr(default, a)) for a in "xyz"),  # type: ignore[arg-type]
-        table.number("interval", default.interval),
+    (x, y, z) = (
+        (low, high) for low, high in (table.numbers(a, 2, getattr(default, a)) for a in "xyz")
     )
+    space = PerceptionSpace(x, y, z, table.number("interval", default.interval))
     table.finish()
     return space
 

@@ -46,15 +46,17 @@ class Vehicle:
     """
 
     triangles: Floats
-    parts: NDArray[np.int32] | None = None
+    parts: NDArray[np.int32] = None  # type: ignore[assignment]  # all one part
     part_names: Sequence[str] = ("vehicle",)
     glass: Sequence[str] = ()
     clearance: float = DEFAULT_CLEARANCE_M
 
     def __post_init__(self) -> None:
         triangles = _checked_triangles(self.triangles)
-        parts = np.zeros(len(triangles), np.int32) if self.parts is None else (
-            np.asarray(self.parts, dtype=np.int32)
+        parts = (
+            np.zeros(len(triangles), np.int32)
+            if self.parts is None
+            else (np.asarray(self.parts, dtype=np.int32))
         )
         names = tuple(self.part_names)
         if parts.shape != (len(triangles),) or parts.min() < 0 or parts.max() >= len(names):

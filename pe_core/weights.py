@@ -19,6 +19,15 @@ def outside_profile(density: ClassDensity, space: PerceptionSpace, tops: Floats)
     return above[below].reshape(tops.shape)
 
 
+def outside_masses(
+    densities: list[ClassDensity], space: PerceptionSpace, tops: Floats | None
+) -> list[float]:
+    """Each class's mass of the prior outside the vehicle (`tops` None: no vehicle)."""
+    if tops is None:
+        return [float(d.ground.sum()) for d in densities]
+    return [float((d.ground * outside_profile(d, space, tops)).sum()) for d in densities]
+
+
 def outside_shares(
     densities: list[ClassDensity], space: PerceptionSpace, tops: Floats | None
 ) -> list[float]:
@@ -29,10 +38,7 @@ def outside_shares(
     InputError
         When the vehicle fills everything that had any weight.
     """
-    masses = [
-        float(d.ground.sum() if tops is None else (d.ground * outside_profile(d, space, tops)).sum())
-        for d in densities
-    ]
+    masses = outside_masses(densities, space, tops)
     total = sum(masses)
     if not total > 0.0:
         raise InputError("prior", "weights", "some weight outside the vehicle", "none")

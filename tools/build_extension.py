@@ -33,18 +33,24 @@ class BuildError(Exception):
 
 
 def agreed_version() -> str:
-    """Return the version that manifest and pyproject.toml give; they must agree."""
-    for needed in (MANIFEST, ENGINE / "__init__.py"):
+    """Return the version that project, engine and manifest give; they must agree."""
+    for needed in (MANIFEST, ENGINE / "version.py"):
         if not needed.exists():
             raise BuildError(f"{needed.relative_to(ROOT)} is missing")
-    in_manifest = tomllib.loads(MANIFEST.read_text("utf-8"))["version"]
-    in_project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
-    if in_manifest != in_project:
-        raise BuildError(
-            f"version {in_manifest} in blender_addon/blender_manifest.toml, "
-            f"{in_project} in pyproject.toml: make them the same"
-        )
-    return in_project
+    said = {
+        "pyproject.toml": tomllib.loads(read("pyproject.toml"))["project"]["version"],
+        "pe_core/version.py": re.findall(r'__version__ = "(.+)"', read("pe_core/version.py"))[0],
+        "blender_addon/blender_manifest.toml": tomllib.loads(read(MANIFEST))["version"],
+    }
+    if len(set(said.values())) > 1:
+        listed = ", ".join(f"{version} in {file}" for file, version in said.items())
+        raise BuildError(f"the version is to be the same everywhere: {listed}")
+    return said["pyproject.toml"]
+
+
+def read(path: str | Path) -> str:
+    """Return the text of a file of the project."""
+    return (ROOT / path).read_text("utf-8")
 
 
 def stage(target: Path) -> None:

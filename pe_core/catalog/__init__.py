@@ -15,7 +15,6 @@ import numpy as np
 from ..errors import InputError
 from ..sensors import Camera, Lidar
 
-
 PAPER_FILE = "paper.toml"
 """The paper's own sensors come first in lists."""
 
@@ -102,7 +101,9 @@ COMMON_KEYS = {"kind", "source", "note"}
 def _lidar(name: str, table: Mapping[str, Any]) -> Lidar:
     _check_keys(name, table, LIDAR_KEYS)
     elevations = _radians(name, table, "elevations_deg")
-    offsets = _radians(name, table, "azimuth_offsets_deg") if "azimuth_offsets_deg" in table else None
+    offsets = (
+        _radians(name, table, "azimuth_offsets_deg") if "azimuth_offsets_deg" in table else None
+    )
     fov = table.get("horizontal_fov_deg", (-180.0, 180.0))
     if not (isinstance(fov, (list, tuple)) and len(fov) == 2):
         raise InputError(name, "horizontal_fov_deg", "two angles", repr(fov))
@@ -112,7 +113,7 @@ def _lidar(name: str, table: Mapping[str, Any]) -> Lidar:
         elevations,
         _azimuth_count(name, table),
         _number(name, "max_range_m", table.get("max_range_m")),
-        offsets,
+        offsets,  # type: ignore[arg-type]
         (low, high),
     )
 
@@ -130,7 +131,9 @@ def _azimuth_count(name: str, table: Mapping[str, Any]) -> int:
 def _camera(name: str, table: Mapping[str, Any]) -> Camera:
     _check_keys(name, table, CAMERA_KEYS)
     width, height = (int(_number(name, k, table.get(k))) for k in ("width", "height"))
-    return Camera(name, width, height, math.radians(_number(name, "hfov_deg", table.get("hfov_deg"))))
+    return Camera(
+        name, width, height, math.radians(_number(name, "hfov_deg", table.get("hfov_deg")))
+    )
 
 
 def _check_keys(name: str, table: Mapping[str, Any], known: set[str]) -> None:
@@ -165,7 +168,6 @@ def to_table(model: Lidar | Camera) -> dict[str, Any]:
     if isinstance(model, Camera):
         hfov = round(math.degrees(model.hfov), 9)
         return {"kind": "camera", "width": model.width, "height": model.height, "hfov_deg": hfov}
-    assert model.azimuth_offsets is not None
     table: dict[str, Any] = {
         "kind": "lidar",
         "azimuth_count": model.azimuth_count,

@@ -78,7 +78,7 @@ def _area_in_view(camera: Camera, pose: Pose, centers: Floats, side: float) -> F
 def _project(
     camera: Camera, center: Planes, axes: Floats, k: int, n: Floats, a: float, b: float
 ) -> tuple[Floats, Floats]:
-    """Image position [px], right and down, of a corner: n along axis k, a and b along the others."""
+    """Image position [px], right and down, of a corner n along axis k, a and b along the others."""
     i, j = (k + 1) % 3, (k + 2) % 3
     depth, left, up = (
         center[w] + n * axes[k, w] + (a * axes[i, w] + b * axes[j, w]) for w in range(3)

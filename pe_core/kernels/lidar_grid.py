@@ -12,7 +12,7 @@ Crossing points advance by a constant step from plane to plane. They are kept in
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,7 +30,7 @@ STEEPEST = float(1 << 20)
 """Voxels a beam may advance sideways from one plane to the next; no grid is as wide."""
 EARLY = 1e-6
 """Beams from outside are let in this early, in voxels: before the border they meet no cell."""
-MOST = np.iinfo(np.uint16).max
+MOST = int(np.iinfo(np.uint16).max)
 """Counts stop here. Only a voxel that touches the sensor can hold as many."""
 NEAR_PLANES = 3
 """Planes beside the sensor, where a count may reach `MOST` and has to be held there."""
@@ -38,7 +38,7 @@ NEAR_PLANES = 3
 
 @dataclass(frozen=True, slots=True)
 class Beams:
-    """Beams cut to the space, in voxels: `origin` (3,), `directions` (B, 3), `start`, `end` (B,)."""
+    """Beams cut to the space, in voxels: `origin` (3,), `directions` (B, 3), `start`, `end`."""
 
     origin: Floats
     directions: Floats
@@ -47,7 +47,11 @@ class Beams:
 
 
 def add_beams(
-    counts: Counts, origin: Floats, directions: Floats, ends: Floats, space: PerceptionSpace
+    counts: Counts,
+    origin: Sequence[float],
+    directions: Floats,
+    ends: Floats,
+    space: PerceptionSpace,
 ) -> None:
     """Add the beams through each voxel to `counts`.
 
@@ -71,7 +75,7 @@ def add_beams(
 
 
 def _cut_to_space(
-    origin: Floats, directions: Floats, ends: Floats, space: PerceptionSpace
+    origin: Sequence[float], directions: Floats, ends: Floats, space: PerceptionSpace
 ) -> Beams:
     """Drop the beams that miss the space; say where the others are inside it, in voxels."""
     cells = position_in_voxels(origin, space.origin, space.interval)
@@ -112,9 +116,10 @@ def _add_layer(layer: Counts, b: Ints, c: Ints, near: bool) -> None:
     rows, columns = layer.shape[0] + 2, layer.shape[1] + 2
     b *= columns
     b += c
-    hits = np.bincount(b, minlength=rows * columns).reshape(rows, columns)[1:-1, 1:-1]
+    padded = np.bincount(b, minlength=rows * columns).reshape(rows, columns)
+    hits = padded[1:-1, 1:-1]
     if near:
-        hits = np.minimum(hits + layer, MOST) - layer
+        hits = np.minimum(hits, MOST - layer.astype(np.int64))
     np.add(layer, hits, out=layer, casting="unsafe")
 
 
@@ -161,14 +166,14 @@ class _Run:
         active = np.searchsorted(-last, -np.arange(count), side="right")
         other = [a for a in range(3) if a != axis]
         slopes = [beams.directions[order, a] / speed[order] for a in other]
-        begin = [_fixed(beams.origin[a] + s * ahead + 1.0) for a, s in zip(other, slopes, strict=True)]
-        return cls(
-            [first + sign * k for k in range(count)],
-            active.tolist(),
-            *begin,
-            *(_fixed(s) for s in slopes),
-            arrival if arrival.any() else None,
+        b, c = (
+            _fixed(beams.origin[a] + slope * ahead + 1.0)
+            for a, slope in zip(other, slopes, strict=True)
         )
+        step_b, step_c = (_fixed(slope) for slope in slopes)
+        planes = [first + sign * k for k in range(count)]
+        late = arrival if arrival.any() else None
+        return cls(planes, active.tolist(), b, c, step_b, step_c, late)
 
     def __iter__(self) -> Iterator[tuple[int, Ints, Ints]]:
         """Yield each plane with the padded cells where the beams cross it."""

@@ -52,7 +52,6 @@ class Lattice:
         channels = np.argsort(lidar.elevations, kind="stable")
         position = np.full(lidar.azimuth_count, -1)
         position[lidar.azimuth_steps % lidar.azimuth_count] = np.arange(len(lidar.azimuth_steps))
-        assert lidar.azimuth_offsets is not None
         return cls(
             channels,
             lidar.elevations[channels],

@@ -28,7 +28,7 @@ PAIRS_AT_ONCE = 1 << 18
 
 @dataclass(frozen=True, slots=True)
 class Hits:
-    """First hits of B rays: `distance` (B,) [m], inf for a miss; `face` (B,) index, -1 for a miss."""
+    """First hits of B rays: `distance` (B,) [m], inf for a miss; `face` (B,) index, -1 then."""
 
     distance: Floats
     face: Ints

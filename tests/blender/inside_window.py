@@ -34,6 +34,7 @@ def view3d():
 def fill_the_window():
     """First step: one large 3D view with its sidebar."""
     window, area, _ = view3d()
+    window.scene.perception_entropy.has_result = False  # the file may come with one
     with bpy.context.temp_override(window=window, area=area):
         bpy.ops.screen.screen_full_area()
     bpy.app.timers.register(show_sidebar, first_interval=STEP_S)

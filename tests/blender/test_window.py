@@ -13,6 +13,7 @@ def test_add_a_sensor_and_score(window, screenshots):
         lambda: len(window.state["sensors"]) == before + 1, EFFECT_TIMEOUT_S, "a new sensor"
     )
 
+    assert not window.state["has_result"], "a result that nobody asked for"
     window.press("pe.score")
     window.wait_for(lambda: window.state["has_result"], SCORE_TIMEOUT_S, "a score")
     window.screenshot(screenshots / "window_score.png")

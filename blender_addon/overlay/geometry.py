@@ -1,0 +1,151 @@
+"""Beams and frustums as plain arrays: no scene, no GPU. The viewport and the review share them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .beams import Beams, shown_beams
+from .colors import VIEWPORT, Palette, Rgba
+
+if TYPE_CHECKING:
+    import pe_core as pe
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+END_ALPHA = 0.12
+"""What is left of a free beam's alpha at the full drawn length."""
+FACE_CORNERS = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1))
+EDGES = ((0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 5))
+MARK_GAP, MARK_HEIGHT, MARK_HALF_WIDTH = 0.08, 0.35, 0.35
+"""The mark over a picture's upper edge, in units of half the picture's height."""
+
+
+@dataclass(frozen=True, slots=True)
+class Primitives:
+    """Lines (two points each) or triangles (three): `points` (P, 3) [m], `colors` (P, 4) sRGB."""
+
+    points: Floats32
+    colors: Floats32
+
+    @classmethod
+    def empty(cls) -> Primitives:
+        """Nothing, in arrays of the right shape."""
+        return cls(np.empty((0, 3), np.float32), np.empty((0, 4), np.float32))
+
+    @classmethod
+    def joined(cls, several: Sequence[Primitives]) -> Primitives:
+        """All of them, drawn in this order."""
+        if not several:
+            return cls.empty()
+        points = np.concatenate([each.points for each in several])
+        return cls(points, np.concatenate([each.colors for each in several]))
+
+
+@dataclass(frozen=True, slots=True)
+class OverlayGeometry:
+    """What is drawn for one sensor or a whole rig: `lines` and translucent `faces`."""
+
+    lines: Primitives
+    faces: Primitives
+
+
+def sensor_geometry(
+    sensor: pe.Sensor,
+    vehicle: pe.Vehicle | None,
+    budget: int,
+    length_m: float,
+    palette: Palette = VIEWPORT,
+) -> OverlayGeometry:
+    """Everything drawn for one sensor: at most `budget` beams, or a frustum."""
+    if sensor.kind == "lidar":
+        beams = shown_beams(sensor, vehicle, budget)
+        return OverlayGeometry(beam_lines(sensor, beams, length_m, palette), Primitives.empty())
+    lines = frustum_lines(sensor, length_m, palette)
+    return OverlayGeometry(lines, frustum_faces(sensor, length_m, palette))
+
+
+def beam_lines(
+    sensor: pe.Sensor, beams: Beams, length_m: float, palette: Palette = VIEWPORT
+) -> Primitives:
+    """Lines from the sensor along its beams.
+
+    Free beams end at the range, the ground (z = 0) or `length_m`, and fade with distance. Stopped
+    ones end on the vehicle and come last, so that they are drawn over the free ones.
+    """
+    free, stopped = beams[~beams.stopped], beams[beams.stopped]
+    ends = np.minimum(np.minimum(free.ends, length_m), ground_distance(sensor, free.directions))
+    left = 1.0 - (1.0 - END_ALPHA) * ends / length_m
+    free_lines = _rays(sensor, free.directions, ends, palette.free, left)
+    return Primitives.joined(
+        [free_lines, _rays(sensor, stopped.directions, stopped.ends, palette.stopped)]
+    )
+
+
+def ground_distance(sensor: pe.Sensor, directions: Floats) -> Floats:
+    """(N,) distance along each direction to z = 0 [m]; inf for a beam that never gets there."""
+    height, down = sensor.pose.position[2], -directions[:, 2]
+    if height <= 0.0:
+        return np.full(len(directions), np.inf)
+    distance = np.full(len(directions), np.inf)
+    return np.divide(height, down, out=distance, where=down > 0.0)
+
+
+def frustum_points(sensor: pe.Sensor, length_m: float) -> Floats:
+    """(8, 3) pinhole, picture corners and up mark of a camera, ground frame [m].
+
+    Corners: upper left, upper right, lower right, lower left as the camera sees them, `length_m`
+    from the pinhole. The mark's left, right and tip follow, above the upper edge.
+    """
+    camera = sensor.model
+    side = np.tan(camera.hfov / 2.0)
+    up = side * camera.height / camera.width
+    base, tip = up * (1.0 + MARK_GAP), up * (1.0 + MARK_GAP + MARK_HEIGHT)
+    mark = up * MARK_HALF_WIDTH
+    across = [side, -side, -side, side, mark, -mark, 0.0]
+    above = [up, up, -up, -up, base, base, tip]
+    points = np.column_stack([np.ones(7), across, above])
+    points *= length_m / np.sqrt(1.0 + side**2 + up**2)
+    points = np.vstack([np.zeros(3), points])
+    return points @ sensor.pose.ground_from_sensor.T + np.asarray(sensor.pose.position)
+
+
+def frustum_lines(
+    sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT
+) -> Primitives:
+    """Edges of a camera's view: pyramid, picture, and a small triangle that says which way is up."""
+    points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
+    return _colored(points, palette.camera)
+
+
+def frustum_faces(
+    sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT
+) -> Primitives:
+    """Sides of a camera's view: four triangles from the pinhole."""
+    points = frustum_points(sensor, length_m)[np.array(FACE_CORNERS).ravel()]
+    return _colored(points, palette.camera_face)
+
+
+def _rays(
+    sensor: pe.Sensor,
+    directions: Floats,
+    ends: Floats,
+    color: Rgba,
+    alpha_left: Floats | float = 1.0,
+) -> Primitives:
+    """Lines from the sensor; `alpha_left` (N,) is the share of the alpha at their far ends."""
+    start = np.asarray(sensor.pose.position)
+    points = np.empty((len(ends), 2, 3))
+    points[:, 0], points[:, 1] = start, start + directions * ends[:, None]
+    lines = _colored(points.reshape(-1, 3), color)
+    lines.colors[1::2, 3] *= alpha_left
+    return lines
+
+
+def _colored(points: Floats, color: Rgba) -> Primitives:
+    return Primitives(points.astype(np.float32), np.tile(np.float32(color), (len(points), 1)))

@@ -1,0 +1,122 @@
+"""Measurements by brute force, written on its own: shares no code with the engine.
+
+Every beam is clipped against every cube (Liang and Barsky), every ray tested against every triangle
+(Moller and Trumbore), every cube's image is a convex hull (Andrew's monotone chain) clipped to the
+image (Sutherland and Hodgman). Slow, and meant to be.
+"""
+
+import math
+
+import numpy as np
+
+
+def rotation(roll, pitch, yaw):
+    cr, sr, cp, sp, cy, sy = (
+        f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin)
+    )
+    rx = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    ry = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+    rz = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
+    return rz @ ry @ rx
+
+
+def beam_directions(elevations, azimuths, rpy):
+    """(C * A, 3) ground-frame directions; azimuths (C, A)."""
+    e = np.asarray(elevations)[:, None]
+    local = np.stack(
+        [np.cos(e) * np.cos(azimuths), np.cos(e) * np.sin(azimuths), np.sin(e) + 0 * azimuths], -1
+    )
+    return local.reshape(-1, 3) @ rotation(*rpy).T
+
+
+def first_hits(origin, directions, triangles):
+    """(B,) distance to the nearest triangle, inf for a miss; and (B,) its index, -1."""
+    best, which = np.full(len(directions), np.inf), np.full(len(directions), -1)
+    for index, (a, b, c) in enumerate(triangles):
+        e1, e2 = b - a, c - a
+        h = np.cross(directions, e2)
+        det = h @ e1
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = origin - a
+            u = (h @ s) / det
+            q = np.cross(s, e1)
+            v = (directions @ q) / det
+            t = (e2 @ q) / det
+        hit = (det != 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & (t < best)
+        best[hit], which[hit] = t[hit], index
+    return best, which
+
+
+def count_beams(origin, directions, ends, center, side):
+    """Beams whose segment [0, end] meets the cube."""
+    low, high = center - side / 2 - origin, center + side / 2 - origin
+    t0, t1 = np.zeros(len(directions)), np.full(len(directions), np.inf)
+    alive = np.ones(len(directions), bool)
+    for k in range(3):
+        d = directions[:, k]
+        parallel = np.abs(d) < 1e-300
+        alive &= ~parallel | ((low[k] <= 0) & (high[k] >= 0))
+        d = np.where(parallel, 1.0, d)
+        near, far = np.minimum(low[k] / d, high[k] / d), np.maximum(low[k] / d, high[k] / d)
+        t0 = np.where(parallel, t0, np.maximum(t0, near))
+        t1 = np.where(parallel, t1, np.minimum(t1, far))
+    return int((alive & (t0 <= t1) & (t0 <= ends)).sum())
+
+
+def pixel_area(camera_size, hfov, origin, rpy, center, side):
+    """Area of the clipped convex hull of the cube's eight projected corners."""
+    width, height = camera_size
+    focal = width / (2 * math.tan(hfov / 2))
+    points = []
+    for signs in np.ndindex(2, 2, 2):
+        corner = center + side * (np.array(signs) - 0.5) - origin
+        x, y, z = rotation(*rpy).T @ corner
+        if x <= 0:
+            return 0.0
+        points.append((width / 2 - focal * y / x, height / 2 - focal * z / x))
+    return _area(_clip(_hull(points), width, height))
+
+
+def _hull(points):
+    points = sorted(set(points))
+    chains = []
+    for ordered in (points, points[::-1]):
+        chain = []
+        for p in ordered:
+            while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0:
+                chain.pop()
+            chain.append(p)
+        chains.append(chain[:-1])
+    return chains[0] + chains[1]
+
+
+def _turn(a, b, c):
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _clip(polygon, width, height):
+    sides = [
+        (lambda p: p[0], 0.0, 1),
+        (lambda p: p[0], width, -1),
+        (lambda p: p[1], 0.0, 1),
+        (lambda p: p[1], height, -1),
+    ]
+    for coordinate, limit, sign in sides:
+        clipped = []
+        for i, p in enumerate(polygon):
+            q = polygon[(i + 1) % len(polygon)]
+            dp, dq = sign * (coordinate(p) - limit), sign * (coordinate(q) - limit)
+            if dp >= 0:
+                clipped.append(p)
+            if dp * dq < 0:
+                t = dp / (dp - dq)
+                clipped.append((p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])))
+        polygon = clipped
+    return polygon
+
+
+def _area(polygon):
+    total = sum(
+        p[0] * q[1] - q[0] * p[1] for p, q in zip(polygon, polygon[1:] + polygon[:1], strict=True)
+    )
+    return abs(total) / 2

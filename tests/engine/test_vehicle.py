@@ -1,0 +1,115 @@
+"""Self-occlusion, the height map, glass, and mounting clearance."""
+
+import numpy as np
+from tests.engine import oracle
+import pytest
+from tests.engine import shapes
+
+import pe_core as pe
+
+
+def random_directions(rng, count):
+    d = rng.normal(size=(count, 3))
+    return d / np.linalg.norm(d, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("position", [(0, 0, 2.0), (-0.3, 0.2, 1.1), (3.0, 1.0, 0.5), (0, 0, 40.0)])
+def test_first_hits_equal_brute_force(position):
+    rng = np.random.default_rng(7)
+    vehicle = shapes.box_car(times=2)
+    directions = random_directions(rng, 4000)
+    hits = vehicle.first_hit(position, directions)
+    distance, face = oracle.first_hits(np.array(position, float), directions, vehicle.triangles)
+    assert (np.isfinite(hits.distance) == np.isfinite(distance)).all()
+    found = np.isfinite(distance)
+    np.testing.assert_allclose(hits.distance[found], distance[found], atol=1e-4)
+    assert (hits.face[~found] == -1).all()
+    # an edge or corner belongs to several triangles: the distance, not the index, must agree there
+    assert np.count_nonzero(hits.face[found] != face[found]) <= 2
+
+
+def test_random_soup_of_triangles():
+    """Overlapping, degenerate, duplicate and piercing triangles round the origin."""
+    rng = np.random.default_rng(3)
+    soup = rng.normal(0, 2, (300, 1, 3)) + rng.normal(0, 0.7, (300, 3, 3))
+    soup = np.concatenate([soup, soup[:20], np.repeat(soup[:20, :1], 3, axis=1)])
+    directions = random_directions(rng, 5000)
+    hits = pe.Vehicle(soup, clearance=0.0).first_hit((0, 0, 0), directions)
+    distance, face = oracle.first_hits(np.zeros(3), directions, soup)
+    np.testing.assert_allclose(hits.distance, distance, rtol=1e-9)
+    assert np.mean(hits.face == face) > 0.999
+
+
+def test_rays_on_shared_edges_do_not_leak():
+    vehicle = pe.Vehicle(shapes.refined(shapes.box((-1, -1, 0), (1, 1, 2)), 3))
+    edges = vehicle.triangles[:, [0, 1, 2]] + vehicle.triangles[:, [1, 2, 0]]
+    aimed = (edges / 2).reshape(-1, 3) - [0.1, 0.2, 1.3]
+    directions = aimed / np.linalg.norm(aimed, axis=1, keepdims=True)
+    assert np.isfinite(vehicle.first_hit((0.1, 0.2, 1.3), directions).distance).all()
+
+
+def test_the_part_that_stops_a_beam_is_told():
+    vehicle = shapes.box_car()
+    sensor = shapes.lidar_on_roof(position=(0.6, 0.0, 1.6))
+    stopped = pe.beam_field(sensor, vehicle).stopped_count(vehicle.part_names)
+    assert set(stopped) == {"body", "cabin"}
+    down = vehicle.first_hit((0, 0, 3.0), [[0, 0, -1.0]])
+    assert vehicle.part_names[vehicle.parts[down.face[0]]] == "cabin"
+    assert down.distance[0] == pytest.approx(1.6)
+
+
+def test_cameras_see_through_glass_and_lidars_do_not():
+    wall = shapes.box((1.0, -5.0, 0.0), (1.1, 5.0, 5.0))
+    vehicle = pe.Vehicle(wall, None, ("windshield",), glass=("windshield",))
+    camera = shapes.camera(60.0, (0.0, 0.0, 1.0))
+    assert pe.measure(camera, [[6.0, 0.0, 1.0]], 0.1, vehicle)[0] > 0
+    lidar = shapes.lidar_on_roof(position=(0.0, 0.0, 1.0))
+    assert pe.measure(lidar, [[6.0, 0.0, 1.0]], 0.1, vehicle)[0] == 0
+
+
+@pytest.mark.parametrize("height", [-0.001, 0.0, 0.001])
+def test_a_flush_sensor_is_not_blind(height):
+    """1 mm under the skin, on it, or 1 mm above: it sees as if it stood proud by the clearance."""
+    vehicle = shapes.box_car(times=1)
+    proud = pe.beam_field(shapes.lidar_on_roof(position=(-0.4, 0.03, 1.4 + 0.02)), vehicle)
+    flush = pe.beam_field(shapes.lidar_on_roof(position=(-0.4, 0.03, 1.4 + height)), vehicle)
+    assert (flush.stopped_by == proud.stopped_by).mean() > 0.999
+    assert (flush.stopped_by < 0).mean() > 1 / 3
+
+
+def test_a_sensor_deep_inside_is_blind():
+    field = pe.beam_field(shapes.lidar_on_roof(position=(-0.4, 0.0, 1.2)), shapes.box_car())
+    assert (field.stopped_by >= 0).all()
+
+
+def test_the_height_map_needs_no_closed_mesh():
+    roof_only = np.array([[[-1, -1, 1.0], [1, -1, 1.0], [1, 1, 2.0]], [[-1, -1, 1.0], [1, 1, 2.0], [-1, 1, 2.0]]])
+    space = shapes.small_space(0.5)
+    top = pe.Vehicle(roof_only).top(space)
+    inside = np.isfinite(top)
+    assert inside.sum() == 16
+    i, j = np.nonzero(inside)
+    np.testing.assert_allclose(top[inside], 1.5 + space.centers(1)[j] / 2, atol=1e-12)
+    assert (np.abs(space.centers(0)[i]) < 1).all()
+
+
+@pytest.mark.parametrize(
+    ("triangles", "found"),
+    [(np.zeros((0, 3, 3)), r"\(0, 3, 3\)"), (np.zeros((4, 3)), r"\(4, 3\)")],
+)
+def test_a_mesh_without_triangles_is_refused(triangles, found):
+    with pytest.raises(pe.InputError, match=f"triangles.*{found}"):
+        pe.Vehicle(triangles)
+
+
+def test_a_mesh_with_nan_is_refused():
+    triangles = shapes.box((0, 0, 0), (1, 1, 1))
+    triangles[5, 1, 2] = np.nan
+    with pytest.raises(pe.InputError, match="triangle 5"):
+        pe.Vehicle(triangles)
+
+
+def test_glass_must_name_a_part():
+    with pytest.raises(pe.InputError, match="glass.*body, cabin.*'window'"):
+        car = shapes.box_car()
+        pe.Vehicle(car.triangles, car.parts, car.part_names, glass=("window",))

@@ -152,7 +152,7 @@ def lower_body(x: Array, y: Array, z: Array) -> Array:
     """The body below the windows."""
     side = np.abs(y) - body_side(x, z)
     shell = smooth_max(side, ends(x, y, z), 0.13)
-    radius = 0.07 - 0.035 * step(x, 1.7, 2.1) - 0.02 * step(x, -1.7, -2.1)
+    radius = 0.07 - 0.035 * step(x, 1.7, 2.1)
     return smooth_max(shell, z - body_top(x, y), radius)
 
 

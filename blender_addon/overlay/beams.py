@@ -43,21 +43,27 @@ class Beams:
         return Beams(self.directions[chosen], self.ends[chosen], self.stopped[chosen])
 
 
-def shown_beams(sensor: pe.Sensor, vehicle: pe.Vehicle | None, budget: int) -> Beams:
-    """Return at most `budget` beams of a LiDAR: free ones evenly spread, then stopped ones."""
+def shown_beams(
+    sensor: pe.Sensor, vehicle: pe.Vehicle | None, budget: int, channels: int | None = None
+) -> Beams:
+    """Return at most `budget` beams of a LiDAR: free ones evenly spread, then stopped ones.
+
+    `channels` limits how many channels the free ones are from.
+    """
     if vehicle is None:
-        return _cast(sensor, None, spread(sensor.model, budget))
+        return _cast(sensor, None, spread(sensor.model, budget, channels))
     seen = vehicle.seen_from(sensor.pose.position)
-    shown = spread(sensor.model, budget - int(budget * STOPPED_SHARE))
+    shown = spread(sensor.model, budget - int(budget * STOPPED_SHARE), channels)
     stopped = _stopped(sensor, seen, np.union1d(shown, spread(sensor.model, LOOKED_AT)))
     free = np.setdiff1d(shown, stopped)
     return _cast(sensor, seen, np.concatenate([free, _evenly(stopped, budget - len(free))]))
 
 
-def spread(lidar: pe.Lidar, budget: int) -> Ints:
+def spread(lidar: pe.Lidar, budget: int, channels: int | None = None) -> Ints:
     """(N,) beam numbers, ascending, N <= budget: every channel at the same azimuths, evenly."""
     azimuths = len(lidar.azimuth_steps)
-    rows = _evenly(np.arange(len(lidar.elevations)), budget)
+    most = budget if channels is None else min(budget, channels)
+    rows = _evenly(np.arange(len(lidar.elevations)), most)
     per_channel = min(azimuths, budget // max(len(rows), 1))
     columns = _evenly(np.arange(azimuths), per_channel)
     if azimuths == lidar.azimuth_count and per_channel:  # a circle: the last is the first's neighbour

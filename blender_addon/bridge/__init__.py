@@ -1,0 +1,19 @@
+"""The only place that turns Blender's data into the engine's and back."""
+
+from .outcome import forget_results, store_outcome
+from .rig import place_rig, pose_of, rig_from_scene, sensor_from_object, sensor_objects
+from .scene import signature, study_from_scene
+from .vehicle import vehicle_from_collection
+
+__all__ = [
+    "forget_results",
+    "place_rig",
+    "pose_of",
+    "rig_from_scene",
+    "sensor_from_object",
+    "sensor_objects",
+    "signature",
+    "store_outcome",
+    "study_from_scene",
+    "vehicle_from_collection",
+]

@@ -1,0 +1,60 @@
+"""What a job found, written to the scene for the panel to show."""
+
+from __future__ import annotations
+
+import json
+
+import bpy
+
+from ..engine import pe, results
+from .rig import sensor_objects
+from .scene import signature
+
+PARTS_NAMED = 3
+"""How many parts of the vehicle the panel names as stopping beams."""
+
+
+def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
+    """Keep a result in the scene: figures for display, and result.json in full."""
+    settings = scene.perception_entropy
+    settings.result_kind = outcome.kind
+    settings.result_entropy = outcome.after.entropy
+    settings.result_before = outcome.before.entropy
+    settings.result_coverage = outcome.after.coverage
+    settings.result_stderr = outcome.after.stderr
+    settings.result_json = json.dumps(results.result_dict(outcome, blender_version()))
+    for obj in sensor_objects(scene):
+        _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
+    settings.result_signature = signature(scene)
+    settings.result_stale = False
+    settings.has_result = True
+
+
+def forget_results(scene: bpy.types.Scene) -> None:
+    """Take the last result off a scene."""
+    for name in ("has_result", "result_json", "result_signature", "result_stale"):
+        scene.perception_entropy.property_unset(name)
+    for obj in sensor_objects(scene):
+        obj.perception_entropy.has_result = False
+
+
+def blender_version() -> dict[str, str]:
+    """Return what a result says about the program it came from."""
+    return {"blender": bpy.app.version_string}
+
+
+def _store_sensor(settings: bpy.types.PropertyGroup, score: pe.SensorScore | None) -> None:
+    settings.has_result = score is not None
+    if score is None:
+        return
+    settings.entropy, settings.coverage = score.entropy, score.coverage
+    settings.beams, settings.stopped = score.beams, score.stopped
+    settings.stopped_text = _stopped_text(score)
+
+
+def _stopped_text(score: pe.SensorScore) -> str:
+    """Return who stops the beams, most first: "roof 7.5%, hood 1.2%"."""
+    by_count = sorted(score.stopped_by.items(), key=lambda item: (-item[1], item[0]))
+    named = [f"{part} {count / score.beams:.1%}" for part, count in by_count[:PARTS_NAMED] if count]
+    more = ["..."] if len(by_count) > PARTS_NAMED else []
+    return ", ".join(named + more)

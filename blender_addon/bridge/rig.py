@@ -1,0 +1,160 @@
+"""Sensors: objects of the scene to a rig, and a rig's placements back to the objects."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ..engine import catalog, geometry, pe, placement
+
+SCALE_TOLERANCE = 1e-4
+"""How far a sensor's axes may be from unit length and from right angles."""
+HELD_POSITION_M = 4e-6
+HELD_ROTATION = 2e-6
+"""An object this near to where a search put it still stands there: Blender's single precision,
+and a chain of parents, move it by less. Both are below half a step of the rounding."""
+
+
+def sensor_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """All sensors of a scene by name, hidden ones included."""
+    found = [obj for obj in scene.objects if obj.perception_entropy.is_sensor]
+    return sorted(found, key=lambda obj: obj.name)
+
+
+def rig_from_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> pe.Rig:
+    """Return the visible sensors of a scene as a rig.
+
+    Raises
+    ------
+    InputError
+        When there is none, or one of them is no possible sensor.
+    """
+    objects = sensor_objects(scene)
+    visible = [obj for obj in objects if obj.visible_get(view_layer=depsgraph.view_layer)]
+    if not visible:
+        found = f"{len(objects)} hidden" if objects else "none"
+        raise pe.InputError("scene", "sensors", "at least one visible sensor", found)
+    sensors = [sensor_from_object(obj, depsgraph) for obj in visible]
+    try:
+        return pe.Rig(sensors)
+    except pe.InputError as error:
+        raise error.at("scene") from None
+
+
+def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Sensor:
+    """Return one object's model, placement and fusion group as a sensor."""
+    settings = obj.perception_entropy
+    try:
+        model = catalog.load(settings.model)
+    except pe.InputError as error:
+        field = f"sensor {obj.name!r}: model"
+        raise pe.InputError("scene", field, error.expected, error.found) from None
+    return pe.Sensor(obj.name, model, pose_of(obj, depsgraph), settings.fusion or None)
+
+
+def free_axes(obj: bpy.types.Object) -> tuple[str, ...]:
+    """Axes of a sensor that the search may change."""
+    chosen = obj.perception_entropy.free
+    return tuple(axis for axis, free in zip(placement.AXES, chosen, strict=True) if free)
+
+
+def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
+    """Return where a sensor stands in the ground frame, rounded as placements are.
+
+    The rounding takes away what single precision adds, so that a study file and the scene hold
+    the same numbers.
+    """
+    ground_from_sensor = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=float)
+    _check_rigid(obj.name, ground_from_sensor)
+    written = _pose_from_numbers(obj.perception_entropy.placed)
+    if _stands_at(ground_from_sensor, written):
+        return written
+    rpy = geometry.rpy_from_matrix(ground_from_sensor[:3, :3])
+    values = (*ground_from_sensor[:3, 3].tolist(), *rpy)
+    return placement.pose_from_values(dict(zip(placement.AXES, values, strict=True)))
+
+
+def place_rig(scene: bpy.types.Scene, rig: pe.Rig) -> list[str]:
+    """Put the sensors where a rig has them; return the names of those that are gone.
+
+    Raises
+    ------
+    InputError
+        When a constraint, a driver or an animation holds a sensor where it is.
+    """
+    pairs = [(scene.objects.get(sensor.name), sensor) for sensor in rig]
+    present = [(obj, sensor) for obj, sensor in pairs if _is_sensor(obj)]
+    layer = _view_layer(scene)
+    # Parents first: a sensor may be mounted on another.
+    for obj, sensor in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):
+        obj.matrix_world = _matrix(sensor.pose)
+        obj.perception_entropy.placed = (*sensor.pose.position, *sensor.pose.rotation_deg)
+        layer.update()
+    for obj, sensor in present:
+        if not _stands_at(np.array(obj.matrix_world, dtype=float), sensor.pose):
+            expected = "an object that can be placed"
+            found = "a constraint, driver or animation that holds it"
+            raise pe.InputError("scene", f"sensor {obj.name!r}: placement", expected, found)
+    return [sensor.name for obj, sensor in pairs if not _is_sensor(obj)]
+
+
+def mounted_on_sensor(obj: bpy.types.Object) -> bool:
+    """Whether an object rides on a sensor: its housing, which does not stop its own beams."""
+    return any(_is_sensor(each) for each in (obj, *_ancestors(obj)))
+
+
+def _is_sensor(obj: bpy.types.Object | None) -> bool:
+    return obj is not None and obj.perception_entropy.is_sensor
+
+
+def _ancestors(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    found = []
+    while obj.parent is not None:
+        obj = obj.parent
+        found.append(obj)
+    return found
+
+
+def _view_layer(scene: bpy.types.Scene) -> bpy.types.ViewLayer:
+    """The view layer in use, or the scene's first when another scene is open."""
+    return bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
+
+
+def _check_rigid(name: str, matrix: np.ndarray) -> None:
+    """Complain about a sensor that is scaled, sheared or mirrored, or nowhere at all."""
+    field = f"sensor {name!r}"
+    if not np.isfinite(matrix).all():
+        raise pe.InputError("scene", f"{field}: placement", "finite numbers", "NaN or infinity")
+    axes = matrix[:3, :3]
+    lengths = np.sqrt((axes**2).sum(axis=0))
+    if np.abs(lengths - 1.0).max() > SCALE_TOLERANCE:
+        expected = "1 in each direction (its drawn size is the empty's display size)"
+        found = ", ".join(f"{length:.4g}" for length in lengths)
+        raise pe.InputError("scene", f"{field}: scale", expected, found)
+    if np.abs(axes.T @ axes - np.eye(3)).max() > SCALE_TOLERANCE:
+        expected = "axes at right angles"
+        raise pe.InputError("scene", f"{field}: rotation", expected, "shear from its parent")
+    if np.linalg.det(axes) < 0.0:
+        raise pe.InputError("scene", f"{field}: scale", "no mirroring", "a negative scale")
+
+
+def _stands_at(ground_from_sensor: np.ndarray, pose: pe.Pose) -> bool:
+    """Whether a (4, 4) placement is a pose, up to single precision."""
+    rotation = np.abs(ground_from_sensor[:3, :3] - pose.ground_from_sensor).max()
+    position = np.abs(ground_from_sensor[:3, 3] - np.array(pose.position)).max()
+    return bool(rotation < HELD_ROTATION and position < HELD_POSITION_M)
+
+
+def _pose_from_numbers(numbers: tuple[float, ...]) -> pe.Pose:
+    """Pose from x, y, z [m], roll, pitch, yaw [deg] in single precision."""
+    position, degrees = numbers[:3], numbers[3:]
+    radians = (math.radians(angle) for angle in degrees)
+    return placement.pose_from_values(dict(zip(placement.AXES, (*position, *radians), strict=True)))
+
+
+def _matrix(pose: pe.Pose) -> Matrix:
+    rotation = Matrix(pose.ground_from_sensor.tolist()).to_4x4()
+    return Matrix.Translation(pose.position) @ rotation

@@ -1,0 +1,79 @@
+"""A whole scene as a study, and a short text that tells whether it is still the same one."""
+
+from __future__ import annotations
+
+import hashlib
+
+import bpy
+
+from ..engine import pe, results
+from .rig import free_axes, rig_from_scene, sensor_objects
+from .vehicle import vehicle_from_collection, visible_members
+
+SIGNATURE_DECIMALS = 5
+
+
+def study_from_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> pe.Study:
+    """Return the study that a scene describes.
+
+    Raises
+    ------
+    InputError
+        One line that says what in the scene is wrong, what was expected and what was found.
+    """
+    settings = scene.perception_entropy
+    _check_metres(scene)
+    if settings.vehicle is None:
+        expected = "a collection with the vehicle's meshes"
+        raise pe.InputError("scene", "vehicle collection", expected, "none chosen")
+    vehicle = vehicle_from_collection(settings.vehicle, depsgraph)
+    return pe.Study(
+        rig_from_scene(scene, depsgraph),
+        vehicle,
+        prior=pe.Prior.uniform() if settings.prior == "uniform" else pe.Prior.road(),
+        search=_search(scene),
+        samples=settings.score_samples,
+        mesh=results.MESH,  # the name the mesh gets beside a study: part of what is reported
+    )
+
+
+def signature(scene: bpy.types.Scene) -> str:
+    """Return a text that changes when a sensor or the vehicle moves, or a setting changes.
+
+    It is cheap, not complete: a mesh edited without a change in its number of points is not seen.
+    """
+    settings = scene.perception_entropy
+    seen: list[object] = [settings.prior, settings.score_samples]
+    for obj in sensor_objects(scene):
+        own = obj.perception_entropy
+        seen += [obj.name, own.model, own.fusion, obj.visible_get(), _rounded(obj)]
+    if settings.vehicle is not None:
+        for obj in sorted(visible_members(settings.vehicle), key=lambda each: each.name_full):
+            size = len(obj.data.vertices) if obj.type == "MESH" else 0
+            glass = obj.perception_entropy.see_through
+            seen += [obj.name_full, obj.visible_get(), size, len(obj.modifiers), glass]
+            seen.append(_rounded(obj))
+    return hashlib.sha256(repr(seen).encode()).hexdigest()
+
+
+def _rounded(obj: bpy.types.Object) -> list[float]:
+    return [round(v, SIGNATURE_DECIMALS) + 0.0 for row in obj.matrix_world for v in row]
+
+
+def _search(scene: bpy.types.Scene) -> pe.Search:
+    settings = scene.perception_entropy
+    free = {obj.name: free_axes(obj) for obj in sensor_objects(scene)}
+    schedule = pe.Schedule(candidates=settings.candidates)
+    return pe.Search(
+        free=free, seed=settings.seed, samples=settings.search_samples, schedule=schedule
+    )
+
+
+def _check_metres(scene: bpy.types.Scene) -> None:
+    """One unit has to be one metre, and the user has to see metres."""
+    units = scene.unit_settings
+    if units.system == "IMPERIAL":
+        raise pe.InputError("scene", "unit system", "metres (Metric)", "Imperial")
+    if abs(units.scale_length - 1.0) > 1e-6:
+        expected = "1, so that a unit is a metre"
+        raise pe.InputError("scene", "unit scale", expected, f"{units.scale_length:g}")

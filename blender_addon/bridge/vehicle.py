@@ -1,0 +1,106 @@
+"""The vehicle: everything solid that can be seen in a collection, as triangles of named parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ..engine import geometry, pe
+from .rig import mounted_on_sensor
+
+SOLID_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+"""Objects that turn into triangles."""
+
+
+class Part(NamedTuple):
+    """Triangles (F, 3, 3) [m] of one object, and whether cameras see through them."""
+
+    name: str
+    triangles: np.ndarray
+    glass: bool
+
+
+def vehicle_from_collection(
+    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
+) -> pe.Vehicle:
+    """Return a collection's objects as they are drawn: modifiers, parents, instances and all.
+
+    What is hidden in the viewport or in renders does not count, nor what rides on a sensor.
+
+    Raises
+    ------
+    InputError
+        When nothing solid is left, or a coordinate is no number.
+    """
+    parts = sorted(_parts(collection, depsgraph), key=lambda part: part.name)
+    if not parts:
+        field = f"vehicle collection {collection.name!r}"
+        raise pe.InputError("scene", field, "visible meshes", "none")
+    names = list(dict.fromkeys(part.name for part in parts))
+    labels = [np.full(len(part.triangles), names.index(part.name), np.int32) for part in parts]
+    triangles = np.concatenate([part.triangles for part in parts])
+    glass = list(dict.fromkeys(part.name for part in parts if part.glass))
+    return pe.Vehicle(triangles, np.concatenate(labels), names, glass)
+
+
+def visible_members(collection: bpy.types.Collection) -> set[bpy.types.Object]:
+    """Objects of a collection and those in it, without what is switched off in either way."""
+    if collection.hide_viewport or collection.hide_render:
+        return set()
+    found = {obj for obj in collection.objects if not obj.hide_render}
+    return found.union(*(visible_members(child) for child in collection.children))
+
+
+def _parts(
+    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
+) -> Iterator[Part]:
+    """Yield a part for every drawn object and instance that belongs to the collection."""
+    members = {obj for obj in visible_members(collection) if not mounted_on_sensor(obj)}
+    local: dict[int, np.ndarray] = {}
+    # An instance is only good until the next one: nothing of it may be kept.
+    for instance in depsgraph.object_instances:
+        owner = instance.parent if instance.is_instance else instance.object
+        obj = instance.object
+        if owner.original not in members or obj.type not in SOLID_TYPES:
+            continue
+        triangles = _triangles_local(obj, local)
+        if not len(triangles):
+            continue
+        original = obj.original
+        placed = _placed(triangles, np.array(instance.matrix_world, dtype=float))
+        if not np.isfinite(placed).all():
+            field = f"vehicle object {original.name!r}"
+            raise pe.InputError("scene", field, "finite coordinates", "NaN or infinity")
+        yield Part(original.name_full, placed, original.perception_entropy.see_through)
+
+
+def _triangles_local(obj: bpy.types.Object, known: dict[int, np.ndarray]) -> np.ndarray:
+    """(F, 3, 3) triangles of an evaluated object in its own frame, read once a mesh."""
+    key = obj.data.as_pointer()
+    if key in known:
+        return known[key]
+    mesh = obj.to_mesh()
+    triangles = np.empty((0, 3, 3)) if mesh is None else _triangles_of(mesh)
+    obj.to_mesh_clear()
+    if obj.type == "MESH":  # two texts or curves may turn the same data into other meshes
+        known[key] = triangles
+    return triangles
+
+
+def _triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
+    mesh.calc_loop_triangles()
+    points = np.empty(3 * len(mesh.vertices), np.float32)
+    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.vertices.foreach_get("co", points)
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    return points.reshape(-1, 3).astype(float)[corners.reshape(-1, 3)]
+
+
+def _placed(triangles: np.ndarray, ground_from_object: np.ndarray) -> np.ndarray:
+    """Triangles in the ground frame; a mirrored object keeps its faces looking outwards."""
+    linear = ground_from_object[:3, :3]
+    placed = geometry.rotate(linear, triangles) + ground_from_object[:3, 3]
+    return placed[:, ::-1] if np.linalg.det(linear) < 0.0 else placed

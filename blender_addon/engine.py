@@ -1,0 +1,20 @@
+"""The one door to the engine: the copy packed into the extension, else the checkout's own.
+
+Everything else in the add-on takes the engine from here, so that there is never a second copy of
+it in a running Blender.
+"""
+
+from importlib import import_module
+from importlib.util import find_spec
+
+_PACKED = f"{__package__}.pe_core"
+_NAME = _PACKED if find_spec(_PACKED) else "pe_core"
+
+pe = import_module(_NAME)
+catalog = import_module(f"{_NAME}.catalog")
+command = import_module(f"{_NAME}.command")
+files = import_module(f"{_NAME}.files")
+geometry = import_module(f"{_NAME}.geometry")
+placement = import_module(f"{_NAME}.optimize")
+results = import_module(f"{_NAME}.results")
+sensor_text = import_module(f"{_NAME}.sensor_text")

@@ -1,0 +1,221 @@
+"""What the add-on stores in a .blend file: on the scene, and on every object.
+
+Here is what the user typed, and small summaries of the last result. Arrays live elsewhere.
+"""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    BoolVectorProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from . import stale
+from .engine import catalog, pe, placement
+from .overlay import handler as overlay
+
+DEFAULT_CANDIDATES = 150
+DEFAULT_BEAM_LIMIT = 12_000
+DEFAULT_BEAM_LENGTH_M = 15.0
+DEFAULT_MODEL = "Pandar64"
+
+PRIORS = (
+    ("road", "Road", "Cars, cyclists, pedestrians and cones where road traffic has them"),
+    ("uniform", "Uniform", "Every place in the perception space matters the same"),
+)
+
+
+def redraw_overlay(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Update callback of what only changes the picture."""
+    overlay.tag_redraw()
+
+
+def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Update callback of what changes the score."""
+    overlay.tag_redraw()
+    stale.check_soon()
+
+
+def model_suggestions(
+    _settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
+) -> list[tuple[str, str]]:
+    """Return the catalogue's names with what they are; Blender filters by what was typed."""
+    kinds = {"lidar": "LiDAR", "camera": "Camera"}
+    return [(entry.name, kinds[entry.kind]) for entry in catalog.entries().values()]
+
+
+class PE_SceneSettings(bpy.types.PropertyGroup):
+    """The study's settings, and the last result."""
+
+    vehicle: PointerProperty(
+        type=bpy.types.Collection,
+        name="Vehicle",
+        description="Collection of the vehicle's meshes: x forward, y left, z up, in metres, "
+        "with the origin on the ground",
+        update=changed,
+    )
+    prior: EnumProperty(
+        items=PRIORS,
+        name="Prior",
+        description="Where objects are to be expected",
+        update=changed,
+    )
+    score_samples: IntProperty(
+        name="Score Voxels",
+        description="Voxels a score looks at; 0 for all 64 million of them",
+        default=0,
+        min=0,
+        update=changed,
+    )
+    candidates: IntProperty(
+        name="Candidates",
+        description="Placements tried in each of the seven rounds of a search. The paper tries "
+        "1000",
+        default=DEFAULT_CANDIDATES,
+        min=1,
+        soft_max=1000,
+    )
+    search_samples: IntProperty(
+        name="Search Voxels",
+        description="Voxels a candidate is judged on; 0 for all 64 million of them",
+        default=pe.Search().samples,
+        min=0,
+    )
+    seed: IntProperty(
+        name="Seed",
+        description="The same seed finds the same placement",
+        default=0,
+        min=0,
+    )
+
+    show_overlay: BoolProperty(
+        name="Show Beams",
+        description="Draw beams and frustums of the sensors in the 3D view",
+        default=True,
+        update=redraw_overlay,
+    )
+    beam_limit: IntProperty(
+        name="Most Beams",
+        description="Draw no more beams than this, evenly chosen; more make the view slow",
+        default=DEFAULT_BEAM_LIMIT,
+        min=1,
+        soft_max=200_000,
+        update=redraw_overlay,
+    )
+    beam_length: FloatProperty(
+        name="Beam Length",
+        description="How far beams are drawn that meet nothing",
+        default=DEFAULT_BEAM_LENGTH_M,
+        min=0.1,
+        soft_max=200.0,
+        subtype="DISTANCE",
+        unit="LENGTH",
+        update=redraw_overlay,
+    )
+
+    has_result: BoolProperty(name="Has Result", description="A score is stored")
+    result_kind: StringProperty(name="Kind", description="score or optimize")
+    result_entropy: FloatProperty(
+        name="Perception Entropy", description="In nats; lower is better. Rounded for display"
+    )
+    result_before: FloatProperty(
+        name="Before", description="Perception entropy of the placement the search started from"
+    )
+    result_coverage: FloatProperty(
+        name="Coverage", description="Share of the prior that some sensor sees, 0 to 1"
+    )
+    result_stderr: FloatProperty(
+        name="Standard Error", description="Of the perception entropy; 0 when all voxels count"
+    )
+    result_json: StringProperty(
+        name="Result", description="The last result in full, as result.json holds it"
+    )
+    result_signature: StringProperty(
+        name="Signature", description="What was scored, to tell whether it still stands"
+    )
+    result_stale: BoolProperty(
+        name="Stale", description="The scene has changed since the result was made"
+    )
+
+
+class PE_ObjectSettings(bpy.types.PropertyGroup):
+    """What makes an object a sensor, and its part in the last result."""
+
+    is_sensor: BoolProperty(
+        name="Is a Sensor",
+        description="This object is a sensor: its x axis looks ahead, z is up",
+        update=changed,
+    )
+    model: StringProperty(
+        name="Model",
+        description="Name of the sensor in the catalogue",
+        default=DEFAULT_MODEL,
+        search=model_suggestions,
+        search_options=set(),
+        update=changed,
+    )
+    fusion: StringProperty(
+        name="Fusion Group",
+        description="Sensors of one group count their beams or pixels together. When empty, all "
+        "LiDARs are one group and each camera stands alone",
+        update=changed,
+    )
+    free: BoolVectorProperty(
+        name="Free Axes",
+        description="What the search may change",
+        size=len(placement.AXES),
+        default=tuple(axis in placement.PAPER_FREE for axis in placement.AXES),
+    )
+    show: BoolProperty(
+        name="Show Beams",
+        description="Draw this sensor's beams or frustum in the 3D view",
+        default=True,
+        update=redraw_overlay,
+    )
+    placed: FloatVectorProperty(
+        name="Placed",
+        description="Placement last written by a search: x, y, z [m], roll, pitch, yaw [deg]",
+        size=len(placement.AXES),
+        options={"HIDDEN"},
+    )
+
+    has_result: BoolProperty(name="Has Result", description="The last result knows this sensor")
+    entropy: FloatProperty(
+        name="Alone", description="Perception entropy if this were the only sensor [nats]"
+    )
+    coverage: FloatProperty(
+        name="Coverage", description="Share of the prior that this sensor sees, 0 to 1"
+    )
+    beams: IntProperty(name="Beams", description="Beams of one revolution; 0 for a camera")
+    stopped: IntProperty(name="Stopped", description="Beams that the vehicle itself stops")
+    stopped_text: StringProperty(
+        name="Stopped By", description="Which parts of the vehicle stop how many beams"
+    )
+
+    see_through: BoolProperty(
+        name="Cameras See Through",
+        description="Glass: cameras see through this object; LiDAR beams are stopped all the same",
+        update=changed,
+    )
+
+
+CLASSES = (PE_SceneSettings, PE_ObjectSettings)
+
+
+def add_pointers() -> None:
+    """Hang the settings on scenes and objects."""
+    bpy.types.Scene.perception_entropy = PointerProperty(type=PE_SceneSettings)
+    bpy.types.Object.perception_entropy = PointerProperty(type=PE_ObjectSettings)
+
+
+def remove_pointers() -> None:
+    """Take them off again; what files hold stays in them."""
+    del bpy.types.Object.perception_entropy
+    del bpy.types.Scene.perception_entropy

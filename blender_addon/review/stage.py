@@ -1,0 +1,119 @@
+"""A scene of its own for one picture; nothing of it stays."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from .camera import HFOV_DEG, View
+from .shapes import Faces
+
+BACKGROUND = (0.93, 0.94, 0.95)
+ALPHA_STEPS = 20
+"""Alphas are rounded to this many steps: each colour needs a material."""
+KINDS = (
+    "scenes", "collections", "objects", "meshes", "curves", "materials", "cameras", "worlds",
+    "fonts", "images",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """The temporary scene, and ways to put things into it."""
+
+    scene: bpy.types.Scene
+
+    def add(self, name: str, data: bpy.types.ID) -> bpy.types.Object:
+        """Put data into the scene as an object that throws no shadow."""
+        thing = bpy.data.objects.new(name, data)
+        thing.display.show_shadows = False
+        self.scene.collection.objects.link(thing)
+        return thing
+
+    def add_faces(self, name: str, faces: Faces, normal: NDArray | None = None) -> None:
+        """Add polygons, a material a colour; `normal` (3,) lights all of them alike."""
+        if not len(faces.corners):
+            return
+        count, corners = faces.corners.shape[:2]
+        mesh = bpy.data.meshes.new(name)
+        numbers = np.arange(count * corners).reshape(count, corners)
+        mesh.from_pydata(faces.corners.reshape(-1, 3).tolist(), [], numbers.tolist())
+        colors = np.round(faces.colors * [1e4, 1e4, 1e4, ALPHA_STEPS]) / [1e4, 1e4, 1e4, ALPHA_STEPS]
+        used, which = np.unique(colors, axis=0, return_inverse=True)
+        for color in used.tolist():
+            mesh.materials.append(material(color))
+        mesh.polygons.foreach_set("material_index", which.reshape(-1).astype(np.int32))
+        if normal is not None:
+            mesh.shade_smooth()
+            mesh.normals_split_custom_set(np.tile(normal, (count * corners, 1)).tolist())
+        self.add(name, mesh)
+
+    def set_camera(self, view: View) -> None:
+        """Take the picture from there."""
+        camera = bpy.data.cameras.new("Review camera")
+        camera.sensor_fit, camera.angle = "HORIZONTAL", np.radians(HFOV_DEG)
+        camera.clip_start, camera.clip_end = 0.05, 1000.0
+        thing = self.add("Review camera", camera)
+        thing.matrix_world = Matrix(view.matrix.tolist())
+        self.scene.camera = thing
+        self.scene.render.resolution_x = view.frame.width
+        self.scene.render.resolution_y = view.frame.height
+
+    def render(self, path: Path) -> None:
+        """Write the picture; a reader never sees half of it."""
+        partial = path.with_name(f".{path.stem}.partial.png")
+        self.scene.render.filepath = str(partial)
+        try:
+            bpy.ops.render.render(write_still=True, scene=self.scene.name)
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def stage() -> Iterator[Stage]:
+    """Yield an empty stage; afterwards everything made meanwhile is removed."""
+    before = {kind: set(getattr(bpy.data, kind)) for kind in KINDS}
+    try:
+        scene = bpy.data.scenes.new("Perception review")
+        set_up(scene)
+        yield Stage(scene)
+    finally:
+        made = [each for kind in KINDS for each in set(getattr(bpy.data, kind)) - before[kind]]
+        bpy.data.batch_remove(made)
+
+
+def set_up(scene: bpy.types.Scene) -> None:
+    """Workbench, soft light, true colours, a light page."""
+    render, shading = scene.render, scene.display.shading
+    render.engine, render.resolution_percentage = "BLENDER_WORKBENCH", 100
+    render.image_settings.file_format, render.image_settings.color_mode = "PNG", "RGB"
+    render.use_file_extension = False
+    scene.display.render_aa = "16"
+    scene.view_settings.view_transform = "Standard"
+    shading.light, shading.color_type = "STUDIO", "MATERIAL"
+    shading.show_shadows, shading.shadow_intensity = True, 0.25
+    shading.show_specular_highlight = True
+    scene.display.light_direction = (0.25, 0.35, 1.0)
+    scene.world = bpy.data.worlds.new("Review background")
+    scene.world.color = linear(BACKGROUND)
+
+
+def material(color: tuple[float, float, float, float]) -> bpy.types.Material:
+    """Return a matt material of an sRGB colour with alpha."""
+    made = bpy.data.materials.new("Review colour")
+    made.diffuse_color = (*linear(color[:3]), color[3])
+    made.roughness, made.metallic, made.specular_intensity = 1.0, 0.0, 0.0
+    return made
+
+
+def linear(color: tuple[float, float, float]) -> tuple[float, ...]:
+    """Linear values of an sRGB colour (IEC 61966-2-1)."""
+    return tuple(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color)

@@ -1,0 +1,112 @@
+"""The command line: verbs, JSON, exit status, Ctrl-C."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from tests.engine import shapes
+
+import pe_core as pe
+from pe_core.cli import main
+
+ROOT = Path(pe.__file__).parent.parent
+
+
+@pytest.fixture
+def study(tmp_path):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    search = pe.Search({"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=5))
+    path = tmp_path / "car.toml"
+    pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    return path
+
+
+def test_score_prints_what_a_person_wants_to_know(study, capsys):
+    assert main(["score", str(study)]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("entropy ") and "coverage" in out and "roof: " in out
+    assert "scoring" in err
+
+
+def test_json_is_one_document_and_nothing_else(study, capsys):
+    assert main(["score", str(study), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    loaded = pe.load_study(study)
+    assert data["after"] == loaded.evaluator().score(loaded.rig).to_dict()
+
+
+def test_optimize_leaves_its_results(study, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["optimize", str(study), "-o", str(out), "--seed", "5", "--candidates", "4"]) == 0
+    data = json.loads((out / "result.json").read_text())
+    assert data["seed"] == 5 and data["evaluations"] == 29
+    assert data["after"]["entropy"] <= data["before"]["entropy"]
+    assert f"{data['after']['entropy']:.4f}" in capsys.readouterr().out
+
+
+def test_options_change_the_study(study, capsys):
+    assert main(["score", str(study), "--grid-samples", "4096", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["after"]["stderr"] > 0
+
+
+def test_sensors_lists_the_catalogue_and_shows_one(capsys):
+    assert main(["sensors"]) == 0
+    assert "lidar   Pandar64" in capsys.readouterr().out
+    assert main(["sensors", "Pandar64"]) == 0
+    shown = capsys.readouterr().out
+    assert "115200" in shown and "-25 to 15 deg" in shown and "#" in shown
+    assert main(["sensors", "Camera 60 deg"]) == 0
+    assert "1662.77 px" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("argv", "status", "message"),
+    [
+        (["score", "none.toml"], 1, "pe: none.toml: file: expected an existing file"),
+        (["sensors", "Pandar"], 1, "pe: catalogue: model: expected a name such as"),
+        (["score"], 2, "usage"),
+        (["fly"], 2, "usage"),
+        (["score", "x.toml", "--workers", "many"], 2, "whole number"),
+    ],
+)
+def test_exit_status(argv, status, message, capsys):
+    try:
+        code = main(argv)
+    except SystemExit as stop:
+        code = stop.code
+    out, err = capsys.readouterr()
+    assert (code, out) == (status, "")
+    assert message in err
+    if status == 1:
+        assert len(err.strip().splitlines()) == 1
+
+
+def test_an_output_that_cannot_be_written_is_told_at_once(study, tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert main(["optimize", str(study), "-o", str(tmp_path / "file" / "out")]) == 1
+    assert "output: expected a folder that can be written" in capsys.readouterr().err
+
+
+def test_interrupt_keeps_the_best_so_far(study, tmp_path):
+    """A real process, a real SIGINT in the middle of a search."""
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "pe_core", "optimize", str(study), "-o", str(out)]
+    process = subprocess.Popen(
+        [*command, "--candidates", "100000"], cwd=ROOT, stderr=subprocess.PIPE, text=True
+    )
+    for line in process.stderr:
+        if line.startswith("optimizing"):
+            break
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 130
+    data = json.loads((out / "result.json").read_text())
+    assert data["stopped"] and 1 < data["evaluations"] < 100_000
+    assert data["after"]["entropy"] <= data["before"]["entropy"]
+    best = pe.load_study(out / "study.toml")
+    assert best.evaluator().score(best.rig).to_dict() == data["after"]

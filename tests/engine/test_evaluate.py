@@ -1,0 +1,155 @@
+"""Scores: grid against definition, sample against grid, and what must hold for any rig."""
+
+import numpy as np
+import pytest
+from tests.engine import shapes
+
+import pe_core as pe
+from pe_core.entropy import average_precision, entropy_of, late_fusion, precision_of, sigma_of
+
+SPACE = shapes.small_space()
+ROAD = pe.Prior.road()
+
+
+def rig_of_all_kinds():
+    return pe.Rig(
+        [
+            shapes.lidar_on_roof(shapes.small_lidar(32, 360), (0.3, 0.1, 1.9), (1, 2, 3), "front"),
+            shapes.lidar_on_roof(shapes.small_lidar(32, 360), (-1.0, 0, 1.8), (0, 5, 90), "rear"),
+            shapes.camera(60.0, (0.9, 0.0, 1.6), name="ahead"),
+            shapes.camera(120.0, (-1.6, 0.0, 1.6), (0, 10, 180), name="behind"),
+        ]
+    )
+
+
+def score_by_definition(space, prior, vehicle, rig, model):
+    """Entropy and coverage from `measure`, the equations, and nothing of the evaluator."""
+    index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
+    centers = space.center_of(index)
+    weights = sum((d.ground[:, :, None] * d.profile).reshape(-1) for d in prior.densities(space))
+    if vehicle is not None:
+        top = vehicle.top(space)[index[:, 0], index[:, 1]]
+        weights = np.where(centers[:, 2] < top, 0.0, weights)
+    measured = {s.name: pe.measure(s, centers, space.interval, vehicle) for s in rig}
+    precisions = []
+    for members in rig.groups.values():
+        m = sum(measured[s.name] for s in members)
+        ap = average_precision(m, model.curve(members[0].kind))
+        precisions.append(sigma_of(ap) ** -2)
+    entropy = entropy_of(late_fusion(precisions, model.blind))
+    seen = sum(measured.values()) > 0
+    return np.average(entropy, weights=weights), np.average(seen, weights=weights)
+
+
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+@pytest.mark.parametrize("with_vehicle", [False, True], ids=["free", "on car"])
+def test_the_grid_score_is_the_definition_s(with_vehicle, blind):
+    vehicle = shapes.box_car() if with_vehicle else None
+    model = pe.PerceptionModel(blind=blind)
+    space = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 4), 0.5)
+    rig = rig_of_all_kinds()
+    score = pe.Evaluator(space, ROAD, vehicle, model=model).score(rig)
+    entropy, coverage = score_by_definition(space, ROAD, vehicle, rig, model)
+    assert score.entropy == pytest.approx(entropy, abs=1e-3)
+    assert score.coverage == pytest.approx(coverage, abs=1e-9)
+    assert score.stderr == 0.0
+
+
+def test_the_sampled_score_agrees_with_the_grid_within_its_error():
+    vehicle, rig = shapes.box_car(), rig_of_all_kinds()
+    grid = pe.Evaluator(SPACE, ROAD, vehicle).score(rig)
+    sampled = pe.Evaluator(SPACE, ROAD, vehicle, samples=30_000).score(rig)
+    assert 0.0 < sampled.stderr < 0.05
+    assert abs(sampled.entropy - grid.entropy) < 3 * sampled.stderr
+    assert sampled.coverage == pytest.approx(grid.coverage, abs=0.01)
+    for name, own in grid.per_sensor.items():
+        other = sampled.per_sensor[name]
+        assert other.entropy == pytest.approx(own.entropy, abs=0.15)
+        assert (other.beams, other.stopped_by) == (own.beams, own.stopped_by)
+
+
+@pytest.mark.parametrize("samples", [None, 20_000], ids=["grid", "sampled"])
+def test_classes_make_up_the_whole(samples):
+    score = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples).score(rig_of_all_kinds())
+    classes = score.per_class.values()
+    assert sum(c.share for c in classes) == pytest.approx(1.0)
+    assert sum(c.share * c.entropy for c in classes) == pytest.approx(score.entropy)
+    assert sum(c.share * c.coverage for c in classes) == pytest.approx(score.coverage)
+
+
+def test_the_ground_map_averages_to_the_score():
+    vehicle, rig = shapes.box_car(), rig_of_all_kinds()
+    score = pe.Evaluator(SPACE, pe.Prior.uniform(), vehicle).score(rig)
+    tops = vehicle.top(SPACE)
+    mass = (SPACE.centers(2) >= tops[..., None]).sum(axis=-1)
+    inside = mass == 0
+    assert np.isnan(score.ground_map.entropy[inside]).all()
+    mean = np.average(score.ground_map.entropy[~inside], weights=mass[~inside])
+    assert mean == pytest.approx(score.entropy, abs=1e-4)
+
+
+@pytest.mark.parametrize("samples", [None, 20_000], ids=["grid", "sampled"])
+def test_a_further_sensor_never_makes_it_worse(samples):
+    evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples)
+    sensors = rig_of_all_kinds().sensors
+    entropies = [evaluator.entropy(pe.Rig(sensors[:n])) for n in range(1, 5)]
+    assert all(b <= a for a, b in zip(entropies, entropies[1:], strict=False))
+
+
+def test_workers_do_not_change_a_bit():
+    rig = rig_of_all_kinds()
+    scores = [
+        pe.Evaluator(SPACE, ROAD, shapes.box_car(), workers=n).score(rig).to_dict() for n in (1, 3)
+    ]
+    assert scores[0] == scores[1]
+
+
+def test_turning_rig_and_scene_together_changes_nothing():
+    """Half a turn about z maps the symmetric space and prior onto themselves."""
+    space = pe.PerceptionSpace((-10, 10), (-10, 10), (0, 4), 0.5)
+    vehicle = shapes.box_car()
+    turned = pe.Vehicle(vehicle.triangles * [-1, -1, 1], vehicle.parts, vehicle.part_names)
+    position, pitch, yaw = (0.61, 0.27, 1.83), 4.0, 12.0
+    there = shapes.lidar_on_roof(position=position, rotation=(0, pitch, yaw))
+    back = shapes.lidar_on_roof(
+        position=(-position[0], -position[1], position[2]), rotation=(0, pitch, yaw + 180)
+    )
+    a = pe.Evaluator(space, ROAD, vehicle).score(pe.Rig([there]))
+    b = pe.Evaluator(space, ROAD, turned).score(pe.Rig([back]))
+    assert a.entropy == pytest.approx(b.entropy, abs=2e-3)  # beams at 0 and 180 deg swap owners
+    assert a.per_sensor["roof"].stopped == pytest.approx(b.per_sensor["roof"].stopped, abs=2)
+
+
+def test_the_paper_s_order_pandar64_before_hdl64e():
+    evaluator = pe.Evaluator(pe.PerceptionSpace(), ROAD, shapes.box_car(), samples=65_536)
+    place = ((-0.43, 0.0, 1.8),)
+    pandar, hdl = (
+        evaluator.entropy(pe.Rig([shapes.lidar_on_roof(pe.catalog.load(name), *place)]))
+        for name in ("Pandar64", "HDL-64E")
+    )
+    assert pandar < hdl - 1.0
+
+
+def test_a_sensor_that_moved_and_came_back_scores_the_same():
+    evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=10_000)
+    rig = rig_of_all_kinds()
+    first = evaluator.entropy(rig)
+    moved = rig.with_poses([pe.Pose((0.5, 0.2, 2.0)), *(s.pose for s in rig.sensors[1:])])
+    assert evaluator.entropy(moved) != first
+    assert evaluator.entropy(rig) == first
+    assert pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=10_000).entropy(rig) == first
+
+
+def test_no_warning_reaches_the_user(recwarn):
+    blind = shapes.lidar_on_roof(shapes.small_lidar(), (-0.4, 0.0, 1.0))
+    for samples in (None, 5000):
+        score = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples).score(pe.Rig([blind]))
+        assert score.coverage < 0.01
+    assert not recwarn.list
+
+
+def test_a_vehicle_that_fills_the_space_is_refused():
+    space = pe.PerceptionSpace((-1, 1), (-0.5, 0.5), (0, 1), 0.5)
+    everything = pe.Vehicle(shapes.box((-3, -3, 0), (3, 3, 3)))
+    with pytest.raises(pe.InputError, match="outside the vehicle"):
+        pe.Evaluator(space, ROAD, everything)

@@ -1,0 +1,114 @@
+"""Jobs: any driver, stop keeps the best, and what lands on disk."""
+
+import csv
+import json
+from dataclasses import replace
+
+import pytest
+from tests.engine import shapes
+
+import pe_core as pe
+from pe_core.jobs import HistoryRow
+
+
+def study(candidates=6, position=(-0.43, 0.0, 1.8)):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), position)])
+    search = pe.Search(
+        free={"roof": ("x", "z", "pitch")},
+        samples=2048,
+        seed=4,
+        schedule=pe.Schedule(candidates=candidates),
+    )
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+
+
+def finished(job):
+    progress = list(job)
+    return progress, job.outcome
+
+
+def test_a_score_job_scores_what_the_evaluator_scores():
+    progress, outcome = finished(pe.ScoreJob(study()))
+    assert outcome.after.to_dict() == study().evaluator().score(study().rig).to_dict()
+    assert progress[-1].fraction == 1.0
+    assert outcome.before is outcome.after and outcome.history == ()
+
+
+def test_an_optimize_job_improves_and_tells_its_history():
+    progress, outcome = finished(pe.OptimizeJob(study()))
+    assert outcome.after.entropy < outcome.before.entropy
+    assert outcome.after.to_dict() == outcome.study.evaluator().score(outcome.study.rig).to_dict()
+    assert outcome.evaluations == 1 + 7 * 6
+    entropies = [row.entropy for row in outcome.history]
+    assert entropies == sorted(entropies, reverse=True) and len(entropies) > 1
+    assert outcome.history[0].rig is outcome.start.rig
+    stages = [p.stage for p in progress]
+    assert stages[-1] == "done" and "optimizing" in stages
+
+
+def test_stop_keeps_the_best_so_far():
+    job = pe.OptimizeJob(study())
+    for progress in job:
+        if progress.evaluations >= 20:
+            job.stop()
+    outcome = job.outcome
+    assert outcome.stopped and 20 <= outcome.evaluations <= 22
+    assert outcome.after.entropy <= outcome.before.entropy
+
+
+def test_a_placement_that_only_flatters_the_sample_is_not_taken(monkeypatch):
+    job = pe.OptimizeJob(study())
+    worse = pe.Rig([job.study.rig.sensors[0].moved(pe.Pose((0.0, 0.0, 0.5)))])
+
+    def flattering():
+        job.history += [
+            HistoryRow(1, 0, 9.0, job.study.rig),
+            HistoryRow(2, 0, 1.0, worse),
+        ]
+        yield pe.Progress("optimizing", 1.0, 1.0, 2)
+
+    monkeypatch.setattr(job, "_search", flattering)
+    _, outcome = finished(job)
+    assert outcome.after is outcome.before
+    assert outcome.study.rig is job.study.rig
+
+
+def test_result_files_hold_the_run(tmp_path):
+    _, outcome = finished(pe.OptimizeJob(study()))
+    data = pe.write_outcome(outcome, tmp_path)
+    assert json.loads((tmp_path / "result.json").read_text("utf-8")) == data
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        "history.csv",
+        "result.json",
+        "study.toml",
+        "vehicle.npz",
+    ]
+    rows = list(csv.DictReader((tmp_path / "history.csv").open()))
+    assert len(rows) == len(outcome.history)
+    assert float(rows[-1]["roof.z_m"]) == outcome.history[-1].rig.sensors[0].pose.position[2]
+    again = pe.load_study(tmp_path / "study.toml")
+    assert again.evaluator().score(again.rig).to_dict() == data["after"]
+
+
+def test_the_same_study_gives_the_same_result_but_for_the_run():
+    first, second = (pe.result_dict(finished(pe.OptimizeJob(study()))[1]) for _ in range(2))
+    assert first.pop("run") and second.pop("run")
+    assert json.dumps(first) == json.dumps(second)
+
+
+def test_an_output_folder_that_cannot_be_written_is_told_before_the_work(tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    with pytest.raises(pe.InputError, match="output: expected a folder that can be written"):
+        pe.prepare_folder(blocked / "results")
+
+
+def test_a_failed_write_leaves_the_old_result(tmp_path, monkeypatch):
+    _, outcome = finished(pe.ScoreJob(study()))
+    pe.write_outcome(outcome, tmp_path)
+    before = (tmp_path / "result.json").read_bytes()
+    monkeypatch.setattr("os.replace", lambda *a: (_ for _ in ()).throw(OSError("disk full")))
+    with pytest.raises(pe.InputError, match="disk full"):
+        pe.write_outcome(replace(outcome, seconds=1.0), tmp_path)
+    assert (tmp_path / "result.json").read_bytes() == before
+    assert not list(tmp_path.glob(".*tmp"))

@@ -1,0 +1,181 @@
+"""Study files: round trip to the bit, and one clear line for whatever is wrong."""
+
+import math
+import tomllib
+
+import numpy as np
+import pytest
+from tests.engine import shapes
+
+import pe_core as pe
+from pe_core.study_file import study_from_dict, study_to_dict
+from pe_core.toml_writer import dumps
+
+MINIMAL = """
+[[sensor]]
+name = "roof"
+model = "Pandar64"
+position = [-0.43, 0.0, 1.80]
+"""
+
+FULL = """
+samples = 5000
+[space]
+x = [-20, 20]
+y = [-10, 10]
+z = [0, 4]
+interval = 0.5
+[prior]
+model = "road"
+[[prior.focus]]
+factor = 2.0
+x = [5, inf]
+classes = ["cone", "car"]
+[ap.lidar]
+a = 0.2
+b = 0.5
+[fusion]
+blind = "literal"
+[vehicle]
+mesh = "car.npz"
+glass = ["cabin"]
+clearance = 0.05
+[[sensor]]
+name = "roof"
+model = "Pandar64"
+position = [-0.43, 0.0, 1.80]
+rotation = [0.1, -0.2, 0.3]
+fusion = "top"
+free = ["z", "yaw"]
+bounds = { z = [1.5, 2.0], yaw = [-10, 10] }
+[[sensor]]
+name = "own"
+position = [1.0, 0.0, 1.2]
+[sensor.model]
+kind = "lidar"
+elevations_deg = [-10, 0.1, 5]
+azimuth_step_deg = 0.4
+max_range_m = 80
+[[sensor]]
+name = "cam"
+model = "Camera 60 deg"
+position = [1.0, 0.0, 1.5]
+[optimize]
+free = ["x"]
+seed = 7
+samples = 4096
+candidates = 12
+"""
+
+
+@pytest.fixture
+def write(tmp_path):
+    car = shapes.box_car()
+    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+
+    def to_file(text):
+        path = tmp_path / "study.toml"
+        path.write_text(text, "utf-8")
+        return path
+
+    return to_file
+
+
+def test_what_is_not_said_has_the_paper_s_values(write):
+    study = pe.load_study(write(MINIMAL))
+    assert study.space == pe.PerceptionSpace()
+    assert study.model == pe.PerceptionModel()
+    assert study.vehicle is None and study.samples == 0
+    assert study.search.free == {"roof": ("x", "y", "z", "pitch")}
+    assert study.search.schedule.candidates == 1000
+
+
+def test_everything_that_is_said_arrives(write):
+    study = pe.load_study(write(FULL))
+    assert study.space.shape == (80, 40, 8)
+    assert study.prior.focus[0] == pe.Focus(2.0, (5.0, math.inf), classes=("cone", "car"))
+    assert study.model == pe.PerceptionModel(lidar=pe.ApCurve(0.2, 0.5), blind="literal")
+    assert study.vehicle.glass == ("cabin",) and study.vehicle.clearance == 0.05
+    assert study.rig["own"].model.beam_count == 3 * 900
+    assert study.search.free == {"roof": ("z", "yaw"), "own": ("x",), "cam": ("x",)}
+    bounds = study.search_space().bounds["roof"]
+    assert bounds["z"] == (1.5, 2.0)
+    assert bounds["yaw"] == pytest.approx((-math.radians(10), math.radians(10)))
+
+
+@pytest.mark.parametrize("text", [MINIMAL, FULL], ids=["minimal", "full"])
+def test_a_saved_study_is_the_same_study_to_the_bit(write, tmp_path, text):
+    study = pe.load_study(write(text))
+    pe.export_study(study, tmp_path / "copy.toml")
+    copy = pe.load_study(tmp_path / "copy.toml")
+    assert [s.pose for s in copy.rig] == [s.pose for s in study.rig]
+    for a, b in zip(copy.rig, study.rig, strict=True):
+        if isinstance(a.model, pe.Lidar):
+            assert np.array_equal(a.model.directions, b.model.directions)
+    first, second = study_to_dict(study), study_to_dict(copy)
+    first.pop("vehicle", None), second.pop("vehicle", None)
+    assert first == second
+    if study.vehicle:
+        assert np.array_equal(copy.vehicle.triangles, study.vehicle.triangles)
+        assert copy.vehicle.part_names == study.vehicle.part_names
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a = [", "study: expected valid TOML"),
+        (MINIMAL + "[spce]\n", "spce: expected one of .*space.*, found an unknown key"),
+        (MINIMAL + "colour = 3\n", r"sensor\[0\].colour: expected one of"),
+        (MINIMAL.replace("[-0.43, 0.0, 1.80]", "[1, 2]"), r"sensor\[0\].position: .*3 numbers"),
+        (MINIMAL.replace("-0.43", "nan"), r"sensor\[0\].position: expected a list of 3 numbers"),
+        (MINIMAL.replace("-0.43", "inf"), r"sensor\[0\].position: expected three finite numbers"),
+        (MINIMAL.replace("-0.43", "'1'"), r"sensor\[0\].position"),
+        (MINIMAL.replace("Pandar64", "Pandar65"), r"sensor\[0\].model: .*'Pandar64'"),
+        (MINIMAL.replace('"Pandar64"', "3"), r"sensor\[0\].model: expected a catalogue name"),
+        (MINIMAL.replace('name = "roof"', ""), r"sensor\[0\].name: expected a value, found nothing"),
+        ("[space]\n", r"sensor: expected at least one \[\[sensor\]\]"),
+        (MINIMAL + MINIMAL, "'roof'"),
+        (MINIMAL + "[space]\nx = [3, 3]\n", "space: x: expected two finite numbers"),
+        (MINIMAL + "[space]\ninterval = 0.3\n", "space: interval: expected a length that divides"),
+        (MINIMAL + '[prior]\nmodel = "city"\n', "prior.model: expected one of road, uniform"),
+        (MINIMAL + "[[prior.focus]]\nx = [0, 1]\n", r"prior.focus\[0\].factor: expected a value"),
+        (MINIMAL + '[vehicle]\nmesh = "none.obj"\n', "none.obj: file: expected an existing file"),
+        (MINIMAL + "[ap.lidar]\na = 0\n", "AP curve: a: expected a positive slope"),
+        (MINIMAL + '[fusion]\nblind = "maybe"\n', "fusion.blind: expected one of floor, literal"),
+        (MINIMAL + 'free = ["up"]\n', r"sensor\[0\].free: expected some of x, y, z.*'up'"),
+        (MINIMAL + "bounds = {z = [2, 3]}\n", "bounds of z: expected bounds around the start, 1.8"),
+        (MINIMAL + "bounds = {w = [2, 3]}\n", r"sensor\[0\].bounds.w: expected one of"),
+        (MINIMAL + "[optimize]\nseed = -1\n", "optimize.seed: expected a whole number >= 0"),
+        (MINIMAL + "[optimize]\ncandidates = 0\n", "optimize.candidates: .*>= 1"),
+        (MINIMAL + "[optimize]\nseed = true\n", "optimize.seed: .*found True"),
+        ("samples = 2.5\n" + MINIMAL, "samples: expected a whole number"),
+    ],
+)
+def test_bad_studies_are_one_clear_line(write, text, message):
+    path = write(text)
+    with pytest.raises(pe.InputError, match=message) as caught:
+        pe.load_study(path)
+    line = str(caught.value)
+    assert line.startswith(str(path)) and "\n" not in line
+
+
+def test_a_study_that_is_not_there(tmp_path):
+    with pytest.raises(pe.InputError, match="none.toml: file: expected an existing file"):
+        pe.load_study(tmp_path / "none.toml")
+
+
+def test_toml_text_reads_back_as_it_was():
+    data = {
+        "a": 1,
+        "b": -0.1,
+        "c": [math.inf, -math.inf, 1e300, 5e-324],
+        "d": 'quotes " and \\ and\nlines\x7f',
+        "odd key.": {"nested": [{"x": [1, [2.5]]}, {"y": True}]},
+        "empty": [],
+    }
+    assert tomllib.loads(dumps(data)) == data
+
+
+def test_a_study_from_plain_data_names_its_source():
+    with pytest.raises(pe.InputError, match="^scene: document: expected a table, found list"):
+        study_from_dict([], "scene")

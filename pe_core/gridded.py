@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .fusion import Fusion, Measurement
 from .kernels.camera_grid import pixels_in_planes
-from .kernels.lidar_grid import MOST, add_beams
+from .kernels.lidar_grid import MOST, BeamGrid
 from .occlusion import beam_counts, beam_field
 from .prior import ClassDensity
 from .score import ClassScore, GroundMap, Score, SensorScore, rounded
@@ -96,9 +96,10 @@ class GridScorer:
         return lambda planes: ("lidar", total[planes])
 
     def _count(self, sensor: Sensor, alone: dict[str, Sums] | None) -> Counts:
-        counts = np.zeros(self._space.shape, np.uint16)
+        grid = BeamGrid(self._space)
         field = beam_field(sensor, self._vehicle)
-        add_beams(counts, sensor.pose.position, field.directions, field.ends, self._space)
+        grid.add(sensor.pose.position, field.directions, field.ends)
+        counts = grid.counts
         if alone is not None:
             alone[sensor.name] = self._sums([lambda planes: ("lidar", counts[planes])])
         return counts

@@ -1,12 +1,12 @@
 """The only place that turns Blender's data into the engine's and back."""
 
-from .outcome import forget_results, store_outcome
+from .outcome import blender_version, store_outcome
 from .rig import place_rig, pose_of, rig_from_scene, sensor_from_object, sensor_objects
 from .scene import signature, study_from_scene
 from .vehicle import vehicle_from_collection
 
 __all__ = [
-    "forget_results",
+    "blender_version",
     "place_rig",
     "pose_of",
     "rig_from_scene",

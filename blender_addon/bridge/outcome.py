@@ -30,14 +30,6 @@ def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
     settings.has_result = True
 
 
-def forget_results(scene: bpy.types.Scene) -> None:
-    """Take the last result off a scene."""
-    for name in ("has_result", "result_json", "result_signature", "result_stale"):
-        scene.perception_entropy.property_unset(name)
-    for obj in sensor_objects(scene):
-        obj.perception_entropy.has_result = False
-
-
 def blender_version() -> dict[str, str]:
     """Return what a result says about the program it came from."""
     return {"blender": bpy.app.version_string}

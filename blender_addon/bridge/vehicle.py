@@ -54,9 +54,7 @@ def visible_members(collection: bpy.types.Collection) -> set[bpy.types.Object]:
     return found.union(*(visible_members(child) for child in collection.children))
 
 
-def _parts(
-    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
-) -> Iterator[Part]:
+def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> Iterator[Part]:
     """Yield a part for every drawn object and instance that belongs to the collection."""
     members = {obj for obj in visible_members(collection) if not mounted_on_sensor(obj)}
     local: dict[int, np.ndarray] = {}

@@ -33,8 +33,8 @@ def ribbons(lines: Primitives, view: View, width_px: float) -> Faces:
     side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), 1e-12)
     width = width_px * view.frame.tangent_per_px * view.depth(ends.reshape(-1, 3)).reshape(-1, 2)
     half = side[:, None] * width[..., None] / 2.0
-    right, left = ends + half, ends - half  # counter-clockwise as the camera sees it: its front
-    return Faces(np.stack([left[:, 0], right[:, 0], right[:, 1], left[:, 1]], axis=1), colors)
+    right, left = ends + half, ends - half  # their front, by winding, faces the camera
+    return Faces(np.stack([right[:, 0], left[:, 0], left[:, 1], right[:, 1]], axis=1), colors)
 
 
 def triangles(faces: Primitives) -> Faces:

@@ -1,9 +1,9 @@
 """Beams through every voxel of the grid, by sweeping planes.
 
 A beam enters a voxel through exactly one face, or starts inside it. So m is a count of entries, and
-the entries through the faces of one grid plane are a histogram of the points where the beams cross
-that plane. Sweeping every plane of the three axes visits each (beam, voxel) pair once: exact for
-any pose and any pattern of beams, each with its own end, at a cost proportional to the paths.
+the entries through one grid plane are the cells of that plane in which the beams cross it. Sweeping
+every plane of the three axes visits each (beam, voxel) pair once: exact for any pose and any
+pattern of beams, each with its own end, at a cost proportional to the paths.
 
 Crossing points advance by a constant step from plane to plane. They are kept in fixed point
 (FRACTION_BITS of a voxel), so a step is one integer addition and a cell index one shift.
@@ -31,9 +31,10 @@ STEEPEST = float(1 << 20)
 EARLY = 1e-6
 """Beams from outside are let in this early, in voxels: before the border they meet no cell."""
 MOST = int(np.iinfo(np.uint16).max)
-"""Counts stop here. Only a voxel that touches the sensor can hold as many."""
-NEAR_PLANES = 3
-"""Planes beside the sensor, where a count may reach `MOST` and has to be held there."""
+"""Counts stop here. Only voxels close to the sensor can hold as many."""
+NEAR = 16
+"""Voxels round the sensor where a count may reach `MOST` and has to be held there."""
+ONE = np.uint16(1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,32 +47,86 @@ class Beams:
     end: Floats
 
 
-def add_beams(
-    counts: Counts,
-    origin: Sequence[float],
-    directions: Floats,
-    ends: Floats,
-    space: PerceptionSpace,
-) -> None:
-    """Add the beams through each voxel to `counts`.
+class BeamGrid:
+    """Beams through every voxel of a space, as 16-bit counts that hold at 65535.
 
-    Parameters
-    ----------
-    counts : (nx, ny, nz) uint16
-        Changed in place; holds at 65535.
-    origin : (3,) float
-        Where the beams start, ground frame [m].
-    directions : (B, 3) float
-        Unit directions, ground frame.
-    ends : (B,) float
-        A voxel entered farther than this is not counted [m].
-    space : PerceptionSpace
+    One more voxel on each side catches crossing points that a rounding puts outside the space, so
+    that no sweep has to look.
     """
-    beams = _cut_to_space(origin, directions, ends, space)
-    _add_at_origin(counts, beams)
-    for axis in range(3):
-        for sign in (1, -1):
-            _sweep(counts, beams, axis, sign)
+
+    def __init__(self, space: PerceptionSpace) -> None:
+        self.space = space
+        self._padded = np.zeros([n + 2 for n in space.shape], np.uint16)
+
+    @property
+    def counts(self) -> Counts:
+        """(nx, ny, nz) beams through each voxel; a view."""
+        return self._padded[1:-1, 1:-1, 1:-1]
+
+    def add(self, origin: Sequence[float], directions: Floats, ends: Floats) -> None:
+        """Add the beams of one sensor.
+
+        Parameters
+        ----------
+        origin : (3,) float
+            Where the beams start, ground frame [m].
+        directions : (B, 3) float
+            Unit directions, ground frame.
+        ends : (B,) float
+            A voxel entered farther than this is not counted [m].
+        """
+        beams = _cut_to_space(origin, directions, ends, self.space)
+        self._add_at_origin(beams)
+        for axis in range(3):
+            for sign in (1, -1):
+                self._sweep(beams, axis, sign)
+
+    def _add_at_origin(self, beams: Beams) -> None:
+        """Add the beams that start in the space to the voxel that holds the sensor."""
+        inside = int((beams.start == 0.0).sum())
+        if inside:
+            here = tuple(np.floor(beams.origin).astype(int))
+            self.counts[here] = min(int(self.counts[here]) + inside, MOST)
+
+    def _sweep(self, beams: Beams, axis: int, sign: int) -> None:
+        """Count entries through the planes across `axis`, by the beams that go the way of `sign`.
+
+        NumPy adds at indices one by one, so entries in the same voxel are all counted.
+        """
+        stride, stride_b, stride_c = (self._strides[a] for a in (axis, *_others(axis)))
+        flat = self._padded.reshape(-1)
+        held = len(beams.end) > MOST
+        for plane, b, c in _Run.start(beams, self.space.shape, axis, sign):
+            cell = (plane if sign > 0 else plane - 1) + 1
+            if held and abs(plane - beams.origin[axis]) <= NEAR:
+                b, c = self._add_near(beams, axis, cell, b, c)
+            b *= stride_b
+            if stride_c != 1:
+                c *= stride_c
+            b += c
+            np.add.at(flat[cell * stride :], b, ONE)
+
+    @property
+    def _strides(self) -> tuple[int, ...]:
+        return tuple(n // self._padded.itemsize for n in self._padded.strides)
+
+    def _add_near(self, beams: Beams, axis: int, cell: int, b: Ints, c: Ints) -> tuple[Ints, Ints]:
+        """Add the entries near the sensor, held at `MOST`; return the others."""
+        b0, c0 = (math.floor(beams.origin[a]) + 1 - NEAR for a in _others(axis))
+        width = 2 * NEAR + 1
+        near = (b >= b0) & (b < b0 + width) & (c >= c0) & (c < c0 + width)
+        hits = np.bincount((b[near] - b0) * width + (c[near] - c0), minlength=width**2)
+        layer = np.moveaxis(self._padded, axis, 0)[cell]
+        rows, columns = (slice(max(low, 0), max(low + width, 0)) for low in (b0, c0))
+        window = layer[rows, columns]
+        hits = hits.reshape(width, width)[rows.start - b0 :, columns.start - c0 :]
+        hits = hits[: window.shape[0], : window.shape[1]]
+        window += np.minimum(hits, MOST - window.astype(np.int64)).astype(np.uint16)
+        return b[~near], c[~near]
+
+
+def _others(axis: int) -> tuple[int, int]:
+    return ((1, 2), (0, 2), (0, 1))[axis]
 
 
 def _cut_to_space(
@@ -88,49 +143,6 @@ def _cut_to_space(
         leave = np.minimum(leave, np.maximum(t0, t1))
     keep = np.flatnonzero(enter <= leave)
     return Beams(cells, speeds[keep], enter[keep], leave[keep])
-
-
-def _add_at_origin(counts: Counts, beams: Beams) -> None:
-    """The voxel that holds the sensor is entered by every beam at distance 0."""
-    inside = int((beams.start == 0.0).sum())
-    if inside:
-        here = tuple(np.floor(beams.origin).astype(int))
-        counts[here] = min(int(counts[here]) + inside, MOST)
-
-
-def _sweep(counts: Counts, beams: Beams, axis: int, sign: int) -> None:
-    """Count entries through the planes across `axis`, by the beams that go the way of `sign`."""
-    run = _Run.start(beams, counts.shape, axis, sign)
-    for plane, b, c in run:
-        cell = plane if sign > 0 else plane - 1
-        if axis == 2:
-            _add_scattered(counts, b, c, cell)
-            continue
-        layer = counts[cell] if axis == 0 else counts[:, cell]
-        near = abs(plane - beams.origin[axis]) <= NEAR_PLANES
-        _add_layer(layer, b, c, near)
-
-
-def _add_layer(layer: Counts, b: Ints, c: Ints, near: bool) -> None:
-    """Add entries at padded cells (b, c) to one layer (nb, nc) of the grid."""
-    rows, columns = layer.shape[0] + 2, layer.shape[1] + 2
-    b *= columns
-    b += c
-    padded = np.bincount(b, minlength=rows * columns).reshape(rows, columns)
-    hits = padded[1:-1, 1:-1]
-    if near:
-        hits = np.minimum(hits, MOST - layer.astype(np.int64))
-    np.add(layer, hits, out=layer, casting="unsafe")
-
-
-def _add_scattered(counts: Counts, b: Ints, c: Ints, cell: int) -> None:
-    """Entries through a plane across z: few, and far apart in memory, so each is added alone."""
-    nx, ny, nz = counts.shape
-    inside = (b > 0) & (b <= nx) & (c > 0) & (c <= ny)
-    columns = (b[inside] - 1) * ny + (c[inside] - 1)
-    voxels, hits = np.unique(columns * nz + cell, return_counts=True)
-    flat = counts.reshape(-1)
-    flat[voxels] = np.minimum(flat[voxels] + hits, MOST)
 
 
 @dataclass(slots=True)
@@ -164,7 +176,7 @@ class _Run:
         last, arrival = last[order].astype(np.int64), arrival[order].astype(np.int64)
         count = int(last[0]) + 1 if len(order) else 0
         active = np.searchsorted(-last, -np.arange(count), side="right")
-        other = [a for a in range(3) if a != axis]
+        other = _others(axis)
         slopes = [beams.directions[order, a] / speed[order] for a in other]
         b, c = (
             _fixed(beams.origin[a] + slope * ahead + 1.0)

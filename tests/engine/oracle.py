@@ -11,9 +11,7 @@ import numpy as np
 
 
 def rotation(roll, pitch, yaw):
-    cr, sr, cp, sp, cy, sy = (
-        f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin)
-    )
+    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
     rx = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
     ry = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
     rz = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])

@@ -30,7 +30,9 @@ def test_imports_are_numpy_the_standard_library_or_relative(path):
 
 
 def test_importing_the_engine_loads_no_blender():
-    code = "import sys, pe_core; sys.exit(any(m in sys.modules for m in ('bpy', 'mathutils', 'gpu')))"
+    code = (
+        "import sys, pe_core; sys.exit(any(m in sys.modules for m in ('bpy', 'mathutils', 'gpu')))"
+    )
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT.parent).returncode == 0
 
 

@@ -5,10 +5,10 @@ import re
 
 import numpy as np
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
 from pe_core.geometry import rpy_from_matrix
+from tests.engine import shapes
 
 
 def test_positive_pitch_is_nose_down_and_positive_yaw_turns_left():

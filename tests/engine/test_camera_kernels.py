@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
 from pe_core.kernels.camera_grid import pixels_in_planes
 from pe_core.kernels.camera_points import pixel_areas
+from tests.engine import shapes
 
 
 @pytest.mark.parametrize("hfov", [30.0, 60.0, 120.0])
@@ -31,7 +31,8 @@ def test_planes_of_the_grid_equal_the_points():
     seen = vehicle.seen_from(sensor.pose.position, "camera")
     planes = slice(40, 60)
     block = pixels_in_planes(sensor.model, sensor.pose, space, planes, seen)
-    index = np.stack(np.unravel_index(np.arange(block.size), block.shape), axis=1) + [40, 0, 0]
+    index = np.stack(np.unravel_index(np.arange(block.size), block.shape), axis=1)
+    index[:, 0] += planes.start
     exact = pe.measure(sensor, space.center_of(index), 0.2, vehicle)
     assert ((block.reshape(-1) > 0) == (exact > 0)).all()
     np.testing.assert_allclose(block.reshape(-1), exact, rtol=0.01, atol=1e-3)

@@ -8,10 +8,10 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
 from pe_core.cli import main
+from tests.engine import shapes
 
 ROOT = Path(pe.__file__).parent.parent
 

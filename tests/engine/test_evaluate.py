@@ -1,11 +1,13 @@
 """Scores: grid against definition, sample against grid, and what must hold for any rig."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
-from pe_core.entropy import average_precision, entropy_of, late_fusion, precision_of, sigma_of
+from pe_core.entropy import average_precision, entropy_of, late_fusion, sigma_of
+from tests.engine import shapes
 
 SPACE = shapes.small_space()
 ROAD = pe.Prior.road()
@@ -93,7 +95,7 @@ def test_a_further_sensor_never_makes_it_worse(samples):
     evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples)
     sensors = rig_of_all_kinds().sensors
     entropies = [evaluator.entropy(pe.Rig(sensors[:n])) for n in range(1, 5)]
-    assert all(b <= a for a, b in zip(entropies, entropies[1:], strict=False))
+    assert all(b <= a for a, b in pairwise(entropies))
 
 
 def test_workers_do_not_change_a_bit():

@@ -5,10 +5,10 @@ import json
 from dataclasses import replace
 
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
 from pe_core.jobs import HistoryRow
+from tests.engine import shapes
 
 
 def study(candidates=6, position=(-0.43, 0.0, 1.8)):

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
-from pe_core.kernels.lidar_grid import MOST, add_beams
+from pe_core.kernels.lidar_grid import MOST, BeamGrid
 from pe_core.kernels.lidar_points import Lattice, count_beams
 from pe_core.kernels.ties import offsets_in_voxels, without_zeros
+from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 4), 0.2)
 
@@ -36,10 +36,15 @@ def lidar(kind):
 
 
 def grid_counts(sensor, vehicle):
-    counts = np.zeros(SPACE.shape, np.uint16)
+    return counts_of(sensor, vehicle, SPACE)
+
+
+def counts_of(sensor, vehicle, space, times=1):
+    grid = BeamGrid(space)
     field = pe.beam_field(sensor, vehicle)
-    add_beams(counts, sensor.pose.position, field.directions, field.ends, SPACE)
-    return counts
+    for _ in range(times):
+        grid.add(sensor.pose.position, field.directions, field.ends)
+    return grid.counts
 
 
 def point_counts(sensor, vehicle, centers):
@@ -105,9 +110,7 @@ def test_the_grid_holds_the_beams_of_the_definition_on_the_full_space():
     """64 million voxels, Pandar64, at the paper's placement: 3,000 of them looked up."""
     rng = np.random.default_rng(0)
     space, sensor = pe.PerceptionSpace(), shapes.lidar_on_roof()
-    counts = np.zeros(space.shape, np.uint16)
-    field = pe.beam_field(sensor, shapes.box_car())
-    add_beams(counts, sensor.pose.position, field.directions, field.ends, space)
+    counts = counts_of(sensor, shapes.box_car(), space)
     flat = np.concatenate(
         [rng.choice(np.flatnonzero(counts), 1500), rng.integers(0, space.size, 1500)]
     )
@@ -118,11 +121,8 @@ def test_the_grid_holds_the_beams_of_the_definition_on_the_full_space():
 
 def test_counts_hold_at_their_maximum():
     """The voxel that holds a Pandar64 is met by 115,200 beams; the grid says 65,535."""
-    counts = np.zeros(SPACE.shape, np.uint16)
     sensor = shapes.lidar_on_roof(position=(0.1, 0.1, 2.1))
-    field = pe.beam_field(sensor, None)
-    for _ in range(2):
-        add_beams(counts, sensor.pose.position, field.directions, field.ends, SPACE)
+    counts = counts_of(sensor, None, SPACE, times=2)
     assert counts[60, 40, 10] == MOST
     defined = pe.measure(sensor, SPACE.center_of(np.array([[60, 40, 10], [61, 40, 10]])), 0.2)
     assert defined[0] == 115_200

@@ -1,11 +1,12 @@
 """Algorithm 1: schedule, bounds, seeds, and that it finds what it should."""
 
 import math
+from itertools import pairwise
 
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
+from tests.engine import shapes
 
 SPACE = shapes.small_space()
 
@@ -48,7 +49,7 @@ def test_entropy_never_rises_and_the_count_is_exact():
     entropies = [s.entropy for s in steps]
     assert entropies == sorted(entropies, reverse=True)
     assert entropies[-1] < entropies[0]
-    improved = [b.entropy < a.entropy for a, b in zip(steps, steps[1:], strict=False)]
+    improved = [b.entropy < a.entropy for a, b in pairwise(steps)]
     assert improved == [s.improved for s in steps[1:]]
     assert steps[-1].entropy == evaluator().entropy(steps[-1].best)
 

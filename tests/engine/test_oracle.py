@@ -3,11 +3,10 @@
 import math
 
 import numpy as np
-from tests.engine import oracle
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
+from tests.engine import oracle, shapes
 
 SIDE = 0.1
 
@@ -55,8 +54,10 @@ def test_beam_counts_equal_brute_force(kind, with_vehicle):
         origin = np.array(sensor.pose.position)
         near = origin + rng.normal(0, 0.4, (30, 3))
         far = rng.uniform((-20, -20, 0), (20, 20, 5), (60, 3))
-        aimed = origin + rng.uniform(1, 15, (60, 1)) * (
-            pe.beam_field(sensor, None).directions[rng.integers(0, lidar.beam_count, 60)]
+        aimed = (
+            origin
+            + rng.uniform(1, 15, (60, 1))
+            * (pe.beam_field(sensor, None).directions[rng.integers(0, lidar.beam_count, 60)])
         )
         centers = np.concatenate([near, far, aimed])
         counted = pe.measure(sensor, centers, SIDE, vehicle)
@@ -96,7 +97,7 @@ def test_the_vehicle_hides_voxels_from_a_camera():
 
 
 def test_a_hand_computed_voxel():
-    """Straight ahead at 10 m a 0.1 m cube covers +-0.288 deg: azimuth 0 and +-0.2 deg, 1/6 deg rows."""
+    """Straight ahead at 10 m a 0.1 m cube spans +-0.288 deg: three azimuths by three rows."""
     sensor = pe.Sensor("s", pe.catalog.load("Pandar64"), pe.Pose((0.0, 0.0, 2.0)))
     # nearest face at 9.95 m: |azimuth| < atan(0.05 / 9.95) = 0.2879 deg; rows at 0, +-1/6 deg
     assert pe.measure(sensor, [[10.0, 0.0, 2.0]], SIDE).tolist() == [9.0]

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
 from pe_core.sampling import draw, r3_sequence
 from pe_core.weights import outside_masses, outside_shares
+from tests.engine import shapes
 
 SPACE = shapes.small_space()
 
@@ -57,7 +57,7 @@ def test_bad_focus_is_refused():
         pe.Focus(-1.0)
     with pytest.raises(pe.InputError, match="focus: x"):
         pe.Focus(1.0, x=(3.0, 3.0))
-    with pytest.raises(pe.InputError, match="car, pedestrian.*'horse'"):
+    with pytest.raises(pe.InputError, match=r"car, pedestrian.*'horse'"):
         pe.Prior.road([pe.Focus(1.0, classes=("horse",))])
     with pytest.raises(pe.InputError, match="some weight left"):
         pe.Prior.road([pe.Focus(0.0)]).densities(SPACE)

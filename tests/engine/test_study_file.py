@@ -5,11 +5,11 @@ import tomllib
 
 import numpy as np
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
 from pe_core.study_file import study_from_dict, study_to_dict
 from pe_core.toml_writer import dumps
+from tests.engine import shapes
 
 MINIMAL = """
 [[sensor]]
@@ -132,7 +132,10 @@ def test_a_saved_study_is_the_same_study_to_the_bit(write, tmp_path, text):
         (MINIMAL.replace("-0.43", "'1'"), r"sensor\[0\].position"),
         (MINIMAL.replace("Pandar64", "Pandar65"), r"sensor\[0\].model: .*'Pandar64'"),
         (MINIMAL.replace('"Pandar64"', "3"), r"sensor\[0\].model: expected a catalogue name"),
-        (MINIMAL.replace('name = "roof"', ""), r"sensor\[0\].name: expected a value, found nothing"),
+        (
+            MINIMAL.replace('name = "roof"', ""),
+            r"sensor\[0\].name: expected a value, found nothing",
+        ),
         ("[space]\n", r"sensor: expected at least one \[\[sensor\]\]"),
         (MINIMAL + MINIMAL, "'roof'"),
         (MINIMAL + "[space]\nx = [3, 3]\n", "space: x: expected two finite numbers"),
@@ -160,7 +163,7 @@ def test_bad_studies_are_one_clear_line(write, text, message):
 
 
 def test_a_study_that_is_not_there(tmp_path):
-    with pytest.raises(pe.InputError, match="none.toml: file: expected an existing file"):
+    with pytest.raises(pe.InputError, match=r"none\.toml: file: expected an existing file"):
         pe.load_study(tmp_path / "none.toml")
 
 
@@ -177,5 +180,5 @@ def test_toml_text_reads_back_as_it_was():
 
 
 def test_a_study_from_plain_data_names_its_source():
-    with pytest.raises(pe.InputError, match="^scene: document: expected a table, found list"):
+    with pytest.raises(pe.InputError, match=r"^scene: document: expected a table, found list"):
         study_from_dict([], "scene")

@@ -1,11 +1,10 @@
 """Self-occlusion, the height map, glass, and mounting clearance."""
 
 import numpy as np
-from tests.engine import oracle
 import pytest
-from tests.engine import shapes
 
 import pe_core as pe
+from tests.engine import oracle, shapes
 
 
 def random_directions(rng, count):
@@ -83,7 +82,9 @@ def test_a_sensor_deep_inside_is_blind():
 
 
 def test_the_height_map_needs_no_closed_mesh():
-    roof_only = np.array([[[-1, -1, 1.0], [1, -1, 1.0], [1, 1, 2.0]], [[-1, -1, 1.0], [1, 1, 2.0], [-1, 1, 2.0]]])
+    roof_only = np.array(
+        [[[-1, -1, 1.0], [1, -1, 1.0], [1, 1, 2.0]], [[-1, -1, 1.0], [1, 1, 2.0], [-1, 1, 2.0]]]
+    )
     space = shapes.small_space(0.5)
     top = pe.Vehicle(roof_only).top(space)
     inside = np.isfinite(top)
@@ -110,6 +111,6 @@ def test_a_mesh_with_nan_is_refused():
 
 
 def test_glass_must_name_a_part():
-    with pytest.raises(pe.InputError, match="glass.*body, cabin.*'window'"):
+    with pytest.raises(pe.InputError, match=r"glass.*body, cabin.*'window'"):
         car = shapes.box_car()
         pe.Vehicle(car.triangles, car.parts, car.part_names, glass=("window",))

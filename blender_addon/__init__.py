@@ -1,0 +1,30 @@
+"""Perception Entropy: places LiDARs and cameras on a vehicle by what they let it perceive."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import commands, operators, panels, properties, stale
+from .overlay import handler as overlay
+
+CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
+
+
+def register() -> None:
+    """Called by Blender when the add-on is switched on."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    properties.add_pointers()
+    stale.register()
+    overlay.register()
+    commands.register()
+
+
+def unregister() -> None:
+    """Called by Blender when the add-on is switched off: everything above, backwards."""
+    commands.unregister()
+    overlay.unregister()
+    stale.unregister()
+    properties.remove_pointers()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,44 @@
+"""``python -m blender_addon FILE.blend VERB``: the command in bpy, without a Blender installed."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import bpy
+
+from . import commands, register, unregister
+from .engine import command, pe
+
+PROG = "python -m blender_addon FILE.blend"
+USAGE = f"usage: {PROG} VERB [options]\n"
+
+
+def main(argv: list[str]) -> int:
+    """Open the file, run the command on it, and return its exit status."""
+    if not argv or argv[0].startswith("-"):
+        sys.stderr.write(USAGE)
+        return command.USAGE if argv[:1] not in (["-h"], ["--help"]) else command.DONE
+    commands.take_over_process()
+    bpy.ops.wm.read_factory_settings(use_empty=True)  # nothing of a user's own takes part
+    register()
+    try:
+        return command.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG)
+    finally:
+        unregister()
+        sys.stdout.flush()
+
+
+def open_file(name: str) -> int:
+    """Open a .blend file."""
+    path = Path(name)
+    if not path.is_file():
+        raise pe.InputError(name, "file", "an existing .blend file", "no such file")
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False)
+    except RuntimeError as error:
+        raise pe.InputError(name, "file", "a .blend file", error) from None
+    return command.DONE
+
+
+sys.exit(main(sys.argv[1:]))

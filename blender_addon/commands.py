@@ -1,0 +1,160 @@
+"""``blender -b FILE.blend --command pe VERB``: what the panel does, without a window.
+
+Options, progress, files and exit statuses are those of the command ``pe``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import secrets
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import bpy
+
+from . import bridge
+from .engine import catalog, command, pe, results, sensor_text
+
+REVIEW, OPTIMIZED = "review.png", "optimized.blend"
+IN_BLENDER = "blender -b FILE.blend --command pe"
+
+
+def main(argv: Sequence[str], prog: str = IN_BLENDER) -> int:
+    """Run the command on the file that is open and return its exit status.
+
+    0 done, 1 bad input, 2 usage, 130 interrupted.
+    """
+    try:
+        args = parser(prog).parse_args(argv)
+    except SystemExit as stop:  # help was asked for, or the usage was wrong
+        return int(stop.code or 0)
+    return command.run(lambda: args.function(args))
+
+
+def parser(prog: str) -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    top = argparse.ArgumentParser(prog=prog, description="Perception entropy of vehicle sensors.")
+    top.add_argument("--version", action="version", version=f"pe {pe.__version__}")
+    verbs = top.add_subparsers(required=True, metavar="VERB")
+    score = verbs.add_parser("score", help="score the sensors of the scene")
+    optimize = verbs.add_parser("optimize", help="search for better places for the sensors")
+    for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
+        command.add_run_options(verb, search=job is pe.OptimizeJob)
+        verb.add_argument("--no-render", action="store_true", help=f"no {REVIEW}")
+        verb.set_defaults(function=run_job, job=job)
+    export = verbs.add_parser("export", help="write the scene as a study with its mesh")
+    export.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for them")
+    export.set_defaults(function=export_study)
+    sensors = verbs.add_parser("sensors", help="list the catalogue, or show one sensor")
+    sensors.add_argument("name", nargs="?", help="a sensor's name")
+    sensors.set_defaults(function=show_sensors)
+    return top
+
+
+def run_job(args: argparse.Namespace) -> int:
+    """Score or optimize, and leave the results in the output folder."""
+    study = command.with_options(opened_study(), args)
+    output = None if args.output is None else pe.prepare_folder(args.output)
+    outcome = command.drive(args.job(study, args.workers), output)
+    host = bridge.blender_version()
+    if output is None:
+        data = pe.result_dict(outcome, host)
+    else:
+        data = pe.write_outcome(outcome, output, host)
+        leave_scene(outcome, output, render=not args.no_render)
+    text = results.dump_json(data) if args.json else f"{command.summary(outcome)}\n"
+    print(text, end="", flush=True)
+    return command.INTERRUPTED if outcome.stopped else command.DONE
+
+
+def export_study(args: argparse.Namespace) -> int:
+    """Write the scene as a study file, with the vehicle's mesh."""
+    path = pe.prepare_folder(args.output) / results.STUDY
+    pe.export_study(opened_study(), path)
+    print(path)
+    return command.DONE
+
+
+def show_sensors(args: argparse.Namespace) -> int:
+    """List the catalogue, or describe one of its sensors."""
+    if args.name:
+        catalog.load(args.name)
+        print(sensor_text.describe(catalog.entries()[args.name]))
+    else:
+        for entry in catalog.entries().values():
+            print(f"{entry.kind:7} {entry.name}")
+    return command.DONE
+
+
+def opened_study() -> pe.Study:
+    """Return the study in the file that is open; errors name the file."""
+    path, scene = bpy.data.filepath, bpy.context.scene
+    if not path:
+        expected = "an existing .blend file before --command"
+        raise pe.InputError("blender", "file", expected, "none opened")
+    if scene.perception_entropy.vehicle is None and not bridge.sensor_objects(scene):
+        expected = "a vehicle collection and sensors, set in the tab Perception"
+        raise pe.InputError(path, f"scene {scene.name!r}", expected, "neither")
+    try:
+        return bridge.study_from_scene(scene, bpy.context.evaluated_depsgraph_get())
+    except pe.InputError as error:
+        raise error.at(path) if error.source == "scene" else error from None
+
+
+def leave_scene(outcome: pe.Outcome, output: Path, *, render: bool) -> None:
+    """Write what only Blender can: the scene with the sensors moved, and the picture."""
+    scene = bpy.context.scene
+    if outcome.kind == "optimize":
+        bridge.place_rig(scene, outcome.study.rig)
+        bridge.store_outcome(scene, outcome)
+        save_copy(output / OPTIMIZED)
+    if render:
+        from . import review  # only who wants a picture pays for it
+
+        review.render_review(scene, outcome.study, outcome, output / REVIEW)
+
+
+def save_copy(path: Path) -> None:
+    """Save the open scene to another file, all of it or nothing; the open file stays as it is."""
+    temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.blend")
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, compress=True)
+        os.replace(temporary, path)
+    except (OSError, RuntimeError) as error:
+        raise pe.InputError(path, "file", "a place to write to", error) from None
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def take_over_process() -> None:
+    """Make the process ours: results alone go to stdout, and Ctrl-C is Python's.
+
+    Blender prints what it reads, renders and saves on stdout, and its own handler of Ctrl-C would
+    leave the results behind.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.stdout.flush()
+    sys.stdout = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
+    os.dup2(2, 1)
+
+
+def in_blender(argv: Sequence[str]) -> int:
+    """Called by Blender for ``--command pe``."""
+    take_over_process()
+    return main(argv)
+
+
+_registered: list[object] = []
+
+
+def register() -> None:
+    """Make ``--command pe`` known."""
+    _registered.append(bpy.utils.register_cli_command("pe", in_blender))
+
+
+def unregister() -> None:
+    """Take it back."""
+    bpy.utils.unregister_cli_command(_registered.pop())

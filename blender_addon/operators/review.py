@@ -1,0 +1,41 @@
+"""Render the review picture: the vehicle, its sensors, their beams and their score."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import bpy
+from bpy.props import StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from .. import bridge
+from ..engine import pe
+
+
+class PE_OT_render_review(ExportHelper, bpy.types.Operator):
+    """Score the sensors where they are and render a picture of what they see (.png)"""
+
+    bl_idname = "pe.render_review"
+    bl_label = "Render Review"
+
+    filename_ext = ".png"
+    filter_glob: StringProperty(default="*.png", options={"HIDDEN"})
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        from .. import review  # only who wants a picture pays for it
+
+        path = Path(bpy.path.abspath(self.filepath))
+        try:
+            study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+            job = pe.ScoreJob(study)
+            for _ in job:
+                pass
+            review.render_review(context.scene, study, job.outcome, path)
+        except pe.InputError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Wrote {path}")
+        return {"FINISHED"}
+
+
+CLASSES = (PE_OT_render_review,)

@@ -1,0 +1,103 @@
+"""The one job that may be running: its state, for the panel and the status bar to draw.
+
+It is kept here and not in a property: undo would bring a property back as it was.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import bpy
+
+from ..engine import pe
+
+TICK_S = 0.1
+"""How often the window gives the job a turn."""
+TURN_S = 0.03
+"""How long a turn takes: a frame of a responsive window."""
+
+
+class Running:
+    """A job that a timer steps."""
+
+    def __init__(self, context: bpy.types.Context, job: pe.Job) -> None:
+        self.job = job
+        self.scene_name = context.scene.name
+        self.progress = pe.Progress("starting", 0.0)
+        self._steps: Iterator[pe.Progress] = iter(job)
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(TICK_S, window=context.window)
+        manager.progress_begin(0.0, 1.0)
+
+    def step(self) -> bool:
+        """Work for a turn; return whether there is more to do."""
+        deadline = time.monotonic() + TURN_S
+        for progress in self._steps:
+            self.progress = progress
+            if time.monotonic() >= deadline:
+                return True
+        return False
+
+    def stop(self) -> None:
+        """Ask the job to wind down; the best so far is kept."""
+        self.job.stop()
+
+    @property
+    def text(self) -> str:
+        """What is being done, how far it is, and the best so far."""
+        if self.job.stopped:
+            return "Stopping"
+        stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
+        entropy = self.progress.entropy
+        return stage if entropy is None else f"{stage}  {entropy:.4f}"
+
+    def show(self, context: bpy.types.Context) -> None:
+        """Draw the progress again, but not the scene: that would take longer than the work."""
+        context.window_manager.progress_update(self.progress.fraction)
+        context.workspace.status_text_set(draw_status)
+        for region in _regions(context.window_manager):
+            if region.type == "UI":
+                region.tag_redraw()
+
+    def end(self, context: bpy.types.Context) -> None:
+        """Take away all that shows the job, whatever way it ended."""
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        # Any workspace will do: the text is drawn by one function for all of them.
+        for workspace in bpy.data.workspaces[:1]:
+            workspace.status_text_set(None)
+        for region in _regions(context.window_manager):
+            region.tag_redraw()
+
+
+current: Running | None = None
+
+
+def begin(context: bpy.types.Context, job: pe.Job) -> None:
+    """Let a timer step the job from now on."""
+    global current
+    current = Running(context, job)
+
+
+def end(context: bpy.types.Context) -> None:
+    """Forget the job; do nothing if there is none."""
+    global current
+    if current is not None:
+        ended, current = current, None
+        ended.end(context)
+
+
+def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
+    """Draw the progress in the status bar, in place of Blender's own hints."""
+    if current is not None:
+        row = header.layout.row()
+        row.label(text="Stop", icon="EVENT_ESC")
+        row.progress(text=current.text, factor=current.progress.fraction)
+        row.separator_spacer()
+
+
+def _regions(manager: bpy.types.WindowManager) -> Iterator[bpy.types.Region]:
+    for window in manager.windows:
+        for area in window.screen.areas:
+            yield from area.regions

@@ -1,0 +1,117 @@
+"""The overlay's arrays, sensor by sensor: rebuilt for what changed, kept for the rest. No GPU."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+import bpy
+
+from .. import bridge
+from ..bridge.rig import mounted_on_sensor
+from ..engine import pe
+from .geometry import OverlayGeometry, sensor_geometry
+
+
+class OverlayCache:
+    """Remembers names, plain values and arrays; never a Blender object."""
+
+    def __init__(self) -> None:
+        self._vehicle_version = 0
+        self._vehicle_key: Hashable = None
+        self._vehicle: pe.Vehicle | None = None
+        self._shown: dict[str, tuple[Hashable, OverlayGeometry]] = {}
+
+    def clear(self) -> None:
+        """Forget everything, as another file is about to be shown."""
+        self._vehicle_key = self._vehicle = None
+        self._shown = {}
+
+    def vehicle_changed(self) -> None:
+        """Note that the vehicle's objects are not what they were."""
+        self._vehicle_version += 1
+
+    def update(
+        self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+    ) -> dict[str, OverlayGeometry]:
+        """Return what to draw by the sensor's name; what did not change is the same object."""
+        sensors = shown_sensors(scene, depsgraph)
+        if sensors:
+            self._update_vehicle(scene, depsgraph)
+        settings = scene.perception_entropy
+        lidars = sum(sensor.kind == "lidar" for sensor in sensors)
+        budget = max(1, settings.beam_limit // max(1, lidars))
+        before, self._shown = self._shown, {}
+        for sensor in sensors:
+            model = sensor.model.name
+            key = self._vehicle_key, model, sensor.pose, budget, settings.beam_length
+            known = before.get(sensor.name)
+            if known is None or known[0] != key:
+                built = sensor_geometry(sensor, self._vehicle, budget, settings.beam_length)
+                known = key, built
+            self._shown[sensor.name] = known
+        return {name: geometry for name, (_, geometry) in self._shown.items()}
+
+    def _update_vehicle(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+        key = (scene.name, self._vehicle_version, vehicle_members(scene))
+        if key == self._vehicle_key:
+            return
+        self._vehicle_key, self._vehicle = key, None
+        if scene.perception_entropy.vehicle is None:
+            return
+        try:
+            collection = scene.perception_entropy.vehicle
+            self._vehicle = bridge.vehicle_from_collection(collection, depsgraph)
+        except pe.InputError:  # a score says so; here beams are drawn as if there were no vehicle
+            self._vehicle = None
+
+
+def shown_sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> list[pe.Sensor]:
+    """Sensors to draw, without those that are not possible; a score says what is wrong there."""
+    found = []
+    for each in bridge.sensor_objects(scene):
+        if each.perception_entropy.show:
+            try:
+                found.append(bridge.sensor_from_object(each, depsgraph))
+            except pe.InputError:
+                continue
+    return found
+
+
+def vehicle_members(scene: bpy.types.Scene) -> tuple[tuple[str, bool], ...]:
+    """Names of the vehicle's objects, and whether they can be seen; empty without a vehicle."""
+    collection = scene.perception_entropy.vehicle
+    if collection is None:
+        return ()
+    return tuple(
+        (each.name_full, each.visible_get() and not each.hide_render)
+        for each in collection.all_objects
+        if not mounted_on_sensor(each)
+    )
+
+
+def touches_vehicle(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Whether an update moved or reshaped an object of the vehicle."""
+    changed = {
+        update.id.original
+        for update in depsgraph.updates
+        if isinstance(update.id, bpy.types.Object)
+        and (update.is_updated_geometry or update.is_updated_transform)
+    }
+    collection = scene.perception_entropy.vehicle
+    if collection is None or not changed:
+        return False
+    parts = {each for each in changed if not mounted_on_sensor(each)}
+    return not parts.isdisjoint(_with_instanced(collection))
+
+
+def _with_instanced(collection: bpy.types.Collection) -> set[bpy.types.Object]:
+    """Objects of a collection, and of those that it holds instances of."""
+    found: set[bpy.types.Object] = set()
+    waiting, known = [collection], {collection}
+    while waiting:
+        members = set(waiting.pop().all_objects)
+        found |= members
+        inner = {each.instance_collection for each in members} - known - {None}
+        waiting += inner
+        known |= inner
+    return found

@@ -1,0 +1,1 @@
+"""Benchmarks: our kernels against a yardstick in the same run. ``python -m benchmarks``."""

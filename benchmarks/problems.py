@@ -1,0 +1,73 @@
+"""What the benchmarks work on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+import pe_core as pe
+
+BODY = ((-2.35, -0.92, 0.2), (2.35, 0.92, 0.9))
+CABIN = ((-1.5, -0.7, 0.85), (0.8, 0.7, 1.45))
+ROOF_LIDAR = (-0.43, 0.02, 1.83)
+"""Off the grid's planes: the literal loop has no rule for beams that run along a face."""
+
+
+def car(triangles: int = 20_000) -> pe.Vehicle:
+    """A car of two boxes, refined to about that many triangles."""
+    times = max(0, round(np.log(triangles / 24) / np.log(4)))
+    parts = [_refined(_box(*ends), times) for ends in (BODY, CABIN)]
+    names = np.repeat([0, 1], [len(p) for p in parts]).astype(np.int32)
+    return pe.Vehicle(np.concatenate(parts), names, ("body", "cabin"))
+
+
+def plain_study(vehicle: pe.Vehicle | None) -> pe.Study:
+    """A Pandar64 on the roof, in the paper's space."""
+    sensor = pe.Sensor("roof", pe.catalog.load("Pandar64"), pe.Pose(ROOF_LIDAR))
+    return pe.Study(pe.Rig([sensor]), vehicle)
+
+
+def two_lidars(study: pe.Study) -> pe.Study:
+    """The study with a second Pandar64 on the bonnet."""
+    (first,) = study.rig
+    second = pe.Sensor("front", first.model, pe.Pose((1.9, 0.0, 1.2)))
+    return replace(study, rig=pe.Rig([first, second]))
+
+
+def rays_of(vehicle: pe.Vehicle) -> tuple[pe.Vehicle, np.ndarray, tuple[float, float, float]]:
+    """A full Pandar64 frame from the roof."""
+    return vehicle, pe.catalog.load("Pandar64").directions, ROOF_LIDAR
+
+
+def raw_cast(triangles: np.ndarray, position: object, directions: np.ndarray) -> np.ndarray:
+    """Distances by brute force (Moller and Trumbore), a ray at a time."""
+    origin = np.asarray(position)
+    a, e1, e2 = triangles[:, 0], *(triangles[:, k] - triangles[:, 0] for k in (1, 2))
+    s, distances = origin - a, np.full(len(directions), np.inf)
+    q = np.cross(s, e1)
+    for i, d in enumerate(directions):
+        h = np.cross(d, e2)
+        det = np.sum(e1 * h, axis=1)
+        inverse = 1.0 / np.where(det == 0.0, np.inf, det)  # edge-on: no hit, as t is 0 then
+        u, v = np.sum(s * h, axis=1) * inverse, (q @ d) * inverse
+        t = np.sum(e2 * q, axis=1) * inverse
+        hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
+        distances[i] = t[hit].min() if hit.any() else np.inf
+    return distances
+
+
+def _box(low: tuple[float, ...], high: tuple[float, ...]) -> np.ndarray:
+    ends = np.array([low, high])
+    corners = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    return np.array([corners[[q[0], q[i], q[i + 1]]] for q in quads for i in (1, 2)])
+
+
+def _refined(triangles: np.ndarray, times: int) -> np.ndarray:
+    for _ in range(times):
+        a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        corners = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        triangles = np.concatenate([np.stack(t, axis=1) for t in corners])
+    return triangles

@@ -19,14 +19,13 @@ def main(argv: list[str]) -> int:
     if not argv or argv[0].startswith("-"):
         sys.stderr.write(USAGE)
         return command.USAGE if argv[:1] not in (["-h"], ["--help"]) else command.DONE
-    commands.take_over_process()
+    out = commands.take_over_process()
     bpy.ops.wm.read_factory_settings(use_empty=True)  # nothing of a user's own takes part
     register()
     try:
-        return command.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG)
+        return command.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG, out)
     finally:
         unregister()
-        sys.stdout.flush()
 
 
 def open_file(name: str) -> int:
@@ -37,7 +36,8 @@ def open_file(name: str) -> int:
     try:
         bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False)
     except RuntimeError as error:
-        raise pe.InputError(name, "file", "a .blend file", error) from None
+        found = str(error).strip().removeprefix("Error: ")
+        raise pe.InputError(name, "file", "a .blend file", found) from None
     return command.DONE
 
 

@@ -6,12 +6,14 @@ Options, progress, files and exit statuses are those of the command ``pe``.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import secrets
 import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TextIO
 
 import bpy
 
@@ -22,16 +24,23 @@ REVIEW, OPTIMIZED = "review.png", "optimized.blend"
 IN_BLENDER = "blender -b FILE.blend --command pe"
 
 
-def main(argv: Sequence[str], prog: str = IN_BLENDER) -> int:
-    """Run the command on the file that is open and return its exit status.
+def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
+    """Run the command on the file that is open; results go to `out`, all else to stderr.
 
-    0 done, 1 bad input, 2 usage, 130 interrupted.
+    Returns the exit status: 0 done, 1 bad input, 2 usage, 130 interrupted.
     """
     try:
-        args = parser(prog).parse_args(argv)
+        with contextlib.redirect_stdout(out):
+            args = parser(prog).parse_args(argv)
     except SystemExit as stop:  # help was asked for, or the usage was wrong
         return int(stop.code or 0)
-    return command.run(lambda: args.function(args))
+
+    def function() -> int:
+        text, status = args.function(args)
+        print(text, end="" if text.endswith("\n") else "\n", file=out, flush=True)
+        return status
+
+    return command.run(function)
 
 
 def parser(prog: str) -> argparse.ArgumentParser:
@@ -54,7 +63,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     return top
 
 
-def run_job(args: argparse.Namespace) -> int:
+def run_job(args: argparse.Namespace) -> tuple[str, int]:
     """Score or optimize, and leave the results in the output folder."""
     study = command.with_options(opened_study(), args)
     output = None if args.output is None else pe.prepare_folder(args.output)
@@ -65,28 +74,24 @@ def run_job(args: argparse.Namespace) -> int:
     else:
         data = pe.write_outcome(outcome, output, host)
         leave_scene(outcome, output, render=not args.no_render)
-    text = results.dump_json(data) if args.json else f"{command.summary(outcome)}\n"
-    print(text, end="", flush=True)
-    return command.INTERRUPTED if outcome.stopped else command.DONE
+    status = command.INTERRUPTED if outcome.stopped else command.DONE
+    return results.dump_json(data) if args.json else command.summary(outcome), status
 
 
-def export_study(args: argparse.Namespace) -> int:
+def export_study(args: argparse.Namespace) -> tuple[str, int]:
     """Write the scene as a study file, with the vehicle's mesh."""
     path = pe.prepare_folder(args.output) / results.STUDY
     pe.export_study(opened_study(), path)
-    print(path)
-    return command.DONE
+    return str(path), command.DONE
 
 
-def show_sensors(args: argparse.Namespace) -> int:
+def show_sensors(args: argparse.Namespace) -> tuple[str, int]:
     """List the catalogue, or describe one of its sensors."""
     if args.name:
         catalog.load(args.name)
-        print(sensor_text.describe(catalog.entries()[args.name]))
-    else:
-        for entry in catalog.entries().values():
-            print(f"{entry.kind:7} {entry.name}")
-    return command.DONE
+        return sensor_text.describe(catalog.entries()[args.name]), command.DONE
+    lines = [f"{entry.kind:7} {entry.name}" for entry in catalog.entries().values()]
+    return "\n".join(lines), command.DONE
 
 
 def opened_study() -> pe.Study:
@@ -129,22 +134,22 @@ def save_copy(path: Path) -> None:
         temporary.unlink(missing_ok=True)
 
 
-def take_over_process() -> None:
-    """Make the process ours: results alone go to stdout, and Ctrl-C is Python's.
+def take_over_process() -> TextIO:
+    """Make Ctrl-C Python's and stdout ours; return the stream that results go to.
 
-    Blender prints what it reads, renders and saves on stdout, and its own handler of Ctrl-C would
-    leave the results behind.
+    Blender prints what it reads, renders and saves on stdout: that goes to stderr from now on.
+    Its own handler of Ctrl-C would leave the results behind.
     """
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.stdout.flush()
-    sys.stdout = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
+    out = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
+    return out
 
 
 def in_blender(argv: Sequence[str]) -> int:
     """Called by Blender for ``--command pe``."""
-    take_over_process()
-    return main(argv)
+    return main(argv, IN_BLENDER, take_over_process())
 
 
 _registered: list[object] = []

@@ -25,6 +25,7 @@ DEFAULT_CANDIDATES = 150
 DEFAULT_BEAM_LIMIT = 12_000
 DEFAULT_BEAM_LENGTH_M = 15.0
 DEFAULT_MODEL = "Pandar64"
+FREE_BY_DEFAULT = tuple(axis in placement.PAPER_FREE for axis in placement.AXES)
 
 PRIORS = (
     ("road", "Road", "Cars, cyclists, pedestrians and cones where road traffic has them"),
@@ -171,7 +172,7 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
         name="Free Axes",
         description="What the search may change",
         size=len(placement.AXES),
-        default=tuple(axis in placement.PAPER_FREE for axis in placement.AXES),
+        default=FREE_BY_DEFAULT,
     )
     show: BoolProperty(
         name="Show Beams",

@@ -16,7 +16,7 @@ from .occlusion import BeamField, beam_field
 from .optimize import Schedule, SearchSpace, Step, optimize
 from .prior import Focus, ObjectClass, Prior
 from .results import export_study, prepare_folder, result_dict, write_outcome
-from .score import ClassScore, GroundMap, Score, SensorScore
+from .score import GroundMap, PartScore, Score, SensorScore
 from .sensors import Camera, Lidar, Rig, Sensor
 from .space import PerceptionSpace
 from .study import Search, Study
@@ -28,7 +28,6 @@ __all__ = [
     "ApCurve",
     "BeamField",
     "Camera",
-    "ClassScore",
     "Evaluator",
     "Focus",
     "GroundMap",
@@ -39,6 +38,7 @@ __all__ = [
     "ObjectClass",
     "OptimizeJob",
     "Outcome",
+    "PartScore",
     "PerceptionModel",
     "PerceptionSpace",
     "Pose",

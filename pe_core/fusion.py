@@ -30,6 +30,16 @@ class Fusion:
         self._precision = precision_of(np.arange(last + 1), model.lidar)
         self._entropy = entropy_of(late_fusion([self._precision], model.blind))
 
+    def compact(self, counts: NDArray[np.uint16]) -> NDArray:
+        """Beam counts in one byte where AP saturates that early; enough for any entropy."""
+        most = len(self._precision) - 1
+        if most > np.iinfo(np.uint8).max:
+            return counts
+        small = np.empty(counts.shape, np.uint8)
+        for plane, held in zip(counts, small, strict=True):
+            np.minimum(plane, most, out=held, casting="unsafe")
+        return small
+
     def precision(self, m: NDArray, kind: str) -> Floats:
         """1 / sigma^2 of a group's measurement."""
         if kind == "lidar":

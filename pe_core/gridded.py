@@ -3,40 +3,40 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .fusion import Fusion, Measurement
+from .entropy import H_BLIND
+from .fusion import Fusion
 from .kernels.camera_grid import pixels_in_planes
-from .kernels.lidar_grid import MOST, BeamGrid
+from .kernels.lidar_grid import BeamGrid
 from .occlusion import beam_counts, beam_field
 from .prior import ClassDensity
-from .score import ClassScore, GroundMap, Score, SensorScore, rounded
+from .score import GroundMap, PartScore, Score, SensorScore, rounded
 from .sensors import Camera, Rig, Sensor
 from .space import PerceptionSpace
+from .subsets import Names, fused_early, parts_of
 from .vehicle import Vehicle
 from .weights import outside_masses, outside_shares
+from .zones import column_zones
 
 Floats = NDArray[np.float64]
-Counts = NDArray[np.uint16]
-MeasuredGroup = Callable[[slice], Measurement]
-"""A fusion group's measurement on a run of x-planes, (n, ny, nz)."""
+MeasuredPlanes = Callable[[slice], NDArray]
+"""A sensor's measurement on a run of x-planes, (n, ny, nz)."""
 
 BLOCK_PLANES = 4
 """x-planes looked at together: few enough for the cache, enough to keep NumPy busy."""
 
 
 class Sums(NamedTuple):
-    """Prior-weighted sums by class (C,), and by column (n, ny)."""
+    """Entropy and coverage weighed by the prior, summed over height: each (n, ny, C)."""
 
     entropy: Floats
     coverage: Floats
-    map_entropy: NDArray[np.float32]
-    map_coverage: NDArray[np.float32]
 
 
 class GridScorer:
@@ -61,93 +61,86 @@ class GridScorer:
 
     def entropy(self, rig: Rig) -> float:
         """Perception entropy alone."""
-        return self._total(self._sums(self._groups(rig, {})).entropy)
+        whole = tuple(s.name for s in rig)
+        measured = {s.name: self._measured(s) for s in rig}
+        blocks = self._each_block(
+            lambda planes: self._sums(rig, measured, [whole], planes)[0].entropy.sum(axis=(0, 1))
+        )
+        return self._mean(np.sum(blocks, axis=0))
 
     def score(self, rig: Rig) -> Score:
         """Everything a grid score tells."""
-        alone: dict[str, Sums] = {}
-        groups = self._groups(rig, alone)
-        sums = self._sums(groups)
+        measured = {s.name: self._measured(s) for s in rig}
+        parts = parts_of(rig)
+        blocks = self._each_block(lambda planes: self._reduced(rig, measured, parts, planes))
+        by_class = {
+            members: Sums(*np.sum([block[0][n] for block in blocks], axis=0))
+            for n, members in enumerate(parts)
+        }
+        columns = np.concatenate([block[1] for block in blocks], axis=1)
+        whole = by_class[parts[0]]
         return Score(
-            self._total(sums.entropy),
-            self._total(sums.coverage),
+            self._mean(whole.entropy),
+            self._mean(whole.coverage),
             0.0,
-            self._classes(sums),
-            {s.name: self._alone(s, alone.get(s.name, sums)) for s in rig},
+            self._classes(whole),
+            self._zones(columns),
+            {s.name: self._sensor(s, rig, by_class) for s in rig},
             self._space.size,
-            GroundMap(sums.map_entropy, sums.map_coverage),
+            _ground_map(columns),
         )
 
-    def _groups(self, rig: Rig, alone: dict[str, Sums] | None = None) -> list[MeasuredGroup]:
-        """Measure every fusion group; note each sensor's own sums in `alone` if asked to."""
-        wanted = None if len(rig) == 1 else alone
-        return [
-            self._lidars(members, wanted)
-            if members[0].kind == "lidar"
-            else self._cameras(members, wanted)
-            for members in rig.groups.values()
-        ]
-
-    def _lidars(self, members: list[Sensor], alone: dict[str, Sums] | None) -> MeasuredGroup:
-        """Count the beams of an early-fusion group, one sensor's grid at a time."""
-        total = self._count(members[0], alone)
-        for sensor in members[1:]:
-            _add_held(total, self._count(sensor, alone))
-        return lambda planes: ("lidar", total[planes])
-
-    def _count(self, sensor: Sensor, alone: dict[str, Sums] | None) -> Counts:
-        grid = BeamGrid(self._space)
-        field = beam_field(sensor, self._vehicle)
-        grid.add(sensor.pose.position, field.directions, field.ends)
-        counts = grid.counts
-        if alone is not None:
-            alone[sensor.name] = self._sums([lambda planes: ("lidar", counts[planes])])
-        return counts
-
-    def _cameras(self, members: list[Sensor], alone: dict[str, Sums] | None) -> MeasuredGroup:
-        images = [self._image(sensor) for sensor in members]
-        if alone is not None:
-            for sensor, image in zip(members, images, strict=True):
-                alone[sensor.name] = self._sums([image])
-        return lambda planes: ("camera", np.sum([image(planes)[1] for image in images], axis=0))
-
-    def _image(self, sensor: Sensor) -> MeasuredGroup:
+    def _measured(self, sensor: Sensor) -> MeasuredPlanes:
+        """Measure a LiDAR on the whole grid; a camera is measured when its planes are asked for."""
+        if sensor.kind == "lidar":
+            grid = BeamGrid(self._space)
+            field = beam_field(sensor, self._vehicle)
+            grid.add(sensor.pose.position, field.directions, field.ends)
+            counts = self._fusion.compact(grid.counts)
+            return lambda planes: counts[planes]
         camera, pose, space = cast(Camera, sensor.model), sensor.pose, self._space
         seen = None
         if self._vehicle is not None:
             seen = self._vehicle.seen_from(pose.position, "camera")
-        return lambda planes: ("camera", pixels_in_planes(camera, pose, space, planes, seen))
+        return lambda planes: pixels_in_planes(camera, pose, space, planes, seen)
 
-    def _sums(self, groups: Sequence[MeasuredGroup]) -> Sums:
-        """Weigh entropies and coverage by the prior, block by block, in a fixed order."""
+    def _each_block(self, work: Callable[[slice], object]) -> list:
+        """Work on runs of x-planes; the results are in the order of the planes."""
         nx = self._space.shape[0]
         blocks = [slice(i, min(i + BLOCK_PLANES, nx)) for i in range(0, nx, BLOCK_PLANES)]
         with ThreadPoolExecutor(self._workers) as pool:
-            parts = list(pool.map(lambda planes: self._block(groups, planes), blocks))
-        return Sums(
-            np.sum([p.entropy for p in parts], axis=0),
-            np.sum([p.coverage for p in parts], axis=0),
-            np.concatenate([p.map_entropy for p in parts]),
-            np.concatenate([p.map_coverage for p in parts]),
-        )
+            return list(pool.map(work, blocks))
 
-    def _block(self, groups: Sequence[MeasuredGroup], planes: slice) -> Sums:
-        entropies, visible = self._fusion.entropies([group(planes) for group in groups])
-        seen = visible.astype(float)
+    def _reduced(
+        self, rig: Rig, measured: Mapping[str, MeasuredPlanes], parts: list[Names], planes: slice
+    ) -> tuple[Floats, Floats]:
+        """Sums by class of every part of the rig (P, 2, C); and of the whole rig by column.
+
+        The columns (3, n, ny) are entropy and coverage weighed by the prior, and the prior itself.
+        """
+        sums = self._sums(rig, measured, parts, planes)
+        by_class = [[values.sum(axis=(0, 1)) for values in part] for part in sums]
+        mass = self._grounds[planes]
         outside = self._outside(planes)
         if outside is not None:
-            entropies, seen = entropies * outside, seen * outside
-        grounds = self._grounds[planes]
-        mass = grounds if outside is None else grounds * self._by_column(outside)
-        entropy, coverage = (grounds * self._by_column(values) for values in (entropies, seen))
-        total = mass.sum(axis=-1)
-        total = np.where(total > 0.0, total, np.nan)
-        return Sums(
-            entropy.sum(axis=(0, 1)),
-            coverage.sum(axis=(0, 1)),
-            (entropy.sum(axis=-1) / total).astype(np.float32),
-            (coverage.sum(axis=-1) / total).astype(np.float32),
-        )
+            mass = mass * self._over_height(outside)
+        columns = [values.sum(axis=-1) for values in (*sums[0], mass)]
+        return np.array(by_class), np.array(columns)
+
+    def _sums(
+        self, rig: Rig, measured: Mapping[str, MeasuredPlanes], parts: list[Names], planes: slice
+    ) -> list[Sums]:
+        """Weigh entropy and coverage by the prior on some planes, for parts of the rig."""
+        values = {name: measure(planes) for name, measure in measured.items()}
+        outside, grounds = self._outside(planes), self._grounds[planes]
+        found = []
+        for members in parts:
+            entropies, visible = self._fusion.entropies(fused_early(rig, values, members))
+            seen = visible.astype(float)
+            if outside is not None:
+                entropies, seen = entropies * outside, seen * outside
+            found.append(Sums(*(grounds * self._over_height(v) for v in (entropies, seen))))
+        return found
 
     def _outside(self, planes: slice) -> Floats | None:
         """(n, ny, nz) 1 outside the vehicle's volume, 0 inside; None where it does not reach."""
@@ -155,30 +148,43 @@ class GridScorer:
             return None
         return (self._space.centers(2) >= self._tops[planes][..., None]).astype(float)
 
-    def _by_column(self, values: Floats) -> Floats:
+    def _over_height(self, values: Floats) -> Floats:
         """Sum (n, ny, nz) values over height by each class's profile: (n, ny, C)."""
         n, ny, nz = values.shape
         return (values.reshape(n * ny, nz) @ self._profiles).reshape(n, ny, -1)
 
-    def _total(self, by_class: Floats) -> float:
+    def _mean(self, by_class: Floats) -> float:
         return rounded(by_class.sum() / self._masses.sum())
 
-    def _classes(self, sums: Sums) -> dict[str, ClassScore]:
+    def _classes(self, whole: Sums) -> dict[str, PartScore]:
         shares = self._masses / self._masses.sum()
+        rows = zip(self._names, whole.entropy, whole.coverage, self._masses, shares, strict=True)
         return {
-            name: ClassScore(rounded(h / mass), rounded(c / mass), rounded(share))
-            for name, h, c, mass, share in zip(
-                self._names, sums.entropy, sums.coverage, self._masses, shares, strict=True
-            )
+            name: PartScore(rounded(h / mass), rounded(c / mass), rounded(share))
+            for name, h, c, mass, share in rows
             if mass > 0.0
         }
 
-    def _alone(self, sensor: Sensor, sums: Sums) -> SensorScore:
+    def _zones(self, columns: Floats) -> dict[str, PartScore]:
+        total = columns[2].sum()
+        found = {}
+        for name, mask in column_zones(self._space).items():
+            h, c, mass = (float(values[mask].sum()) for values in columns)
+            if mass > 0.0:
+                found[name] = PartScore(rounded(h / mass), rounded(c / mass), rounded(mass / total))
+        return found
+
+    def _sensor(self, sensor: Sensor, rig: Rig, by_class: Mapping[Names, Sums]) -> SensorScore:
+        names = tuple(s.name for s in rig)
+        whole, alone = by_class[names], by_class[(sensor.name,)]
+        others = by_class.get(tuple(n for n in names if n != sensor.name))
+        failed = H_BLIND if others is None else self._mean(others.entropy)
+        lost = rounded(failed - self._mean(whole.entropy))
         counts = beam_counts(sensor, self._vehicle)
-        return SensorScore(self._total(sums.entropy), self._total(sums.coverage), *counts)
+        return SensorScore(self._mean(alone.entropy), self._mean(alone.coverage), lost, *counts)
 
 
-def _add_held(total: Counts, more: Counts) -> None:
-    """Add in place, plane by plane, holding at 65535."""
-    for plane, other in zip(total, more, strict=True):
-        plane[:] = np.minimum(plane.astype(np.uint32) + other, MOST)
+def _ground_map(columns: Floats) -> GroundMap:
+    entropy, coverage, mass = columns
+    safe = np.where(mass > 0.0, mass, np.nan)
+    return GroundMap(entropy / safe, coverage / safe, mass)

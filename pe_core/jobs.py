@@ -96,6 +96,7 @@ class Job:
 
     def _score(self, study: Study, waiting: Progress) -> Generator[Progress, None, Score]:
         """Score in a thread, yielding `waiting` until it is done."""
+        yield waiting
         with ThreadPoolExecutor(1) as pool:
             future = pool.submit(lambda: study.evaluator(workers=self.workers).score(study.rig))
             while True:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .entropy import H_BLIND
 from .fusion import Fusion
 from .kernels.camera_points import pixel_areas
 from .kernels.lidar_points import Lattice, count_beams
@@ -14,11 +16,13 @@ from .kernels.ties import offsets_in_voxels, without_zeros
 from .occlusion import beam_counts, beam_field
 from .prior import ClassDensity
 from .sampling import BLOCKS, VoxelSample, draw
-from .score import ClassScore, Score, SensorScore, rounded
+from .score import PartScore, Score, SensorScore, rounded
 from .sensors import Camera, Lidar, Rig, Sensor
 from .space import PerceptionSpace
+from .subsets import fused_early
 from .vehicle import Vehicle
 from .weights import outside_shares
+from .zones import zone_masks
 
 Floats = NDArray[np.float64]
 
@@ -38,33 +42,38 @@ class SampledScorer:
         tops = None if vehicle is None else vehicle.top(space)
         self._sample: VoxelSample = draw(densities, space, samples, tops)
         self._shares = outside_shares(densities, space, tops)
+        self._weights = np.concatenate(
+            [
+                np.full(some.stop - some.start, share / max(some.stop - some.start, 1))
+                for some, share in zip(self._sample.slices, self._shares, strict=True)
+            ]
+        )
         self._lattices: dict[Lidar, Lattice] = {}
         self._measured: dict[str, tuple[Sensor, NDArray]] = {}
 
     def entropy(self, rig: Rig) -> float:
         """Perception entropy alone: what an optimizer asks for."""
-        return self._summary(*self._entropies(rig))[0]
+        return self._whole(*self._entropies(rig, [s.name for s in rig]))[0]
 
     def score(self, rig: Rig) -> Score:
         """Everything a sampled score tells."""
-        entropies, seen = self._entropies(rig)
-        entropy, coverage, classes = self._summary(entropies, seen)
+        entropies, seen = self._entropies(rig, [s.name for s in rig])
+        entropy, coverage = self._whole(entropies, seen)
         return Score(
             entropy,
             coverage,
             self._standard_error(entropies),
-            classes,
-            {s.name: self._alone(s) for s in rig},
+            self._classes(entropies, seen),
+            self._zones(entropies, seen),
+            {s.name: self._sensor(s, rig, entropy) for s in rig},
             len(self._sample.index),
         )
 
-    def _entropies(self, rig: Rig) -> tuple[Floats, NDArray[np.bool_]]:
-        groups = [
-            (members[0].kind, np.sum([self._measure(s) for s in members], axis=0))
-            for members in rig.groups.values()
-        ]
+    def _entropies(self, rig: Rig, members: Collection[str]) -> tuple[Floats, NDArray[np.bool_]]:
+        """Entropy of every sampled voxel and whether it is seen, by some of the rig's sensors."""
+        measured = {s.name: self._measure(s) for s in rig}
         self._measured = {s.name: self._measured[s.name] for s in rig}
-        return self._fusion.entropies(groups)
+        return self._fusion.entropies(fused_early(rig, measured, members))
 
     def _measure(self, sensor: Sensor) -> NDArray:
         known = self._measured.get(sensor.name)
@@ -99,25 +108,41 @@ class SampledScorer:
             seen,
         )
 
-    def _summary(
-        self, entropies: Floats, seen: NDArray[np.bool_]
-    ) -> tuple[float, float, dict[str, ClassScore]]:
-        classes = {}
-        entropy = coverage = 0.0
-        for name, some, share in zip(
-            self._sample.names, self._sample.slices, self._shares, strict=True
-        ):
-            if some.stop == some.start:
-                continue
-            h, c = float(np.mean(entropies[some])), float(np.mean(seen[some]))
-            entropy, coverage = entropy + share * h, coverage + share * c
-            classes[name] = ClassScore(rounded(h), rounded(c), rounded(share))
-        return rounded(entropy), rounded(coverage), classes
+    def _whole(self, entropies: Floats, seen: NDArray[np.bool_]) -> tuple[float, float]:
+        """Mean entropy and coverage, each class by its share."""
+        classes = self._classes(entropies, seen).values()
+        entropy = sum(c.share * c.entropy for c in classes)
+        coverage = sum(c.share * c.coverage for c in classes)
+        return rounded(entropy), rounded(coverage)
 
-    def _alone(self, sensor: Sensor) -> SensorScore:
-        entropies, seen = self._fusion.entropies([(sensor.kind, self._measure(sensor))])
-        entropy, coverage, _ = self._summary(entropies, seen)
-        return SensorScore(entropy, coverage, *beam_counts(sensor, self._vehicle))
+    def _classes(self, entropies: Floats, seen: NDArray[np.bool_]) -> dict[str, PartScore]:
+        sample = self._sample
+        return {
+            name: PartScore(
+                rounded(np.mean(entropies[some])), rounded(np.mean(seen[some])), rounded(share)
+            )
+            for name, some, share in zip(sample.names, sample.slices, self._shares, strict=True)
+            if some.stop > some.start
+        }
+
+    def _zones(self, entropies: Floats, seen: NDArray[np.bool_]) -> dict[str, PartScore]:
+        """Zones by the samples in them; a sample stands for its share of its class."""
+        x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
+        found = {}
+        for name, mask in zone_masks(x, y).items():
+            weights = self._weights[mask]
+            mass = float(weights.sum())
+            if mass > 0.0:
+                h, c = (float((v[mask] * weights).sum()) / mass for v in (entropies, seen))
+                found[name] = PartScore(rounded(h), rounded(c), rounded(mass))
+        return found
+
+    def _sensor(self, sensor: Sensor, rig: Rig, entropy: float) -> SensorScore:
+        alone, coverage = self._whole(*self._entropies(rig, [sensor.name]))
+        others = [s.name for s in rig if s.name != sensor.name]
+        failed = self._whole(*self._entropies(rig, others))[0] if others else H_BLIND
+        counts = beam_counts(sensor, self._vehicle)
+        return SensorScore(alone, coverage, rounded(failed - entropy), *counts)
 
     def _standard_error(self, entropies: Floats) -> float:
         """From the scatter of runs of the sequence: each is a lattice, so this errs high."""

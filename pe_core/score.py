@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,8 @@ DECIMALS = 9
 
 
 @dataclass(frozen=True, slots=True)
-class ClassScore:
-    """One object class: perception entropy [nats], coverage, and its share of the prior."""
+class PartScore:
+    """A class or a zone: perception entropy [nats], coverage, and its share of the prior."""
 
     entropy: float
     coverage: float
@@ -23,13 +23,16 @@ class ClassScore:
 
 @dataclass(frozen=True, slots=True)
 class SensorScore:
-    """One sensor as if it were alone, and how many of its beams the vehicle stops.
+    """One sensor: alone, missing, and how many of its beams the vehicle stops.
 
-    `beams` and `stopped` are 0 for cameras; `stopped_by` counts stopped beams by vehicle part.
+    `entropy` and `coverage` are those of a rig of this sensor alone; `lost` is what the whole rig's
+    entropy rises by when the sensor fails. `beams` and `stopped` are 0 for cameras; `stopped_by`
+    counts stopped beams by vehicle part.
     """
 
     entropy: float
     coverage: float
+    lost: float
     beams: int
     stopped: int
     stopped_by: dict[str, int]
@@ -39,11 +42,25 @@ class SensorScore:
 class GroundMap:
     """Entropy and coverage of every column, averaged over height by the prior; (nx, ny) each.
 
-    Columns wholly inside the vehicle hold NaN.
+    `mass` is the prior in each column. Columns without any, as those inside the vehicle, hold NaN.
     """
 
-    entropy: NDArray[np.float32]
-    coverage: NDArray[np.float32]
+    entropy: NDArray[np.float64]
+    coverage: NDArray[np.float64]
+    mass: NDArray[np.float64]
+
+    def coarser(self, columns: int) -> GroundMap:
+        """Return the map in squares of `columns` by `columns` columns (fewer at the far edges)."""
+        rows, ys = (np.arange(0, n, columns) for n in self.mass.shape)
+
+        def summed(values: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.add.reduceat(np.add.reduceat(values, rows, axis=0), ys, axis=1)
+
+        mass = summed(self.mass)
+        safe = np.where(mass > 0.0, mass, np.nan)
+        weighted = (np.nan_to_num(v) * self.mass for v in (self.entropy, self.coverage))
+        entropy, coverage = (summed(v) / safe for v in weighted)
+        return GroundMap(entropy, coverage, mass)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +75,9 @@ class Score:
         Prior mass with m > 0 for some sensor, 0 to 1.
     stderr : float
         Standard error of `entropy`; 0 for a score of the whole grid.
-    per_class : dict of ClassScore
+    per_class : dict of PartScore
+    per_zone : dict of PartScore
+        Zones overlap: see `zones.ZONES`. A zone without prior mass is left out.
     per_sensor : dict of SensorScore
     voxels : int
         Voxels looked at.
@@ -69,7 +88,8 @@ class Score:
     entropy: float
     coverage: float
     stderr: float
-    per_class: dict[str, ClassScore]
+    per_class: dict[str, PartScore]
+    per_zone: dict[str, PartScore]
     per_sensor: dict[str, SensorScore]
     voxels: int
     ground_map: GroundMap | None = None
@@ -81,20 +101,9 @@ class Score:
             "coverage": self.coverage,
             "stderr": self.stderr,
             "voxels": self.voxels,
-            "per_class": {
-                name: {"entropy": c.entropy, "coverage": c.coverage, "share": c.share}
-                for name, c in self.per_class.items()
-            },
-            "per_sensor": {
-                name: {
-                    "entropy": s.entropy,
-                    "coverage": s.coverage,
-                    "beams": s.beams,
-                    "stopped": s.stopped,
-                    "stopped_by": s.stopped_by,
-                }
-                for name, s in self.per_sensor.items()
-            },
+            "per_class": {name: asdict(part) for name, part in self.per_class.items()},
+            "per_zone": {name: asdict(part) for name, part in self.per_zone.items()},
+            "per_sensor": {name: asdict(own) for name, own in self.per_sensor.items()},
         }
 
 

@@ -87,7 +87,7 @@ def place_rig(scene: bpy.types.Scene, rig: pe.Rig) -> list[str]:
     """
     pairs = [(scene.objects.get(sensor.name), sensor) for sensor in rig]
     present = [(obj, sensor) for obj, sensor in pairs if _is_sensor(obj)]
-    layer = _view_layer(scene)
+    layer = view_layer_of(scene)
     # Parents first: a sensor may be mounted on another.
     for obj, sensor in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):
         obj.matrix_world = _matrix(sensor.pose)
@@ -118,7 +118,7 @@ def _ancestors(obj: bpy.types.Object) -> list[bpy.types.Object]:
     return found
 
 
-def _view_layer(scene: bpy.types.Scene) -> bpy.types.ViewLayer:
+def view_layer_of(scene: bpy.types.Scene) -> bpy.types.ViewLayer:
     """The view layer in use, or the scene's first when another scene is open."""
     return bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
 

@@ -7,7 +7,7 @@ import hashlib
 import bpy
 
 from ..engine import pe, results
-from .rig import free_axes, rig_from_scene, sensor_objects
+from .rig import free_axes, rig_from_scene, sensor_objects, view_layer_of
 from .vehicle import vehicle_from_collection, visible_members
 
 SIGNATURE_DECIMALS = 5
@@ -42,17 +42,17 @@ def signature(scene: bpy.types.Scene) -> str:
 
     It is cheap, not complete: a mesh edited without a change in its number of points is not seen.
     """
-    settings = scene.perception_entropy
+    settings, layer = scene.perception_entropy, view_layer_of(scene)
     seen: list[object] = [settings.prior, settings.score_samples]
     for obj in sensor_objects(scene):
-        own = obj.perception_entropy
-        seen += [obj.name, own.model, own.fusion, obj.visible_get(), _rounded(obj)]
+        own, visible = obj.perception_entropy, obj.visible_get(view_layer=layer)
+        seen += [obj.name, own.model, own.fusion, visible, _rounded(obj)]
     if settings.vehicle is not None:
-        for obj in sorted(visible_members(settings.vehicle), key=lambda each: each.name_full):
+        members = visible_members(settings.vehicle, layer)
+        for obj in sorted(members, key=lambda each: each.name_full):
             size = len(obj.data.vertices) if obj.type == "MESH" else 0
             glass = obj.perception_entropy.see_through
-            seen += [obj.name_full, obj.visible_get(), size, len(obj.modifiers), glass]
-            seen.append(_rounded(obj))
+            seen += [obj.name_full, size, len(obj.modifiers), glass, _rounded(obj)]
     return hashlib.sha256(repr(seen).encode()).hexdigest()
 
 

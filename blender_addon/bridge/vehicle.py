@@ -11,10 +11,6 @@ import numpy as np
 from ..engine import geometry, pe
 from .rig import mounted_on_sensor
 
-SOLID_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
-"""Objects that turn into triangles."""
-
-
 class Part(NamedTuple):
     """Triangles (F, 3, 3) [m] of one object, and whether cameras see through them."""
 
@@ -46,28 +42,35 @@ def vehicle_from_collection(
     return pe.Vehicle(triangles, np.concatenate(labels), names, glass)
 
 
-def visible_members(collection: bpy.types.Collection) -> set[bpy.types.Object]:
-    """Objects of a collection and those in it, without what is switched off in either way."""
-    if collection.hide_viewport or collection.hide_render:
+def visible_members(
+    collection: bpy.types.Collection, layer: bpy.types.ViewLayer
+) -> set[bpy.types.Object]:
+    """Objects of a collection and those in it, without what is hidden in either way."""
+    if collection.hide_render:
         return set()
-    found = {obj for obj in collection.objects if not obj.hide_render}
-    return found.union(*(visible_members(child) for child in collection.children))
+    found = {
+        obj
+        for obj in collection.objects
+        if obj.visible_get(view_layer=layer) and not obj.hide_render
+    }
+    return found.union(*(visible_members(child, layer) for child in collection.children))
 
 
 def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> Iterator[Part]:
     """Yield a part for every drawn object and instance that belongs to the collection."""
-    members = {obj for obj in visible_members(collection) if not mounted_on_sensor(obj)}
+    visible = visible_members(collection, depsgraph.view_layer)
+    members = {obj for obj in visible if not mounted_on_sensor(obj)}
     local: dict[int, np.ndarray] = {}
-    # An instance is only good until the next one: nothing of it may be kept.
+    # An instance is only good until the next one: nothing of it may be kept. Curves, texts and
+    # metaballs come twice, as what they are and as the mesh they make.
     for instance in depsgraph.object_instances:
         owner = instance.parent if instance.is_instance else instance.object
-        obj = instance.object
-        if owner.original not in members or obj.type not in SOLID_TYPES:
+        obj, original = instance.object, instance.object.original
+        if owner.original not in members or obj.type != "MESH" or original.hide_render:
             continue
         triangles = _triangles_local(obj, local)
         if not len(triangles):
             continue
-        original = obj.original
         placed = _placed(triangles, np.array(instance.matrix_world, dtype=float))
         if not np.isfinite(placed).all():
             field = f"vehicle object {original.name!r}"
@@ -81,11 +84,9 @@ def _triangles_local(obj: bpy.types.Object, known: dict[int, np.ndarray]) -> np.
     if key in known:
         return known[key]
     mesh = obj.to_mesh()
-    triangles = np.empty((0, 3, 3)) if mesh is None else _triangles_of(mesh)
+    known[key] = _triangles_of(mesh)
     obj.to_mesh_clear()
-    if obj.type == "MESH":  # two texts or curves may turn the same data into other meshes
-        known[key] = triangles
-    return triangles
+    return known[key]
 
 
 def _triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:

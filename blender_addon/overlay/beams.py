@@ -31,16 +31,18 @@ class Beams:
     """Some beams of a mounted LiDAR.
 
     `directions` (N, 3) unit, ground frame; `ends` (N,) the vehicle or the maximum range [m];
-    `stopped` (N,) whether it was the vehicle.
+    `stopped` (N,) whether it was the vehicle; `room` (N,) solid angle that each free beam has to
+    itself among those shown [sr].
     """
 
     directions: Floats
     ends: Floats
     stopped: NDArray[np.bool_]
+    room: Floats
 
     def __getitem__(self, chosen: NDArray) -> Beams:
         """Return some of the beams."""
-        return Beams(self.directions[chosen], self.ends[chosen], self.stopped[chosen])
+        return Beams(*(getattr(self, each)[chosen] for each in self.__slots__))
 
 
 def shown_beams(
@@ -50,18 +52,23 @@ def shown_beams(
 
     `channels` limits how many channels the free ones are from.
     """
+    lidar = sensor.model
     if vehicle is None:
-        return _cast(sensor, None, spread(sensor.model, budget, channels))
-    seen = vehicle.seen_from(sensor.pose.position)
-    shown = spread(sensor.model, budget - int(budget * STOPPED_SHARE), channels)
-    stopped = _stopped(sensor, seen, np.union1d(shown, spread(sensor.model, LOOKED_AT)))
+        shown, stopped, seen = spread(lidar, budget, channels), np.empty(0, np.int64), None
+    else:
+        seen = vehicle.seen_from(sensor.pose.position)
+        shown = spread(lidar, budget - int(budget * STOPPED_SHARE), channels)
+        stopped = _stopped(sensor, seen, np.union1d(shown, spread(lidar, LOOKED_AT)))
     free = np.setdiff1d(shown, stopped)
-    return _cast(sensor, seen, np.concatenate([free, _evenly(stopped, budget - len(free))]))
+    numbers = np.concatenate([free, _evenly(stopped, budget - len(free))])
+    directions = lidar.directions[numbers] @ sensor.pose.ground_from_sensor.T
+    ends, is_stopped = _ends(lidar, seen, directions)
+    return Beams(directions, ends, is_stopped, _room(lidar, shown)[numbers // _azimuths(lidar)])
 
 
 def spread(lidar: pe.Lidar, budget: int, channels: int | None = None) -> Ints:
     """(N,) beam numbers, ascending, N <= budget: every channel at the same azimuths, evenly."""
-    azimuths = len(lidar.azimuth_steps)
+    azimuths = _azimuths(lidar)
     most = budget if channels is None else min(budget, channels)
     rows = _evenly(np.arange(len(lidar.elevations)), most)
     per_channel = min(azimuths, budget // max(len(rows), 1))
@@ -73,29 +80,50 @@ def spread(lidar: pe.Lidar, budget: int, channels: int | None = None) -> Ints:
 
 def _stopped(sensor: pe.Sensor, seen: object, looked: Ints) -> Ints:
     """Numbers of the beams that the vehicle stops, of those looked at and those beside them."""
-    found = looked[_cast(sensor, seen, looked).stopped]
-    beside = np.setdiff1d(_beside(sensor.model, found), looked)
-    return np.union1d(found, beside[_cast(sensor, seen, beside).stopped])
+    lidar, ground_from_sensor = sensor.model, sensor.pose.ground_from_sensor
+
+    def of(numbers: Ints) -> Ints:
+        directions = lidar.directions[numbers] @ ground_from_sensor.T
+        return numbers[_ends(lidar, seen, directions)[1]]
+
+    found = of(looked)
+    return np.union1d(found, of(np.setdiff1d(_beside(lidar, found), looked)))
 
 
 def _beside(lidar: pe.Lidar, beams: Ints) -> Ints:
     """Beams of the same channel up to the next azimuth that was looked at, to either side."""
     reach = -(-lidar.beam_count // LOOKED_AT)
-    azimuths = len(lidar.azimuth_steps)
-    channel, column = np.divmod(beams, azimuths)
-    columns = (column[:, None] + np.arange(-reach, reach + 1)) % azimuths
-    return np.unique(channel[:, None] * azimuths + columns)
+    channel, column = np.divmod(beams, _azimuths(lidar))
+    columns = (column[:, None] + np.arange(-reach, reach + 1)) % _azimuths(lidar)
+    return np.unique(channel[:, None] * _azimuths(lidar) + columns)
 
 
-def _cast(sensor: pe.Sensor, seen: object | None, numbers: Ints) -> Beams:
-    """Cast the beams of those numbers against the vehicle as seen from the sensor."""
-    lidar = sensor.model
-    directions = lidar.directions[numbers] @ sensor.pose.ground_from_sensor.T
-    if seen is None or not len(numbers):
-        ends = np.full(len(numbers), lidar.max_range)
-        return Beams(directions, ends, np.zeros(len(numbers), bool))
+def _ends(
+    lidar: pe.Lidar, seen: object | None, directions: Floats
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Where beams end (N,) [m] and whether on the vehicle (N,), as it is seen from the sensor."""
+    if seen is None or not len(directions):
+        return np.full(len(directions), lidar.max_range), np.zeros(len(directions), bool)
     distance = seen.first_hit(directions).distance
-    return Beams(directions, np.minimum(distance, lidar.max_range), distance < lidar.max_range)
+    return np.minimum(distance, lidar.max_range), distance < lidar.max_range
+
+
+def _room(lidar: pe.Lidar, shown: Ints) -> Floats:
+    """(C,) solid angle from beam to beam in each channel, among those shown [sr]."""
+    counts = np.bincount(shown // _azimuths(lidar), minlength=len(lidar.elevations))
+    order = np.flatnonzero(counts)[np.argsort(lidar.elevations[counts > 0], kind="stable")]
+    room = np.zeros(len(counts))
+    if len(order) > 1:
+        steps = np.diff(lidar.elevations[order])
+        room[order] = (np.append(steps, steps[-1]) + np.append(steps[0], steps)) / 2.0
+    else:
+        room[order] = np.pi
+    low, high = lidar.horizontal_fov
+    return room * (high - low) / np.maximum(counts, 1)
+
+
+def _azimuths(lidar: pe.Lidar) -> int:
+    return len(lidar.azimuth_steps)
 
 
 def _evenly(values: Ints, count: int) -> Ints:

@@ -18,8 +18,12 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-END_ALPHA = 0.12
-"""What is left of a free beam's alpha at the full drawn length."""
+FULL_ROOM_SR = 2.4e-3
+"""A beam with this solid angle to itself (2 by 4 degrees) is drawn in full colour, closer ones
+fainter: dense channels do not become a wall, and sparse ones still show."""
+LEAST_SHARE = 0.05
+FRUSTUM_SHARE = 0.25
+"""How long frustums are beside the beams."""
 FACE_CORNERS = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1))
 EDGES = ((0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 5))
 MARK_GAP, MARK_HEIGHT, MARK_HALF_WIDTH = 0.08, 0.35, 0.35
@@ -66,6 +70,7 @@ def sensor_geometry(
     if sensor.kind == "lidar":
         beams = shown_beams(sensor, vehicle, budget)
         return OverlayGeometry(beam_lines(sensor, beams, length_m, palette), Primitives.empty())
+    length_m *= FRUSTUM_SHARE
     lines = frustum_lines(sensor, length_m, palette)
     return OverlayGeometry(lines, frustum_faces(sensor, length_m, palette))
 
@@ -75,13 +80,15 @@ def beam_lines(
 ) -> Primitives:
     """Lines from the sensor along its beams.
 
-    Free beams end at the range, the ground (z = 0) or `length_m`, and fade with distance. Stopped
-    ones end on the vehicle and come last, so that they are drawn over the free ones.
+    Free beams end at the range, the ground (z = 0) or `length_m`, and fade to nothing towards
+    that length. Stopped ones end on the vehicle and come last: they are drawn over the free ones.
     """
     free, stopped = beams[~beams.stopped], beams[beams.stopped]
     ends = np.minimum(np.minimum(free.ends, length_m), ground_distance(sensor, free.directions))
-    left = 1.0 - (1.0 - END_ALPHA) * ends / length_m
-    free_lines = _rays(sensor, free.directions, ends, palette.free, left)
+    share = np.clip(free.room / FULL_ROOM_SR, LEAST_SHARE, 1.0)
+    free_lines = _rays(sensor, free.directions, ends, palette.free)
+    free_lines.colors[0::2, 3] *= share
+    free_lines.colors[1::2, 3] *= share * (1.0 - ends / length_m)
     return Primitives.joined(
         [free_lines, _rays(sensor, stopped.directions, stopped.ends, palette.stopped)]
     )
@@ -131,20 +138,12 @@ def frustum_faces(
     return _colored(points, palette.camera_face)
 
 
-def _rays(
-    sensor: pe.Sensor,
-    directions: Floats,
-    ends: Floats,
-    color: Rgba,
-    alpha_left: Floats | float = 1.0,
-) -> Primitives:
-    """Lines from the sensor; `alpha_left` (N,) is the share of the alpha at their far ends."""
-    start = np.asarray(sensor.pose.position)
+def _rays(sensor: pe.Sensor, directions: Floats, ends: Floats, color: Rgba) -> Primitives:
+    """Lines from the sensor along (N, 3) directions to (N,) ends [m]."""
     points = np.empty((len(ends), 2, 3))
-    points[:, 0], points[:, 1] = start, start + directions * ends[:, None]
-    lines = _colored(points.reshape(-1, 3), color)
-    lines.colors[1::2, 3] *= alpha_left
-    return lines
+    points[:, 0] = sensor.pose.position
+    points[:, 1] = sensor.pose.position + directions * ends[:, None]
+    return _colored(points.reshape(-1, 3), color)
 
 
 def _colored(points: Floats, color: Rgba) -> Primitives:

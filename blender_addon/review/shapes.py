@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..overlay.colors import Rgba
 from ..overlay.geometry import Primitives
 from .camera import View
 
@@ -42,7 +43,7 @@ def triangles(faces: Primitives) -> Faces:
     return Faces(faces.points.reshape(-1, 3, 3).astype(float), faces.colors[::3].astype(float))
 
 
-def ring(radius_m: float, color: tuple[float, float, float, float]) -> Primitives:
+def ring(radius_m: float, color: Rgba) -> Primitives:
     """Return a circle on the ground about the origin."""
     angles = np.linspace(0.0, 2.0 * np.pi, RING_POINTS + 1)
     circle = radius_m * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
@@ -61,3 +62,28 @@ def _in_steps(lines: Primitives) -> tuple[Floats, Floats]:
     cuts = (cuts[:-1] + cuts[1:]) / 2.0
     tints = (colors[fades, 0] * (1.0 - cuts) + colors[fades, 1] * cuts).reshape(-1, 4)
     return np.concatenate([pieces, points[~fades]]), np.concatenate([tints, colors[~fades, 0]])
+
+
+def ball(center: tuple[float, float, float], radius_m: float, color: Rgba) -> Faces:
+    """Return a sphere of quadrilaterals."""
+    up, around = np.meshgrid(np.linspace(-np.pi / 2, np.pi / 2, 13), np.linspace(0, 2 * np.pi, 25))
+    points = np.stack([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)], -1)
+    points = np.asarray(center) + radius_m * points
+    corners = np.stack([points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]], axis=2)
+    return _all_in(corners.reshape(-1, 4, 3), color)
+
+
+def shadow(low: Floats, high: Floats, color: Rgba, layers: int) -> Faces:
+    """Return a soft shadow on the ground under a box: layers of rounded rectangles, growing."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    outline = np.sign(circle) * np.abs(circle) ** 0.45
+    center, half = (low + high)[:2] / 2.0, (high - low)[:2] / 2.0
+    grown = half - 0.15 + 0.35 * np.linspace(0.0, 1.0, layers)[:, None]
+    corners = np.zeros((layers, len(outline), 3))
+    corners[:, :, :2] = center + outline * grown[:, None]
+    return _all_in(corners, color)
+
+
+def _all_in(corners: Floats, color: Rgba) -> Faces:
+    return Faces(corners, np.tile(color, (len(corners), 1)))

@@ -10,12 +10,13 @@ from pathlib import Path
 import bpy
 import numpy as np
 from mathutils import Matrix
-from numpy.typing import NDArray
 
 from .camera import HFOV_DEG, View
 from .shapes import Faces
 
 BACKGROUND = (0.93, 0.94, 0.95)
+STUDIO_LIGHT = "paint.sl"
+"""The one that leaves colours of what faces the camera as they are."""
 ALPHA_STEPS = 20
 """Alphas are rounded to this many steps: each colour needs a material."""
 KINDS = (
@@ -37,8 +38,8 @@ class Stage:
         self.scene.collection.objects.link(thing)
         return thing
 
-    def add_faces(self, name: str, faces: Faces, normal: NDArray | None = None) -> None:
-        """Add polygons, a material a colour; `normal` (3,) lights all of them alike."""
+    def add_faces(self, name: str, faces: Faces, facing: View | None = None) -> None:
+        """Add polygons, a material a colour; lit as if they faced a view squarely, if one is given."""
         if not len(faces.corners):
             return
         count, corners = faces.corners.shape[:2]
@@ -50,9 +51,9 @@ class Stage:
         for color in used.tolist():
             mesh.materials.append(material(color))
         mesh.polygons.foreach_set("material_index", which.reshape(-1).astype(np.int32))
-        if normal is not None:
+        if facing is not None:
             mesh.shade_smooth()
-            mesh.normals_split_custom_set(np.tile(normal, (count * corners, 1)).tolist())
+            mesh.normals_split_custom_set([facing.axes[2].tolist()] * (count * corners))
         self.add(name, mesh)
 
     def set_camera(self, view: View) -> None:
@@ -99,9 +100,9 @@ def set_up(scene: bpy.types.Scene) -> None:
     scene.display.render_aa = "16"
     scene.view_settings.view_transform = "Standard"
     shading.light, shading.color_type = "STUDIO", "MATERIAL"
-    shading.show_shadows, shading.shadow_intensity = True, 0.25
+    shading.studio_light = STUDIO_LIGHT
+    shading.show_shadows = shading.show_cavity = shading.show_object_outline = False
     shading.show_specular_highlight = True
-    scene.display.light_direction = (0.25, 0.35, 1.0)
     scene.world = bpy.data.worlds.new("Review background")
     scene.world.color = linear(BACKGROUND)
 

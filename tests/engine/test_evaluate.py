@@ -79,6 +79,42 @@ def test_classes_make_up_the_whole(samples):
     assert sum(c.share * c.coverage for c in classes) == pytest.approx(score.coverage)
 
 
+@pytest.mark.parametrize("samples", [None, 40_000], ids=["grid", "sampled"])
+def test_zones_halve_the_space_and_ring_the_vehicle(samples):
+    score = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples).score(rig_of_all_kinds())
+    zones = score.per_zone
+    assert list(zones) == ["front", "rear", "left", "right", "near", "mid"]  # far is beyond 40 m
+    for pair in (("front", "rear"), ("left", "right"), ("near", "mid")):
+        parts = [zones[name] for name in pair]
+        assert sum(p.share for p in parts) == pytest.approx(1.0)
+        whole = sum(p.share * p.entropy for p in parts)
+        assert whole == pytest.approx(score.entropy, abs=1e-6)
+    assert zones["near"].entropy < zones["mid"].entropy
+
+
+@pytest.mark.parametrize("samples", [None, 20_000], ids=["grid", "sampled"])
+def test_what_a_sensor_s_failure_costs_is_the_score_without_it(samples):
+    evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples)
+    rig = rig_of_all_kinds()
+    score = evaluator.score(rig)
+    for name, own in score.per_sensor.items():
+        rest = evaluator.entropy(pe.Rig([s for s in rig if s.name != name]))
+        assert own.lost == pytest.approx(rest - score.entropy, abs=2e-9)
+        alone = evaluator.score(pe.Rig([rig[name]]))
+        assert (own.entropy, own.coverage) == (alone.entropy, alone.coverage)
+        assert alone.per_sensor[name].lost == pytest.approx(16.651386624 - alone.entropy, abs=2e-9)
+
+
+def test_a_coarser_ground_map_has_the_same_mean():
+    rig = rig_of_all_kinds()
+    fine = pe.Evaluator(SPACE, ROAD, shapes.box_car()).score(rig).ground_map
+    coarse = fine.coarser(7)
+    assert coarse.entropy.shape == (12, 6)
+    assert coarse.mass.sum() == pytest.approx(fine.mass.sum())
+    means = [np.nansum(m.entropy * m.mass) / np.nansum(m.mass) for m in (fine, coarse)]
+    assert means[0] == pytest.approx(means[1])
+
+
 def test_the_ground_map_averages_to_the_score():
     vehicle, rig = shapes.box_car(), rig_of_all_kinds()
     score = pe.Evaluator(SPACE, pe.Prior.uniform(), vehicle).score(rig)

@@ -1,0 +1,57 @@
+"""A picture of a result for people: the vehicle, its sensors, what they see, and the figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+
+from .caption import caption
+from .camera import look_at
+from .lettering import Lettering
+from .page import DESIGN_HEIGHT, DESIGN_WIDTH, frame_of, legend_of, write_names, write_page
+from .stage import stage
+from .subject import Subject
+
+if TYPE_CHECKING:
+    import pe_core as pe
+
+__all__ = ["render_review"]
+
+
+def render_review(
+    scene: bpy.types.Scene,
+    study: pe.Study,
+    outcome: pe.Outcome,
+    path: str | Path,
+    size: tuple[int, int] = (DESIGN_WIDTH, DESIGN_HEIGHT),
+) -> Path:
+    """Render the review picture of an outcome, with Workbench; also without a window.
+
+    Everything is built in a scene of its own, which is removed: `scene` stays as it is.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+        Has the vehicle's collection in its settings; without one the study's mesh is shown.
+    study : Study
+        The rig to show, as a rule ``outcome.study``.
+    outcome : Outcome
+        The figures, and where the search started.
+    path : path
+        PNG to write; it appears when it is complete.
+    size : (width, height)
+        [px].
+    """
+    words = caption(study, outcome)
+    subject = Subject.of(study, outcome)
+    with stage() as on:
+        view = look_at(subject.points_in_view(), frame_of(len(words.table), size))
+        on.set_camera(view)
+        subject.build(on, view, scene.perception_entropy.vehicle)
+        pen = Lettering.on(on, view)
+        write_page(pen, words, legend_of(study.rig, stopped=subject.any_stopped, moved=subject.moved))
+        write_names(pen, study.rig)
+        on.render(Path(path))
+    return Path(path)

@@ -30,9 +30,14 @@ class Fusion:
         self._precision = precision_of(np.arange(last + 1), model.lidar)
         self._entropy = entropy_of(late_fusion([self._precision], model.blind))
 
+    @property
+    def enough(self) -> int:
+        """Beams from which on AP is saturated: more of them change nothing."""
+        return len(self._precision) - 1
+
     def compact(self, counts: NDArray[np.uint16]) -> NDArray:
         """Beam counts in one byte where AP saturates that early; enough for any entropy."""
-        most = len(self._precision) - 1
+        most = self.enough
         if most > np.iinfo(np.uint8).max:
             return counts
         small = np.empty(counts.shape, np.uint8)

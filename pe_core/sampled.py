@@ -95,6 +95,7 @@ class SampledScorer:
             sensor.pose.ground_from_sensor,
             without_zeros(field.directions),
             field.ends / side,
+            self._fusion.enough,
         )
 
     def _pixels(self, sensor: Sensor) -> NDArray:

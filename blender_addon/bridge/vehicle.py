@@ -11,6 +11,7 @@ import numpy as np
 from ..engine import geometry, pe
 from .rig import mounted_on_sensor
 
+
 class Part(NamedTuple):
     """Triangles (F, 3, 3) [m] of one object, and whether cameras see through them."""
 

@@ -60,7 +60,7 @@ def shown_beams(
         shown = spread(lidar, budget - int(budget * STOPPED_SHARE), channels)
         stopped = _stopped(sensor, seen, np.union1d(shown, spread(lidar, LOOKED_AT)))
     free = np.setdiff1d(shown, stopped)
-    numbers = np.concatenate([free, _evenly(stopped, budget - len(free))])
+    numbers = np.concatenate([free, _thinned(lidar, stopped, budget - len(free))])
     directions = lidar.directions[numbers] @ sensor.pose.ground_from_sensor.T
     ends, is_stopped = _ends(lidar, seen, directions)
     return Beams(directions, ends, is_stopped, _room(lidar, shown)[numbers // _azimuths(lidar)])
@@ -73,7 +73,9 @@ def spread(lidar: pe.Lidar, budget: int, channels: int | None = None) -> Ints:
     rows = _evenly(np.arange(len(lidar.elevations)), most)
     per_channel = min(azimuths, budget // max(len(rows), 1))
     columns = _evenly(np.arange(azimuths), per_channel)
-    if azimuths == lidar.azimuth_count and per_channel:  # a circle: the last is the first's neighbour
+    if (
+        azimuths == lidar.azimuth_count and per_channel
+    ):  # a circle: the last is the first's neighbour
         columns = np.arange(per_channel) * azimuths // per_channel
     return (rows[:, None] * azimuths + columns).ravel()
 
@@ -124,6 +126,20 @@ def _room(lidar: pe.Lidar, shown: Ints) -> Floats:
 
 def _azimuths(lidar: pe.Lidar) -> int:
     return len(lidar.azimuth_steps)
+
+
+def _thinned(lidar: pe.Lidar, numbers: Ints, count: int) -> Ints:
+    """Return at most `count` of ascending beam numbers: every k-th of each channel."""
+    if len(numbers) <= count or count < 1:
+        return numbers[: max(count, 0)]
+    channel = numbers // _azimuths(lidar)
+    rank = np.arange(len(numbers)) - np.searchsorted(channel, channel)
+    kept = numbers
+    for k in range(-(-len(numbers) // count), int(rank.max()) + 2):
+        kept = numbers[rank % k == 0]
+        if len(kept) <= count:
+            break
+    return _evenly(kept, count)
 
 
 def _evenly(values: Ints, count: int) -> Ints:

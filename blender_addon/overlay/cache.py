@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Hashable
 
 import bpy
 
 from .. import bridge
 from ..bridge.rig import mounted_on_sensor
+from ..bridge.vehicle import visible_members
 from ..engine import pe
 from .geometry import OverlayGeometry, sensor_geometry
 
@@ -52,17 +54,17 @@ class OverlayCache:
         return {name: geometry for name, (_, geometry) in self._shown.items()}
 
     def _update_vehicle(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-        key = (scene.name, self._vehicle_version, vehicle_members(scene))
+        """Read the vehicle's triangles again when they may be others: too slow for each redraw."""
+        collection = scene.perception_entropy.vehicle
+        members = () if collection is None else vehicle_members(collection, depsgraph)
+        key = (scene.name, self._vehicle_version, members)
         if key == self._vehicle_key:
             return
         self._vehicle_key, self._vehicle = key, None
-        if scene.perception_entropy.vehicle is None:
-            return
-        try:
-            collection = scene.perception_entropy.vehicle
-            self._vehicle = bridge.vehicle_from_collection(collection, depsgraph)
-        except pe.InputError:  # a score says so; here beams are drawn as if there were no vehicle
-            self._vehicle = None
+        if members:
+            # A score says what is wrong with a vehicle; here it is as if there were none.
+            with contextlib.suppress(pe.InputError):
+                self._vehicle = bridge.vehicle_from_collection(collection, depsgraph)
 
 
 def shown_sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> list[pe.Sensor]:
@@ -70,23 +72,17 @@ def shown_sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> lis
     found = []
     for each in bridge.sensor_objects(scene):
         if each.perception_entropy.show:
-            try:
+            with contextlib.suppress(pe.InputError):
                 found.append(bridge.sensor_from_object(each, depsgraph))
-            except pe.InputError:
-                continue
     return found
 
 
-def vehicle_members(scene: bpy.types.Scene) -> tuple[tuple[str, bool], ...]:
-    """Names of the vehicle's objects, and whether they can be seen; empty without a vehicle."""
-    collection = scene.perception_entropy.vehicle
-    if collection is None:
-        return ()
-    return tuple(
-        (each.name_full, each.visible_get() and not each.hide_render)
-        for each in collection.all_objects
-        if not mounted_on_sensor(each)
-    )
+def vehicle_members(
+    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
+) -> tuple[str, ...]:
+    """Names of the objects of the vehicle that count."""
+    members = visible_members(collection, depsgraph.view_layer)
+    return tuple(sorted(each.name_full for each in members if not mounted_on_sensor(each)))
 
 
 def touches_vehicle(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:

@@ -26,7 +26,7 @@ FRUSTUM_SHARE = 0.25
 """How long frustums are beside the beams."""
 FACE_CORNERS = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1))
 EDGES = ((0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 5))
-MARK_GAP, MARK_HEIGHT, MARK_HALF_WIDTH = 0.08, 0.35, 0.35
+MARK_GAP, MARK_HEIGHT, MARK_HALF_WIDTH = 0.08, 0.25, 0.2
 """The mark over a picture's upper edge, in units of half the picture's height."""
 
 
@@ -122,17 +122,13 @@ def frustum_points(sensor: pe.Sensor, length_m: float) -> Floats:
     return points @ sensor.pose.ground_from_sensor.T + np.asarray(sensor.pose.position)
 
 
-def frustum_lines(
-    sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT
-) -> Primitives:
-    """Edges of a camera's view: pyramid, picture, and a small triangle that says which way is up."""
+def frustum_lines(sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
+    """Edges of a camera's view: pyramid, picture, and a small triangle above that says: up."""
     points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
     return _colored(points, palette.camera)
 
 
-def frustum_faces(
-    sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT
-) -> Primitives:
+def frustum_faces(sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
     """Sides of a camera's view: four triangles from the pinhole."""
     points = frustum_points(sensor, length_m)[np.array(FACE_CORNERS).ravel()]
     return _colored(points, palette.camera_face)

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .caption import caption
 from .camera import look_at
+from .caption import caption
 from .lettering import Lettering
-from .page import DESIGN_HEIGHT, DESIGN_WIDTH, frame_of, legend_of, write_names, write_page
+from .marks import mark_moves, mark_rings, mark_sensors
+from .page import DESIGN_HEIGHT, DESIGN_WIDTH, frame_of, legend_of, write_page
 from .stage import stage
-from .subject import Subject
+from .subject import RING_TEXT, RINGS_M, Subject
 
 if TYPE_CHECKING:
     import pe_core as pe
@@ -49,9 +50,13 @@ def render_review(
     with stage() as on:
         view = look_at(subject.points_in_view(), frame_of(len(words.table), size))
         on.set_camera(view)
-        subject.build(on, view, scene.perception_entropy.vehicle)
+        subject.build(on, view, scene)
         pen = Lettering.on(on, view)
-        write_page(pen, words, legend_of(study.rig, stopped=subject.any_stopped, moved=subject.moved))
-        write_names(pen, study.rig)
+        legend = legend_of(study.rig, stopped=subject.any_stopped, moved=bool(subject.moves()))
+        write_page(pen, words, legend)
+        scale = size[1] / DESIGN_HEIGHT
+        mark_rings(pen, RINGS_M, RING_TEXT, scale)
+        mark_moves(pen, subject.moves(), scale)
+        mark_sensors(pen, study.rig, scale)
         on.render(Path(path))
     return Path(path)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-AZIMUTH_DEG, ELEVATION_DEG = 37.0, 19.0
+AZIMUTH_DEG, ELEVATION_DEG = 33.0, 19.0
 """From the vehicle's front left, slightly above."""
 HFOV_DEG = 32.0
 

@@ -42,7 +42,7 @@ def position(pose: pe.Pose) -> str:
 
 def angle(degrees: float) -> str:
     """Return an angle to the tenth of a degree: "-2.5°"."""
-    return f"{_number(degrees, 1)}°"
+    return f"{_number(abs(degrees) if degrees == -180.0 else degrees, 1)}°"
 
 
 def stopped(score: pe.SensorScore | None) -> str:

@@ -15,7 +15,7 @@ from .stage import Stage, material
 
 PLANE_M = 1.0
 """Distance of the texts before the camera: nearer than anything else."""
-PLATE_M = 1.01
+PLATE_M, LAYER_M = 1.05, 0.005
 INK = (0.10, 0.12, 0.14, 1.0)
 FAINT_INK = (0.36, 0.39, 0.42, 1.0)
 Color = tuple[float, float, float, float]
@@ -51,18 +51,37 @@ class Lettering:
         thing.matrix_world = Matrix(matrix.tolist())
         return thing
 
-    def rectangle(self, left: float, top: float, right: float, bottom: float, color: Color) -> None:
-        """Fill a rectangle behind the texts."""
-        corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
-        points = self._points(corners, PLATE_M)
-        self.stage.add_faces("Review plate", Faces(points[None], np.array([color])), self.view)
+    def rectangle(
+        self, left: float, top: float, right: float, bottom: float, color: Color, layer: int = 0
+    ) -> None:
+        """Fill a rectangle behind the texts; higher layers are in front of lower ones."""
+        self._fill([(left, bottom), (right, bottom), (right, top), (left, top)], color, layer)
 
-    def disc(self, center: tuple[float, float], radius_px: float, color: Color) -> None:
+    def disc(self, center: tuple[float, float], radius_px: float, color: Color, layer: int) -> None:
         """Fill a circle behind the texts."""
-        angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+        angles = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
         places = np.column_stack([np.cos(angles), -np.sin(angles)]) * radius_px + center
-        points = self._points(places, PLATE_M)
-        self.stage.add_faces("Review disc", Faces(points[None], np.array([color])), self.view)
+        self._fill(places, color, layer)
+
+    def ring(self, center: tuple[float, float], radius_px: float, color: Color, layer: int) -> None:
+        """Draw a circle, white inside."""
+        self.disc(center, radius_px, color, layer)
+        self.disc(center, radius_px * 0.6, (1.0, 1.0, 1.0, 1.0), layer + 1)
+
+    def line(
+        self, start: tuple[float, float], end: tuple[float, float], width_px: float, color: Color,
+        layer: int,
+    ) -> None:  # fmt: skip
+        """Draw a line behind the texts."""
+        ends = np.array([start, end], float)
+        along = ends[1] - ends[0]
+        across = along[::-1] * [1.0, -1.0] * width_px / max(np.hypot(*along), 1e-9) / 2.0
+        corners = [ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across]
+        self._fill(corners, color, layer)
+
+    def _fill(self, places: object, color: Color, layer: int) -> None:
+        points = self._points(places, PLATE_M - layer * LAYER_M)
+        self.stage.add_faces("Review plate", Faces(points[None], np.array([color])), self.view)
 
     def _points(self, places: object, depth_m: float) -> NDArray[np.float64]:
         """(N, 3) points in the ground frame that are seen at (N, 2) places, at that depth."""

@@ -38,6 +38,15 @@ def ribbons(lines: Primitives, view: View, width_px: float) -> Faces:
     return Faces(np.stack([right[:, 0], left[:, 0], left[:, 1], right[:, 1]], axis=1), colors)
 
 
+def begun_later(lines: Primitives, distance_m: float) -> Primitives:
+    """Lines that begin that much farther on, at most at their ends."""
+    points = lines.points.reshape(-1, 2, 3).astype(float)
+    along = points[:, 1] - points[:, 0]
+    length = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    points[:, 0] += along * np.minimum(distance_m / length, 1.0)
+    return Primitives(points.reshape(-1, 3).astype(np.float32), lines.colors)
+
+
 def triangles(faces: Primitives) -> Faces:
     """Translucent triangles in the colour of their first corner."""
     return Faces(faces.points.reshape(-1, 3, 3).astype(float), faces.colors[::3].astype(float))
@@ -62,15 +71,6 @@ def _in_steps(lines: Primitives) -> tuple[Floats, Floats]:
     cuts = (cuts[:-1] + cuts[1:]) / 2.0
     tints = (colors[fades, 0] * (1.0 - cuts) + colors[fades, 1] * cuts).reshape(-1, 4)
     return np.concatenate([pieces, points[~fades]]), np.concatenate([tints, colors[~fades, 0]])
-
-
-def ball(center: tuple[float, float, float], radius_m: float, color: Rgba) -> Faces:
-    """Return a sphere of quadrilaterals."""
-    up, around = np.meshgrid(np.linspace(-np.pi / 2, np.pi / 2, 13), np.linspace(0, 2 * np.pi, 25))
-    points = np.stack([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)], -1)
-    points = np.asarray(center) + radius_m * points
-    corners = np.stack([points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]], axis=2)
-    return _all_in(corners.reshape(-1, 4, 3), color)
 
 
 def shadow(low: Floats, high: Floats, color: Rgba, layers: int) -> Faces:

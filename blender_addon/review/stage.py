@@ -17,8 +17,8 @@ from .shapes import Faces
 BACKGROUND = (0.93, 0.94, 0.95)
 STUDIO_LIGHT = "paint.sl"
 """The one that leaves colours of what faces the camera as they are."""
-ALPHA_STEPS = 20
-"""Alphas are rounded to this many steps: each colour needs a material."""
+COLOR_STEPS = (255, 255, 255, 20)
+"""Colours are rounded to these steps, as each needs a material."""
 KINDS = (
     "scenes", "collections", "objects", "meshes", "curves", "materials", "cameras", "worlds",
     "fonts", "images",
@@ -32,21 +32,20 @@ class Stage:
     scene: bpy.types.Scene
 
     def add(self, name: str, data: bpy.types.ID) -> bpy.types.Object:
-        """Put data into the scene as an object that throws no shadow."""
+        """Put data into the scene as an object."""
         thing = bpy.data.objects.new(name, data)
-        thing.display.show_shadows = False
         self.scene.collection.objects.link(thing)
         return thing
 
     def add_faces(self, name: str, faces: Faces, facing: View | None = None) -> None:
-        """Add polygons, a material a colour; lit as if they faced a view squarely, if one is given."""
+        """Add polygons, a material a colour; lit as if they looked straight into a view."""
         if not len(faces.corners):
             return
         count, corners = faces.corners.shape[:2]
         mesh = bpy.data.meshes.new(name)
         numbers = np.arange(count * corners).reshape(count, corners)
         mesh.from_pydata(faces.corners.reshape(-1, 3).tolist(), [], numbers.tolist())
-        colors = np.round(faces.colors * [1e4, 1e4, 1e4, ALPHA_STEPS]) / [1e4, 1e4, 1e4, ALPHA_STEPS]
+        colors = np.round(faces.colors * COLOR_STEPS) / COLOR_STEPS
         used, which = np.unique(colors, axis=0, return_inverse=True)
         for color in used.tolist():
             mesh.materials.append(material(color))

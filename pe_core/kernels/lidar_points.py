@@ -2,11 +2,13 @@
 
 A cube seen from the sensor lies inside a window of azimuth and elevation that its half widths
 bound. The beams of that window, taken from the LiDAR's own lattice, are put to the test of the
-definition with the same arithmetic, so the count is the definition's to the last beam.
+definition with the same arithmetic, so the count is the definition's to the last beam. For regular
+LiDARs `lidar_bracket` settles most voxels without any test.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..geometry import rotate
 from ..sensors import Lidar
+from .lidar_bracket import Bracket, ChannelTable, Singles, bracket
 from .raycast import ranges
 
 Floats = NDArray[np.float64]
@@ -21,7 +24,9 @@ Ints = NDArray[np.int64]
 
 WINDOW_MARGIN = 1e-7
 """Windows are widened by this [rad] against rounding."""
-PAIRS_AT_ONCE = 1 << 20
+PAIRS_AT_ONCE = 1 << 16
+CUBE_REACH = 2.0
+"""No point of a unit cube is farther from its centre than this, rounding included."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +50,7 @@ class Lattice:
     count: int
     position: Ints
     width: int
+    table: ChannelTable | None
 
     @classmethod
     def of(cls, lidar: Lidar) -> Lattice:
@@ -52,6 +58,8 @@ class Lattice:
         channels = np.argsort(lidar.elevations, kind="stable")
         position = np.full(lidar.azimuth_count, -1)
         position[lidar.azimuth_steps % lidar.azimuth_count] = np.arange(len(lidar.azimuth_steps))
+        full = len(lidar.azimuth_steps) == lidar.azimuth_count
+        regular = full and not lidar.azimuth_offsets.any()
         return cls(
             channels,
             lidar.elevations[channels],
@@ -60,7 +68,19 @@ class Lattice:
             lidar.azimuth_count,
             position,
             len(lidar.azimuth_steps),
+            ChannelTable.of(lidar) if regular else None,
         )
+
+    def window_beams(self, bounds: Bracket, voxels: Ints) -> tuple[Ints, Ints]:
+        """(voxel, beam) pairs of the outer windows of some voxels, numbered as in `voxels`."""
+        rows, columns = (n[voxels].astype(np.int64) for n in (bounds.rows, bounds.columns))
+        n = rows * columns
+        voxel = np.repeat(np.arange(len(voxels)), n)
+        step, wide = ranges(n), np.repeat(columns, n)
+        down = step // np.maximum(wide, 1)
+        row = np.repeat(bounds.row[voxels], n) + down
+        column = np.repeat(bounds.column[voxels], n) + (step - down * wide)
+        return voxel, self.channels[row] * self.width + column % self.count
 
     def candidates(self, windows: Windows) -> tuple[Ints, Ints]:
         """(voxel, beam) pairs of the beams inside each voxel's window."""
@@ -108,6 +128,7 @@ def count_beams(
     ground_from_sensor: Floats,
     directions: Floats,
     ends: Floats,
+    enough: int | None = None,
 ) -> Ints:
     """Count the beams through unit cubes.
 
@@ -121,13 +142,59 @@ def count_beams(
         All beams of the lattice in the ground frame, without zeros.
     ends : (B,) float
         Where each beam ends, in voxel sides.
+    enough : int, optional
+        A count of this or more need not be exact: it may be told as any number from `enough` up to
+        the count.
 
     Returns
     -------
     (V,) int
     """
+    if lattice.table is None:
+        voxel, beam = lattice.candidates(windows_of(offsets, 0.5, ground_from_sensor))
+        return _count_pairs(offsets, directions, ends, voxel, beam)
+    points = [np.ascontiguousarray(w, dtype=np.float32) for w in offsets.T]
+    bounds = bracket(points, ground_from_sensor, lattice.table, lattice.count)
+    counts = bounds.least.astype(np.int64)
+    counts[_may_end_early(points, bounds, lattice, ends)] = 0
+    limit = np.iinfo(np.int64).max if enough is None else enough
+    doubtful = np.flatnonzero((counts < bounds.most) & (counts < limit))
+    voxel, beam = lattice.window_beams(bounds, doubtful)
+    counts[doubtful] = _count_pairs(offsets[doubtful], directions, ends, voxel, beam)
+    return counts
+
+
+def _may_end_early(
+    points: Sequence[Singles], bounds: Bracket, lattice: Lattice, ends: Floats
+) -> NDArray[np.bool_]:
+    """Whether a beam of the voxel's window may end before it: at its range, or on the vehicle."""
+    longest = float(ends.max())
+    x, y, z = points
+    early: NDArray[np.bool_] = x * x + y * y + z * z > max(longest - CUBE_REACH, 0.0) ** 2
+    stopped = (ends < longest).reshape(-1, lattice.width)[lattice.channels]
+    rows = np.flatnonzero(stopped.any(axis=1))
+    if len(rows):
+        touched = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.most > 0))
+        early[touched] |= _holds_any(stopped, bounds, touched)
+    return early
+
+
+def _holds_any(stopped: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> NDArray[np.bool_]:
+    """Whether the windows of some voxels hold a stopped beam: four look-ups in a table of sums."""
+    channels, width = stopped.shape
+    sums = np.zeros((channels + 1, 2 * width + 1), np.int32)  # twice round, so no window wraps
+    np.cumsum(np.cumsum(np.tile(stopped, 2), axis=0, dtype=np.int32), axis=1, out=sums[1:, 1:])
+    r0, c0 = bounds.row[voxels], bounds.column[voxels] % width
+    r1, c1 = r0 + bounds.rows[voxels], c0 + bounds.columns[voxels]
+    held: NDArray[np.bool_] = sums[r1, c1] - sums[r0, c1] > sums[r1, c0] - sums[r0, c0]
+    return held
+
+
+def _count_pairs(
+    offsets: Floats, directions: Floats, ends: Floats, voxel: Ints, beam: Ints
+) -> Ints:
+    """(V,) how many of the (voxel, beam) pairs are beams through their voxel."""
     counts = np.zeros(len(offsets), np.int64)
-    voxel, beam = lattice.candidates(windows_of(offsets, 0.5, ground_from_sensor))
     for start in range(0, len(voxel), PAIRS_AT_ONCE):
         some = slice(start, start + PAIRS_AT_ONCE)
         through = _through(offsets, directions, ends, voxel[some], beam[some])

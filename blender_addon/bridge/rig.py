@@ -90,9 +90,10 @@ def place_rig(scene: bpy.types.Scene, rig: pe.Rig) -> list[str]:
     layer = view_layer_of(scene)
     # Parents first: a sensor may be mounted on another.
     for obj, sensor in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):
-        obj.matrix_world = _matrix(sensor.pose)
-        obj.perception_entropy.placed = (*sensor.pose.position, *sensor.pose.rotation_deg)
         layer.update()
+        _move(obj, sensor.pose)
+        obj.perception_entropy.placed = (*sensor.pose.position, *sensor.pose.rotation_deg)
+    layer.update()
     for obj, sensor in present:
         if not _stands_at(np.array(obj.matrix_world, dtype=float), sensor.pose):
             expected = "an object that can be placed"
@@ -155,6 +156,23 @@ def _pose_from_numbers(numbers: tuple[float, ...]) -> pe.Pose:
     return placement.pose_from_values(dict(zip(placement.AXES, (*position, *radians), strict=True)))
 
 
-def _matrix(pose: pe.Pose) -> Matrix:
-    rotation = Matrix(pose.ground_from_sensor.tolist()).to_4x4()
-    return Matrix.Translation(pose.position) @ rotation
+def _move(obj: bpy.types.Object, pose: pe.Pose) -> None:
+    """Put an object at a pose, whatever its parents."""
+    ground_from_sensor = np.eye(4)
+    ground_from_sensor[:3, :3] = pose.ground_from_sensor
+    ground_from_sensor[:3, 3] = pose.position
+    obj.matrix_world = Matrix(ground_from_sensor.tolist())
+    plain = obj.parent_type == "OBJECT" and not any(obj.delta_rotation_euler)
+    if obj.rotation_mode == "XYZ" and plain:
+        # Blender has found the angles in single precision, which is too little near +-90 degrees.
+        rotation = (np.linalg.inv(_ground_from_parent(obj)) @ ground_from_sensor)[:3, :3]
+        lengths = np.sqrt((rotation**2).sum(axis=0))
+        obj.rotation_euler = geometry.rpy_from_matrix(rotation / lengths)
+
+
+def _ground_from_parent(obj: bpy.types.Object) -> np.ndarray:
+    """(4, 4) frame that an object's own location and rotation are in."""
+    if obj.parent is None:
+        return np.eye(4)
+    parent = np.array(obj.parent.matrix_world, dtype=float)
+    return parent @ np.array(obj.matrix_parent_inverse, dtype=float)

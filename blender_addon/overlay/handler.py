@@ -93,6 +93,8 @@ def draw() -> None:
 
 def draw_batches(batches: list[Batches], region: bpy.types.Region) -> None:
     """Draw faces, then lines, hidden behind what is nearer; the GPU's state is put back."""
+    blend, depth_test = gpu.state.blend_get(), gpu.state.depth_test_get()
+    depth_mask = gpu.state.depth_mask_get()
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("LESS_EQUAL")
     gpu.state.depth_mask_set(False)
@@ -104,9 +106,9 @@ def draw_batches(batches: list[Batches], region: bpy.types.Region) -> None:
             if lines is not None:
                 lines.draw(_line_shader(region))
     finally:
-        gpu.state.depth_mask_set(True)
-        gpu.state.depth_test_set("NONE")
-        gpu.state.blend_set("NONE")
+        gpu.state.depth_mask_set(depth_mask)
+        gpu.state.depth_test_set(depth_test)
+        gpu.state.blend_set(blend)
 
 
 def _wanted(space: bpy.types.Space | None) -> bool:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import bpy
 
 from .camera import look_at
-from .caption import caption
+from .caption import caption_of
 from .lettering import Lettering
 from .marks import mark_moves, mark_rings, mark_sensors
-from .page import DESIGN_HEIGHT, DESIGN_WIDTH, frame_of, legend_of, write_page
+from .page import frame_of, legend_of, write_page
 from .stage import stage
 from .subject import RING_TEXT, RINGS_M, Subject
 
@@ -20,13 +20,15 @@ if TYPE_CHECKING:
 
 __all__ = ["render_review"]
 
+DEFAULT_SIZE = (1600, 900)
+
 
 def render_review(
     scene: bpy.types.Scene,
     study: pe.Study,
     outcome: pe.Outcome,
     path: str | Path,
-    size: tuple[int, int] = (DESIGN_WIDTH, DESIGN_HEIGHT),
+    size: tuple[int, int] = DEFAULT_SIZE,
 ) -> Path:
     """Render the review picture of an outcome, with Workbench; also without a window.
 
@@ -45,7 +47,7 @@ def render_review(
     size : (width, height)
         [px].
     """
-    words = caption(study, outcome)
+    words = caption_of(study, outcome)
     subject = Subject.of(study, outcome)
     with stage() as on:
         view = look_at(subject.points_in_view(), frame_of(len(words.table), size))
@@ -54,9 +56,8 @@ def render_review(
         pen = Lettering.on(on, view)
         legend = legend_of(study.rig, stopped=subject.any_stopped, moved=bool(subject.moves()))
         write_page(pen, words, legend)
-        scale = size[1] / DESIGN_HEIGHT
-        mark_rings(pen, RINGS_M, RING_TEXT, scale)
-        mark_moves(pen, subject.moves(), scale)
-        mark_sensors(pen, study.rig, scale)
+        mark_rings(pen, RINGS_M, RING_TEXT)
+        mark_moves(pen, subject.moves())
+        mark_sensors(pen, study.rig)
         on.render(Path(path))
     return Path(path)

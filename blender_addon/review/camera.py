@@ -13,6 +13,8 @@ Floats = NDArray[np.float64]
 AZIMUTH_DEG, ELEVATION_DEG = 33.0, 19.0
 """From the vehicle's front left, slightly above."""
 HFOV_DEG = 32.0
+DESIGN_HEIGHT = 900
+"""Sizes of letters and lines are given for a picture of this height, and scaled to others [px]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +27,11 @@ class Frame:
     right: float
     top: float
     bottom: float
+
+    @property
+    def scale(self) -> float:
+        """How much larger than designed the picture is."""
+        return self.height / DESIGN_HEIGHT
 
     @property
     def tangent_per_px(self) -> float:

@@ -23,7 +23,7 @@ class Caption:
     table: tuple[tuple[str, ...], ...]
 
 
-def caption(study: pe.Study, outcome: pe.Outcome) -> Caption:
+def caption_of(study: pe.Study, outcome: pe.Outcome) -> Caption:
     """Return what to say about an outcome; `study` holds the rig that is shown."""
     before, after = outcome.before, outcome.after
     entropy, coverage = f"{after.entropy:.3f}", f"{after.coverage:.1%}"

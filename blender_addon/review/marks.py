@@ -25,8 +25,9 @@ RING_AZIMUTHS_DEG = (-35.0, 105.0, -60.0, 130.0, -90.0, 160.0, -115.0, 170.0, -1
 """Where a ring's distance may be written: the first of these inside the picture."""
 
 
-def mark_sensors(pen: Lettering, rig: pe.Rig, scale: float) -> None:
+def mark_sensors(pen: Lettering, rig: pe.Rig) -> None:
     """Put a dot on each sensor and its name above it; names do not overlap."""
+    scale = pen.view.frame.scale
     colors = {"lidar": PAPER.free, "camera": PAPER.camera}
     places = pen.view.pixels(np.array([sensor.pose.position for sensor in rig]))
     taken: list[tuple[float, float, float]] = []
@@ -43,8 +44,9 @@ def mark_sensors(pen: Lettering, rig: pe.Rig, scale: float) -> None:
         pen.write(sensor.name, (x, base), scale * NAME, align="CENTER")
 
 
-def mark_moves(pen: Lettering, moves: list[tuple[Floats, Floats]], scale: float) -> None:
+def mark_moves(pen: Lettering, moves: list[tuple[Floats, Floats]]) -> None:
     """Put a ring where each sensor started (3,) [m], with a line to where it stands now (3,)."""
+    scale = pen.view.frame.scale
     for start, end in moves:
         first, last = pen.view.pixels(np.array([start, end])).tolist()
         pen.line(first, last, scale * 4.0, WHITE, layer=1)
@@ -52,9 +54,9 @@ def mark_moves(pen: Lettering, moves: list[tuple[Floats, Floats]], scale: float)
         pen.ring(first, scale * 6.5, GHOST, layer=3)
 
 
-def mark_rings(pen: Lettering, radii_m: tuple[float, ...], color: Rgba, scale: float) -> None:
+def mark_rings(pen: Lettering, radii_m: tuple[float, ...], color: Rgba) -> None:
     """Write a ring's distance where it can be read."""
-    frame = pen.view.frame
+    frame, scale = pen.view.frame, pen.view.frame.scale
     for radius in radii_m:
         for azimuth in np.radians(RING_AZIMUTHS_DEG):
             point = radius * np.array([[np.cos(azimuth), np.sin(azimuth), 0.0]])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..overlay.colors import PAPER, Rgba
-from .camera import Frame
+from .camera import DESIGN_HEIGHT, Frame
 from .caption import Caption
 from .lettering import FAINT_INK, Lettering
 from .marks import GHOST
@@ -13,8 +13,6 @@ from .marks import GHOST
 if TYPE_CHECKING:
     import pe_core as pe
 
-DESIGN_WIDTH, DESIGN_HEIGHT = 1600, 900
-"""Sizes below are in pixels of this picture; others are scaled by their height."""
 MARGIN, HEAD_HEIGHT = 44, 120
 HEADLINE, HEADLINE_Y, DETAIL_Y = 34, 62, 95
 TEXT, ROW, STRIP_PADDING = 18, 27, 30
@@ -50,7 +48,7 @@ def legend_of(rig: pe.Rig, *, stopped: bool, moved: bool) -> Legend:
 
 def write_page(pen: Lettering, words: Caption, legend: Legend) -> None:
     """Write headline, legend and table."""
-    scale = pen.view.frame.height / DESIGN_HEIGHT
+    scale = pen.view.frame.scale
     pen.write(words.headline, (scale * MARGIN, scale * HEADLINE_Y), scale * HEADLINE)
     pen.write(words.detail, (scale * MARGIN, scale * DETAIL_Y), scale * TEXT, FAINT_INK)
     _write_legend(pen, legend, scale)

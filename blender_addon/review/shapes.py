@@ -32,7 +32,12 @@ def ribbons(lines: Primitives, view: View, width_px: float) -> Faces:
     along = ends[:, 1] - ends[:, 0]
     side = np.cross(along, ends.mean(axis=1) - view.position)
     side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), 1e-12)
-    width = width_px * view.frame.tangent_per_px * view.depth(ends.reshape(-1, 3)).reshape(-1, 2)
+    width = (
+        width_px
+        * view.frame.scale
+        * view.frame.tangent_per_px
+        * view.depth(ends.reshape(-1, 3)).reshape(-1, 2)
+    )
     half = side[:, None] * width[..., None] / 2.0
     right, left = ends + half, ends - half  # their front, by winding, faces the camera
     return Faces(np.stack([right[:, 0], left[:, 0], left[:, 1], right[:, 1]], axis=1), colors)

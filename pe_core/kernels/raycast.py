@@ -10,6 +10,7 @@ sharing an edge leave no gap between them.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,9 @@ CELLS = 64
 """Bins along a side of a cube face: 6 * 64**2 fits 16 bits, which NumPy sorts by radix."""
 CELL_MARGIN = 1e-9
 """Bins are widened by this (in units of a face's half side) against rounding."""
-PAIRS_AT_ONCE = 1 << 18
+PAIRS_AT_ONCE = 1 << 15
+FIRST_LOOK = 4
+"""Triangles a ray is tested against before it is asked whether to go on; doubled each time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +56,9 @@ def _bin(u: Floats) -> Ints:
 class SeenTriangles:
     """A mesh as seen from one point: which triangles may lie in which direction bin.
 
+    Inside a bin the triangles are sorted by how near they may be, so that a ray need not look
+    behind what it has hit.
+
     Parameters
     ----------
     triangles : (F, 3, 3) float
@@ -60,10 +66,14 @@ class SeenTriangles:
     """
 
     def __init__(self, triangles: Floats) -> None:
+        nearest = _least_distance(triangles)
+        self._order = np.argsort(nearest, kind="stable")
+        self._nearest = nearest[self._order]
+        triangles = triangles[self._order]
         a, b, c = (triangles[:, i] for i in range(3))
-        self.edge_planes = np.stack([cross(a, b), cross(b, c), cross(c, a)], axis=1)  # (F, 3, 3)
-        self.normals = cross(b - a, c - a)
-        self.offsets = dot(self.normals, a)
+        self._edge_planes = [cross(a, b), cross(b, c), cross(c, a)]
+        self._normals = cross(b - a, c - a)
+        self._offsets = dot(self._normals, a)
         cells, faces = _cells_of_triangles(triangles)
         order = np.argsort(cells.astype(np.uint16), kind="stable")
         self._faces = faces[order]
@@ -85,29 +95,31 @@ class SeenTriangles:
         """
         cells = cell_of(directions) if cells is None else cells
         hits = Hits(np.full(len(directions), np.inf), np.full(len(directions), -1))
-        counts = self._starts[cells + 1] - self._starts[cells]
-        rays = np.flatnonzero(counts)
-        for some in _portions(rays, counts[rays]):
-            self._test(directions, cells, counts, some, nearest, hits)
+        rays = np.flatnonzero(self._starts[cells + 1] > self._starts[cells])
+        at, end = self._starts[cells[rays]], self._starts[cells[rays] + 1]
+        depth = FIRST_LOOK
+        while len(rays):
+            n = np.minimum(end - at, depth)
+            for some in _portions(n):
+                self._test(directions, rays[some], at[some], n[some], nearest, hits)
+            at = at + n
+            left = np.flatnonzero(at < end)
+            behind = self._nearest[self._faces[at[left]]] > hits.distance[rays[left]]
+            left = left[~behind]
+            rays, at, end, depth = rays[left], at[left], end[left], 2 * depth
+        found = hits.face >= 0
+        hits.face[found] = self._order[hits.face[found]]
         return hits
 
     def _test(
-        self,
-        directions: Floats,
-        cells: NDArray[np.int32],
-        counts: Ints,
-        rays: Ints,
-        nearest: float,
-        hits: Hits,
+        self, directions: Floats, rays: Ints, at: Ints, n: Ints, nearest: float, hits: Hits
     ) -> None:
-        """Test each of the rays against every triangle of its bin; keep the nearest hit."""
-        n = counts[rays]
-        ray = np.repeat(rays, n)
-        face = self._faces[np.repeat(self._starts[cells[rays]], n) + ranges(n)]
+        """Test rays against `n` triangles each, from entry `at` on; keep what is nearer."""
+        ray, face = np.repeat(rays, n), self._faces[np.repeat(at, n) + ranges(n)]
         ray, face, distance = self._crossings(directions, ray, face)
-        ahead = distance > nearest
-        ray, face, distance = ray[ahead], face[ahead], distance[ahead]
-        order = np.lexsort((face, distance, ray))  # ties go to the lowest triangle
+        better = (distance > nearest) & (distance < hits.distance[ray])
+        ray, face, distance = ray[better], face[better], distance[better]
+        order = np.lexsort((self._order[face], distance, ray))  # ties go to the lowest triangle
         first = order[np.flatnonzero(np.diff(ray[order], prepend=-1))]
         hits.distance[ray[first]] = distance[first]
         hits.face[ray[first]] = face[first]
@@ -115,17 +127,17 @@ class SeenTriangles:
     def _crossings(self, directions: Floats, ray: Ints, face: Ints) -> tuple[Ints, Ints, Floats]:
         """Keep the (ray, face) pairs that cross; with the distance along the ray."""
         d = directions[ray]
-        side = dot(self.edge_planes[face, 0], d)
+        side = dot(self._edge_planes[0][face], d)
         low, high = side, side
         for k in (1, 2):
-            side = dot(self.edge_planes[face, k], d)
+            side = dot(self._edge_planes[k][face], d)
             low, high = np.minimum(low, side), np.maximum(high, side)
         inside = np.flatnonzero((low >= 0.0) | (high <= 0.0))
         ray, face, d = ray[inside], face[inside], d[inside]
-        toward = dot(self.normals[face], d)
+        toward = dot(self._normals[face], d)
         real = toward != 0.0  # edge-on and zero-area triangles stop nothing
         ray, face, toward = ray[real], face[real], toward[real]
-        return ray, face, self.offsets[face] / toward
+        return ray, face, self._offsets[face] / toward
 
 
 def ranges(counts: Ints) -> Ints:
@@ -135,48 +147,64 @@ def ranges(counts: Ints) -> Ints:
     return np.arange(total) - np.repeat(ends - counts, counts)
 
 
-def _portions(rays: Ints, counts: Ints) -> list[Ints]:
-    """Cut rays into runs of about PAIRS_AT_ONCE pairs, to stay in the cache and in memory."""
-    if not len(rays):
-        return []
+def _portions(counts: Ints) -> list[slice]:
+    """Cut a row of counts into runs of about PAIRS_AT_ONCE, to stay in the cache and in memory."""
     portion = np.cumsum(counts) // PAIRS_AT_ONCE
-    return np.split(rays, np.flatnonzero(np.diff(portion)) + 1)
+    edges = [0, *(np.flatnonzero(np.diff(portion)) + 1).tolist(), len(counts)]
+    return [slice(a, b) for a, b in pairwise(edges)]
+
+
+def _least_distance(triangles: Floats) -> Floats:
+    """A distance (F,) that no point of the triangle is nearer than: its bounding ball's."""
+    center = (triangles[:, 0] + triangles[:, 1] + triangles[:, 2]) / 3.0
+    corners = [triangles[:, i] - center for i in range(3)]
+    radius = np.sqrt(np.max([dot(c, c) for c in corners], axis=0))
+    return np.maximum(np.sqrt(dot(center, center)) - radius * (1.0 + CELL_MARGIN), 0.0)
 
 
 def _cells_of_triangles(triangles: Floats) -> tuple[Ints, Ints]:
     """All (bin, triangle) pairs where the triangle's projection may touch the bin."""
-    parts = [_cells_on_face(triangles, face) for face in range(6)]
+    corners = np.ascontiguousarray(triangles.transpose(2, 1, 0))  # (axis, corner, F)
+    parts = [_cells_on_face(corners, face) for face in range(6)]
     return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
 
 
-def _cells_on_face(triangles: Floats, face: int) -> tuple[Ints, Ints]:
-    axis, sign = face // 2, -1.0 if face % 2 else 1.0
-    depth = sign * triangles[..., axis]
-    u, v = triangles[..., (axis + 1) % 3], triangles[..., (axis + 2) % 3]
+def _cells_on_face(corners: Floats, face: int) -> tuple[Ints, Ints]:
+    axis, behind = divmod(face, 2)
+    depth = -corners[axis] if behind else corners[axis]
+    u, v = corners[(axis + 1) % 3], corners[(axis + 2) % 3]
     index = np.flatnonzero(_may_be_seen(depth, u, v))
-    depth, u, v = depth[index], u[index], v[index]
-    iu0, iu1 = _window(depth, u)
-    iv0, iv1 = _window(depth, v)
+    depth = depth[:, index]
+    iu0, iu1 = _window(depth, u[:, index])
+    iv0, iv1 = _window(depth, v[:, index])
     wide, high = iu1 - iu0 + 1, iv1 - iv0 + 1
     n = wide * high
-    step = ranges(n)
-    row, column = step // np.repeat(high, n), step % np.repeat(high, n)
-    cells = (face * CELLS + np.repeat(iu0, n) + row) * CELLS + np.repeat(iv0, n) + column
-    return cells, np.repeat(index, n)
+    step, rows = ranges(n), np.repeat(high, n)
+    row = step // rows
+    first = (face * CELLS + iu0) * CELLS + iv0
+    return np.repeat(first, n) + row * CELLS + (step - row * rows), np.repeat(index, n)
 
 
 def _may_be_seen(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
-    """Whether no side of the face's pyramid has all three corners (F, 3) outside."""
-    outside = (depth <= 0.0).all(axis=1)
+    """Whether no side of the face's pyramid has all three corners (3, F) outside."""
+    seen: NDArray[np.bool_] = depth.max(axis=0) > 0.0
     for w in (u, v):
-        outside |= (w > depth).all(axis=1) | (w < -depth).all(axis=1)
-    return ~outside
+        seen &= ((w - depth).min(axis=0) <= 0.0) & ((w + depth).max(axis=0) >= 0.0)
+    return seen
 
 
 def _window(depth: Floats, w: Floats) -> tuple[Ints, Ints]:
-    """First and last bin of (F, 3) corners along one coordinate; all bins if one is behind."""
-    behind = (depth <= 0.0).any(axis=1)
+    """First and last bin of (3, F) corners along one coordinate.
+
+    Where a corner is behind, the part in front is bounded by its farthest depth: a surface that
+    lies wholly to one side stays on that side.
+    """
+    behind = depth.min(axis=0) <= 0.0
     ratio = w / np.where(depth > 0.0, depth, 1.0)
-    low = np.where(behind, -1.0, ratio.min(axis=1) - CELL_MARGIN)
-    high = np.where(behind, 1.0, ratio.max(axis=1) + CELL_MARGIN)
-    return _bin(np.clip(low, -1.0, 1.0)), _bin(np.clip(high, -1.0, 1.0))
+    least, greatest, farthest = w.min(axis=0), w.max(axis=0), depth.max(axis=0)
+    low = np.where(behind, np.where(least > 0.0, least / farthest, -1.0), ratio.min(axis=0))
+    high = np.where(behind, np.where(greatest < 0.0, greatest / farthest, 1.0), ratio.max(axis=0))
+    return (
+        _bin(np.clip(low - CELL_MARGIN, -1.0, 1.0)),
+        _bin(np.clip(high + CELL_MARGIN, -1.0, 1.0)),
+    )

@@ -116,7 +116,7 @@ def test_few_stopped_beams_are_not_lost():
     shown = beams.shown_beams(mounted, post, 60)
     field = pe.beam_field(mounted, post)
     assert 0 < (field.stopped_by >= 0).mean() < 0.005
-    assert 10 <= shown.stopped.sum() <= 15
+    assert 10 <= shown.stopped.sum() <= 20
 
 
 def lines_of(mounted, vehicle, budget=2000):
@@ -162,7 +162,7 @@ def test_free_beams_end_at_a_short_range(vehicle):
 
 def test_colours_say_free_or_stopped(vehicle):
     _, _, found, is_free = lines_of(sensor(), vehicle)
-    np.testing.assert_allclose(found[is_free, :, :3], [[colors.VIEWPORT.free[:3]] * 2], atol=1e-6)
+    assert (found[is_free, :, :3] == np.float32(colors.VIEWPORT.free[:3])).all()
     expected = np.float32(colors.VIEWPORT.stopped)
     assert (found[~is_free] == expected).all()
 

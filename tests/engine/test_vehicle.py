@@ -12,7 +12,9 @@ def random_directions(rng, count):
     return d / np.linalg.norm(d, axis=1, keepdims=True)
 
 
-@pytest.mark.parametrize("position", [(0, 0, 2.0), (-0.3, 0.2, 1.1), (3.0, 1.0, 0.5), (0, 0, 40.0)])
+@pytest.mark.parametrize(
+    "position", [(0, 0, 2.0), (-0.3, 0.2, 1.1), (3.0, 1.0, 0.5), (0, 0, 40.0), (-0.3, 0.1, 1.43)]
+)
 def test_first_hits_equal_brute_force(position):
     rng = np.random.default_rng(7)
     vehicle = shapes.box_car(times=2)

@@ -1,0 +1,76 @@
+"""Small scenes to test on."""
+
+import bpy
+import numpy as np
+
+from blender_addon import bridge
+
+CUBE = (
+    *((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)),
+    *((-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)),
+)
+CUBE_FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+
+
+def cube_mesh(half_size=(1.0, 1.0, 1.0)) -> bpy.types.Mesh:
+    """Return a box about the origin, its faces looking outwards."""
+    mesh = bpy.data.meshes.new("box")
+    mesh.from_pydata((np.array(CUBE) * half_size).tolist(), [], CUBE_FACES)
+    return mesh
+
+
+def add_collection(parent, name: str) -> bpy.types.Collection:
+    """Return a new collection below another one."""
+    made = bpy.data.collections.new(name)
+    parent.children.link(made)
+    return made
+
+
+def add_box(collection, name: str, half_size=(1.0, 1.0, 1.0), **settings) -> bpy.types.Object:
+    """Return a new box in a collection; settings are attributes of the object."""
+    box = bpy.data.objects.new(name, cube_mesh(half_size))
+    collection.objects.link(box)
+    for key, value in settings.items():
+        setattr(box, key, value)
+    return box
+
+
+def add_car(scene) -> bpy.types.Collection:
+    """Return a car of two boxes, 4 m long and 1.5 m high, chosen as the scene's vehicle."""
+    car = add_collection(scene.collection, "Car")
+    add_box(car, "body", (2.0, 0.9, 0.35), location=(0.0, 0.0, 0.55))
+    add_box(car, "cabin", (1.0, 0.8, 0.3), location=(-0.3, 0.0, 1.2))
+    scene.perception_entropy.vehicle = car
+    return car
+
+
+def add_sensor(name: str, model: str = "Pandar64", **settings) -> bpy.types.Object:
+    """Return a new sensor; settings are attributes of the object."""
+    assert bpy.ops.pe.add_sensor(model=model) == {"FINISHED"}
+    sensor = bpy.context.object
+    sensor.name = name
+    for key, value in settings.items():
+        setattr(sensor, key, value)
+    bpy.context.view_layer.update()
+    return sensor
+
+
+def depsgraph() -> bpy.types.Depsgraph:
+    """Return the evaluated scene, up to date."""
+    return bpy.context.evaluated_depsgraph_get()
+
+
+def study():
+    """Return the study of the scene that is open."""
+    return bridge.study_from_scene(bpy.context.scene, depsgraph())
+
+
+def vehicle(collection):
+    """Return a collection as the engine's vehicle."""
+    return bridge.vehicle_from_collection(collection, depsgraph())
+
+
+def volume(triangles: np.ndarray) -> float:
+    """Volume enclosed by (F, 3, 3) triangles; negative when their faces look inwards."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    return float((a * np.cross(b, c)).sum() / 6.0)

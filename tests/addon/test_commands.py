@@ -1,0 +1,143 @@
+"""``python -m blender_addon FILE VERB`` as a user runs it, against ``python -m pe_core``."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import bpy
+import pytest
+
+from tests.addon import scenes
+
+ROOT = Path(__file__).resolve().parents[2]
+TIMEOUT_S = 120
+FAST = ("--grid-samples", "4096", "--samples", "4096", "--candidates", "2", "--seed", "3")
+
+
+def command(*arguments) -> list[str]:
+    return [sys.executable, "-m", *map(str, arguments)]
+
+
+def run(*arguments) -> subprocess.CompletedProcess[str]:
+    # The bpy of this process has set OCIO; another one would tell of it on stdout.
+    env = {key: value for key, value in os.environ.items() if key != "OCIO"}
+    return subprocess.run(
+        command(*arguments), cwd=ROOT, env=env, capture_output=True, text=True, timeout=TIMEOUT_S
+    )
+
+
+def complaints(answer) -> list[str]:
+    return [line for line in answer.stderr.splitlines() if line.startswith("pe: ")]
+
+
+def without_run(path: Path) -> dict:
+    data = json.loads(path.read_text("utf-8"))
+    del data["run"]
+    return data
+
+
+@pytest.fixture
+def blend(car, tmp_path) -> Path:
+    scenes.add_sensor("front", model="Camera 60 deg")
+    path = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+def test_optimize_and_export_agree_with_the_engine(blend, tmp_path):
+    inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
+    before = blend.read_bytes()
+    answer = run(
+        *("blender_addon", blend, "optimize", *FAST, "-o", inside, "--no-render", "--json")
+    )
+    assert answer.returncode == 0, answer.stderr
+    assert json.loads(answer.stdout)["run"]["versions"]["blender"] == bpy.app.version_string
+    assert blend.read_bytes() == before
+    assert run("blender_addon", blend, "export", "-o", study).returncode == 0
+    answer = run("pe_core", "optimize", study / "study.toml", *FAST, "-o", outside)
+    assert answer.returncode == 0, answer.stderr
+    assert without_run(inside / "result.json") == without_run(outside / "result.json")
+    for name in ("history.csv", "study.toml"):
+        assert (inside / name).read_bytes() == (outside / name).read_bytes(), name
+    check_optimized_scene(inside)
+
+
+def check_optimized_scene(folder: Path) -> None:
+    """The scene that was left holds the placements that were found."""
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "optimized.blend"))
+    result = without_run(folder / "result.json")
+    for name, placed in result["placements"]["after"].items():
+        pose = scenes.study().rig[name].pose
+        assert [list(pose.position), list(pose.rotation_deg)] == list(placed.values())
+    assert not list(folder.glob(".*"))
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("missing.blend", "no such file"),
+        ("text.blend", "expected a .blend file"),
+        ("plain.blend", "neither"),
+    ],
+)
+def test_bad_file_is_one_line_and_status_1(addon, tmp_path, name, found):
+    (tmp_path / "text.blend").write_text("no blend file")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "plain.blend"))
+    answer = run("blender_addon", tmp_path / name, "score")
+    assert answer.returncode == 1
+    (line,) = complaints(answer)
+    assert line.startswith(f"pe: {tmp_path / name}: ") and found in line
+    assert "Traceback" not in answer.stderr and not answer.stdout
+
+
+def test_error_in_the_scene_names_the_file(car, tmp_path):
+    car.objects["roof"].scale = (2.0, 2.0, 2.0)
+    path = tmp_path / "scaled.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    answer = run("blender_addon", path, "score")
+    assert answer.returncode == 1
+    assert complaints(answer)[0].startswith(f"pe: {path}: sensor 'roof': scale: expected 1")
+
+
+def test_usage(blend):
+    assert run("blender_addon", blend, "score", "--no-such-option").returncode == 2
+    assert run("blender_addon").returncode == 2
+
+
+def test_sensors(blend):
+    listed = run("blender_addon", blend, "sensors")
+    assert listed.returncode == 0 and "lidar   Pandar64" in listed.stdout
+    assert listed.stdout == run("pe_core", "sensors").stdout
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process on Windows")
+def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
+    folder = tmp_path / "result"
+    arguments = (*FAST[:4], "--candidates", 100_000, "-o", folder, "--no-render")
+    with (tmp_path / "log").open("w+") as log:
+        process = subprocess.Popen(
+            command("blender_addon", blend, "optimize", *arguments),
+            cwd=ROOT,
+            stdout=subprocess.DEVNULL,
+            stderr=log,
+        )
+        try:
+            wait_for("optimizing", tmp_path / "log")
+            os.kill(process.pid, signal.SIGINT)
+            assert process.wait(TIMEOUT_S) == 130
+        finally:
+            process.kill()
+    result = without_run(folder / "result.json")
+    assert result["entropy"] <= result["before"]["entropy"]
+    assert (folder / "optimized.blend").exists()
+
+
+def wait_for(text: str, log: Path) -> None:
+    deadline = time.monotonic() + TIMEOUT_S
+    while text not in log.read_text():
+        assert time.monotonic() < deadline, log.read_text()
+        time.sleep(0.1)

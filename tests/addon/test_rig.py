@@ -1,0 +1,221 @@
+"""Sensors of the scene to a rig and back, to the bit."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Euler, Matrix
+
+from blender_addon import bridge
+from blender_addon.engine import pe, placement
+from tests.addon import scenes
+
+POSES = 200
+
+
+def read(obj) -> pe.Pose:
+    return bridge.pose_of(obj, scenes.depsgraph())
+
+
+def random_poses(count=POSES, pitch_limit=math.pi / 2):
+    rng = np.random.default_rng(7)
+    for _ in range(count):
+        values = (*rng.uniform(-12, 12, 3), *rng.uniform(-math.pi, math.pi, 3))
+        pose = dict(zip(placement.AXES, values, strict=True))
+        pose["pitch"] = rng.uniform(-pitch_limit, pitch_limit)
+        yield placement.pose_from_values(pose)
+
+
+def edge_poses():
+    for roll, pitch, yaw in ((0, 90, 0), (10, 90, 20), (-30, -90, 5), (180, 0, 180), (0, 0, -180)):
+        yield pe.Pose.from_degrees((1.0, -0.5, 1.8), (roll, pitch, yaw))
+
+
+def rig_of(name, pose):
+    return pe.Rig([pe.Sensor(name, pe.catalog.load("Pandar64"), pose)])
+
+
+def parents():
+    """Yield a far and turned parent, a small one as CAD files bring along, and none."""
+    yield None
+    for scale, location in ((1.0, (3.0, -2.0, 0.5)), (0.001, (0.0, 0.0, 0.3))):
+        parent = bpy.data.objects.new("parent", None)
+        bpy.context.scene.collection.objects.link(parent)
+        parent.location, parent.scale = location, (scale,) * 3
+        parent.rotation_euler = (0.3, -0.2, 1.0)
+        yield parent
+
+
+def test_what_is_placed_is_read_back(car):
+    sensor = car.objects["roof"]
+    for parent in parents():
+        sensor.parent = parent
+        for pose in (*random_poses(), *edge_poses()):
+            assert bridge.place_rig(car, rig_of("roof", pose)) == []
+            assert read(sensor) == pose
+
+
+def test_what_is_typed_is_read(car):
+    """Also without the memory of what was placed: the rounding alone has to do."""
+    sensor = car.objects["roof"]
+    for pose in random_poses(pitch_limit=math.radians(75)):
+        sensor.location, sensor.rotation_euler = pose.position, pose.rpy
+        assert read(sensor) == pose
+
+
+def test_placing_survives_a_file(car, tmp_path):
+    poses = [*random_poses(20), *edge_poses()]
+    for number, pose in enumerate(poses):
+        scenes.add_sensor(f"s{number}")
+        bridge.place_rig(car, rig_of(f"s{number}", pose))
+    path = str(tmp_path / "rig.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    for number, pose in enumerate(poses):
+        assert read(bpy.context.scene.objects[f"s{number}"]) == pose
+
+
+def test_moved_after_placing_is_read_as_it_stands(car):
+    bridge.place_rig(car, rig_of("roof", pe.Pose((1.0, 2.0, 3.0))))
+    car.objects["roof"].location.x = 1.00002
+    assert read(car.objects["roof"]).position == (1.00002, 2.0, 3.0)
+
+
+def test_placing_keeps_the_drawn_size(car):
+    sensor = car.objects["roof"]
+    size = sensor.empty_display_size
+    bridge.place_rig(car, rig_of("roof", pe.Pose((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))))
+    assert sensor.empty_display_size == size
+    assert np.abs(np.array(sensor.scale) - 1.0).max() < 1e-6
+
+
+def test_sensor_on_a_sensor(car):
+    """The outer one is moved first, or it would carry the inner one away."""
+    inner = scenes.add_sensor("a_inner", model="Camera 60 deg", parent=car.objects["roof"])
+    poses = [pe.Pose((1.0, 0.0, 2.0)), pe.Pose((-1.0, 0.5, 1.9), (0.0, 0.0, 1.0))]
+    lidar = pe.catalog.load("Pandar64")
+    rig = pe.Rig([pe.Sensor(n, lidar, p) for n, p in zip(("a_inner", "roof"), poses, strict=True)])
+    bridge.place_rig(car, rig)
+    assert read(inner).position == (1.0, 0.0, 2.0)
+    assert read(car.objects["roof"]).position == (-1.0, 0.5, 1.9)
+
+
+def test_quaternion_sensor(car):
+    sensor = car.objects["roof"]
+    sensor.rotation_mode = "QUATERNION"
+    pose = pe.Pose.from_degrees((1.0, 0.0, 2.0), (1.5, 20.0, -35.0))
+    bridge.place_rig(car, rig_of("roof", pose))
+    assert read(sensor) == pose
+
+
+def test_gone_sensor_is_named(car):
+    assert bridge.place_rig(car, rig_of("nobody", pe.Pose((0.0, 0.0, 1.0)))) == ["nobody"]
+
+
+def test_held_sensor_is_refused(car):
+    sensor = car.objects["roof"]
+    sensor.constraints.new("LIMIT_LOCATION").use_max_x = True
+    with pytest.raises(pe.InputError, match="'roof': placement: expected an object that can be"):
+        bridge.place_rig(car, rig_of("roof", pe.Pose((5.0, 0.0, 1.0))))
+
+
+def test_axes_are_blenders(car):
+    """Positive pitch is nose down, yaw is to the left: Rz Ry Rx, as Blender's XYZ Euler."""
+    sensor = car.objects["roof"]
+    sensor.rotation_euler = Euler((0.1, 0.2, 0.3), "XYZ")
+    rotation = read(sensor).ground_from_sensor
+    expected = np.array(Euler((0.1, 0.2, 0.3), "XYZ").to_matrix())
+    assert np.abs(rotation - expected).max() < 1e-6
+
+
+def test_sensors_come_by_name(car):
+    scenes.add_sensor("b")
+    scenes.add_sensor("a", model="Camera 60 deg")
+    assert [s.name for s in scenes.study().rig] == ["a", "b", "roof"]
+
+
+def test_hidden_sensor_does_not_count(car):
+    scenes.add_sensor("spare").hide_set(True)
+    assert [s.name for s in scenes.study().rig] == ["roof"]
+
+
+def test_model_fusion_and_free_axes(car):
+    settings = scenes.add_sensor("front", model="Camera 60 deg").perception_entropy
+    settings.fusion, settings.free = "ring", (False, False, True, False, False, True)
+    study = scenes.study()
+    assert study.rig["front"].model is pe.catalog.load("Camera 60 deg")
+    assert study.rig["front"].group == "ring"
+    assert study.search.free == {"front": ("z", "yaw"), "roof": ("x", "y", "z", "pitch")}
+
+
+def refused(car, expected):
+    with pytest.raises(pe.InputError) as caught:
+        scenes.study()
+    assert str(caught.value) == expected
+
+
+@pytest.mark.parametrize("scale", [(2.0, 2.0, 2.0), (1.0, 1.0, 1.5)])
+def test_scaled_sensor(car, scale):
+    car.objects["roof"].scale = scale
+    found = ", ".join(f"{s:.4g}" for s in scale)
+    refused(
+        car,
+        "scene: sensor 'roof': scale: expected 1 in each direction (its drawn size is the "
+        f"empty's display size), found {found}",
+    )
+
+
+def test_mirrored_sensor(car):
+    car.objects["roof"].scale = (-1.0, 1.0, 1.0)
+    refused(car, "scene: sensor 'roof': scale: expected no mirroring, found a negative scale")
+
+
+def test_sheared_sensor(car):
+    parent = scenes.add_box(car.collection, "stretched")
+    shear = Matrix(((1.0, 0.5, 0.0, 0.0), (0.0, 0.8660254, 0.0, 0.0), (0, 0, 1, 0), (0, 0, 0, 1)))
+    car.objects["roof"].parent = parent
+    car.objects["roof"].matrix_parent_inverse = shear
+    expected = "scene: sensor 'roof': rotation: expected axes at right angles, found shear"
+    refused(car, f"{expected} from its parent")
+
+
+def test_sensor_nowhere(car):
+    car.objects["roof"].location.x = float("nan")
+    refused(car, "scene: sensor 'roof': placement: expected finite numbers, found NaN or infinity")
+
+
+def test_unknown_model_names_the_sensor(car):
+    car.objects["roof"].perception_entropy.model = "Pandar65"
+    with pytest.raises(pe.InputError, match=r"scene: sensor 'roof': model: .*found 'Pandar65'"):
+        scenes.study()
+
+
+def test_no_sensors(car):
+    bpy.data.objects.remove(car.objects["roof"])
+    refused(car, "scene: sensors: expected at least one visible sensor, found none")
+
+
+def test_no_vehicle(car):
+    car.perception_entropy.vehicle = None
+    refused(
+        car,
+        "scene: vehicle collection: expected a collection with the vehicle's meshes, "
+        "found none chosen",
+    )
+
+
+def test_mixed_fusion_group(car):
+    for name, model in (("a", "Pandar64"), ("b", "Camera 60 deg")):
+        scenes.add_sensor(name, model=model).perception_entropy.fusion = "front"
+    refused(car, "scene: fusion group 'front': expected one kind of sensor, found two")
+
+
+def test_feet(car):
+    car.unit_settings.system = "IMPERIAL"
+    refused(car, "scene: unit system: expected metres (Metric), found Imperial")
+
+
+def test_millimetres(car):
+    car.unit_settings.scale_length = 0.001
+    refused(car, "scene: unit scale: expected 1, so that a unit is a metre, found 0.001")

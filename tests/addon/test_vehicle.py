@@ -1,0 +1,189 @@
+"""The vehicle as the engine gets it, against boxes that a hand can work out."""
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon.engine import pe
+from tests.addon import scenes
+
+BOX_VOLUME = 8.0
+BOX_TRIANGLES = 12
+
+
+@pytest.fixture
+def parts(scene):
+    return scenes.add_collection(scene.collection, "Parts")
+
+
+def bounds(vehicle):
+    low, high = vehicle.bounds
+    return [*low.tolist(), *high.tolist()]
+
+
+def test_box_as_it_is(parts):
+    scenes.add_box(parts, "box")
+    vehicle = scenes.vehicle(parts)
+    assert vehicle.part_names == ("box",)
+    assert len(vehicle.triangles) == BOX_TRIANGLES
+    assert scenes.volume(vehicle.triangles) == BOX_VOLUME
+    assert vehicle.triangles.dtype == np.float64
+
+
+def test_move_and_scale(parts):
+    scenes.add_box(parts, "box", location=(10.0, 0.0, 1.0), scale=(2.0, 1.0, 0.5))
+    vehicle = scenes.vehicle(parts)
+    assert bounds(vehicle) == [8.0, -1.0, 0.5, 12.0, 1.0, 1.5]
+    assert scenes.volume(vehicle.triangles) == BOX_VOLUME
+
+
+def test_negative_scale_keeps_faces_outwards(parts):
+    scenes.add_box(parts, "box", scale=(-2.0, 1.0, 1.0))
+    assert scenes.volume(scenes.vehicle(parts).triangles) == 2.0 * BOX_VOLUME
+
+
+def test_parent_moves_child_along(parts):
+    parent = bpy.data.objects.new("parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.location, parent.scale = (5.0, 0.0, 0.0), (2.0, 2.0, 2.0)
+    scenes.add_box(parts, "box", parent=parent, location=(1.0, 0.0, 0.0))
+    assert bounds(scenes.vehicle(parts)) == [5.0, -2.0, -2.0, 9.0, 2.0, 2.0]
+
+
+def test_modifier_is_applied(parts):
+    box = scenes.add_box(parts, "box")
+    array = box.modifiers.new("array", "ARRAY")
+    array.count, array.relative_offset_displace = 3, (2.0, 0.0, 0.0)
+    vehicle = scenes.vehicle(parts)
+    assert scenes.volume(vehicle.triangles) == 3 * BOX_VOLUME
+    assert bounds(vehicle) == [-1.0, -1.0, -1.0, 9.0, 1.0, 1.0]
+
+
+def test_modifier_switched_off_is_not_applied(parts):
+    box = scenes.add_box(parts, "box")
+    box.modifiers.new("array", "ARRAY").show_viewport = False
+    assert len(scenes.vehicle(parts).triangles) == BOX_TRIANGLES
+
+
+def instance_of(collection, name, **settings):
+    instance = bpy.data.objects.new(name, None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    for key, value in settings.items():
+        setattr(instance, key, value)
+    return instance
+
+
+def test_collection_instances_are_made_real(parts):
+    wheel = bpy.data.collections.new("Wheel")  # not in the scene but for its instances
+    scenes.add_box(wheel, "tyre", location=(1.0, 0.0, 0.0))
+    parts.objects.link(instance_of(wheel, "left", location=(0.0, 5.0, 0.0)))
+    parts.objects.link(instance_of(wheel, "right", location=(0.0, -5.0, 0.0), scale=(1, -1, 1)))
+    vehicle = scenes.vehicle(parts)
+    assert vehicle.part_names == ("tyre",)
+    assert scenes.volume(vehicle.triangles) == 2 * BOX_VOLUME
+    assert bounds(vehicle) == [0.0, -6.0, -1.0, 2.0, 6.0, 1.0]
+
+
+def test_instances_in_instances(parts):
+    wheel, axle = bpy.data.collections.new("Wheel"), bpy.data.collections.new("Axle")
+    scenes.add_box(wheel, "tyre")
+    axle.objects.link(instance_of(wheel, "left", location=(0.0, 5.0, 0.0)))
+    parts.objects.link(instance_of(axle, "front", location=(3.0, 0.0, 0.0)))
+    assert bounds(scenes.vehicle(parts)) == [2.0, 4.0, -1.0, 4.0, 6.0, 1.0]
+
+
+def test_geometry_nodes_instances(parts):
+    """A box on every corner of a box, and the box itself gone, as the node has it."""
+    tree = bpy.data.node_groups.new("boxes", "GeometryNodeTree")
+    for in_out in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
+    ends = [tree.nodes.new(f"NodeGroup{end}") for end in ("Input", "Output")]
+    box, on_points = (tree.nodes.new(f"GeometryNode{n}") for n in ("MeshCube", "InstanceOnPoints"))
+    tree.links.new(ends[0].outputs[0], on_points.inputs["Points"])
+    tree.links.new(box.outputs["Mesh"], on_points.inputs["Instance"])
+    tree.links.new(on_points.outputs[0], ends[1].inputs[0])
+    scenes.add_box(parts, "bolts").modifiers.new("boxes", "NODES").node_group = tree
+    vehicle = scenes.vehicle(parts)
+    assert vehicle.part_names == ("bolts",)
+    assert len(vehicle.triangles) == 8 * BOX_TRIANGLES
+    assert bounds(vehicle) == [-1.5, -1.5, -1.5, 1.5, 1.5, 1.5]
+
+
+def test_collections_in_the_collection_count(parts):
+    inner = scenes.add_collection(scenes.add_collection(parts, "Inner"), "Innermost")
+    scenes.add_box(inner, "deep")
+    scenes.add_box(parts, "top")
+    assert scenes.vehicle(parts).part_names == ("deep", "top")
+
+
+def test_others_do_not_count(parts):
+    scenes.add_box(parts, "mine")
+    scenes.add_box(bpy.context.scene.collection, "another", location=(9.0, 0.0, 0.0))
+    assert scenes.vehicle(parts).part_names == ("mine",)
+
+
+@pytest.mark.parametrize("how", ["hide_viewport", "hide_render", "eye", "collection", "excluded"])
+def test_hidden_does_not_count(parts, how):
+    scenes.add_box(parts, "seen")
+    inner = scenes.add_collection(parts, "Inner")
+    hidden = scenes.add_box(inner, "hidden")
+    layer = bpy.context.view_layer.layer_collection.children["Parts"].children["Inner"]
+    if how == "eye":
+        hidden.hide_set(True)
+    elif how == "collection":
+        inner.hide_render = True
+    elif how == "excluded":
+        layer.exclude = True
+    else:
+        setattr(hidden, how, True)
+    assert scenes.vehicle(parts).part_names == ("seen",)
+
+
+def test_curve_counts_once(parts):
+    """Blender lists a curve twice, as itself and as its mesh."""
+    curve = bpy.data.curves.new("bar", "CURVE")
+    curve.dimensions, curve.extrude = "3D", 1.0
+    spline = curve.splines.new("POLY")
+    spline.points.add(1)
+    spline.points[1].co = (4.0, 0.0, 0.0, 1.0)
+    parts.objects.link(bpy.data.objects.new("bar", curve))
+    vehicle = scenes.vehicle(parts)
+    a, b, c = vehicle.triangles.transpose(1, 0, 2)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
+    assert vehicle.part_names == ("bar",)
+    assert area == 8.0
+
+
+def test_housing_of_a_sensor_is_not_the_vehicle(parts):
+    scenes.add_box(parts, "roof")
+    sensor = scenes.add_sensor("lidar", location=(0.0, 0.0, 3.0))
+    scenes.add_box(parts, "housing", (0.1, 0.1, 0.1), parent=sensor)
+    assert scenes.vehicle(parts).part_names == ("roof",)
+
+
+def test_glass_is_named(parts):
+    scenes.add_box(parts, "body")
+    scenes.add_box(parts, "window").perception_entropy.see_through = True
+    assert scenes.vehicle(parts).glass == ("window",)
+
+
+def test_order_of_parts_is_that_of_their_names(parts):
+    for name in ("c", "a", "b"):
+        scenes.add_box(parts, name)
+    vehicle = scenes.vehicle(parts)
+    assert vehicle.part_names == ("a", "b", "c")
+    assert vehicle.parts.tolist() == sorted(vehicle.parts.tolist())
+
+
+def test_empty_collection_is_one_line(parts):
+    with pytest.raises(pe.InputError) as caught:
+        scenes.vehicle(parts)
+    expected = "scene: vehicle collection 'Parts': expected visible meshes, found none"
+    assert str(caught.value) == expected
+
+
+def test_nan_names_the_object(parts):
+    scenes.add_box(parts, "good")
+    scenes.add_box(parts, "bad").data.vertices[0].co.x = float("nan")
+    with pytest.raises(pe.InputError, match="scene: vehicle object 'bad': expected finite coord"):
+        scenes.vehicle(parts)

@@ -22,8 +22,8 @@ from .engine import catalog, pe, placement
 from .overlay import handler as overlay
 
 DEFAULT_CANDIDATES = 150
-DEFAULT_BEAM_LIMIT = 12_000
-DEFAULT_BEAM_LENGTH_M = 15.0
+DEFAULT_BEAM_LIMIT = 5_000
+DEFAULT_BEAM_LENGTH_M = 8.0
 DEFAULT_MODEL = "Pandar64"
 FREE_BY_DEFAULT = tuple(axis in placement.PAPER_FREE for axis in placement.AXES)
 

@@ -59,7 +59,7 @@ class JobOperator:
             more = job.step()
             if not more:
                 return self._apply(bpy.data.scenes.get(job.scene_name), job.job.outcome)
-            job.show(context)
+            job.show_soon(context)
             return {"PASS_THROUGH"}
         except pe.InputError as error:
             return self._refuse(error)

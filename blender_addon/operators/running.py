@@ -12,10 +12,12 @@ import bpy
 
 from ..engine import pe
 
-TICK_S = 0.1
+TICK_S = 0.05
 """How often the window gives the job a turn."""
 TURN_S = 0.03
 """How long a turn takes: a frame of a responsive window."""
+SHOW_EVERY_S = 0.2
+"""How often the progress is drawn: that takes time from the work."""
 
 
 class Running:
@@ -26,6 +28,7 @@ class Running:
         self.scene_name = context.scene.name
         self.progress = pe.Progress("starting", 0.0)
         self._steps: Iterator[pe.Progress] = iter(job)
+        self._shown = 0.0
         manager = context.window_manager
         self._timer = manager.event_timer_add(TICK_S, window=context.window)
         manager.progress_begin(0.0, 1.0)
@@ -52,8 +55,14 @@ class Running:
         entropy = self.progress.entropy
         return stage if entropy is None else f"{stage}  {entropy:.4f}"
 
+    def show_soon(self, context: bpy.types.Context) -> None:
+        """Draw the progress again if it is some time since that was done."""
+        if time.monotonic() - self._shown >= SHOW_EVERY_S:
+            self.show(context)
+
     def show(self, context: bpy.types.Context) -> None:
         """Draw the progress again, but not the scene: that would take longer than the work."""
+        self._shown = time.monotonic()
         context.window_manager.progress_update(self.progress.fraction)
         context.workspace.status_text_set(draw_status)
         for region in _regions(context.window_manager):

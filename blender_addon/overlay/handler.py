@@ -21,13 +21,12 @@ _handles: list[object] = []
 
 
 def register() -> None:
-    """Start drawing."""
+    """Start drawing; Blender draws every view once an add-on has been registered."""
     if not _handles:
         space = bpy.types.SpaceView3D
         _handles.append(space.draw_handler_add(draw, (), "WINDOW", "POST_VIEW"))
         for handlers, function in _handlers():
             handlers.append(function)
-    tag_redraw()
 
 
 def unregister() -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import pe_core as pe
+from tests.engine.shapes import box, refined
 
 BODY = ((-2.35, -0.92, 0.2), (2.35, 0.92, 0.9))
 CABIN = ((-1.5, -0.7, 0.85), (0.8, 0.7, 1.45))
@@ -17,7 +18,7 @@ ROOF_LIDAR = (-0.43, 0.02, 1.83)
 def car(triangles: int = 20_000) -> pe.Vehicle:
     """A car of two boxes, refined to about that many triangles."""
     times = max(0, round(np.log(triangles / 24) / np.log(4)))
-    parts = [_refined(_box(*ends), times) for ends in (BODY, CABIN)]
+    parts = [refined(box(*ends), times) for ends in (BODY, CABIN)]
     names = np.repeat([0, 1], [len(p) for p in parts]).astype(np.int32)
     return pe.Vehicle(np.concatenate(parts), names, ("body", "cabin"))
 
@@ -55,19 +56,3 @@ def raw_cast(triangles: np.ndarray, position: object, directions: np.ndarray) ->
         hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
         distances[i] = t[hit].min() if hit.any() else np.inf
     return distances
-
-
-def _box(low: tuple[float, ...], high: tuple[float, ...]) -> np.ndarray:
-    ends = np.array([low, high])
-    corners = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
-    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-    return np.array([corners[[q[0], q[i], q[i + 1]]] for q in quads for i in (1, 2)])
-
-
-def _refined(triangles: np.ndarray, times: int) -> np.ndarray:
-    for _ in range(times):
-        a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
-        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
-        corners = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
-        triangles = np.concatenate([np.stack(t, axis=1) for t in corners])
-    return triangles

@@ -18,7 +18,7 @@ from typing import TextIO
 import bpy
 
 from . import bridge
-from .engine import catalog, command, pe, results, sensor_text
+from .engine import command, pe, results
 
 REVIEW, OPTIMIZED = "review.png", "optimized.blend"
 IN_BLENDER = "blender -b FILE.blend --command pe"
@@ -57,9 +57,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     export = verbs.add_parser("export", help="write the scene as a study with its mesh")
     export.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for them")
     export.set_defaults(function=export_study)
-    sensors = verbs.add_parser("sensors", help="list the catalogue, or show one sensor")
-    sensors.add_argument("name", nargs="?", help="a sensor's name")
-    sensors.set_defaults(function=show_sensors)
+    command.add_sensors_verb(verbs)
     return top
 
 
@@ -83,15 +81,6 @@ def export_study(args: argparse.Namespace) -> tuple[str, int]:
     path = pe.prepare_folder(args.output) / results.STUDY
     pe.export_study(opened_study(), path)
     return str(path), command.DONE
-
-
-def show_sensors(args: argparse.Namespace) -> tuple[str, int]:
-    """List the catalogue, or describe one of its sensors."""
-    if args.name:
-        catalog.load(args.name)
-        return sensor_text.describe(catalog.entries()[args.name]), command.DONE
-    lines = [f"{entry.kind:7} {entry.name}" for entry in catalog.entries().values()]
-    return "\n".join(lines), command.DONE
 
 
 def opened_study() -> pe.Study:

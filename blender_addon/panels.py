@@ -66,12 +66,13 @@ def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         row = box.row(align=True)
         eye = "HIDE_OFF" if settings.show else "HIDE_ON"
         row.prop(settings, "show", text="", icon=eye, emboss=False)
-        split = row.split(factor=0.4, align=True)
+        split = row.split(factor=0.38, align=True)
         split.active = obj.visible_get()  # what is hidden is not scored
         active = obj == context.active_object
         split.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
-        known = f"  {settings.entropy:.3f}" if settings.has_result else ""
-        split.label(text=f"{settings.model}{known}")
+        figures = split.split(factor=0.68, align=True)
+        figures.label(text=settings.model)
+        figures.label(text=f"{settings.entropy:.2f}" if settings.has_result else "")
 
 
 def draw_progress(layout: bpy.types.UILayout) -> None:

@@ -163,7 +163,7 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
         update=changed,
     )
     fusion: StringProperty(
-        name="Fusion Group",
+        name="Fusion",
         description="Sensors of one group count their beams or pixels together. When empty, all "
         "LiDARs are one group and each camera stands alone",
         update=changed,

@@ -5,11 +5,18 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from . import catalog
-from .command import DONE, INTERRUPTED, add_run_options, drive, run, summary, with_options
+from .command import (
+    DONE,
+    INTERRUPTED,
+    add_run_options,
+    add_sensors_verb,
+    drive,
+    run,
+    summary,
+    with_options,
+)
 from .jobs import Job, OptimizeJob, ScoreJob
 from .results import dump_json, prepare_folder, result_dict, write_outcome
-from .sensor_text import describe
 from .study_file import load_study
 from .version import __version__
 
@@ -31,9 +38,7 @@ def parser() -> argparse.ArgumentParser:
         verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
         add_run_options(verb, search=job is OptimizeJob)
         verb.set_defaults(function=_run_job, job=job)
-    sensors = verbs.add_parser("sensors", help="list the catalogue, or show one sensor")
-    sensors.add_argument("name", nargs="?", help="a sensor's name")
-    sensors.set_defaults(function=_sensors)
+    add_sensors_verb(verbs)
     return top
 
 
@@ -45,13 +50,3 @@ def _run_job(args: argparse.Namespace) -> int:
     data = result_dict(outcome) if output is None else write_outcome(outcome, output)
     print(dump_json(data) if args.json else summary(outcome), end="" if args.json else "\n")
     return INTERRUPTED if outcome.stopped else DONE
-
-
-def _sensors(args: argparse.Namespace) -> int:
-    if args.name:
-        catalog.load(args.name)
-        print(describe(catalog.entries()[args.name]))
-        return DONE
-    for entry in catalog.entries().values():
-        print(f"{entry.kind:7} {entry.name}")
-    return DONE

@@ -15,9 +15,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TextIO
 
+from . import catalog
 from .errors import InputError
 from .jobs import Job, OptimizeJob, Outcome, Progress
 from .results import STUDY, export_study
+from .sensor_text import describe
 from .study import Study
 
 DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
@@ -65,6 +67,23 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
         schedule = replace(search.schedule, candidates=args.candidates)
         search = replace(search, schedule=schedule)
     return replace(study, search=search)
+
+
+def add_sensors_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add ``sensors``: the catalogue, or one of its entries with a plot of its channels."""
+    parser = verbs.add_parser("sensors", help="list the catalogue, or show one sensor")
+    parser.add_argument("name", nargs="?", help="a sensor's name")
+    parser.set_defaults(function=_show_sensors)
+
+
+def _show_sensors(args: argparse.Namespace) -> int:
+    if args.name:
+        catalog.load(args.name)  # complains about a name that is not there
+        print(describe(catalog.entries()[args.name]))
+        return DONE
+    for entry in catalog.entries().values():
+        print(f"{entry.kind:7} {entry.name}")
+    return DONE
 
 
 def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) -> Outcome:

@@ -14,6 +14,8 @@ from ..engine import pe
 
 TICK_S = 0.05
 """How often the window gives the job a turn."""
+STATUS_BAR_WIDTH = 14.0
+"""Room for the text in the status bar, in Blender's units of a button's height."""
 TURN_S = 0.03
 """How long a turn takes: a frame of a responsive window."""
 SHOW_EVERY_S = 0.2
@@ -102,7 +104,9 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
     if current is not None:
         row = header.layout.row()
         row.label(text="Stop", icon="EVENT_ESC")
-        row.progress(text=current.text, factor=current.progress.fraction)
+        bar = row.row()
+        bar.ui_units_x = STATUS_BAR_WIDTH
+        bar.progress(text=current.text, factor=current.progress.fraction)
         row.separator_spacer()
 
 

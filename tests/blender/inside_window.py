@@ -6,13 +6,18 @@
 """
 
 import json
+import math
 import sys
 from pathlib import Path
 
 import bpy
+from bl_ext.user_default.perception_entropy.operators import running
+from mathutils import Euler
 
 FOLDER = Path(sys.argv[-1])
 CATEGORY = "Perception"
+VIEW_CENTER_M, VIEW_DISTANCE_M = (0.0, -0.6, 0.7), 9.0
+VIEW_ROTATION = (math.radians(66.0), 0.0, math.radians(128.0))
 STEP_S = 0.5
 REPORT_S = 0.1
 
@@ -35,6 +40,9 @@ def fill_the_window():
     """First step: one large 3D view with its sidebar."""
     window, area, _ = view3d()
     window.scene.perception_entropy.has_result = False  # the file may come with one
+    look = area.spaces.active.region_3d
+    look.view_location, look.view_distance = VIEW_CENTER_M, VIEW_DISTANCE_M
+    look.view_rotation = Euler(VIEW_ROTATION).to_quaternion()
     with bpy.context.temp_override(window=window, area=area):
         bpy.ops.screen.screen_full_area()
     bpy.app.timers.register(show_sidebar, first_interval=STEP_S)
@@ -72,9 +80,13 @@ def report_state():
     """Write what the scene holds, again and again."""
     scene = bpy.context.window_manager.windows[0].scene
     found = scene.perception_entropy
-    sensors = [each.name for each in scene.objects if each.perception_entropy.is_sensor]
+    sensors = [each for each in scene.objects if each.perception_entropy.is_sensor]
     state = {
-        "sensors": sensors,
+        "sensors": [each.name for each in sensors],
+        "places": {each.name: list(each.matrix_world.translation) for each in sensors},
+        "running": running.current is not None,
+        "better_found": running.current is not None and better_found(running.current.job),
+        "kind": found.result_kind,
         "has_result": found.has_result,
         "entropy": found.result_entropy,
         "coverage": found.result_coverage,
@@ -82,6 +94,11 @@ def report_state():
     write("state.json", state)
     report_copied()
     return REPORT_S
+
+
+def better_found(job):
+    """Whether a search has found a placement better than the start."""
+    return len(getattr(job, "history", ())) > 1
 
 
 def report_copied():

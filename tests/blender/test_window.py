@@ -21,3 +21,25 @@ def test_add_a_sensor_and_score(window, screenshots):
     assert math.isfinite(window.state["entropy"])
     assert 0.0 <= window.state["coverage"] <= 1.0
     assert "Traceback" not in window.log.read_text()
+
+
+def test_optimize_runs_beside_the_window_esc_keeps_the_best_and_undo_brings_back(
+    window, screenshots
+):
+    start = window.state["places"]
+    window.press("pe.optimize")
+    window.wait_for(lambda: window.state["running"], EFFECT_TIMEOUT_S, "the search to start")
+    window.wait_for(lambda: window.state["better_found"], SCORE_TIMEOUT_S, "a better placement")
+    window.screenshot(screenshots / "window_optimize.png")
+    assert window.state["running"], "the search was over before anyone could press Esc"
+
+    window.point_at_view()
+    window.key("Escape")
+    window.wait_for(lambda: not window.state["running"], SCORE_TIMEOUT_S, "the search to stop")
+    window.wait_for(lambda: window.state["has_result"], EFFECT_TIMEOUT_S, "a result")
+    assert window.state["kind"] == "optimize"
+    assert window.state["places"] != start, "the best so far was not kept"
+
+    window.key("ctrl+z")
+    window.wait_for(lambda: window.state["places"] == start, EFFECT_TIMEOUT_S, "the old placement")
+    assert "Traceback" not in window.log.read_text()

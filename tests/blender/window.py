@@ -24,6 +24,7 @@ SCREEN_TIMEOUT_S = 20
 READY_TIMEOUT_S = 120  # the first start on a machine without a graphics card compiles shaders
 TOOL_TIMEOUT_S = 30
 POLL_S = 0.05
+REST_S = 1.5  # panels slide to their places, and buttons let go of the mouse
 SETTLE_S = 0.1  # between moving and pressing: Blender finds the button by the move
 
 # A button is 20 pixels high at this scale; steps of less can't miss one.
@@ -79,6 +80,10 @@ class Window:
         self._move(x, y)
         self._xdotool("click", "1")
 
+    def point_at_view(self) -> None:
+        """Move the mouse into the 3D view, where keys are the scene's."""
+        self._move(WIDTH // 3, HEIGHT - HEIGHT // 5)
+
     def key(self, *names: str) -> None:
         """Press keys by their X names: ``Return``, ``ctrl+z``."""
         self._xdotool("key", *names)
@@ -102,7 +107,9 @@ class Window:
         )
 
     def screenshot(self, path: Path) -> None:
-        """Keep a picture of the whole screen."""
+        """Keep a picture of the whole screen, the mouse out of the way and all panels at rest."""
+        self.point_at_view()
+        time.sleep(REST_S)
         self._tool("import", "-window", "root", str(path))
 
     def _start_screen(self) -> str:

@@ -21,6 +21,8 @@ VEHICLE = "Sedan"
 GLASS = ("windshield", "rear_window", "windows_left", "windows_right")
 ROOF_LIDAR = "roof_lidar"
 ROOF_LIDAR_M = (-0.43, 0.0, 1.80)
+FREE = (True, False, True, False, True, False)
+"""x, z and pitch: a single LiDAR stays on the centre line."""
 
 
 def mount() -> None:
@@ -32,7 +34,9 @@ def mount() -> None:
     if ROOF_LIDAR not in scene.objects:
         bpy.ops.pe.add_sensor(model="Pandar64")
         bpy.context.object.name = ROOF_LIDAR
-    scene.objects[ROOF_LIDAR].location = ROOF_LIDAR_M
+    roof_lidar = scene.objects[ROOF_LIDAR]
+    roof_lidar.location = ROOF_LIDAR_M
+    roof_lidar.perception_entropy.free = FREE
 
 
 def main() -> None:

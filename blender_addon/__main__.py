@@ -28,8 +28,8 @@ def main(argv: list[str]) -> int:
         unregister()
 
 
-def open_file(name: str) -> int:
-    """Open a .blend file."""
+def open_file(name: str) -> command.Answer:
+    """Open a .blend file; nothing to print."""
     path = Path(name)
     if not path.is_file():
         raise pe.InputError(name, "file", "an existing .blend file", "no such file")
@@ -38,7 +38,7 @@ def open_file(name: str) -> int:
     except RuntimeError as error:
         found = str(error).strip().removeprefix("Error: ")
         raise pe.InputError(name, "file", "a .blend file", found) from None
-    return command.DONE
+    return "", command.DONE
 
 
 sys.exit(main(sys.argv[1:]))

@@ -11,7 +11,8 @@ import os
 import secrets
 import signal
 import sys
-from collections.abc import Sequence
+import tempfile
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TextIO
 
@@ -34,13 +35,7 @@ def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
             args = parser(prog).parse_args(argv)
     except SystemExit as stop:  # help was asked for, or the usage was wrong
         return int(stop.code or 0)
-
-    def function() -> int:
-        text, status = args.function(args)
-        print(text, end="" if text.endswith("\n") else "\n", file=out, flush=True)
-        return status
-
-    return command.run(function)
+    return command.run(lambda: args.function(args), out)
 
 
 def parser(prog: str) -> argparse.ArgumentParser:
@@ -61,7 +56,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     return top
 
 
-def run_job(args: argparse.Namespace) -> tuple[str, int]:
+def run_job(args: argparse.Namespace) -> command.Answer:
     """Score or optimize, and leave the results in the output folder."""
     study = command.with_options(opened_study(), args)
     output = None if args.output is None else pe.prepare_folder(args.output)
@@ -71,12 +66,12 @@ def run_job(args: argparse.Namespace) -> tuple[str, int]:
         data = pe.result_dict(outcome, host)
     else:
         data = pe.write_outcome(outcome, output, host)
-        leave_scene(outcome, output, render=not args.no_render)
-    status = command.INTERRUPTED if outcome.stopped else command.DONE
-    return results.dump_json(data) if args.json else command.summary(outcome), status
+        with quiet_blender():
+            leave_scene(outcome, output, render=not args.no_render)
+    return command.answer(outcome, data, as_json=args.json)
 
 
-def export_study(args: argparse.Namespace) -> tuple[str, int]:
+def export_study(args: argparse.Namespace) -> command.Answer:
     """Write the scene as a study file, with the vehicle's mesh."""
     path = pe.prepare_folder(args.output) / results.STUDY
     pe.export_study(opened_study(), path)
@@ -121,6 +116,27 @@ def save_copy(path: Path) -> None:
         raise pe.InputError(path, "file", "a place to write to", error) from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def quiet_blender() -> Iterator[None]:
+    """Keep back what Blender and the graphics driver print, unless the work fails."""
+    sys.stderr.flush()
+    shown = os.dup(2)
+    with tempfile.TemporaryFile() as kept:
+        os.dup2(kept.fileno(), 1)
+        os.dup2(kept.fileno(), 2)
+        try:
+            yield
+        except BaseException:
+            kept.seek(0)
+            os.write(shown, kept.read())
+            raise
+        finally:
+            sys.stderr.flush()
+            os.dup2(shown, 1)
+            os.dup2(shown, 2)
+            os.close(shown)
 
 
 def take_over_process() -> TextIO:

@@ -5,18 +5,9 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from .command import (
-    DONE,
-    INTERRUPTED,
-    add_run_options,
-    add_sensors_verb,
-    drive,
-    run,
-    summary,
-    with_options,
-)
+from .command import Answer, add_run_options, add_sensors_verb, answer, drive, run, with_options
 from .jobs import Job, OptimizeJob, ScoreJob
-from .results import dump_json, prepare_folder, result_dict, write_outcome
+from .results import prepare_folder, result_dict, write_outcome
 from .study_file import load_study
 from .version import __version__
 
@@ -42,11 +33,10 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-def _run_job(args: argparse.Namespace) -> int:
+def _run_job(args: argparse.Namespace) -> Answer:
     study = with_options(load_study(args.study), args)
     output = None if args.output is None else prepare_folder(args.output)
     job: Job = args.job(study, args.workers)
     outcome = drive(job, output)
     data = result_dict(outcome) if output is None else write_outcome(outcome, output)
-    print(dump_json(data) if args.json else summary(outcome), end="" if args.json else "\n")
-    return INTERRUPTED if outcome.stopped else DONE
+    return answer(outcome, data, as_json=args.json)

@@ -13,16 +13,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from . import catalog
 from .errors import InputError
 from .jobs import Job, OptimizeJob, Outcome, Progress
-from .results import STUDY, export_study
+from .results import STUDY, dump_json, export_study
 from .sensor_text import describe
 from .study import Study
 
 DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
+Answer = tuple[str, int]
+"""What a verb prints on stdout, and its exit status."""
 REPORT_EVERY_S = 0.5
 SAVE_EVERY_S = 10.0
 
@@ -76,14 +78,17 @@ def add_sensors_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser])
     parser.set_defaults(function=_show_sensors)
 
 
-def _show_sensors(args: argparse.Namespace) -> int:
+def _show_sensors(args: argparse.Namespace) -> Answer:
     if args.name:
         catalog.load(args.name)  # complains about a name that is not there
-        print(describe(catalog.entries()[args.name]))
-        return DONE
-    for entry in catalog.entries().values():
-        print(f"{entry.kind:7} {entry.name}")
-    return DONE
+        return describe(catalog.entries()[args.name]), DONE
+    return "\n".join(f"{e.kind:7} {e.name}" for e in catalog.entries().values()), DONE
+
+
+def answer(outcome: Outcome, data: dict[str, Any], *, as_json: bool) -> Answer:
+    """Return what is printed of an outcome, and the exit status that goes with it."""
+    text = dump_json(data) if as_json else summary(outcome)
+    return text, INTERRUPTED if outcome.stopped else DONE
 
 
 def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) -> Outcome:
@@ -173,10 +178,16 @@ def _with_error(entropy: float, stderr: float) -> str:
     return f"{entropy:.4f} nats" if stderr == 0.0 else f"{entropy:.4f} +- {stderr:.4f} nats"
 
 
-def run(main: Callable[[], int]) -> int:
-    """Run a command: bad input is one line on stderr and status 1, an interrupt 130."""
+def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
+    """Run a command, print its text on `out` (stdout), and return its exit status.
+
+    Bad input is one line on stderr and status 1, an interrupt is status 130.
+    """
     try:
-        return main()
+        text, status = main()
+        if text:
+            print(text.removesuffix("\n"), file=out or sys.stdout, flush=True)
+        return status
     except InputError as error:
         print(f"pe: {error}", file=sys.stderr)
         return BAD_INPUT

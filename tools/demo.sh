@@ -9,7 +9,7 @@ readonly python=.venv/bin/python
 readonly vehicle=blend_assets/sedan.blend
 readonly output=demo_output
 # Enough to see it work within a minute or two; the defaults of `pe optimize` take their time.
-readonly OPTIONS=(--candidates 60 --samples 16384 --seed 0 --output "$output")
+readonly OPTIONS=(--candidates 150 --samples 65536 --seed 0 --output "$output")
 
 fail() {
     echo "demo: $*" >&2

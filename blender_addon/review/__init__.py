@@ -58,6 +58,6 @@ def render_review(
         write_page(pen, words, legend)
         mark_rings(pen, RINGS_M, RING_TEXT)
         mark_moves(pen, subject.moves())
-        mark_sensors(pen, study.rig)
+        mark_sensors(pen, study.rig, subject.moves())
         on.render(Path(path))
     return Path(path)

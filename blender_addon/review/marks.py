@@ -20,17 +20,18 @@ WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 NAME, NAME_RISE, NAME_STEP, NAME_PADDING = 18, 46, 28, 8
 LETTER_WIDTH = 0.47
 """Mean width of a letter, in its size."""
+RING_ROOM = 10
 RING_NAME = 15
 RING_AZIMUTHS_DEG = (-35.0, 105.0, -60.0, 130.0, -90.0, 160.0, -115.0, 170.0, -150.0)
 """Where a ring's distance may be written: the first of these inside the picture."""
 
 
-def mark_sensors(pen: Lettering, rig: pe.Rig) -> None:
-    """Put a dot on each sensor and its name above it; names do not overlap."""
+def mark_sensors(pen: Lettering, rig: pe.Rig, moves: list[tuple[Floats, Floats]]) -> None:
+    """Put a dot on each sensor and its name above it, clear of other names and of the rings."""
     scale = pen.view.frame.scale
     colors = {"lidar": PAPER.free, "camera": PAPER.camera}
     places = pen.view.pixels(np.array([sensor.pose.position for sensor in rig]))
-    taken: list[tuple[float, float, float]] = []
+    taken = [_room_of_ring(pen, start) for start, _ in moves]
     for (x, y), sensor in sorted(zip(places.tolist(), rig, strict=True), key=lambda pair: pair[0]):
         pen.disc((x, y), 7.5 * scale, WHITE, layer=3)
         pen.disc((x, y), 5.5 * scale, (*colors[sensor.kind][:3], 1.0), layer=4)
@@ -42,6 +43,12 @@ def mark_sensors(pen: Lettering, rig: pe.Rig) -> None:
         pen.line((x, base), (x, y), scale * 1.4, FAINT_INK, layer=1)
         pen.rectangle(x - half, base - scale * 19, x + half, base + scale * 8, WHITE, layer=2)
         pen.write(sensor.name, (x, base), scale * NAME, align="CENTER")
+
+
+def _room_of_ring(pen: Lettering, start: Floats) -> tuple[float, float, float]:
+    """Middle, half width and base line [px] of the room that the ring at a start takes."""
+    x, y = pen.view.pixels(start[None])[0].tolist()
+    return x, RING_ROOM * pen.view.frame.scale, y + RING_ROOM / 2 * pen.view.frame.scale
 
 
 def mark_moves(pen: Lettering, moves: list[tuple[Floats, Floats]]) -> None:

@@ -25,7 +25,8 @@ from .study import Study
 DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
 Answer = tuple[str, int]
 """What a verb prints on stdout, and its exit status."""
-REPORT_EVERY_S = 0.5
+REPORT_EVERY_S = {True: 0.2, False: 5.0}
+"""How often progress is shown: on a terminal, where it overwrites itself, and in a log."""
 SAVE_EVERY_S = 10.0
 
 
@@ -98,13 +99,14 @@ def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) ->
     raises KeyboardInterrupt. During a search the best so far is also kept in `output`.
     """
     stream = stream or sys.stderr
-    reported, saved = -1e9, time.monotonic()
+    reported, stage, saved = 0.0, "", time.monotonic()
+    pause_s = REPORT_EVERY_S[stream.isatty()]
     with _first_interrupt(job.stop):
         for progress in job:
             now = time.monotonic()
-            if now - reported >= REPORT_EVERY_S:
+            if now - reported >= pause_s or progress.stage != stage:
                 _report(progress, stream)
-                reported = now
+                reported, stage = now, progress.stage
             if output and isinstance(job, OptimizeJob) and now - saved >= SAVE_EVERY_S:
                 export_study(job.best, output / STUDY)
                 saved = now

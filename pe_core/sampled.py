@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from .entropy import H_BLIND
 from .fusion import Fusion
 from .kernels.camera_points import pixel_areas
-from .kernels.lidar_points import Lattice, count_beams
-from .kernels.ties import offsets_in_voxels, without_zeros
+from .kernels.lidar_points import Lattice, VoxelPoints, count_beams
+from .kernels.ties import position_in_voxels, without_zeros
 from .occlusion import beam_counts, beam_field
 from .prior import ClassDensity
 from .sampling import BLOCKS, VoxelSample, draw
@@ -41,6 +41,7 @@ class SampledScorer:
         self._space, self._vehicle, self._fusion = space, vehicle, fusion
         tops = None if vehicle is None else vehicle.top(space)
         self._sample: VoxelSample = draw(densities, space, samples, tops)
+        self._points = VoxelPoints(self._sample.index)
         self._shares = outside_shares(densities, space, tops)
         self._weights = np.concatenate(
             [
@@ -90,7 +91,8 @@ class SampledScorer:
         field = beam_field(sensor, self._vehicle)
         side = self._space.interval
         return count_beams(
-            offsets_in_voxels(self._sample.centers, sensor.pose.position, side),
+            self._points,
+            position_in_voxels(sensor.pose.position, self._space.origin, side),
             self._lattices[model],
             sensor.pose.ground_from_sensor,
             without_zeros(field.directions),

@@ -25,10 +25,15 @@ BINS = 1 << 16
 MARGIN = np.float32(4e-6)
 """Windows are widened (outer) and narrowed (inner) by this, relative: single precision's rounding,
 with room to spare."""
-AT_ONCE = 1 << 14
+SLACK = np.float32(1e-4)
+"""Cubes are taken larger (outer) and smaller (inner) by this, in sides: a point a thousand sides
+away is known to half of it in single precision."""
+AT_ONCE = 1 << 15
 """Voxels worked on together: all their arrays fit the cache."""
-SLICE_HEIGHTS = (1.0, 0.95, 0.85)
-"""Heights of the inner window tried, of the slice's: lower is wider where the cube is tilted."""
+ON_AXIS = np.float32(1e-9)
+"""Stands for the least distance from the sensor's axis of a cube that the axis may touch."""
+SLICE_WIDTHS = (1.0 - 1e-5, 0.97, 0.9)
+"""Widths of the inner window tried, of the slice's: narrower is higher where the cube is tilted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +114,10 @@ def bracket(
 def _block(
     points: Sequence[Singles], rotation: Singles, table: ChannelTable, count: int
 ) -> tuple[Counts, ...]:
-    x, y, z = (sum(rotation[k, w] * points[k] for k in range(3)) for w in range(3))
+    x, y, z = (
+        rotation[0, w] * points[0] + rotation[1, w] * points[1] + rotation[2, w] * points[2]
+        for w in range(3)
+    )
     flat = np.sqrt(x * x + y * y)
     safe = np.maximum(flat, np.float32(0.1))
     c, s = x / safe, y / safe
@@ -117,15 +125,17 @@ def _block(
     half = rotation * np.float32(0.5)
     radial = [half[k, 0] * c + half[k, 1] * s for k in range(3)]
     sideways = [half[k, 1] * c - half[k, 0] * s for k in range(3)]
-    deep, wide = (sum(np.abs(v) for v in values) for values in (radial, sideways))
-    tall = np.abs(half[:, 2]).sum()
+    deep, wide = (np.abs(a) + np.abs(b) + np.abs(c) for a, b, c in (radial, sideways))
+    deep, wide = deep + SLACK, wide + SLACK
+    tall = np.abs(half[:, 2]).sum() + SLACK
     beside = flat > deep * np.float32(1.1)
-    near = np.where(beside, flat - deep, np.float32(1.0))
+    near = np.where(beside, flat - deep, ON_AXIS)
     far = np.sqrt((flat + deep) ** 2 + wide * wide)
 
     step = np.float32(2.0 * np.pi / count)
     middle = np.arctan2(y, x) / step
     reach = wide / near / step * (1 + MARGIN) + np.abs(middle) * MARGIN + MARGIN
+    reach = np.minimum(reach, np.float32(count))
     first, last = np.ceil(middle - reach), np.floor(middle + reach)
     columns = np.minimum(last - first + 1, count).astype(np.int32)
     high = table.bins(_slope(z + tall, near, far))
@@ -138,9 +148,7 @@ def _block(
         flat, z, radial, sideways, wide, half[:, 2], table, middle, step
     )
     least = np.where(beside, np.minimum(inner_rows * inner_columns, most), 0)
-    channels = np.int32(table.upto[-1])
-    row, rows = np.where(beside, row, 0), np.where(beside, rows, channels)
-    columns = np.where(beside, columns, np.int32(count))
+    columns = np.where(beside, columns, np.int32(count))  # it surrounds the sensor's axis
     return least, rows * columns, row, rows, first.astype(np.int32), columns
 
 
@@ -161,11 +169,12 @@ def _inner(
 ) -> tuple[Counts, Counts]:
     """Rows and columns of the inner window."""
     safe = np.maximum(wide, np.float32(1e-6))
-    skew = sum(np.sign(b) * a for a, b in zip(radial, sideways, strict=True)) / safe
+    a, b, c = (np.copysign(r, r * s) for r, s in zip(radial, sideways, strict=True))
+    skew = (a + b + c) / safe
     tilt: list[Singles] = [
         np.float32(2) * np.abs(b + skew * a) for a, b in zip(radial, sideways, strict=True)
     ]
-    a, b = _slice_window(tilt, np.abs(2 * up))
+    a, b = (np.maximum(side - SLACK, 0) for side in _slice_window(tilt, np.abs(2 * up)))
     drift = np.abs(skew) * a
     near, far = flat - drift, np.sqrt((flat + drift) ** 2 + a * a)
     near = np.maximum(near, np.float32(1e-3))
@@ -182,17 +191,17 @@ def _inner(
 
 
 def _slice_window(tilt: list[Singles], up: Singles) -> tuple[Singles, Singles]:
-    """Half width and half height of a rectangle in the slice, the largest of a few.
+    """Half width and half height of a rectangle in the slice, the larger of a few.
 
     The slice is where ``|s tilt_k + u up_k| <= 1/2`` for the three axes k of the cube.
     """
-    tallest = np.float32(0.5) / up.max()
-    width = height = area = np.zeros_like(tilt[0])
-    for share in SLICE_HEIGHTS:
-        b = np.float32(share) * tallest
-        a = np.full_like(area, np.inf)
-        for t, u in zip(tilt, up, strict=True):
-            a = np.minimum(a, (np.float32(0.5) - b * u) / np.maximum(t, np.float32(1e-9)))
+    half, none = np.float32(0.5), np.float32(1e-9)
+    widest = half / np.maximum(np.maximum(np.maximum(tilt[0], tilt[1]), tilt[2]), none)
+    width = height = area = np.zeros_like(widest)
+    for share in SLICE_WIDTHS:
+        a = widest * np.float32(share)
+        rooms = [(half - a * t) / max(u, none) for t, u in zip(tilt, up, strict=True)]
+        b = np.minimum(np.minimum(rooms[0], rooms[1]), rooms[2])
         better = a * b > area
         width, height = np.where(better, a, width), np.where(better, b, height)
         area = np.maximum(area, a * b)

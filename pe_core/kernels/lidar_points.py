@@ -122,20 +122,56 @@ def windows_of(offsets: Floats, half: float, ground_from_sensor: Floats) -> Wind
     )
 
 
+class VoxelPoints:
+    """Voxels of a grid as points to count beams through.
+
+    Parameters
+    ----------
+    index : (V, 3) int
+        Which voxels.
+    """
+
+    def __init__(self, index: Ints) -> None:
+        self.centers = index + 0.5
+        self._columns = [np.ascontiguousarray(c, dtype=np.float32) for c in self.centers.T]
+
+    def __len__(self) -> int:
+        return len(self.centers)
+
+    def offsets(self, position: Floats, some: Ints | slice = slice(None)) -> Floats:
+        """Centres (V, 3) of some voxels seen from a position (3,), in voxel sides."""
+        return self.centers[some] - position
+
+    def offsets_single(self, position: Floats) -> list[Singles]:
+        """The same for all voxels in single precision, a (V,) array an axis.
+
+        Centres are exact in single precision; the position's whole part is taken off first, so
+        that its fraction keeps its digits.
+        """
+        whole = np.floor(position)
+        rest = (position - whole).astype(np.float32)
+        return [
+            (column - np.float32(w)) - r
+            for column, w, r in zip(self._columns, whole, rest, strict=True)
+        ]
+
+
 def count_beams(
-    offsets: Floats,
+    voxels: VoxelPoints,
+    position: Floats,
     lattice: Lattice,
     ground_from_sensor: Floats,
     directions: Floats,
     ends: Floats,
     enough: int | None = None,
 ) -> Ints:
-    """Count the beams through unit cubes.
+    """Count the beams through voxels.
 
     Parameters
     ----------
-    offsets : (V, 3) float
-        Cube centres seen from the sensor, ground axes, in voxel sides.
+    voxels : VoxelPoints
+    position : (3,) float
+        The sensor, seen from the grid's lowest corner, in voxel sides (`ties.position_in_voxels`).
     lattice : Lattice
     ground_from_sensor : (3, 3) float
     directions : (B, 3) float
@@ -151,16 +187,18 @@ def count_beams(
     (V,) int
     """
     if lattice.table is None:
+        offsets = voxels.offsets(position)
         voxel, beam = lattice.candidates(windows_of(offsets, 0.5, ground_from_sensor))
         return _count_pairs(offsets, directions, ends, voxel, beam)
-    points = [np.ascontiguousarray(w, dtype=np.float32) for w in offsets.T]
+    points = voxels.offsets_single(position)
     bounds = bracket(points, ground_from_sensor, lattice.table, lattice.count)
     counts = bounds.least.astype(np.int64)
     counts[_may_end_early(points, bounds, lattice, ends)] = 0
     limit = np.iinfo(np.int64).max if enough is None else enough
     doubtful = np.flatnonzero((counts < bounds.most) & (counts < limit))
     voxel, beam = lattice.window_beams(bounds, doubtful)
-    counts[doubtful] = _count_pairs(offsets[doubtful], directions, ends, voxel, beam)
+    offsets = voxels.offsets(position, doubtful)
+    counts[doubtful] = _count_pairs(offsets, directions, ends, voxel, beam)
     return counts
 
 

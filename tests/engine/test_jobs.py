@@ -83,7 +83,7 @@ def test_result_files_hold_the_run(tmp_path):
         "study.toml",
         "vehicle.npz",
     ]
-    rows = list(csv.DictReader((tmp_path / "history.csv").open()))
+    rows = list(csv.DictReader((tmp_path / "history.csv").read_text().splitlines()))
     assert len(rows) == len(outcome.history)
     assert float(rows[-1]["roof.z_m"]) == outcome.history[-1].rig.sensors[0].pose.position[2]
     again = pe.load_study(tmp_path / "study.toml")

@@ -5,8 +5,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.kernels.lidar_grid import MOST, BeamGrid
-from pe_core.kernels.lidar_points import Lattice, count_beams
-from pe_core.kernels.ties import offsets_in_voxels, without_zeros
+from pe_core.kernels.lidar_points import Lattice, VoxelPoints, count_beams
+from pe_core.kernels.ties import position_in_voxels, without_zeros
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 4), 0.2)
@@ -47,10 +47,11 @@ def counts_of(sensor, vehicle, space, times=1):
     return grid.counts
 
 
-def point_counts(sensor, vehicle, centers):
+def point_counts(sensor, vehicle, index):
     field = pe.beam_field(sensor, vehicle)
     return count_beams(
-        offsets_in_voxels(centers, sensor.pose.position, SPACE.interval),
+        VoxelPoints(index),
+        position_in_voxels(sensor.pose.position, SPACE.origin, SPACE.interval),
         Lattice.of(sensor.model),
         sensor.pose.ground_from_sensor,
         without_zeros(field.directions),
@@ -80,7 +81,7 @@ def test_grid_and_points_equal_the_definition(pose, with_vehicle):
     defined = pe.measure(sensor, centers, SPACE.interval, vehicle)
     assert np.count_nonzero(defined) > 100
     assert counts[tuple(index.T)].tolist() == np.minimum(defined, MOST).tolist()
-    assert point_counts(sensor, vehicle, centers).tolist() == defined.tolist()
+    assert point_counts(sensor, vehicle, index).tolist() == defined.tolist()
 
 
 @pytest.mark.parametrize("kind", LIDARS)
@@ -92,7 +93,7 @@ def test_every_kind_of_lidar(kind):
     centers = SPACE.center_of(index)
     defined = pe.measure(sensor, centers, SPACE.interval, shapes.box_car())
     assert counts[tuple(index.T)].tolist() == defined.tolist()
-    assert point_counts(sensor, shapes.box_car(), centers).tolist() == defined.tolist()
+    assert point_counts(sensor, shapes.box_car(), index).tolist() == defined.tolist()
 
 
 def test_every_voxel_of_the_grid_equals_the_points_kernel():
@@ -100,7 +101,7 @@ def test_every_voxel_of_the_grid_equals_the_points_kernel():
     sensor = pe.Sensor("s", lidar("offsets"), pe.Pose.from_degrees((0.0, 0.0, 1.8), (0, 1.5, 45.0)))
     counts = grid_counts(sensor, shapes.box_car())
     index = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
-    points = point_counts(sensor, shapes.box_car(), SPACE.center_of(index))
+    points = point_counts(sensor, shapes.box_car(), index)
     differing = np.count_nonzero(points != counts.reshape(-1))
     assert differing <= SPACE.size // 10_000  # voxels grazed within rounding
     assert differing == 0  # and on this pose there are none

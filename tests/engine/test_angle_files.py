@@ -1,0 +1,315 @@
+"""Channel angles from files: every layout, the sign of its azimuth, and one line for what is wrong.
+
+Directions are checked as a hand would: at azimuth step 0 a counter-clockwise offset points left, to
+positive y.
+"""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import catalog
+from pe_core.angle_files import read_angles
+from pe_core.study_file import study_from_dict, study_to_dict
+
+MODEL = {"kind": "lidar", "azimuth_step_deg": 90, "max_range_m": 100}
+
+HESAI = "Laser id,Elevation,Azimuth\n1,14.985,0.186\n2,13.283,0.185\n3,-1.5,-3.13\n"
+HESAI_DEG = [(14.985, -0.186), (13.283, -0.185), (-1.5, 3.13)]
+
+FLOW = """\
+lasers:
+- {dist_correction: 0.0, dist_correction_x: 0.0,
+  focal_slope: 0.0, laser_id: 0, rot_correction: -0.1108982206717197, vert_correction: -0.25,
+  vert_offset_correction: 0.0}
+- {dist_correction: 0.0, laser_id: 1, rot_correction: 0.04768239516448509, vert_correction: 0.1}
+num_lasers: 2
+distance_resolution: 0.002
+"""
+BLOCK = """\
+distance_resolution: 0.002
+lasers:
+- dist_correction: 0.100000001490116
+  laser_id: 0
+  rot_correction: -0.1108982206717197
+  two_pt_correction_available: true
+  vert_correction: -0.25
+- dist_correction: 0.28
+  laser_id: 1
+  rot_correction: 0.04768239516448509
+  vert_correction: 1.0e-1
+num_lasers: 2
+"""
+VELODYNE_DEG = [(-14.323944878, -6.354), (5.729577951, 2.732)]
+
+
+def db_xml(lasers, enabled=None):
+    """A db.xml of (id, vertCorrection, rotCorrection) as texts."""
+    px = "".join(
+        f"<item><px><id_>{i}</id_><rotCorrection_>{rot}</rotCorrection_>"
+        f"<vertCorrection_> {vert} </vertCorrection_><distCorrection_>1</distCorrection_></px></item>"
+        for i, vert, rot in lasers
+    )
+    flags = "".join(f"<item>{flag}</item>" for flag in enabled or "")
+    switches = "" if enabled is None else f"<enabled_><count>9</count>{flags}</enabled_>"
+    head = '<?xml version="1.0" encoding="UTF-8"?>\n<!DOCTYPE boost_serialization>\n'
+    points = f"<points_><count>9</count>{px}</points_>"
+    return f"{head}<boost_serialization><DB>{switches}{points}</DB></boost_serialization>"
+
+
+XML = db_xml([(0, -7.25, -4.5), (1, 2, 0), (2, "1e1", 6.5)])
+XML_DEG = [(-7.25, -4.5), (2.0, 0.0), (10.0, 6.5)]
+
+
+@pytest.fixture
+def write(tmp_path):
+    def to_file(text, name="angles.txt"):
+        path = tmp_path / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    return to_file
+
+
+def degrees(path):
+    return [(c.elevation_deg, c.azimuth_offset_deg) for c in read_angles(path)]
+
+
+PLAIN = [(-15.0, 1.5), (0.0, 0.0), (2.25, -3.0)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "elevation,azimuth_offset\n-15,1.5\n0,0\n2.25,-3\n",
+        "azimuth;elevation_deg\n1.5;-15\n0;0\n-3;2.25",
+        "Vertical (deg)\tHorizontal [deg]\n-15\t1.5\n0\t0\n2.25\t-3\n",
+        "Vertical angle,note,Azimuth offset [°]\n-15,low,1.5\n0,,0\n2.25,,-3,\n",
+        '"elevation","azimuth_offset_deg"\n"-15","1.5"\n"0","0"\n"2.25","-3"\n',
+        "-15 1.5\n 0   0\n+2.25 -3.0e0\n",
+        "# a comment\r\n\r\n-15, 1.5  # lowest\r\n   \r0,0\n2.25,-3.\r",
+        "\ufeffelevation,azimuth\n-15,1.5\n0,-0.0\n2.25,-3\n",
+        "channel,elevation_deg,azimuth_offset_deg\n2,2.25,-3\n0,-15,1.5\n1,0,0\n",
+        "ring elevation azimuth_deg\n1 -15 1.5\n3 2.25 -3\n2 0 0\n",
+    ],
+)
+def test_columns_are_elevation_and_counter_clockwise_offset(write, text):
+    assert degrees(write(text)) == PLAIN
+
+
+@pytest.mark.parametrize("text", ["5\n-0.125\n", "elevation\n5\n-0.125", "5,\n-0.125,\n"])
+def test_without_offsets_they_are_zero(write, text):
+    assert degrees(write(text)) == [(5.0, 0.0), (-0.125, 0.0)]
+    assert str(degrees(write("0\n"))) == "[(0.0, 0.0)]"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        HESAI,
+        HESAI.replace("Laser id", "Channel"),
+        HESAI.replace("\n", "\r\n"),
+        "EEFF,1,1\n" + HESAI,
+        "eeff,1,1\n" + HESAI + "ab" * 32 + ",,\n",
+        HESAI + "0" * 64,
+        "Channel,Elevation,Azimuth,Distance\n3,-1.5,-3.13,0\n1,14.985,0.186,0\n2,13.283,0.185,0",
+    ],
+)
+def test_hesai_offsets_are_clockwise_and_are_turned(write, text):
+    assert degrees(write(text)) == HESAI_DEG
+
+
+def test_hesai_and_the_catalogue_agree_on_the_sign(write):
+    """The OT128's first two lines in its maker's file are those of HESAI."""
+    ours = catalog.load("Hesai OT128 (Pandar128E4X)")
+    read = degrees(write(HESAI))[:2]
+    assert np.degrees(ours.elevations[:2]) == pytest.approx([e for e, _ in read])
+    assert np.degrees(ours.azimuth_offsets[:2]) == pytest.approx([a for _, a in read])
+
+
+def test_no_negative_zero_from_turning_the_sign(write):
+    assert str(degrees(write("Channel,Elevation,Azimuth\n1,0,0\n"))) == "[(0.0, 0.0)]"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        FLOW,
+        BLOCK,
+        FLOW.replace("\n-", "\n  -").replace("\n  f", "\n    f").replace("\n  v", "\n    v"),
+        "---\n# unit 7\n" + BLOCK.replace("\n", "\r\n"),
+        FLOW.replace("num_lasers: 2\n", ""),
+        BLOCK.replace("- dist_correction: 0.28\n", "-\n  # the upper one\n"),
+    ],
+)
+def test_velodyne_yaml_is_in_radians_and_counter_clockwise(write, text):
+    assert degrees(write(text)) == VELODYNE_DEG
+
+
+def test_velodyne_xml_is_in_degrees_and_counter_clockwise(write):
+    assert degrees(write(XML)) == XML_DEG
+    assert degrees(write("\ufeff\n" + XML.split("\n", 1)[1])) == XML_DEG
+    assert degrees(write(db_xml([(1, 2, 0), (2, 10, 6.5), (0, -7.25, -4.5)]))) == XML_DEG
+
+
+def test_velodyne_lasers_that_are_off_are_left_out(write):
+    lasers = [(0, -7.25, -4.5), (1, 2, 0), (2, 10, 6.5)]
+    assert degrees(write(db_xml(lasers, "10100"))) == [XML_DEG[0], XML_DEG[2]]
+
+
+def driver_direction(rotation, correction, elevation):
+    """Where the ROS driver puts a return: its formulas with all offsets in metres zero."""
+    cos_rot = math.cos(rotation) * math.cos(correction) + math.sin(rotation) * math.sin(correction)
+    sin_rot = math.sin(rotation) * math.cos(correction) - math.cos(rotation) * math.sin(correction)
+    x, y = math.cos(elevation) * sin_rot, math.cos(elevation) * cos_rot
+    return y, -x, math.sin(elevation)
+
+
+def test_velodyne_beams_are_where_the_driver_puts_them(write):
+    write(FLOW, "unit.yaml")
+    lidar = catalog.from_table("own", MODEL | {"angles": "unit.yaml"}, write(FLOW).parent)
+    corrections = [(-0.1108982206717197, -0.25), (0.04768239516448509, 0.1)]
+    for c, (rotation, elevation) in enumerate(corrections):
+        for j in range(4):  # our azimuths grow counter-clockwise, the driver's clockwise
+            expected = driver_direction(-j * math.pi / 2, rotation, elevation)
+            assert lidar.directions[4 * c + j] == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "side"),
+    [
+        ("elevation,azimuth_offset\n0,5\n", 1),
+        ("Laser id,Elevation,Azimuth\n1,0,5\n", -1),
+        (db_xml([(0, 0, 5)]), 1),
+        (f"lasers:\n- {{laser_id: 0, vert_correction: 0, rot_correction: {math.radians(5)}}}", 1),
+    ],
+    ids=["columns", "hesai", "xml", "yaml"],
+)
+def test_which_side_five_degrees_are(write, text, side):
+    path = write(text)
+    lidar = catalog.from_table("own", MODEL | {"angles": path.name}, path.parent)
+    expected = (math.cos(math.radians(5)), side * math.sin(math.radians(5)), 0.0)
+    assert lidar.directions[0] == pytest.approx(expected, abs=1e-15)
+
+
+def study(angles, **more):
+    model = MODEL | {"azimuth_step_deg": 0.2, "angles": angles} | more
+    return {"sensor": [{"name": "own", "model": model, "position": [0, 0, 1.8]}]}
+
+
+@pytest.mark.parametrize("text", [HESAI, FLOW, XML, "-15 1.5\n0.1234567890123 7e-11\n"])
+def test_a_saved_study_stands_alone_with_the_same_beams_to_the_bit(write, tmp_path, text):
+    folder = write(text, "unit.dat").parent
+    first = study_from_dict(study("unit.dat"), folder=folder)
+    (tmp_path / "elsewhere").mkdir()
+    pe.export_study(first, tmp_path / "elsewhere" / "copy.toml")
+    (folder / "unit.dat").unlink()
+    copy = pe.load_study(tmp_path / "elsewhere" / "copy.toml")
+    assert np.array_equal(copy.rig["own"].model.directions, first.rig["own"].model.directions)
+    assert study_to_dict(copy) == study_to_dict(first)
+    assert "angles" not in study_to_dict(first)["sensor"][0]["model"]
+
+
+def test_the_file_is_beside_the_study(write):
+    write("5 1\n", "unit.dat")
+    path = write(
+        '[[sensor]]\nname = "own"\nposition = [0, 0, 1]\n[sensor.model]\nkind = "lidar"\n'
+        'angles = "unit.dat"\nazimuth_step_deg = 90\nmax_range_m = 50\n',
+        "study.toml",
+    )
+    model = pe.load_study(path).rig["own"].model
+    assert model.elevations.tolist() == [math.radians(5)]
+    assert model.azimuth_offsets.tolist() == [math.radians(1)]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "file: expected channel angles, found an empty file"),
+        (" \r\n\n", "file: expected channel angles, found an empty file"),
+        ("# nothing\n", "file: expected channel angles, found comments alone"),
+        ("elevation,azimuth\n", "file: expected at least one channel, found a header alone"),
+        ("hello\n", "line 1: expected a column named elevation, .*found 'hello'"),
+        ("azimuth\n1\n", "line 1: expected a column named elevation, .*found 'azimuth'"),
+        ("\x00\x01PK", "line 1: expected a column named elevation"),
+        ("elevation,vertical\n1,2\n", "line 1: expected one column of the elevation, found"),
+        ("elevation,azimut\n1,2\n", "line 1: .*azimuth_offset_deg as the name.*found 'azimut'"),
+        ("elevation_rad\n1\n", "line 1: expected a column named elevation"),
+        ("1,2,3\n", "line 1: expected one or two columns .*, found 3 columns"),
+        ("1,2\n1\n", "line 2: expected as many columns as in line 1, 2, found 1"),
+        ("1\n\n1,2\n", "line 3: expected as many columns as in line 1, 1, found 2"),
+        ("elevation\n1,5\n", "line 2: expected no more columns than the header, 1, found 2"),
+        ("elevation,azimuth\n1\n", "line 2: .*for the azimuth offset, found nothing"),
+        ("1\n# c\ntwo\n", "line 3: expected a finite number.*for the elevation, found 'two'"),
+        ("elevation;azimuth\n1,5;2\n", "line 2: .*with a decimal point.*found '1,5'"),
+        ("1\n1_0\n", "line 2: expected a finite number.*found '1_0'"),
+        ("1\n0x1\n", "line 2: expected a finite number.*found '0x1'"),
+        ("nan\n", "line 1: expected a finite number.*found 'nan'"),
+        ("0 -inf\n", "line 1: expected a finite number.*azimuth offset, found '-inf'"),
+        ("1e999\n", "line 1: expected a finite number.*found '1e999'"),
+        ("0\n-90.5\n", r"line 2: expected an elevation within \+-90 degrees, found -90.5"),
+        ("0 180.5\n", r"line 1: expected an azimuth offset within \+-180 degrees, found 180.5"),
+        ("id elevation\n1 0\n1 2\n", "line 3: expected a channel id used once, found 1 again"),
+        ("id elevation\na 0\n", "line 2: expected a whole number for the channel's id, found 'a'"),
+        ("id elevation\n0 0\n2 1\n", "channel 1: expected angles for it, .*from 0, found none"),
+        (HESAI + "2,1,1\n", "line 5: .*used once, found 2 again, after line 3"),
+        (HESAI + "5,1,1\n", "channel 4: expected angles for it, .*from 1, found none"),
+        (HESAI.replace("\n1,", "\n0,"), "line 2: expected a channel id >= 1, found 0"),
+        (HESAI.replace("13.283", "91"), r"line 3: expected an elevation within \+-90 degrees"),
+        (HESAI + "4,1\n", "line 5: .*azimuth offset, found nothing"),
+        (HESAI.replace("\n3,", "\nbeef,"), "line 4: expected a whole number .*found 'beef'"),
+        ("Laser id,Elevation,Azimuth\n" + "a" * 64, "file: expected at least one channel"),
+        ("lasers:\n", "lasers: expected at least one laser, found none"),
+        ("lasers: [1]\n", r"line 1: expected lasers in lines of their own, found '\[1\]'"),
+        ("lasers:\n  x: 1\n", "line 2: expected a laser, after a dash, found 'x: 1'"),
+        (FLOW.replace(".0}\n- ", ".0\n- "), "line 2: expected a laser between { and }"),
+        (FLOW.replace("laser_id: 0,", ""), "line 2: expected a value of laser_id, found none"),
+        (FLOW.replace("-0.25", ""), "line 2: expected a value of vert_correction, found none"),
+        (FLOW.replace("-0.25", ".nan"), "line 2: expected a finite number.*vert_corr.*'.nan'"),
+        (FLOW.replace("-0.25", "-14.3"), r"line 2: expected an elevation within \+-90 degrees"),
+        (FLOW.replace("laser_id: 1", "laser_id: 0"), "line 5: .*found 0 again, after line 2"),
+        (FLOW.replace("laser_id: 1", "laser_id: 2"), "channel 1: expected angles for it"),
+        (FLOW.replace("laser_id: 1", "laser_id: 1.5"), "line 5: expected a whole number.*'1.5'"),
+        (FLOW.replace("lasers: 2", "lasers: 3"), "lasers: expected 3 of them, .*found 2"),
+        (BLOCK.replace("laser_id: 1", "laser_id"), "line 8: expected key: value, .*'laser_id'"),
+        (BLOCK.replace("laser_id: 1", "laser_id: 1\n  laser_id: 1"), "line 8: .*each key once"),
+        (XML[:-9], "file: expected well-formed XML, found"),
+        ("<a>\n</a>", "file: expected Velodyne's db.xml, with lasers in <px>, found <a>"),
+        (XML.replace("<id_>1</id_>", ""), "laser in <px> 2: expected a value of id_, found none"),
+        (XML.replace("-7.25", " "), "laser 0: expected a value of vertCorrection_, found none"),
+        (XML.replace("-7.25", "low"), "laser 0: expected a finite number.*found 'low'"),
+        (XML.replace("-7.25", "-97.25"), r"laser 0: expected an elevation within \+-90"),
+        (XML.replace("<id_>1", "<id_>2"), "laser 2: expected a channel id used once"),
+        (XML.replace("<id_>2", "<id_>3"), "channel 2: expected angles for it, .*from 0"),
+        (db_xml([(0, 0, 0), (1, 0, 0)], "1"), "enabled_: expected 0 or 1 for each of 2 lasers"),
+        (db_xml([(0, 0, 0)], "2"), "enabled_: expected 0 or 1 for each laser, found '2'"),
+        (db_xml([(0, 0, 0)], "0"), "enabled_: expected at least one laser enabled, found none"),
+        (db_xml([(0, 0, 0)], "1001"), "laser 3: expected angles, as it is enabled, found none"),
+    ],
+)
+def test_bad_files_are_one_clear_line(write, text, message):
+    path = write(text)
+    with pytest.raises(pe.InputError, match="^" + re.escape(f"{path}: ") + message) as caught:
+        read_angles(path)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (study("none.csv"), r"none\.csv: file: expected an existing file, found no such file"),
+        (study("angles.txt"), r"angles\.txt: line 2: expected a finite number.*found 'x'"),
+        (study(3), "expected the name of a file, found 3"),
+        (study(""), "expected the name of a file, found ''"),
+        (study("a", elevations_deg=[1]), "either a file of angles or elevations_deg, found both"),
+        (study("a", azimuth_offsets_deg=[1]), "or azimuth_offsets_deg, found both"),
+        (study("."), "expected a readable file"),
+    ],
+)
+def test_a_study_names_its_file_its_field_and_the_angles_file(write, data, message):
+    folder = write("1\nx\n").parent
+    with pytest.raises(pe.InputError, match=r"^study\.toml: sensor\[0\]\.angles: .*" + message):
+        study_from_dict(data, "study.toml", folder)

@@ -52,12 +52,31 @@ class Fusion:
         return precision_of(m, self.model.camera)
 
     def entropies(self, groups: Sequence[Measurement]) -> tuple[Floats, NDArray[np.bool_]]:
-        """Entropy H of every voxel [nats] and whether any group sees it."""
-        kind, m = groups[0]
-        seen = m > 0
-        if len(groups) == 1 and kind == "lidar":
-            return np.take(self._entropy, m, mode="clip"), seen
-        for _, more in groups[1:]:
-            seen = seen | (more > 0)
+        """Entropy H of every voxel [nats] and whether any group sees it.
+
+        Where only one LiDAR group sees anything, H is looked up; elsewhere it is computed. A blind
+        camera changes nothing, unless the letter is asked for.
+        """
+        tabled = [g for g in groups if g[0] == "lidar"][:1] if self._blind_is_silent else []
+        others = [g for g in groups if not any(g is t for t in tabled)]
+        if tabled:
+            entropies = np.take(self._entropy, tabled[0][1], mode="clip")
+            seen = tabled[0][1] > 0
+        else:
+            entropies = np.full(groups[0][1].shape, self._entropy[0])
+            seen = np.zeros(entropies.shape, bool)
+        if others:
+            voiced = np.logical_or.reduce([m > 0 for _, m in others])
+            seen |= voiced
+            where = voiced if self._blind_is_silent else np.ones_like(voiced)
+            entropies[where] = self._computed([(kind, m[where]) for kind, m in groups])
+        return entropies, seen
+
+    @property
+    def _blind_is_silent(self) -> bool:
+        return self.model.blind == "floor"
+
+    def _computed(self, groups: Sequence[Measurement]) -> Floats:
+        """Entropy by the equations."""
         precisions = [self.precision(m, kind) for kind, m in groups]
-        return entropy_of(late_fusion(precisions, self.model.blind)), seen
+        return entropy_of(late_fusion(precisions, self.model.blind))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .entropy import H_BLIND
 from .fusion import Fusion
-from .kernels.camera_grid import pixels_in_planes
+from .kernels.camera_grid import CameraPlanes
 from .kernels.lidar_grid import BeamGrid
 from .occlusion import beam_counts, beam_field
 from .prior import ClassDensity
@@ -102,7 +102,7 @@ class GridScorer:
         seen = None
         if self._vehicle is not None:
             seen = self._vehicle.seen_from(pose.position, "camera")
-        return lambda planes: pixels_in_planes(camera, pose, space, planes, seen)
+        return CameraPlanes(camera, pose, space, seen).areas
 
     def _each_block(self, work: Callable[[slice], object]) -> list:
         """Work on runs of x-planes; the results are in the order of the planes."""

@@ -46,7 +46,7 @@ def save_study(study: Study, path: str | Path) -> None:
 
 
 def study_from_dict(data: Any, source: str = "study", folder: Path | None = None) -> Study:
-    """Build a study from the plain data of its file; mesh paths are relative to `folder`."""
+    """Build a study from the plain data of its file; paths in it are relative to `folder`."""
     table = Table(data, source)
     try:
         study = _read_study(table, folder or Path())
@@ -91,7 +91,7 @@ def _read_study(table: Table, folder: Path) -> Study:
     if not sensors:
         raise table.error("sensor", "at least one [[sensor]]", "none")
     default_free = _axes(search, "free", PAPER_FREE)
-    mounted = [_read_sensor(s) for s in sensors]
+    mounted = [_read_sensor(s, folder) for s in sensors]
     free, limits = {}, {}
     for sensor, own in zip(mounted, sensors, strict=True):
         free[sensor.name] = _axes(own, "free", default_free)
@@ -165,7 +165,7 @@ def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, str | Non
     return Vehicle(read.triangles, read.parts, read.part_names, glass, clearance), mesh
 
 
-def _read_sensor(table: Table) -> Sensor:
+def _read_sensor(table: Table, folder: Path) -> Sensor:
     name = table.text("name")
     position = table.numbers("position", 3)
     rotation = table.numbers("rotation", 3, (0.0, 0.0, 0.0))
@@ -173,7 +173,9 @@ def _read_sensor(table: Table) -> Sensor:
     try:
         pose = Pose.from_degrees(position, rotation)
         intrinsics = (
-            catalog.load(model) if isinstance(model, str) else catalog.from_table(name, model)
+            catalog.load(model)
+            if isinstance(model, str)
+            else catalog.from_table(name, model, folder)
         )
     except InputError as error:
         raise table.error(error.field, error.expected, error.found) from None

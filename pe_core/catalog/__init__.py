@@ -8,10 +8,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..angle_files import read_angles
 from ..errors import InputError
 from ..sensors import Camera, Lidar
 
@@ -71,22 +73,30 @@ def load(name: str) -> Lidar | Camera:
     return from_table(name, entry.table)
 
 
-def from_table(name: str, table: Mapping[str, Any]) -> Lidar | Camera:
+def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) -> Lidar | Camera:
     """Build a sensor from a catalogue table, or a user's own of the same form.
 
     LiDAR: ``kind = "lidar"``, ``elevations_deg``, ``azimuth_count`` or ``azimuth_step_deg``,
     ``max_range_m``; optional ``azimuth_offsets_deg`` (counter-clockwise from above) and
-    ``horizontal_fov_deg``. Camera: ``kind = "camera"``, ``width``, ``height``, ``hfov_deg``.
+    ``horizontal_fov_deg``. In place of elevations and offsets, ``angles``: a file that
+    `read_angles` reads, relative to `folder`. Camera: ``kind = "camera"``, ``width``,
+    ``height``, ``hfov_deg``.
+
+    Raises
+    ------
+    InputError
+        When a value or the file of angles is wrong.
     """
     kind = table.get("kind")
     if kind == "lidar":
-        return _lidar(name, table)
+        return _lidar(name, table, folder or Path())
     if kind == "camera":
         return _camera(name, table)
     raise InputError(name, "kind", '"lidar" or "camera"', repr(kind))
 
 
 LIDAR_KEYS = {
+    "angles",
     "elevations_deg",
     "azimuth_count",
     "azimuth_step_deg",
@@ -98,12 +108,9 @@ CAMERA_KEYS = {"width", "height", "hfov_deg"}
 COMMON_KEYS = {"kind", "source", "note"}
 
 
-def _lidar(name: str, table: Mapping[str, Any]) -> Lidar:
+def _lidar(name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
     _check_keys(name, table, LIDAR_KEYS)
-    elevations = _radians(name, table, "elevations_deg")
-    offsets = (
-        _radians(name, table, "azimuth_offsets_deg") if "azimuth_offsets_deg" in table else None
-    )
+    elevations, offsets = _channels(name, table, folder)
     fov = table.get("horizontal_fov_deg", (-180.0, 180.0))
     if not (isinstance(fov, (list, tuple)) and len(fov) == 2):
         raise InputError(name, "horizontal_fov_deg", "two angles", repr(fov))
@@ -115,6 +122,38 @@ def _lidar(name: str, table: Mapping[str, Any]) -> Lidar:
         _number(name, "max_range_m", table.get("max_range_m")),
         offsets,  # type: ignore[arg-type]
         (low, high),
+    )
+
+
+def _channels(
+    name: str, table: Mapping[str, Any], folder: Path
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """(C,) elevations and, if there are any, (C,) azimuth offsets [rad]."""
+    if "angles" in table:
+        return _channels_of_file(name, table, folder)
+    elevations = _radians(name, table, "elevations_deg")
+    if "azimuth_offsets_deg" not in table:
+        return elevations, None
+    return elevations, _radians(name, table, "azimuth_offsets_deg")
+
+
+def _channels_of_file(
+    name: str, table: Mapping[str, Any], folder: Path
+) -> tuple[np.ndarray, np.ndarray]:
+    file = table["angles"]
+    if not isinstance(file, str) or not file:
+        raise InputError(name, "angles", "the name of a file", repr(file))
+    for key in ("elevations_deg", "azimuth_offsets_deg"):
+        if key in table:
+            raise InputError(name, "angles", f"either a file of angles or {key}", "both")
+    try:
+        channels = read_angles(folder / file)
+    except InputError as error:  # the file stays in the message when a study puts itself in front
+        field = f"angles: {error.source}: {error.field}"
+        raise InputError(name, field, error.expected, error.found) from None
+    return (
+        np.array([math.radians(c.elevation_deg) for c in channels]),
+        np.array([math.radians(c.azimuth_offset_deg) for c in channels]),
     )
 
 

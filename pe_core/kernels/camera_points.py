@@ -51,7 +51,7 @@ def pixel_areas(
     area[near] = clipped_pixel_area(camera, pose, centers[near], side)
     if seen is not None:
         visible = np.flatnonzero(area)
-        area[visible[_hidden(seen, offsets[visible])]] = 0.0
+        area[visible[hidden(seen, offsets[visible])]] = 0.0
     return area
 
 
@@ -65,7 +65,7 @@ def _flat_area(camera: Camera, pose: Pose, offsets: Floats, depth: Floats, side:
     return (camera.focal_px * side) ** 2 * total
 
 
-def _hidden(seen: SeenMesh, offsets: Floats) -> NDArray[np.bool_]:
+def hidden(seen: SeenMesh, offsets: Floats) -> NDArray[np.bool_]:
+    """Whether the vehicle stands before points (V, 3) seen from the camera, ground axes [m]."""
     distance = np.sqrt(dot(offsets, offsets))
-    hidden: NDArray[np.bool_] = seen.first_hit(offsets / distance[:, None]).distance < distance
-    return hidden
+    return seen.first_hit(offsets / distance[:, None]).distance < distance

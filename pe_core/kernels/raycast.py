@@ -19,6 +19,7 @@ from ..geometry import cross, dot
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Window = tuple[Ints, Ints]
 
 CELLS = 64
 """Bins along a side of a cube face: 6 * 64**2 fits 16 bits, which NumPy sorts by radix."""
@@ -66,6 +67,7 @@ class SeenTriangles:
     """
 
     def __init__(self, triangles: Floats) -> None:
+        self.triangles = triangles
         nearest = _least_distance(triangles)
         self._order = np.argsort(nearest, kind="stable")
         self._nearest = nearest[self._order]
@@ -173,16 +175,24 @@ def _cells_on_face(corners: Floats, face: int) -> tuple[Ints, Ints]:
     axis, behind = divmod(face, 2)
     depth = -corners[axis] if behind else corners[axis]
     u, v = corners[(axis + 1) % 3], corners[(axis + 2) % 3]
-    index = np.flatnonzero(_may_be_seen(depth, u, v))
-    depth = depth[:, index]
-    iu0, iu1 = _window(depth, u[:, index])
-    iv0, iv1 = _window(depth, v[:, index])
+    index, (iu0, iu1), (iv0, iv1) = windows(depth, u, v)
     wide, high = iu1 - iu0 + 1, iv1 - iv0 + 1
     n = wide * high
     step, rows = ranges(n), np.repeat(high, n)
     row = step // rows
     first = (face * CELLS + iu0) * CELLS + iv0
     return np.repeat(first, n) + row * CELLS + (step - row * rows), np.repeat(index, n)
+
+
+def windows(depth: Floats, u: Floats, v: Floats) -> tuple[Ints, Window, Window]:
+    """Triangles, of corners (3, F), that may show in the square |u|, |v| <= depth; and where.
+
+    Returns their indices (G,), and for u and v the first and last bin (G,) of each: never fewer
+    bins than the projection touches.
+    """
+    index = np.flatnonzero(_may_be_seen(depth, u, v))
+    depth = depth[:, index]
+    return index, _window(depth, u[:, index]), _window(depth, v[:, index])
 
 
 def _may_be_seen(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
@@ -193,7 +203,7 @@ def _may_be_seen(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
     return seen
 
 
-def _window(depth: Floats, w: Floats) -> tuple[Ints, Ints]:
+def _window(depth: Floats, w: Floats) -> Window:
     """First and last bin of (3, F) corners along one coordinate.
 
     Where a corner is behind, the part in front is bounded by its farthest depth: a surface that

@@ -50,7 +50,7 @@ def db_xml(lasers, enabled=None):
     """A db.xml of (id, vertCorrection, rotCorrection) as texts."""
     px = "".join(
         f"<item><px><id_>{i}</id_><rotCorrection_>{rot}</rotCorrection_>"
-        f"<vertCorrection_> {vert} </vertCorrection_><distCorrection_>1</distCorrection_></px></item>"
+        f"<vertCorrection_> {vert} </vertCorrection_><focalSlope_>1</focalSlope_></px></item>"
         for i, vert, rot in lasers
     )
     flags = "".join(f"<item>{flag}</item>" for flag in enabled or "")
@@ -169,8 +169,8 @@ def driver_direction(rotation, correction, elevation):
 
 
 def test_velodyne_beams_are_where_the_driver_puts_them(write):
-    write(FLOW, "unit.yaml")
-    lidar = catalog.from_table("own", MODEL | {"angles": "unit.yaml"}, write(FLOW).parent)
+    folder = write(FLOW, "unit.yaml").parent
+    lidar = catalog.from_table("own", MODEL | {"angles": "unit.yaml"}, folder)
     corrections = [(-0.1108982206717197, -0.25), (0.04768239516448509, 0.1)]
     for c, (rotation, elevation) in enumerate(corrections):
         for j in range(4):  # our azimuths grow counter-clockwise, the driver's clockwise
@@ -193,6 +193,15 @@ def test_which_side_five_degrees_are(write, text, side):
     lidar = catalog.from_table("own", MODEL | {"angles": path.name}, path.parent)
     expected = (math.cos(math.radians(5)), side * math.sin(math.radians(5)), 0.0)
     assert lidar.directions[0] == pytest.approx(expected, abs=1e-15)
+
+
+def test_velodyne_and_the_catalogue_agree_on_the_sign(write):
+    """Laser 0 of the UTexas unit is channel 27 of the catalogue, which is sorted by elevation."""
+    text = "lasers:\n- {laser_id: 0, rot_correction: -0.06981317, vert_correction: -0.12493275}\n"
+    ours = catalog.load("Velodyne HDL-64E (UTexas unit)")
+    ((elevation, offset),) = degrees(write(text))
+    assert np.degrees(ours.elevations[27]) == pytest.approx(elevation, abs=5e-4)
+    assert np.degrees(ours.azimuth_offsets[27]) == pytest.approx(offset, abs=5e-4)
 
 
 def study(angles, **more):
@@ -240,8 +249,8 @@ def test_the_file_is_beside_the_study(write):
         ("elevation_rad\n1\n", "line 1: expected a column named elevation"),
         ("1,2,3\n", "line 1: expected one or two columns .*, found 3 columns"),
         ("1,2\n1\n", "line 2: expected as many columns as in line 1, 2, found 1"),
-        ("1\n\n1,2\n", "line 3: expected as many columns as in line 1, 1, found 2"),
-        ("elevation\n1,5\n", "line 2: expected no more columns than the header, 1, found 2"),
+        ("1\n\n1 2\n", "line 3: expected as many columns as in line 1, 1, found 2"),
+        ("elevation\n1 5\n", "line 2: expected no more columns than the header, 1, found 2"),
         ("elevation,azimuth\n1\n", "line 2: .*for the azimuth offset, found nothing"),
         ("1\n# c\ntwo\n", "line 3: expected a finite number.*for the elevation, found 'two'"),
         ("elevation;azimuth\n1,5;2\n", "line 2: .*with a decimal point.*found '1,5'"),

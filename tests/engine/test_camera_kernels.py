@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kernels.camera_grid import pixels_in_planes
+from pe_core.kernels.camera_grid import CameraPlanes
 from pe_core.kernels.camera_points import pixel_areas
 from tests.engine import shapes
 
@@ -29,8 +29,8 @@ def test_planes_of_the_grid_equal_the_points():
     sensor = shapes.camera(90.0, (-1.0, 0.1, 1.3), (3.0, 8.0, 20.0))
     vehicle = shapes.box_car()
     seen = vehicle.seen_from(sensor.pose.position, "camera")
-    planes = slice(40, 60)
-    block = pixels_in_planes(sensor.model, sensor.pose, space, planes, seen)
+    planes = slice(30, 60)
+    block = CameraPlanes(sensor.model, sensor.pose, space, seen).areas(planes)
     index = np.stack(np.unravel_index(np.arange(block.size), block.shape), axis=1)
     index[:, 0] += planes.start
     exact = pe.measure(sensor, space.center_of(index), 0.2, vehicle)

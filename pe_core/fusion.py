@@ -42,7 +42,7 @@ class Fusion:
             return counts
         small = np.empty(counts.shape, np.uint8)
         for plane, held in zip(counts, small, strict=True):
-            np.minimum(plane, most, out=held, casting="unsafe")
+            held[:] = np.minimum(plane, most)
         return small
 
     def precision(self, m: NDArray, kind: str) -> Floats:

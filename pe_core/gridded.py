@@ -62,7 +62,7 @@ class GridScorer:
     def entropy(self, rig: Rig) -> float:
         """Perception entropy alone."""
         whole = tuple(s.name for s in rig)
-        measured = {s.name: self._measured(s) for s in rig}
+        measured = self._measured(rig)
         blocks = self._each_block(
             lambda planes: self._sums(rig, measured, [whole], planes)[0].entropy.sum(axis=(0, 1))
         )
@@ -70,7 +70,7 @@ class GridScorer:
 
     def score(self, rig: Rig) -> Score:
         """Everything a grid score tells."""
-        measured = {s.name: self._measured(s) for s in rig}
+        measured = self._measured(rig)
         parts = parts_of(rig)
         blocks = self._each_block(lambda planes: self._reduced(rig, measured, parts, planes))
         by_class = {
@@ -90,13 +90,18 @@ class GridScorer:
             _ground_map(columns),
         )
 
-    def _measured(self, sensor: Sensor) -> MeasuredPlanes:
+    def _measured(self, rig: Rig) -> dict[str, MeasuredPlanes]:
+        """Get every sensor's measurement ready, by name."""
+        only = sum(s.kind == "lidar" for s in rig) == 1  # several are kept small
+        return {s.name: self._measured_sensor(s, only) for s in rig}
+
+    def _measured_sensor(self, sensor: Sensor, only: bool) -> MeasuredPlanes:
         """Measure a LiDAR on the whole grid; a camera is measured when its planes are asked for."""
         if sensor.kind == "lidar":
             grid = BeamGrid(self._space)
             field = beam_field(sensor, self._vehicle)
             grid.add(sensor.pose.position, field.directions, field.ends)
-            counts = self._fusion.compact(grid.counts)
+            counts = grid.counts if only else self._fusion.compact(grid.counts)
             return lambda planes: counts[planes]
         camera, pose, space = cast(Camera, sensor.model), sensor.pose, self._space
         seen = None

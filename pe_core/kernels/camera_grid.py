@@ -20,6 +20,7 @@ from .shadow import ShadowMap
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
+Ints = NDArray[np.int64]
 
 ROUNDING = 1.001
 """The ball round a voxel is taken this much larger, against single precision."""
@@ -56,12 +57,20 @@ class CameraPlanes:
 
     def areas(self, planes: slice) -> Singles:
         """(n, ny, nz) pixels covered by each voxel of the x-planes."""
-        indices = range(*planes.indices(self._space.shape[0]))
-        area = np.zeros((len(indices), *self._space.shape[1:]), np.float32)
-        for out, i in zip(area, indices, strict=True):
+        first, last, _ = planes.indices(self._space.shape[0])
+        area = np.zeros((last - first, *self._space.shape[1:]), np.float32)
+        flat = area.reshape(-1)
+        edges, behind = [], []
+        for n, i in enumerate(range(first, last)):
             rows = self._rows_in_view(self._offsets[0][i])
             if rows.stop > rows.start:
-                self._fill(out[rows], i, rows)
+                start = (n * area.shape[1] + rows.start) * area.shape[2]
+                edge, hidden_perhaps = self._fill(area[n, rows], i, rows)
+                edges.append(edge + start)
+                behind.append(hidden_perhaps + start)
+        if edges:
+            self._settle_edges(flat, np.concatenate(edges), first)
+            self._settle_hidden(flat, np.concatenate(behind), first)
         return area
 
     def _rows_in_view(self, x: float) -> slice:
@@ -74,23 +83,36 @@ class CameraPlanes:
         seen = np.flatnonzero(distance > -self._ball)
         return slice(int(seen[0]), int(seen[-1]) + 1) if len(seen) else slice(0, 0)
 
-    def _fill(self, out: Singles, i: int, rows: slice) -> None:
-        """Measure some rows of plane i into `out` (n, nz)."""
-        side = self._space.interval
+    def _fill(self, out: Singles, i: int, rows: slice) -> tuple[Ints, Ints]:
+        """Measure some rows of plane i into `out` (n, nz), where the flat form is good.
+
+        Returns the voxels, numbered within the rows, that need the exact area, and those that the
+        vehicle may hide.
+        """
         depth, left, up = (self._linear(axis, i, rows) for axis in self._pose.ground_from_sensor.T)
         distance = self._linear(self._normals[0], i, rows)
         for n in self._normals[1:]:
             np.minimum(distance, self._linear(n, i, rows), out=distance)
-        plain = (distance > self._ball) & (depth > NEAR_SIDES * side)
-        edge = (distance > -self._ball) & (depth > 0.0) & ~plain
+        plain = (distance > self._ball) & (depth > NEAR_SIDES * self._space.interval)
+        touched = (distance > -self._ball) & (depth > 0.0)
         np.copyto(out, self._flat(depth, i, rows), where=plain)
-        flat = out.reshape(-1)
-        index = np.flatnonzero(edge)
-        flat[index] = clipped_pixel_area(
-            self._camera, self._pose, self._centers(index, i, rows), side
-        )
-        if self._shadow is not None and not self._shadow.empty:
-            self._hide(flat, depth.reshape(-1), left.reshape(-1), up.reshape(-1), i, rows)
+        edge = np.flatnonzero(touched & ~plain)
+        if self._shadow is None or self._shadow.empty:
+            return edge, edge[:0]
+        index = np.flatnonzero(touched)
+        views = (w.reshape(-1)[index] for w in (depth, left, up))
+        return edge, index[self._shadow.may_hide(*views)]
+
+    def _settle_edges(self, area: Singles, index: Ints, first: int) -> None:
+        """Measure voxels on the picture's border, and near ones, exactly."""
+        centers = self._centers(index, first)
+        area[index] = clipped_pixel_area(self._camera, self._pose, centers, self._space.interval)
+
+    def _settle_hidden(self, area: Singles, index: Ints, first: int) -> None:
+        """Set the areas of those voxels to 0 that the vehicle does hide."""
+        if self._seen is not None and len(index):
+            offsets = self._centers(index, first) - np.asarray(self._pose.position)
+            area[index[hidden(self._seen, offsets)]] = 0.0
 
     def _linear(self, axis: Floats, i: int, rows: slice) -> Singles:
         """(n, nz) scalar product of an axis with the offsets of plane i's voxels."""
@@ -112,19 +134,8 @@ class CameraPlanes:
             total += away.astype(np.float32) / (face_depth * face_depth * face_depth)
         return total
 
-    def _hide(
-        self, area: Singles, depth: Singles, left: Singles, up: Singles, i: int, rows: slice
-    ) -> None:
-        """Set the areas of voxels behind the vehicle to 0."""
-        assert self._shadow is not None and self._seen is not None
-        index = np.flatnonzero(area)
-        index = index[self._shadow.may_hide(depth[index], left[index], up[index])]
-        if len(index):
-            offsets = self._centers(index, i, rows) - np.asarray(self._pose.position)
-            area[index[hidden(self._seen, offsets)]] = 0.0
-
-    def _centers(self, index: NDArray[np.integer], i: int, rows: slice) -> Floats:
-        """Centres (V, 3) of voxels numbered within some rows of plane i."""
-        nz = len(self._axes[2])
-        x = np.full(len(index), self._axes[0][i])
-        return np.stack([x, self._axes[1][rows][index // nz], self._axes[2][index % nz]], axis=1)
+    def _centers(self, index: Ints, first: int) -> Floats:
+        """Centres (V, 3) of voxels numbered from plane `first` on."""
+        _, ny, nz = self._space.shape
+        x, y, z = self._axes
+        return np.stack([x[first + index // (ny * nz)], y[index // nz % ny], z[index % nz]], axis=1)

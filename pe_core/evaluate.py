@@ -7,6 +7,7 @@ from .fusion import Fusion
 from .gridded import GridScorer
 from .prior import Prior
 from .sampled import SampledScorer
+from .sampling import CENTERED
 from .score import Score
 from .sensors import Rig
 from .space import PerceptionSpace
@@ -25,6 +26,8 @@ class Evaluator:
     samples : int, optional
         Score on about this many voxels drawn from the prior instead of all of them. The sample is
         fixed: two rigs are compared on the same voxels.
+    shift : (3,) float
+        Start of the sample's sequence in [0, 1): another one gives another sample as good.
     model : PerceptionModel, optional
         AP curves and fusion rule; the paper's by default.
     workers : int, optional
@@ -43,6 +46,7 @@ class Evaluator:
         vehicle: Vehicle | None = None,
         *,
         samples: int | None = None,
+        shift: tuple[float, float, float] = CENTERED,
         model: PerceptionModel | None = None,
         workers: int | None = None,
     ) -> None:
@@ -52,7 +56,7 @@ class Evaluator:
         if samples is None:
             self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
         else:
-            self._scorer = SampledScorer(space, densities, vehicle, fusion, samples)
+            self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
 
     def score(self, rig: Rig) -> Score:
         """Score a rig in full: entropy, coverage, by class, by sensor, ground map."""

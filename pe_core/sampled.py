@@ -15,7 +15,7 @@ from .kernels.lidar_points import Lattice, VoxelPoints, count_beams
 from .kernels.ties import position_in_voxels, without_zeros
 from .occlusion import beam_counts, beam_field
 from .prior import ClassDensity
-from .sampling import BLOCKS, VoxelSample, draw
+from .sampling import BLOCKS, CENTERED, VoxelSample, draw
 from .score import PartScore, Score, SensorScore, rounded
 from .sensors import Camera, Lidar, Rig, Sensor
 from .space import PerceptionSpace
@@ -37,18 +37,13 @@ class SampledScorer:
         vehicle: Vehicle | None,
         fusion: Fusion,
         samples: int,
+        shift: tuple[float, float, float] = CENTERED,
     ) -> None:
         self._space, self._vehicle, self._fusion = space, vehicle, fusion
         tops = None if vehicle is None else vehicle.top(space)
-        self._sample: VoxelSample = draw(densities, space, samples, tops)
+        self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
         self._points = VoxelPoints(self._sample.index)
-        self._shares = outside_shares(densities, space, tops)
-        self._weights = np.concatenate(
-            [
-                np.full(some.stop - some.start, share / max(some.stop - some.start, 1))
-                for some, share in zip(self._sample.slices, self._shares, strict=True)
-            ]
-        )
+        outside_shares(densities, space, tops)  # complains when nothing is left to weigh
         self._lattices: dict[Lidar, Lattice] = {}
         self._measured: dict[str, tuple[Sensor, NDArray]] = {}
 
@@ -112,33 +107,29 @@ class SampledScorer:
         )
 
     def _whole(self, entropies: Floats, seen: NDArray[np.bool_]) -> tuple[float, float]:
-        """Mean entropy and coverage, each class by its share."""
-        classes = self._classes(entropies, seen).values()
-        entropy = sum(c.share * c.entropy for c in classes)
-        coverage = sum(c.share * c.coverage for c in classes)
-        return rounded(entropy), rounded(coverage)
+        """Mean entropy and coverage."""
+        return rounded(float(np.mean(entropies))), rounded(float(np.mean(seen)))
 
     def _classes(self, entropies: Floats, seen: NDArray[np.bool_]) -> dict[str, PartScore]:
-        sample = self._sample
-        return {
-            name: PartScore(
-                rounded(np.mean(entropies[some])), rounded(np.mean(seen[some])), rounded(share)
-            )
-            for name, some, share in zip(sample.names, sample.slices, self._shares, strict=True)
-            if some.stop > some.start
-        }
+        """Classes by how likely each sampled voxel's object is of the class."""
+        found = {}
+        for name, likely in zip(self._sample.names, self._sample.classes.T, strict=True):
+            mass = float(likely.sum())
+            if mass > 0.0:
+                h, c = (float((values * likely).sum()) / mass for values in (entropies, seen))
+                found[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
+        return found
 
     def _zones(self, entropies: Floats, seen: NDArray[np.bool_]) -> dict[str, PartScore]:
-        """Zones by the samples in them; a sample stands for its share of its class."""
+        """Zones by the samples in them."""
         x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
-        found = {}
-        for name, mask in zone_masks(x, y).items():
-            weights = self._weights[mask]
-            mass = float(weights.sum())
-            if mass > 0.0:
-                h, c = (float((v[mask] * weights).sum()) / mass for v in (entropies, seen))
-                found[name] = PartScore(rounded(h), rounded(c), rounded(mass))
-        return found
+        return {
+            name: PartScore(
+                *self._whole(entropies[mask], seen[mask]), rounded(float(np.mean(mask)))
+            )
+            for name, mask in zone_masks(x, y).items()
+            if mask.any()
+        }
 
     def _sensor(self, sensor: Sensor, rig: Rig, entropy: float) -> SensorScore:
         alone, coverage = self._whole(*self._entropies(rig, [sensor.name]))
@@ -149,10 +140,5 @@ class SampledScorer:
 
     def _standard_error(self, entropies: Floats) -> float:
         """From the scatter of runs of the sequence: each is a lattice, so this errs high."""
-        variance = 0.0
-        for some, share in zip(self._sample.slices, self._shares, strict=True):
-            blocks = [b for b in np.array_split(entropies[some], BLOCKS) if len(b)]
-            if len(blocks) > 1:
-                means = [float(np.mean(b)) for b in blocks]
-                variance += share**2 * float(np.var(means, ddof=1)) / len(blocks)
-        return rounded(float(np.sqrt(variance)))
+        means = [float(np.mean(block)) for block in np.array_split(entropies, BLOCKS)]
+        return rounded(float(np.std(means, ddof=1)) / np.sqrt(BLOCKS))

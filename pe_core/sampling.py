@@ -17,24 +17,28 @@ Ints = NDArray[np.int64]
 PLASTIC = 1.2207440846057596
 """Root of g^4 = g + 1: the R3 sequence's generator (Roberts 2018, "The unreasonable effectiveness
 of quasirandom sequences")."""
+STEP_POWERS = (3, 1, 2)
+"""Which of the generator's powers steps x, y and z. The order matters: over 24 shifts, 262,144
+voxels gave a roof Pandar64's entropy an rms error of 0.0064 so, and 0.0084 in the order 1, 2, 3."""
 BLOCKS = 16
-"""A class's samples are judged in this many runs of the sequence, each a lattice of its own."""
+"""The sample is judged in this many runs of the sequence, each a lattice of its own."""
 MIN_SAMPLES = 1024
+CENTERED = (0.5, 0.5, 0.5)
+AT_ONCE = 1 << 16
 
 
 @dataclass(frozen=True, slots=True)
 class VoxelSample:
-    """Voxels drawn from p_S, class after class.
+    """Voxels drawn from p_S, in the order of the sequence.
 
-    `index` (V, 3) voxel indices; `centers` (V, 3) [m]; `slices` and `masses` say which voxels stand
-    for which class and how much of the prior the class holds.
+    `index` (V, 3) voxel indices; `centers` (V, 3) [m]; `names` of the C classes; `classes` (V, C)
+    how likely each voxel's object is of each class, rows summing to 1.
     """
 
     index: Ints
     centers: Floats
-    slices: tuple[slice, ...]
     names: tuple[str, ...]
-    masses: tuple[float, ...]
+    classes: Floats
 
 
 def draw(
@@ -42,9 +46,12 @@ def draw(
     space: PerceptionSpace,
     count: int,
     excluded: Floats | None = None,
-    shift: tuple[float, float, float] = (0.5, 0.5, 0.5),
+    shift: tuple[float, float, float] = CENTERED,
 ) -> VoxelSample:
-    """Draw about `count` voxels from the prior, each class by its share.
+    """Draw `count` voxels from the prior.
+
+    A point of the sequence is sent through the inverse cumulative distributions of x, of y given x,
+    and of z given x and y, all of the whole prior: its classes are drawn together, as one lattice.
 
     Parameters
     ----------
@@ -53,55 +60,61 @@ def draw(
     count : int
         Number of draws.
     excluded : (nx, ny) float, optional
-        Heights (nx, ny) below which voxels carry no weight [m]: draws there are dropped.
+        Heights below which voxels carry no weight [m]: draws there are dropped.
     shift : (3,) float
         Start of the sequence in [0, 1).
     """
     if count < MIN_SAMPLES:
         raise InputError("evaluator", "samples", f"at least {MIN_SAMPLES}", count)
-    parts, slices, masses, start = [], [], [], 0
-    for density in densities:
-        share = float(density.ground.sum())
-        index = _draw_class(density, round(count * share), np.asarray(shift))
-        if excluded is not None:
-            index = index[~_below(index, excluded, space)]
-        parts.append(index)
-        slices.append(slice(start, start + len(index)))
-        start += len(index)
-        masses.append(share)
-    index = np.concatenate(parts)
-    names = tuple(d.name for d in densities)
-    return VoxelSample(index, space.center_of(index), tuple(slices), names, tuple(masses))
+    u = r3_sequence(count, np.asarray(shift))
+    ground = np.sum([d.ground for d in densities], axis=0)
+    i, j = _draw_column(ground, u[:, 0], u[:, 1])
+    k, classes = _draw_height(densities, i, j, u[:, 2])
+    index = np.stack([i, j, k], axis=1)
+    if excluded is not None:
+        outside = np.flatnonzero(space.centers(2)[k] >= excluded[i, j])
+        index, classes = index[outside], classes[outside]
+    return VoxelSample(index, space.center_of(index), tuple(d.name for d in densities), classes)
 
 
 def r3_sequence(count: int, shift: Floats) -> Floats:
     """(count, 3) points of the R3 low-discrepancy sequence in [0, 1)."""
-    steps = PLASTIC ** -np.arange(1.0, 4.0)
+    steps = np.array([PLASTIC**-power for power in STEP_POWERS])
     return (shift + np.arange(count)[:, None] * steps) % 1.0
 
 
-def _draw_class(density: ClassDensity, count: int, shift: Floats) -> Ints:
-    """(count, 3) voxel indices through the inverse cumulative distributions of x, y given x, z."""
-    if count == 0:
-        return np.zeros((0, 3), np.int64)
-    u = r3_sequence(count, shift)
-    rows = np.cumsum(density.ground.sum(axis=1))
-    i = _inverse(rows, u[:, 0] * rows[-1])
-    cells = np.cumsum(density.ground.reshape(-1))
-    ny = density.ground.shape[1]
+def _draw_column(ground: Floats, u: Floats, v: Floats) -> tuple[Ints, Ints]:
+    """Column indices (V,) of a density over the ground (nx, ny): x, then y given x."""
+    rows = np.cumsum(ground.sum(axis=1))
+    i = _inverse(rows, u * rows[-1])
+    cells, ny = np.cumsum(ground.reshape(-1)), ground.shape[1]
     before = np.concatenate([[0.0], cells])[i * ny]
-    inside = before + u[:, 1] * (cells[(i + 1) * ny - 1] - before)
-    j = np.clip(_inverse(cells, inside) - i * ny, 0, ny - 1)
-    k = _inverse(np.cumsum(density.profile), u[:, 2] * float(density.profile.sum()))
-    return np.stack([i, j, k], axis=1)
+    inside = before + v * (cells[(i + 1) * ny - 1] - before)
+    return i, np.clip(_inverse(cells, inside) - i * ny, 0, ny - 1)
+
+
+def _draw_height(densities: list[ClassDensity], i: Ints, j: Ints, w: Floats) -> tuple[Ints, Floats]:
+    """Height indices (V,) given the column, and the classes (V, C) of what is there."""
+    profiles = np.stack([d.profile for d in densities])  # (C, nz)
+    shares = np.stack([d.ground[i, j] for d in densities], axis=1)  # (V, C)
+    k = np.empty(len(i), np.int64)
+    for start in range(0, len(i), AT_ONCE):
+        some = slice(start, start + AT_ONCE)
+        cumulative = np.cumsum(_mixed(shares[some], profiles), axis=1)
+        below = cumulative <= (w[some] * cumulative[:, -1])[:, None]
+        k[some] = np.minimum(below.sum(axis=1), profiles.shape[1] - 1)
+    likely = shares * profiles[:, k].T
+    return k, likely / likely.sum(axis=1, keepdims=True)
+
+
+def _mixed(shares: Floats, profiles: Floats) -> Floats:
+    """(V, nz) sum over classes of share times profile; no BLAS, so the same bits everywhere."""
+    total = np.zeros((len(shares), profiles.shape[1]))
+    for share, profile in zip(shares.T, profiles, strict=True):
+        total += share[:, None] * profile
+    return total
 
 
 def _inverse(cumulative: Floats, values: Floats) -> Ints:
     found = np.searchsorted(cumulative, values, side="right")
     return np.minimum(found, len(cumulative) - 1)
-
-
-def _below(index: Ints, heights: Floats, space: PerceptionSpace) -> NDArray[np.bool_]:
-    z = space.centers(2)[index[:, 2]]
-    below: NDArray[np.bool_] = z < heights[index[:, 0], index[:, 1]]
-    return below

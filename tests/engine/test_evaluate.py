@@ -70,6 +70,19 @@ def test_the_sampled_score_agrees_with_the_grid_within_its_error():
         assert (other.beams, other.stopped_by) == (own.beams, own.stopped_by)
 
 
+def test_the_truth_lies_within_two_reported_errors():
+    """Over 50 random shifts of the sequence, at least 90 times in 100."""
+    rng = np.random.default_rng(11)
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    truth = pe.Evaluator(SPACE, ROAD, shapes.box_car()).entropy(rig)
+    within = 0
+    for shift in rng.random((50, 3)):
+        evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=4096, shift=tuple(shift))
+        score = evaluator.score(rig)
+        within += abs(score.entropy - truth) <= 2 * score.stderr
+    assert within >= 45
+
+
 @pytest.mark.parametrize("samples", [None, 20_000], ids=["grid", "sampled"])
 def test_classes_make_up_the_whole(samples):
     score = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples).score(rig_of_all_kinds())

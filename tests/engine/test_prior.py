@@ -74,16 +74,17 @@ def test_the_vehicle_s_own_volume_carries_no_weight():
     assert sum(outside_shares(densities, SPACE, tops)) == pytest.approx(1.0)
 
 
-def test_samples_follow_the_prior():
+def test_samples_follow_the_prior_and_each_of_its_classes():
     densities = pe.Prior.road().densities(SPACE)
     sample = draw(densities, SPACE, 50_000)
-    assert len(sample.index) == pytest.approx(50_000, abs=5)
-    for density, some in zip(densities, sample.slices, strict=True):
-        index = sample.index[some]
-        drawn = np.bincount(index[:, 0], minlength=SPACE.shape[0]) / len(index)
+    assert len(sample.index) == 50_000
+    assert sample.classes.sum(axis=1) == pytest.approx(1.0)
+    for density, likely in zip(densities, sample.classes.T, strict=True):
+        assert likely.sum() / 50_000 == pytest.approx(0.2, abs=2e-3)
+        drawn = np.bincount(sample.index[:, 0], likely, SPACE.shape[0]) / likely.sum()
         assert np.abs(drawn - density.ground.sum(axis=1) / density.ground.sum()).max() < 2e-3
-        heights = np.bincount(index[:, 2], minlength=SPACE.shape[2]) / len(index)
-        assert np.abs(heights - density.profile).max() < 2e-3
+        heights = np.bincount(sample.index[:, 2], likely, SPACE.shape[2]) / likely.sum()
+        assert np.abs(heights - density.profile).max() < 5e-3
 
 
 def test_no_sample_lies_inside_the_vehicle():

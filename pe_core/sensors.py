@@ -74,6 +74,34 @@ class Lidar:
         if not len(self.azimuth_steps):
             raise InputError(self.name, "horizontal_fov", "room for a beam", self.horizontal_fov)
 
+    @classmethod
+    def from_directions(cls, name: str, directions: ArrayLike, max_range: float) -> Lidar:
+        """Return a LiDAR of arbitrary beams (a rosette, a raster): every beam is a channel.
+
+        Parameters
+        ----------
+        name : str
+        directions : (B, 3) float
+            Directions of a frame's beams in the sensor frame, of any length but zero.
+        max_range : float
+            [m]
+
+        Raises
+        ------
+        InputError
+            When the directions are not (B, 3) finite numbers, or one has no length.
+        """
+        beams = np.asarray(directions, dtype=float)
+        if beams.ndim != 2 or beams.shape[1:] != (3,) or not len(beams):
+            raise InputError(name, "directions", "(B, 3) numbers, B > 0", beams.shape)
+        bad = ~(np.isfinite(beams).all(axis=1) & (np.abs(beams).max(axis=1) > 0.0))
+        if bad.any():
+            found = f"beam {int(np.flatnonzero(bad)[0])}: {beams[bad][0].tolist()}"
+            raise InputError(name, "directions", "finite vectors that point somewhere", found)
+        elevations = [math.atan2(z, math.hypot(x, y)) for x, y, z in beams.tolist()]
+        azimuths = [math.atan2(y, x) for x, y, _ in beams.tolist()]
+        return cls(name, np.array(elevations), 1, max_range, np.array(azimuths))
+
     @property
     def azimuth_step(self) -> float:
         """Angle between two azimuths of a channel [rad]."""

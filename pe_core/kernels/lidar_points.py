@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..geometry import rotate
 from ..sensors import Lidar
+from .beam_bands import BeamBands
 from .lidar_bracket import Bracket, ChannelTable, Singles, bracket
 from .raycast import ranges
 
@@ -51,6 +52,7 @@ class Lattice:
     position: Ints
     width: int
     table: ChannelTable | None
+    bands: BeamBands | None
 
     @classmethod
     def of(cls, lidar: Lidar) -> Lattice:
@@ -59,7 +61,7 @@ class Lattice:
         position = np.full(lidar.azimuth_count, -1)
         position[lidar.azimuth_steps % lidar.azimuth_count] = np.arange(len(lidar.azimuth_steps))
         full = len(lidar.azimuth_steps) == lidar.azimuth_count
-        regular = full and not lidar.azimuth_offsets.any()
+        regular = full and lidar.azimuth_count > 1 and not lidar.azimuth_offsets.any()
         return cls(
             channels,
             lidar.elevations[channels],
@@ -69,6 +71,7 @@ class Lattice:
             position,
             len(lidar.azimuth_steps),
             ChannelTable.of(lidar) if regular else None,
+            BeamBands.of(lidar.directions) if lidar.azimuth_count == 1 else None,
         )
 
     def window_beams(self, bounds: Bracket, voxels: Ints) -> tuple[Ints, Ints]:
@@ -84,6 +87,9 @@ class Lattice:
 
     def candidates(self, windows: Windows) -> tuple[Ints, Ints]:
         """(voxel, beam) pairs of the beams inside each voxel's window."""
+        if self.bands is not None:
+            half = windows.half_azimuth
+            return self.bands.candidates(windows.azimuth, half, windows.low, windows.high)
         first = np.searchsorted(self.elevations, windows.low, side="left")
         n = np.searchsorted(self.elevations, windows.high, side="right") - first
         voxel = np.repeat(np.arange(len(n)), n)

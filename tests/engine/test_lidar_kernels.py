@@ -31,7 +31,17 @@ LIDARS = {
 }
 
 
+def rosette():
+    """5,000 beams in no order, some straight up, down and back."""
+    rng = np.random.default_rng(8)
+    beams = rng.normal(size=(5000, 3)) * [1.0, 1.0, 0.5]
+    beams[:6] = [[0, 0, 1], [0, 0, -1], [-1, 0, 0], [-1, -1e-17, 0], [1, 0, 0], [0, 1, 0]]
+    return pe.Lidar.from_directions("rosette", beams, 40.0)
+
+
 def lidar(kind):
+    if kind == "pattern":
+        return rosette()
     return shapes.small_lidar(24, 360, **LIDARS[kind])
 
 
@@ -84,10 +94,11 @@ def test_grid_and_points_equal_the_definition(pose, with_vehicle):
     assert point_counts(sensor, vehicle, index).tolist() == defined.tolist()
 
 
-@pytest.mark.parametrize("kind", LIDARS)
-def test_every_kind_of_lidar(kind):
+@pytest.mark.parametrize("rotation", [(4.0, -7.0, 33.0), (0.0, 0.0, 0.0), (90.0, 0.0, 0.0)])
+@pytest.mark.parametrize("kind", [*LIDARS, "pattern"])
+def test_every_kind_of_lidar(kind, rotation):
     rng = np.random.default_rng(5)
-    sensor = pe.Sensor("s", lidar(kind), pe.Pose.from_degrees((0.1, 0.2, 1.9), (4.0, -7.0, 33.0)))
+    sensor = pe.Sensor("s", lidar(kind), pe.Pose.from_degrees((0.1, 0.2, 1.9), rotation))
     counts = grid_counts(sensor, shapes.box_car())
     index = some_voxels(sensor, counts, rng)
     centers = SPACE.center_of(index)
@@ -128,3 +139,17 @@ def test_counts_hold_at_their_maximum():
     defined = pe.measure(sensor, SPACE.center_of(np.array([[60, 40, 10], [61, 40, 10]])), 0.2)
     assert defined[0] == 115_200
     assert counts[61, 40, 10] == 2 * defined[1] < MOST
+
+
+def test_a_pattern_of_a_lidar_s_own_beams_is_that_lidar():
+    regular = lidar("regular")
+    pattern = pe.Lidar.from_directions("pattern", regular.directions, regular.max_range)
+    pose = pe.Pose.from_degrees((0.13, 0.27, 1.91), (1.0, 2.0, 3.0))
+    a, b = (counts_of(pe.Sensor("s", m, pose), shapes.box_car(), SPACE) for m in (regular, pattern))
+    assert np.count_nonzero(a != b) <= a.size // 10_000  # beams differ in their last bit
+
+
+@pytest.mark.parametrize("beams", [[], [[1, 0]], [[0, 0, 0]], [[1, 0, np.nan]]])
+def test_impossible_patterns_are_refused(beams):
+    with pytest.raises(pe.InputError, match="mine: directions"):
+        pe.Lidar.from_directions("mine", beams, 10.0)

@@ -1,0 +1,164 @@
+"""Mesh files made by hand: a box in every format, whole and spoiled."""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pe_core.errors import InputError
+from pe_core.mesh_io import Mesh, read_mesh
+
+# A box with three different sides, so that no two axes can be mistaken for each other; its
+# coordinates are exact in single precision.
+POINTS = np.array([(x, y, z) for x in (-1.0, 4.0) for y in (-1.0, 1.5) for z in (0.25, 2.0)])
+QUADS = np.array(
+    [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+)
+FACES = np.array([face for a, b, c, d in QUADS.tolist() for face in ((a, b, c), (a, c, d))])
+BOX = POINTS[FACES]
+SQUARE = np.array([[(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 0, 0), (1, 1, 0), (0, 1, 0)]], float)
+TRIANGLE = SQUARE[:1]
+ZEROS = np.zeros(12, np.int32)  # the part of each triangle
+NAN, INF = POINTS.copy(), POINTS.copy()
+NAN[0, 1], INF[0, 1] = np.nan, np.inf
+HUGE = "9" * 5000
+
+
+def npz_bytes(**arrays: Any) -> bytes:
+    buffer = io.BytesIO()
+    np.savez(buffer, **arrays)
+    return buffer.getvalue()
+
+
+def obj_bytes(points: Any = POINTS, faces: Any = QUADS) -> bytes:
+    lines = ["v {} {} {}".format(*point) for point in points]
+    lines += ["f " + " ".join(str(i + 1) for i in face) for face in faces]
+    return "\n".join(lines).encode()
+
+
+def stl_binary(header: bytes = b"made by hand", triangles: Any = BOX) -> bytes:
+    data = header.ljust(80, b" ") + struct.pack("<I", len(triangles))
+    for triangle in triangles:
+        data += struct.pack("<12fH", 0, 0, 0, *np.ravel(triangle), 7)
+    return data
+
+
+def stl_ascii(name: str = "box", triangles: Any = BOX) -> bytes:
+    lines = [f"solid {name}"]
+    for triangle in triangles:
+        lines += ["facet normal 0 0 0", " outer loop"]
+        lines += ["  vertex {} {} {:e}".format(*point) for point in triangle]
+        lines += [" endloop", "endfacet"]
+    return "\n".join([*lines, f"endsolid {name}", ""]).encode()
+
+
+def ply_header(kind: str, vertices: int, faces: int) -> str:
+    return (
+        f"ply\nformat {kind} 1.0\ncomment by hand\nelement vertex {vertices}\nproperty float x\n"
+        f"property float y\nproperty float z\nelement face {faces}\n"
+        "property list uchar int vertex_indices\nend_header\n"
+    )
+
+
+def ply_ascii(points: Any = POINTS, faces: Any = FACES) -> bytes:
+    rows = [*points, *((len(face), *face) for face in faces)]
+    body = "\n".join(" ".join(str(value) for value in row) for row in rows)
+    return (ply_header("ascii", len(points), len(faces)) + body).encode()
+
+
+def ply_binary(order: str, points: Any = POINTS, faces: Any = FACES) -> bytes:
+    kind = {"<": "binary_little_endian", ">": "binary_big_endian"}[order]
+    data = ply_header(kind, len(points), len(faces)).encode()
+    for point in points:
+        data += struct.pack(f"{order}3f", *point)
+    for face in faces:
+        data += struct.pack(f"{order}B{len(face)}i", len(face), *face)
+    return data
+
+
+def to_gltf(points: Any) -> np.ndarray:
+    """(forward, left, up) as glTF's (X left, Y up, Z forward)."""
+    return np.stack([points[..., 1], points[..., 2], points[..., 0]], axis=-1)
+
+
+def glb_file(root: Any, binary: bytes) -> bytes:
+    text = root if isinstance(root, bytes) else json.dumps(root).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    data = struct.pack("<I4s", len(text), b"JSON") + text
+    data += struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(data)) + data
+
+
+def gltf(
+    points: Any = POINTS, indices: Any = FACES, code: str = "H", mode: int | None = None
+) -> tuple[dict[str, Any], bytes]:
+    """A document of one node `box` with one primitive, for a test to change, and its data."""
+    positions = np.asarray(to_gltf(np.reshape(points, (-1, 3))), "<f4").tobytes()
+    flat = np.ravel(indices).tolist() if indices is not None else []
+    order = struct.pack(f"<{len(flat)}{code}", *flat)
+    component = {"B": 5121, "H": 5123, "I": 5125}[code]
+    primitive: dict[str, Any] = {"attributes": {"POSITION": 0}}
+    if indices is not None:
+        primitive["indices"] = 1
+    if mode is not None:
+        primitive["mode"] = mode
+    root = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "box", "mesh": 0}],
+        "meshes": [{"name": "the mesh", "primitives": [primitive]}],
+        "accessors": [
+            {
+                "bufferView": 0,
+                "componentType": 5126,
+                "type": "VEC3",
+                "count": len(positions) // 12,
+            },
+            {"bufferView": 1, "componentType": component, "type": "SCALAR", "count": len(flat)},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": len(positions)},
+            {"buffer": 0, "byteOffset": len(positions), "byteLength": len(order)},
+        ],
+        "buffers": [{"byteLength": len(positions) + len(order)}],
+    }
+    return root, positions + order
+
+
+def changed(*steps: Any, **keywords: Any) -> bytes:
+    """The glb of `gltf(**keywords)` with the value at a path (all steps but the last) replaced."""
+    root, binary = gltf(**keywords)
+    *path, key, value = steps
+    place: Any = root
+    for step in path:
+        place = place[step]
+    place[key] = value
+    return glb_file(root, binary)
+
+
+def read(folder: Path, name: str, data: bytes) -> Mesh:
+    path = folder / name
+    path.write_bytes(data)
+    return read_mesh(path)
+
+
+def cut(data: bytes) -> bytes:
+    return data[:-1]
+
+
+def check_told_in_one_line(folder: Path, name: str, data: bytes, field: str, words: str) -> None:
+    """Reading the file fails with one line: the file, the field, then text that has `words`."""
+    with pytest.raises(InputError) as caught:
+        read(folder, name, data)
+    message = str(caught.value)
+    assert message.startswith(f"{folder / name}: {field}: expected "), message
+    assert words in message.removeprefix(f"{folder / name}: {field}: "), message
+    assert "\n" not in message, message

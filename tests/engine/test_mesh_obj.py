@@ -1,0 +1,107 @@
+"""OBJ files: parts, every form a face can have, shared vertices, and every error."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pe_core.mesh_io import Mesh, write_mesh
+from tests.engine.mesh_files import BOX, HUGE, SQUARE, check_told_in_one_line, read
+
+
+def test_obj_vertices_are_shared(tmp_path: Path) -> None:
+    """The box is written with its 8 vertices, not with 36."""
+    write_mesh(tmp_path / "box.obj", Mesh(BOX, np.zeros(12, np.int32), ("box",)))
+    assert (tmp_path / "box.obj").read_text().count("\nv ") == 8
+
+
+CORNERS = "v 0 0 0\nv 1 0 0\nv 1 1 0\n"
+FACE = "f 1 2 3\n"
+PARTS = {
+    "o wins over g": (f"g a\no b\n{FACE}g c\n{FACE}o d\n{FACE}", ["b", "b", "d"]),
+    "g without any o": (f"g a\n{FACE}g b c\n{FACE}", ["a", "b c"]),
+    "before the first name": (f"{FACE}o a\n{FACE}", ["car", "a"]),
+    "a name twice": (f"o a\n{FACE}o b\n{FACE}o a\n{FACE}", ["a", "b", "a"]),
+    "a part without triangles": (f"o a\no b\n{FACE}o c\n", ["b"]),
+    "a name with spaces and #": (f"  o\t  front #1  left \n{FACE}", ["front #1  left"]),
+    "a nameless o": (f"o a\n{FACE}o\n{FACE}", ["a", "car"]),
+    "Latin-1": (f"o Räder\n{FACE}", ["Räder"]),
+}
+
+
+@pytest.mark.parametrize(("text", "names"), PARTS.values(), ids=PARTS.keys())
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8", "utf-8-sig"])
+def test_obj_parts(tmp_path: Path, text: str, names: list[str], encoding: str) -> None:
+    """Which part each face belongs to, by o or g, in any of the usual encodings."""
+    mesh = read(tmp_path, "car.obj", (CORNERS + text).encode(encoding))
+    assert [mesh.part_names[part] for part in mesh.parts] == names
+    assert len(mesh.part_names) == len(set(names))
+
+
+V = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+OBJ_FORMS = {
+    "quad": f"{V}f 1 2 3 4\n",
+    "triangles": f"{V}f 1 2 3\nf 1 3 4\n",
+    "negative": f"{V}f -4 -3 -2 -1\n",
+    "negative before more vertices": f"{V}f -4 -3 -2 -1\nv 9 9 9\n",
+    "faces first": f"f 1 2 3 4\n{V}",
+    "v/vt": f"{V}vt 0 0\nf 1/1 2/1 3/1 4/1\n",
+    "v/vt/vn": f"{V}f 1/9/9 2/9/9 3/9/9 4/9/9\n",
+    "v//vn": f"{V}vn 0 0 1\nf 1//1 2//1 3//1 -1//-1\n",
+    "continued": f"{V}f 1 2 \\\n3\\\n 4\n",
+    "continued with CRLF": f"{V}f 1 2 \\\r\n3 4\r\n",
+    "mixed line endings": "v 0 0 0\rv 1 0 0\r\nv 1 1 0\nv 0 1 0\rf 1 2 3 4",
+    "faces of two and fewer": f"{V}f 1 2\nf\nf 3\nf 1 2 3 4\nf 3 4\n",
+    "colours and comments": V.replace("0\n", "0 .5 .5 1 # c\n") + "f 1 2 3 4 # 5\n",
+    "a comment ending in a backslash": f"# C:\\cars\\\n{V}# \\\nf 1 2 3 4\n",
+    "other keywords": f"mtllib a.mtl\n{V}usemtl a\ns off\nl 1 2\n p 1\n  f\t1 2 3 4",
+}
+
+
+@pytest.mark.parametrize("text", OBJ_FORMS.values(), ids=OBJ_FORMS.keys())
+def test_obj_forms(tmp_path: Path, text: str) -> None:
+    """Every way OBJ has of writing a unit square gives the same two triangles."""
+    assert read(tmp_path, "s.obj", text.encode()).triangles.tolist() == SQUARE.tolist()
+
+
+BAD = {
+    "obj empty": ("a.obj", b"", "triangles", "none"),
+    "obj without faces": ("a.obj", V.encode(), "triangles", "none"),
+    "obj with faces of two only": ("a.obj", f"{V}f 1 2\n".encode(), "triangles", "none"),
+    "obj binary": ("a.obj", b"\x89PNG\0\0\0", "file", "binary"),
+    "obj index too high": ("a.obj", f"{V}f 1 2 3\nf 1 2 5\n".encode(), "line 6", "f 1 2 5"),
+    "obj index too low": ("a.obj", f"{V}f 1 2 -5\n".encode(), "line 5", "f 1 2 -5"),
+    "obj index 0": ("a.obj", f"{V}f 0 1 2\n".encode(), "line 5", "f 0 1 2"),
+    "obj index 0 before more": ("a.obj", f"{V}f 0 1 2\n{V}".encode(), "line 5", "f 0 1 2"),
+    "obj index too long": ("a.obj", f"{V}f 1 2 {HUGE[:99]}\n".encode(), "line 5", "f 1 2 999"),
+    "obj index beyond int": ("a.obj", f"{V}f 1 2 {HUGE}\n".encode(), "line 5", "f 1 2 999"),
+    "obj index after continuation": (
+        "a.obj",
+        f"{V}f 1 2 \\\n3\nf 1 \\\n 2 7\n".encode(),
+        "line 7",
+        "f 1 2 7",
+    ),
+    "obj index after two vertices": ("a.obj", f"{V}f 1 2\nf 1 2 5\n".encode(), "line 6", "2 5"),
+    "obj without an index": (
+        "a.obj",
+        f"{V}f 1 2 /3\n".encode(),
+        "line 5",
+        "indices, found 'f 1 2 /3'",
+    ),
+    "obj with a word": ("a.obj", b"v 0 0 zero\n", "line 1", "three numbers, found 'v 0 0 zero'"),
+    "obj with two numbers": ("a.obj", b"\r\n\rv 0 0\n", "line 3", "v 0 0"),
+    "obj of NaN": ("a.obj", b"v 0 0 0\nv 0 nan 0\n", "line 2", "nan"),
+    "obj of NaN, third": ("a.obj", f"{V}v 0 0 nan\n".encode(), "line 5", "nan"),
+    "obj of inf": ("a.obj", b"# c\nv 0 0 1e999\n", "line 2", "1e999"),
+}
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("name", "data", "field", "words"), BAD.values(), ids=BAD.keys())
+def test_bad_input_is_told_in_one_line(
+    tmp_path: Path, name: str, data: bytes, field: str, words: str
+) -> None:
+    """The error names the file and the field and says what was there; NumPy does not warn."""
+    check_told_in_one_line(tmp_path, name, data, field, words)

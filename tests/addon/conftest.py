@@ -1,5 +1,6 @@
 """The add-on in bpy, without a window. Where there is no bpy the tests are skipped."""
 
+import ctypes
 import importlib.util
 import os
 
@@ -14,6 +15,13 @@ def pytest_terminal_summary(terminalreporter) -> None:
     """Say why these tests are not there."""
     if not HAVE_BPY:
         terminalreporter.write_line("tests/addon skipped: there is no bpy in this Python")
+
+
+@pytest.fixture(autouse=True)
+def blender_s_own_words():
+    """Have what Blender prints taken for the test's output, not left to be printed at the end."""
+    yield
+    ctypes.CDLL(None).fflush(None)
 
 
 @pytest.fixture

@@ -57,11 +57,12 @@ class Fusion:
         Where only one LiDAR group sees anything, H is looked up; elsewhere it is computed. A blind
         camera changes nothing, unless the letter is asked for.
         """
-        tabled = [g for g in groups if g[0] == "lidar"][:1] if self._blind_is_silent else []
-        others = [g for g in groups if not any(g is t for t in tabled)]
-        if tabled:
-            entropies = np.take(self._entropy, tabled[0][1], mode="clip")
-            seen = tabled[0][1] > 0
+        lidars = (g for g in groups if g[0] == "lidar" and self._blind_is_silent)
+        tabled = next(lidars, None)
+        others = [g for g in groups if g is not tabled]
+        if tabled is not None:
+            entropies = np.take(self._entropy, tabled[1], mode="clip")
+            seen = tabled[1] > 0
         else:
             entropies = np.full(groups[0][1].shape, self._entropy[0])
             seen = np.zeros(entropies.shape, bool)

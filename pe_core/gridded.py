@@ -21,7 +21,7 @@ from .sensors import Camera, Rig, Sensor
 from .space import PerceptionSpace
 from .subsets import Names, fused_early, parts_of
 from .vehicle import Vehicle
-from .weights import outside_masses, outside_shares
+from .weights import outside_masses
 from .zones import column_zones
 
 Floats = NDArray[np.float64]
@@ -57,7 +57,6 @@ class GridScorer:
         self._profiles = np.stack([d.profile for d in densities], axis=-1)  # (nz, C)
         self._tops = None if vehicle is None else vehicle.top(space)
         self._masses = np.array(outside_masses(densities, space, self._tops))
-        outside_shares(densities, space, self._tops)  # complains when nothing is left to weigh
 
     def entropy(self, rig: Rig) -> float:
         """Perception entropy alone."""

@@ -21,7 +21,7 @@ from .sensors import Camera, Lidar, Rig, Sensor
 from .space import PerceptionSpace
 from .subsets import fused_early
 from .vehicle import Vehicle
-from .weights import outside_shares
+from .weights import outside_masses
 from .zones import zone_masks
 
 Floats = NDArray[np.float64]
@@ -43,7 +43,7 @@ class SampledScorer:
         tops = None if vehicle is None else vehicle.top(space)
         self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
         self._points = VoxelPoints(self._sample.index)
-        outside_shares(densities, space, tops)  # complains when nothing is left to weigh
+        outside_masses(densities, space, tops)  # complains when nothing is left to weigh
         self._lattices: dict[Lidar, Lattice] = {}
         self._measured: dict[str, tuple[Sensor, NDArray]] = {}
 

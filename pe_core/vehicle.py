@@ -122,9 +122,9 @@ class SeenMesh:
     seen: SeenTriangles
     faces: NDArray[np.int64] | None
 
-    def first_hit(self, directions: Floats, cells: NDArray[np.int32] | None = None) -> Hits:
+    def first_hit(self, directions: Floats) -> Hits:
         """First hit along (B, 3) ground-frame unit directions."""
-        hits = self.seen.first_hit(directions, cells)
+        hits = self.seen.first_hit(directions)
         if self.faces is None or not len(self.faces):
             return hits
         return Hits(hits.distance, np.where(hits.face < 0, -1, self.faces[hits.face]))

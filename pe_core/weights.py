@@ -22,24 +22,16 @@ def outside_profile(density: ClassDensity, space: PerceptionSpace, tops: Floats)
 def outside_masses(
     densities: list[ClassDensity], space: PerceptionSpace, tops: Floats | None
 ) -> list[float]:
-    """Each class's mass of the prior outside the vehicle (`tops` None: no vehicle)."""
-    if tops is None:
-        return [float(d.ground.sum()) for d in densities]
-    return [float((d.ground * outside_profile(d, space, tops)).sum()) for d in densities]
-
-
-def outside_shares(
-    densities: list[ClassDensity], space: PerceptionSpace, tops: Floats | None
-) -> list[float]:
-    """Each class's share of the prior outside the vehicle; they sum to 1.
+    """Each class's mass of the prior outside the vehicle (`tops` None: no vehicle).
 
     Raises
     ------
     InputError
         When the vehicle fills everything that had any weight.
     """
-    masses = outside_masses(densities, space, tops)
-    total = sum(masses)
-    if not total > 0.0:
+    if tops is None:
+        return [float(d.ground.sum()) for d in densities]
+    masses = [float((d.ground * outside_profile(d, space, tops)).sum()) for d in densities]
+    if not sum(masses) > 0.0:
         raise InputError("prior", "weights", "some weight outside the vehicle", "none")
-    return [m / total for m in masses]
+    return masses

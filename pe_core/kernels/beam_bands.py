@@ -29,7 +29,6 @@ class BeamBands:
 
     keys: Floats
     beams: Ints
-    bands: int
 
     @classmethod
     def of(cls, directions: Floats) -> BeamBands:
@@ -40,7 +39,7 @@ class BeamBands:
         turns = [band * STRIDE + azimuth + turn for turn in (-TURN, 0.0, TURN)]
         keys, beams = np.concatenate(turns), np.tile(np.arange(len(directions)), 3)
         order = np.argsort(keys, kind="stable")
-        return cls(keys[order], beams[order], int(_band(np.array([math.pi / 2]))[0]) + 1)
+        return cls(keys[order], beams[order])
 
     def candidates(
         self, azimuth: Floats, half: Floats, low: Floats, high: Floats

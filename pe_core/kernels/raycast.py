@@ -81,21 +81,9 @@ class SeenTriangles:
         self._faces = faces[order]
         self._starts = np.searchsorted(cells[order], np.arange(6 * CELLS * CELLS + 1))
 
-    def first_hit(
-        self, directions: Floats, cells: NDArray[np.int32] | None = None, nearest: float = 0.0
-    ) -> Hits:
-        """First triangle hit by each ray, beyond the distance `nearest`.
-
-        Parameters
-        ----------
-        directions : (B, 3) float
-            Unit directions.
-        cells : (B,) int, optional
-            Their bins, where the caller keeps them.
-        nearest : float
-            Hits at or below this distance are passed over [m].
-        """
-        cells = cell_of(directions) if cells is None else cells
+    def first_hit(self, directions: Floats) -> Hits:
+        """First triangle hit by each of (B, 3) unit directions."""
+        cells = cell_of(directions)
         hits = Hits(np.full(len(directions), np.inf), np.full(len(directions), -1))
         rays = np.flatnonzero(self._starts[cells + 1] > self._starts[cells])
         at, end = self._starts[cells[rays]], self._starts[cells[rays] + 1]
@@ -103,7 +91,7 @@ class SeenTriangles:
         while len(rays):
             n = np.minimum(end - at, depth)
             for some in _portions(n):
-                self._test(directions, rays[some], at[some], n[some], nearest, hits)
+                self._test(directions, rays[some], at[some], n[some], hits)
             at = at + n
             left = np.flatnonzero(at < end)
             behind = self._nearest[self._faces[at[left]]] > hits.distance[rays[left]]
@@ -113,13 +101,11 @@ class SeenTriangles:
         hits.face[found] = self._order[hits.face[found]]
         return hits
 
-    def _test(
-        self, directions: Floats, rays: Ints, at: Ints, n: Ints, nearest: float, hits: Hits
-    ) -> None:
+    def _test(self, directions: Floats, rays: Ints, at: Ints, n: Ints, hits: Hits) -> None:
         """Test rays against `n` triangles each, from entry `at` on; keep what is nearer."""
         ray, face = np.repeat(rays, n), self._faces[np.repeat(at, n) + ranges(n)]
         ray, face, distance = self._crossings(directions, ray, face)
-        better = (distance > nearest) & (distance < hits.distance[ray])
+        better = (distance > 0.0) & (distance < hits.distance[ray])
         ray, face, distance = ray[better], face[better], distance[better]
         order = np.lexsort((self._order[face], distance, ray))  # ties go to the lowest triangle
         first = order[np.flatnonzero(np.diff(ray[order], prepend=-1))]

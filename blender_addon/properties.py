@@ -9,6 +9,7 @@ import bpy
 from bpy.props import (
     BoolProperty,
     BoolVectorProperty,
+    CollectionProperty,
     EnumProperty,
     FloatProperty,
     FloatVectorProperty,
@@ -17,7 +18,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import stale
+from . import bridge, stale
 from .engine import catalog, pe, placement
 from .overlay import handler as overlay
 
@@ -25,11 +26,26 @@ DEFAULT_CANDIDATES = 150
 DEFAULT_BEAM_LIMIT = 5_000
 DEFAULT_BEAM_LENGTH_M = 8.0
 DEFAULT_MODEL = "Pandar64"
+DEFAULT_FOCUS = 2.0
+DEFAULT_REGION = "front"
+RANGE_DECIMALS = 3
+# Before 4.5 every path could be relative to the .blend file; since then a property has to say so.
+PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 FREE_BY_DEFAULT = tuple(axis in placement.PAPER_FREE for axis in placement.AXES)
 
 PRIORS = (
-    ("road", "Road", "Cars, cyclists, pedestrians and cones where road traffic has them"),
-    ("uniform", "Uniform", "Every place in the perception space matters the same"),
+    ("road", "Road", "Cars, trucks, cyclists, pedestrians and cones as met on public roads", 0),
+    ("highway", "Highway", "Cars, trucks, motorcyclists and cones on and round three lanes", 2),
+    ("uniform", "Uniform", "Every place in the perception space matters the same", 1),
+    (bridge.FROM_BOXES, "Labelled Boxes", "Objects where a file of labels has them", 3),
+)
+"""A .blend file holds the numbers."""
+
+OBJECT_CLASSES = tuple(
+    (name, name.capitalize(), f"Weigh {name}s") for name in pe.Prior.road().class_names
+)
+REGIONS = tuple(
+    (region.key, region.label, region.description) for region in bridge.REGIONS.values()
 )
 
 
@@ -52,6 +68,53 @@ def model_suggestions(
     return [(entry.name, kinds[entry.kind]) for entry in catalog.entries().values()]
 
 
+class PE_FocusSettings(bpy.types.PropertyGroup):
+    """A focus weight: what counts more than the prior says, or less. Its name is the user's."""
+
+    factor: FloatProperty(
+        name="Factor",
+        description="How many times as much it counts: 2 doubles it, 0 leaves it out. Where "
+        "several regions overlap, their factors multiply",
+        default=DEFAULT_FOCUS,
+        min=0.0,
+        soft_max=10.0,
+        update=changed,
+    )
+    region: EnumProperty(
+        items=REGIONS,
+        name="Region",
+        description="Which part of the ground",
+        default=DEFAULT_REGION,
+        update=changed,
+    )
+    x_range: FloatVectorProperty(
+        name="X",
+        description="From and to, ahead of the origin; negative is behind it",
+        size=2,
+        default=pe.PerceptionSpace().x,
+        unit="LENGTH",
+        precision=RANGE_DECIMALS,
+        update=changed,
+    )
+    y_range: FloatVectorProperty(
+        name="Y",
+        description="From and to, on the left of the origin; negative is on its right",
+        size=2,
+        default=pe.PerceptionSpace().y,
+        unit="LENGTH",
+        precision=RANGE_DECIMALS,
+        update=changed,
+    )
+    classes: EnumProperty(
+        items=OBJECT_CLASSES,
+        name="Classes",
+        description="Which kinds of objects. Shift-click for several",
+        options={"ENUM_FLAG"},
+        default={name for name, *_ in OBJECT_CLASSES},
+        update=changed,
+    )
+
+
 class PE_SceneSettings(bpy.types.PropertyGroup):
     """The study's settings, and the last result."""
 
@@ -67,6 +130,21 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
         name="Prior",
         description="Where objects are to be expected",
         update=changed,
+    )
+    boxes: StringProperty(
+        name="Boxes",
+        description="File of labelled boxes: KITTI's labels, nuScenes' JSON or CSV",
+        subtype="FILE_PATH",
+        options=PATH_OPTIONS,
+        update=changed,
+    )
+    focus: CollectionProperty(
+        type=PE_FocusSettings,
+        name="Focus",
+        description="What counts more than the prior says, or less",
+    )
+    focus_index: IntProperty(
+        name="Selected Focus", description="Row of the list whose settings are shown", min=0
     )
     score_samples: IntProperty(
         name="Score Voxels",
@@ -207,7 +285,7 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (PE_SceneSettings, PE_ObjectSettings)
+CLASSES = (PE_FocusSettings, PE_SceneSettings, PE_ObjectSettings)
 
 
 def add_pointers() -> None:

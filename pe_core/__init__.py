@@ -5,6 +5,8 @@ Evaluation and Design", ICRA 2021. Lower is better.
 """
 
 from . import catalog
+from .box_files import read_boxes, write_boxes
+from .boxes import Boxes, BoxReport
 from .entropy import ApCurve, PerceptionModel
 from .errors import InputError
 from .evaluate import Evaluator
@@ -27,6 +29,8 @@ from .version import __version__
 __all__ = [
     "ApCurve",
     "BeamField",
+    "BoxReport",
+    "Boxes",
     "Camera",
     "Evaluator",
     "Focus",
@@ -63,11 +67,13 @@ __all__ = [
     "measure",
     "optimize",
     "prepare_folder",
+    "read_boxes",
     "read_mesh",
     "result_dict",
     "save_study",
     "study_from_dict",
     "study_to_dict",
+    "write_boxes",
     "write_mesh",
     "write_outcome",
 ]

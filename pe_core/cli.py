@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
+from importlib.metadata import entry_points
 
 from .command import Answer, add_run_options, add_sensors_verb, answer, drive, run, with_options
 from .jobs import Job, OptimizeJob, ScoreJob
 from .results import prepare_folder, result_dict, write_outcome
 from .study_file import load_study
 from .version import __version__
+
+VERBS = "pe_core.verbs"
+"""Packages built on the engine add verbs by entry points of this group: functions that take the
+parser's verbs."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -30,11 +36,15 @@ def parser() -> argparse.ArgumentParser:
         add_run_options(verb, search=job is OptimizeJob)
         verb.set_defaults(function=_run_job, job=job)
     add_sensors_verb(verbs)
+    for other in entry_points(group=VERBS):
+        other.load()(verbs)
     return top
 
 
 def _run_job(args: argparse.Namespace) -> Answer:
     study = with_options(load_study(args.study), args)
+    if (report := study.prior.report(study.space)) is not None:
+        print(f"pe: {report}", file=sys.stderr)
     output = None if args.output is None else prepare_folder(args.output)
     job: Job = args.job(study, args.workers)
     outcome = drive(job, output)

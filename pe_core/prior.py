@@ -7,59 +7,33 @@ every one of 64 million voxels.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .box_density import voxelised
+from .box_files import read_boxes
+from .boxes import Boxes, BoxReport
 from .errors import InputError
+from .prior_classes import (
+    HIGHWAY_CLASSES,
+    ROAD_CLASSES,
+    SHIPPED,
+    Floats,
+    ObjectClass,
+    Shape,
+    class_shape,
+    uniform_shape,
+)
 from .space import PerceptionSpace
 
-Floats = NDArray[np.float64]
+__all__ = ["HIGHWAY_CLASSES", "ROAD_CLASSES", "ClassDensity", "Focus", "ObjectClass", "Prior"]
 
-
-@dataclass(frozen=True, slots=True)
-class ObjectClass:
-    """One kind of object on the road: its box and where its centre is met.
-
-    The centre's density is ``exp(-|x| / decay_x) * (w Laplace(y; laplace_y) + (1 - w) N(y;
-    gauss_y))`` with w = `laplace_share`, round the vehicle's centre; the box stands on the ground
-    along x; heights scatter normally.
-
-    Parameters
-    ----------
-    name : str
-    size : (length, width, height) float
-        Mean box [m].
-    height_spread : float
-        Standard deviation of the height [m].
-    decay_x, laplace_y, gauss_y : float
-        Scales of the density [m].
-    laplace_share : float
-        w, 0 to 1.
-    """
-
-    name: str
-    size: tuple[float, float, float]
-    height_spread: float
-    decay_x: float
-    laplace_y: float
-    gauss_y: float
-    laplace_share: float
-
-
-ROAD_CLASSES = (
-    ObjectClass("car", (4.6, 1.9, 1.7), 0.195, 39.4, 12.82, 20.03, 0.533),
-    ObjectClass("pedestrian", (0.8, 0.7, 1.75), 0.120, 32.2, 659.55, 16.15, 0.171),
-    ObjectClass("cyclist", (1.76, 0.65, 1.74), 0.267, 28.7, 170.45, 14.89, 0.033),
-    ObjectClass("truck", (7.5, 2.55, 3.0), 0.785, 58.5, 20.1, 22.33, 0.365),
-    ObjectClass("cone", (0.4, 0.4, 0.9), 0.232, 14.8, 34.25, 10.05, 0.024),
-)
-"""Positions: fitted by maximum likelihood to the boxes with a score of 0.4 and more that
-CenterPoint finds in the 150 scenes of nuScenes val (boxes from the public AB3DMOT repository).
-Height spreads: the same boxes. Sizes: rounded between the means of nuScenes, Argoverse 2 and
-Waymo's anchor boxes."""
+FROM_BOXES, UNIFORM = "boxes", "uniform"
+MODELS = (*SHIPPED, UNIFORM, FROM_BOXES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,18 +78,34 @@ class ClassDensity:
 
 @dataclass(frozen=True, slots=True)
 class Prior:
-    """A prior: a model's name, its classes, and the focus. Use `road` or `uniform`."""
+    """A prior: a model's name, its classes or boxes, and the focus.
+
+    Use `road`, `highway`, `uniform` or `from_boxes`. Classes of one's own:
+    ``Prior("road", classes=(...))``.
+    """
 
     model: str
     classes: tuple[ObjectClass, ...] = ()
     focus: tuple[Focus, ...] = ()
+    boxes: Boxes | None = None
 
     def __post_init__(self) -> None:
+        if self.model not in MODELS:
+            raise InputError("prior", "model", f"one of {', '.join(MODELS)}", repr(self.model))
+        if bool(self.classes) != (self.model in SHIPPED):
+            expected = "at least one" if self.model in SHIPPED else f"none with {self.model!r}"
+            raise InputError("prior", "classes", expected, len(self.classes))
+        if bool(self.boxes) != (self.model == FROM_BOXES):
+            expected = "at least one" if self.model == FROM_BOXES else f"none with {self.model!r}"
+            raise InputError("prior", "boxes", expected, len(self.boxes or ()))
+        names = self.class_names
+        for i, name in enumerate(names):
+            if name in names[:i]:
+                raise InputError("prior", "classes", "each name once", f"{name!r} twice")
         for focus in self.focus:
             for name in focus.classes or ():
-                if name not in self.class_names:
-                    expected = f"one of {', '.join(self.class_names)}"
-                    raise InputError("focus", "classes", expected, repr(name))
+                if name not in names:
+                    raise InputError("focus", "classes", f"one of {', '.join(names)}", repr(name))
 
     @classmethod
     def road(cls, focus: Sequence[Focus] = ()) -> Prior:
@@ -123,38 +113,87 @@ class Prior:
         return cls("road", ROAD_CLASSES, tuple(focus))
 
     @classmethod
+    def highway(cls, focus: Sequence[Focus] = ()) -> Prior:
+        """Cars, trucks, motorcyclists and cones on and round three lanes: long and narrow."""
+        return cls("highway", HIGHWAY_CLASSES, tuple(focus))
+
+    @classmethod
     def uniform(cls, focus: Sequence[Focus] = ()) -> Prior:
         """Every voxel counts the same."""
-        return cls("uniform", (), tuple(focus))
+        return cls(UNIFORM, (), tuple(focus))
 
-    @property
-    def class_names(self) -> tuple[str, ...]:
-        """Names of the classes; ``("any",)`` for the uniform prior."""
-        return tuple(c.name for c in self.classes) or ("any",)
+    @classmethod
+    def from_boxes(
+        cls,
+        table: Any,
+        focus: Sequence[Focus] = (),
+        origin: tuple[float, float, float] | None = None,
+    ) -> Prior:
+        """Labelled boxes, voxelised: the classes are the boxes', with equal shares.
 
-    def densities(self, space: PerceptionSpace) -> list[ClassDensity]:
-        """p_S class by class; all of it sums to 1.
-
-        Each class's own distribution sums to 1 before its focus weights (the paper's p_Sc), so
-        without focus the classes share alike.
+        Parameters
+        ----------
+        table : path, Boxes, or table
+            A file or folder that `read_boxes` reads, or what `Boxes.of` takes.
+        focus : sequence of Focus
+        origin : (x, y, z) float, optional
+            The origin of a file's labels in the ground frame [m]; see `read_boxes`.
 
         Raises
         ------
         InputError
-            When nothing is left of the prior after the focus weights.
+            When a box is wrong, or none is left.
         """
-        shapes = [_class_shape(c, space) for c in self.classes] or [_uniform_shape(space)]
+        if isinstance(table, (str, Path)):
+            boxes = replace(read_boxes(table, origin), file=str(table))
+        elif origin is not None:
+            raise InputError("boxes", "origin", "none but of a file's labels", list(origin))
+        else:
+            boxes = table if isinstance(table, Boxes) else Boxes.of(table)
+        return cls(FROM_BOXES, (), tuple(focus), boxes)
+
+    @property
+    def class_names(self) -> tuple[str, ...]:
+        """Names of the classes; ``("any",)`` for the uniform prior."""
+        if self.boxes is not None:
+            return self.boxes.classes
+        return tuple(c.name for c in self.classes) or ("any",)
+
+    def report(self, space: PerceptionSpace) -> BoxReport | None:
+        """How many boxes the prior is made of in a space; None for a prior without boxes."""
+        return None if self.boxes is None else voxelised(self.boxes, space).report
+
+    def densities(self, space: PerceptionSpace) -> list[ClassDensity]:
+        """p_S class by class; all of it sums to 1.
+
+        Each class's own distribution sums to its share, 1 but for the highway's, before its focus
+        weights (the paper's p_Sc), so without focus classes of one share count alike.
+
+        Raises
+        ------
+        InputError
+            When nothing is left of the prior after the focus weights, or no box is in the space.
+        """
+        shapes, names = self._shapes(space), self.class_names
         grounds = [
             ground * self._weights(name, space)
-            for name, (ground, _) in zip(self.class_names, shapes, strict=True)
+            for name, (ground, _) in zip(names, shapes, strict=True)
         ]
         total = sum(float(g.sum()) for g in grounds)
         if not total > 0.0:
             raise InputError("prior", "focus", "some weight left in the space", "none")
         return [
             ClassDensity(name, ground / total, profile)
-            for name, ground, (_, profile) in zip(self.class_names, grounds, shapes, strict=True)
+            for name, ground, (_, profile) in zip(names, grounds, shapes, strict=True)
         ]
+
+    def _shapes(self, space: PerceptionSpace) -> Sequence[Shape]:
+        """Each class's density, summing to its share of the prior."""
+        if self.boxes is not None:
+            return voxelised(self.boxes, space).shapes
+        shapes = ((c.share, class_shape(c, space)) for c in self.classes)
+        weighed = [(share * ground, profile) for share, (ground, profile) in shapes]
+        return weighed or [uniform_shape(space)]
 
     def _weights(self, name: str, space: PerceptionSpace) -> Floats:
         """w(s, c) over the ground (nx, ny)."""
@@ -166,39 +205,3 @@ class Prior:
                 columns = (y > focus.y[0]) & (y < focus.y[1])
                 weights[np.ix_(rows, columns)] *= focus.factor
         return weights
-
-
-def _uniform_shape(space: PerceptionSpace) -> tuple[Floats, Floats]:
-    nx, ny, nz = space.shape
-    return np.full((nx, ny), 1.0 / (nx * ny)), np.full(nz, 1.0 / nz)
-
-
-def _class_shape(cls: ObjectClass, space: PerceptionSpace) -> tuple[Floats, Floats]:
-    """Ground density (nx, ny) and height profile (nz,) of voxelised boxes, each summing to 1."""
-    length, width, height = cls.size
-    along = _blurred(lambda x: _exponential_mass(x, cls.decay_x), space.centers(0), length)
-    across = _blurred(lambda y: _lateral_mass(y, cls), space.centers(1), width)
-    ground = along[:, None] * across
-    profile = np.array(
-        [1.0 - _normal_cdf((z - height) / cls.height_spread) for z in space.centers(2).tolist()]
-    )
-    return ground / ground.sum(), profile / profile.sum()
-
-
-def _blurred(mass: Callable[[float], float], centers: Floats, size: float) -> Floats:
-    """Density of being inside a box of that size whose centre has the cumulative `mass`."""
-    return np.array([mass(c + size / 2.0) - mass(c - size / 2.0) for c in centers.tolist()])
-
-
-def _exponential_mass(x: float, scale: float) -> float:
-    """Integral of exp(-|x| / scale) from 0 to x."""
-    return math.copysign(scale * -math.expm1(-abs(x) / scale), x)
-
-
-def _lateral_mass(y: float, cls: ObjectClass) -> float:
-    laplace = 0.5 * math.copysign(-math.expm1(-abs(y) / cls.laplace_y), y)
-    return cls.laplace_share * laplace + (1.0 - cls.laplace_share) * _normal_cdf(y / cls.gauss_y)
-
-
-def _normal_cdf(z: float) -> float:
-    return 0.5 * (1.0 + math.erf(z / math.sqrt(2.0)))

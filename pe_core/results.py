@@ -6,16 +6,19 @@ import csv
 import io
 import json
 import platform
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .box_files import write_boxes
 from .errors import InputError
 from .files import write_bytes
 from .jobs import HistoryRow, Outcome
 from .mesh_io import Mesh, write_mesh
 from .optimize import AXES
+from .prior_file import BOXES
 from .sensors import Rig
 from .study import Study, vehicle_digest
 from .study_file import save_study, study_to_dict
@@ -104,7 +107,7 @@ def write_outcome(
 
 
 def export_study(study: Study, path: str | Path) -> None:
-    """Write a study and its vehicle's mesh side by side: the same problem, to run anywhere."""
+    """Write a study, its vehicle's mesh and its prior's boxes side by side, to run anywhere."""
     path = Path(path)
     if study.vehicle is not None:
         vehicle = study.vehicle
@@ -112,6 +115,11 @@ def export_study(study: Study, path: str | Path) -> None:
         parts = np.asarray(vehicle.parts)
         write_mesh(mesh, Mesh(vehicle.triangles, parts, tuple(vehicle.part_names)))
         study = study.with_mesh(mesh.name)
+    if study.prior.boxes is not None:
+        table = path.with_name(BOXES) if path.name == STUDY else path.with_suffix(f".{BOXES}")
+        write_boxes(table, study.prior.boxes)
+        boxes = replace(study.prior.boxes, file=table.name, origin=None)
+        study = replace(study, prior=replace(study.prior, boxes=boxes))
     save_study(study, path)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +14,7 @@ from .files import decode_text, read_bytes, write_bytes
 from .geometry import Pose
 from .mesh_io import read_mesh
 from .optimize import AXES, PAPER_FREE, Schedule
-from .prior import Focus, Prior
+from .prior_file import prior_table, read_prior
 from .sensors import Camera, Lidar, Rig, Sensor
 from .space import PerceptionSpace
 from .study import DEFAULT_SEARCH_SAMPLES, Search, Study
@@ -66,7 +65,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
             "z": list(study.space.z),
             "interval": study.space.interval,
         },
-        "prior": _prior_table(study.prior),
+        "prior": prior_table(study.prior),
         "ap": {
             "lidar": {"a": study.model.lidar.a, "b": study.model.lidar.b},
             "camera": {"a": study.model.camera.a, "b": study.model.camera.b},
@@ -101,7 +100,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         Rig(mounted),
         vehicle,
         _read_space(table.table("space")),
-        _read_prior(table.table("prior")),
+        read_prior(table.table("prior"), folder),
         _read_model(table.table("ap"), table.table("fusion")),
         _read_search(search, free, limits),
         table.whole("samples", 0),
@@ -119,21 +118,6 @@ def _read_space(table: Table) -> PerceptionSpace:
     space = PerceptionSpace(x, y, z, table.number("interval", default.interval))
     table.finish()
     return space
-
-
-def _read_prior(table: Table) -> Prior:
-    model = table.text("model", "road", ("road", "uniform"))
-    focus = [_read_focus(t) for t in table.tables("focus")]
-    table.finish()
-    return Prior.road(focus) if model == "road" else Prior.uniform(focus)
-
-
-def _read_focus(table: Table) -> Focus:
-    everywhere = (-math.inf, math.inf)
-    x, y = (table.numbers(a, 2, everywhere) for a in "xy")
-    focus = Focus(table.number("factor"), (x[0], x[1]), (y[0], y[1]), table.texts("classes", None))
-    table.finish()
-    return focus
 
 
 def _read_model(curves: Table, fusion: Table) -> PerceptionModel:
@@ -221,19 +205,6 @@ def _read_search(
     )
     table.finish()
     return search
-
-
-def _prior_table(prior: Prior) -> dict[str, Any]:
-    focus = [
-        {
-            "factor": f.factor,
-            "x": list(f.x),
-            "y": list(f.y),
-            "classes": None if f.classes is None else list(f.classes),
-        }
-        for f in prior.focus
-    ]
-    return {"model": prior.model, "focus": focus or None}
 
 
 def _vehicle_table(study: Study) -> dict[str, Any] | None:

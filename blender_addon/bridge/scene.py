@@ -7,6 +7,7 @@ import hashlib
 import bpy
 
 from ..engine import pe, results
+from .prior import prior_from_scene, prior_signature
 from .rig import free_axes, rig_from_scene, sensor_objects, view_layer_of
 from .vehicle import vehicle_from_collection, visible_members
 
@@ -30,7 +31,7 @@ def study_from_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> 
     return pe.Study(
         rig_from_scene(scene, depsgraph),
         vehicle,
-        prior=pe.Prior.uniform() if settings.prior == "uniform" else pe.Prior.road(),
+        prior=prior_from_scene(scene),
         search=_search(scene),
         samples=settings.score_samples,
         mesh=results.MESH,  # the name the mesh gets beside a study: part of what is reported
@@ -43,7 +44,7 @@ def signature(scene: bpy.types.Scene) -> str:
     It is cheap, not complete: a mesh edited without a change in its number of points is not seen.
     """
     settings, layer = scene.perception_entropy, view_layer_of(scene)
-    seen: list[object] = [settings.prior, settings.score_samples]
+    seen: list[object] = [*prior_signature(scene), settings.score_samples]
     for obj in sensor_objects(scene):
         own, visible = obj.perception_entropy, obj.visible_get(view_layer=layer)
         seen += [obj.name, own.model, own.fusion, visible, _rounded(obj)]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..cells import quoted
 from ..errors import InputError
 
 MAX_ELEVATION_DEG = 90.0
@@ -14,9 +14,7 @@ MAX_OFFSET_DEG = 180.0
 DECIMALS = 9
 """Degrees are rounded to what a saved study holds, so that its copy has the same beams."""
 
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 WHOLE = re.compile(r"\d{1,9}", re.ASCII)
-LONGEST_QUOTE = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,31 +55,11 @@ def checked(
     )
 
 
-def parse_number(source: str, where: str, what: str, text: str) -> float:
-    """Return a finite number; `what` names it in the message."""
-    value = float(text) if NUMBER.fullmatch(text) else math.nan
-    if not math.isfinite(value):
-        expected = f"a finite number, with a decimal point, for {what}"
-        raise InputError(source, where, expected, quoted(text))
-    return value
-
-
 def parse_id(source: str, where: str, text: str) -> int:
     """Return a channel's id, a whole number >= 0."""
     if not WHOLE.fullmatch(text):
         raise InputError(source, where, "a whole number for the channel's id", quoted(text))
     return int(text)
-
-
-def quoted(text: str) -> str:
-    """Return what was found in quotes and cut short, or ``nothing``."""
-    return repr(text[:LONGEST_QUOTE]) if text else "nothing"
-
-
-def numbered_lines(text: str) -> list[tuple[int, str]]:
-    """Lines with their numbers from 1, without comments, blank lines and trailing blanks."""
-    lines = ((n, raw.split("#", 1)[0].rstrip()) for n, raw in enumerate(text.split("\n"), 1))
-    return [(n, line) for n, line in lines if line]
 
 
 def by_id(source: str, channels: Sequence[Channel], first: int) -> list[Channel]:

@@ -6,8 +6,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..cells import numbered_lines, parse_number, quoted
 from ..errors import InputError
-from .channels import Channel, by_id, checked, numbered_lines, parse_id, parse_number, quoted
+from .channels import Channel, by_id, checked, parse_id
 
 NAMES = {
     "elevation": {"elevation", "elevations", "elev", "vertical", "vert"},

@@ -12,8 +12,9 @@ import re
 from collections.abc import Mapping
 from xml.etree import ElementTree
 
+from ..cells import numbered_lines, parse_number, quoted
 from ..errors import InputError
-from .channels import Channel, by_id, checked, numbered_lines, parse_id, parse_number, quoted
+from .channels import Channel, by_id, checked, parse_id
 
 FIRST_LASER = 0
 XML_KEYS = ("id_", "vertCorrection_", "rotCorrection_")

@@ -66,6 +66,28 @@ def test_optimize_and_export_agree_with_the_engine(blend, tmp_path):
     check_optimized_scene(inside)
 
 
+@pytest.mark.parametrize("prior", ["highway", "boxes"])
+def test_focus_and_prior_of_the_scene_agree_with_the_engine(car, tmp_path, prior):
+    labels, blend = tmp_path / "labels.csv", tmp_path / "car.blend"
+    labels.write_text("class,x,y,z,length,width,height,yaw\ncar,20,3,0.8,4,2,1.6,30\n")
+    settings = car.perception_entropy
+    settings.prior, settings.boxes = prior, str(labels)
+    bpy.ops.pe.add_focus(region="far")
+    bpy.ops.pe.add_focus(region="custom")
+    settings.focus[1].x_range, settings.focus[1].classes = (0.1, 33.3), {"car"}
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
+    samples = FAST[:2]
+    answer = run("blender_addon", blend, "score", *samples, "-o", inside, "--no-render")
+    assert answer.returncode == 0, answer.stderr
+    assert run("blender_addon", blend, "export", "-o", study).returncode == 0
+    answer = run("pe_core", "score", study / "study.toml", *samples, "-o", outside)
+    assert answer.returncode == 0, answer.stderr
+    result = without_run(inside / "result.json")
+    assert result == without_run(outside / "result.json")
+    assert len(result["inputs"]["study"]["prior"]["focus"]) == 3
+
+
 def check_optimized_scene(folder: Path) -> None:
     """The scene that was left holds the placements that were found."""
     bpy.ops.wm.open_mainfile(filepath=str(folder / "optimized.blend"))

@@ -34,6 +34,7 @@ def test_register_unregister_register_leaves_nothing_behind():
 def test_all_that_is_documented_is_there(addon):
     found = traces()
     operators = ("add_sensor", "score", "optimize", "cancel", "export_study", "render_review")
+    operators += ("add_focus", "remove_focus")
     assert {f"PE_OT_{name}" for name in operators} <= set(found["classes"])
     assert found["properties"] == ["Scene", "Object"]
 

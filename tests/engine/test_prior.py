@@ -1,6 +1,7 @@
 """The prior: normalised, boxes on the ground, focus weights, and the samples drawn from it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,9 +18,9 @@ def total(densities):
     return sum(d.ground.sum() * d.profile.sum() for d in densities)
 
 
-@pytest.mark.parametrize("prior", [pe.Prior.road(), pe.Prior.uniform()], ids=["road", "uniform"])
-def test_the_prior_sums_to_one(prior):
-    assert total(prior.densities(SPACE)) == pytest.approx(1.0)
+@pytest.mark.parametrize("name", ["road", "highway", "uniform"])
+def test_the_prior_sums_to_one(name):
+    assert total(getattr(pe.Prior, name)().densities(SPACE)) == pytest.approx(1.0)
 
 
 def test_classes_of_the_road_share_alike_and_stand_on_the_ground():
@@ -38,6 +39,79 @@ def test_the_road_is_met_more_often_near_than_far():
     middle = ground[:, 80]
     assert middle[160] > 2 * middle[10] > 0
     np.testing.assert_allclose(ground, ground[::-1, ::-1], rtol=1e-9)
+
+
+def test_the_highway_is_long_and_narrow():
+    space = pe.PerceptionSpace(interval=0.25)
+    near_lanes = abs(space.centers(1)) < 1.5 * 3.75
+    far = abs(space.centers(0)) > 40.0
+    road, highway = (
+        sum(d.ground for d in prior.densities(space))
+        for prior in (pe.Prior.road(), pe.Prior.highway())
+    )
+    assert highway[:, near_lanes].sum() > 0.8 > 2 * road[:, near_lanes].sum()
+    assert highway[far].sum() > 1.4 * road[far].sum()
+
+
+def test_the_highway_s_vehicles_keep_to_their_lanes_and_its_cones_between_them():
+    space = pe.PerceptionSpace(interval=0.25)
+    densities = {d.name: d for d in pe.Prior.highway().densities(space)}
+    shares = {name: d.ground.sum() for name, d in densities.items()}
+    assert shares == pytest.approx({"car": 0.4, "truck": 0.4, "cyclist": 0.1, "cone": 0.1})
+    across = {name: d.ground.sum(axis=0) for name, d in densities.items()}
+
+    def at(name, y):
+        return across[name][int((y + 40.0) / 0.25)]
+
+    for lane in (-3.75, 0.0, 3.75):
+        assert at("car", lane) > 4 * at("car", lane + 1.875) > 0
+        assert at("cone", lane + 1.875) > 100 * at("cone", lane)
+    np.testing.assert_allclose(across["truck"], across["truck"][::-1], rtol=1e-9)
+    assert densities["truck"].profile[space.centers(2) > 3.0].sum() > 0.1
+
+
+def test_a_class_round_one_lane_is_that_class():
+    car = pe.Prior.road().classes[0]
+    for lanes in ((0.0,), (0.0, 0.0)):
+        (density,) = pe.Prior("road", (replace(car, lanes=lanes),)).densities(SPACE)
+        (plain,) = pe.Prior("road", (car,)).densities(SPACE)
+        np.testing.assert_allclose(density.ground, plain.ground, rtol=1e-12)
+
+
+def test_parameters_of_the_road_can_be_varied():
+    car, *others = pe.Prior.road().classes
+    far = pe.Prior("road", (replace(car, decay_x=200.0, share=2.0), *others)).densities(SPACE)
+    plain = pe.Prior.road().densities(SPACE)
+    assert far[0].ground.sum() == pytest.approx(2 / 6)
+    assert far[0].ground[0].sum() / far[0].ground.sum() > 5 * plain[0].ground[0].sum()
+    np.testing.assert_allclose(far[1].ground * 6 / 5, plain[1].ground, rtol=1e-12)
+
+
+def test_a_class_that_is_not_met_in_the_space_has_no_mass():
+    high = pe.PerceptionSpace((-20, 20), (-10, 10), (3.5, 5.0), 0.5)
+    densities = {d.name: d for d in pe.Prior.road().densities(high)}
+    assert densities["cone"].ground.sum() == 0.0
+    assert total(densities.values()) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"name": ""}, "prior class: name: expected a text"),
+        ({"size": (1.0, 2.0)}, "prior class 'car': size: expected 3 lengths above 0 m"),
+        ({"size": (1.0, 2.0, 0.0)}, "prior class 'car': size: expected 3 lengths above 0 m"),
+        ({"height_spread": 0.0}, "height_spread: expected a length above 0 m, found 0.0"),
+        ({"decay_x": math.inf}, "decay_x: expected a length above 0 m, found inf"),
+        ({"laplace_y": math.nan}, "laplace_y: expected a length above 0 m, found nan"),
+        ({"gauss_y": -1.0}, "gauss_y: expected a length above 0 m, found -1.0"),
+        ({"laplace_share": 1.5}, "laplace_share: expected a number from 0 to 1, found 1.5"),
+        ({"lanes": ()}, "lanes: expected one or more finite numbers"),
+        ({"share": -0.1}, "share: expected a finite number >= 0, found -0.1"),
+    ],
+)
+def test_impossible_classes_are_refused(change, message):
+    with pytest.raises(pe.InputError, match=message):
+        replace(pe.Prior.road().classes[0], **change)
 
 
 def test_focus_weights_multiply_and_are_normalised():

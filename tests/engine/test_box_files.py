@@ -1,0 +1,298 @@
+"""Files of labelled boxes: what each layout says, and one clear line for whatever is wrong."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.box_files.kitti import CAMERA
+from tests.engine import shapes
+
+CSV = """class,x,y,z,length,width,height,yaw
+car,10,2,0.75,4.5,1.8,1.5,90
+tram,-20.5,-3,1.8,15,2.5,3.6,-45
+"""
+
+KITTI = """\
+Car 0.00 0 1.85 387.63 181.54 423.81 203.12 1.50 1.80 4.50 -2.00 1.65 10.00 -1.5707963267948966
+Pedestrian 0.00 0 0 0 0 1 1 1.75 0.60 0.80 3.00 1.60 20.00 0.0 0.91
+Van 0.00 0 0 0 0 1 1 2.2 1.9 5.0 0 1.65 30 0
+DontCare -1 -1 -10 503.89 169.71 590.61 190.13 -1 -1 -1 -1000 -1000 -1000 -10
+Tram 0 0 0 0 0 1 1 3.5 2.5 15 0 1.65 40 0
+Misc 0 0 0 0 0 1 1 1.5 1.5 3 0 1.65 40 0
+Tram 0 0 0 0 0 1 1 3.5 2.5 15 5 1.65 40 0
+"""
+
+
+def nuscenes_box(name="vehicle.car", **change):
+    """A box 10 m ahead and 2 m to the left, turned by 90 degrees."""
+    box = {
+        "category_name": name,
+        "translation": [10.0, 2.0, 0.75],
+        "size": [1.8, 4.5, 1.5],
+        "rotation": [math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)],
+    }
+    return {**box, **change}
+
+
+@pytest.fixture
+def write(tmp_path):
+    def to_file(data, name="labels"):
+        path = tmp_path / name
+        if not isinstance(data, (bytes, str)):
+            data = json.dumps(data)
+        path.write_bytes(data.encode() if isinstance(data, str) else data)
+        return path
+
+    return to_file
+
+
+def row(table, index):
+    """A box's centre, sizes and yaw [deg]."""
+    columns = ("x", "y", "z", "length", "width", "height")
+    values = [float(getattr(table, c)[index]) for c in columns]
+    return [*values, math.degrees(table.yaw[index])]
+
+
+def test_plain_csv(write):
+    table = pe.read_boxes(write(CSV))
+    assert list(table.names) == ["car", "tram"] and table.classes == ("car", "tram")
+    assert row(table, 0) == pytest.approx([10, 2, 0.75, 4.5, 1.8, 1.5, 90])
+    assert row(table, 1) == pytest.approx([-20.5, -3, 1.8, 15, 2.5, 3.6, -45])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        CSV.replace("\n", "\r\n"),
+        CSV.replace("\n", "\r"),
+        CSV.replace("\n", "\r\n", 1).replace("90\n", "90\r"),
+        "\ufeff" + CSV,
+        CSV.replace(",", ";"),
+        CSV.replace(",", "\t"),
+        CSV.replace(",", " , "),
+        "\n# made by hand\n" + CSV + "\n\n",
+        CSV.replace("car", '"car"'),
+        CSV.replace("class,x,y,z,length", "Class,X (m),y_m,Z [m],LENGTH").replace("yaw", "yaw_deg"),
+        "score,yaw,z,y,x,height,width,length,class\n"
+        "0.9,90,0.75,2,10,1.5,1.8,4.5,car\n,-45,1.8,-3,-20.5,3.6,2.5,15,tram\n",
+    ],
+    ids=[
+        *("crlf", "cr", "mixed", "bom", "semicolons", "tabs", "blanks", "comments", "quotes"),
+        *("units", "any order"),
+    ],
+)
+def test_csv_as_it_is_met(write, text):
+    assert pe.read_boxes(write(text)) == pe.read_boxes(write(CSV, "plain"))
+
+
+def test_kitti_is_turned_from_the_camera_to_the_ground(write):
+    table = pe.read_boxes(write(KITTI))
+    assert list(table.names) == ["car", "pedestrian", "car"]
+    x, y, z = CAMERA
+    assert row(table, 0) == pytest.approx([10 + x, 2 + y, -1.65 + 0.75 + z, 4.5, 1.8, 1.5, 0])
+    assert table.z[0] == pytest.approx(0.75)  # the camera stands 1.65 m above the ground
+    assert row(table, 1) == pytest.approx([20 + x, -3, 0.05 + 0.875, 0.8, 0.6, 1.75, -90])
+    assert dict(table.left_out) == {
+        "marked DontCare": 1,
+        "of unknown class 'Tram'": 2,
+        "of unknown class 'Misc'": 1,
+    }
+
+
+def test_the_report_names_what_is_left_out(write):
+    path = write(KITTI)
+    report = pe.Prior.from_boxes(path).report(pe.PerceptionSpace((-20, 25), (-10, 10), (0, 5)))
+    assert str(report) == (
+        f"{path}: 2 boxes taken, 5 left out (1 outside the space, 1 marked DontCare, "
+        "2 of unknown class 'Tram', 1 of unknown class 'Misc')"
+    )
+
+
+def test_kitti_tracking_has_frame_and_id_in_front(write):
+    lines = [f"{i} {7 - i} {line}" for i, line in enumerate(KITTI.splitlines())]
+    tracking = pe.read_boxes(write("\n".join(lines)))
+    assert tracking == pe.read_boxes(write(KITTI, "object"))
+    assert tracking.left_out == pe.read_boxes(write(KITTI, "object")).left_out
+
+
+def test_the_origin_of_labels_can_be_said(write):
+    path = write(KITTI)
+    at = pe.Prior.from_boxes(path, origin=(1.5, 0.5, 1.6)).boxes
+    assert row(at, 0)[:3] == pytest.approx([11.5, 2.5, 0.7])
+    assert row(pe.read_boxes(write(CSV), (-1.0, 0.0, 0.1)), 0)[:3] == pytest.approx([9, 2, 0.85])
+
+
+def test_a_folder_is_read_in_the_order_of_names(tmp_path):
+    first, second = KITTI.splitlines(keepends=True)[:2]
+    for name, text in (("000010.txt", second), ("000002.txt", first), ("000003.txt", "\n")):
+        (tmp_path / name).write_text(text)
+    (tmp_path / ".hidden").write_text("not labels")
+    (tmp_path / "more").mkdir()
+    assert list(pe.read_boxes(tmp_path).names) == ["car", "pedestrian"]
+    (tmp_path / "000011.txt").write_text(first.replace("1.50", "x"))
+    with pytest.raises(pe.InputError, match=r"000011\.txt: line 1: .*the height, found 'x'"):
+        pe.read_boxes(tmp_path)
+    with pytest.raises(pe.InputError, match="more: folder: expected files with labels, found none"):
+        pe.read_boxes(tmp_path / "more")
+
+
+def test_nuscenes_annotations(write):
+    names = {
+        "vehicle.car": "car",
+        "vehicle.bus.rigid": "truck",
+        "vehicle.bus.bendy": "truck",
+        "vehicle.truck": "truck",
+        "vehicle.trailer": "truck",
+        "vehicle.construction": "truck",
+        "vehicle.emergency.ambulance": "truck",
+        "vehicle.emergency.police": "car",
+        "human.pedestrian.adult": "pedestrian",
+        "human.pedestrian.wheelchair": "pedestrian",
+        "vehicle.bicycle": "cyclist",
+        "vehicle.motorcycle": "cyclist",
+        "movable_object.trafficcone": "cone",
+        "movable_object.barrier": None,
+        "static_object.bicycle_rack": None,
+        "animal": None,
+    }
+    table = pe.read_boxes(write([nuscenes_box(name) for name in names]))
+    assert list(table.names) == [ours for ours in names.values() if ours]
+    assert row(table, 0) == pytest.approx([10, 2, 0.75, 4.5, 1.8, 1.5, 90])
+    assert dict(table.left_out) == {
+        f"of unknown class '{theirs}'": 1 for theirs, ours in names.items() if not ours
+    }
+
+
+def test_nuscenes_results(write):
+    def detected(name):
+        box = nuscenes_box(detection_name=name, detection_score=0.4)
+        del box["category_name"]
+        return box
+
+    data = {
+        "meta": {"use_lidar": True},
+        "results": {
+            "token1": [detected("traffic_cone"), detected("construction_vehicle")],
+            "token2": [],
+            "token3": [detected("barrier"), detected("pedestrian")],
+        },
+    }
+    table = pe.read_boxes(write(data))
+    assert list(table.names) == ["cone", "truck", "pedestrian"]
+    assert dict(table.left_out) == {"of unknown class 'barrier'": 1}
+
+
+def test_boxes_of_a_map_are_told_from_the_vehicle_s(write):
+    path = write([nuscenes_box(translation=[1010.1, 612.0, 0.8])])
+    prior = pe.Prior.from_boxes(path)
+    with pytest.raises(pe.InputError, match="in the ground frame of the vehicle, found all 1 out"):
+        prior.densities(shapes.small_space())
+
+
+def changed(text, old, new):
+    assert old in text
+    return text.replace(old, new)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        ("", "file: expected boxes as KITTI's label_2, .*, found an empty file"),
+        (" \r\n", "file: expected boxes as KITTI's label_2, .*, found an empty file"),
+        ("# nothing\n", "file: .*found comments alone"),
+        (b"\x89PNG\r\n\x1a\n\0\0\0", "file: .*found binary data"),
+        ("samples = 0\n[space]\n", "line 1: .*label_2.*found 'samples = 0'"),
+        ("[space]\nx = [-80, 80]\n", "line 1: expected JSON, found expecting value in column 2"),
+        ("solid car\n", "line 1: .*found 'solid car'"),
+        # CSV
+        (
+            "car,10,2,0.75,4.5,1.8,1.5,90\n",
+            "line 1: expected a header with class, x, y, .*no class",
+        ),
+        (changed(CSV, "yaw", "angle"), "line 1: expected a header with .*, found no yaw in 'class"),
+        (changed(CSV, "yaw", "x"), "line 1: expected a header with .*, found x twice"),
+        (changed(CSV, ",90", ""), "line 2: expected as many columns as the header, 8, found 7"),
+        (changed(CSV, ",90", ",90,1"), "line 2: .*as the header, 8, found 9"),
+        (changed(CSV, "-3", "left"), "line 3: expected a finite number, .* for y, found 'left'"),
+        (changed(CSV, "-3", "nan"), "line 3: expected a finite number, .* for y, found 'nan'"),
+        (changed(CSV, "-45", "inf"), "line 3: expected a finite number, .* for yaw, found 'inf'"),
+        (changed(CSV, "-45", "1e999"), "line 3: expected a finite number, .* for yaw"),
+        (changed(CSV, "-3", ""), "line 3: expected a finite number, .* for y, found nothing"),
+        (changed(CSV, "1.8,15", "1.8,0"), "line 3: expected a length above 0 m, found 0"),
+        (changed(CSV, "3.6", "-3.6"), "line 3: expected a height above 0 m, found -3.6"),
+        (changed(CSV, "-20.5", "1e12"), r"line 3: expected x within \+-1e\+09, found 1e\+12"),
+        (changed(CSV, "tram", ""), "line 3: expected a class in printable letters, found nothing"),
+        ("class,x,y,z,length,width,height,yaw\n", "boxes: expected at least one box .*found none"),
+        # KITTI
+        (changed(KITTI, " 0.91", " 0.91 1"), "line 2: expected KITTI's 15 columns.*17 columns"),
+        (changed(KITTI, "Car 0.00 ", "Car "), "line 1: expected KITTI's 15 columns.*14 columns"),
+        (changed(KITTI, "1.50", "nan"), "line 1: .* for the height, found 'nan'"),
+        (changed(KITTI, "1.50", "0"), "line 1: expected a height above 0 m, found 0"),
+        (changed(KITTI, "30 0\n", "far 0\n"), "line 3: .* for z, found 'far'"),
+        ("Car\n", "line 1: .*found 'Car'"),
+        ("v 1.0 2.0 3.0\n", "line 1: expected KITTI's 15 columns.*found 4 columns"),
+        ("1 2 3\n", "line 1: expected KITTI's frame, id and 15 columns.*found 3 columns"),
+        (" ".join(["1"] * 17), "line 1: expected a class before the numbers, found '1'"),
+        (KITTI.splitlines()[3], "boxes: expected at least one box of .*, found 1 marked DontCare"),
+        # JSON
+        ("[{]", "line 1: expected JSON, found"),
+        ("[\n{},\n}", "line 3: expected JSON, found expecting value in column 1"),
+        ("[" * 100_000, "file: expected JSON of boxes, found"),
+        ({"boxes": []}, r"file: expected a list of boxes, or .*found a table of \['boxes'\]"),
+        ({"results": []}, "file: expected a list of boxes, or"),
+        ({"results": {"t": {}}}, r"results\[t\]: expected a list of boxes, or .*found {}"),
+        ([], "boxes: expected at least one box of a known class, found none"),
+        ([1], r"\[0\]: expected a table, found 1"),
+        ([{}], r"\[0\]: expected one of detection_name, category_name, tracking_name, found none"),
+        ([nuscenes_box(3)], r"\[0\].category_name: expected a text, found 3"),
+        ([nuscenes_box("animal")], "found 1 of unknown class 'animal'"),
+        ([nuscenes_box(), nuscenes_box(size=[1, 2])], r"\[1\].size: expected 3 finite numbers"),
+        ([nuscenes_box(size=[1, 0, 1])], r"\[0\]: expected a length above 0 m, found 0"),
+        ([nuscenes_box(translation=[1, math.nan, 1])], r"\[0\].translation: .*found \[1, nan, 1\]"),
+        ([nuscenes_box(translation=[1, "2", 1])], r"\[0\].translation: expected 3 finite numbers"),
+        ([nuscenes_box(translation=[1, 10**400, 1])], r"\[0\].translation: expected 3 finite"),
+        ([nuscenes_box(translation=[1, True, 1])], r"\[0\].translation: expected 3 finite numbers"),
+        ([nuscenes_box(rotation=[0, 0, 0, 0])], r"\[0\].rotation: expected a quaternion"),
+        (
+            [nuscenes_box(rotation=None)],
+            r"\[0\].rotation: expected 4 finite numbers, found nothing",
+        ),
+    ],
+)
+def test_bad_files_are_one_clear_line(write, data, message):
+    path = write(data)
+    with pytest.raises(pe.InputError, match=message) as caught:
+        pe.read_boxes(path)
+    line = str(caught.value)
+    assert line.startswith(f"{path}: ") and "\n" not in line and len(line) < 400
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(pe.InputError, match=r"none\.csv: file: expected an existing file"):
+        pe.read_boxes(tmp_path / "none.csv")
+
+
+def test_many_boxes_are_what_each_of_them_is(write):
+    """Files in all three layouts hold the same boxes."""
+    rng = np.random.default_rng(1)
+    kitti, plain, annotations = [], ["class,x,y,z,length,width,height,yaw"], []
+    for _ in range(50):
+        x, y, turn = rng.uniform(-20, 20), rng.uniform(-9, 9), rng.uniform(-3, 3)
+        place = f"{-y!r} 1.65 {x - CAMERA[0]!r} {turn!r}"
+        kitti.append(f"Cyclist 0 0 0 0 0 1 1 1.5 0.5 1.75 {place}")
+        yaw = -turn - math.pi / 2
+        plain.append(f"cyclist,{x!r},{y!r},0.75,1.75,0.5,1.5,{math.degrees(yaw)!r}")
+        rotation = [math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)]
+        box = {"translation": [x, y, 0.75], "size": [0.5, 1.75, 1.5], "rotation": rotation}
+        annotations.append(nuscenes_box("vehicle.bicycle", **box))
+    files = [write("\n".join(kitti)), write("\n".join(plain), "b"), write(annotations, "c")]
+    tables = [pe.read_boxes(f) for f in files]
+    for table in tables[1:]:
+        for column in ("x", "y", "z", "length", "width", "height"):
+            np.testing.assert_allclose(
+                getattr(table, column), getattr(tables[0], column), atol=1e-12
+            )
+        np.testing.assert_allclose(np.exp(1j * table.yaw), np.exp(1j * tables[0].yaw), atol=1e-9)

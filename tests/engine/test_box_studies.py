@@ -1,0 +1,121 @@
+"""Studies whose prior is labelled boxes: read, saved, exported to score the same bits elsewhere."""
+
+from dataclasses import replace
+
+import pytest
+
+import pe_core as pe
+from tests.engine.test_box_files import CSV, KITTI, changed
+
+STUDY = """
+[space]
+x = [-25, 25]
+y = [-10, 10]
+z = [0, 4]
+interval = 0.5
+[prior]
+boxes = "labels"
+[[prior.focus]]
+factor = 2.0
+classes = ["pedestrian"]
+[[sensor]]
+name = "roof"
+model = "Pandar64"
+position = [-0.43, 0.0, 1.80]
+"""
+
+
+@pytest.fixture
+def write(tmp_path):
+    def to_file(text, name="labels"):
+        path = tmp_path / name
+        path.write_text(text, "utf-8")
+        return path
+
+    return to_file
+
+
+def test_a_study_names_its_boxes(write):
+    write(KITTI)
+    path = write(STUDY, "study.toml")
+    study = pe.load_study(path)
+    assert study.prior.class_names == ("car", "pedestrian")
+    assert study.prior.boxes.file == "labels" and study.prior.focus[0].factor == 2.0
+    pe.save_study(study, path)
+    text = path.read_text()
+    assert 'boxes = "labels"' in text and "model = " not in text.split("[[sensor]]")[0]
+    assert "origin" not in text
+    assert pe.load_study(path).prior == study.prior
+
+
+def test_a_study_says_where_the_labels_origin_is(write):
+    write(KITTI)
+    text = changed(STUDY, 'boxes = "labels"', 'boxes = "labels"\norigin = [1.5, 0.0, 1.6]')
+    path = write(text, "study.toml")
+    prior = pe.load_study(path).prior
+    assert prior.boxes.x[0] == pytest.approx(11.5)
+    pe.save_study(pe.load_study(path), path)
+    assert "origin = [1.5, 0.0, 1.6]" in path.read_text()
+    assert pe.load_study(path).prior == prior
+
+
+@pytest.mark.parametrize("origin", ["", "\norigin = [1.5, 0.25, 1.61]"])
+@pytest.mark.parametrize("name", ["study.toml", "other.toml"])
+def test_an_exported_study_scores_the_same_bits_elsewhere(write, tmp_path, origin, name):
+    write(KITTI)
+    study = pe.load_study(write(changed(STUDY, '"labels"', f'"labels"{origin}'), "s.toml"))
+    (tmp_path / "out").mkdir()
+    pe.export_study(study, tmp_path / "out" / name)
+    table = {"study.toml": "boxes.csv", "other.toml": "other.boxes.csv"}[name]
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == sorted([name, table])
+    (tmp_path / "labels").unlink()
+    copy = pe.load_study(tmp_path / "out" / name)
+    assert copy.prior.boxes.file == table and copy.prior.boxes == study.prior.boxes
+    for each in (0, 4096):
+        scores = [s.evaluator(each).score(s.rig).to_dict() for s in (study, copy)]
+        assert scores[0] == scores[1]
+
+
+def test_boxes_in_memory_are_exported_too(write, tmp_path):
+    write(CSV)
+    study = pe.load_study(write(STUDY.replace('classes = ["pedestrian"]', ""), "s.toml"))
+    loose = replace(study, prior=pe.Prior.from_boxes([("car", 5, 0, 1, 4, 2, 1.5, 0.3)]))
+    outcome = pe.Outcome("score", loose, loose, *[loose.evaluator().score(loose.rig)] * 2)
+    data = pe.write_outcome(outcome, tmp_path / "out")
+    again = pe.load_study(tmp_path / "out" / "study.toml")
+    assert again.prior.boxes == loose.prior.boxes
+    assert again.evaluator().score(again.rig).to_dict() == data["after"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"labels"', '"none.csv"', "none.csv: file: expected an existing file, found no such file"),
+        ('"labels"', "3", "prior.boxes: expected a text, found 3"),
+        (
+            '"labels"',
+            '"labels"\nmodel = "road"',
+            "prior.model: expected nothing beside prior.boxes",
+        ),
+        ('"labels"', '"labels"\nclasses = []', "prior.classes: expected nothing beside"),
+        ('"labels"', '"labels"\norigin = [1, 2]', "prior.origin: expected a list of 3 numbers"),
+        ('"labels"', '"labels"\norigin = [1, 2, inf]', "prior.origin: .*3 finite numbers"),
+        ("pedestrian", "truck", "focus: classes: expected one of car, pedestrian, found 'truck'"),
+        ('boxes = "labels"', "origin = [1, 2, 3]", "prior.origin: expected one of"),
+    ],
+)
+def test_bad_priors_of_boxes_are_one_clear_line(write, old, new, message):
+    write(KITTI)
+    path = write(changed(STUDY, old, new), "study.toml")
+    with pytest.raises(pe.InputError, match=message) as caught:
+        pe.load_study(path)
+    assert str(caught.value).startswith(f"{path}: ") and "\n" not in str(caught.value)
+
+
+def test_a_wrong_label_is_told_with_the_study_the_file_and_the_line(write):
+    write(changed(KITTI, "1.75", "-1"))
+    path = write(STUDY, "study.toml")
+    with pytest.raises(
+        pe.InputError, match="labels: line 2: expected a height above 0 m, found -1"
+    ):
+        pe.load_study(path)

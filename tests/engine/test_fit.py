@@ -1,0 +1,123 @@
+"""`pe_core.fit`: a and b of the AP curve, what is left out, and bad tables."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.fit import ApTable, fit_ap_curve, read_ap_table, study_snippet
+
+PAPER = {"lidar": (0.152, 0.659), "camera": (0.055, 0.155)}
+
+
+def table(m, ap, n=None):
+    m = np.array(m, dtype=float)
+    weights = np.ones(len(m)) if n is None else np.array(n, dtype=float)
+    return ApTable(m, np.array(ap, dtype=float), weights)
+
+
+def clipped(m, a, b):
+    return [min(max(a * math.log(v) + b, 0.001), 0.999) for v in m]
+
+
+def written(tmp_path, text):
+    path = tmp_path / "ap.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+@pytest.mark.parametrize("kind", PAPER)
+def test_points_of_the_papers_curve_give_its_coefficients_back(kind):
+    m = np.geomspace(1e-4, 1e7, 60)
+    fit = fit_ap_curve(table(m, clipped(m, *PAPER[kind])))
+    assert (fit.curve.a, fit.curve.b) == pytest.approx(PAPER[kind], abs=1e-12)
+    assert fit.a_error < 1e-10 and fit.b_error < 1e-10 and fit.rms < 1e-10
+    assert "at the clip" in fit.left_out
+
+
+def test_errors_are_those_of_least_squares():
+    """Against NumPy's own fit and its covariance."""
+    rng = np.random.default_rng(3)
+    m = np.geomspace(0.05, 5.0, 12)
+    ap = 0.15 * np.log(m) + 0.6 + rng.normal(0.0, 0.02, len(m))
+    fit = fit_ap_curve(table(m, ap), saturation=0.0)
+    (a, b), covariance = np.polyfit(np.log(m), ap, 1, cov=True)
+    assert (fit.curve.a, fit.curve.b) == pytest.approx((a, b))
+    assert (fit.a_error, fit.b_error) == pytest.approx(np.sqrt(np.diag(covariance)))
+
+
+def test_points_weigh_what_stands_behind_them():
+    m, ap = [0.1, 0.2, 0.4, 0.8], [0.3, 0.4, 0.5, 0.9]
+    twice = fit_ap_curve(table([*m, m[0]], [*ap, ap[0]]), saturation=0.0)
+    weighed = fit_ap_curve(table(m, ap, [2, 1, 1, 1]), saturation=0.0)
+    assert (weighed.curve.a, weighed.curve.b) == pytest.approx((twice.curve.a, twice.curve.b))
+    assert weighed.rms == pytest.approx(twice.rms)
+
+
+def test_what_is_saturated_is_left_out():
+    m = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4]
+    ap = [0.3, 0.45, 0.6, 0.75, 0.90, 0.91, 0.85]  # it levels out, then falls
+    fit = fit_ap_curve(table(m, ap))
+    assert list(fit.used) == [True] * 4 + [False] * 3
+    assert fit.left_out == {"saturated": 3}
+    assert fit.curve.a == pytest.approx(0.15 / math.log(2.0))
+
+
+def test_a_single_highest_point_is_not_saturated():
+    fit = fit_ap_curve(table([0.1, 0.2, 0.4], [0.3, 0.45, 0.6]))
+    assert fit.used.all()
+
+
+def test_the_snippet_is_part_of_a_study(tmp_path):
+    m = [0.1, 0.2, 0.4, 0.8]
+    fit = fit_ap_curve(table(m, clipped(m, 0.2, 0.7)))
+    text = study_snippet(fit, "camera")
+    sensor = '[[sensor]]\nname = "a"\nmodel = "Pandar64"\nposition = [0, 0, 2]\n'
+    study = pe.load_study(written(tmp_path, text + sensor))
+    assert (study.model.camera.a, study.model.camera.b) == pytest.approx((0.2, 0.7))
+    assert study.model.lidar == pe.PerceptionModel().lidar
+
+
+def test_a_table_is_read_with_comments_columns_in_any_order_and_any_line_ends(tmp_path):
+    text = "# AP of a detector\r\nclass, AP ,m\rcar,0.5,1\n\ncar,0.25,0.5\r\n"
+    read = read_ap_table(written(tmp_path, text))
+    assert read.m.tolist() == [1.0, 0.5] and read.ap.tolist() == [0.5, 0.25]
+    assert read.n.tolist() == [1.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("", r"ap.csv: file: expected a table with the columns m and ap, found nothing"),
+        ("# nothing\n", r"file: .* found nothing"),
+        (b"\x89PNG\0\0", r"file: expected a table in text"),
+        ("a,b\n1,2\n", r"line 1: expected one column named m, found 'a, b'"),
+        ("m,m,ap\n1,2,0.5\n", r"line 1: expected one column named m"),
+        ("m,ap\n1,0.5,3\n", r"line 2: expected 2 columns, found 3"),
+        ("m,ap\n1,0.5\n2,77.3\n", r"line 3: expected ap between 0 and 1, found 77.3"),
+        ("m,ap\n1,-0.1\n", r"line 2: expected ap between 0 and 1"),
+        ("m,ap\n\n# x\n1,nan\n", r"line 4: expected a finite number.* for ap, found 'nan'"),
+        ("m,ap\n-1,0.5\n", r"line 2: expected m of 0 or more"),
+        ("m,ap\none,0.5\n", r"line 2: expected a finite number.* for m, found 'one'"),
+        ("m,ap,n\n1,0.5,0\n", r"line 2: expected n above 0"),
+    ],
+)
+def test_a_wrong_table_is_one_line_with_the_lines_number(tmp_path, text, line):
+    with pytest.raises(pe.InputError, match=line):
+        read_ap_table(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("m", "ap", "line"),
+    [
+        ([], [], "at least 3 usable ones, found 0 of 0"),
+        ([1, 2], [0.5, 0.6], "at least 3 usable ones, found 2 of 2"),
+        ([0, 1, 2, 3], [0, 0.3, 0.5, 1.0], r"2 of 4 \(1 no measurement, 1 at the clip\)"),
+        ([1, 1, 1], [0.5, 0.6, 0.7], "m: expected at least two different ones"),
+        ([1, 2, 4], [0.7, 0.5, 0.2], "larger AP for larger m, found a slope of -0.36"),
+    ],
+)
+def test_tables_without_a_curve_are_refused(m, ap, line):
+    with pytest.raises(pe.InputError, match=line):
+        fit_ap_curve(table(m, ap))

@@ -1,0 +1,116 @@
+"""The [prior] of a study: models, classes of one's own, and back to the file."""
+
+import tomllib
+from dataclasses import replace
+
+import pytest
+
+import pe_core as pe
+from pe_core.study_file import study_from_dict, study_to_dict
+from pe_core.toml_writer import dumps
+
+SENSOR = '[[sensor]]\nname = "roof"\nmodel = "Pandar64"\nposition = [0, 0, 1.8]\n'
+FAR_CAR = '[[prior.class]]\nname = "car"\ndecay_x = 60\n'
+TRAM = """
+[[prior.class]]
+name = "tram"
+size = [15, 2.5, 3.6]
+height_spread = 0.3
+decay_x = 50
+laplace_y = 5
+gauss_y = 2.0
+laplace_share = 0.5
+"""
+
+
+@pytest.fixture
+def prior_of(tmp_path):
+    def load(text):
+        path = tmp_path / "study.toml"
+        path.write_text(text + SENSOR, "utf-8")
+        return pe.load_study(path).prior
+
+    return load
+
+
+def saved(prior):
+    """Return the [prior] that is written for a prior, after checking that it is read back."""
+    study = pe.Study(pe.Rig([pe.Sensor("roof", pe.catalog.load("Pandar64"), pe.Pose((0, 0, 2)))]))
+    data = study_to_dict(replace(study, prior=prior))
+    assert study_from_dict(tomllib.loads(dumps(data))).prior == prior
+    return data["prior"]
+
+
+@pytest.mark.parametrize("model", ["road", "highway", "uniform"])
+def test_models_are_saved_by_their_name_alone(prior_of, model):
+    prior = prior_of(f'[prior]\nmodel = "{model}"\n')
+    assert prior == getattr(pe.Prior, model)()
+    assert saved(prior) == {"model": model}
+
+
+def test_the_road_is_the_default(prior_of):
+    assert prior_of("") == pe.Prior.road()
+
+
+def test_a_class_of_the_road_can_be_changed(prior_of):
+    car, *others = pe.Prior.road().classes
+    prior = prior_of(FAR_CAR)
+    assert prior.classes == (replace(car, decay_x=60.0), *others)
+    assert saved(prior) == {"model": "road", "class": [{"name": "car", "decay_x": 60.0}]}
+
+
+def test_a_class_can_be_added(prior_of):
+    prior = prior_of(TRAM + "share = 0.5\nlanes = [-3, 3]\n")
+    tram = pe.ObjectClass("tram", (15.0, 2.5, 3.6), 0.3, 50.0, 5.0, 2.0, 0.5, (-3.0, 3.0), 0.5)
+    assert prior.classes == (*pe.Prior.road().classes, tram)
+    (table,) = saved(prior)["class"]
+    assert table["name"] == "tram" and table["lanes"] == [-3.0, 3.0] and len(table) == 9
+    assert prior_of(TRAM).classes[-1] == replace(tram, share=1.0, lanes=(0.0,))
+
+
+def test_classes_can_be_chosen(prior_of):
+    prior = prior_of('[prior]\nclasses = ["tram", "car"]\n' + FAR_CAR + TRAM)
+    assert prior.class_names == ("tram", "car") and prior.classes[1].decay_x == 60.0
+    assert saved(prior)["classes"] == ["tram", "car"]
+    some = pe.Prior("highway", pe.Prior.highway().classes[:2], (pe.Focus(2.0, classes=("car",)),))
+    assert saved(some)["classes"] == ["car", "truck"]
+    assert "class" not in saved(some)
+
+
+def test_focus_knows_the_classes_of_one_s_own(prior_of):
+    focus = '[[prior.focus]]\nfactor = 2\nclasses = ["tram"]\n'
+    assert prior_of(TRAM + focus).focus == (pe.Focus(2.0, classes=("tram",)),)
+    with pytest.raises(pe.InputError, match=r"classes: expected one of car, .*cone, found 'tram'"):
+        prior_of(focus)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('[prior]\nmodel = "motorway"\n', "prior.model: expected one of road, highway, uniform"),
+        ('[prior]\nmodel = "boxes"\n', "prior.model: expected one of road, highway, uniform"),
+        ('[prior]\nclasses = ["horse"]\n', "prior.classes: expected some of car, .*found 'horse'"),
+        ("[prior]\nclasses = []\n", "prior: classes: expected at least one"),
+        ('[prior]\nclasses = ["car", "car"]\n', "prior: classes: expected each name once"),
+        ('[prior]\nmodel = "uniform"\n' + FAR_CAR, "prior.class: expected nothing beside model"),
+        ('[prior]\nmodel = "uniform"\nclasses = []\n', "prior.classes: expected nothing beside"),
+        (FAR_CAR + FAR_CAR, "prior.class: expected each name once, found 'car' twice"),
+        (FAR_CAR + "colour = 3\n", r"prior.class\[0\].colour: expected one of"),
+        (FAR_CAR.replace("60", "0"), r"prior.class\[0\].decay_x: expected a length above 0 m"),
+        (FAR_CAR.replace("60", "nan"), r"prior.class\[0\].decay_x: expected a number, found nan"),
+        (FAR_CAR.replace("60", "'60'"), r"prior.class\[0\].decay_x: expected a number, found '60'"),
+        (FAR_CAR + "size = [1, 2]\n", r"prior.class\[0\].size: expected a list of 3 numbers"),
+        (FAR_CAR + "lanes = []\n", r"prior.class\[0\].lanes: expected one or more finite numbers"),
+        (FAR_CAR + "lanes = ['a']\n", r"prior.class\[0\].lanes: expected a list of 1 numbers"),
+        (FAR_CAR + "lanes = 3\n", r"prior.class\[0\].lanes: expected a list of 1 numbers"),
+        (TRAM.replace("gauss_y = 2.0", ""), r"prior.class\[0\].gauss_y: expected a value, found n"),
+        (
+            "[[prior.class]]\ndecay_x = 2\n",
+            r"prior.class\[0\].name: expected a value, found nothing",
+        ),
+    ],
+)
+def test_bad_priors_are_one_clear_line(prior_of, text, message):
+    with pytest.raises(pe.InputError, match=message) as caught:
+        prior_of(text)
+    assert "study.toml: " in str(caught.value) and "\n" not in str(caught.value)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import sedan_profile as profile
-from sedan_profile import Array, Curve
-
-GAP = 0.0035  # half the width of a shut line
-Line = Callable[[Array], Array]
+from curves import Array, Curve, step
+from panel_lines import Line
 
 HOOD_EDGE = Curve((0.60, 0.770), (1.10, 0.755), (1.60, 0.725), (2.30, 0.620))  # half width over x
 FRONT_DOOR = Curve((0.20, 0.985), (0.45, 0.965), (0.75, 0.900), (1.00, 0.840))  # x over height
@@ -120,7 +116,7 @@ def taillight_top(p: Array) -> Array:
 def taillight_foot(p: Array) -> Array:
     """Positive above their lower edge: a bar that widens and wraps the corner."""
     wrap = np.maximum(p[:, 0] + 2.22, 0) * 0.28
-    return p[:, 2] - 0.895 + 0.055 * profile.step(p[:, 1], 0.30, 0.62) - wrap
+    return p[:, 2] - 0.895 + 0.055 * step(p[:, 1], 0.30, 0.62) - wrap
 
 
 def crease(p: Array) -> Array:
@@ -160,54 +156,9 @@ def grille_side(p: Array) -> Array:
     return 0.61 - 0.45 * np.abs(p[:, 2] - 0.28) - p[:, 1]
 
 
-def band(low: float, high: float) -> Line:
-    """Positive between two heights."""
-    return lambda p: np.minimum(p[:, 2] - low, high - p[:, 2])
-
-
-def within(line: Line, half: float) -> Line:
-    """Positive nearer than `half` to another line."""
-    return lambda p: half - np.abs(line(p))
-
-
-def widened(line: Line, by: float) -> Line:
-    """The same line moved outwards."""
-    return lambda p: line(p) + by
-
-
 def door(curve: Curve) -> Line:
     """Positive ahead of a door edge."""
     return lambda p: p[:, 0] - curve(p[:, 2])
-
-
-def both(*lines: Line) -> Line:
-    """True where all lines are positive."""
-    return lambda p: np.all([line(p) > 0 for line in lines], axis=0)
-
-
-def height(limit: float) -> Line:
-    """Positive above a height."""
-    return lambda p: p[:, 2] - limit
-
-
-def negative(line: Line) -> Line:
-    """The other side of a line."""
-    return lambda p: -line(p)
-
-
-def ahead(limit: float) -> Line:
-    """Positive ahead of a length."""
-    return lambda p: p[:, 0] - limit
-
-
-def behind(limit: float) -> Line:
-    """Positive behind a length."""
-    return lambda p: limit - p[:, 0]
-
-
-def inboard(limit: float) -> Line:
-    """Positive nearer to the centre plane than a width."""
-    return lambda p: limit - p[:, 1]
 
 
 def between_axles(p: Array) -> Array:

@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
+from panel_lines import (
+    GAP,
+    Line,
+    Panel,
+    ahead,
+    band,
+    behind,
+    both,
+    height,
+    in_gaps,
+    inboard,
+    negative,
+    widened,
+    within,
+)
 from sedan_lines import (
     BAR_HALF,
     CURTAIN,
@@ -12,7 +25,6 @@ from sedan_lines import (
     DIFFUSER_SIDE,
     DIFFUSER_TOP,
     FRONT_DOOR,
-    GAP,
     HANDLE_Z,
     HEADLIGHT_STRIP,
     INTAKE,
@@ -23,14 +35,9 @@ from sedan_lines import (
     SILL_TOP,
     SILL_TRIM,
     SLOT_HALF,
-    Line,
     above,
-    ahead,
     arch,
-    band,
-    behind,
     between_axles,
-    both,
     cowl_edge,
     crease,
     curtain_line,
@@ -41,12 +48,9 @@ from sedan_lines import (
     headlight_foot,
     headlight_inner,
     headlight_top,
-    height,
     hood_nose,
     hood_side,
-    inboard,
     lip,
-    negative,
     pillar,
     rear_foot,
     rear_pillar,
@@ -58,11 +62,8 @@ from sedan_lines import (
     slot_line,
     taillight_foot,
     taillight_top,
-    widened,
-    within,
 )
-from sedan_profile import Array
-from sedan_skin import Skin, cut
+from skin import Skin, cut, cut_gaps
 
 below = negative(above)
 nose, corner, tail = ahead(1.9), ahead(1.7), behind(-1.88)
@@ -75,14 +76,6 @@ ROOF = both(height(1.2), pillar, negative(screen_top), negative(rear_top))
 HEADLIGHT = both(corner, headlight_top, headlight_foot, headlight_inner)
 STRIP = both(HEADLIGHT, negative(widened(headlight_foot, -HEADLIGHT_STRIP)))
 TAILLIGHT = both(tail, taillight_top, taillight_foot)
-
-
-class Panel(NamedTuple):
-    """A piece of the skin: object, material and where it is."""
-
-    name: str
-    material: str
-    inside: Line
 
 
 def shut_lines() -> list[tuple[Line, Line]]:
@@ -114,9 +107,7 @@ def cut_panels(skin: Skin) -> None:
     cut(skin, rear_foot, both(rear_pillar, behind(-1.2), height(1.0)))
     cut(skin, cowl_edge, both(below, hood_side, ahead(0.5), height(0.8)))
     cut_lights(skin)
-    for edge, where in shut_lines():
-        cut(skin, widened(edge, GAP), where)
-        cut(skin, widened(edge, -GAP), where)
+    cut_gaps(skin, shut_lines())
     for curve, half in ((MIDDLE_DOOR, PILLAR_HALF), (QUARTER_LIGHT, BAR_HALF)):
         for offset in (half, -half):
             cut(skin, widened(door(curve), offset), SIDE_GLASS)
@@ -148,11 +139,6 @@ def cut_lights(skin: Skin) -> None:
     cut(skin, inboard(DIFFUSER_SIDE), both(behind(-2.0), band(0, DIFFUSER_TOP)))
 
 
-def any_gap(p: Array) -> Array:
-    """True in the shut lines."""
-    return np.any([both(within(edge, GAP), where)(p) for edge, where in shut_lines()], axis=0)
-
-
 PANELS = [
     Panel("windows", "trim", both(SIDE_GLASS, within(door(MIDDLE_DOOR), PILLAR_HALF))),
     Panel("windows", "trim", both(SIDE_GLASS, within(door(QUARTER_LIGHT), BAR_HALF))),
@@ -160,14 +146,10 @@ PANELS = [
     Panel("windshield", "glass", WINDSHIELD),
     Panel("rear_window", "glass", REAR_GLASS),
     Panel("roof", "paint", ROOF),
-    Panel(
-        "headlights",
-        "headlight",
-        STRIP,
-    ),
+    Panel("headlights", "headlight", STRIP),
     Panel("headlights", "glass", HEADLIGHT),
     Panel("taillights", "taillight", TAILLIGHT),
-    Panel("body", "trim", any_gap),
+    Panel("body", "trim", in_gaps(shut_lines())),
     Panel("hood", "paint", HOOD),
     Panel("body", "trim", both(below, ahead(0.5), negative(cowl_edge), hood_side, height(0.85))),
     Panel("body", "trim", both(nose, negative(headlight_inner), slot)),
@@ -178,11 +160,3 @@ PANELS = [
     Panel("body", "trim", both(behind(-2.0), band(0, DIFFUSER_TOP), inboard(DIFFUSER_SIDE))),
     Panel("body", "paint", lambda p: np.ones(len(p), dtype=bool)),
 ]
-
-
-def classify(centres: Array) -> Array:
-    """Index of the first panel that contains each point."""
-    found = np.full(len(centres), -1)
-    for i, panel in enumerate(PANELS):
-        found[(found < 0) & panel.inside(centres)] = i
-    return found

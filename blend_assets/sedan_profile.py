@@ -7,12 +7,10 @@ union of a lower body and a greenhouse, each a smooth intersection of a few fair
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-
-Array = np.ndarray
+from curves import Array, Curve, bump, smooth_max, step
 
 LENGTH, WIDTH, HEIGHT = 4.70, 1.85, 1.45
 WHEEL_RADIUS, TYRE_WIDTH = 0.33, 0.225
@@ -21,36 +19,6 @@ AXLES = {"front": 1.49, "rear": -1.31}  # x of the wheel centres: wheelbase 2.80
 ARCH_RADIUS, ARCH_Z = 0.368, 0.338  # wheel opening: a circle seen from the side
 WELL_Y = 0.54  # inner wall of the wheel housings
 SPINE_Z = 0.55  # height of the axis from which cross sections are sampled
-
-
-class Curve:
-    """A natural cubic spline through (position, value) pairs, straight outside of them."""
-
-    def __init__(self, *pairs: tuple[float, float]) -> None:
-        self.x, self.y = np.array(sorted(pairs), dtype=float).T
-        self.second = self._second_derivatives()
-
-    def _second_derivatives(self) -> Array:
-        step, n = np.diff(self.x), len(self.x)
-        system, right = np.eye(n), np.zeros(n)
-        slope = np.diff(self.y) / step
-        for i in range(1, n - 1):
-            system[i, i - 1 : i + 2] = step[i - 1], 2 * (step[i - 1] + step[i]), step[i]
-            right[i] = 6 * (slope[i] - slope[i - 1])
-        return np.linalg.solve(system, right)
-
-    def __call__(self, at: Array | float) -> Array:
-        inside = np.clip(at, self.x[0], self.x[-1])
-        i = np.clip(np.searchsorted(self.x, inside) - 1, 0, len(self.x) - 2)
-        step = self.x[i + 1] - self.x[i]
-        b = (inside - self.x[i]) / step
-        a = 1 - b
-        bend = (a**3 - a) * self.second[i] + (b**3 - b) * self.second[i + 1]
-        value = a * self.y[i] + b * self.y[i + 1] + bend * step**2 / 6
-        slope = (self.y[i + 1] - self.y[i]) / step + step / 6 * (
-            (3 * b * b - 1) * self.second[i + 1] - (3 * a * a - 1) * self.second[i]
-        )
-        return value + (np.asarray(at) - inside) * slope
 
 
 # --- lower body -----------------------------------------------------------------------------
@@ -104,23 +72,6 @@ class Terms(NamedTuple):
     cabin: Array  # the whole greenhouse
     cabin_side: Array  # side glass and its pillars
     cabin_top: Array  # windscreen, roof and rear glass together
-
-
-def smooth_max(a: Array, b: Array, radius: Array | float) -> Array:
-    """The larger of two, with the corner rounded over about this radius."""
-    overlap = np.maximum(radius - np.abs(a - b), 0) / radius
-    return np.maximum(a, b) + overlap**2 * radius / 4
-
-
-def step(x: Array, start: float, stop: float) -> Array:
-    """A smooth ramp from 0 at `start` to 1 at `stop`."""
-    t = np.clip((x - start) / (stop - start), 0, 1)
-    return t * t * (3 - 2 * t)
-
-
-def bump(x: Array, centre: float, width: float) -> Array:
-    """A bell of height one."""
-    return np.exp(-(((x - centre) / width) ** 2))
 
 
 def body_side(x: Array, z: Array) -> Array:
@@ -189,27 +140,3 @@ def solid(points: Array) -> Array:
     part, x = terms(points), points[:, 0]
     fillet = 0.006 + 0.11 * step(x, -0.8, -1.6)
     return -smooth_max(-part.lower, -part.cabin, fillet)
-
-
-def gradient(points: Array, function: Callable[[Array], Array] = solid) -> Array:
-    """Direction in which a function grows; that of the solid points outwards."""
-    columns = []
-    for axis in range(3):
-        offset = np.eye(3)[axis] * 1e-5
-        columns.append((function(points + offset) - function(points - offset)) / 2e-5)
-    return np.stack(columns, axis=1)
-
-
-def onto_skin(points: Array, line: Callable[[Array], Array]) -> Array:
-    """Move points to where a line lies on the skin; points of the centre plane stay in it."""
-    centre = np.abs(points[:, 1]) < 1e-6
-    for function in (solid, line) * 4 + (solid,):
-        slope = gradient(points, function)
-        if function is line:  # along the skin only
-            normal = gradient(points)
-            normal /= np.linalg.norm(normal, axis=1)[:, None]
-            slope -= normal * np.sum(slope * normal, axis=1)[:, None]
-        slope[centre, 1] = 0
-        square = np.maximum(np.sum(slope**2, axis=1), 1e-6)
-        points = points - slope * np.clip(function(points) / square, -0.02, 0.02)[:, None]
-    return points

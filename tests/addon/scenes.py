@@ -1,9 +1,13 @@
 """Small scenes to test on."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 
 from blender_addon import bridge
+
+ASSETS = Path(__file__).resolve().parents[2] / "blend_assets"
 
 CUBE = (
     *((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)),
@@ -65,9 +69,40 @@ def study():
     return bridge.study_from_scene(bpy.context.scene, depsgraph())
 
 
+def shipped_study(name: str):
+    """Open one of the example vehicles; return it with its sensors."""
+    bpy.ops.wm.open_mainfile(filepath=str(ASSETS / f"{name}.blend"))
+    return study()
+
+
 def vehicle(collection):
     """Return a collection as the engine's vehicle."""
     return bridge.vehicle_from_collection(collection, depsgraph())
+
+
+def edges_of(triangles: np.ndarray) -> list[tuple[int, int]]:
+    """Directed edges of (F, 3, 3) triangles, three a face; corners join at 0.01 mm."""
+    _, corner = np.unique(np.round(triangles.reshape(-1, 3), 5) + 0.0, axis=0, return_inverse=True)
+    faces = corner.reshape(-1, 3)
+    pairs = np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1)
+    return [(a, b) for a, b in pairs.reshape(-1, 2).tolist()]
+
+
+def open_edges(triangles: np.ndarray) -> int:
+    """How many edges lack an opposite one, or come twice."""
+    edges = edges_of(triangles)
+    have = set(edges)
+    return sum((b, a) not in have for a, b in edges) + len(edges) - len(have)
+
+
+def sharpest_fold(triangles: np.ndarray, least_area: float = 5e-6) -> float:
+    """Least cosine between faces that share an edge, of those above an area [m^2]."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    size = np.linalg.norm(normal, axis=1)
+    face = {edge: i // 3 for i, edge in enumerate(edges_of(triangles)) if size[i // 3] > least_area}
+    pairs = np.array([(i, face[q, p]) for (p, q), i in face.items() if (q, p) in face])
+    return float((normal[pairs].prod(axis=1).sum(axis=1) / size[pairs].prod(axis=1)).min())
 
 
 def volume(triangles: np.ndarray) -> float:

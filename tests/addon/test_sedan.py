@@ -1,25 +1,20 @@
 """The example vehicle, as it is shipped."""
 
 from dataclasses import replace
-from pathlib import Path
 
-import bpy
 import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge
+from tests.addon import scenes
 
-SEDAN = Path(__file__).resolve().parents[2] / "blend_assets" / "sedan.blend"
 ROOF_M = 1.45
 
 
 @pytest.fixture
 def study(addon):
     """The sedan with its roof LiDAR, judged on few voxels."""
-    bpy.ops.wm.open_mainfile(filepath=str(SEDAN))
-    found = bridge.study_from_scene(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
-    return replace(found, samples=16_384)
+    return replace(scenes.shipped_study("sedan"), samples=16_384)
 
 
 def test_its_size_and_parts(study):

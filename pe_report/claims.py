@@ -1,0 +1,125 @@
+"""The orderings the paper finds, each judged on our figures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from .effort import Effort, pitch_differences
+from .paper import PRIORS, ROW
+from .plan import best_start, pilot_name, search_name
+
+STRONG_NATS = 0.39
+"""Half of what two cameras gain in the paper (1.6864 - 0.8965): less is no strong improvement."""
+SMALL_DEG = 1.0
+"""A pitch difference up to this is small."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """That one rig scores lower than another.
+
+    `where` is "printed" (the paper's placements) or "searched" (ours); `by` is how much lower it
+    has to be.
+    """
+
+    experiment: str
+    text: str
+    where: str
+    prior: str
+    better: str
+    better_entropy: float
+    worse: str
+    worse_entropy: float
+    by: float = 0.0
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is so."""
+        return self.worse_entropy - self.better_entropy > self.by
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the claim and its verdict as plain JSON data."""
+        return {**asdict(self), "holds": self.holds}
+
+
+TEXTS = {
+    "1": "Pandar64 is better than HDL-64E",
+    "2": "60 deg is better than 120 deg, the weight beyond 40 m doubled",
+    "3 default": "LiDARs at diagonal corners beat both at the front",
+    "3 front": "both at the front beat diagonal corners when the front counts double",
+    "4": f"two cameras improve two LiDARs strongly (by {STRONG_NATS} and more)",
+    "pitch": "a small pitch difference is better than none",
+}
+
+
+def claims(values: Mapping[str, Any], effort: Effort) -> list[Claim]:
+    """Return every ordering, under every prior at the printed placements, and as searched."""
+    found = [claim for prior in PRIORS for claim in _printed(values, prior)]
+    return [*found, *_searched(values, effort), _pitched(values, effort)]
+
+
+def _printed(values: Mapping[str, Any], prior: str) -> Iterator[Claim]:
+    def entropy(name: str) -> float:
+        return values[f"{name}/{prior}"]["entropy"]
+
+    pairs = (
+        ("1", "Pandar64", "printed/1_pandar64", "HDL-64E", "printed/1_hdl64e", 0.0),
+        ("2", "60 deg", "printed/2_60deg", "120 deg", "printed/2_120deg", 0.0),
+        ("3 default", "diagonal", "printed/3_default", "front", "swapped/3_default", 0.0),
+        ("3 front", "front", "printed/3_front", "diagonal", "swapped/3_front", 0.0),
+        ("4", "all", "printed/4_cameras", "LiDARs alone", "lidars/4_cameras", STRONG_NATS),
+    )
+    for key, better, low, worse, high, by in pairs:
+        figures = entropy(low), worse, entropy(high), by
+        yield Claim(key, TEXTS[key], "printed", prior, better, *figures)
+
+
+def _searched(values: Mapping[str, Any], effort: Effort) -> Iterator[Claim]:
+    for key, better, worse in (("1", "1_pandar64", "1_hdl64e"), ("2", "2_60deg", "2_120deg")):
+        for prior in PRIORS:
+            if (better, prior) in effort.rows:
+                figures = [best_entropy(values, effort, row, prior) for row in (better, worse)]
+                yield _best(key, prior, ROW[better].label, figures[0], ROW[worse].label, figures[1])
+    for key, row, better, worse in (
+        ("3 default", "3_default", "diagonal", "front"),
+        ("3 front", "3_front", "front", "diagonal"),
+    ):
+        low, high = (
+            values[pilot_name(row, PRIORS[0], start)]["entropy"] for start in (better, worse)
+        )
+        yield _best(key, PRIORS[0], better, low, worse, high)
+    if ("4_cameras", PRIORS[0]) in effort.rows:
+        low, high = (
+            best_entropy(values, effort, row, PRIORS[0]) for row in ("4_cameras", "3_front")
+        )
+        yield _best("4", PRIORS[0], "with cameras", low, "two LiDARs", high, STRONG_NATS)
+
+
+def _best(
+    key: str, prior: str, better: str, low: float, worse: str, high: float, by: float = 0.0
+) -> Claim:
+    return Claim(key, TEXTS[key], "searched", prior, better, low, worse, high, by)
+
+
+def best_search(values: Mapping[str, Any], effort: Effort, row: str, prior: str) -> str:
+    """Name of the search that ended lowest, of all seeds from the best start."""
+    start = best_start(row, prior, values, effort)
+    assert start is not None
+    names = [search_name(row, prior, start, seed) for seed in effort.seeds]
+    return min(names, key=lambda name: values[name]["entropy"])
+
+
+def best_entropy(values: Mapping[str, Any], effort: Effort, row: str, prior: str) -> float:
+    """Lowest entropy found for a row."""
+    entropy: float = values[best_search(values, effort, row, prior)]["entropy"]
+    return entropy
+
+
+def _pitched(values: Mapping[str, Any], effort: Effort) -> Claim:
+    curve = {d: values[f"pitch/{d:g}"]["entropy"] for d in pitch_differences(effort)}
+    small = {d: h for d, h in curve.items() if 0.0 < abs(d) <= SMALL_DEG}
+    best = min(small, key=lambda d: small[d])
+    figures = f"{best:g} deg", small[best], "0 deg", curve[0.0]
+    return Claim("pitch", TEXTS["pitch"], "printed", PRIORS[0], *figures)

@@ -1,0 +1,48 @@
+"""The page: results.json in words and tables. No figure here comes from anywhere else."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pe_core.files import write_bytes
+
+from . import sections
+from .facts import Facts
+
+PAGE = "README.md"
+WIDTH = 100
+
+
+def write_page(data: Mapping[str, Any], folder: Path) -> None:
+    """Write the page beside its plots."""
+    write_bytes(folder / PAGE, page(Facts(data)).encode())
+
+
+def page(facts: Facts) -> str:
+    """Return the page as Markdown."""
+    parts = (
+        sections.head,
+        sections.orderings,
+        sections.rows,
+        sections.experiment_1,
+        sections.experiment_2,
+        sections.experiment_3,
+        sections.experiment_4,
+        sections.pitch,
+        sections.sensitivity,
+        sections.ap_curve,
+        sections.priors,
+        sections.how_made,
+    )
+    blocks = (block for part in parts for block in part(facts).strip().split("\n\n"))
+    return "\n\n".join(map(_wrapped, blocks)) + "\n"
+
+
+def _wrapped(block: str) -> str:
+    """Return a paragraph in lines of even width; tables, headings and the like as they are."""
+    if block.startswith(("|", "#", "-", "!")):
+        return block
+    return textwrap.fill(block, WIDTH, break_long_words=False, break_on_hyphens=False)

@@ -1,0 +1,27 @@
+"""One quick reproduction for all tests that look at it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def pe(*arguments, cwd=ROOT):
+    """Run the command."""
+    command = [sys.executable, "-m", "pe_core", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=600)
+
+
+@pytest.fixture(scope="session")
+def quick(tmp_path_factory):
+    """The folder, the data and the run of ``pe reproduce --quick``."""
+    folder = tmp_path_factory.mktemp("reproduction")
+    run = pe("reproduce", "--quick", "--output", folder)
+    assert run.returncode == 0, run.stdout + run.stderr
+    data = json.loads((folder / "results.json").read_text("utf-8"))
+    return SimpleNamespace(folder=folder, data=data, run=run)

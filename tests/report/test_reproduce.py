@@ -1,0 +1,132 @@
+"""``pe reproduce --quick``: the orderings, the page, the plots, and going on where it stopped."""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from pe_report.effort import QUICK
+from pe_report.plan import plan
+from tests.report.conftest import ROOT, pe
+
+KEYS = ("1", "2", "3 default", "3 front", "4")
+
+
+def verdict(quick, experiment, where, prior):
+    (claim,) = [
+        c
+        for c in quick.data["claims"]
+        if (c["experiment"], c["where"], c["prior"]) == (experiment, where, prior)
+    ]
+    assert claim["holds"] == (claim["worse_entropy"] - claim["better_entropy"] > claim["by"])
+    return claim["holds"]
+
+
+@pytest.mark.parametrize("prior", ["road", "uniform", "highway"])
+@pytest.mark.parametrize("experiment", KEYS)
+def test_orderings_at_the_printed_placements(quick, experiment, prior):
+    """All are the paper's, but 60 against 120 degrees: that one needs a narrow prior."""
+    expected = experiment != "2" or prior == "highway"
+    assert verdict(quick, experiment, "printed", prior) == expected
+
+
+@pytest.mark.parametrize("experiment", ["1", "3 default", "3 front"])
+def test_orderings_of_our_own_search(quick, experiment):
+    assert verdict(quick, experiment, "searched", "road")
+
+
+def test_a_small_pitch_difference_is_better_than_none(quick):
+    assert verdict(quick, "pitch", "printed", "road")
+
+
+def test_the_camera_row_is_out_of_reach(quick):
+    for row, printed in (("2_60deg", 2.0055), ("2_120deg", 2.0237)):
+        for prior in ("road", "uniform", "highway"):
+            value = quick.data["results"][f"bound/{row}/{prior}"]["value"]
+            ours = quick.data["results"][f"printed/{row}/{prior}"]["value"]["entropy"]
+            assert printed < value["least_all_round"] < value["least"] < ours
+
+
+def test_the_fit_returns_the_papers_coefficients(quick):
+    fit = quick.data["results"]["fit/paper_lidar"]["value"]
+    assert (round(fit["a"], 9), round(fit["b"], 9)) == (0.152, 0.659)
+
+
+def test_nothing_is_left_to_do_and_all_is_said(quick):
+    values = {name: entry["value"] for name, entry in quick.data["results"].items()}
+    assert plan(QUICK, values) == []
+    assert quick.data["made"]["commit"] and quick.data["made"]["machine"]
+    assert "does not hold" in quick.run.stdout.lower()
+
+
+def test_every_figure_of_the_page_is_in_the_results(quick):
+    """Numbers of four decimals are entropies: each is one of the results' or of the paper's."""
+    page = (quick.folder / "README.md").read_text("utf-8")
+    paper = {"1.6429", "2.1212", "2.0055", "2.0237", "1.7119", "1.6864", "0.8965"}
+    told = {f"{v:.4f}" for v in numbers(quick.data)}
+    found = set(re.findall(r"(?<![\d.])-?\d+\.\d{4}(?!\d)", page))
+    assert len(found) > 30
+    assert found <= told | paper
+
+
+def numbers(data):
+    if isinstance(data, dict):
+        data = list(data.values())
+    if isinstance(data, list):
+        return [n for value in data for n in numbers(value)]
+    return [data] if isinstance(data, (int, float)) and not isinstance(data, bool) else []
+
+
+def test_every_picture_of_the_page_is_there(quick):
+    page = (quick.folder / "README.md").read_text("utf-8")
+    pictures = re.findall(r"!\[[^]]+\]\(([^)]+)\)", page)
+    assert len(pictures) == 13
+    for name in pictures:
+        assert (quick.folder / name).read_bytes().startswith(b"\x89PNG"), name
+
+
+def test_a_second_run_computes_nothing_and_prints_the_json(quick):
+    before = (quick.folder / "results.json").read_bytes()
+    run = pe("reproduce", "--quick", "--json", "--output", quick.folder)
+    assert run.returncode == 0
+    assert json.loads(run.stdout) == quick.data
+    assert "going on from" in run.stderr and "[" not in run.stderr
+    assert (quick.folder / "results.json").read_bytes() == before
+
+
+def test_ctrl_c_keeps_what_is_done(tmp_path):
+    command = [sys.executable, "-m", "pe_core", "reproduce", "--quick", "--output", str(tmp_path)]
+    process = subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    first = process.stderr.readline()
+    assert first.startswith("[1/")
+    process.send_signal(signal.SIGINT)
+    stopped = time.monotonic()
+    _, error = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert time.monotonic() - stopped < 30
+    assert "interrupted" in error and "Traceback" not in error
+    assert json.loads((tmp_path / "results.json").read_text("utf-8"))["results"]
+
+
+def test_results_of_another_commit_are_not_gone_on_with(tmp_path):
+    from pe_report.ledger import Ledger
+
+    ledger = Ledger(tmp_path, QUICK)
+    ledger.note("pitch/0", {"entropy": 1.0}, 0.1)
+    assert Ledger(tmp_path, QUICK).found == 1
+    text = ledger.path.read_text("utf-8")
+    ledger.path.write_text(text.replace(ledger.made["commit"], "0123456789ab"), "utf-8")
+    assert Ledger(tmp_path, QUICK).found == 0
+
+
+@pytest.mark.parametrize(("text", "found"), [("{", "valid JSON"), ("[]", "a JSON object")])
+def test_a_broken_results_file_is_one_line(tmp_path, text, found):
+    (tmp_path / "results.json").write_text(text)
+    run = pe("reproduce", "--quick", "--output", tmp_path)
+    assert run.returncode == 1 and found in run.stderr and run.stderr.count("\n") == 1

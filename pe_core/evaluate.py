@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .entropy import PerceptionModel
+from .errors import InputError
 from .fusion import Fusion
 from .gridded import GridScorer
 from .prior import Prior
@@ -27,7 +28,8 @@ class Evaluator:
         Score on about this many voxels drawn from the prior instead of all of them. The sample is
         fixed: two rigs are compared on the same voxels.
     shift : (3,) float
-        Start of the sample's sequence in [0, 1): another one gives another sample as good.
+        Three numbers in [0, 1) that scramble the sample's sequence: others give another sample as
+        good.
     model : PerceptionModel, optional
         AP curves and fusion rule; the paper's by default.
     workers : int, optional
@@ -58,10 +60,36 @@ class Evaluator:
         else:
             self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
 
-    def score(self, rig: Rig) -> Score:
-        """Score a rig in full: entropy, coverage, by class, by sensor, ground map."""
+    def score(self, rig: Rig, *, draft: bool = False) -> Score:
+        """Score a rig in full: entropy, coverage, by class, by sensor, ground map.
+
+        Parameters
+        ----------
+        rig : Rig
+        draft : bool
+            While a sensor is being moved: which LiDAR beams the vehicle stops is read from a map of
+            its top surface, where the sensor stands above it, instead of cast. `Score.draft` says
+            so. The next score without it is exact again. Sampled scores only.
+
+        Raises
+        ------
+        InputError
+            When a draft is asked of a grid score.
+        """
+        if draft:
+            return self._drafting().score(rig, draft=True)
         return self._scorer.score(rig)
 
-    def entropy(self, rig: Rig) -> float:
-        """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for."""
+    def entropy(self, rig: Rig, *, draft: bool = False) -> float:
+        """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for.
+
+        `draft` and errors as in `score`.
+        """
+        if draft:
+            return self._drafting().entropy(rig, draft=True)
         return self._scorer.entropy(rig)
+
+    def _drafting(self) -> SampledScorer:
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer
+        raise InputError("evaluator", "draft", "a sampled score", "a grid score")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .measurement import beam_directions
+from .kernels.horizon import Slants, TopMap
+from .kernels.ties import without_zeros
+from .measurement import beam_directions, beam_ends
 from .sensors import Lidar, Sensor
 from .vehicle import Vehicle
 
@@ -55,3 +58,51 @@ def beam_counts(sensor: Sensor, vehicle: Vehicle | None) -> tuple[int, int, dict
     names = () if vehicle is None else tuple(vehicle.part_names)
     stopped_by = field.stopped_count(names)
     return len(field.ends), sum(stopped_by.values()), stopped_by
+
+
+@dataclass(frozen=True, slots=True)
+class TurnedBeams:
+    """A LiDAR's beams at one orientation: kept while the sensor moves without turning.
+
+    `directions` (B, 3) unit, ground frame; `without_zeros` the same as the kernels take them;
+    `slants` for drafts.
+    """
+
+    directions: Floats
+    without_zeros: Floats
+    slants: Slants
+
+    @classmethod
+    def of(cls, sensor: Sensor) -> TurnedBeams:
+        """Turn the beams of a LiDAR."""
+        directions = beam_directions(sensor)
+        return cls(directions, without_zeros(directions), Slants.of(directions))
+
+
+class BeamEnds:
+    """Where the beams of LiDARs on a vehicle end: cast, or read from a map of its top as a draft.
+
+    Parameters
+    ----------
+    vehicle : Vehicle or None
+    """
+
+    def __init__(self, vehicle: Vehicle | None) -> None:
+        self._vehicle = vehicle
+
+    @cached_property
+    def _map(self) -> TopMap | None:
+        return None if self._vehicle is None else TopMap(self._vehicle.triangles)
+
+    def can_draft(self, sensor: Sensor) -> bool:
+        """Whether there is a vehicle, and the sensor stands above its top surface."""
+        if self._vehicle is None or self._map is None:
+            return False
+        return self._map.is_above(np.asarray(sensor.pose.position), self._vehicle.clearance)
+
+    def of(self, sensor: Sensor, beams: TurnedBeams, draft: bool) -> Floats:
+        """(B,) distance at which each beam ends [m]: as a draft where that is asked and can be."""
+        if not (draft and self.can_draft(sensor)) or self._map is None:
+            return beam_ends(sensor, beams.directions, self._vehicle)
+        max_range = cast(Lidar, sensor.model).max_range
+        return self._map.ends(np.asarray(sensor.pose.position), beams.slants, max_range)

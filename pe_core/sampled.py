@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
@@ -12,8 +13,8 @@ from .entropy import H_BLIND
 from .fusion import Fusion
 from .kernels.camera_points import pixel_areas
 from .kernels.lidar_points import Lattice, VoxelPoints, count_beams
-from .kernels.ties import position_in_voxels, without_zeros
-from .occlusion import beam_counts, beam_field
+from .kernels.ties import position_in_voxels
+from .occlusion import BeamEnds, TurnedBeams, beam_counts
 from .prior import ClassDensity
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
 from .score import PartScore, Score, SensorScore, rounded
@@ -25,6 +26,15 @@ from .weights import outside_masses
 from .zones import zone_masks
 
 Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A sensor as it was measured: `m` (V,), and whether the vehicle's part in it is a draft."""
+
+    sensor: Sensor
+    m: NDArray
+    draft: bool
 
 
 class SampledScorer:
@@ -45,14 +55,18 @@ class SampledScorer:
         self._points = VoxelPoints(self._sample.index)
         outside_masses(densities, space, tops)  # complains when nothing is left to weigh
         self._lattices: dict[Lidar, Lattice] = {}
-        self._measured: dict[str, tuple[Sensor, NDArray]] = {}
+        self._measured: dict[str, Measured] = {}
+        self._beams: dict[str, tuple[Sensor, TurnedBeams]] = {}
+        self._ends = BeamEnds(vehicle)
 
-    def entropy(self, rig: Rig) -> float:
+    def entropy(self, rig: Rig, draft: bool = False) -> float:
         """Perception entropy alone: what an optimizer asks for."""
+        self._measure(rig, draft)
         return self._whole(*self._entropies(rig, [s.name for s in rig]))[0]
 
-    def score(self, rig: Rig) -> Score:
+    def score(self, rig: Rig, draft: bool = False) -> Score:
         """Everything a sampled score tells."""
+        self._measure(rig, draft)
         entropies, seen = self._entropies(rig, [s.name for s in rig])
         entropy, coverage = self._whole(entropies, seen)
         return Score(
@@ -63,37 +77,54 @@ class SampledScorer:
             self._zones(entropies, seen),
             {s.name: self._sensor(s, rig, entropy) for s in rig},
             len(self._sample.index),
+            draft=any(known.draft for known in self._measured.values()),
         )
+
+    def _measure(self, rig: Rig, draft: bool) -> None:
+        """Measure what has moved, or is known as a draft only and now asked for in earnest."""
+        self._measured = {s.name: self._known(s, draft) or self._new(s, draft) for s in rig}
+        self._beams = {name: kept for name, kept in self._beams.items() if name in self._measured}
+
+    def _known(self, sensor: Sensor, draft: bool) -> Measured | None:
+        known = self._measured.get(sensor.name)
+        fits = known and (draft or not known.draft) and known.sensor.model is sensor.model
+        return known if known and fits and known.sensor.pose == sensor.pose else None
+
+    def _new(self, sensor: Sensor, draft: bool) -> Measured:
+        if sensor.kind == "camera":
+            return Measured(sensor, self._pixels(sensor), False)
+        draft = draft and self._ends.can_draft(sensor)
+        return Measured(sensor, self._count(sensor, draft), draft)
 
     def _entropies(self, rig: Rig, members: Collection[str]) -> tuple[Floats, NDArray[np.bool_]]:
         """Entropy of every sampled voxel and whether it is seen, by some of the rig's sensors."""
-        measured = {s.name: self._measure(s) for s in rig}
-        self._measured = {s.name: self._measured[s.name] for s in rig}
+        measured = {name: known.m for name, known in self._measured.items()}
         return self._fusion.entropies(fused_early(rig, measured, members))
 
-    def _measure(self, sensor: Sensor) -> NDArray:
-        known = self._measured.get(sensor.name)
-        if known and known[0].model is sensor.model and known[0].pose == sensor.pose:
-            return known[1]
-        m = self._count(sensor) if sensor.kind == "lidar" else self._pixels(sensor)
-        self._measured[sensor.name] = (sensor, m)
-        return m
-
-    def _count(self, sensor: Sensor) -> NDArray:
+    def _count(self, sensor: Sensor, draft: bool) -> NDArray:
         model = cast(Lidar, sensor.model)
         if model not in self._lattices:
             self._lattices[model] = Lattice.of(model)
-        field = beam_field(sensor, self._vehicle)
+        beams = self._turned(sensor)
         side = self._space.interval
         return count_beams(
             self._points,
             position_in_voxels(sensor.pose.position, self._space.origin, side),
             self._lattices[model],
             sensor.pose.ground_from_sensor,
-            without_zeros(field.directions),
-            field.ends / side,
+            beams.without_zeros,
+            self._ends.of(sensor, beams, draft) / side,
             self._fusion.enough,
         )
+
+    def _turned(self, sensor: Sensor) -> TurnedBeams:
+        """Return a LiDAR's beams, kept until it turns."""
+        known = self._beams.get(sensor.name)
+        if known and known[0].model is sensor.model and known[0].pose.rpy == sensor.pose.rpy:
+            return known[1]
+        beams = TurnedBeams.of(sensor)
+        self._beams[sensor.name] = (sensor, beams)
+        return beams
 
     def _pixels(self, sensor: Sensor) -> NDArray:
         vehicle = self._vehicle
@@ -140,5 +171,7 @@ class SampledScorer:
 
     def _standard_error(self, entropies: Floats) -> float:
         """From the scatter of runs of the sequence: each is a lattice, so this errs high."""
-        means = [float(np.mean(block)) for block in np.array_split(entropies, BLOCKS)]
-        return rounded(float(np.std(means, ddof=1)) / np.sqrt(BLOCKS))
+        run = self._sample.run
+        sums, sizes = np.bincount(run, entropies, BLOCKS), np.bincount(run, minlength=BLOCKS)
+        means = sums[sizes > 0] / sizes[sizes > 0]
+        return rounded(float(np.std(means, ddof=1)) / np.sqrt(len(means)))

@@ -83,6 +83,8 @@ class Score:
         Voxels looked at.
     ground_map : GroundMap or None
         None for a sampled score.
+    draft : bool
+        Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
     """
 
     entropy: float
@@ -93,10 +95,13 @@ class Score:
     per_sensor: dict[str, SensorScore]
     voxels: int
     ground_map: GroundMap | None = None
+    draft: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Return the score as plain JSON data, without the ground map."""
+        mark = {"draft": True} if self.draft else {}
         return {
+            **mark,
             "entropy": self.entropy,
             "coverage": self.coverage,
             "stderr": self.stderr,

@@ -8,6 +8,7 @@ LiDARs `lidar_bracket` settles most voxels without any test.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,10 +19,12 @@ from ..geometry import rotate
 from ..sensors import Lidar
 from .beam_bands import BeamBands
 from .lidar_bracket import Bracket, ChannelTable, Singles, bracket
+from .lidar_upright import SlopeTable, Upright
 from .raycast import ranges
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Counts = NDArray[np.int32]
 
 WINDOW_MARGIN = 1e-7
 """Windows are widened by this [rad] against rounding."""
@@ -52,6 +55,7 @@ class Lattice:
     position: Ints
     width: int
     table: ChannelTable | None
+    slopes: SlopeTable | None
     bands: BeamBands | None
 
     @classmethod
@@ -71,6 +75,7 @@ class Lattice:
             position,
             len(lidar.azimuth_steps),
             ChannelTable.of(lidar) if regular else None,
+            SlopeTable.of(lidar) if regular else None,
             BeamBands.of(lidar.directions) if lidar.azimuth_count == 1 else None,
         )
 
@@ -139,17 +144,24 @@ class VoxelPoints:
 
     def __init__(self, index: Ints) -> None:
         self.centers = index + 0.5
-        self._columns = [np.ascontiguousarray(c, dtype=np.float32) for c in self.centers.T]
+        self.corners = [np.ascontiguousarray(c, dtype=np.float32) for c in index.T]
+        self._low = self.centers.min(axis=0, initial=0.0)
+        self._high = self.centers.max(axis=0, initial=0.0)
 
     def __len__(self) -> int:
         return len(self.centers)
+
+    def farthest(self, position: Floats) -> float:
+        """Return a distance no voxel's centre is farther than, from a position, in sides."""
+        gaps = np.maximum(np.abs(self._low - position), np.abs(self._high - position))
+        return math.sqrt(float(gaps @ gaps))
 
     def offsets(self, position: Floats, some: Ints | slice = slice(None)) -> Floats:
         """Centres (V, 3) of some voxels seen from a position (3,), in voxel sides."""
         return self.centers[some] - position
 
-    def offsets_single(self, position: Floats) -> list[Singles]:
-        """The same for all voxels in single precision, a (V,) array an axis.
+    def offsets_single(self, position: Floats, some: Ints | slice = slice(None)) -> list[Singles]:
+        """The same in single precision, a (V,) array an axis.
 
         Centres are exact in single precision; the position's whole part is taken off first, so
         that its fraction keeps its digits.
@@ -157,8 +169,8 @@ class VoxelPoints:
         whole = np.floor(position)
         rest = (position - whole).astype(np.float32)
         return [
-            (column - np.float32(w)) - r
-            for column, w, r in zip(self._columns, whole, rest, strict=True)
+            (corner[some] - np.float32(w - 0.5)) - r
+            for corner, w, r in zip(self.corners, whole, rest, strict=True)
         ]
 
 
@@ -170,7 +182,7 @@ def count_beams(
     directions: Floats,
     ends: Floats,
     enough: int | None = None,
-) -> Ints:
+) -> NDArray[np.signedinteger]:
     """Count the beams through voxels.
 
     Parameters
@@ -196,16 +208,56 @@ def count_beams(
         offsets = voxels.offsets(position)
         voxel, beam = lattice.candidates(windows_of(offsets, 0.5, ground_from_sensor))
         return _count_pairs(offsets, directions, ends, voxel, beam)
-    points = voxels.offsets_single(position)
-    bounds = bracket(points, ground_from_sensor, lattice.table, lattice.count)
-    counts = bounds.least.astype(np.int64)
-    counts[_may_end_early(points, bounds, lattice, ends)] = 0
-    limit = np.iinfo(np.int64).max if enough is None else enough
-    doubtful = np.flatnonzero((counts < bounds.most) & (counts < limit))
-    voxel, beam = lattice.window_beams(bounds, doubtful)
-    offsets = voxels.offsets(position, doubtful)
-    counts[doubtful] = _count_pairs(offsets, directions, ends, voxel, beam)
+    case = _Case(voxels, position, lattice, ground_from_sensor, directions, ends, enough)
+    if lattice.slopes is None or ground_from_sensor[2, 2] != 1.0 or not len(voxels):
+        return case.bracketed(slice(None))
+    counts, unsure = case.upright()
+    doubtful = np.flatnonzero(unsure)
+    counts[doubtful] = case.bracketed(doubtful)
     return counts
+
+
+@dataclass(frozen=True, slots=True)
+class _Case:
+    """What `count_beams` is given, for regular LiDARs."""
+
+    voxels: VoxelPoints
+    position: Floats
+    lattice: Lattice
+    ground_from_sensor: Floats
+    directions: Floats
+    ends: Floats
+    enough: int | None
+
+    def upright(self) -> tuple[Counts, NDArray[np.bool_]]:
+        """Count for an upright LiDAR, and say where that is unsure."""
+        assert self.lattice.slopes is not None
+        longest = float(self.ends.max())
+        early = self.ends < longest
+        farthest = float(self.ends.max(where=early, initial=0.0))
+        stopped = early.reshape(-1, self.lattice.width)[self.lattice.channels]
+        upright = Upright.of(self.lattice.slopes, self.ground_from_sensor, stopped, farthest)
+        counts, unsure = upright.count(self.voxels.corners, self.position)
+        if self.voxels.farthest(self.position) > longest - CUBE_REACH:
+            x, y, z = self.voxels.offsets_single(self.position)
+            unsure |= x * x + y * y + z * z > max(longest - CUBE_REACH, 0.0) ** 2
+        return counts, unsure
+
+    def bracketed(self, some: Ints | slice) -> Ints:
+        """Count the beams through some voxels: by bounds, and one by one where they differ."""
+        points = self.voxels.offsets_single(self.position, some)
+        lattice, ends = self.lattice, self.ends
+        assert lattice.table is not None
+        bounds = bracket(points, self.ground_from_sensor, lattice.table, lattice.count)
+        counts = bounds.least.astype(np.int64)
+        counts[_may_end_early(points, bounds, lattice, ends)] = 0
+        limit = np.iinfo(np.int64).max if self.enough is None else self.enough
+        doubtful = np.flatnonzero((counts < bounds.most) & (counts < limit))
+        voxel, beam = lattice.window_beams(bounds, doubtful)
+        where = doubtful if isinstance(some, slice) else some[doubtful]
+        offsets = self.voxels.offsets(self.position, where)
+        counts[doubtful] = _count_pairs(offsets, self.directions, ends, voxel, beam)
+        return counts
 
 
 def _may_end_early(

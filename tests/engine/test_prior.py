@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sampling import draw, r3_sequence
+from pe_core.sampling import draw
+from pe_core.sobol import scrambled_sobol
 from pe_core.weights import outside_masses
 from tests.engine import shapes
 
@@ -167,9 +168,32 @@ def test_no_sample_lies_inside_the_vehicle():
 
 
 def test_the_sequence_fills_space_evenly():
-    points = r3_sequence(4096, np.array([0.5, 0.5, 0.5]))
+    points = scrambled_sobol(4096, (0.5, 0.5, 0.5))
     counts = np.histogramdd(points, bins=(8, 8, 8), range=[(0, 1)] * 3)[0]
     assert counts.min() >= 4 and counts.max() <= 12  # 8 on average; chance would give 1 to 20
+
+
+@pytest.mark.parametrize("shift", [(0.5, 0.5, 0.5), (0.0, 0.1, 0.9)])
+def test_azimuth_and_height_are_a_net(shift):
+    """Each of 4096 boxes of any shape of that area holds one of 4096 points, scrambled or not."""
+    points = scrambled_sobol(4096, shift)[:, :2]
+    for bits in range(13):
+        cells = np.floor(points * [1 << bits, 1 << (12 - bits)]).astype(int)
+        assert len(np.unique(cells, axis=0)) == 4096
+
+
+def test_other_shifts_give_other_samples_and_the_same_shift_the_same():
+    densities = pe.Prior.road().densities(SPACE)
+    first, again = (draw(densities, SPACE, 2000).index for _ in range(2))
+    other = draw(densities, SPACE, 2000, shift=(0.1, 0.2, 0.3)).index
+    assert (first == again).all()
+    assert (first != other).any(axis=1).mean() > 0.5
+
+
+def test_voxels_come_nearest_first_and_know_their_run():
+    sample = draw(pe.Prior.road().densities(SPACE), SPACE, 16_000)
+    assert (np.diff(np.hypot(sample.centers[:, 0], sample.centers[:, 1])) > -1e-9).all()
+    assert np.bincount(sample.run).tolist() == [1000] * 16
 
 
 def test_too_few_samples_are_refused():

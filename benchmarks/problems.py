@@ -39,8 +39,8 @@ def two_lidars(study: pe.Study) -> pe.Study:
 def two_lidars_two_cameras(study: pe.Study) -> pe.Study:
     """The study with a rig like the paper's experiment 4, fitted to the car."""
     mounted = (
-        ("left", "Pandar40", (2.2, 0.8, 0.91), (0.0, 1.2, 0.0)),
-        ("right", "Pandar40", (2.2, -0.8, 0.84), (0.0, 3.0, 0.0)),
+        ("left", "Pandar40", (2.2, 0.8, 0.95), (0.0, 1.2, 0.0)),
+        ("right", "Pandar40", (2.2, -0.8, 0.93), (0.0, 3.0, 0.0)),
         ("ahead", "Camera 30 deg", (1.0, 0.0, 1.5), (0.0, 1.4, 0.0)),
         ("behind", "Camera 60 deg", (-1.7, 0.0, 1.5), (0.0, 7.2, 180.0)),
     )

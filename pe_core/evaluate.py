@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from .entropy import PerceptionModel
 from .errors import InputError
 from .fusion import Fusion
@@ -80,13 +82,22 @@ class Evaluator:
             return self._drafting().score(rig, draft=True)
         return self._scorer.score(rig)
 
-    def entropy(self, rig: Rig, *, draft: bool = False) -> float:
+    def entropy(self, rig: Rig, *, draft: bool = False, below: float = math.inf) -> float:
         """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for.
 
-        `draft` and errors as in `score`.
+        Parameters
+        ----------
+        rig : Rig
+        draft : bool
+            As in `score`, with the same error.
+        below : float
+            Where the entropy is not below this, any bound of it that is not below it either may be
+            told instead: a sampled score then often need not ask what the vehicle hides.
         """
         if draft:
             return self._drafting().entropy(rig, draft=True)
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer.entropy(rig, below=below)
         return self._scorer.entropy(rig)
 
     def _drafting(self) -> SampledScorer:

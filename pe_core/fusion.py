@@ -36,14 +36,9 @@ class Fusion:
         return len(self._precision) - 1
 
     def compact(self, counts: NDArray[np.uint16]) -> NDArray:
-        """Beam counts in one byte where AP saturates that early; enough for any entropy."""
-        most = self.enough
-        if most > np.iinfo(np.uint8).max:
-            return counts
-        small = np.empty(counts.shape, np.uint8)
-        for plane, held in zip(counts, small, strict=True):
-            held[:] = np.minimum(plane, most)
-        return small
+        """Copy beam counts, into one byte where AP saturates that early; enough for any entropy."""
+        small = self.enough <= np.iinfo(np.uint8).max
+        return np.minimum(counts, self.enough).astype(np.uint8) if small else counts.copy()
 
     def precision(self, m: NDArray, kind: str) -> Floats:
         """1 / sigma^2 of a group's measurement."""

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from functools import reduce
+from operator import add
+from threading import Lock
 from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .entropy import H_BLIND
+from .fused_planes import Group, PlaneFusion
 from .fusion import Fusion
 from .kernels.camera_grid import CameraPlanes
 from .kernels.lidar_grid import BeamGrid
-from .occlusion import beam_counts, beam_field
+from .occlusion import BeamField, beam_field
 from .prior import ClassDensity
 from .score import GroundMap, PartScore, Score, SensorScore, rounded
 from .sensors import Camera, Rig, Sensor
@@ -25,22 +29,24 @@ from .weights import outside_masses
 from .zones import column_zones
 
 Floats = NDArray[np.float64]
-MeasuredPlanes = Callable[[slice], NDArray]
-"""A sensor's measurement on a run of x-planes, (n, ny, nz)."""
+MeasuredPlanes = Callable[[slice], Group]
+"""What sensors measure, with their kind, on a run of x-planes."""
 
-BLOCK_PLANES = 4
-"""x-planes looked at together: few enough for the cache, enough to keep NumPy busy."""
+BLOCK_PLANES = 32
+"""x-planes a thread takes at a time; the exact areas of a camera are worked out together."""
+PRODUCT_AT_ONCE = 1 << 18
+"""Multiplications BLAS is given at a time: for more it wakes threads, which are ours already."""
 
 
 class Sums(NamedTuple):
-    """Entropy and coverage weighed by the prior, summed over height: each (n, ny, C)."""
+    """Entropy and coverage weighed by the prior, by class: each (C,)."""
 
     entropy: Floats
     coverage: Floats
 
 
 class GridScorer:
-    """Scores rigs on all voxels, in blocks of x-planes; `workers` threads share the blocks."""
+    """Scores rigs on all voxels, in runs of x-planes; `workers` threads share them."""
 
     def __init__(
         self,
@@ -51,111 +57,161 @@ class GridScorer:
         workers: int | None,
     ) -> None:
         self._space, self._vehicle, self._fusion = space, vehicle, fusion
+        self._planes = PlaneFusion(fusion, space.shape[1:])
         self._workers = workers or os.cpu_count() or 1
         self._names = [d.name for d in densities]
         self._grounds = np.stack([d.ground for d in densities], axis=-1)  # (nx, ny, C)
         self._profiles = np.stack([d.profile for d in densities], axis=-1)  # (nz, C)
         self._tops = None if vehicle is None else vehicle.top(space)
+        self._reached = np.isfinite(-np.inf if self._tops is None else self._tops.max(axis=1))
         self._masses = np.array(outside_masses(densities, space, self._tops))
+        self._grid = BeamGrid(space)  # kept: a new one is slow to touch for the first time
+        self._grid_is_free = Lock()
 
     def entropy(self, rig: Rig) -> float:
         """Perception entropy alone."""
-        whole = tuple(s.name for s in rig)
-        measured = self._measured(rig)
-        blocks = self._each_block(
-            lambda planes: self._sums(rig, measured, [whole], planes)[0].entropy.sum(axis=(0, 1))
-        )
-        return self._mean(np.sum(blocks, axis=0))
+        with self._grid_is_free, ThreadPoolExecutor(self._workers) as pool:
+            ready = self._ready(rig, pool)
+            groups = self._measured(list(rig.groups.values()), ready, pool)
+
+            def work(planes: slice) -> Floats:
+                fused = [[measure(planes) for measure in groups]]
+                each = self._weighed(fused, planes, coverage=False)
+                return np.sum([plane[0, 0].sum(axis=0) for plane in each], axis=0)
+
+            return self._mean(np.sum(list(pool.map(work, self._blocks())), axis=0))
 
     def score(self, rig: Rig) -> Score:
         """Everything a grid score tells."""
-        measured = self._measured(rig)
         parts = parts_of(rig)
-        blocks = self._each_block(lambda planes: self._reduced(rig, measured, parts, planes))
-        by_class = {
-            members: Sums(*np.sum([block[0][n] for block in blocks], axis=0))
-            for n, members in enumerate(parts)
-        }
-        columns = np.concatenate([block[1] for block in blocks], axis=1)
-        whole = by_class[parts[0]]
+        with self._grid_is_free, ThreadPoolExecutor(self._workers) as pool:
+            ready = self._ready(rig, pool)
+            measured = self._measured([[s] for s in rig], ready, pool)
+
+            def work(planes: slice) -> tuple[Floats, Floats]:
+                values = {s.name: own(planes)[1] for s, own in zip(rig, measured, strict=True)}
+                fused = [fused_early(rig, values, members) for members in parts]
+                return self._reduced(fused, planes)
+
+            blocks = list(pool.map(work, self._blocks()))
+        sums = np.sum([by_part for by_part, _ in blocks], axis=0)
+        by_part = {members: Sums(*own) for members, own in zip(parts, sums, strict=True)}
+        columns = np.concatenate([columns for _, columns in blocks], axis=1)
+        whole = by_part[parts[0]]
         return Score(
             self._mean(whole.entropy),
             self._mean(whole.coverage),
             0.0,
             self._classes(whole),
             self._zones(columns),
-            {s.name: self._sensor(s, rig, by_class) for s in rig},
+            {s.name: self._sensor(s, rig, by_part, ready[s.name]) for s in rig},
             self._space.size,
             _ground_map(columns),
         )
 
-    def _measured(self, rig: Rig) -> dict[str, MeasuredPlanes]:
-        """Get every sensor's measurement ready, by name."""
-        only = sum(s.kind == "lidar" for s in rig) == 1  # several are kept small
-        return {s.name: self._measured_sensor(s, only) for s in rig}
+    def _ready(self, rig: Rig, pool: Executor) -> dict[str, BeamField | CameraPlanes]:
+        """Every LiDAR's beams, cast, and every camera, ready to measure; by name."""
+        return dict(zip((s.name for s in rig), pool.map(self._ready_sensor, rig), strict=True))
 
-    def _measured_sensor(self, sensor: Sensor, only: bool) -> MeasuredPlanes:
-        """Measure a LiDAR on the whole grid; a camera is measured when its planes are asked for."""
+    def _ready_sensor(self, sensor: Sensor) -> BeamField | CameraPlanes:
         if sensor.kind == "lidar":
-            grid = BeamGrid(self._space)
-            field = beam_field(sensor, self._vehicle)
-            grid.add(sensor.pose.position, field.directions, field.ends)
-            counts = grid.counts if only else self._fusion.compact(grid.counts)
-            return lambda planes: counts[planes]
-        camera, pose, space = cast(Camera, sensor.model), sensor.pose, self._space
+            return beam_field(sensor, self._vehicle)
         seen = None
         if self._vehicle is not None:
-            seen = self._vehicle.seen_from(pose.position, "camera")
-        return CameraPlanes(camera, pose, space, seen).areas
+            seen = self._vehicle.seen_from(sensor.pose.position, "camera")
+        return CameraPlanes(cast(Camera, sensor.model), sensor.pose, self._space, seen)
 
-    def _each_block(self, work: Callable[[slice], object]) -> list:
-        """Work on runs of x-planes; the results are in the order of the planes."""
+    def _measured(
+        self,
+        groups: Sequence[Sequence[Sensor]],
+        ready: Mapping[str, BeamField | CameraPlanes],
+        pool: Executor,
+    ) -> list[MeasuredPlanes]:
+        """Sum the sensors of each group, which are of one kind.
+
+        LiDARs are counted on the whole grid now, cameras when their planes are asked for.
+        """
+        only = sum(g[0].kind == "lidar" for g in groups) == 1  # several are kept small
+        found = []
+        for sensors in groups:
+            ours = [ready[s.name] for s in sensors]
+            if sensors[0].kind == "lidar":
+                self._grid.clear()
+                for sensor, field in zip(sensors, ours, strict=True):
+                    beams = cast(BeamField, field)
+                    self._grid.add(sensor.pose.position, beams.directions, beams.ends)
+                counts = self._grid.counts
+                found.append(_counts_of(counts if only else self._kept_small(counts, pool)))
+            else:
+                found.append(_pixels_of([cast(CameraPlanes, camera) for camera in ours]))
+        return found
+
+    def _kept_small(self, counts: NDArray[np.uint16], pool: Executor) -> NDArray:
+        """Copy beam counts, into one byte where that is enough."""
+        kept = np.empty(counts.shape, self._fusion.compact(counts[:1]).dtype)
+
+        def work(planes: slice) -> None:
+            for i in range(planes.start, planes.stop):
+                kept[i] = self._fusion.compact(counts[i])
+
+        list(pool.map(work, self._blocks()))
+        return kept
+
+    def _blocks(self) -> list[slice]:
+        """Runs of x-planes."""
         nx = self._space.shape[0]
-        blocks = [slice(i, min(i + BLOCK_PLANES, nx)) for i in range(0, nx, BLOCK_PLANES)]
-        with ThreadPoolExecutor(self._workers) as pool:
-            return list(pool.map(work, blocks))
+        return [slice(i, min(i + BLOCK_PLANES, nx)) for i in range(0, nx, BLOCK_PLANES)]
 
-    def _reduced(
-        self, rig: Rig, measured: Mapping[str, MeasuredPlanes], parts: list[Names], planes: slice
-    ) -> tuple[Floats, Floats]:
+    def _weighed(
+        self, parts: Sequence[Sequence[Group]], planes: slice, *, coverage: bool
+    ) -> Iterator[Floats]:
+        """Entropy of parts of a rig, and coverage if asked for, weighed by the prior, by plane.
+
+        Summed over height: (P, 1 or 2, ny, C).
+        """
+        for i, ground in enumerate(self._grounds[planes]):
+            outside = self._outside(planes.start + i)
+            found = np.empty((len(parts), 1 + coverage, *ground.shape))
+            for groups, sums in zip(parts, found, strict=True):
+                self._over_height(self._planes.entropies(groups, i), outside, sums[0])
+                if coverage:
+                    seen = self._planes.seen(groups, i).astype(float)
+                    self._over_height(seen, outside, sums[1])
+            found *= ground
+            yield found
+
+    def _reduced(self, parts: Sequence[Sequence[Group]], planes: slice) -> tuple[Floats, Floats]:
         """Sums by class of every part of the rig (P, 2, C); and of the whole rig by column.
 
         The columns (3, n, ny) are entropy and coverage weighed by the prior, and the prior itself.
         """
-        sums = self._sums(rig, measured, parts, planes)
-        by_class = [[values.sum(axis=(0, 1)) for values in part] for part in sums]
-        mass = self._grounds[planes]
-        outside = self._outside(planes)
-        if outside is not None:
-            mass = mass * self._over_height(outside)
-        columns = [values.sum(axis=-1) for values in (*sums[0], mass)]
-        return np.array(by_class), np.array(columns)
+        by_class = np.zeros((len(parts), 2, len(self._names)))
+        columns = np.empty((3, planes.stop - planes.start, self._grounds.shape[1]))
+        for i, weighed in enumerate(self._weighed(parts, planes, coverage=True)):
+            by_class += weighed.sum(axis=2)
+            columns[:2, i] = weighed[0].sum(axis=-1)
+            columns[2, i] = self._mass(planes.start + i).sum(axis=-1)
+        return by_class, columns
 
-    def _sums(
-        self, rig: Rig, measured: Mapping[str, MeasuredPlanes], parts: list[Names], planes: slice
-    ) -> list[Sums]:
-        """Weigh entropy and coverage by the prior on some planes, for parts of the rig."""
-        values = {name: measure(planes) for name, measure in measured.items()}
-        outside, grounds = self._outside(planes), self._grounds[planes]
-        found = []
-        for members in parts:
-            entropies, visible = self._fusion.entropies(fused_early(rig, values, members))
-            seen = visible.astype(float)
-            if outside is not None:
-                entropies, seen = entropies * outside, seen * outside
-            found.append(Sums(*(grounds * self._over_height(v) for v in (entropies, seen))))
-        return found
+    def _mass(self, plane: int) -> Floats:
+        """(ny, C) the prior in the columns of a plane."""
+        outside, ground = self._outside(plane), self._grounds[plane]
+        return ground if outside is None else ground * (outside @ self._profiles)
 
-    def _outside(self, planes: slice) -> Floats | None:
-        """(n, ny, nz) 1 outside the vehicle's volume, 0 inside; None where it does not reach."""
-        if self._tops is None or not np.isfinite(self._tops[planes]).any():
+    def _outside(self, plane: int) -> Floats | None:
+        """(ny, nz) 1 outside the vehicle's volume, 0 inside; None where it does not reach."""
+        if self._tops is None or not self._reached[plane]:
             return None
-        return (self._space.centers(2) >= self._tops[planes][..., None]).astype(float)
+        return (self._space.centers(2) >= self._tops[plane][:, None]).astype(float)
 
-    def _over_height(self, values: Floats) -> Floats:
-        """Sum (n, ny, nz) values over height by each class's profile: (n, ny, C)."""
-        n, ny, nz = values.shape
-        return (values.reshape(n * ny, nz) @ self._profiles).reshape(n, ny, -1)
+    def _over_height(self, values: Floats, outside: Floats | None, out: Floats) -> None:
+        """Sum (ny, nz) values over height outside the vehicle, by each class's profile: (ny, C)."""
+        if outside is not None:
+            values = values * outside
+        rows = max(1, PRODUCT_AT_ONCE // self._profiles.size)
+        for start in range(0, len(values), rows):
+            some = slice(start, start + rows)
+            np.matmul(values[some], self._profiles, out=out[some])
 
     def _mean(self, by_class: Floats) -> float:
         return rounded(by_class.sum() / self._masses.sum())
@@ -178,17 +234,37 @@ class GridScorer:
                 found[name] = PartScore(rounded(h / mass), rounded(c / mass), rounded(mass / total))
         return found
 
-    def _sensor(self, sensor: Sensor, rig: Rig, by_class: Mapping[Names, Sums]) -> SensorScore:
+    def _sensor(
+        self,
+        sensor: Sensor,
+        rig: Rig,
+        by_part: Mapping[Names, Sums],
+        ready: BeamField | CameraPlanes,
+    ) -> SensorScore:
         names = tuple(s.name for s in rig)
-        whole, alone = by_class[names], by_class[(sensor.name,)]
-        others = by_class.get(tuple(n for n in names if n != sensor.name))
+        whole, alone = by_part[names], by_part[(sensor.name,)]
+        others = by_part.get(tuple(n for n in names if n != sensor.name))
         failed = H_BLIND if others is None else self._mean(others.entropy)
         lost = rounded(failed - self._mean(whole.entropy))
-        counts = beam_counts(sensor, self._vehicle)
+        counts = self._beam_counts(ready)
         return SensorScore(self._mean(alone.entropy), self._mean(alone.coverage), lost, *counts)
+
+    def _beam_counts(self, ready: BeamField | CameraPlanes) -> tuple[int, int, dict[str, int]]:
+        """Beams, how many the vehicle stops, and by which parts; zeros for a camera."""
+        if isinstance(ready, CameraPlanes):
+            return 0, 0, {}
+        return ready.counts(tuple(self._vehicle.part_names) if self._vehicle else ())
 
 
 def _ground_map(columns: Floats) -> GroundMap:
     entropy, coverage, mass = columns
     safe = np.where(mass > 0.0, mass, np.nan)
     return GroundMap(entropy / safe, coverage / safe, mass)
+
+
+def _counts_of(counts: NDArray) -> MeasuredPlanes:
+    return lambda planes: ("lidar", counts[planes])
+
+
+def _pixels_of(cameras: Sequence[CameraPlanes]) -> MeasuredPlanes:
+    return lambda planes: ("camera", reduce(add, (camera.areas(planes) for camera in cameras)))

@@ -11,7 +11,9 @@ from collections.abc import Generator, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass
+from functools import cached_property
 
+from .evaluate import Evaluator
 from .optimize import Step, optimize
 from .score import Score
 from .sensors import Rig
@@ -94,11 +96,16 @@ class Job:
         """Time since the job was made [s]."""
         return time.monotonic() - self._started
 
-    def _score(self, study: Study, waiting: Progress) -> Generator[Progress, None, Score]:
+    @cached_property
+    def _evaluator(self) -> Evaluator:
+        """What judges the study's rig, and the search's: the two differ in nothing else."""
+        return self.study.evaluator(workers=self.workers)
+
+    def _score(self, rig: Rig, waiting: Progress) -> Generator[Progress, None, Score]:
         """Score in a thread, yielding `waiting` until it is done."""
         yield waiting
         with ThreadPoolExecutor(1) as pool:
-            future = pool.submit(lambda: study.evaluator(workers=self.workers).score(study.rig))
+            future = pool.submit(lambda: self._evaluator.score(rig))
             while True:
                 try:
                     return future.result(timeout=WAIT_S)
@@ -112,7 +119,7 @@ class ScoreJob(Job):
     """Scores a study's rig as it stands."""
 
     def __iter__(self) -> Iterator[Progress]:
-        score = yield from self._score(self.study, Progress("scoring", 0.0))
+        score = yield from self._score(self.study.rig, Progress("scoring", 0.0))
         self.outcome = Outcome("score", self.study, self.study, score, score, seconds=self.seconds)
         yield Progress("done", 1.0, score.entropy)
 
@@ -131,12 +138,12 @@ class OptimizeJob(Job):
         return self.study.with_rig(self.history[-1].rig) if self.history else self.study
 
     def __iter__(self) -> Iterator[Progress]:
-        before = yield from self._score(self.study, Progress("scoring the start", 0.0))
+        before = yield from self._score(self.study.rig, Progress("scoring the start", 0.0))
         yield from self._search()
         after, best = before, self.study
         if self.best.rig is not self.study.rig:
             waiting = Progress("scoring the result", 1.0, self.history[-1].entropy)
-            found = yield from self._score(self.best, waiting)
+            found = yield from self._score(self.best.rig, waiting)
             if found.entropy < before.entropy:  # the search's sample may flatter a placement
                 after, best = found, self.best
         self.outcome = Outcome(

@@ -36,6 +36,11 @@ class BeamField:
         order = np.argsort(-counts, kind="stable")
         return {part_names[i]: int(counts[i]) for i in order if counts[i]}
 
+    def counts(self, part_names: tuple[str, ...]) -> tuple[int, int, dict[str, int]]:
+        """Beams, how many the vehicle stops, and by which parts."""
+        stopped_by = self.stopped_count(part_names)
+        return len(self.ends), sum(stopped_by.values()), stopped_by
+
 
 def beam_field(sensor: Sensor, vehicle: Vehicle | None) -> BeamField:
     """Cast all beams of a LiDAR against the vehicle (None: nothing stops them)."""
@@ -56,8 +61,7 @@ def beam_counts(sensor: Sensor, vehicle: Vehicle | None) -> tuple[int, int, dict
         return 0, 0, {}
     field = beam_field(sensor, vehicle)
     names = () if vehicle is None else tuple(vehicle.part_names)
-    stopped_by = field.stopped_count(names)
-    return len(field.ends), sum(stopped_by.values()), stopped_by
+    return field.counts(names)
 
 
 @dataclass(frozen=True, slots=True)

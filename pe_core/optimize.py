@@ -188,7 +188,7 @@ def optimize(
         center = best
         for _ in range(schedule.candidates):
             candidate = _neighbour(center, search_space, schedule, scale, rng)
-            found = evaluator.entropy(candidate)
+            found = evaluator.entropy(candidate, below=entropy)
             improved = found < entropy
             if improved:
                 best, entropy = candidate, found

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import cast
 
@@ -59,10 +60,43 @@ class SampledScorer:
         self._beams: dict[str, tuple[Sensor, TurnedBeams]] = {}
         self._ends = BeamEnds(vehicle)
 
-    def entropy(self, rig: Rig, draft: bool = False) -> float:
-        """Perception entropy alone: what an optimizer asks for."""
+    def entropy(self, rig: Rig, draft: bool = False, below: float = math.inf) -> float:
+        """Perception entropy alone: what an optimizer asks for, with what it has to be `below`."""
+        if below < math.inf and self._vehicle is not None and not draft:
+            bound = self._bound(rig, below)
+            if bound >= below:
+                return bound
         self._measure(rig, draft)
-        return self._whole(*self._entropies(rig, [s.name for s in rig]))[0]
+        return self._entropy_of({name: known.m for name, known in self._measured.items()}, rig)
+
+    def _bound(self, rig: Rig, below: float) -> float:
+        """Bound a rig's entropy from below, closely enough to tell whether it is `below`.
+
+        The vehicle takes beams and pixels away and adds none, so without it the entropy is no
+        higher. It is asked about one moved sensor after the other, as long as that may matter.
+        """
+        moved = [s for s in rig if self._known(s, False) is None]
+        m = {s.name: self._free(s) if s in moved else self._measured[s.name].m for s in rig}
+        bound = self._entropy_of(m, rig)
+        for sensor in moved[:-1]:
+            if bound >= below:
+                break
+            self._measured[sensor.name] = self._new(sensor, False)
+            m[sensor.name] = self._measured[sensor.name].m
+            bound = self._entropy_of(m, rig)
+        return bound
+
+    def _free(self, sensor: Sensor) -> NDArray:
+        """Measure a sensor as if there were no vehicle."""
+        if sensor.kind == "camera":
+            return self._pixels(sensor, None)
+        max_range = cast(Lidar, sensor.model).max_range
+        beams = self._turned(sensor)
+        return self._count(sensor, beams, np.full(len(beams.directions), max_range))
+
+    def _entropy_of(self, measured: Mapping[str, NDArray], rig: Rig) -> float:
+        names = [s.name for s in rig]
+        return self._whole(*self._fusion.entropies(fused_early(rig, measured, names)))[0]
 
     def score(self, rig: Rig, draft: bool = False) -> Score:
         """Everything a sampled score tells."""
@@ -92,20 +126,21 @@ class SampledScorer:
 
     def _new(self, sensor: Sensor, draft: bool) -> Measured:
         if sensor.kind == "camera":
-            return Measured(sensor, self._pixels(sensor), False)
-        draft = draft and self._ends.can_draft(sensor)
-        return Measured(sensor, self._count(sensor, draft), draft)
+            return Measured(sensor, self._pixels(sensor, self._vehicle), False)
+        draft, beams = draft and self._ends.can_draft(sensor), self._turned(sensor)
+        return Measured(
+            sensor, self._count(sensor, beams, self._ends.of(sensor, beams, draft)), draft
+        )
 
     def _entropies(self, rig: Rig, members: Collection[str]) -> tuple[Floats, NDArray[np.bool_]]:
         """Entropy of every sampled voxel and whether it is seen, by some of the rig's sensors."""
         measured = {name: known.m for name, known in self._measured.items()}
         return self._fusion.entropies(fused_early(rig, measured, members))
 
-    def _count(self, sensor: Sensor, draft: bool) -> NDArray:
+    def _count(self, sensor: Sensor, beams: TurnedBeams, ends: Floats) -> NDArray:
         model = cast(Lidar, sensor.model)
         if model not in self._lattices:
             self._lattices[model] = Lattice.of(model)
-        beams = self._turned(sensor)
         side = self._space.interval
         return count_beams(
             self._points,
@@ -113,7 +148,7 @@ class SampledScorer:
             self._lattices[model],
             sensor.pose.ground_from_sensor,
             beams.without_zeros,
-            self._ends.of(sensor, beams, draft) / side,
+            ends / side,
             self._fusion.enough,
         )
 
@@ -126,8 +161,7 @@ class SampledScorer:
         self._beams[sensor.name] = (sensor, beams)
         return beams
 
-    def _pixels(self, sensor: Sensor) -> NDArray:
-        vehicle = self._vehicle
+    def _pixels(self, sensor: Sensor, vehicle: Vehicle | None) -> NDArray:
         seen = None if vehicle is None else vehicle.seen_from(sensor.pose.position, "camera")
         return pixel_areas(
             cast(Camera, sensor.model),

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from functools import reduce
+from operator import add
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .fusion import Measurement
 from .sensors import Rig
 
 Names = tuple[str, ...]
@@ -24,15 +25,19 @@ def parts_of(rig: Rig) -> list[Names]:
 
 
 def fused_early(
-    rig: Rig, measured: Mapping[str, NDArray], members: Collection[str]
-) -> list[Measurement]:
-    """Sum the members' measurements inside each fusion group, eq. 6."""
-    groups: list[Measurement] = []
+    rig: Rig, measured: Mapping[str, Any], members: Collection[str]
+) -> list[tuple[str, Any]]:
+    """Sum the members' measurements inside each fusion group, eq. 6: (kind, sum) of each."""
+    groups = []
     for sensors in rig.groups.values():
         present = [measured[s.name] for s in sensors if s.name in members]
-        if len(present) == 1:
-            groups.append((sensors[0].kind, present[0]))
-        elif present:
-            wide = float if sensors[0].kind == "camera" else np.int64
-            groups.append((sensors[0].kind, np.sum(present, axis=0, dtype=wide)))
+        if present:
+            kind = sensors[0].kind
+            groups.append((kind, _total(present) if len(present) > 1 else present[0]))
     return groups
+
+
+def _total(measured: list[Any]) -> Any:
+    """Sum measurements; whole numbers are counts, perhaps of few bits each."""
+    whole = isinstance(measured[0], np.ndarray) and measured[0].dtype.kind in "iu"
+    return reduce(add, (m.astype(np.uint32) for m in measured) if whole else measured)

@@ -19,6 +19,8 @@ Planes = tuple[Floats, Floats, Floats]
 
 QUAD = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 """Corners of a face, in order, in half sides along its two axes."""
+ROUNDING_PX = 1e-6
+"""Areas are sums of terms as large as the picture: less than this is nothing but their rounding."""
 
 
 def clipped_pixel_area(camera: Camera, pose: Pose, centers: Floats, side: float) -> Floats:
@@ -72,7 +74,7 @@ def _area_in_view(camera: Camera, pose: Pose, centers: Floats, side: float) -> F
             for a, b in QUAD
         ]
         area += np.where(np.abs(offsets[k]) > half, _clipped_quad_area(corners, camera), 0.0)
-    return np.where(depth > reach, area, 0.0)
+    return np.where((depth > reach) & (area > ROUNDING_PX), area, 0.0)
 
 
 def _project(

@@ -1,8 +1,10 @@
 """Pixel areas for many voxels: a closed form where it is good, the exact area where it is not.
 
 Seen from afar a face is a small flat patch: its image has the area ``f^2 |n . r| A / depth^3`` with
-n its normal, r the way to its centre and A its area. That misses the clipping at the image's border
-and the perspective inside the face; voxels on the border or nearer than NEAR_SIDES sides get the
+n its normal, r the way to its centre and A its area. Over the faces of a cube of side s at r that
+makes ``f^2 s^2 (a + 3 s / 2) / (depth^3 - depth s^2 / 2)``, where a is the sum over the axes of
+``max(|r_k| - s / 2, 0)``: right to first order in s / depth, and to second a mean over directions.
+It misses the clipping at the image's border; voxels there, or nearer than NEAR_SIDES sides, get the
 exact area instead.
 """
 
@@ -47,7 +49,7 @@ def pixel_areas(
     plain = depth > NEAR_SIDES * side
     plain &= frustum_distance(camera, depth, left, up) > side * np.sqrt(3.0) / 2.0
     far, near = index[plain], index[~plain]
-    area[far] = _flat_area(camera, pose, offsets[far], depth[plain], side)
+    area[far] = _flat_area(camera, offsets[far], depth[plain], side)
     area[near] = clipped_pixel_area(camera, pose, centers[near], side)
     if seen is not None:
         visible = np.flatnonzero(area)
@@ -55,14 +57,10 @@ def pixel_areas(
     return area
 
 
-def _flat_area(camera: Camera, pose: Pose, offsets: Floats, depth: Floats, side: float) -> Floats:
-    forward = pose.ground_from_sensor[:, 0]
-    total = np.zeros(len(offsets))
-    for k in range(3):
-        away = np.abs(offsets[:, k])
-        face_depth = depth - np.sign(offsets[:, k]) * (side / 2.0) * forward[k]
-        total += np.maximum(away - side / 2.0, 0.0) / (face_depth * face_depth * face_depth)
-    return (camera.focal_px * side) ** 2 * total
+def _flat_area(camera: Camera, offsets: Floats, depth: Floats, side: float) -> Floats:
+    away = [np.maximum(np.abs(offsets[:, k]) - side / 2.0, 0.0) for k in range(3)]
+    cube = (depth * depth - side * side / 2.0) * depth
+    return (camera.focal_px * side) ** 2 * (away[0] + away[1] + away[2] + 1.5 * side) / cube
 
 
 def hidden(seen: SeenMesh, offsets: Floats) -> NDArray[np.bool_]:

@@ -181,8 +181,10 @@ def _inner(
     high = table.bins(_slope(z + b, far, near))
     low = table.bins(_slope(z - b, near, far))
     rows = np.maximum(table.below[high] - table.upto[low], 0)
-    left = a / (flat + skew * a) / step
-    right = a / np.maximum(flat - skew * a, np.float32(1e-3)) / step
+    left, right = (
+        a / np.maximum(reach, np.float32(1e-3)) / step
+        for reach in (flat + skew * a, flat - skew * a)
+    )
     # atan(t) >= t - t^3 / 3, so that no arc tangent is needed
     left, right = (t * (1 - (t * step) ** 2 / 3) * (1 - MARGIN) for t in (left, right))
     slack = np.abs(middle) * MARGIN + MARGIN

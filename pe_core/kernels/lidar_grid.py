@@ -23,9 +23,11 @@ from .ties import position_in_voxels, without_zeros
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Fixed = NDArray[np.uint64]
 Counts = NDArray[np.uint16]
 
 FRACTION_BITS = 40
+FRACTION = np.uint64(FRACTION_BITS)
 STEEPEST = float(1 << 20)
 """Voxels a beam may advance sideways from one plane to the next; no grid is as wide."""
 EARLY = 1e-6
@@ -33,7 +35,7 @@ EARLY = 1e-6
 MOST = int(np.iinfo(np.uint16).max)
 """Counts stop here. Only voxels close to the sensor can hold as many."""
 NEAR = 16
-"""Voxels round the sensor where a count may reach `MOST` and has to be held there."""
+"""Voxels round a sensor where a count may reach `MOST` and has to be held there."""
 ONE = np.uint16(1)
 
 
@@ -57,14 +59,21 @@ class BeamGrid:
     def __init__(self, space: PerceptionSpace) -> None:
         self.space = space
         self._padded = np.zeros([n + 2 for n in space.shape], np.uint16)
+        self._crowded: list[tuple[slice, ...]] = []
 
     @property
     def counts(self) -> Counts:
         """(nx, ny, nz) beams through each voxel; a view."""
         return self._padded[1:-1, 1:-1, 1:-1]
 
+    def clear(self) -> None:
+        """Forget all beams."""
+        if self._crowded:
+            self._crowded.clear()
+            self._padded.fill(0)
+
     def add(self, origin: Sequence[float], directions: Floats, ends: Floats) -> None:
-        """Add the beams of one sensor.
+        """Add the beams of one sensor to those that are there.
 
         Parameters
         ----------
@@ -76,10 +85,13 @@ class BeamGrid:
             A voxel entered farther than this is not counted [m].
         """
         beams = _cut_to_space(origin, directions, ends, self.space)
+        self._crowded.append(_around(beams.origin, self._padded.shape))
         self._add_at_origin(beams)
         for axis in range(3):
             for sign in (1, -1):
-                self._sweep(beams, axis, sign)
+                run = _Run.start(beams, self.space.shape, axis, sign)
+                for few in run.portions(MOST):
+                    self._add_held(few, axis, sign)
 
     def _add_at_origin(self, beams: Beams) -> None:
         """Add the beams that start in the space to the voxel that holds the sensor."""
@@ -88,18 +100,25 @@ class BeamGrid:
             here = tuple(np.floor(beams.origin).astype(int))
             self.counts[here] = min(int(self.counts[here]) + inside, MOST)
 
-    def _sweep(self, beams: Beams, axis: int, sign: int) -> None:
+    def _add_held(self, run: _Run, axis: int, sign: int) -> None:
+        """Add the entries of so few beams that they alone overflow no count; hold the sums."""
+        before = [self._padded[where].copy() for where in self._crowded]
+        for where in self._crowded:
+            self._padded[where] = 0
+        self._sweep(run, axis, sign)
+        added = [self._padded[where].copy() for where in self._crowded]
+        for where, old, new in zip(self._crowded, before, added, strict=True):
+            self._padded[where] = np.minimum(old, MOST - new) + new
+
+    def _sweep(self, run: _Run, axis: int, sign: int) -> None:
         """Count entries through the planes across `axis`, by the beams that go the way of `sign`.
 
         NumPy adds at indices one by one, so entries in the same voxel are all counted.
         """
         stride, stride_b, stride_c = (self._strides[a] for a in (axis, *_others(axis)))
         flat = self._padded.reshape(-1)
-        held = len(beams.end) > MOST
-        for plane, b, c in _Run.start(beams, self.space.shape, axis, sign):
+        for plane, (b, c) in run:
             cell = (plane if sign > 0 else plane - 1) + 1
-            if held and abs(plane - beams.origin[axis]) <= NEAR:
-                b, c = self._add_near(beams, axis, cell, b, c)
             b *= stride_b
             if stride_c != 1:
                 c *= stride_c
@@ -110,19 +129,13 @@ class BeamGrid:
     def _strides(self) -> tuple[int, ...]:
         return tuple(n // self._padded.itemsize for n in self._padded.strides)
 
-    def _add_near(self, beams: Beams, axis: int, cell: int, b: Ints, c: Ints) -> tuple[Ints, Ints]:
-        """Add the entries near the sensor, held at `MOST`; return the others."""
-        b0, c0 = (math.floor(beams.origin[a]) + 1 - NEAR for a in _others(axis))
-        width = 2 * NEAR + 1
-        near = (b >= b0) & (b < b0 + width) & (c >= c0) & (c < c0 + width)
-        hits = np.bincount((b[near] - b0) * width + (c[near] - c0), minlength=width**2)
-        layer = np.moveaxis(self._padded, axis, 0)[cell]
-        rows, columns = (slice(max(low, 0), max(low + width, 0)) for low in (b0, c0))
-        window = layer[rows, columns]
-        hits = hits.reshape(width, width)[rows.start - b0 :, columns.start - c0 :]
-        hits = hits[: window.shape[0], : window.shape[1]]
-        window += np.minimum(hits, MOST - window.astype(np.int64)).astype(np.uint16)
-        return b[~near], c[~near]
+
+def _around(origin: Floats, padded: tuple[int, ...]) -> tuple[slice, ...]:
+    """Cells of the padded grid that are at most `NEAR` from a sensor, in voxels."""
+    return tuple(
+        slice(*(min(max(math.floor(o) + 1 + k, 0), n) for k in (-NEAR, NEAR + 1)))
+        for o, n in zip(origin, padded, strict=True)
+    )
 
 
 def _others(axis: int) -> tuple[int, int]:
@@ -149,16 +162,15 @@ def _cut_to_space(
 class _Run:
     """The beams of one sweep, sorted so that those still on their way are always the first ones.
 
-    `b` and `c` are the crossing points along the two other axes, in fixed point and one voxel up:
-    the cells outside the grid that a rounding may reach then have indices as well.
+    `at` (2, B) are the crossing points along the two other axes, in fixed point and one voxel up:
+    the cells outside the grid that a rounding may reach then have indices as well. `arrival` says
+    on which plane a beam enters the space (None: all are there from the start).
     """
 
     planes: list[int]
     active: list[int]
-    b: Ints
-    c: Ints
-    step_b: Ints
-    step_c: Ints
+    at: Fixed
+    step: Fixed
     arrival: Ints | None
 
     @classmethod
@@ -176,31 +188,34 @@ class _Run:
         last, arrival = last[order].astype(np.int64), arrival[order].astype(np.int64)
         count = int(last[0]) + 1 if len(order) else 0
         active = np.searchsorted(-last, -np.arange(count), side="right")
-        other = _others(axis)
-        slopes = [beams.directions[order, a] / speed[order] for a in other]
-        b, c = (
-            _fixed(beams.origin[a] + slope * ahead + 1.0)
-            for a, slope in zip(other, slopes, strict=True)
-        )
-        step_b, step_c = (_fixed(slope) for slope in slopes)
+        slopes = np.stack([beams.directions[order, a] / speed[order] for a in _others(axis)])
+        places = beams.origin[_others(axis), None] + slopes * ahead + 1.0
         planes = [first + sign * k for k in range(count)]
         late = arrival if arrival.any() else None
-        return cls(planes, active.tolist(), b, c, step_b, step_c, late)
+        return cls(planes, active.tolist(), _fixed(places), _fixed(slopes), late)
 
-    def __iter__(self) -> Iterator[tuple[int, Ints, Ints]]:
-        """Yield each plane with the padded cells where the beams cross it."""
-        cell_b, cell_c = np.empty_like(self.b), np.empty_like(self.c)
+    def portions(self, most: int) -> Iterator[_Run]:
+        """Yield the run in portions of at most `most` beams."""
+        n = -(-len(self.step[0]) // most)
+        for k in range(n):
+            active = [(count - k + n - 1) // n for count in self.active]
+            at, step = (np.ascontiguousarray(w[:, k::n]) for w in (self.at, self.step))
+            late = None if self.arrival is None else self.arrival[k::n]
+            yield _Run(self.planes, active, at, step, late)
+
+    def __iter__(self) -> Iterator[tuple[int, Ints]]:
+        """Yield each plane with the padded cells (2, N) where the beams cross it."""
+        cells = np.empty_like(self.at)
         for step, (plane, n) in enumerate(zip(self.planes, self.active, strict=True)):
-            b = np.right_shift(self.b[:n], FRACTION_BITS, out=cell_b[:n])
-            c = np.right_shift(self.c[:n], FRACTION_BITS, out=cell_c[:n])
+            at = self.at[:, :n]
+            crossed = np.right_shift(at, FRACTION, out=cells[:, :n]).view(np.int64)
             if self.arrival is not None:
-                arrived = np.flatnonzero(self.arrival[:n] <= step)
-                b, c = b[arrived], c[arrived]
-            yield plane, b, c
-            self.b[:n] += self.step_b[:n]
-            self.c[:n] += self.step_c[:n]
+                crossed = crossed[:, self.arrival[:n] <= step]
+            yield plane, crossed
+            at += self.step[:, :n]
 
 
-def _fixed(values: Floats) -> Ints:
-    """Voxels in fixed point."""
-    return np.rint(np.clip(values, -STEEPEST, STEEPEST) * (1 << FRACTION_BITS)).astype(np.int64)
+def _fixed(values: Floats) -> Fixed:
+    """Voxels in fixed point, unsigned: shifting those is faster, and steps back wrap round."""
+    whole = np.rint(np.clip(values, -STEEPEST, STEEPEST) * (1 << FRACTION_BITS))
+    return whole.astype(np.int64).view(np.uint64)

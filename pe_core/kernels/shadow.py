@@ -10,7 +10,6 @@ from ..sensors import Camera
 from .raycast import CELLS, ranges, windows
 
 Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
 
 BORDER = 1.05
 """The map reaches this far beyond the picture's edges, for voxels that only touch the picture."""
@@ -42,14 +41,22 @@ class ShadowMap:
         self._hit[bins] = True
         self.empty = not len(bins)
 
-    def may_hide(self, depth: Singles, left: Singles, up: Singles) -> NDArray[np.bool_]:
+    @property
+    def window(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Least and greatest left / depth, and up / depth, of the bins that may be touched."""
+        hit = self._hit.reshape(CELLS, CELLS)
+        ends = (np.flatnonzero(hit.any(axis=axis))[[0, -1]] for axis in (1, 0))
+        (i0, i1), (j0, j1) = ((a * 2.0 / CELLS - 1.0, (b + 1) * 2.0 / CELLS - 1.0) for a, b in ends)
+        return (i0 * self._wide, i1 * self._wide), (j0 * self._high, j1 * self._high)
+
+    def may_hide(self, depth: Floats, left: Floats, up: Floats) -> NDArray[np.bool_]:
         """Whether the vehicle may stand in the way of points in front of the camera, each (V,)."""
-        u = left / (depth * np.float32(self._wide))
-        v = up / (depth * np.float32(self._high))
+        u = left / (depth * self._wide)
+        v = up / (depth * self._high)
         bins = self._bin(u) * CELLS + self._bin(v)
         outside = np.maximum(np.abs(u), np.abs(v)) > 1.0
         return self._hit[bins] | outside
 
     @staticmethod
-    def _bin(u: Singles) -> NDArray[np.int32]:
-        return np.clip((u + np.float32(1.0)) * np.float32(CELLS / 2), 0, CELLS - 1).astype(np.int32)
+    def _bin(u: Floats) -> NDArray[np.int32]:
+        return np.clip((u + 1.0) * (CELLS / 2), 0, CELLS - 1).astype(np.int32)

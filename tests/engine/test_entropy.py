@@ -82,6 +82,18 @@ def test_look_up_tables_equal_the_equations(curve):
 
 
 @pytest.mark.parametrize(
+    ("curve", "kind"), [(POINTPILLARS, np.uint8), (pe.ApCurve(1e-4, 0.5), np.uint16)]
+)
+def test_compact_counts_give_the_same_entropies(curve, kind):
+    fusion = Fusion(pe.PerceptionModel(lidar=curve))
+    m = np.array([[0, 1, 9, 10, 255, 256, 40_000, 65_535]], np.uint16)
+    small = fusion.compact(m)
+    assert small.dtype == kind and not np.shares_memory(small, m)
+    plain, compact = (fusion.entropies([("lidar", counts)])[0] for counts in (m, small))
+    assert plain.tolist() == compact.tolist()
+
+
+@pytest.mark.parametrize(
     ("a", "b", "field"), [(0.0, 0.1, "a"), (-1.0, 0.1, "a"), (math.nan, 0, "a"), (0.1, "x", "b")]
 )
 def test_impossible_curves_are_refused(a, b, field):

@@ -46,6 +46,19 @@ def test_an_optimize_job_improves_and_tells_its_history():
     assert stages[-1] == "done" and "optimizing" in stages
 
 
+def test_start_and_result_are_judged_by_one_evaluator(monkeypatch):
+    made, plain = [], pe.Study.evaluator
+
+    def counted(self, samples=None, workers=None):
+        made.append(samples)
+        return plain(self, samples, workers)
+
+    monkeypatch.setattr(pe.Study, "evaluator", counted)
+    _, outcome = finished(pe.OptimizeJob(study()))
+    assert outcome.after is not outcome.before
+    assert made == [None, 2048]  # the whole grid once, the search's sample once
+
+
 def test_stop_keeps_the_best_so_far():
     job = pe.OptimizeJob(study())
     for progress in job:

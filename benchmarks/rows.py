@@ -1,0 +1,172 @@
+"""What is timed: our work, and its yardstick in the same process."""
+
+from __future__ import annotations
+
+import resource
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+import pe_core as pe
+
+from . import literal
+from .problems import (
+    car,
+    plain_study,
+    raw_cast,
+    rays_of,
+    two_lidars,
+    two_lidars_two_cameras,
+)
+
+REPEATS = 5
+Work = Callable[[], object]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table: what was done, our seconds and memory; the yardstick, its seconds."""
+
+    work: str
+    ours_s: float
+    peak_mb: float
+    yardstick: str
+    yardstick_s: float | None
+
+
+def grid_free() -> Row:
+    """A Pandar64 on the grid of 64 million voxels, against the literal loop in C++."""
+    return _against_literal(None, "no vehicle")
+
+
+def grid_on_car() -> Row:
+    """The same, on a vehicle."""
+    return _against_literal(car(), "vehicle of 20,000 triangles")
+
+
+def _against_literal(vehicle: pe.Vehicle | None, label: str) -> Row:
+    study = plain_study(vehicle)
+    evaluator = study.evaluator(0)
+    ours, entropy = _best(lambda: evaluator.entropy(study.rig))
+    peak = _peak_mb()
+    theirs = literal.run(study)
+    if theirs and abs(theirs[0] - entropy) > 1e-3:
+        raise SystemExit(f"the yardstick says {theirs[0]}, we say {entropy}")
+    again, _ = _best(lambda: evaluator.entropy(study.rig))
+    seconds = theirs and min(theirs[1], literal.run(study)[1])
+    work = f"grid score, Pandar64, {label}"
+    return Row(work, min(ours, again), peak, "literal C++, 2 threads", seconds)
+
+
+def grid_two_lidars() -> Row:
+    """Two LiDARs, summed early, against one."""
+    return _against_one(two_lidars, "two Pandar64")
+
+
+def grid_two_lidars_two_cameras() -> Row:
+    """Four sensors, fused early and late, against one."""
+    return _against_one(two_lidars_two_cameras, "two Pandar40 and two cameras")
+
+
+def _against_one(several: Callable[[pe.Study], pe.Study], label: str) -> Row:
+    study = plain_study(car())
+    evaluator, rig = study.evaluator(0), several(study).rig
+    ours, theirs = _best_in_turn(
+        lambda: evaluator.entropy(rig), lambda: evaluator.entropy(study.rig)
+    )
+    work = f"grid score, {label}, vehicle"
+    return Row(work, ours, _peak_mb(), "one Pandar64, vehicle", theirs)
+
+
+def full_score() -> Row:
+    """All a grid score tells of four sensors (9 rigs' worth), against all it tells of one."""
+    study = plain_study(car())
+    evaluator, rig = study.evaluator(0), two_lidars_two_cameras(study).rig
+    ours, theirs = _best_in_turn(
+        lambda: evaluator.score(rig), lambda: evaluator.score(study.rig), 2
+    )
+    work = "the same with each sensor alone and failing, zones, map"
+    return Row(work, ours, _peak_mb(), "the same of one Pandar64", theirs)
+
+
+def samples_free() -> Row:
+    """Score again after one sensor moved, against a full grid score."""
+    return _after_a_move(None, "no vehicle")
+
+
+def samples_on_car() -> Row:
+    """The same, on a vehicle."""
+    return _after_a_move(car(), "vehicle")
+
+
+def _after_a_move(vehicle: pe.Vehicle | None, label: str) -> Row:
+    study = plain_study(vehicle)
+    ours, _ = _best(_moving(study, study.evaluator(262_144)), 8)
+    peak = _peak_mb()
+    grid, _ = _best(lambda: study.evaluator(0).entropy(study.rig), 1)
+    work = f"262,144 samples after a move, {label}"
+    return Row(work, ours, peak, "grid score, first", grid)
+
+
+def _moving(study: pe.Study, evaluator: pe.Evaluator) -> Work:
+    """Return a call that moves the sensor a little and scores again."""
+    x, y, z = study.rig.sensors[0].pose.position
+    places = iter(np.linspace(0.0, 0.05, 1000))
+
+    def call() -> float:
+        return evaluator.entropy(study.rig.with_poses([pe.Pose((x + next(places), y, z))]))
+
+    return call
+
+
+def rays() -> Row:
+    """First hits of a frame, against brute force over all triangles (on a part of the rays)."""
+    vehicle, directions, position = rays_of(car())
+    ours, _ = _best(lambda: vehicle.first_hit(position, directions))
+    peak = _peak_mb()
+    some = directions[:: len(directions) // 500]
+    brute, _ = _best(lambda: raw_cast(vehicle.triangles, position, some), 1)
+    rate = len(directions) / ours / 1e6
+    work = f"first hit of {len(directions):,} rays ({rate:.1f} million a second)"
+    seconds = brute * len(directions) / len(some)
+    return Row(work, ours, peak, "every ray against every triangle", seconds)
+
+
+ROWS: dict[str, Callable[[], Row]] = {
+    row.__name__: row
+    for row in (
+        grid_free,
+        grid_on_car,
+        grid_two_lidars,
+        grid_two_lidars_two_cameras,
+        full_score,
+        samples_free,
+        samples_on_car,
+        rays,
+    )
+}
+
+
+def _peak_mb() -> float:
+    """The most memory this process has had so far."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def _best(work: Work, repeats: int = REPEATS) -> tuple[float, object]:
+    """Shortest time of some, and the result."""
+    timed = [_timed(work) for _ in range(repeats)]
+    return min(seconds for seconds, _ in timed), timed[0][1]
+
+
+def _best_in_turn(work: Work, yardstick: Work, repeats: int = REPEATS) -> tuple[float, float]:
+    """Shortest times of two, run in turn."""
+    times = [(_timed(yardstick)[0], _timed(work)[0]) for _ in range(repeats)]
+    return min(ours for _, ours in times), min(theirs for theirs, _ in times)
+
+
+def _timed(work: Work) -> tuple[float, object]:
+    start = time.perf_counter()
+    result = work()
+    return time.perf_counter() - start, result

@@ -1,0 +1,85 @@
+"""What an optimizer is told of a candidate that is no better: a bound, without the vehicle."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.optimize import SearchSpace
+from tests.engine import shapes
+
+SPACE = shapes.small_space()
+VEHICLE = pe.Vehicle(shapes.box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.4)))
+
+
+def sensors(rng):
+    """Two LiDARs and a camera round the vehicle, some of them inside."""
+    lidar, camera = shapes.small_lidar(24, 360), pe.catalog.load("Camera 60 deg")
+    models = {"front": lidar, "rear": lidar, "camera": camera}
+    return pe.Rig(
+        [
+            pe.Sensor(name, model, pe.Pose(rng.uniform((-2.5, -1, 0.5), (2.5, 1, 2)), (0, p, 0)))
+            for (name, model), p in zip(models.items(), rng.uniform(-0.5, 0.5, 3), strict=True)
+        ]
+    )
+
+
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+def test_a_bound_is_one_and_is_told_only_where_it_settles_the_matter(blind):
+    rng = np.random.default_rng(5)
+    model = pe.PerceptionModel(blind=blind)
+    evaluator, plain = (
+        pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096, model=model) for _ in range(2)
+    )
+    bounds = 0
+    for _ in range(25):
+        rig = sensors(rng)
+        exact = plain.entropy(rig)
+        for below in (exact - 1.0, exact - 0.01, exact, exact + 1e-6, exact + 1.0, math.inf):
+            told = evaluator.entropy(rig, below=below)
+            assert told == exact or below <= told < exact
+            assert (told < below) == (exact < below)
+            bounds += told != exact
+    assert bounds > 10
+
+
+def test_after_a_bound_the_score_is_exact():
+    rng = np.random.default_rng(6)
+    first, second = sensors(rng), sensors(rng)
+    evaluator = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096)
+    start = evaluator.score(first).to_dict()
+    evaluator.entropy(second, below=-10.0)
+    assert evaluator.score(first).to_dict() == start
+    fresh = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096)
+    assert evaluator.score(second).to_dict() == fresh.score(second).to_dict()
+
+
+def test_a_search_finds_the_same_with_bounds_and_without():
+    class Plain(pe.Evaluator):
+        def entropy(self, rig, **_):
+            return super().entropy(rig)
+
+    rig = sensors(np.random.default_rng(7))
+    space = SearchSpace.on_vehicle(rig, VEHICLE)
+    schedule = pe.Schedule(candidates=15)
+    found = []
+    for kind in (pe.Evaluator, Plain):
+        evaluator = kind(SPACE, pe.Prior.road(), VEHICLE, samples=4096)
+        steps = pe.optimize(evaluator, rig, space, 3, schedule)
+        found.append([(s.entropy, s.improved, [b.pose for b in s.best]) for s in steps])
+    assert found[0] == found[1]
+    assert any(improved for _, improved, _ in found[0])
+
+
+def test_a_grid_score_takes_the_limit_and_stays_exact():
+    rig = sensors(np.random.default_rng(8))
+    evaluator = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE)
+    assert evaluator.entropy(rig, below=-99.0) == evaluator.entropy(rig)
+
+
+def test_a_lidar_beside_a_voxels_axis_warns_of_nothing():
+    """A tilted LiDAR whose own axis runs through a sampled voxel divides by nearly nothing."""
+    pose = pe.Pose((-0.34371, -0.18753, 1.58554), (0.0, -0.005813691738393112, 0.0))
+    sensor = pe.Sensor("roof", pe.catalog.load("Pandar64"), pose)
+    pe.Evaluator(pe.PerceptionSpace(), pe.Prior.road(), samples=32_768).entropy(pe.Rig([sensor]))

@@ -16,6 +16,8 @@ from .errors import InputError
 
 Floats = NDArray[np.float64]
 
+FARTHEST_M = 1e4
+"""No sensor of a vehicle is farther from it than this; kernels count on it."""
 ROUND_TRIP_DECIMALS_DEG = 9
 """Degrees are written with this many decimals: what a file says is then exactly what was scored."""
 
@@ -35,14 +37,18 @@ class Pose:
     Raises
     ------
     InputError
-        When a number is missing, NaN or infinite.
+        When a number is missing, NaN or infinite, or a position beyond 10 km.
     """
 
     position: tuple[float, float, float]
     rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", three_numbers("pose", "position", self.position))
+        position = three_numbers("pose", "position", self.position)
+        if max(map(abs, position)) > FARTHEST_M:
+            expected = f"three numbers within +-{FARTHEST_M:g} m"
+            raise InputError("pose", "position", expected, position)
+        object.__setattr__(self, "position", position)
         object.__setattr__(self, "rpy", three_numbers("pose", "rpy", self.rpy))
 
     @classmethod

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
-from .geometry import cross, dot
+from .geometry import FARTHEST_M, cross, dot
 from .kernels.heights import top_heights
 from .kernels.raycast import Hits, SeenTriangles
 from .space import PerceptionSpace
@@ -138,6 +138,11 @@ def _checked_triangles(values: ArrayLike) -> Floats:
     if bad.any():
         found = f"triangle {int(np.flatnonzero(bad)[0])} with NaN or infinity"
         raise InputError("vehicle", "triangles", "finite coordinates", found)
+    far = np.abs(triangles).max(axis=(1, 2)) > FARTHEST_M
+    if far.any():
+        found = f"triangle {int(np.flatnonzero(far)[0])} beyond"
+        expected = f"coordinates within +-{FARTHEST_M:g} m"
+        raise InputError("vehicle", "triangles", expected, found)
     return triangles
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 from typing import Any
 
 from pe_core.command import DONE, INTERRUPTED, Answer
@@ -13,7 +14,7 @@ from pe_core.results import dump_json, prepare_folder
 from .claims import claims
 from .effort import FULL, QUICK, Effort
 from .fitting import add_fit, matplotlib_figures
-from .ledger import Ledger
+from .ledger import RESULTS, Ledger, read_results
 from .page import write_page
 from .problems import STUDIES
 from .runner import run_all
@@ -34,6 +35,11 @@ def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
         help=f"folder for page, plots and results.json (default {FOLDER}, or {QUICK_FOLDER})",
     )
     reproduce.add_argument("--quick", action="store_true", help="check all orderings in a minute")
+    reproduce.add_argument(
+        "--page-only",
+        action="store_true",
+        help="write page and plots of the results that are there",
+    )
     reproduce.add_argument("--json", action="store_true", help="print results.json on stdout")
     reproduce.add_argument("--workers", type=int, metavar="N", help="processes (default: all)")
     reproduce.set_defaults(function=_reproduce)
@@ -45,20 +51,30 @@ def _reproduce(args: argparse.Namespace) -> Answer:
         raise InputError(str(STUDIES), "folder", "study files of the experiments", found)
     folder = prepare_folder(args.output or (QUICK_FOLDER if args.quick else FOLDER))
     figures = matplotlib_figures()  # complains now, not after an hour, where matplotlib is missing
-    effort = QUICK if args.quick else FULL
-    ledger = Ledger(folder, effort)
-    if ledger.found:
-        _tell(f"going on from {ledger.path}, which has {ledger.found} results")
-    try:
-        run_all(effort, ledger, args.workers, _tell)
-    except KeyboardInterrupt:
-        _tell(f"pe: interrupted; {ledger.path} keeps what is done, the same command goes on")
-        return "", INTERRUPTED
-    data = finish(ledger, effort)
+    if args.page_only:
+        data = read_results(folder / RESULTS)
+    else:
+        computed = _computed(folder, QUICK if args.quick else FULL, args.workers)
+        if computed is None:
+            return "", INTERRUPTED
+        data = computed
     figures.draw_all(data, folder)
     write_page(data, folder)
     text = dump_json(data) if args.json else summary(data)
     return text, DONE if _like_the_paper(data) else UNLIKE_THE_PAPER
+
+
+def _computed(folder: Path, effort: Effort, workers: int | None) -> dict[str, Any] | None:
+    """Compute what is not there yet; return the complete results, None when interrupted."""
+    ledger = Ledger(folder, effort)
+    if ledger.found:
+        _tell(f"going on from {ledger.path}, which has {ledger.found} results")
+    try:
+        run_all(effort, ledger, workers, _tell)
+    except KeyboardInterrupt:
+        _tell(f"pe: interrupted; {ledger.path} keeps what is done, the same command goes on")
+        return None
+    return finish(ledger, effort)
 
 
 def finish(ledger: Ledger, effort: Effort) -> dict[str, Any]:

@@ -136,3 +136,26 @@ def test_a_fusion_group_holds_one_kind_of_sensor():
     camera = pe.Sensor("c", shapes.camera().model, pe.Pose((0, 0, 1)), fusion="lidar")
     with pytest.raises(pe.InputError, match="fusion group 'lidar'"):
         pe.Rig([shapes.lidar_on_roof(), camera])
+
+
+def test_a_sensor_in_another_country_is_refused_and_a_far_one_sees_nothing():
+    with pytest.raises(pe.InputError, match=r"pose: position: .* within \+-10000 m"):
+        pe.Pose((1e30, 0.0, 1.0))
+    rig = pe.Rig([pe.Sensor("far", pe.catalog.load("Pandar64"), pe.Pose((1e4, 0.0, 1.0)))])
+    for samples in (None, 2048):
+        evaluator = pe.Evaluator(shapes.small_space(), pe.Prior.road(), samples=samples)
+        assert evaluator.score(rig).coverage == 0.0
+
+
+@pytest.mark.parametrize(("a", "b", "blind"), [(1e-9, -5.0, True), (1e-9, 5.0, False)])
+def test_a_curve_that_never_leaves_the_clip_has_a_documented_result(a, b, blind):
+    rig = pe.Rig([pe.Sensor("roof", shapes.small_lidar(24, 360), pe.Pose((0.0, 0.0, 2.0)))])
+    model = pe.PerceptionModel(lidar=pe.ApCurve(a, b))
+    for samples in (None, 2048):
+        evaluator = pe.Evaluator(
+            shapes.small_space(), pe.Prior.road(), samples=samples, model=model
+        )
+        score = evaluator.score(rig)
+        seen = 0.0 if blind else score.coverage
+        expected = 16.651386624 * (1.0 - seen) - 10.975632 * seen
+        assert score.entropy == pytest.approx(expected, abs=1e-5) and score.coverage > 0.1

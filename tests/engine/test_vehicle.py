@@ -112,6 +112,13 @@ def test_a_mesh_with_nan_is_refused():
         pe.Vehicle(triangles)
 
 
+def test_a_mesh_of_another_world_is_refused():
+    triangles = shapes.box((-2, -1, 0), (2, 1, 1.5))
+    triangles[7] *= 1e4
+    with pytest.raises(pe.InputError, match=r"within \+-10000 m, found triangle 7 beyond"):
+        pe.Vehicle(triangles)
+
+
 def test_glass_must_name_a_part():
     with pytest.raises(pe.InputError, match=r"glass.*body, cabin.*'window'"):
         car = shapes.box_car()

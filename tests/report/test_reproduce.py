@@ -130,3 +130,18 @@ def test_a_broken_results_file_is_one_line(tmp_path, text, found):
     (tmp_path / "results.json").write_text(text)
     run = pe("reproduce", "--quick", "--output", tmp_path)
     assert run.returncode == 1 and found in run.stderr and run.stderr.count("\n") == 1
+
+
+def test_the_page_is_written_again_from_the_results_alone(quick, tmp_path):
+    (tmp_path / "results.json").write_bytes((quick.folder / "results.json").read_bytes())
+    run = pe("reproduce", "--page-only", "--output", tmp_path)
+    assert run.returncode == 0 and not run.stderr
+    for path in quick.folder.iterdir():
+        assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_a_page_of_incomplete_results_is_refused(tmp_path):
+    (tmp_path / "results.json").write_text('{"schema": 1, "made": {}, "results": {}}')
+    run = pe("reproduce", "--page-only", "--output", tmp_path)
+    assert run.returncode == 1 and run.stderr.count("\n") == 1
+    assert "complete results of schema 1" in run.stderr

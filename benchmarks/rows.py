@@ -101,22 +101,28 @@ def samples_on_car() -> Row:
     return _after_a_move(car(), "vehicle")
 
 
-def _after_a_move(vehicle: pe.Vehicle | None, label: str) -> Row:
+def samples_on_car_draft() -> Row:
+    """The same as a draft, as while a sensor is dragged."""
+    return _after_a_move(car(), "vehicle, draft", draft=True)
+
+
+def _after_a_move(vehicle: pe.Vehicle | None, label: str, draft: bool = False) -> Row:
     study = plain_study(vehicle)
-    ours, _ = _best(_moving(study, study.evaluator(262_144)), 8)
+    ours, _ = _best(_moving(study, study.evaluator(262_144), draft), 8)
     peak = _peak_mb()
     grid, _ = _best(lambda: study.evaluator(0).entropy(study.rig), 1)
     work = f"262,144 samples after a move, {label}"
     return Row(work, ours, peak, "grid score, first", grid)
 
 
-def _moving(study: pe.Study, evaluator: pe.Evaluator) -> Work:
+def _moving(study: pe.Study, evaluator: pe.Evaluator, draft: bool) -> Work:
     """Return a call that moves the sensor a little and scores again."""
     x, y, z = study.rig.sensors[0].pose.position
     places = iter(np.linspace(0.0, 0.05, 1000))
 
     def call() -> float:
-        return evaluator.entropy(study.rig.with_poses([pe.Pose((x + next(places), y, z))]))
+        moved = study.rig.with_poses([pe.Pose((x + next(places), y, z))])
+        return evaluator.entropy(moved, draft=draft)
 
     return call
 
@@ -144,6 +150,7 @@ ROWS: dict[str, Callable[[], Row]] = {
         full_score,
         samples_free,
         samples_on_car,
+        samples_on_car_draft,
         rays,
     )
 }

@@ -59,6 +59,11 @@ class Facts:
         start = f"search/{row}/{prior}/{self.best_start(row, prior)}/"
         return [v["entropy"] for v in self.named(start).values()]
 
+    def ends(self, row: str, prior: str = PRIORS[0]) -> list[Mapping[str, Any]]:
+        """Placements at the end of every search from the best start."""
+        start = f"search/{row}/{prior}/{self.best_start(row, prior)}/"
+        return [v["placements"] for v in self.named(start).values()]
+
     def spread(self, row: str, prior: str = PRIORS[0]) -> str:
         """Mean and standard deviation over the seeds."""
         found = self.seeds(row, prior)

@@ -49,8 +49,9 @@ One thing changed at a time, at the printed placements, under `road`. {always}
 
 The side of the voxels matters most: a larger cube meets more beams, and AP = a ln m + b was fitted for a
 voxel of 0.1 m, so only that one has a meaning; the others tell how steep the dependence is. The prior's
-scales come next, along the road more than across. The vehicle takes little from a LiDAR this far above the
-roof.
+scales come next: how far away objects are is worth up to 3 nats for the same LiDAR, so the paper's absolute
+figures cannot be judged without its prior. The vehicle takes little from a LiDAR this far above the roof.
+"No vehicle" also counts the voxels where the vehicle would be, which a LiDAR on its roof does not see.
 """
 
 

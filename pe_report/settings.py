@@ -56,13 +56,14 @@ def _interval(side: float) -> Change:
     return changed
 
 
+NEARER = "positions as in KITTI"
 SETTINGS: dict[str, Change] = {
     "as shipped": lambda study: study,
     "objects half as far ahead and behind": _along(0.5),
     "twice as far ahead and behind": _along(2.0),
     "half as far to the sides": _across(0.5),
     "twice as far to the sides": _across(2.0),
-    "positions as in KITTI": _classes(_kitti),
+    NEARER: _classes(_kitti),
     "voxels of 0.2 m": _interval(0.2),
     "voxels of 0.4 m (space 4.8 m high)": _interval(0.4),
     "no vehicle": lambda study: replace(study, vehicle=None),

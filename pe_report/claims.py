@@ -77,23 +77,24 @@ def _printed(values: Mapping[str, Any], prior: str) -> Iterator[Claim]:
 
 
 def _searched(values: Mapping[str, Any], effort: Effort) -> Iterator[Claim]:
+    """Orderings of our own searches, of those that are there."""
     for key, better, worse in (("1", "1_pandar64", "1_hdl64e"), ("2", "2_60deg", "2_120deg")):
         for prior in PRIORS:
-            if (better, prior) in effort.rows:
-                figures = [best_entropy(values, effort, row, prior) for row in (better, worse)]
-                yield _best(key, prior, ROW[better].label, figures[0], ROW[worse].label, figures[1])
+            found = [best_search(values, effort, row, prior) for row in (better, worse)]
+            if all(found):
+                low, high = (values[name]["entropy"] for name in found)
+                yield _best(key, prior, ROW[better].label, low, ROW[worse].label, high)
     for key, row, better, worse in (
         ("3 default", "3_default", "diagonal", "front"),
         ("3 front", "3_front", "front", "diagonal"),
     ):
-        low, high = (
-            values[pilot_name(row, PRIORS[0], start)]["entropy"] for start in (better, worse)
-        )
-        yield _best(key, PRIORS[0], better, low, worse, high)
-    if ("4_cameras", PRIORS[0]) in effort.rows:
-        low, high = (
-            best_entropy(values, effort, row, PRIORS[0]) for row in ("4_cameras", "3_front")
-        )
+        names = [pilot_name(row, PRIORS[0], start) for start in (better, worse)]
+        if all(name in values for name in names):
+            low, high = (values[name]["entropy"] for name in names)
+            yield _best(key, PRIORS[0], better, low, worse, high)
+    found = [best_search(values, effort, row, PRIORS[0]) for row in ("4_cameras", "3_front")]
+    if all(found):
+        low, high = (values[name]["entropy"] for name in found)
         yield _best("4", PRIORS[0], "with cameras", low, "two LiDARs", high, STRONG_NATS)
 
 
@@ -104,17 +105,11 @@ def _best(
 
 
 def best_search(values: Mapping[str, Any], effort: Effort, row: str, prior: str) -> str:
-    """Name of the search that ended lowest, of all seeds from the best start."""
+    """Name of the search that ended lowest, of all seeds from the best start; empty without any."""
     start = best_start(row, prior, values, effort)
-    assert start is not None
-    names = [search_name(row, prior, start, seed) for seed in effort.seeds]
-    return min(names, key=lambda name: values[name]["entropy"])
-
-
-def best_entropy(values: Mapping[str, Any], effort: Effort, row: str, prior: str) -> float:
-    """Lowest entropy found for a row."""
-    entropy: float = values[best_search(values, effort, row, prior)]["entropy"]
-    return entropy
+    names = [search_name(row, prior, str(start), seed) for seed in effort.seeds]
+    done = [name for name in names if name in values]
+    return min(done, key=lambda name: values[name]["entropy"], default="")
 
 
 def _pitched(values: Mapping[str, Any], effort: Effort) -> Claim:

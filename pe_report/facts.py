@@ -43,7 +43,7 @@ class Facts:
 
     def searched(self, row: str, prior: str = PRIORS[0]) -> bool:
         """Whether a row was searched."""
-        return (row, prior) in self.effort.rows
+        return bool(best_search(self.values, self.effort, row, prior))
 
     def best(self, row: str, prior: str = PRIORS[0]) -> Mapping[str, Any]:
         """Return a row's best search."""

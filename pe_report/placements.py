@@ -23,6 +23,8 @@ Floats = NDArray[np.float64]
 
 VIEWS = ((0, 1), (0, 2))
 """Axes of the page: from above, from the right."""
+MARGIN_M, WIDTH_IN = (0.75, 0.3, 0.3), 6.4
+"""Room round vehicle and sensors; width of the picture."""
 DARKEST, LIGHTEST = 0.72, 0.93
 PITCH_MARK_M = 0.7
 
@@ -35,7 +37,25 @@ def draw_placements(path: Path, row: Row, found: Sequence[Mapping[str, Any]]) ->
     """
     study = study_of(row.name)
     assert study.vehicle is not None
-    figure, axes = plt.subplots(2, 1, figsize=(7.0, 6.4), sharex=True)
+    corners = study.vehicle.triangles.reshape(-1, 3)
+    low, high = corners.min(axis=0) - MARGIN_M, corners.max(axis=0) + MARGIN_M
+    for at in [s.pose.position for s in study.rig] + [
+        p["position"] for v in found for p in v.values()
+    ]:
+        low, high = (
+            np.minimum(low, np.array(at) - MARGIN_M),
+            np.maximum(high, np.array(at) + MARGIN_M),
+        )
+    length, width, height = high - low
+    scale = WIDTH_IN / length
+    figure, axes = plt.subplots(
+        2,
+        1,
+        figsize=(WIDTH_IN + 1.0, (width + height) * scale + 1.6),
+        height_ratios=(width, height),
+        sharex=True,
+        layout="constrained",
+    )
     for view, axis in zip(axes, VIEWS, strict=True):
         faces, shades = _seen(study.vehicle.triangles, axis)
         view.add_collection(PolyCollection(faces, facecolors=shades, edgecolors="face", lw=0.2))
@@ -44,17 +64,20 @@ def draw_placements(path: Path, row: Row, found: Sequence[Mapping[str, Any]]) ->
                 at = ours[sensor.name]
                 _mark(view, at["position"], at["rotation"], axis, color, filled=True)
             _mark(view, sensor.pose.position, sensor.pose.rotation_deg, axis, color, filled=False)
-        view.set_aspect("equal")
-        view.margins(0.06)
-        view.autoscale_view()
+        view.set(xlim=(low[0], high[0]), ylim=(low[axis[1]], high[axis[1]]), aspect="equal")
         finished(view)
     axes[0].set_ylabel("y, left [m]")
     axes[1].set(ylabel="z, up [m]", xlabel="x, forward [m]")
     axes[0].legend(
-        handles=_key(study), loc="lower left", bbox_to_anchor=(0, 1), ncols=3, frameon=False
+        handles=_key(study),
+        loc="lower left",
+        bbox_to_anchor=(0, 1),
+        ncols=5,
+        frameon=False,
+        columnspacing=1.2,
+        handletextpad=0.3,
     )
     figure.align_ylabels(axes)
-    figure.tight_layout()
     save(figure, path)
 
 

@@ -39,7 +39,7 @@ def head(facts: Facts) -> str:
         lines.append(f"- Holds under {joined(yes)}, not under {joined(no)}: {TEXTS[key]}.")
     lines += [f"- Holds under none: {TEXTS[key]}." for key in never]
     verdict = "holds" if facts.claim("pitch", "printed")["holds"] else "does not hold"
-    lines.append(f"- The pitch figure: {TEXTS['pitch']} {verdict}.")
+    lines.append(f"- The pitch figure {verdict}: {TEXTS['pitch']}.")
     found = "\n".join(lines)
     return f"""
 # The paper's experiments, reproduced

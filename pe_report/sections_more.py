@@ -5,6 +5,7 @@ from __future__ import annotations
 from .facts import Facts, table
 from .paper import HOUR_S, PITCH_HEIGHT_M, ROW
 from .plan import FITS, LIDAR_ROWS
+from .settings import EXPECTED, SETTINGS
 
 
 def pitch(facts: Facts) -> str:
@@ -19,7 +20,8 @@ Two Pandar40 at the bus's front corners, both {PITCH_HEIGHT_M} m high, the first
 default weights. **The same as in the paper:** at equal pitch the channels of one cover those of the other,
 which is the worst there is nearby ({claim["worse_entropy"]:.4f}); a small difference puts the beams of
 one into the gaps of the other ({claim["better_entropy"]:.4f} at {claim["better"]}). The lowest of the
-whole range is {lowest[1]:.4f} at {lowest[0]:g} deg. Each LiDAR alone changes much less.
+whole range is {lowest[1]:.4f} at {lowest[0]:g} deg. The pattern repeats every third of a degree, the
+spacing of the Pandar40's dense channels. Each LiDAR alone hardly changes over so small an angle.
 
 ![Entropy against the pitch difference](pitch.png)
 """
@@ -28,7 +30,7 @@ whole range is {lowest[1]:.4f} at {lowest[0]:g} deg. Each LiDAR alone changes mu
 def sensitivity(facts: Facts) -> str:
     """Return what experiment 1 depends on."""
     varied = facts.named("vary/")
-    settings = list(dict.fromkeys(name.rsplit("/", 1)[0] for name in varied))
+    settings = [s for s in (*SETTINGS, EXPECTED) if f"{s}/{LIDAR_ROWS[0]}" in varied]
     lines = []
     for setting in settings:
         low, high = (varied[f"{setting}/{row}"] for row in LIDAR_ROWS)

@@ -37,15 +37,7 @@ def draw_placements(path: Path, row: Row, found: Sequence[Mapping[str, Any]]) ->
     """
     study = study_of(row.name)
     assert study.vehicle is not None
-    corners = study.vehicle.triangles.reshape(-1, 3)
-    low, high = corners.min(axis=0) - MARGIN_M, corners.max(axis=0) + MARGIN_M
-    for at in [s.pose.position for s in study.rig] + [
-        p["position"] for v in found for p in v.values()
-    ]:
-        low, high = (
-            np.minimum(low, np.array(at) - MARGIN_M),
-            np.maximum(high, np.array(at) + MARGIN_M),
-        )
+    low, high = _extent(study, found)
     length, width, height = high - low
     scale = WIDTH_IN / length
     figure, axes = plt.subplots(
@@ -79,6 +71,14 @@ def draw_placements(path: Path, row: Row, found: Sequence[Mapping[str, Any]]) ->
     )
     figure.align_ylabels(axes)
     save(figure, path)
+
+
+def _extent(study: pe.Study, found: Sequence[Mapping[str, Any]]) -> tuple[Floats, Floats]:
+    """Lowest and highest corner (3,) of what is drawn [m], with a margin."""
+    assert study.vehicle is not None
+    points = [np.asarray(p) for p in (*study.vehicle.bounds, *(s.pose.position for s in study.rig))]
+    points += [np.asarray(at["position"]) for ours in found for at in ours.values()]
+    return np.min(points, axis=0) - MARGIN_M, np.max(points, axis=0) + MARGIN_M
 
 
 def _key(study: pe.Study) -> list[Line2D]:

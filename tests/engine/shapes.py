@@ -5,6 +5,8 @@ import math
 import numpy as np
 
 import pe_core as pe
+from pe_core.kernels.lidar_points import Lattice, VoxelPoints, count_beams
+from pe_core.kernels.ties import position_in_voxels, without_zeros
 
 BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
@@ -57,3 +59,17 @@ def camera(hfov_deg=60.0, position=(1.0, 0.0, 1.5), rotation=(0.0, 0.0, 0.0), na
 def small_space(interval=0.5):
     """A space of a few ten thousand voxels."""
     return pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), interval)
+
+
+def counted(sensor, space, index, vehicle=None, enough=None):
+    """Beams through voxels of a space, as the sampled kernels count them."""
+    field = pe.beam_field(sensor, vehicle)
+    return count_beams(
+        VoxelPoints(index),
+        position_in_voxels(sensor.pose.position, space.origin, space.interval),
+        Lattice.of(sensor.model),
+        sensor.pose.ground_from_sensor,
+        without_zeros(field.directions),
+        field.ends / space.interval,
+        enough,
+    )

@@ -5,8 +5,6 @@ import pytest
 
 import pe_core as pe
 from pe_core.kernels.lidar_grid import MOST, BeamGrid
-from pe_core.kernels.lidar_points import Lattice, VoxelPoints, count_beams
-from pe_core.kernels.ties import position_in_voxels, without_zeros
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 4), 0.2)
@@ -58,15 +56,7 @@ def counts_of(sensor, vehicle, space, times=1):
 
 
 def point_counts(sensor, vehicle, index):
-    field = pe.beam_field(sensor, vehicle)
-    return count_beams(
-        VoxelPoints(index),
-        position_in_voxels(sensor.pose.position, SPACE.origin, SPACE.interval),
-        Lattice.of(sensor.model),
-        sensor.pose.ground_from_sensor,
-        without_zeros(field.directions),
-        field.ends / SPACE.interval,
-    )
+    return shapes.counted(sensor, SPACE, index, vehicle)
 
 
 def some_voxels(sensor, counts, rng):

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kernels.lidar_points import Lattice, VoxelPoints, count_beams
 from pe_core.kernels.lidar_upright import MOST_AZIMUTHS, SlopeTable, Upright
-from pe_core.kernels.ties import position_in_voxels, without_zeros
+from pe_core.kernels.ties import position_in_voxels
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-30, 30), (-15, 15), (0, 5), 0.1)
@@ -41,16 +40,7 @@ def voxels_round(position, rng, count):
 
 
 def counted(sensor, index, vehicle=None, enough=None):
-    field = pe.beam_field(sensor, vehicle)
-    return count_beams(
-        VoxelPoints(index),
-        position_in_voxels(sensor.pose.position, SPACE.origin, SPACE.interval),
-        Lattice.of(sensor.model),
-        sensor.pose.ground_from_sensor,
-        without_zeros(field.directions),
-        field.ends / SPACE.interval,
-        enough,
-    )
+    return shapes.counted(sensor, SPACE, index, vehicle, enough)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 90.0, -180.0, 33.3, 0.2])

@@ -302,6 +302,8 @@ A search moves a sensor by two metres at most, so each pair of corners was searc
 
 {table(titles, lines)}
 
+A pilot may end lower than a longer search: both are random, and judged on a sample of the voxels.
+
 **Figures: higher**, for the reason of experiment 1: paper {ROW["3_default"].entropy} and
 {ROW["3_front"].entropy}, ours {facts.entropy("3_default"):.4f} and {facts.entropy("3_front"):.4f} at the
 printed placements.

@@ -54,27 +54,25 @@ class Facts:
         """Return the start of a row's best search."""
         return best_search(self.values, self.effort, row, prior).split("/")[3]
 
-    def seeds(self, row: str, prior: str = PRIORS[0]) -> list[float]:
-        """Entropies of all seeds from the best start."""
+    def seeds(self, row: str, prior: str = PRIORS[0]) -> list[Mapping[str, Any]]:
+        """Return the searches of all seeds from the best start."""
         start = f"search/{row}/{prior}/{self.best_start(row, prior)}/"
-        return [v["entropy"] for v in self.named(start).values()]
+        return list(self.named(start).values())
 
     def ends(self, row: str, prior: str = PRIORS[0]) -> list[Mapping[str, Any]]:
         """Placements at the end of every search from the best start."""
-        start = f"search/{row}/{prior}/{self.best_start(row, prior)}/"
-        return [v["placements"] for v in self.named(start).values()]
+        return [search["placements"] for search in self.seeds(row, prior)]
 
     def spread(self, row: str, prior: str = PRIORS[0]) -> str:
         """Mean and standard deviation over the seeds."""
-        found = self.seeds(row, prior)
+        found = [search["entropy"] for search in self.seeds(row, prior)]
         if len(found) < 2:
             return ""
         return f"{statistics.mean(found):.3f} ± {statistics.stdev(found):.3f}"
 
-    def search_seconds(self, row: str | None = None) -> list[float]:
-        """Seconds of the searches, of a row or of all."""
-        prefix = "search/" if row is None else f"search/{row}/"
-        return [s for name, s in self.seconds.items() if name.startswith(prefix)]
+    def search_seconds(self) -> list[float]:
+        """Seconds of all searches."""
+        return [s for name, s in self.seconds.items() if name.startswith("search/")]
 
     def holding(self, experiment: str, where: str) -> tuple[list[str], list[str]]:
         """Priors under which an ordering holds, and does not."""

@@ -15,6 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from .facts import Facts
 from .paper import PRIORS, ROW, ROWS
 from .placements import draw_placements
 from .style import BLUE, GREY, ORANGE, PALETTE, SKY, VERMILION, finished, save, style
@@ -25,25 +26,17 @@ PRINTED_60 = ROW["2_60deg"].entropy
 
 def draw_all(data: Mapping[str, Any], folder: Path) -> None:
     """Draw every plot of the page."""
-    values = {name: entry["value"] for name, entry in data["results"].items()}
+    facts = Facts(data)
+    values = facts.values
     priors(folder / "priors.png", values)
     rows(folder / "rows.png", values)
     pitch(folder / "pitch.png", values)
     sensitivity(folder / "sensitivity.png", values)
     bounds(folder / "camera_bound.png", values)
-    ap_curves(folder / "ap_curves.png", _named(values, "fit/"))
+    ap_curves(folder / "ap_curves.png", facts.named("fit/"))
     for row in ROWS:
-        found = searched_placements(values, row.name, PRIORS[0])
+        found = facts.ends(row.name) if facts.searched(row.name) else []
         draw_placements(folder / f"placements_{row.name}.png", row, found)
-
-
-def searched_placements(values: Mapping[str, Any], row: str, prior: str) -> list[Any]:
-    """Placements of every search from the start that did best, by sensor."""
-    searches = _named(values, f"search/{row}/{prior}/")
-    if not searches:
-        return []
-    best = min(searches, key=lambda name: searches[name]["entropy"]).split("/")[0]
-    return [v["placements"] for name, v in searches.items() if name.startswith(f"{best}/")]
 
 
 def _named(values: Mapping[str, Any], prefix: str) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import pe_core as pe
-from pe_core.kernels.ties import without_zeros
+from pe_core.kinds.lidar.ties import without_zeros
 
 SOURCE = Path(__file__).with_name("literal.cpp")
 THREADS = 2

@@ -8,7 +8,7 @@ from pathlib import Path
 import bpy
 
 from . import commands, register, unregister
-from .engine import command, pe
+from .engine import app, pe
 
 PROG = "python -m blender_addon FILE.blend"
 USAGE = f"usage: {PROG} VERB [options]\n"
@@ -18,17 +18,17 @@ def main(argv: list[str]) -> int:
     """Open the file, run the command on it, and return its exit status."""
     if not argv or argv[0].startswith("-"):
         sys.stderr.write(USAGE)
-        return command.USAGE if argv[:1] not in (["-h"], ["--help"]) else command.DONE
+        return app.USAGE if argv[:1] not in (["-h"], ["--help"]) else app.DONE
     out = commands.take_over_process()
     bpy.ops.wm.read_factory_settings(use_empty=True)  # nothing of a user's own takes part
     register()
     try:
-        return command.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG, out)
+        return app.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG, out)
     finally:
         unregister()
 
 
-def open_file(name: str) -> command.Answer:
+def open_file(name: str) -> app.Answer:
     """Open a .blend file; nothing to print."""
     path = Path(name)
     if not path.is_file():
@@ -38,7 +38,7 @@ def open_file(name: str) -> command.Answer:
     except RuntimeError as error:
         found = str(error).strip().removeprefix("Error: ")
         raise pe.InputError(name, "file", "a .blend file", found) from None
-    return "", command.DONE
+    return "", app.DONE
 
 
 sys.exit(main(sys.argv[1:]))

@@ -19,7 +19,7 @@ from typing import TextIO
 import bpy
 
 from . import bridge
-from .engine import command, pe, results
+from .engine import app, pe, studies
 
 REVIEW, OPTIMIZED = "review.png", "optimized.blend"
 IN_BLENDER = "blender -b FILE.blend --command pe"
@@ -35,7 +35,7 @@ def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
             args = parser(prog).parse_args(argv)
     except SystemExit as stop:  # help was asked for, or the usage was wrong
         return int(stop.code or 0)
-    return command.run(lambda: args.function(args), out)
+    return app.run(lambda: args.function(args), out)
 
 
 def parser(prog: str) -> argparse.ArgumentParser:
@@ -46,21 +46,21 @@ def parser(prog: str) -> argparse.ArgumentParser:
     score = verbs.add_parser("score", help="score the sensors of the scene")
     optimize = verbs.add_parser("optimize", help="search for better places for the sensors")
     for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
-        command.add_run_options(verb, search=job is pe.OptimizeJob)
+        app.add_run_options(verb, search=job is pe.OptimizeJob)
         verb.add_argument("--no-render", action="store_true", help=f"no {REVIEW}")
         verb.set_defaults(function=run_job, job=job)
     export = verbs.add_parser("export", help="write the scene as a study with its mesh")
     export.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for them")
     export.set_defaults(function=export_study)
-    command.add_sensors_verb(verbs)
+    app.add_sensors_verb(verbs)
     return top
 
 
-def run_job(args: argparse.Namespace) -> command.Answer:
+def run_job(args: argparse.Namespace) -> app.Answer:
     """Score or optimize, and leave the results in the output folder."""
-    study = command.with_options(opened_study(), args)
+    study = app.with_options(opened_study(), args)
     output = None if args.output is None else pe.prepare_folder(args.output)
-    outcome = command.drive(args.job(study, args.workers), output)
+    outcome = app.drive(args.job(study, args.workers), output)
     host = bridge.blender_version()
     if output is None:
         data = pe.result_dict(outcome, host)
@@ -68,14 +68,14 @@ def run_job(args: argparse.Namespace) -> command.Answer:
         data = pe.write_outcome(outcome, output, host)
         with quiet_blender():
             leave_scene(outcome, output, render=not args.no_render)
-    return command.answer(outcome, data, as_json=args.json)
+    return app.answer(outcome, data, as_json=args.json)
 
 
-def export_study(args: argparse.Namespace) -> command.Answer:
+def export_study(args: argparse.Namespace) -> app.Answer:
     """Write the scene as a study file, with the vehicle's mesh."""
-    path = pe.prepare_folder(args.output) / results.STUDY
+    path = pe.prepare_folder(args.output) / studies.STUDY
     pe.export_study(opened_study(), path)
-    return str(path), command.DONE
+    return str(path), app.DONE
 
 
 def opened_study() -> pe.Study:

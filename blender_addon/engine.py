@@ -11,9 +11,9 @@ _PACKED = f"{__package__}.pe_core"
 _NAME = _PACKED if find_spec(_PACKED) else "pe_core"
 
 pe = import_module(_NAME)
+app = import_module(f"{_NAME}.app")
 catalog = import_module(f"{_NAME}.catalog")
-command = import_module(f"{_NAME}.command")
-files = import_module(f"{_NAME}.files")
-geometry = import_module(f"{_NAME}.geometry")
-placement = import_module(f"{_NAME}.optimize")
-results = import_module(f"{_NAME}.results")
+geometry = import_module(f"{_NAME}.scene")
+search = import_module(f"{_NAME}.search")
+studies = import_module(f"{_NAME}.study")
+text = import_module(f"{_NAME}.text")

@@ -5,11 +5,11 @@ from __future__ import annotations
 import bpy
 
 from . import bridge
-from .engine import catalog, placement
+from .engine import catalog, search
 from .operators import running
 from .operators.add_sensor import CAMERA_MODEL, LIDAR_MODEL
 
-AXIS_LABELS = dict(zip(placement.AXES, ("X", "Y", "Z", "Roll", "Pitch", "Yaw"), strict=True))
+AXIS_LABELS = dict(zip(search.AXES, ("X", "Y", "Z", "Roll", "Pitch", "Yaw"), strict=True))
 
 
 class Tab:
@@ -114,7 +114,7 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         layout.prop(settings, "fusion")
         layout.label(text=f"The search may change, for {obj.name}:")
         row = layout.row(align=True)
-        for index, axis in enumerate(placement.AXES):
+        for index, axis in enumerate(search.AXES):
             row.prop(settings, "free", index=index, text=AXIS_LABELS[axis], toggle=True)
         if settings.has_result:
             draw_sensor_result(layout, settings)

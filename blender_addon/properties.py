@@ -19,7 +19,7 @@ from bpy.props import (
 )
 
 from . import bridge, stale
-from .engine import catalog, pe, placement
+from .engine import catalog, pe, search
 from .overlay import handler as overlay
 
 DEFAULT_CANDIDATES = 150
@@ -31,7 +31,7 @@ DEFAULT_REGION = "front"
 RANGE_DECIMALS = 3
 # Before 4.5 every path could be relative to the .blend file; since then a property has to say so.
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
-FREE_BY_DEFAULT = tuple(axis in placement.PAPER_FREE for axis in placement.AXES)
+FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 PRIORS = (
     ("road", "Road", "Cars, trucks, cyclists, pedestrians and cones as met on public roads", 0),
@@ -249,7 +249,7 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
     free: BoolVectorProperty(
         name="Free Axes",
         description="What the search may change",
-        size=len(placement.AXES),
+        size=len(search.AXES),
         default=FREE_BY_DEFAULT,
     )
     show: BoolProperty(
@@ -261,7 +261,7 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
     placed: FloatVectorProperty(
         name="Placed",
         description="Placement last written by a search: x, y, z [m], roll, pitch, yaw [deg]",
-        size=len(placement.AXES),
+        size=len(search.AXES),
         options={"HIDDEN"},
     )
 

@@ -5,25 +5,31 @@ Evaluation and Design", ICRA 2021. Lower is better.
 """
 
 from . import catalog
-from .box_files import read_boxes, write_boxes
-from .boxes import Boxes, BoxReport
-from .entropy import ApCurve, PerceptionModel
 from .errors import InputError
-from .evaluate import Evaluator
-from .geometry import Pose
-from .jobs import Job, OptimizeJob, Outcome, Progress, ScoreJob
-from .measurement import measure
-from .mesh_io import Mesh, read_mesh, write_mesh
-from .occlusion import BeamField, beam_field
-from .optimize import Schedule, SearchSpace, Step, optimize
-from .prior import Focus, ObjectClass, Prior
-from .results import export_study, prepare_folder, result_dict, write_outcome
-from .score import GroundMap, PartScore, Score, SensorScore
-from .sensors import Camera, Lidar, Rig, Sensor
-from .space import PerceptionSpace
-from .study import Search, Study
-from .study_file import load_study, save_study, study_from_dict, study_to_dict
-from .vehicle import Vehicle
+from .formats import Mesh, read_boxes, read_mesh, write_boxes, write_mesh
+from .kinds import BeamField, Camera, Lidar, beam_field, measure
+from .metric import ApCurve, PerceptionModel
+from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
+from .scene import PerceptionSpace, Pose, Rig, Sensor, Vehicle
+from .scoring import Evaluator, GroundMap, PartScore, Score, SensorScore
+from .search import Schedule, SearchSpace, Step, optimize
+from .study import (
+    Job,
+    OptimizeJob,
+    Outcome,
+    Progress,
+    ScoreJob,
+    Search,
+    Study,
+    export_study,
+    load_study,
+    prepare_folder,
+    result_dict,
+    save_study,
+    study_from_dict,
+    study_to_dict,
+    write_outcome,
+)
 from .version import __version__
 
 __all__ = [

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core import ApCurve, Camera
-from pe_core.entropy import H_BLIND, entropy_of, precision_of
+from pe_core.metric import H_BLIND, entropy_of, precision_of
 
 Floats = NDArray[np.float64]
 

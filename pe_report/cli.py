@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pe_core.command import DONE, INTERRUPTED, Answer
+from pe_core.app import DONE, INTERRUPTED, Answer
 from pe_core.errors import InputError
-from pe_core.results import dump_json, prepare_folder
+from pe_core.study import prepare_folder
+from pe_core.text import dump_json
 
 from .claims import claims
 from .effort import FULL, QUICK, Effort

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pe_core import ApCurve, Lidar
-from pe_core.entropy import entropy_of, precision_of
+from pe_core.metric import entropy_of, precision_of
 
 Floats = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import statistics
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pe_core.entropy import H_BLIND
+from pe_core.metric import H_BLIND
 
 from .claims import best_search
 from .effort import Effort

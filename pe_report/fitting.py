@@ -6,11 +6,12 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from pe_core.command import DONE, Answer
+from pe_core.app import DONE, Answer
 from pe_core.errors import InputError
-from pe_core.files import write_bytes
-from pe_core.fit import SATURATION, CurveFit, fit_ap_curve, read_ap_table, study_snippet
-from pe_core.results import dump_json, prepare_folder
+from pe_core.formats import read_ap_table
+from pe_core.metric import SATURATION, CurveFit, fit_ap_curve, study_snippet
+from pe_core.study import prepare_folder
+from pe_core.text import dump_json, write_bytes
 
 SNIPPET, PLOT = "ap.toml", "ap.png"
 

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 import pe_core as pe
-from pe_core.files import read_bytes, write_bytes
-from pe_core.results import dump_json
+from pe_core.text import dump_json, read_bytes, write_bytes
 
 from .effort import Effort
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pe_core.files import write_bytes
+from pe_core.text import write_bytes
 
 from . import sections
 from .facts import Facts

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pe_core.entropy import H_BLIND
+from pe_core.metric import H_BLIND
 
 from .claims import TEXTS
 from .facts import Facts, joined, label, placement_text, printed_text, table

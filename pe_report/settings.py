@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pe_core as pe
-from pe_core.prior_classes import ROAD_CLASSES
+from pe_core.prior import ROAD_CLASSES
 
 Change = Callable[[pe.Study], pe.Study]
 

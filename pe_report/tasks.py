@@ -10,10 +10,10 @@ from typing import Any, cast
 import numpy as np
 
 import pe_core as pe
-from pe_core.entropy import H_BLIND
-from pe_core.fit import fit_ap_curve, read_ap_table
-from pe_core.results import placements
-from pe_core.sampling import VoxelSample, draw
+from pe_core.formats import read_ap_table
+from pe_core.metric import H_BLIND, fit_ap_curve
+from pe_core.scoring import VoxelSample, draw
+from pe_core.study import placements
 
 from .bound import farthest_at, least_entropy, least_unseen
 from .expected import expected_entropy

@@ -6,7 +6,7 @@ import json
 
 import bpy
 
-from ..engine import pe, results
+from ..engine import pe
 from .rig import sensor_objects
 from .scene import signature
 
@@ -22,7 +22,7 @@ def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
     settings.result_before = outcome.before.entropy
     settings.result_coverage = outcome.after.coverage
     settings.result_stderr = outcome.after.stderr
-    settings.result_json = json.dumps(results.result_dict(outcome, blender_version()))
+    settings.result_json = json.dumps(pe.result_dict(outcome, blender_version()))
     for obj in sensor_objects(scene):
         _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
     settings.result_signature = signature(scene)

@@ -84,7 +84,7 @@ def prior_signature(scene: bpy.types.Scene) -> list[object]:
 def _prior_from_boxes(path: str) -> pe.Prior:
     if not path:
         raise pe.InputError("scene", "boxes", "a file of labelled boxes", "none chosen")
-    prior = pe.Prior.from_boxes(bpy.path.abspath(path))
+    prior = pe.Prior.from_boxes(pe.read_boxes(bpy.path.abspath(path)))
     # The name they get beside a study is part of what is reported, where they lie here is not.
     return replace(prior, boxes=replace(prior.boxes, file=None))
 

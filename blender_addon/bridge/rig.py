@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..engine import catalog, geometry, pe, placement
+from ..engine import catalog, geometry, pe, search
 
 SCALE_TOLERANCE = 1e-4
 """How far a sensor's axes may be from unit length and from right angles."""
@@ -58,7 +58,7 @@ def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) ->
 def free_axes(obj: bpy.types.Object) -> tuple[str, ...]:
     """Axes of a sensor that the search may change."""
     chosen = obj.perception_entropy.free
-    return tuple(axis for axis, free in zip(placement.AXES, chosen, strict=True) if free)
+    return tuple(axis for axis, free in zip(search.AXES, chosen, strict=True) if free)
 
 
 def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
@@ -74,7 +74,7 @@ def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
         return written
     rpy = geometry.rpy_from_matrix(ground_from_sensor[:3, :3])
     values = (*ground_from_sensor[:3, 3].tolist(), *rpy)
-    return placement.pose_from_values(dict(zip(placement.AXES, values, strict=True)))
+    return search.pose_from_values(dict(zip(search.AXES, values, strict=True)))
 
 
 def place_rig(scene: bpy.types.Scene, rig: pe.Rig) -> list[str]:
@@ -153,7 +153,7 @@ def _pose_from_numbers(numbers: tuple[float, ...]) -> pe.Pose:
     """Pose from x, y, z [m], roll, pitch, yaw [deg] in single precision."""
     position, degrees = numbers[:3], numbers[3:]
     radians = (math.radians(angle) for angle in degrees)
-    return placement.pose_from_values(dict(zip(placement.AXES, (*position, *radians), strict=True)))
+    return search.pose_from_values(dict(zip(search.AXES, (*position, *radians), strict=True)))
 
 
 def _move(obj: bpy.types.Object, pose: pe.Pose) -> None:

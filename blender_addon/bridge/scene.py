@@ -6,7 +6,7 @@ import hashlib
 
 import bpy
 
-from ..engine import pe, results
+from ..engine import pe, studies
 from .prior import prior_from_scene, prior_signature
 from .rig import free_axes, rig_from_scene, sensor_objects, view_layer_of
 from .vehicle import vehicle_from_collection, visible_members
@@ -34,7 +34,7 @@ def study_from_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> 
         prior=prior_from_scene(scene),
         search=_search(scene),
         samples=settings.score_samples,
-        mesh=results.MESH,  # the name the mesh gets beside a study: part of what is reported
+        mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
     )
 
 

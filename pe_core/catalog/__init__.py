@@ -13,9 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from ..angle_files import read_angles
 from ..errors import InputError
-from ..sensors import Camera, Lidar
+from ..kinds.camera.model import Camera
+from ..kinds.lidar.angles import read_angles
+from ..kinds.lidar.model import Lidar
+from ..scene.sensors import SensorModel
 
 PAPER_FILE = "paper.toml"
 """The paper's own sensors come first in lists."""
@@ -202,11 +204,12 @@ def _near(name: str) -> str:
     return ", ".join(repr(lowered[c]) for c in close) or repr(names()[0])
 
 
-def to_table(model: Lidar | Camera) -> dict[str, Any]:
+def to_table(model: SensorModel) -> dict[str, Any]:
     """Return the table that `from_table` turns into this sensor again."""
     if isinstance(model, Camera):
         hfov = round(math.degrees(model.hfov), 9)
         return {"kind": "camera", "width": model.width, "height": model.height, "hfov_deg": hfov}
+    assert isinstance(model, Lidar)
     table: dict[str, Any] = {
         "kind": "lidar",
         "azimuth_count": model.azimuth_count,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.geometry import rotation_matrix
+from pe_core.scene.geometry import rotation_matrix
 from tests.addon import scenes
 
 CORNERS_M = [(x, y) for x in (3.03, -3.03) for y in (1.01, -1.01)]
@@ -75,7 +75,7 @@ def test_a_camera_behind_the_glass_sees_out_and_a_lidar_does_not(
     study, model, position, yaw, pitch, pane
 ):
     rays = in_view(pe.catalog.load(model), yaw, pitch)
-    assert np.isinf(study.vehicle.first_hit(position, rays, "camera").distance).all()
+    assert np.isinf(study.vehicle.first_hit(position, rays, through_glass=True).distance).all()
     hits = study.vehicle.first_hit(position, rays, "lidar")
     assert set(study.vehicle.parts[hits.face]) == {study.vehicle.part_names.index(pane)}
 

@@ -150,7 +150,7 @@ def test_labelled_boxes(scene, labels):
     settings.prior, settings.boxes = "boxes", str(labels)
     add_focus(scene, "front")
     prior = bridge.prior_from_scene(scene)
-    assert prior == pe.Prior.from_boxes(labels, [pe.Focus(2.0, x=(0.0, INF))])
+    assert prior == pe.Prior.from_boxes(pe.read_boxes(labels), [pe.Focus(2.0, x=(0.0, INF))])
     assert prior.class_names == ("car", "tram")
 
 
@@ -158,7 +158,7 @@ def test_labelled_boxes_beside_the_blend_file(scene, labels):
     settings = scene.perception_entropy
     bpy.ops.wm.save_as_mainfile(filepath=str(labels.with_name("car.blend")))
     settings.prior, settings.boxes = "boxes", f"//{labels.name}"
-    assert bridge.prior_from_scene(scene) == pe.Prior.from_boxes(labels)
+    assert bridge.prior_from_scene(scene) == pe.Prior.from_boxes(pe.read_boxes(labels))
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 from blender_addon import bridge, stale
-from blender_addon.engine import pe, results
+from blender_addon.engine import pe, text
 from blender_addon.operators import running
 from tests.addon import scenes
 
@@ -25,7 +25,7 @@ def stored(scene) -> dict:
 
 
 def data_of(outcome) -> dict:
-    data = json.loads(results.dump_json(results.result_dict(outcome)))
+    data = json.loads(text.dump_json(pe.result_dict(outcome)))
     del data["run"]
     return data
 

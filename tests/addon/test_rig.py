@@ -8,7 +8,7 @@ import pytest
 from mathutils import Euler, Matrix
 
 from blender_addon import bridge
-from blender_addon.engine import pe, placement
+from blender_addon.engine import pe, search
 from tests.addon import scenes
 
 POSES = 200
@@ -22,9 +22,9 @@ def random_poses(count=POSES, pitch_limit=math.pi / 2):
     rng = np.random.default_rng(7)
     for _ in range(count):
         values = (*rng.uniform(-12, 12, 3), *rng.uniform(-math.pi, math.pi, 3))
-        pose = dict(zip(placement.AXES, values, strict=True))
+        pose = dict(zip(search.AXES, values, strict=True))
         pose["pitch"] = rng.uniform(-pitch_limit, pitch_limit)
-        yield placement.pose_from_values(pose)
+        yield search.pose_from_values(pose)
 
 
 def edge_poses():

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from pe_core.errors import InputError
-from pe_core.mesh_io import Mesh, read_mesh
+from pe_core.formats.meshes import Mesh, read_mesh
 
 # A box with three different sides, so that no two axes can be mistaken for each other; its
 # coordinates are exact in single precision.

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 import pe_core as pe
-from pe_core.kernels.lidar_points import Lattice, VoxelPoints, count_beams
-from pe_core.kernels.ties import position_in_voxels, without_zeros
+from pe_core.kinds.lidar.points import Lattice, VoxelPoints, count_beams
+from pe_core.kinds.lidar.ties import position_in_voxels, without_zeros
 
 BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.geometry import rpy_from_matrix
+from pe_core.scene.geometry import rpy_from_matrix
 from tests.engine import shapes
 
 

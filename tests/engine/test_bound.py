@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.optimize import SearchSpace
+from pe_core.search.optimize import SearchSpace
 from tests.engine import shapes
 
 SPACE = shapes.small_space()

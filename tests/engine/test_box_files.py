@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.box_files.kitti import CAMERA
+from pe_core.formats.boxes.kitti import CAMERA
 from tests.engine import shapes
 
 CSV = """class,x,y,z,length,width,height,yaw
@@ -104,7 +104,9 @@ def test_kitti_is_turned_from_the_camera_to_the_ground(write):
 
 def test_the_report_names_what_is_left_out(write):
     path = write(KITTI)
-    report = pe.Prior.from_boxes(path).report(pe.PerceptionSpace((-20, 25), (-10, 10), (0, 5)))
+    report = pe.Prior.from_boxes(pe.read_boxes(path)).report(
+        pe.PerceptionSpace((-20, 25), (-10, 10), (0, 5))
+    )
     assert str(report) == (
         f"{path}: 2 boxes taken, 5 left out (1 outside the space, 1 marked DontCare, "
         "2 of unknown class 'Tram', 1 of unknown class 'Misc')"
@@ -120,7 +122,7 @@ def test_kitti_tracking_has_frame_and_id_in_front(write):
 
 def test_the_origin_of_labels_can_be_said(write):
     path = write(KITTI)
-    at = pe.Prior.from_boxes(path, origin=(1.5, 0.5, 1.6)).boxes
+    at = pe.Prior.from_boxes(pe.read_boxes(path, (1.5, 0.5, 1.6))).boxes
     assert row(at, 0)[:3] == pytest.approx([11.5, 2.5, 0.7])
     assert row(pe.read_boxes(write(CSV), (-1.0, 0.0, 0.1)), 0)[:3] == pytest.approx([9, 2, 0.85])
 
@@ -187,7 +189,7 @@ def test_nuscenes_results(write):
 
 def test_boxes_of_a_map_are_told_from_the_vehicle_s(write):
     path = write([nuscenes_box(translation=[1010.1, 612.0, 0.8])])
-    prior = pe.Prior.from_boxes(path)
+    prior = pe.Prior.from_boxes(pe.read_boxes(path))
     with pytest.raises(pe.InputError, match="in the ground frame of the vehicle, found all 1 out"):
         prior.densities(shapes.small_space())
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kernels.camera_grid import CameraPlanes, View
-from pe_core.kernels.camera_points import pixel_areas
+from pe_core.kinds.camera.grid import CameraPlanes
+from pe_core.kinds.camera.points import pixel_areas
+from pe_core.metric.planes import SeenRows
 from tests.engine import shapes
 
 
@@ -26,7 +27,7 @@ def test_areas_are_within_one_percent_beyond_a_metre(hfov, rotation):
 
 def whole_grid(sensor, space, vehicle, block):
     """Areas (nx, ny, nz) from `CameraPlanes`, in runs of `block` planes."""
-    seen = None if vehicle is None else vehicle.seen_from(sensor.pose.position, "camera")
+    seen = None if vehicle is None else vehicle.seen_from(sensor.pose.position, through_glass=True)
     camera = CameraPlanes(sensor.model, sensor.pose, space, seen)
     area = np.zeros(space.shape)
     for start in range(0, space.shape[0], block):
@@ -71,8 +72,11 @@ def test_planes_do_not_depend_on_how_many_are_asked_for():
 
 
 def test_views_add_up():
-    some, more = View(slice(1, 3), np.ones((2, 2, 4))), View(slice(2, 5), np.ones((2, 3, 4)))
-    none = View(slice(0, 0), np.ones((2, 0, 4)))
+    some, more = (
+        SeenRows(slice(1, 3), np.ones((2, 2, 4))),
+        SeenRows(slice(2, 5), np.ones((2, 3, 4))),
+    )
+    none = SeenRows(slice(0, 0), np.ones((2, 0, 4)))
     total = some + more
     assert total.rows == slice(1, 5)
     assert total.area[1, :, 3].tolist() == [1.0, 2.0, 1.0, 1.0]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kernels.horizon import Slants, TopMap
-from pe_core.occlusion import BeamEnds, TurnedBeams
+from pe_core.kinds.lidar.beams import BeamEnds, TurnedBeams
+from pe_core.kinds.lidar.horizon import Slants, TopMap
 from tests.engine import shapes
 
 SPACE = shapes.small_space(0.25)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.entropy import (
+from pe_core.metric import (
     BLIND_PRECISION,
     H_BLIND,
     POINTPILLARS,
@@ -19,7 +19,7 @@ from pe_core.entropy import (
     precision_of,
     sigma_of,
 )
-from pe_core.fusion import Fusion
+from pe_core.metric.fusion import Fusion
 
 
 def test_average_precision_is_the_paper_s_line_clipped():

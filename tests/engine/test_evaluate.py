@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.entropy import average_precision, entropy_of, late_fusion, sigma_of
+from pe_core.metric import average_precision, entropy_of, late_fusion, sigma_of
 from tests.engine import shapes
 
 SPACE = shapes.small_space()

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.fit import ApTable, fit_ap_curve, read_ap_table, study_snippet
+from pe_core.formats import read_ap_table
+from pe_core.metric import ApTable, fit_ap_curve, study_snippet
 
 PAPER = {"lidar": (0.152, 0.659), "camera": (0.055, 0.155)}
 

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.entropy import RTM3D, entropy_of, late_fusion, precision_of
-from pe_core.fused_planes import DIGITS, PlaneFusion
-from pe_core.fusion import Fusion
-from pe_core.kernels.camera_grid import View
+from pe_core.metric import RTM3D, entropy_of, late_fusion, precision_of
+from pe_core.metric.fusion import Fusion
+from pe_core.metric.planes import DIGITS, PlaneFusion, SeenRows
 from tests.engine import shapes
 from tests.engine.test_evaluate import rig_of_all_kinds
 
@@ -23,11 +22,11 @@ def view(rng, rows):
     """Areas from far below the least to more than an image, and a quarter of none."""
     shape = (2, rows.stop - rows.start, SHAPE[1])
     area = np.exp2(rng.uniform(-12.0, 24.0, shape)) * (rng.random(shape) < 0.75)
-    return View(rows, area.astype(np.float32))
+    return SeenRows(rows, area.astype(np.float32))
 
 
 def whole(measured, factor=1.0):
-    if not isinstance(measured, View):
+    if not isinstance(measured, SeenRows):
         return measured.astype(float)
     area = np.zeros((2, *SHAPE))
     area[:, measured.rows] = measured.area * factor
@@ -71,7 +70,7 @@ def test_the_rounding_of_areas_averages_out():
     """A plane of areas from 0.1 to 1000 px, as cameras have: the mean is off by less than 1e-5."""
     area = np.exp2(np.random.default_rng(5).uniform(-3.3, 10.0, (1, 300, 500))).astype(np.float32)
     fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (300, 500))
-    found = fusion.entropies([("camera", View(slice(0, 300), area))], 0)
+    found = fusion.entropies([("camera", SeenRows(slice(0, 300), area))], 0)
     plain = entropy_of(precision_of(area[0], RTM3D))
     assert np.abs(found - plain).max() < 3e-3
     assert abs(found.mean() - plain.mean()) < 1e-5

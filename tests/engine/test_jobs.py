@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.jobs import HistoryRow
+from pe_core.study.jobs import HistoryRow
 from tests.engine import shapes
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kernels.lidar_upright import MOST_AZIMUTHS, SlopeTable, Upright
-from pe_core.kernels.ties import position_in_voxels
+from pe_core.kinds.lidar.ties import position_in_voxels
+from pe_core.kinds.lidar.upright import MOST_AZIMUTHS, SlopeTable, Upright
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-30, 30), (-15, 15), (0, 5), 0.1)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pe_core.errors import InputError
-from pe_core.mesh_io import read_mesh
+from pe_core.formats.meshes import read_mesh
 from tests.engine.mesh_files import (
     BOX,
     check_told_in_one_line,

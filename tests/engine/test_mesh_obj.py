@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pe_core.mesh_io import Mesh, write_mesh
+from pe_core.formats.meshes import Mesh, write_mesh
 from tests.engine.mesh_files import BOX, HUGE, SQUARE, check_told_in_one_line, read
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pe_core.errors import InputError
-from pe_core.mesh_io import Mesh, read_mesh, write_mesh
+from pe_core.formats.meshes import Mesh, read_mesh, write_mesh
 from tests.engine.mesh_files import BOX, ZEROS
 
 

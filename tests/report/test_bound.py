@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.entropy import RTM3D, entropy_of, precision_of
+from pe_core.metric import RTM3D, entropy_of, precision_of
 from pe_report.bound import farthest_at, largest_area, least_entropy, least_unseen
 from pe_report.paper import ROW
 

@@ -49,7 +49,7 @@ def test_a_wrong_table_is_one_line_and_status_1(tmp_path):
 
 def test_without_matplotlib_the_line_says_what_to_install(tmp_path):
     code = (
-        "import sys; sys.modules['matplotlib'] = None; from pe_core.cli import main; "
+        "import sys; sys.modules['matplotlib'] = None; from pe_core.app.cli import main; "
         f"sys.exit(main(['fit', {str(TABLE)!r}, '-o', {str(tmp_path)!r}]))"
     )
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)

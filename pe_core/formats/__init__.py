@@ -1,0 +1,14 @@
+"""Files of other programs: meshes, labelled boxes, tables of AP."""
+
+from .ap_table import read_ap_table
+from .boxes import read_boxes, write_boxes
+from .meshes import Mesh, read_mesh, write_mesh
+
+__all__ = [
+    "Mesh",
+    "read_ap_table",
+    "read_boxes",
+    "read_mesh",
+    "write_boxes",
+    "write_mesh",
+]

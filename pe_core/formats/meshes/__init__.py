@@ -1,0 +1,93 @@
+"""Triangle meshes from and to files, by their suffix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from ...errors import InputError
+from ...text.files import read_bytes, write_bytes
+from .glb import read_glb
+from .mesh import Mesh, make_mesh
+from .npz import dump_npz, read_npz
+from .obj import dump_obj, read_obj
+from .ply import read_ply
+from .stl import read_stl
+
+_F = TypeVar("_F")
+
+__all__ = ["Mesh", "read_mesh", "write_mesh"]
+
+_READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
+    ".npz": read_npz,
+    ".obj": read_obj,
+    ".stl": read_stl,
+    ".ply": read_ply,
+    ".glb": read_glb,
+}
+_WRITERS: dict[str, Callable[[Path, Mesh], bytes]] = {".npz": dump_npz, ".obj": dump_obj}
+
+
+def read_mesh(path: str | Path) -> Mesh:
+    """Read a mesh from a .npz, .obj, .stl, .ply or .glb file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The suffix, in either case, says the format. Coordinates are taken to be metres in
+        the ground frame (x forward, y left, z up), except that glTF's axes are turned into
+        it: x forward = its +Z, y left = its +X, z up = its +Y.
+
+    Returns
+    -------
+    Mesh
+        Triangles (F, 3, 3) [m], F at least 1, those without area among them; parts in the
+        order the file names them.
+
+    Raises
+    ------
+    InputError
+        The file is missing, of no known suffix or not what its suffix says, cut short, has
+        an index out of range or a coordinate that is not finite, or has no triangles.
+    """
+    path = Path(path)
+    reader = _of_suffix(path, _READERS)
+    data = read_bytes(path)
+    # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
+    with np.errstate(all="ignore"):
+        return reader(path, data)
+
+
+def write_mesh(path: str | Path, mesh: Mesh) -> None:
+    """Write a mesh to a .npz or .obj file from which it reads back exactly.
+
+    The file is replaced in one step: it is never seen half written.
+
+    Parameters
+    ----------
+    path : str or Path
+        The suffix says the format; the folder must exist.
+    mesh : Mesh
+        Triangles (F, 3, 3) [m], parts (F,) and their names. Parts without triangles are
+        not written, and parts of one name are written as one.
+
+    Raises
+    ------
+    InputError
+        The suffix is another, the mesh is not one that could be read back, or the file
+        cannot be written.
+    """
+    path = Path(path)
+    writer = _of_suffix(path, _WRITERS)
+    sound = make_mesh(str(path), mesh.triangles, mesh.parts, mesh.part_names)
+    write_bytes(path, writer(path, sound))
+
+
+def _of_suffix(path: Path, table: dict[str, _F]) -> _F:
+    suffix = path.suffix.lower()
+    if suffix not in table:
+        raise InputError(str(path), "suffix", " ".join(table), suffix or "none")
+    return table[suffix]

@@ -1,0 +1,118 @@
+"""The mesh every reader returns, the checks they share, and the fan that cuts polygons."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """Triangles of one object, each belonging to a named part.
+
+    Attributes
+    ----------
+    triangles : (F, 3, 3) float64
+        Corner coordinates in metres, ground frame (x forward, y left, z up);
+        axis 1 is the corner, axis 2 the coordinate.
+    parts : (F,) int32
+        Index of each triangle's part in `part_names`.
+    part_names : tuple of str
+        Names of the parts; every part has a triangle and no name comes twice.
+    """
+
+    triangles: NDArray[np.float64]
+    parts: NDArray[np.int32]
+    part_names: tuple[str, ...]
+
+
+def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequence[str]) -> Mesh:
+    """Check what a reader found and tidy its parts.
+
+    Parameters
+    ----------
+    source : str
+        The file, as error messages should name it.
+    triangles : (F, 3, 3) array_like
+        Corner coordinates in metres, ground frame.
+    parts : (F,) array_like of int
+        Index of each triangle's part in `names`.
+    names : sequence of str
+        Part names; repeated names become one part, names without triangles go.
+
+    Raises
+    ------
+    InputError
+        There is no triangle, a shape is wrong, a coordinate is NaN or infinite,
+        or a part index is out of range.
+    """
+    corners = np.array(triangles, dtype=np.float64)
+    labels = np.asarray(parts)
+    if corners.size == 0:
+        raise InputError(source, "triangles", "at least one triangle", "none")
+    if corners.shape[1:] != (3, 3):
+        raise InputError(source, "triangles", "shape (F, 3, 3)", f"shape {corners.shape}")
+    _require_finite(source, corners)
+    _require_labels(source, labels, len(corners), len(names))
+    tidy, kept = _tidy_parts(labels, names)
+    return Mesh(corners, tidy, kept)
+
+
+def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Cut polygons, their corners laid end to end, into triangle fans.
+
+    Parameters
+    ----------
+    counts : (P,) int
+        Corners of each polygon; fewer than three give no triangle.
+
+    Returns
+    -------
+    corners : (T, 3) int64
+        Positions of each triangle's corners in the end-to-end list.
+    polygons : (T,) int64
+        The polygon each triangle came from.
+    """
+    sizes = counts.astype(np.int64)
+    triangles = np.maximum(sizes - 2, 0)
+    polygons = np.repeat(np.arange(len(sizes)), triangles)
+    step = np.arange(len(polygons)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
+    first = (np.cumsum(sizes) - sizes)[polygons]
+    return np.stack([first, first + step + 1, first + step + 2], axis=1), polygons
+
+
+def _require_finite(source: str, corners: NDArray[np.float64]) -> None:
+    bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
+    if bad.size:
+        row = int(bad[0])
+        found = str(corners[row].tolist())
+        raise InputError(source, f"triangles[{row}]", "finite coordinates", found)
+
+
+def _require_labels(source: str, labels: NDArray[Any], faces: int, names: int) -> None:
+    if labels.shape != (faces,):
+        raise InputError(source, "parts", f"shape ({faces},)", f"shape {labels.shape}")
+    if labels.dtype.kind not in "iu":
+        raise InputError(source, "parts", "whole numbers", f"dtype {labels.dtype}")
+    bad = np.flatnonzero((labels < 0) | (labels >= names))
+    if bad.size:
+        row = int(bad[0])
+        expected = f"an index into the {names} part names"
+        raise InputError(source, f"parts[{row}]", expected, str(labels[row]))
+
+
+def _tidy_parts(
+    labels: NDArray[Any], names: Sequence[str]
+) -> tuple[NDArray[np.int32], tuple[str, ...]]:
+    used = np.bincount(labels.astype(np.int64), minlength=len(names)) > 0
+    wanted = [name for name, has_triangles in zip(names, used, strict=True) if has_triangles]
+    kept = {name: new for new, name in enumerate(dict.fromkeys(wanted))}
+    # Unused names never get looked up, so any number will do for them.
+    renumber = np.array([kept.get(name, -1) for name in names], dtype=np.int32)
+    return renumber[labels], tuple(kept)

@@ -1,0 +1,150 @@
+"""Wavefront OBJ: a tolerant reader and an exact writer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import InputError
+from ...text.files import decode_text
+from .mesh import Mesh, fan, make_mesh
+
+
+@dataclass(slots=True)
+class _Scan:
+    """What the lines said: corners of all faces end to end, their vertices and lines."""
+
+    points: list[float] = field(default_factory=list)
+    point_lines: list[int] = field(default_factory=list)
+    corners: list[int] = field(default_factory=list)
+    counts: list[int] = field(default_factory=list)
+    labels: list[int] = field(default_factory=list)
+    face_lines: list[int] = field(default_factory=list)
+
+
+def read_obj(path: Path, data: bytes) -> Mesh:
+    """Read the faces of an OBJ file; coordinates are metres in the ground frame, as they are.
+
+    Parts are the `o` names, or the `g` names of a file that has no `o`; faces before the
+    first name belong to a part called by the file's stem. A name is the whole rest of its
+    line. Polygons are cut into fans, faces of two vertices ignored.
+
+    Raises
+    ------
+    InputError
+        Not text, a malformed `v` or `f` line, an index out of range or a coordinate not
+        finite (each with its line number), or no triangles.
+    """
+    source = str(path)
+    if b"\0" in data:
+        raise InputError(source, "file", "OBJ text", "binary data")
+    lines = _logical_lines(decode_text(data))
+    keyword = "o" if any(line.split(None, 1)[:1] == ["o"] for line in lines) else "g"
+    names = {path.stem: 0}
+    scan = _scan(source, lines, keyword, names)
+    _check(source, lines, scan)
+    points = np.array(scan.points, dtype=np.float64).reshape(-1, 3)
+    corners, faces = fan(np.array(scan.counts, dtype=np.int64))
+    triangles = points[np.array(scan.corners, dtype=np.int64)[corners]]
+    return make_mesh(source, triangles, np.array(scan.labels, dtype=np.int32)[faces], list(names))
+
+
+def dump_obj(path: Path, mesh: Mesh) -> bytes:
+    """The OBJ text: shared vertices, shortest exact floats, triangles in their order.
+
+    Raises
+    ------
+    InputError
+        A part name that an `o` line cannot hold.
+    """
+    for name in mesh.part_names:
+        if not _fits_a_line(name):
+            raise InputError(str(path), "part_names", "names that fit on one line", repr(name))
+    # Vertices are shared by bit pattern: as floats, 0.0 and -0.0 would become one.
+    index: dict[tuple[int, ...], int] = {}
+    corners = np.ascontiguousarray(mesh.triangles).view(np.int64).reshape(-1, 3).tolist()
+    order = [index.setdefault(tuple(corner), len(index) + 1) for corner in corners]
+    points = np.array(list(index), dtype=np.int64).view(np.float64).tolist()
+    lines = ["# metres, x forward, y left, z up"]
+    lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in points]
+    if list(dict.fromkeys(mesh.parts.tolist())) != list(range(len(mesh.part_names))):
+        lines += [f"o {name}" for name in mesh.part_names]  # keeps the order of the parts
+    last = -1
+    for face, part in enumerate(mesh.parts.tolist()):
+        if part != last:
+            lines.append(f"o {mesh.part_names[part]}")
+            last = part
+        lines.append("f {} {} {}".format(*order[3 * face : 3 * face + 3]))
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _logical_lines(text: str) -> list[str]:
+    """Lines with continuations joined; joined lines leave blanks, so numbers stay true."""
+    lines = text.split("\n")
+    if "\\" in text:
+        for i in range(len(lines) - 2, -1, -1):
+            # A comment may end with a Windows path; it must not swallow the next line.
+            if lines[i].endswith("\\") and not lines[i].lstrip().startswith("#"):
+                lines[i : i + 2] = [f"{lines[i][:-1]} {lines[i + 1]}", ""]
+    return lines
+
+
+def _scan(source: str, lines: list[str], keyword: str, names: dict[str, int]) -> _Scan:
+    scan = _Scan()
+    label = 0
+    for number, line in enumerate(lines, 1):
+        words = line.split()
+        kind = words[0] if words else ""
+        try:
+            if kind == "v":
+                x, y, z = map(float, words[1:4])
+                scan.points += (x, y, z)
+                scan.point_lines.append(number)
+            elif kind == "f":
+                _scan_face(scan, line)
+                scan.labels.append(label)
+                scan.face_lines.append(number)
+            elif kind == keyword:
+                name = line.strip()[1:].strip()
+                label = names.setdefault(name, len(names)) if name else 0
+        except ValueError as error:
+            expected = "v with three numbers" if kind == "v" else "f with vertex indices"
+            raise InputError(source, f"line {number}", expected, _quote(line)) from error
+    return scan
+
+
+def _scan_face(scan: _Scan, line: str) -> None:
+    words = line.partition("#")[0].split()
+    known = len(scan.points) // 3
+    for word in words[1:]:
+        i = int(word.partition("/")[0])
+        # Counted from 0; index 0 and those too far back come out negative.
+        scan.corners.append(i - 1 if i > 0 else known + i if i < 0 else -1)
+    scan.counts.append(len(words) - 1)
+
+
+def _check(source: str, lines: list[str], scan: _Scan) -> None:
+    total = len(scan.point_lines)
+    # Python's own min and max: an index can be too long for any NumPy integer.
+    if scan.corners and not 0 <= min(scan.corners) <= max(scan.corners) < total:
+        bad = next(k for k, i in enumerate(scan.corners) if not 0 <= i < total)
+        number = scan.face_lines[int(np.searchsorted(np.cumsum(scan.counts), bad, side="right"))]
+        expected = f"vertex indices within the {total} vertices"
+        raise InputError(source, f"line {number}", expected, _quote(lines[number - 1]))
+    wild = np.flatnonzero(~np.isfinite(np.array(scan.points, dtype=np.float64)))
+    if wild.size:
+        number = scan.point_lines[int(wild[0]) // 3]
+        raise InputError(source, f"line {number}", "finite numbers", _quote(lines[number - 1]))
+
+
+def _quote(line: str) -> str:
+    text = " ".join(line.split())
+    return repr(text if len(text) <= 60 else text[:57] + "...")
+
+
+def _fits_a_line(name: str) -> bool:
+    whole = name.encode("utf-8", "ignore").decode() == name  # no lone surrogates
+    plain = not set(name) & set("\0\r\n") and not name.endswith("\\")
+    return whole and plain and name != "" and name == name.strip()

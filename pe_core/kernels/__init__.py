@@ -1,1 +1,0 @@
-"""The fast paths. Each has a plain definition elsewhere that a test holds it to."""

@@ -1,0 +1,221 @@
+"""Pixel areas of the voxels of a run of x-planes.
+
+Where a column of voxels (along z) enters and leaves the picture follows from the four sides of the
+frustum. The voxels between are filled with the closed form of `camera_points`, in single precision;
+depth and the faces' distances are a term of x and one of y and z, which all planes share. Voxels on
+the picture's border, near the camera, or perhaps behind the vehicle are listed from such bounds as
+well, and handed to the exact functions, all of a run at once.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...metric.planes import SeenRows
+from ...scene.geometry import Pose, dot
+from ...scene.raycast import ranges
+from ...scene.space import PerceptionSpace
+from ...scene.vehicle import SeenMesh
+from .area import clipped_pixel_area
+from .model import Camera
+from .points import NEAR_SIDES, hidden
+from .shadow import ShadowMap
+
+Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Ints = NDArray[np.int64]
+Bound = tuple[Floats, float]
+"""A direction, and how far along it from the camera a voxel's centre has to be [m]."""
+
+MARGIN = 1e-6
+"""Voxels are taken this much larger, in sides, against rounding."""
+LEVEL = 1e-12
+"""Least slope along z of a side of the frustum, so that it can be divided by."""
+
+
+class Columns(NamedTuple):
+    """A run of voxels in each column, `first` to before `end`, (n, rows) each."""
+
+    first: Ints
+    end: Ints
+
+    def within(self, outer: Columns) -> Columns:
+        """Cut to the outer runs; an empty one is put at the outer one's end."""
+        first = np.clip(self.first, outer.first, outer.end)
+        end = np.clip(self.end, first, outer.end)
+        empty = first == end
+        return Columns(np.where(empty, outer.end, first), np.where(empty, outer.end, end))
+
+    def listed(self, nz: int) -> Ints:
+        """Numbers (V,) of all voxels of the runs, counted through planes, rows and heights."""
+        first, end = self.first.reshape(-1), self.end.reshape(-1)
+        some = np.flatnonzero(end > first)
+        counts = end[some] - first[some]
+        return np.repeat(some * nz + first[some], counts) + ranges(counts)
+
+
+class CameraPlanes:
+    """A mounted camera, ready to measure a space plane by plane.
+
+    Parameters
+    ----------
+    camera : Camera
+    pose : Pose
+    space : PerceptionSpace
+    seen : SeenMesh, optional
+        The vehicle from the camera's position.
+    """
+
+    def __init__(
+        self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: SeenMesh | None
+    ) -> None:
+        self._camera, self._pose, self._space, self._seen = camera, pose, space, seen
+        self._axes = [space.centers(k) for k in range(3)]
+        self._offsets = [w - pose.position[k] for k, w in enumerate(self._axes)]
+        self._forward = pose.ground_from_sensor[:, 0]
+        wide, high = (n / 2.0 / camera.focal_px for n in (camera.width, camera.height))
+        self._sides = _sides(pose, (-wide, wide), (-high, high))
+        _, y, z = self._offsets
+        self._depth = np.add.outer(self._forward[1] * y, self._forward[2] * z).astype(np.float32)
+        self._away = np.add.outer(self._away_from(y), self._away_from(z)).astype(np.float32)
+        below = np.tri(len(z) + 1, len(z), -1, dtype=np.int32)  # row k: 1 for heights below k
+        self._keep_below, self._keep_from = -below, below - 1  # masks: all bits, or none
+        self._shadow = None if seen is None else ShadowMap(camera, pose, seen.seen.triangles)
+
+    def areas(self, planes: slice) -> SeenRows:
+        """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""
+        rows = self._rows_in_view(planes)
+        near = NEAR_SIDES * self._space.interval
+        touched = self._columns(planes, rows, [(self._forward, 0.0), *self._at_sides(-1.0)])
+        plain = self._columns(planes, rows, [(self._forward, near), *self._at_sides(1.0)])
+        plain = plain.within(touched)
+        area = self._filled(planes, rows, plain)
+        nz = area.shape[2]
+        before, behind = Columns(touched.first, plain.first), Columns(plain.end, touched.end)
+        edge = np.concatenate([before.listed(nz), behind.listed(nz)])
+        self._settle_edges(area, edge, (planes.start, rows.start))
+        if self._shadow is not None and not self._shadow.empty:
+            sides = _sides(self._pose, *self._shadow.window)
+            shaded = self._columns(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
+            shaded_or_edge = np.concatenate([edge, shaded.listed(nz)])
+            self._settle_hidden(area, shaded_or_edge, (planes.start, rows.start))
+        return SeenRows(rows, area)
+
+    def _away_from(self, offset: Floats) -> Floats:
+        """Distance along an axis from the camera to the nearer face across it; 0 inside."""
+        return np.maximum(np.abs(offset) - self._space.interval / 2.0, 0.0)
+
+    def _at_sides(self, radii: float) -> list[Bound]:
+        """Bounds of voxels inside the frustum's sides by so many of their own radii."""
+        return [(n, radii * self._radius(n)) for n in self._sides]
+
+    def _radius(self, normal: Floats) -> float:
+        """How far a voxel reaches along a direction [m]."""
+        return (float(np.abs(normal).sum()) / 2.0 + MARGIN) * self._space.interval
+
+    def _rows_in_view(self, planes: slice) -> slice:
+        """Rows (y) that may touch the picture, on some of the planes and at some height."""
+        x, y, z = self._offsets[0][planes], self._offsets[1], self._offsets[2]
+        inside = np.ones(len(y), bool)
+        for n, bound in [(self._forward, 0.0), *self._at_sides(-1.0)]:
+            most = max(n[0] * x[0], n[0] * x[-1]) + max(n[2] * z[0], n[2] * z[-1])
+            inside &= n[1] * y > bound - most
+        return _span(inside)
+
+    def _columns(self, planes: slice, rows: slice, bounds: list[Bound]) -> Columns:
+        """Voxels that lie beyond all bounds."""
+        x, y = self._offsets[0][planes], self._offsets[1][rows]
+        nz, step = len(self._offsets[2]), self._space.interval
+        lowest = self._offsets[2][0] / step
+        low, high = np.zeros((len(x), len(y))), np.full((len(x), len(y)), float(nz))
+        for n, bound in bounds:
+            slope = n[2] if abs(n[2]) > LEVEL else LEVEL
+            scale = 1.0 / (slope * step)
+            here = (bound * scale - lowest) - (n[0] * scale) * x
+            crossing = np.add.outer(here, (-n[1] * scale) * y)  # height of the bound, in voxels
+            if slope > 0.0:
+                np.maximum(low, crossing, out=low)
+            else:
+                np.minimum(high, crossing, out=high)
+        first = np.minimum(np.ceil(low), nz).astype(np.int64)
+        end = np.clip(np.ceil(high), first, nz).astype(np.int64)
+        return Columns(first, end)
+
+    def _filled(self, planes: slice, rows: slice, plain: Columns) -> Singles:
+        """Areas of small flat faces in the runs, see `camera_points`; 0 elsewhere."""
+        depth, away = self._depth[rows], self._away[rows]
+        x = self._offsets[0][planes]
+        area = np.empty((len(x), *depth.shape), np.float32)
+        held = np.empty_like(depth)
+        for plane, x_depth, x_away, first, end in zip(
+            area, self._forward[0] * x, self._away_from(x), *plain, strict=True
+        ):
+            some = _span(first < end)
+            plane[: some.start] = 0.0
+            plane[some.stop :] = 0.0
+            self._flat(plane[some], held[some], (depth[some], x_depth), (away[some], x_away))
+            bits = plane[some].view(np.int32)
+            bits &= self._keep_from[first[some]]
+            bits &= self._keep_below[end[some]]
+        return area
+
+    def _flat(
+        self,
+        out: Singles,
+        cube: Singles,
+        depth: tuple[Singles, float],
+        away: tuple[Singles, float],
+    ) -> None:
+        """Area of small faces; `depth` and `away` in two terms, `cube` for the depth's cube."""
+        side = self._space.interval
+        np.add(depth[0], np.float32(depth[1]), out=out)
+        np.maximum(out, np.float32(NEAR_SIDES * side), out=out)  # nearer ones are not for this form
+        np.multiply(out, out, out=cube)
+        cube -= np.float32(side * side / 2.0)
+        cube *= out
+        np.add(away[0], np.float32(away[1] + 1.5 * side), out=out)
+        out *= np.float32((self._camera.focal_px * side) ** 2)
+        out /= cube
+
+    def _settle_edges(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
+        """Measure voxels on the picture's border, and near ones, exactly."""
+        centers = self._centers(index, area.shape, first)
+        exact = clipped_pixel_area(self._camera, self._pose, centers, self._space.interval)
+        area.reshape(-1)[index] = exact
+
+    def _settle_hidden(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
+        """Set the areas of those voxels to 0 that the vehicle does hide."""
+        assert self._seen is not None and self._shadow is not None
+        index = index[area.reshape(-1)[index] > 0.0]
+        offsets = self._centers(index, area.shape, first) - np.asarray(self._pose.position)
+        views = (dot(offsets, axis) for axis in self._pose.ground_from_sensor.T)
+        perhaps = np.flatnonzero(self._shadow.may_hide(*views))
+        index, offsets = index[perhaps], offsets[perhaps]
+        area.reshape(-1)[index[hidden(self._seen, offsets)]] = 0.0
+
+    def _centers(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> Floats:
+        """Centres (V, 3) of voxels numbered from a plane and a row on."""
+        column, k = np.divmod(index, shape[2])
+        i, j = np.divmod(column, shape[1])
+        x, y, z = self._axes
+        return np.stack([x[first[0] + i], y[first[1] + j], z[k]], axis=1)
+
+
+def _sides(pose: Pose, wide: tuple[float, float], high: tuple[float, float]) -> list[Floats]:
+    """Inward unit normals, ground axes, of the pyramid of these slopes to the left and up."""
+    forward, left, up = pose.ground_from_sensor.T
+    normals = [
+        sign * (axis - slope * forward)
+        for axis, slopes in ((left, wide), (up, high))
+        for sign, slope in zip((1.0, -1.0), slopes, strict=True)
+    ]
+    return [n / np.sqrt(dot(n, n)) for n in normals]
+
+
+def _span(mask: NDArray[np.bool_]) -> slice:
+    """From the first to the last that is true."""
+    seen = np.flatnonzero(mask)
+    return slice(int(seen[0]), int(seen[-1]) + 1) if len(seen) else slice(0, 0)

@@ -1,0 +1,69 @@
+"""Pixel areas for many voxels: a closed form where it is good, the exact area where it is not.
+
+Seen from afar a face is a small flat patch: its image has the area ``f^2 |n . r| A / depth^3`` with
+n its normal, r the way to its centre and A its area. Over the faces of a cube of side s at r that
+makes ``f^2 s^2 (a + 3 s / 2) / (depth^3 - depth s^2 / 2)``, where a is the sum over the axes of
+``max(|r_k| - s / 2, 0)``: right to first order in s / depth, and to second a mean over directions.
+It misses the clipping at the image's border; voxels there, or nearer than NEAR_SIDES sides, get the
+exact area instead.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...scene.geometry import Pose, dot
+from ...scene.vehicle import SeenMesh
+from .area import clipped_pixel_area, frustum_distance, in_view
+from .model import Camera
+
+Floats = NDArray[np.float64]
+
+NEAR_SIDES = 15.0
+"""Depth in voxel sides below which the exact area is taken: the closed form is then 0.3 % off at
+most."""
+
+
+def pixel_areas(
+    camera: Camera, pose: Pose, centers: Floats, side: float, seen: SeenMesh | None
+) -> Floats:
+    """(V,) pixels covered by each voxel; 0 where the vehicle `seen` hides its centre.
+
+    Parameters
+    ----------
+    camera : Camera
+    pose : Pose
+    centers : (V, 3) float
+        Ground frame [m].
+    side : float
+        Side of a voxel [m].
+    seen : SeenMesh, optional
+        The vehicle from the camera's position.
+    """
+    offsets = centers - np.asarray(pose.position)
+    depth, left, up = (dot(offsets, axis) for axis in pose.ground_from_sensor.T)
+    area = np.zeros(len(centers))
+    index = np.flatnonzero(in_view(camera, depth, left, up, side))
+    depth, left, up = depth[index], left[index], up[index]
+    plain = depth > NEAR_SIDES * side
+    plain &= frustum_distance(camera, depth, left, up) > side * np.sqrt(3.0) / 2.0
+    far, near = index[plain], index[~plain]
+    area[far] = _flat_area(camera, offsets[far], depth[plain], side)
+    area[near] = clipped_pixel_area(camera, pose, centers[near], side)
+    if seen is not None:
+        visible = np.flatnonzero(area)
+        area[visible[hidden(seen, offsets[visible])]] = 0.0
+    return area
+
+
+def _flat_area(camera: Camera, offsets: Floats, depth: Floats, side: float) -> Floats:
+    away = [np.maximum(np.abs(offsets[:, k]) - side / 2.0, 0.0) for k in range(3)]
+    cube = (depth * depth - side * side / 2.0) * depth
+    return (camera.focal_px * side) ** 2 * (away[0] + away[1] + away[2] + 1.5 * side) / cube
+
+
+def hidden(seen: SeenMesh, offsets: Floats) -> NDArray[np.bool_]:
+    """Whether the vehicle stands before points (V, 3) seen from the camera, ground axes [m]."""
+    distance = np.sqrt(dot(offsets, offsets))
+    return seen.first_hit(offsets / distance[:, None]).distance < distance

@@ -1,0 +1,62 @@
+"""Which parts of a camera's picture the vehicle may hide: a coarse map, never too small."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...scene.geometry import Pose, rotate
+from ...scene.raycast import CELLS, ranges, windows
+from .model import Camera
+
+Floats = NDArray[np.float64]
+
+BORDER = 1.05
+"""The map reaches this far beyond the picture's edges, for voxels that only touch the picture."""
+
+
+class ShadowMap:
+    """Bins of a picture, CELLS by CELLS, that a triangle may touch.
+
+    Parameters
+    ----------
+    camera : Camera
+    pose : Pose
+    triangles : (F, 3, 3) float
+        Corners relative to the camera, ground axes [m].
+    """
+
+    def __init__(self, camera: Camera, pose: Pose, triangles: Floats) -> None:
+        self._wide = BORDER * camera.width / 2.0 / camera.focal_px
+        self._high = BORDER * camera.height / 2.0 / camera.focal_px
+        corners = rotate(pose.ground_from_sensor.T, triangles).transpose(2, 1, 0)
+        depth, left, up = np.ascontiguousarray(corners)
+        _, (i0, i1), (j0, j1) = windows(depth, left / self._wide, up / self._high)
+        high = j1 - j0 + 1
+        n = (i1 - i0 + 1) * high
+        step, rows = ranges(n), np.repeat(high, n)
+        row = step // rows
+        self._hit = np.zeros(CELLS * CELLS, bool)
+        bins = (np.repeat(i0, n) + row) * CELLS + np.repeat(j0, n) + (step - row * rows)
+        self._hit[bins] = True
+        self.empty = not len(bins)
+
+    @property
+    def window(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Least and greatest left / depth, and up / depth, of the bins that may be touched."""
+        hit = self._hit.reshape(CELLS, CELLS)
+        ends = (np.flatnonzero(hit.any(axis=axis))[[0, -1]] for axis in (1, 0))
+        (i0, i1), (j0, j1) = ((a * 2.0 / CELLS - 1.0, (b + 1) * 2.0 / CELLS - 1.0) for a, b in ends)
+        return (i0 * self._wide, i1 * self._wide), (j0 * self._high, j1 * self._high)
+
+    def may_hide(self, depth: Floats, left: Floats, up: Floats) -> NDArray[np.bool_]:
+        """Whether the vehicle may stand in the way of points in front of the camera, each (V,)."""
+        u = left / (depth * self._wide)
+        v = up / (depth * self._high)
+        bins = self._bin(u) * CELLS + self._bin(v)
+        outside = np.maximum(np.abs(u), np.abs(v)) > 1.0
+        return self._hit[bins] | outside
+
+    @staticmethod
+    def _bin(u: Floats) -> NDArray[np.int32]:
+        return np.clip((u + 1.0) * (CELLS / 2), 0, CELLS - 1).astype(np.int32)

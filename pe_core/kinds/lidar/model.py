@@ -1,0 +1,156 @@
+"""A LiDAR's intrinsics: the beams of one revolution."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...errors import InputError
+from ...scene.sensors import SensorModel
+
+Floats = NDArray[np.float64]
+
+FULL_CIRCLE = (-math.pi, math.pi)
+
+
+@dataclass(frozen=True, eq=False)
+class Lidar(SensorModel):
+    """Intrinsics of a LiDAR: the beams of one revolution (one frame).
+
+    A beam is a channel's elevation at an azimuth ``a_j = j * step + offset of the channel`` with
+    ``step = 360 deg / azimuth_count``; beams outside `horizontal_fov` do not exist.
+
+    Parameters
+    ----------
+    name : str
+        Catalogue name, or the user's own.
+    elevations : (C,) float
+        Elevation of each channel above the horizon [rad].
+    azimuth_count : int
+        Number of azimuth steps in a full circle.
+    max_range : float
+        Farthest distance at which a beam may enter a voxel [m].
+    azimuth_offsets : (C,) float, optional
+        Added to the azimuth of each channel, counter-clockwise seen from above [rad].
+    horizontal_fov : (low, high) float
+        Azimuths the sensor scans, before the offsets [rad].
+
+    Raises
+    ------
+    InputError
+        When there are no beams, or an angle or the range is not a finite number in its range.
+    """
+
+    kind: ClassVar[str] = "lidar"
+    fuses_early: ClassVar[bool] = True
+
+    name: str
+    elevations: Floats
+    azimuth_count: int
+    max_range: float
+    azimuth_offsets: Floats = None  # type: ignore[assignment]  # zeros
+    horizontal_fov: tuple[float, float] = FULL_CIRCLE
+
+    def __post_init__(self) -> None:
+        elevations = _angles(self.name, "elevations", self.elevations, math.pi / 2)
+        offsets = (
+            np.zeros_like(elevations)
+            if self.azimuth_offsets is None
+            else _angles(self.name, "azimuth_offsets", self.azimuth_offsets, math.pi)
+        )
+        if offsets.shape != elevations.shape:
+            raise InputError(
+                self.name, "azimuth_offsets", f"{len(elevations)}, one a channel", len(offsets)
+            )
+        if int(self.azimuth_count) != self.azimuth_count or self.azimuth_count < 1:
+            raise InputError(self.name, "azimuth_count", "a whole number >= 1", self.azimuth_count)
+        if not (math.isfinite(self.max_range) and self.max_range > 0):
+            raise InputError(self.name, "max_range", "a positive number of metres", self.max_range)
+        object.__setattr__(self, "elevations", elevations)
+        object.__setattr__(self, "azimuth_offsets", offsets)
+        if not len(self.azimuth_steps):
+            raise InputError(self.name, "horizontal_fov", "room for a beam", self.horizontal_fov)
+
+    @classmethod
+    def from_directions(cls, name: str, directions: ArrayLike, max_range: float) -> Lidar:
+        """Return a LiDAR of arbitrary beams (a rosette, a raster): every beam is a channel.
+
+        Parameters
+        ----------
+        name : str
+        directions : (B, 3) float
+            Directions of a frame's beams in the sensor frame, of any length but zero.
+        max_range : float
+            [m]
+
+        Raises
+        ------
+        InputError
+            When the directions are not (B, 3) finite numbers, or one has no length.
+        """
+        beams = np.asarray(directions, dtype=float)
+        if beams.ndim != 2 or beams.shape[1:] != (3,) or not len(beams):
+            raise InputError(name, "directions", "(B, 3) numbers, B > 0", beams.shape)
+        bad = ~(np.isfinite(beams).all(axis=1) & (np.abs(beams).max(axis=1) > 0.0))
+        if bad.any():
+            found = f"beam {int(np.flatnonzero(bad)[0])}: {beams[bad][0].tolist()}"
+            raise InputError(name, "directions", "finite vectors that point somewhere", found)
+        elevations = [math.atan2(z, math.hypot(x, y)) for x, y, z in beams.tolist()]
+        azimuths = [math.atan2(y, x) for x, y, _ in beams.tolist()]
+        return cls(name, np.array(elevations), 1, max_range, np.array(azimuths))
+
+    @property
+    def azimuth_step(self) -> float:
+        """Angle between two azimuths of a channel [rad]."""
+        return 2.0 * math.pi / self.azimuth_count
+
+    @cached_property
+    def azimuth_steps(self) -> NDArray[np.int64]:
+        """(A,) whole numbers j of the azimuths ``j * step`` that exist, ascending."""
+        low, high = self.horizontal_fov
+        if high - low >= 2.0 * math.pi - 1e-9:
+            return np.arange(self.azimuth_count)
+        margin = 1e-9  # a bound given in degrees may miss its own azimuth by a rounding
+        first = math.ceil(low / self.azimuth_step - margin)
+        return np.arange(first, math.floor(high / self.azimuth_step + margin) + 1)
+
+    @property
+    def beam_count(self) -> int:
+        """Number of beams B = C * A of a frame."""
+        return len(self.elevations) * len(self.azimuth_steps)
+
+    @cached_property
+    def directions(self) -> Floats:
+        """(B, 3) unit directions in the sensor frame, channel by channel (eq. 1).
+
+        Beam ``c * A + j`` is channel c at the j-th azimuth. Built from scalar sines: NumPy's
+        vectorised ones differ in the last bit between builds.
+        """
+        steps = self.azimuth_steps
+        rows = []
+        circles: dict[float, Floats] = {}
+        for elevation, offset in zip(self.elevations, self.azimuth_offsets, strict=True):
+            if offset not in circles:
+                angles = [j * self.azimuth_step + offset for j in steps.tolist()]
+                circles[offset] = np.array([(math.cos(a), math.sin(a)) for a in angles])
+            horizontal = math.cos(elevation) * circles[offset]
+            up = np.full((len(steps), 1), math.sin(elevation))
+            rows.append(np.hstack([horizontal, up]))
+        return np.concatenate(rows)
+
+
+def _angles(name: str, key: str, values: ArrayLike, limit: float) -> Floats:
+    """Return (C,) angles in [-limit, limit], or raise `InputError`."""
+    angles = np.atleast_1d(np.asarray(values, dtype=float))
+    if angles.ndim != 1 or not len(angles):
+        raise InputError(name, key, "at least one angle in a row", f"shape {angles.shape}")
+    bad = ~(np.abs(angles) <= limit)  # written so that NaN is bad
+    if bad.any():
+        found = f"{math.degrees(angles[bad][0]):g} (channel {int(np.flatnonzero(bad)[0])})"
+        raise InputError(name, key, f"angles within +-{math.degrees(limit):g} degrees", found)
+    return angles

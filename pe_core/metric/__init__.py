@@ -1,0 +1,42 @@
+"""Equations 4 to 9: from a measurement to perception entropy."""
+
+from .entropy import (
+    AP_MAX,
+    AP_MIN,
+    BLIND_PRECISION,
+    H_BLIND,
+    POINTPILLARS,
+    RTM3D,
+    ApCurve,
+    PerceptionModel,
+    average_precision,
+    entropy_of,
+    perception_entropy,
+    precision_of,
+    sigma_of,
+)
+from .fit import SATURATION, ApTable, CurveFit, fit_ap_curve, study_snippet
+from .fusion import early_fusion, late_fusion
+
+__all__ = [
+    "AP_MAX",
+    "AP_MIN",
+    "BLIND_PRECISION",
+    "H_BLIND",
+    "POINTPILLARS",
+    "RTM3D",
+    "SATURATION",
+    "ApCurve",
+    "ApTable",
+    "CurveFit",
+    "PerceptionModel",
+    "average_precision",
+    "early_fusion",
+    "entropy_of",
+    "fit_ap_curve",
+    "late_fusion",
+    "perception_entropy",
+    "precision_of",
+    "sigma_of",
+    "study_snippet",
+]

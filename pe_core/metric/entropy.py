@@ -1,0 +1,110 @@
+"""Equations 4 to 9: from a measurement to perception entropy. One function an equation.
+
+Everything is element-wise over arrays of any shape and returns float64. Equation numbers are those
+of the design notes in docs/metric.md, which names the paper's beside each.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+
+Floats = NDArray[np.float64]
+
+AP_MIN, AP_MAX = 0.001, 0.999
+"""The paper's clamp of AP "for numerical stability"."""
+GAUSSIAN_2D = 1.0 + math.log(2.0 * math.pi)
+BLIND_PRECISION = (1.0 / AP_MIN - 1.0) ** -2
+"""1 / sigma^2 of a sensor that sees nothing: ``f`` of eq. 7."""
+
+
+@dataclass(frozen=True, slots=True)
+class ApCurve:
+    """AP = a ln m + b of one perception algorithm."""
+
+    a: float
+    b: float
+
+    def __post_init__(self) -> None:
+        for name in ("a", "b"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
+                raise InputError("AP curve", name, "a number", repr(value))
+            if not math.isfinite(value):
+                raise InputError("AP curve", name, "a finite number", value)
+        if self.a <= 0:
+            raise InputError("AP curve", "a", "a positive slope", self.a)
+
+    @property
+    def saturation(self) -> float:
+        """The measurement from which on AP is clipped at its maximum."""
+        exponent = (AP_MAX - self.b) / self.a
+        return math.exp(exponent) if exponent < 700.0 else math.inf
+
+
+POINTPILLARS = ApCurve(0.152, 0.659)
+"""LiDAR, PointPillars on KITTI moderate (Ma, Liu and Li, ICRA 2021)."""
+RTM3D = ApCurve(0.055, 0.155)
+"""Camera, RTM3D on KITTI moderate (same source)."""
+
+
+@dataclass(frozen=True, slots=True)
+class PerceptionModel:
+    """What a measurement is worth: the AP curves and the rule for blind sensors in late fusion.
+
+    Parameters
+    ----------
+    lidar, camera : ApCurve
+    blind : {"floor", "literal"}
+        "floor": a sensor that sees nothing changes nothing. "literal": eq. 7 as printed.
+    """
+
+    lidar: ApCurve = field(default=POINTPILLARS)
+    camera: ApCurve = field(default=RTM3D)
+    blind: str = "floor"
+
+    def __post_init__(self) -> None:
+        if self.blind not in ("floor", "literal"):
+            raise InputError("fusion", "blind", '"floor" or "literal"', repr(self.blind))
+
+    def curve(self, kind: str) -> ApCurve:
+        """Return the AP curve for ``"lidar"`` or ``"camera"``."""
+        return self.lidar if kind == "lidar" else self.camera
+
+
+def average_precision(m: ArrayLike, curve: ApCurve) -> Floats:
+    """AP = clip(a ln m + b, 0.001, 0.999), eq. 4; m = 0 gives 0.001."""
+    measured = np.asarray(m, dtype=float)
+    safe = np.where(measured > 0.0, measured, 1.0)
+    ap = np.where(measured > 0.0, curve.a * np.log(safe) + curve.b, AP_MIN)
+    return np.clip(ap, AP_MIN, AP_MAX)
+
+
+def sigma_of(ap: ArrayLike) -> Floats:
+    """sigma = 1 / AP - 1, eq. 5."""
+    return 1.0 / np.asarray(ap, dtype=float) - 1.0
+
+
+def precision_of(m: ArrayLike, curve: ApCurve) -> Floats:
+    """1 / sigma^2 of a measurement, eqs. 4 and 5."""
+    return sigma_of(average_precision(m, curve)) ** -2
+
+
+def entropy_of(precision: ArrayLike) -> Floats:
+    """H = 2 ln sigma + 1 + ln(2 pi), eq. 8, from 1 / sigma^2 [nats]."""
+    return GAUSSIAN_2D - np.log(np.asarray(precision, dtype=float))
+
+
+def perception_entropy(entropies: ArrayLike, weights: ArrayLike) -> float:
+    """PE = sum p H / sum p, eq. 9 [nats]. Lower is better."""
+    w = np.asarray(weights, dtype=float)
+    return float(np.sum(w * np.asarray(entropies, dtype=float)) / np.sum(w))
+
+
+H_BLIND = float(entropy_of(BLIND_PRECISION))
+"""Entropy of a voxel nobody sees: 16.651."""

@@ -1,0 +1,16 @@
+"""The prior p_S(s): how likely a voxel belongs to an object."""
+
+from .boxes import Boxes, BoxReport
+from .classes import HIGHWAY_CLASSES, ROAD_CLASSES, ObjectClass
+from .prior import ClassDensity, Focus, Prior
+
+__all__ = [
+    "HIGHWAY_CLASSES",
+    "ROAD_CLASSES",
+    "BoxReport",
+    "Boxes",
+    "ClassDensity",
+    "Focus",
+    "ObjectClass",
+    "Prior",
+]

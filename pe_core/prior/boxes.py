@@ -1,0 +1,205 @@
+"""Labelled boxes, and what became of them."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+
+Floats = NDArray[np.float64]
+
+KNOWN_CLASSES = ("car", "pedestrian", "cyclist", "truck", "cone")
+"""The paper's classes, in the order they stand in a prior; others follow by the alphabet."""
+COLUMNS = ("x", "y", "z", "length", "width", "height", "yaw")
+SIZES = ("length", "width", "height")
+MAX_M = 1e9
+"""A number beyond this is no length of anything; arithmetic on it is safe up to here."""
+YAW_DECIMALS = 9
+"""Yaws are rounded to what a file holds, in degrees, so that a copy is the same to the bit."""
+OUTSIDE = "outside the space"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Boxes:
+    """Labelled boxes in the ground frame; equal when they hold the same boxes.
+
+    Parameters
+    ----------
+    names : (N,) str
+        Class of each box.
+    x, y, z : (N,) float
+        Centres [m]; z too is the centre, half a height above the bottom.
+    length, width, height : (N,) float
+        Sizes [m]; the length lies along the heading.
+    yaw : (N,) float
+        Heading, counter-clockwise from x seen from above [rad].
+    file : str, optional
+        The file they came from, as it was named.
+    origin : (x, y, z) float, optional
+        The labels' own origin in the ground frame, if it was named.
+    left_out : sequence of (reason, count)
+        What the file holds besides.
+
+    Raises
+    ------
+    InputError
+        When columns differ in length, a number is not finite, a size is not positive, or a name is
+        empty or cannot be printed.
+    """
+
+    names: NDArray[np.str_]
+    x: Floats
+    y: Floats
+    z: Floats
+    length: Floats
+    width: Floats
+    height: Floats
+    yaw: Floats
+    file: str | None = None
+    origin: tuple[float, float, float] | None = None
+    left_out: tuple[tuple[str, int], ...] = ()
+    digest: str = field(init=False, repr=False, default="")
+
+    def __post_init__(self) -> None:
+        names = np.array(self.names, dtype=np.str_).reshape(-1)
+        _check_names(names)
+        object.__setattr__(self, "names", _frozen(names))
+        for column in COLUMNS:
+            values = _column(column, getattr(self, column), len(names))
+            object.__setattr__(self, column, _frozen(values))
+        object.__setattr__(self, "yaw", _frozen(_as_in_a_file(self.yaw)))
+        object.__setattr__(self, "digest", self._digest())
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Boxes) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    @classmethod
+    def of(cls, table: Any) -> Boxes:
+        """Return the boxes of a table in memory, yaw in radians.
+
+        `table` is a mapping or a structured array with the columns class, x, y, z, length, width,
+        height, yaw, or a sequence of such rows.
+        """
+        if isinstance(table, np.ndarray) and table.dtype.names:
+            table = {name: table[name] for name in table.dtype.names}
+        if not isinstance(table, Mapping):
+            table = _columns_of(table)
+        for name in ("class", *COLUMNS):
+            if name not in table:
+                raise InputError("boxes", name, "a column of that name", "none")
+        return cls(table["class"], *(table[c] for c in COLUMNS))
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Names of the classes: the paper's in its order, then others by the alphabet."""
+        present = set(self.names.tolist())
+        return (*(c for c in KNOWN_CLASSES if c in present), *sorted(present - {*KNOWN_CLASSES}))
+
+    @property
+    def source(self) -> str:
+        """What messages call them."""
+        return self.file or "boxes"
+
+    def _digest(self) -> str:
+        """SHA-256 of all boxes."""
+        seen = hashlib.sha256("\n".join(self.names.tolist()).encode("utf-8", "surrogatepass"))
+        for column in COLUMNS:
+            seen.update(getattr(self, column).tobytes())
+        return seen.hexdigest()
+
+
+@dataclass(frozen=True, slots=True)
+class BoxReport:
+    """How many boxes a prior is made of, and why others are not.
+
+    `left_out` holds (reason, count); ``str()`` of the report is one line.
+    """
+
+    source: str
+    taken: int
+    left_out: tuple[tuple[str, int], ...] = ()
+
+    def __str__(self) -> str:
+        line = f"{self.source}: {self.taken:,} {_boxes(self.taken)} taken"
+        total = sum(count for _, count in self.left_out)
+        if not total:
+            return line
+        reasons = ", ".join(f"{count:,} {reason}" for reason, count in self.left_out)
+        return f"{line}, {total:,} left out ({reasons})"
+
+
+def _boxes(count: int) -> str:
+    return "box" if count == 1 else "boxes"
+
+
+def _columns_of(rows: Any) -> dict[str, Sequence[Any]]:
+    """Columns of a sequence of rows."""
+    names = ("class", *COLUMNS)
+    if not isinstance(rows, Sequence) or isinstance(rows, (str, bytes)):
+        raise InputError(
+            "boxes", "table", "columns or rows (read_boxes reads a file)", type(rows).__name__
+        )
+    for i, row in enumerate(rows):
+        if not isinstance(row, Sequence) or isinstance(row, str) or len(row) != len(names):
+            raise InputError("boxes", f"box {i}", ", ".join(names), repr(row))
+    return {name: [row[k] for row in rows] for k, name in enumerate(names)}
+
+
+def _check_names(names: NDArray[np.str_]) -> None:
+    for name in set(names.tolist()):
+        if not name_is_fit(name):
+            raise InputError("boxes", "class", "a name in printable letters", repr(name))
+
+
+def name_is_fit(name: str) -> bool:
+    """Whether a class may be called that: a line of a file holds it and gives it back alike."""
+    return bool(name) and name.isprintable() and name == name.strip()
+
+
+def _column(name: str, values: ArrayLike, count: int) -> Floats:
+    """Return one column as finite floats of its own, or complain about its first bad box."""
+    try:
+        column = np.array(values, dtype=np.float64).reshape(-1) + 0.0  # no negative zeros
+    except (TypeError, ValueError):
+        raise InputError("boxes", name, "numbers", "something else") from None
+    if len(column) != count:
+        raise InputError("boxes", name, f"{count} numbers, one a box", len(column))
+    wrong = ~(np.abs(column) <= MAX_M)
+    expected = "a finite number"
+    if name in SIZES:
+        wrong |= ~(column > 0.0)
+        expected = "a length above 0 m"
+    if wrong.any():
+        first = int(np.flatnonzero(wrong)[0])
+        raise InputError("boxes", f"box {first}: {name}", expected, column[first])
+    return column
+
+
+def _as_in_a_file(yaw: Floats) -> Floats:
+    """Return yaws as they come back from degrees in a file, from -180 to 180 degrees."""
+    degrees = yaw * (180.0 / math.pi)
+    degrees = degrees - 360.0 * np.rint(degrees / 360.0)
+    return (np.round(degrees, YAW_DECIMALS) + 0.0) * (math.pi / 180.0)
+
+
+def degrees_of(yaw: Floats) -> Floats:
+    """Degrees as a file holds them."""
+    return np.round(yaw * (180.0 / math.pi), YAW_DECIMALS)
+
+
+def _frozen(array: Any) -> Any:
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,126 @@
+"""A mounted sensor, and the rig that several form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+from ..errors import InputError
+from .geometry import Pose
+
+
+class SensorModel:
+    """Intrinsics of a sensor: the base of every kind's model class.
+
+    `kind` is the name of the kind, as studies and the catalogue have it. `fuses_early` says whether
+    its sensors share one fusion group unless told otherwise, `sees_through_glass` whether the
+    vehicle's glass stops it.
+    """
+
+    kind: ClassVar[str]
+    fuses_early: ClassVar[bool] = False
+    sees_through_glass: ClassVar[bool] = False
+    name: str
+
+
+@dataclass(frozen=True, eq=False)
+class Sensor:
+    """A sensor on the vehicle: intrinsics, extrinsics and the fusion group it belongs to.
+
+    Parameters
+    ----------
+    name : str
+        Unique in its rig.
+    model : SensorModel
+        A `Lidar`, a `Camera`, or the model of another kind.
+    pose : Pose
+    fusion : str, optional
+        Measurements inside one group are summed (early fusion, eq. 6). LiDARs share the group
+        "lidar" unless told otherwise; a camera stands alone.
+
+    Raises
+    ------
+    InputError
+        When the model is none.
+    """
+
+    name: str
+    model: SensorModel
+    pose: Pose = field(default_factory=lambda: Pose((0.0, 0.0, 0.0)))
+    fusion: str | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.model, SensorModel):
+            found = type(self.model).__name__
+            raise InputError(f"sensor {self.name!r}", "model", "the model of a sensor", found)
+
+    @property
+    def kind(self) -> str:
+        """Name of the kind: ``"lidar"``, ``"camera"``."""
+        return self.model.kind
+
+    @property
+    def group(self) -> str:
+        """Name of the early-fusion group."""
+        alone = f"{self.kind} {self.name}"
+        return self.fusion or (self.kind if self.model.fuses_early else alone)
+
+    def moved(self, pose: Pose) -> Sensor:
+        """Return the same sensor at another pose."""
+        return replace(self, pose=pose)
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """The sensors mounted on one vehicle.
+
+    Parameters
+    ----------
+    sensors : sequence of Sensor
+
+    Raises
+    ------
+    InputError
+        When there is no sensor, two share a name, or a fusion group mixes kinds.
+    """
+
+    sensors: Sequence[Sensor]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sensors", tuple(self.sensors))
+        if not self.sensors:
+            raise InputError("rig", "sensors", "at least one sensor", "none")
+        names = [s.name for s in self.sensors]
+        twice = sorted({n for n in names if names.count(n) > 1})
+        if twice:
+            raise InputError("rig", "sensor name", "a name used once", repr(twice[0]))
+        for group, members in self.groups.items():
+            if len({s.kind for s in members}) > 1:
+                raise InputError("rig", f"fusion group {group!r}", "one kind of sensor", "two")
+
+    def __iter__(self) -> Iterator[Sensor]:
+        return iter(self.sensors)
+
+    def __len__(self) -> int:
+        return len(self.sensors)
+
+    def __getitem__(self, name: str) -> Sensor:
+        """Return the sensor of that name."""
+        for sensor in self.sensors:
+            if sensor.name == name:
+                return sensor
+        raise KeyError(name)
+
+    @property
+    def groups(self) -> dict[str, list[Sensor]]:
+        """Sensors by early-fusion group, in the rig's order."""
+        groups: dict[str, list[Sensor]] = {}
+        for sensor in self.sensors:
+            groups.setdefault(sensor.group, []).append(sensor)
+        return groups
+
+    def with_poses(self, poses: Sequence[Pose]) -> Rig:
+        """Return the rig with new poses, one a sensor; a sensor that did not move stays itself."""
+        pairs = zip(self.sensors, poses, strict=True)
+        return Rig([s if s.pose == pose else s.moved(pose) for s, pose in pairs])

@@ -1,0 +1,15 @@
+"""Scores of a rig: on all voxels, or on a sample of them."""
+
+from .evaluator import Evaluator
+from .sampling import VoxelSample, draw
+from .score import GroundMap, PartScore, Score, SensorScore
+
+__all__ = [
+    "Evaluator",
+    "GroundMap",
+    "PartScore",
+    "Score",
+    "SensorScore",
+    "VoxelSample",
+    "draw",
+]

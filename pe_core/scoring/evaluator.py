@@ -1,0 +1,106 @@
+"""The Evaluator: one problem, made ready to score many rigs."""
+
+from __future__ import annotations
+
+import math
+
+from ..errors import InputError
+from ..metric.entropy import PerceptionModel
+from ..metric.fusion import Fusion
+from ..prior.prior import Prior
+from ..scene.sensors import Rig
+from ..scene.space import PerceptionSpace
+from ..scene.vehicle import Vehicle
+from .gridded import GridScorer
+from .sampled import SampledScorer
+from .sampling import CENTERED
+from .score import Score
+
+
+class Evaluator:
+    """Scores rigs in one space, under one prior, on one vehicle.
+
+    Parameters
+    ----------
+    space : PerceptionSpace
+    prior : Prior
+    vehicle : Vehicle, optional
+        None: nothing hides anything, and no voxel is excluded.
+    samples : int, optional
+        Score on about this many voxels drawn from the prior instead of all of them. The sample is
+        fixed: two rigs are compared on the same voxels.
+    shift : (3,) float
+        Three numbers in [0, 1) that scramble the sample's sequence: others give another sample as
+        good.
+    model : PerceptionModel, optional
+        AP curves and fusion rule; the paper's by default.
+    workers : int, optional
+        Threads for a grid score; all processors by default. The result does not depend on it.
+
+    Raises
+    ------
+    InputError
+        When the prior has no weight in the space outside the vehicle, or `samples` is too small.
+    """
+
+    def __init__(
+        self,
+        space: PerceptionSpace,
+        prior: Prior,
+        vehicle: Vehicle | None = None,
+        *,
+        samples: int | None = None,
+        shift: tuple[float, float, float] = CENTERED,
+        model: PerceptionModel | None = None,
+        workers: int | None = None,
+    ) -> None:
+        self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
+        densities, fusion = prior.densities(space), Fusion(model or PerceptionModel())
+        self._scorer: GridScorer | SampledScorer
+        if samples is None:
+            self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
+        else:
+            self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
+
+    def score(self, rig: Rig, *, draft: bool = False) -> Score:
+        """Score a rig in full: entropy, coverage, by class, by sensor, ground map.
+
+        Parameters
+        ----------
+        rig : Rig
+        draft : bool
+            While a sensor is being moved: which LiDAR beams the vehicle stops is read from a map of
+            its top surface, where the sensor stands above it, instead of cast. `Score.draft` says
+            so. The next score without it is exact again. Sampled scores only.
+
+        Raises
+        ------
+        InputError
+            When a draft is asked of a grid score.
+        """
+        if draft:
+            return self._drafting().score(rig, draft=True)
+        return self._scorer.score(rig)
+
+    def entropy(self, rig: Rig, *, draft: bool = False, below: float = math.inf) -> float:
+        """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for.
+
+        Parameters
+        ----------
+        rig : Rig
+        draft : bool
+            As in `score`, with the same error.
+        below : float
+            Where the entropy is not below this, any bound of it that is not below it either may be
+            told instead: a sampled score then often need not ask what the vehicle hides.
+        """
+        if draft:
+            return self._drafting().entropy(rig, draft=True)
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer.entropy(rig, below=below)
+        return self._scorer.entropy(rig)
+
+    def _drafting(self) -> SampledScorer:
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer
+        raise InputError("evaluator", "draft", "a sampled score", "a grid score")

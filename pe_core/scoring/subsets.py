@@ -1,0 +1,43 @@
+"""A rig and its parts: every sensor alone, and the rig without each sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from functools import reduce
+from operator import add
+from typing import Any
+
+import numpy as np
+
+from ..scene.sensors import Rig
+
+Names = tuple[str, ...]
+
+
+def parts_of(rig: Rig) -> list[Names]:
+    """The whole rig, then each sensor alone, then the rig without each; only what differs."""
+    names = tuple(s.name for s in rig)
+    if len(names) == 1:
+        return [names]
+    alone = [(name,) for name in names]
+    without = [tuple(n for n in names if n != name) for name in names]
+    return [names, *dict.fromkeys([*alone, *without])]
+
+
+def fused_early(
+    rig: Rig, measured: Mapping[str, Any], members: Collection[str]
+) -> list[tuple[str, Any]]:
+    """Sum the members' measurements inside each fusion group, eq. 6: (kind, sum) of each."""
+    groups = []
+    for sensors in rig.groups.values():
+        present = [measured[s.name] for s in sensors if s.name in members]
+        if present:
+            kind = sensors[0].kind
+            groups.append((kind, _total(present) if len(present) > 1 else present[0]))
+    return groups
+
+
+def _total(measured: list[Any]) -> Any:
+    """Sum measurements; whole numbers are counts, perhaps of few bits each."""
+    whole = isinstance(measured[0], np.ndarray) and measured[0].dtype.kind in "iu"
+    return reduce(add, (m.astype(np.uint32) for m in measured) if whole else measured)

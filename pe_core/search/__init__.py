@@ -1,0 +1,23 @@
+"""Searches for better placements."""
+
+from .optimize import (
+    AXES,
+    PAPER_FREE,
+    Schedule,
+    SearchSpace,
+    Step,
+    optimize,
+    pose_from_values,
+    pose_values,
+)
+
+__all__ = [
+    "AXES",
+    "PAPER_FREE",
+    "Schedule",
+    "SearchSpace",
+    "Step",
+    "optimize",
+    "pose_from_values",
+    "pose_values",
+]

@@ -1,0 +1,134 @@
+"""A study's [prior]: its table to `Prior` and back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError
+from ..formats.boxes import read_boxes
+from ..prior.classes import FIELDS, SHIPPED, ObjectClass
+from ..prior.prior import FROM_BOXES, MODELS, Focus, Prior
+from ..text.tables import REQUIRED, Table
+
+BOXES = "boxes.csv"
+"""The name boxes get beside a study when they have no file of their own."""
+DEFAULT_MODEL = "road"
+OPTIONAL = {"lanes": (0.0,), "share": 1.0}
+"""What a class of one's own need not say."""
+
+
+def read_prior(table: Table, folder: Path) -> Prior:
+    """Read a prior; the path of its boxes is relative to `folder`."""
+    prior = _read_boxes(table, folder) if FROM_BOXES in table else _read_model(table)
+    prior = replace(prior, focus=tuple(_read_focus(t) for t in table.tables("focus")))
+    table.finish()
+    return prior
+
+
+def prior_table(prior: Prior) -> dict[str, Any]:
+    """Return a prior as the plain data of its table; what is left out is None."""
+    focus = [_focus_table(f) for f in prior.focus]
+    if prior.boxes is not None:
+        named, origin = prior.boxes.file or BOXES, prior.boxes.origin
+        where = {FROM_BOXES: named, "origin": None if origin is None else list(origin)}
+        return {**where, "focus": focus or None}
+    shipped = SHIPPED.get(prior.model, ())
+    tables = [t for c in prior.classes if len(t := _class_table(c, shipped)) > 1]
+    names = list(prior.class_names)
+    in_order = not shipped or names == _names(shipped, prior.classes)
+    return {
+        "model": prior.model,
+        "classes": None if in_order else names,
+        "class": tables or None,
+        "focus": focus or None,
+    }
+
+
+def _read_boxes(table: Table, folder: Path) -> Prior:
+    for key in ("model", "classes", "class"):
+        if key in table:
+            raise table.error(key, f"nothing beside {table.field(FROM_BOXES)}", "a value")
+    file, origin = table.text(FROM_BOXES), table.numbers("origin", 3, None)
+    if origin is not None and not all(map(math.isfinite, origin)):
+        raise table.error("origin", "a list of 3 finite numbers", list(origin))
+    at = None if origin is None else (origin[0], origin[1], origin[2])
+    return Prior.from_boxes(replace(read_boxes(folder / file, at), file=file))
+
+
+def _read_model(table: Table) -> Prior:
+    model = table.text("model", DEFAULT_MODEL, [m for m in MODELS if m != FROM_BOXES])
+    shipped = SHIPPED.get(model, ())
+    for key in ("class", "classes"):
+        if key in table and not shipped:
+            raise table.error(key, f"nothing beside model {model!r}", "a value")
+    own = [_read_class(t, shipped) for t in table.tables("class")]
+    for cls in own:
+        if [c.name for c in own].count(cls.name) > 1:
+            raise table.error("class", "each name once", f"{cls.name!r} twice")
+    known = {c.name: c for c in (*shipped, *own)}
+    names = table.texts("classes", tuple(known))
+    for name in names:
+        if name not in known:
+            raise table.error("classes", f"some of {', '.join(known)}", repr(name))
+    return Prior(model, tuple(known[name] for name in names))
+
+
+def _read_class(table: Table, shipped: Sequence[ObjectClass]) -> ObjectClass:
+    """Read a class; one with a shipped class's name need say only what differs."""
+    name = table.text("name")
+    base = next((c for c in shipped if c.name == name), None)
+
+    def default(key: str) -> Any:
+        return OPTIONAL.get(key, REQUIRED) if base is None else getattr(base, key)
+
+    values = {key: table.number(key, default(key)) for key in FIELDS if key not in NOT_NUMBERS}
+    size = table.numbers("size", 3, default("size"))
+    lanes = _read_lanes(table, default("lanes"))
+    table.finish()
+    try:
+        return ObjectClass(name=name, size=(size[0], size[1], size[2]), lanes=lanes, **values)
+    except InputError as error:
+        raise table.error(error.field, error.expected, error.found) from None
+
+
+NOT_NUMBERS = ("name", "size", "lanes")
+
+
+def _read_lanes(table: Table, default: tuple[float, ...]) -> tuple[float, ...]:
+    value = table.raw("lanes", default)
+    return table.numbers("lanes", len(value) if isinstance(value, list) else 1, default)
+
+
+def _class_table(cls: ObjectClass, shipped: Sequence[ObjectClass]) -> dict[str, Any]:
+    """Return the name of a class, and what a file has to say of it."""
+    base = next((c for c in shipped if c.name == cls.name), None)
+    told = [f for f in FIELDS if base is None or getattr(cls, f) != getattr(base, f)]
+    values = {f: getattr(cls, f) for f in ("name", *told)}
+    return {f: list(v) if isinstance(v, tuple) else v for f, v in values.items()}
+
+
+def _names(shipped: Sequence[ObjectClass], classes: Sequence[ObjectClass]) -> list[str]:
+    """Names in the order they have when a file does not say it: new ones after the shipped."""
+    names = [c.name for c in shipped]
+    return names + [c.name for c in classes if c.name not in names]
+
+
+def _read_focus(table: Table) -> Focus:
+    everywhere = (-math.inf, math.inf)
+    x, y = (table.numbers(a, 2, everywhere) for a in "xy")
+    focus = Focus(table.number("factor"), (x[0], x[1]), (y[0], y[1]), table.texts("classes", None))
+    table.finish()
+    return focus
+
+
+def _focus_table(focus: Focus) -> dict[str, Any]:
+    return {
+        "factor": focus.factor,
+        "x": list(focus.x),
+        "y": list(focus.y),
+        "classes": None if focus.classes is None else list(focus.classes),
+    }

@@ -1,0 +1,253 @@
+"""The study file: TOML to `Study` and back."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .. import catalog
+from ..errors import InputError
+from ..formats.meshes import read_mesh
+from ..metric.entropy import ApCurve, PerceptionModel
+from ..scene.geometry import Pose
+from ..scene.sensors import Rig, Sensor, SensorModel
+from ..scene.space import PerceptionSpace
+from ..scene.vehicle import DEFAULT_CLEARANCE_M, Vehicle
+from ..search.optimize import AXES, PAPER_FREE, Schedule
+from ..text.files import decode_text, read_bytes, write_bytes
+from ..text.tables import Table
+from ..text.toml_writer import dumps
+from .prior_file import prior_table, read_prior
+from .study import DEFAULT_SEARCH_SAMPLES, Search, Study
+
+
+def load_study(path: str | Path) -> Study:
+    """Read a study from its TOML file.
+
+    Raises
+    ------
+    InputError
+        One line with the file, the field, what was expected and what was found.
+    """
+    path = Path(path)
+    try:
+        data = tomllib.loads(decode_text(read_bytes(path)))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(path, "study", "valid TOML", error) from None
+    return study_from_dict(data, str(path), path.parent)
+
+
+def save_study(study: Study, path: str | Path) -> None:
+    """Write a study's TOML file, atomically. The mesh is not written; see `mesh_io.write_mesh`."""
+    write_bytes(Path(path), dumps(study_to_dict(study)).encode())
+
+
+def study_from_dict(data: Any, source: str = "study", folder: Path | None = None) -> Study:
+    """Build a study from the plain data of its file; paths in it are relative to `folder`."""
+    table = Table(data, source)
+    try:
+        study = _read_study(table, folder or Path())
+    except InputError as error:
+        raise error if error.source == source else _named(error, source) from None
+    table.finish()
+    return study
+
+
+def study_to_dict(study: Study) -> dict[str, Any]:
+    """Return a study as the plain data its file holds."""
+    data = {
+        "samples": study.samples or None,
+        "space": {
+            "x": list(study.space.x),
+            "y": list(study.space.y),
+            "z": list(study.space.z),
+            "interval": study.space.interval,
+        },
+        "prior": prior_table(study.prior),
+        "ap": {
+            "lidar": {"a": study.model.lidar.a, "b": study.model.lidar.b},
+            "camera": {"a": study.model.camera.a, "b": study.model.camera.b},
+        },
+        "fusion": {"blind": study.model.blind},
+        "vehicle": _vehicle_table(study),
+        "sensor": [_sensor_table(s, study.search) for s in study.rig],
+        "optimize": _search_table(study.search),
+    }
+    plain: dict[str, Any] = _without_none(data)
+    return plain
+
+
+def _named(error: InputError, source: str) -> InputError:
+    """Put the study's file in front of an error raised deeper down."""
+    return InputError(source, f"{error.source}: {error.field}", error.expected, error.found)
+
+
+def _read_study(table: Table, folder: Path) -> Study:
+    vehicle, mesh = _read_vehicle(table.table("vehicle"), folder)
+    sensors, search = table.tables("sensor"), table.table("optimize")
+    if not sensors:
+        raise table.error("sensor", "at least one [[sensor]]", "none")
+    default_free = _axes(search, "free", PAPER_FREE)
+    mounted = [_read_sensor(s, folder) for s in sensors]
+    free, limits = {}, {}
+    for sensor, own in zip(mounted, sensors, strict=True):
+        free[sensor.name] = _axes(own, "free", default_free)
+        limits[sensor.name] = _read_limits(own.table("bounds"))
+        own.finish()
+    study = Study(
+        Rig(mounted),
+        vehicle,
+        _read_space(table.table("space")),
+        read_prior(table.table("prior"), folder),
+        _read_model(table.table("ap"), table.table("fusion")),
+        _read_search(search, free, limits),
+        table.whole("samples", 0),
+        mesh,
+    )
+    study.search_space()  # bounds that do not hold their start are bad input, not a late surprise
+    return study
+
+
+def _read_space(table: Table) -> PerceptionSpace:
+    default = PerceptionSpace()
+    (x, y, z) = (
+        (low, high) for low, high in (table.numbers(a, 2, getattr(default, a)) for a in "xyz")
+    )
+    space = PerceptionSpace(x, y, z, table.number("interval", default.interval))
+    table.finish()
+    return space
+
+
+def _read_model(curves: Table, fusion: Table) -> PerceptionModel:
+    default = PerceptionModel()
+    model = PerceptionModel(
+        _read_curve(curves.table("lidar"), default.lidar),
+        _read_curve(curves.table("camera"), default.camera),
+        fusion.text("blind", default.blind, ("floor", "literal")),
+    )
+    curves.finish()
+    fusion.finish()
+    return model
+
+
+def _read_curve(table: Table, default: ApCurve) -> ApCurve:
+    curve = ApCurve(table.number("a", default.a), table.number("b", default.b))
+    table.finish()
+    return curve
+
+
+def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, str | None]:
+    mesh = table.text("mesh", None)
+    glass = table.texts("glass", ())
+    clearance = table.number("clearance", DEFAULT_CLEARANCE_M)
+    table.finish()
+    if mesh is None:
+        return None, None
+    read = read_mesh(folder / mesh)
+    return Vehicle(read.triangles, read.parts, read.part_names, glass, clearance), mesh
+
+
+def _read_sensor(table: Table, folder: Path) -> Sensor:
+    name = table.text("name")
+    position = table.numbers("position", 3)
+    rotation = table.numbers("rotation", 3, (0.0, 0.0, 0.0))
+    model = table.raw("model")
+    try:
+        pose = Pose.from_degrees(position, rotation)
+        intrinsics = (
+            catalog.load(model)
+            if isinstance(model, str)
+            else catalog.from_table(name, model, folder)
+        )
+    except InputError as error:
+        raise table.error(error.field, error.expected, error.found) from None
+    except (AttributeError, TypeError):
+        raise table.error("model", "a catalogue name or a table", repr(model)) from None
+    return Sensor(name, intrinsics, pose, table.text("fusion", None))
+
+
+def _axes(table: Table, key: str, default: tuple[str, ...]) -> tuple[str, ...]:
+    axes = table.texts(key, default)
+    for axis in axes:
+        if axis not in AXES:
+            raise table.error(key, f"some of {', '.join(AXES)}", repr(axis))
+    return axes
+
+
+def _read_limits(table: Table) -> dict[str, tuple[float, float]]:
+    limits = {}
+    for axis in AXES:
+        if axis in table:
+            low, high = table.numbers(axis, 2)
+            if not low <= high:
+                raise table.error(axis, "low before high", [low, high])
+            limits[axis] = (low, high)
+    for axis in AXES:
+        table.raw(axis, None)  # known names, whether present or not
+    table.finish()
+    return limits
+
+
+def _read_search(
+    table: Table,
+    free: Mapping[str, tuple[str, ...]],
+    limits: Mapping[str, Mapping[str, tuple[float, float]]],
+) -> Search:
+    schedule = Schedule(candidates=table.whole("candidates", Schedule().candidates, 1))
+    search = Search(
+        free,
+        limits,
+        table.whole("seed", 0),
+        table.whole("samples", DEFAULT_SEARCH_SAMPLES),
+        schedule,
+    )
+    table.finish()
+    return search
+
+
+def _vehicle_table(study: Study) -> dict[str, Any] | None:
+    if study.vehicle is None:
+        return None
+    return {
+        "mesh": study.mesh,
+        "glass": list(study.vehicle.glass),
+        "clearance": study.vehicle.clearance,
+    }
+
+
+def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
+    limits = {a: list(b) for a, b in search.limits.get(sensor.name, {}).items()}
+    return {
+        "name": sensor.name,
+        "model": _model_value(sensor.model),
+        "position": list(sensor.pose.position),
+        "rotation": list(sensor.pose.rotation_deg),
+        "fusion": sensor.fusion,
+        "free": list(search.free.get(sensor.name, PAPER_FREE)),
+        "bounds": limits or None,
+    }
+
+
+def _model_value(model: SensorModel) -> str | dict[str, Any]:
+    """Return the catalogue's name, or the intrinsics of a sensor that is not in it."""
+    if model.name in catalog.entries() and catalog.load(model.name) is model:
+        return model.name
+    return catalog.to_table(model)
+
+
+def _search_table(search: Search) -> dict[str, Any]:
+    return {
+        "seed": search.seed,
+        "samples": search.samples,
+        "candidates": search.schedule.candidates,
+    }
+
+
+def _without_none(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {k: _without_none(v) for k, v in value.items() if v is not None}
+    if isinstance(value, list):
+        return [_without_none(v) for v in value]
+    return value

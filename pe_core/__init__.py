@@ -7,8 +7,8 @@ Evaluation and Design", ICRA 2021. Lower is better.
 from . import catalog
 from .errors import InputError
 from .formats import Mesh, read_boxes, read_mesh, write_boxes, write_mesh
-from .kinds import BeamField, Camera, Lidar, beam_field, measure
-from .metric import ApCurve, PerceptionModel
+from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
+from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import PerceptionSpace, Pose, Rig, Sensor, Vehicle
 from .scoring import Evaluator, GroundMap, PartScore, Score, SensorScore

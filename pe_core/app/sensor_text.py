@@ -1,55 +1,15 @@
-"""A sensor of the catalogue as text, with a small plot of its channels."""
+"""A sensor of the catalogue as text, with a small plot where its kind has one."""
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
 from ..catalog import Entry, load
-from ..kinds.camera.model import Camera
-from ..kinds.lidar.model import Lidar
-
-PLOT_ROWS = 24
-BAR_WIDTH = 48
+from ..kinds import kind_of
 
 
 def describe(entry: Entry) -> str:
-    """Return the figures of a catalogue entry, their source, and a plot for a LiDAR."""
+    """Return the figures of a catalogue entry, their source, and a plot if there is one."""
     model = load(entry.name)
-    lines = [entry.name, *(_lidar(model) if isinstance(model, Lidar) else _camera(model))]
-    lines.append(f"source          {entry.source}")
-    if isinstance(model, Lidar):
-        lines += ["", *_channel_plot(model)]
-    return "\n".join(lines)
-
-
-def _lidar(lidar: Lidar) -> list[str]:
-    low, high = math.degrees(lidar.elevations.min()), math.degrees(lidar.elevations.max())
-    left, right = (math.degrees(a) for a in lidar.horizontal_fov)
-    return [
-        f"channels        {len(lidar.elevations)}, {low:g} to {high:g} deg",
-        f"azimuths        {len(lidar.azimuth_steps)}, {left:g} to {right:g} deg, "
-        f"every {math.degrees(lidar.azimuth_step):.4g} deg",
-        f"beams a frame   {lidar.beam_count}",
-        f"range           {lidar.max_range:g} m",
-    ]
-
-
-def _camera(camera: Camera) -> list[str]:
-    return [
-        f"image           {camera.width} x {camera.height} px",
-        f"field of view   {math.degrees(camera.hfov):g} x {math.degrees(camera.vfov):.4g} deg",
-        f"focal length    {camera.focal_px:.2f} px",
-    ]
-
-
-def _channel_plot(lidar: Lidar) -> list[str]:
-    """One row an elevation interval, top first; a bar of one mark a channel."""
-    degrees = np.degrees(lidar.elevations)
-    counts, edges = np.histogram(degrees, bins=PLOT_ROWS)
-    scale = min(1.0, BAR_WIDTH / counts.max())
-    return [
-        f"{(edges[i] + edges[i + 1]) / 2:8.2f} deg |{'#' * math.ceil(counts[i] * scale)}"
-        for i in reversed(range(PLOT_ROWS))
-    ]
+    kind = kind_of(model)
+    plot = kind.plot(model)
+    lines = [entry.name, *kind.words(model), f"source          {entry.source}"]
+    return "\n".join([*lines, *(["", *plot] if plot else [])])

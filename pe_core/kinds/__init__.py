@@ -1,7 +1,33 @@
 """Kinds of sensors: one folder a kind, with its beams or pixels and all that counts them."""
 
-from .camera import Camera
-from .lidar import BeamField, Lidar, beam_field
+from .camera import CAMERA, Camera
+from .kernels import GridKernel, Measured, SampleKernel, Stopped, Voxels
+from .kind import Kind
+from .lidar import LIDAR, BeamField, Lidar, beam_field
 from .measure import measure
+from .perception import BLIND_RULES, PerceptionModel
+from .table import KINDS, kind_named, kind_of, register, unregister
 
-__all__ = ["BeamField", "Camera", "Lidar", "beam_field", "measure"]
+__all__ = [
+    "BLIND_RULES",
+    "KINDS",
+    "BeamField",
+    "Camera",
+    "GridKernel",
+    "Kind",
+    "Lidar",
+    "Measured",
+    "PerceptionModel",
+    "SampleKernel",
+    "Stopped",
+    "Voxels",
+    "beam_field",
+    "kind_named",
+    "kind_of",
+    "measure",
+    "register",
+    "unregister",
+]
+
+for _kind in (LIDAR, CAMERA):
+    register(_kind)

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..scene.sensors import Sensor
 from ..scene.vehicle import Vehicle
-from .camera.definition import count_pixels
-from .lidar.definition import count_beams
+from .table import kind_of
 
 Floats = NDArray[np.float64]
 
@@ -51,6 +50,4 @@ def measure(
     centers = np.asarray(centers, dtype=float)
     if centers.ndim != 2 or centers.shape[1] != 3 or not np.isfinite(centers).all():
         raise InputError("measure", "centers", "(V, 3) finite numbers", centers.shape)
-    if sensor.kind == "lidar":
-        return count_beams(sensor, centers, side, vehicle)
-    return count_pixels(sensor, centers, side, vehicle)
+    return kind_of(sensor).measure(sensor, centers, side, vehicle)

@@ -7,7 +7,7 @@ of the design notes in docs/metric.md, which names the paper's beside each.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,30 +51,6 @@ POINTPILLARS = ApCurve(0.152, 0.659)
 """LiDAR, PointPillars on KITTI moderate (Ma, Liu and Li, ICRA 2021)."""
 RTM3D = ApCurve(0.055, 0.155)
 """Camera, RTM3D on KITTI moderate (same source)."""
-
-
-@dataclass(frozen=True, slots=True)
-class PerceptionModel:
-    """What a measurement is worth: the AP curves and the rule for blind sensors in late fusion.
-
-    Parameters
-    ----------
-    lidar, camera : ApCurve
-    blind : {"floor", "literal"}
-        "floor": a sensor that sees nothing changes nothing. "literal": eq. 7 as printed.
-    """
-
-    lidar: ApCurve = field(default=POINTPILLARS)
-    camera: ApCurve = field(default=RTM3D)
-    blind: str = "floor"
-
-    def __post_init__(self) -> None:
-        if self.blind not in ("floor", "literal"):
-            raise InputError("fusion", "blind", '"floor" or "literal"', repr(self.blind))
-
-    def curve(self, kind: str) -> ApCurve:
-        """Return the AP curve for ``"lidar"`` or ``"camera"``."""
-        return self.lidar if kind == "lidar" else self.camera
 
 
 def average_precision(m: ArrayLike, curve: ApCurve) -> Floats:

@@ -1,29 +1,50 @@
-"""From measurements to entropy with look-up tables: eqs. 4 to 8 for whole arrays.
+"""Equations 6 and 7: measurements summed inside a group, groups fused; and eqs. 4 to 8 by look-up.
 
-A LiDAR group's measurement is a whole number that soon saturates AP, so its 1 / sigma^2 is a table,
-and so is its entropy when it stands alone. `entropy` has the plain definitions this is held to.
+A whole number as m, such as a count of beams, soon saturates AP: its 1 / sigma^2 is then a table,
+and so is its entropy when its group stands alone. The plain definitions come first; the tables are
+held to them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import reduce
+from operator import add
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .entropy import BLIND_PRECISION, PerceptionModel, entropy_of, precision_of
+from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of
 
 Floats = NDArray[np.float64]
 Measurement = tuple[str, NDArray]
-"""Kind of sensor ("lidar" or "camera") and its beams (whole numbers) or pixels."""
+"""Kind of sensor ("lidar", "camera") and m of a group: whole numbers (beams) or not (pixels)."""
 
 LONGEST_TABLE = (1 << 16) - 1
-"""Beam counts are kept in 16 bits."""
+"""Counts are kept in 16 bits."""
+
+
+class Curves(Protocol):
+    """What fusion asks of a perception model: an AP curve by kind, and the rule for the blind."""
+
+    blind: str
+
+    def curve(self, kind: str) -> ApCurve:
+        """Return the AP curve of a kind of sensor."""
 
 
 def early_fusion(measurements: Iterable[ArrayLike]) -> Floats:
     """m of a fusion group: the sum over its sensors, eq. 6."""
     return np.asarray(sum(np.asarray(m, dtype=float) for m in measurements), dtype=float)
+
+
+def group_sum(measured: Sequence[Any]) -> Any:
+    """Sum measurements as kernels give them, eq. 6: counts of few bits each, or what adds up."""
+    if len(measured) == 1:
+        return measured[0]
+    whole = isinstance(measured[0], np.ndarray) and is_whole(measured[0])
+    return reduce(add, (m.astype(np.uint32) for m in measured) if whole else measured)
 
 
 def late_fusion(precisions: Iterable[ArrayLike], blind: str = "floor") -> Floats:
@@ -37,45 +58,53 @@ def late_fusion(precisions: Iterable[ArrayLike], blind: str = "floor") -> Floats
     return np.asarray(fused + floor, dtype=float)
 
 
+class Tables(NamedTuple):
+    """1 / sigma^2 and entropy of a lone group by its m = 0, 1, ...; AP is saturated at the end."""
+
+    precision: Floats
+    entropy: Floats
+
+
 class Fusion:
     """Fuses measurements of fusion groups under one perception model."""
 
-    def __init__(self, model: PerceptionModel) -> None:
+    def __init__(self, model: Curves) -> None:
         self.model = model
-        last = int(min(model.lidar.saturation, LONGEST_TABLE - 1)) + 1
-        self._precision = precision_of(np.arange(last + 1), model.lidar)
-        self._entropy = entropy_of(late_fusion([self._precision], model.blind))
+        self._known: dict[str, Tables] = {}  # by kind: as many as there are
 
-    @property
-    def enough(self) -> int:
-        """Beams from which on AP is saturated: more of them change nothing."""
-        return len(self._precision) - 1
+    def tables(self, kind: str) -> Tables:
+        """Return what whole numbers of a kind are looked up in."""
+        if kind not in self._known:
+            curve = self.model.curve(kind)
+            precision = precision_of(np.arange(self.enough(kind) + 1), curve)
+            entropy = entropy_of(late_fusion([precision], self.model.blind))
+            self._known[kind] = Tables(precision, entropy)
+        return self._known[kind]
 
-    def compact(self, counts: NDArray[np.uint16]) -> NDArray:
-        """Copy beam counts, into one byte where AP saturates that early; enough for any entropy."""
-        small = self.enough <= np.iinfo(np.uint8).max
-        return np.minimum(counts, self.enough).astype(np.uint8) if small else counts.copy()
+    def enough(self, kind: str) -> int:
+        """Whole m from which on AP is saturated: more changes nothing."""
+        return int(min(self.model.curve(kind).saturation, LONGEST_TABLE - 1)) + 1
 
     def precision(self, m: NDArray, kind: str) -> Floats:
         """1 / sigma^2 of a group's measurement."""
-        if kind == "lidar":
-            return np.take(self._precision, m, mode="clip")
-        return precision_of(m, self.model.camera)
+        if is_whole(m):
+            return np.take(self.tables(kind).precision, m, mode="clip")
+        return precision_of(m, self.model.curve(kind))
 
     def entropies(self, groups: Sequence[Measurement]) -> tuple[Floats, NDArray[np.bool_]]:
         """Entropy H of every voxel [nats] and whether any group sees it.
 
-        Where only one LiDAR group sees anything, H is looked up; elsewhere it is computed. A blind
-        camera changes nothing, unless the letter is asked for.
+        Where only one group of whole numbers sees anything, H is looked up; elsewhere it is
+        computed. A blind group changes nothing, unless the literal formula (eq. 7) is asked for.
         """
-        lidars = (g for g in groups if g[0] == "lidar" and self._blind_is_silent)
-        tabled = next(lidars, None)
+        whole = (g for g in groups if is_whole(g[1]) and self._blind_is_silent)
+        tabled = next(whole, None)
         others = [g for g in groups if g is not tabled]
         if tabled is not None:
-            entropies = np.take(self._entropy, tabled[1], mode="clip")
+            entropies = np.take(self.tables(tabled[0]).entropy, tabled[1], mode="clip")
             seen = tabled[1] > 0
         else:
-            entropies = np.full(groups[0][1].shape, self._entropy[0])
+            entropies = np.full(groups[0][1].shape, H_BLIND)
             seen = np.zeros(entropies.shape, bool)
         if others:
             voiced = np.logical_or.reduce([m > 0 for _, m in others])
@@ -92,3 +121,8 @@ class Fusion:
         """Entropy by the equations."""
         precisions = [self.precision(m, kind) for kind, m in groups]
         return entropy_of(late_fusion(precisions, self.model.blind))
+
+
+def is_whole(m: NDArray) -> bool:
+    """Whether a measurement is in whole numbers."""
+    return m.dtype.kind in "iu"

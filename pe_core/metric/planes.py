@@ -1,15 +1,15 @@
 """Entropies of whole x-planes of the grid: eqs. 4 to 8 by look-up.
 
-The precision 1 / sigma^2 that a group adds to a blind one's is a table: over beam counts for a
-LiDAR, over pixel areas rounded to a few digits for a camera. Fusing is then an addition, and one
-logarithm a voxel in view of a camera; elsewhere a lone LiDAR group's entropy is a table too.
+The precision 1 / sigma^2 that a group adds to a blind one's is a table: over whole numbers (beams),
+or over single-precision numbers (areas in pixels) rounded to a few digits. Fusing is then an
+addition, and one logarithm a voxel that is seen in part of the rows; elsewhere the entropy of a
+lone group of whole numbers is a table too. Double precision is not rounded but computed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,26 +22,31 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class SeenRows:
-    """Pixels (n, rows, nz) covered by the voxels of some x-planes; 0 outside these rows (y)."""
+    """m (n, rows, nz) of the voxels of some x-planes that is not 0 in these rows (y) alone.
+
+    In single precision m is good to a few digits; in double precision it is taken as it is.
+    """
 
     rows: slice
-    area: NDArray[np.float32]
+    m: NDArray[np.floating]
 
     def __add__(self, other: SeenRows) -> SeenRows:
-        """Sum of two views of the same planes."""
-        if not (self.area.size and other.area.size):
-            return self if self.area.size else other
+        """Sum of two of the same planes."""
+        if not (self.m.size and other.m.size):
+            return self if self.m.size else other
         start = min(self.rows.start, other.rows.start)
         stop = max(self.rows.stop, other.rows.stop)
-        n, _, nz = self.area.shape
-        area = np.zeros((n, stop - start, nz), np.float32)
-        for view in (self, other):
-            area[:, view.rows.start - start : view.rows.stop - start] += view.area
-        return SeenRows(slice(start, stop), area)
+        n, _, nz = self.m.shape
+        total = np.zeros((n, stop - start, nz), np.result_type(self.m, other.m))
+        for each in (self, other):
+            total[:, each.rows.start - start : each.rows.stop - start] += each.m
+        return SeenRows(slice(start, stop), total)
 
 
 Group = tuple[str, NDArray | SeenRows]
-"""Kind of a fusion group, and its beams (n, ny, nz) or its pixels on some x-planes."""
+"""Kind of a fusion group, and its m on some x-planes: whole numbers (n, ny, nz), or seen rows."""
+Counted = tuple[str, NDArray]
+Shown = tuple[str, slice, NDArray[np.floating]]
 
 DIGITS = 11
 """Binary digits of a pixel area that are looked at: what is left out is below 1 part in 2048."""
@@ -55,81 +60,98 @@ class PlaneFusion:
 
     def __init__(self, fusion: Fusion, shape: tuple[int, int]) -> None:
         self._fusion, self._shape = fusion, shape
-        self._beams = fusion.precision(np.arange(fusion.enough + 1), "lidar") - BLIND_PRECISION
-        self._alone: dict[int, Floats] = {}
+        self._known: dict[tuple[str, str, int], Floats] = {}
+        """Tables by kind and what they are of, a few each."""
 
     def entropies(self, groups: Sequence[Group], plane: int) -> Floats:
         """Entropy H (ny, nz) of the voxels of one of the planes [nats]."""
         counts, views = _planes(groups, plane)
         blind = 1 if self._fusion.model.blind == "floor" else len(groups)
         if len(counts) == 1:
-            found = np.take(self._alone_table(blind), counts[0], mode="clip")
+            ((kind, m),) = counts
+            found = np.take(self._alone(kind, blind), m, mode="clip")
         else:
             found = entropy_of(self._counted(counts, blind, slice(None)))
         rows = _rows_of(views)
         if rows.stop > rows.start:
             precision = self._counted(counts, blind, rows)
-            for own, area in views:
-                precision[own.start - rows.start : own.stop - rows.start] += self._shown(area)
+            for kind, own, m in views:
+                precision[own.start - rows.start : own.stop - rows.start] += self._shown(kind, m)
             found[rows] = entropy_of(precision)
         return found
 
     def seen(self, groups: Sequence[Group], plane: int) -> NDArray[np.bool_]:
         """Whether any group sees the voxels (ny, nz) of one of the planes."""
         counts, views = _planes(groups, plane)
-        found = np.zeros(self._shape, bool) if not counts else counts[0] > 0
-        for more in counts[1:]:
+        found = np.zeros(self._shape, bool) if not counts else counts[0][1] > 0
+        for _, more in counts[1:]:
             found |= more > 0
-        for rows, area in views:
-            found[rows] |= area > 0.0
+        for _, rows, m in views:
+            found[rows] |= m > 0.0
         return found
 
-    def _counted(self, counts: Sequence[NDArray], blind: int, rows: slice) -> Floats:
-        """1 / sigma^2 of so many blind groups and what the LiDAR groups add, in some rows."""
+    def _counted(self, counts: Sequence[Counted], blind: int, rows: slice) -> Floats:
+        """1 / sigma^2 of so many blind groups and what whole numbers add, in some rows."""
         total = np.full(self._shape, blind * BLIND_PRECISION)[rows]
-        for beams in counts:
-            total += np.take(self._beams, beams[rows], mode="clip")
+        for kind, m in counts:
+            total += np.take(self._by_count(kind), m[rows], mode="clip")
         return total
 
-    def _alone_table(self, blind: int) -> Floats:
-        """Entropy of a LiDAR group by its beams, among so many blind groups."""
-        if blind not in self._alone:
-            self._alone[blind] = entropy_of(self._beams + blind * BLIND_PRECISION)
-        return self._alone[blind]
-
-    def _shown(self, area: NDArray[np.float32]) -> Floats:
-        """What pixels add to 1 / sigma^2; by the digits of the floating-point number."""
-        code = np.right_shift(area.view(np.int32), SHIFT)
+    def _shown(self, kind: str, m: NDArray) -> Floats:
+        """What m adds to 1 / sigma^2; for single precision by the digits of the number."""
+        if m.dtype != np.float32:
+            return np.where(m > 0.0, self._fusion.precision(m, kind) - BLIND_PRECISION, 0.0)
+        code = np.right_shift(m.view(np.int32), SHIFT)
         code -= _CODES[0]
-        return np.take(self._pixels, code, mode="clip")
+        return np.take(self._by_digits(kind), code, mode="clip")
 
-    @cached_property
-    def _pixels(self) -> Floats:
-        """What each code of an area adds to 1 / sigma^2, in the middle of what it stands for."""
+    def _by_count(self, kind: str) -> Floats:
+        """What each whole number adds to 1 / sigma^2."""
+        return self._kept(("count", kind, 0), lambda: self._added_by_counts(kind))
+
+    def _alone(self, kind: str, blind: int) -> Floats:
+        """Entropy of a group by its whole numbers, among so many blind groups."""
+        added = self._by_count(kind)
+        return self._kept(
+            ("alone", kind, blind), lambda: entropy_of(added + blind * BLIND_PRECISION)
+        )
+
+    def _by_digits(self, kind: str) -> Floats:
+        """What each code of a number adds to 1 / sigma^2."""
+        return self._kept(("digits", kind, 0), lambda: self._added_by_digits(kind))
+
+    def _added_by_counts(self, kind: str) -> Floats:
+        return self._fusion.tables(kind).precision - BLIND_PRECISION
+
+    def _added_by_digits(self, kind: str) -> Floats:
+        """In the middle of what each code stands for."""
         middle = (_CODES << SHIFT) + (1 << SHIFT - 1)
-        added = self._fusion.precision(middle.view(np.float32), "camera") - BLIND_PRECISION
+        added = self._fusion.precision(middle.view(np.float32), kind) - BLIND_PRECISION
         added[0] = 0.0
         return added
+
+    def _kept(self, key: tuple[str, str, int], make: Callable[[], Floats]) -> Floats:
+        if key not in self._known:
+            self._known[key] = make()
+        return self._known[key]
 
 
 _CODES = np.arange(OCTAVES << DIGITS - 1, dtype=np.int32) + (127 + LEAST_OCTAVE << DIGITS - 1)
 """Leading digits, exponent first, of the single-precision numbers that stand for an area."""
 
 
-def _planes(
-    groups: Sequence[Group], plane: int
-) -> tuple[list[NDArray], list[tuple[slice, NDArray[np.float32]]]]:
-    """One plane of every LiDAR group, and of every camera group that sees any of the planes."""
+def _planes(groups: Sequence[Group], plane: int) -> tuple[list[Counted], list[Shown]]:
+    """One plane of every group of whole numbers, and of the others that see any of the planes."""
     counts, views = [], []
-    for _, measured in groups:
+    for kind, measured in groups:
         if not isinstance(measured, SeenRows):
-            counts.append(measured[plane])
-        elif measured.area.size:
-            views.append((measured.rows, measured.area[plane]))
+            counts.append((kind, measured[plane]))
+        elif measured.m.size:
+            views.append((kind, measured.rows, measured.m[plane]))
     return counts, views
 
 
-def _rows_of(views: Sequence[tuple[slice, NDArray]]) -> slice:
+def _rows_of(views: Sequence[Shown]) -> slice:
     """The rows from the first to the last in any view."""
-    starts, stops = [rows.start for rows, _ in views], [rows.stop for rows, _ in views]
+    starts, stops = [rows.start for _, rows, _ in views], [rows.stop for _, rows, _ in views]
     return slice(min(starts, default=0), max(stops, default=0))

@@ -1,12 +1,14 @@
 """Scores of a rig: on all voxels, or on a sample of them."""
 
 from .evaluator import Evaluator
+from .sampled import Judgement
 from .sampling import VoxelSample, draw
 from .score import GroundMap, PartScore, Score, SensorScore
 
 __all__ = [
     "Evaluator",
     "GroundMap",
+    "Judgement",
     "PartScore",
     "Score",
     "SensorScore",

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
-
 from ..errors import InputError
-from ..metric.entropy import PerceptionModel
+from ..kinds import PerceptionModel
 from ..metric.fusion import Fusion
 from ..prior.prior import Prior
 from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .gridded import GridScorer
-from .sampled import SampledScorer
+from .sampled import Judgement, SampledScorer
 from .sampling import CENTERED
 from .score import Score
 
@@ -26,8 +24,8 @@ class Evaluator:
     prior : Prior
     vehicle : Vehicle, optional
         None: nothing hides anything, and no voxel is excluded.
-    samples : int, optional
-        Score on about this many voxels drawn from the prior instead of all of them. The sample is
+    samples : int
+        Score on about this many voxels drawn from the prior; 0 for all there are. The sample is
         fixed: two rigs are compared on the same voxels.
     shift : (3,) float
         Three numbers in [0, 1) that scramble the sample's sequence: others give another sample as
@@ -49,7 +47,7 @@ class Evaluator:
         prior: Prior,
         vehicle: Vehicle | None = None,
         *,
-        samples: int | None = None,
+        samples: int = 0,
         shift: tuple[float, float, float] = CENTERED,
         model: PerceptionModel | None = None,
         workers: int | None = None,
@@ -57,7 +55,7 @@ class Evaluator:
         self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
         densities, fusion = prior.densities(space), Fusion(model or PerceptionModel())
         self._scorer: GridScorer | SampledScorer
-        if samples is None:
+        if samples == 0:
             self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
         else:
             self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
@@ -82,7 +80,7 @@ class Evaluator:
             return self._drafting().score(rig, draft=True)
         return self._scorer.score(rig)
 
-    def entropy(self, rig: Rig, *, draft: bool = False, below: float = math.inf) -> float:
+    def entropy(self, rig: Rig, *, draft: bool = False) -> float:
         """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for.
 
         Parameters
@@ -90,15 +88,31 @@ class Evaluator:
         rig : Rig
         draft : bool
             As in `score`, with the same error.
-        below : float
-            Where the entropy is not below this, any bound of it that is not below it either may be
-            told instead: a sampled score then often need not ask what the vehicle hides.
         """
         if draft:
             return self._drafting().entropy(rig, draft=True)
-        if isinstance(self._scorer, SampledScorer):
-            return self._scorer.entropy(rig, below=below)
         return self._scorer.entropy(rig)
+
+    def judge(self, rig: Rig, below: float) -> Judgement:
+        """Tell whether a rig's entropy is below a value: what a search asks of its candidates.
+
+        A sampled score often need not ask what the vehicle hides to tell that it is not.
+
+        Parameters
+        ----------
+        rig : Rig
+        below : float
+            As a rule the best entropy so far [nats].
+
+        Returns
+        -------
+        Judgement
+            The entropy; or, where that is not below `below`, perhaps a lower bound of it that is
+            not below it either. `is_lower_bound` says so: no bound is good for ranks or models.
+        """
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer.judge(rig, below)
+        return Judgement(self._scorer.entropy(rig), False)
 
     def _drafting(self) -> SampledScorer:
         if isinstance(self._scorer, SampledScorer):

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from functools import reduce
-from operator import add
 from threading import Lock
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinds.camera.grid import CameraPlanes
-from ..kinds.camera.model import Camera
-from ..kinds.lidar.beams import BeamField, beam_field
-from ..kinds.lidar.grid import BeamGrid
+from ..kinds import GridKernel, kind_of
+from ..kinds.kernels import Planes
 from ..metric.entropy import H_BLIND
 from ..metric.fusion import Fusion
 from ..metric.planes import Group, PlaneFusion
@@ -24,14 +20,14 @@ from ..prior.prior import ClassDensity
 from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
-from .score import GroundMap, PartScore, Score, SensorScore, rounded
+from .score import GroundMap, PartScore, Score, SensorScore, rounded, sensor_score
 from .subsets import Names, fused_early, parts_of
 from .weights import outside_masses
 from .zones import column_zones
 
 Floats = NDArray[np.float64]
-MeasuredPlanes = Callable[[slice], Group]
-"""What sensors measure, with their kind, on a run of x-planes."""
+Measured = tuple[str, Planes]
+"""The kind of some sensors, and what measures them on a run of x-planes."""
 
 BLOCK_PLANES = 32
 """x-planes a thread takes at a time; the exact areas of a camera are worked out together."""
@@ -66,17 +62,17 @@ class GridScorer:
         self._tops = None if vehicle is None else vehicle.top(space)
         self._reached = np.isfinite(-np.inf if self._tops is None else self._tops.max(axis=1))
         self._masses = np.array(outside_masses(densities, space, self._tops))
-        self._grid = BeamGrid(space)  # kept: a new one is slow to touch for the first time
-        self._grid_is_free = Lock()
+        self._kernels: dict[str, GridKernel] = {}  # by kind: as many as there are
+        self._is_free = Lock()
 
     def entropy(self, rig: Rig) -> float:
         """Perception entropy alone."""
-        with self._grid_is_free, ThreadPoolExecutor(self._workers) as pool:
+        with self._is_free, ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
             groups = self._measured(list(rig.groups.values()), ready, pool)
 
             def work(planes: slice) -> Floats:
-                fused = [[measure(planes) for measure in groups]]
+                fused = [[(kind, measure(planes)) for kind, measure in groups]]
                 each = self._weighed(fused, planes, coverage=False)
                 return np.sum([plane[0, 0].sum(axis=0) for plane in each], axis=0)
 
@@ -85,12 +81,12 @@ class GridScorer:
     def score(self, rig: Rig) -> Score:
         """Everything a grid score tells."""
         parts = parts_of(rig)
-        with self._grid_is_free, ThreadPoolExecutor(self._workers) as pool:
+        with self._is_free, ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
             measured = self._measured([[s] for s in rig], ready, pool)
 
             def work(planes: slice) -> tuple[Floats, Floats]:
-                values = {s.name: own(planes)[1] for s, own in zip(rig, measured, strict=True)}
+                values = {s.name: m(planes) for s, (_, m) in zip(rig, measured, strict=True)}
                 fused = [fused_early(rig, values, members) for members in parts]
                 return self._reduced(fused, planes)
 
@@ -110,53 +106,32 @@ class GridScorer:
             _ground_map(columns),
         )
 
-    def _ready(self, rig: Rig, pool: Executor) -> dict[str, BeamField | CameraPlanes]:
-        """Every LiDAR's beams, cast, and every camera, ready to measure; by name."""
-        return dict(zip((s.name for s in rig), pool.map(self._ready_sensor, rig), strict=True))
+    def _ready(self, rig: Rig, pool: Executor) -> dict[str, Any]:
+        """Every sensor, ready to be measured; by name."""
+        for sensor in rig:
+            self._kernel(sensor)
+        ready = pool.map(lambda sensor: self._kernel(sensor).ready(sensor), rig)
+        return dict(zip((s.name for s in rig), ready, strict=True))
 
-    def _ready_sensor(self, sensor: Sensor) -> BeamField | CameraPlanes:
-        if sensor.kind == "lidar":
-            return beam_field(sensor, self._vehicle)
-        seen = None
-        if self._vehicle is not None:
-            seen = self._vehicle.seen_from(sensor.pose.position, through_glass=True)
-        return CameraPlanes(cast(Camera, sensor.model), sensor.pose, self._space, seen)
+    def _kernel(self, sensor: Sensor) -> GridKernel:
+        """Return what measures sensors of its kind."""
+        kind = kind_of(sensor)
+        if kind.name not in self._kernels:
+            enough = self._fusion.enough(kind.name)
+            self._kernels[kind.name] = kind.on_grid(self._space, self._vehicle, enough)
+        return self._kernels[kind.name]
 
     def _measured(
-        self,
-        groups: Sequence[Sequence[Sensor]],
-        ready: Mapping[str, BeamField | CameraPlanes],
-        pool: Executor,
-    ) -> list[MeasuredPlanes]:
-        """Sum the sensors of each group, which are of one kind.
-
-        LiDARs are counted on the whole grid now, cameras when their planes are asked for.
-        """
-        only = sum(g[0].kind == "lidar" for g in groups) == 1  # several are kept small
-        found = []
-        for sensors in groups:
-            ours = [ready[s.name] for s in sensors]
-            if sensors[0].kind == "lidar":
-                self._grid.clear()
-                for sensor, field in zip(sensors, ours, strict=True):
-                    beams = cast(BeamField, field)
-                    self._grid.add(sensor.pose.position, beams.directions, beams.ends)
-                counts = self._grid.counts
-                found.append(_counts_of(counts if only else self._kept_small(counts, pool)))
-            else:
-                found.append(_pixels_of([cast(CameraPlanes, camera) for camera in ours]))
-        return found
-
-    def _kept_small(self, counts: NDArray[np.uint16], pool: Executor) -> NDArray:
-        """Copy beam counts, into one byte where that is enough."""
-        kept = np.empty(counts.shape, self._fusion.compact(counts[:1]).dtype)
-
-        def work(planes: slice) -> None:
-            for i in range(planes.start, planes.stop):
-                kept[i] = self._fusion.compact(counts[i])
-
-        list(pool.map(work, self._blocks()))
-        return kept
+        self, groups: Sequence[Sequence[Sensor]], ready: Mapping[str, Any], pool: Executor
+    ) -> list[Measured]:
+        """Sum the sensors of each group, which are of one kind."""
+        kinds = [sensors[0].kind for sensors in groups]
+        found: dict[int, Planes] = {}
+        for kind in dict.fromkeys(kinds):
+            ours = [k for k, each in enumerate(kinds) if each == kind]
+            of_kind = [[ready[s.name] for s in groups[k]] for k in ours]
+            found |= zip(ours, self._kernels[kind].planes(of_kind, pool), strict=True)
+        return [(kind, found[k]) for k, kind in enumerate(kinds)]
 
     def _blocks(self) -> list[slice]:
         """Runs of x-planes."""
@@ -236,36 +211,18 @@ class GridScorer:
         return found
 
     def _sensor(
-        self,
-        sensor: Sensor,
-        rig: Rig,
-        by_part: Mapping[Names, Sums],
-        ready: BeamField | CameraPlanes,
+        self, sensor: Sensor, rig: Rig, by_part: Mapping[Names, Sums], ready: Any
     ) -> SensorScore:
         names = tuple(s.name for s in rig)
         whole, alone = by_part[names], by_part[(sensor.name,)]
         others = by_part.get(tuple(n for n in names if n != sensor.name))
         failed = H_BLIND if others is None else self._mean(others.entropy)
         lost = rounded(failed - self._mean(whole.entropy))
-        counts = self._beam_counts(ready)
-        return SensorScore(self._mean(alone.entropy), self._mean(alone.coverage), lost, *counts)
-
-    def _beam_counts(self, ready: BeamField | CameraPlanes) -> tuple[int, int, dict[str, int]]:
-        """Beams, how many the vehicle stops, and by which parts; zeros for a camera."""
-        if isinstance(ready, CameraPlanes):
-            return 0, 0, {}
-        return ready.counts(tuple(self._vehicle.part_names) if self._vehicle else ())
+        stopped = self._kernels[sensor.kind].stopped(ready)
+        return sensor_score(self._mean(alone.entropy), self._mean(alone.coverage), lost, stopped)
 
 
 def _ground_map(columns: Floats) -> GroundMap:
     entropy, coverage, mass = columns
     safe = np.where(mass > 0.0, mass, np.nan)
     return GroundMap(entropy / safe, coverage / safe, mass)
-
-
-def _counts_of(counts: NDArray) -> MeasuredPlanes:
-    return lambda planes: ("lidar", counts[planes])
-
-
-def _pixels_of(cameras: Sequence[CameraPlanes]) -> MeasuredPlanes:
-    return lambda planes: ("camera", reduce(add, (camera.areas(planes) for camera in cameras)))

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kinds import Stopped
+
 DECIMALS = 9
 """Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
 
@@ -110,6 +112,11 @@ class Score:
             "per_zone": {name: asdict(part) for name, part in self.per_zone.items()},
             "per_sensor": {name: asdict(own) for name, own in self.per_sensor.items()},
         }
+
+
+def sensor_score(entropy: float, coverage: float, lost: float, stopped: Stopped) -> SensorScore:
+    """Put together what is known of one sensor."""
+    return SensorScore(entropy, coverage, lost, stopped.beams, stopped.stopped, stopped.by_part)
 
 
 def rounded(value: float) -> float:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from functools import reduce
-from operator import add
 from typing import Any
 
-import numpy as np
-
+from ..metric.fusion import group_sum
 from ..scene.sensors import Rig
 
 Names = tuple[str, ...]
@@ -33,11 +30,5 @@ def fused_early(
         present = [measured[s.name] for s in sensors if s.name in members]
         if present:
             kind = sensors[0].kind
-            groups.append((kind, _total(present) if len(present) > 1 else present[0]))
+            groups.append((kind, group_sum(present)))
     return groups
-
-
-def _total(measured: list[Any]) -> Any:
-    """Sum measurements; whole numbers are counts, perhaps of few bits each."""
-    whole = isinstance(measured[0], np.ndarray) and measured[0].dtype.kind in "iu"
-    return reduce(add, (m.astype(np.uint32) for m in measured) if whole else measured)

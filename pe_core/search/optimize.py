@@ -188,10 +188,10 @@ def optimize(
         center = best
         for _ in range(schedule.candidates):
             candidate = _neighbour(center, search_space, schedule, scale, rng)
-            found = evaluator.entropy(candidate, below=entropy)
-            improved = found < entropy
+            found = evaluator.judge(candidate, below=entropy)
+            improved = found.entropy < entropy
             if improved:
-                best, entropy = candidate, found
+                best, entropy = candidate, found.entropy
             count += 1
             yield Step(best, entropy, count, (count - 1) / total, number, improved)
 

@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from ..metric.entropy import PerceptionModel
+from ..kinds import PerceptionModel
 from ..prior.prior import Prior
 from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
@@ -64,12 +64,11 @@ class Study:
 
     def evaluator(self, samples: int | None = None, workers: int | None = None) -> Evaluator:
         """Return the evaluator of this study; `samples` replaces the study's own."""
-        count = self.samples if samples is None else samples
         return Evaluator(
             self.space,
             self.prior,
             self.vehicle,
-            samples=count or None,
+            samples=self.samples if samples is None else samples,
             model=self.model,
             workers=workers,
         )

@@ -10,7 +10,8 @@ from typing import Any
 from .. import catalog
 from ..errors import InputError
 from ..formats.meshes import read_mesh
-from ..metric.entropy import ApCurve, PerceptionModel
+from ..kinds import BLIND_RULES, KINDS, PerceptionModel
+from ..metric.entropy import ApCurve
 from ..scene.geometry import Pose
 from ..scene.sensors import Rig, Sensor, SensorModel
 from ..scene.space import PerceptionSpace
@@ -66,10 +67,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
             "interval": study.space.interval,
         },
         "prior": prior_table(study.prior),
-        "ap": {
-            "lidar": {"a": study.model.lidar.a, "b": study.model.lidar.b},
-            "camera": {"a": study.model.camera.a, "b": study.model.camera.b},
-        },
+        "ap": {kind: {"a": c.a, "b": c.b} for kind, c in study.model.curves.items()},
         "fusion": {"blind": study.model.blind},
         "vehicle": _vehicle_table(study),
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
@@ -122,11 +120,8 @@ def _read_space(table: Table) -> PerceptionSpace:
 
 def _read_model(curves: Table, fusion: Table) -> PerceptionModel:
     default = PerceptionModel()
-    model = PerceptionModel(
-        _read_curve(curves.table("lidar"), default.lidar),
-        _read_curve(curves.table("camera"), default.camera),
-        fusion.text("blind", default.blind, ("floor", "literal")),
-    )
+    own = {kind: _read_curve(curves.table(kind), default.curve(kind)) for kind in KINDS}
+    model = PerceptionModel(fusion.text("blind", default.blind, BLIND_RULES), **own)
     curves.finish()
     fusion.finish()
     return model

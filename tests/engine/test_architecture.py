@@ -1,4 +1,4 @@
-"""The engine stands alone: NumPy, the standard library, and itself by relative imports."""
+"""The engine's rooms: what each may import, and that nothing else is imported."""
 
 import ast
 import subprocess
@@ -12,21 +12,101 @@ import pe_core
 ROOT = Path(pe_core.__file__).parent
 FILES = sorted(ROOT.rglob("*.py"))
 
+ALLOWED = {
+    "errors": set(),
+    "version": set(),
+    "text": {"errors"},
+    "metric": {"errors", "text"},
+    "scene": {"errors", "text"},
+    "prior": {"errors", "text", "scene"},
+    "kinds": {"errors", "text", "metric", "scene"},
+    "formats": {"errors", "text", "metric", "scene", "prior", "kinds"},
+    "scoring": {"errors", "text", "metric", "scene", "prior", "kinds"},
+    "search": {"errors", "text", "scene", "scoring"},
+    "catalog": {"errors", "text", "scene", "kinds"},
+    "study": {
+        *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
+        *("formats", "scoring", "search", "catalog"),
+    },
+    "app": {"errors", "version", "text", "kinds", "catalog", "study"},
+    "__main__": {"app"},
+}
+"""Rooms of the engine, lowest first, and those they may look into: all of them further up here."""
 
-def imported_modules(path):
-    """(level, top-level name) of every import in a file, inside functions too."""
+
+def imports(path):
+    """(level, dotted module, name) of every import in a file, inside functions too."""
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
-            yield from ((0, alias.name.split(".")[0]) for alias in node.names)
+            yield from ((0, alias.name, "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            yield node.level, (node.module or "").split(".")[0]
+            yield from ((node.level, node.module or "", alias.name) for alias in node.names)
+
+
+def room_of(path):
+    """The room that a file is in, or the name of a file that is beside them."""
+    return path.relative_to(ROOT).with_suffix("").parts[0]
+
+
+def rooms_imported(path):
+    """Rooms that a file imports from, whichever way it is written."""
+    package = path.relative_to(ROOT).parts[:-1]
+    for level, module, name in imports(path):
+        if level == 0:
+            continue
+        parts = [*package[: len(package) - (level - 1)], *filter(None, module.split(".")), name]
+        yield parts[0]
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_imports_are_numpy_the_standard_library_or_relative(path):
     allowed = sys.stdlib_module_names | {"numpy"}
-    foreign = {name for level, name in imported_modules(path) if level == 0} - allowed
+    foreign = {module.split(".")[0] for level, module, _ in imports(path) if level == 0} - allowed
     assert not foreign
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_rooms_look_only_into_rooms_below_them(path):
+    room = room_of(path)
+    if room != "__init__":  # the public face of it all
+        assert set(rooms_imported(path)) - {room} <= ALLOWED[room]
+
+
+def test_every_room_is_in_the_list_and_arrows_run_one_way():
+    rooms = {room_of(path) for path in FILES} - {"__init__"}
+    assert rooms == set(ALLOWED)
+    above = list(ALLOWED)
+    for number, room in enumerate(above):
+        assert ALLOWED[room] <= set(above[:number]), room
+
+
+def test_the_check_sees_every_way_to_write_an_import(tmp_path, monkeypatch):
+    """Modules from a package, packages from the root, imports inside functions."""
+    monkeypatch.setattr(sys.modules[__name__], "ROOT", tmp_path)
+    path = tmp_path / "kinds" / "lidar" / "odd.py"
+    path.parent.mkdir(parents=True)
+    path.write_text(
+        "from ... import study\n"
+        "from ...scoring.score import Score\n"
+        "from ..kernels import Voxels\n"
+        "def late():\n    from ...app import cli\n"
+    )
+    assert set(rooms_imported(path)) == {"study", "scoring", "kinds", "app"}
+
+
+def test_a_sensor_s_kind_is_asked_of_the_table_alone():
+    """Outside a kind's own folder nobody tells LiDARs from cameras by class or by name."""
+    for path in FILES:
+        inside = path.relative_to(ROOT).parts
+        if inside[:2] in (("kinds", "lidar"), ("kinds", "camera")) or len(inside) == 1:
+            continue
+        named = {name for _, _, name in imports(path)} & {"Lidar", "Camera"}
+        texts = {
+            node.value
+            for node in ast.walk(ast.parse(path.read_text("utf-8")))
+            if isinstance(node, ast.Constant)
+        } & {"lidar", "camera"}
+        assert inside == ("kinds", "__init__.py") or not named | texts, path
 
 
 def test_importing_the_engine_loads_no_blender():
@@ -34,9 +114,3 @@ def test_importing_the_engine_loads_no_blender():
         "import sys, pe_core; sys.exit(any(m in sys.modules for m in ('bpy', 'mathutils', 'gpu')))"
     )
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT.parent).returncode == 0
-
-
-def test_kernels_do_not_know_the_layers_above():
-    above = {"evaluate", "gridded", "sampled", "jobs", "study", "study_file", "cli", "command"}
-    for path in (ROOT / "kernels").glob("*.py"):
-        assert not {n for level, n in imported_modules(path) if level} & above, path.name

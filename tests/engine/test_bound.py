@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.scoring import Judgement
 from pe_core.search.optimize import SearchSpace
 from tests.engine import shapes
 
@@ -37,10 +38,13 @@ def test_a_bound_is_one_and_is_told_only_where_it_settles_the_matter(blind):
         rig = sensors(rng)
         exact = plain.entropy(rig)
         for below in (exact - 1.0, exact - 0.01, exact, exact + 1e-6, exact + 1.0, math.inf):
-            told = evaluator.entropy(rig, below=below)
-            assert told == exact or below <= told < exact
-            assert (told < below) == (exact < below)
-            bounds += told != exact
+            told = evaluator.judge(rig, below)
+            if told.is_lower_bound:
+                assert below <= told.entropy <= exact
+            else:
+                assert told.entropy == exact
+            assert (told.entropy < below) == (exact < below)
+            bounds += told.is_lower_bound
     assert bounds > 10
 
 
@@ -49,7 +53,7 @@ def test_after_a_bound_the_score_is_exact():
     first, second = sensors(rng), sensors(rng)
     evaluator = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096)
     start = evaluator.score(first).to_dict()
-    evaluator.entropy(second, below=-10.0)
+    assert evaluator.judge(second, below=-10.0).is_lower_bound
     assert evaluator.score(first).to_dict() == start
     fresh = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096)
     assert evaluator.score(second).to_dict() == fresh.score(second).to_dict()
@@ -57,8 +61,8 @@ def test_after_a_bound_the_score_is_exact():
 
 def test_a_search_finds_the_same_with_bounds_and_without():
     class Plain(pe.Evaluator):
-        def entropy(self, rig, **_):
-            return super().entropy(rig)
+        def judge(self, rig, below):
+            return Judgement(super().entropy(rig), False)
 
     rig = sensors(np.random.default_rng(7))
     space = SearchSpace.on_vehicle(rig, VEHICLE)
@@ -75,7 +79,7 @@ def test_a_search_finds_the_same_with_bounds_and_without():
 def test_a_grid_score_takes_the_limit_and_stays_exact():
     rig = sensors(np.random.default_rng(8))
     evaluator = pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE)
-    assert evaluator.entropy(rig, below=-99.0) == evaluator.entropy(rig)
+    assert evaluator.judge(rig, below=-99.0) == (evaluator.entropy(rig), False)
 
 
 def test_a_lidar_beside_a_voxels_axis_warns_of_nothing():

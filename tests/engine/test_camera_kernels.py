@@ -33,7 +33,7 @@ def whole_grid(sensor, space, vehicle, block):
     for start in range(0, space.shape[0], block):
         planes = slice(start, min(start + block, space.shape[0]))
         view = camera.areas(planes)
-        area[planes, view.rows] = view.area
+        area[planes, view.rows] = view.m
     return area
 
 
@@ -79,7 +79,7 @@ def test_views_add_up():
     none = SeenRows(slice(0, 0), np.ones((2, 0, 4)))
     total = some + more
     assert total.rows == slice(1, 5)
-    assert total.area[1, :, 3].tolist() == [1.0, 2.0, 1.0, 1.0]
+    assert total.m[1, :, 3].tolist() == [1.0, 2.0, 1.0, 1.0]
     assert (none + some) is some and (some + none) is some
 
 

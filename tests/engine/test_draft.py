@@ -27,8 +27,8 @@ def rig_at(*places):
 @pytest.mark.parametrize("place", [(-0.43, 0.0, 1.8), (0.3, 0.2, 1.6), (1.9, 0.0, 1.4), (5, 0, 2)])
 def test_a_draft_stops_nearly_the_same_beams(place, rotation):
     sensor = shapes.lidar_on_roof(position=place, rotation=rotation)
-    cast = BeamEnds(CAR).of(sensor, TurnedBeams.of(sensor), draft=False)
-    draft = BeamEnds(CAR).of(sensor, TurnedBeams.of(sensor), draft=True)
+    cast = pe.beam_field(sensor, CAR).ends
+    draft = BeamEnds(CAR).draft(sensor, TurnedBeams.of(sensor))
     stopped = cast < 200.0
     assert np.mean(stopped != (draft < 200.0)) < 0.01
     both = stopped & (draft < 200.0)

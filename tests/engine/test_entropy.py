@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.kinds.lidar.on_grid import compact
 from pe_core.metric import (
     BLIND_PRECISION,
     H_BLIND,
@@ -87,10 +88,10 @@ def test_look_up_tables_equal_the_equations(curve):
 def test_compact_counts_give_the_same_entropies(curve, kind):
     fusion = Fusion(pe.PerceptionModel(lidar=curve))
     m = np.array([[0, 1, 9, 10, 255, 256, 40_000, 65_535]], np.uint16)
-    small = fusion.compact(m)
+    small = compact(m, fusion.enough("lidar"))
     assert small.dtype == kind and not np.shares_memory(small, m)
-    plain, compact = (fusion.entropies([("lidar", counts)])[0] for counts in (m, small))
-    assert plain.tolist() == compact.tolist()
+    plain, compacted = (fusion.entropies([("lidar", counts)])[0] for counts in (m, small))
+    assert plain.tolist() == compacted.tolist()
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,7 @@ def test_the_truth_lies_within_two_reported_errors():
     assert within >= 45
 
 
-@pytest.mark.parametrize("samples", [None, 20_000], ids=["grid", "sampled"])
+@pytest.mark.parametrize("samples", [0, 20_000], ids=["grid", "sampled"])
 def test_classes_make_up_the_whole(samples):
     score = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples).score(rig_of_all_kinds())
     classes = score.per_class.values()
@@ -92,7 +92,7 @@ def test_classes_make_up_the_whole(samples):
     assert sum(c.share * c.coverage for c in classes) == pytest.approx(score.coverage)
 
 
-@pytest.mark.parametrize("samples", [None, 40_000], ids=["grid", "sampled"])
+@pytest.mark.parametrize("samples", [0, 40_000], ids=["grid", "sampled"])
 def test_zones_halve_the_space_and_ring_the_vehicle(samples):
     score = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples).score(rig_of_all_kinds())
     zones = score.per_zone
@@ -105,7 +105,7 @@ def test_zones_halve_the_space_and_ring_the_vehicle(samples):
     assert zones["near"].entropy < zones["mid"].entropy
 
 
-@pytest.mark.parametrize("samples", [None, 20_000], ids=["grid", "sampled"])
+@pytest.mark.parametrize("samples", [0, 20_000], ids=["grid", "sampled"])
 def test_what_a_sensor_s_failure_costs_is_the_score_without_it(samples):
     evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples)
     rig = rig_of_all_kinds()
@@ -139,7 +139,7 @@ def test_the_ground_map_averages_to_the_score():
     assert mean == pytest.approx(score.entropy, abs=1e-4)
 
 
-@pytest.mark.parametrize("samples", [None, 20_000], ids=["grid", "sampled"])
+@pytest.mark.parametrize("samples", [0, 20_000], ids=["grid", "sampled"])
 def test_a_further_sensor_never_makes_it_worse(samples):
     evaluator = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples)
     sensors = rig_of_all_kinds().sensors
@@ -193,7 +193,7 @@ def test_a_sensor_that_moved_and_came_back_scores_the_same():
 
 def test_no_warning_reaches_the_user(recwarn):
     blind = shapes.lidar_on_roof(shapes.small_lidar(), (-0.4, 0.0, 1.0))
-    for samples in (None, 5000):
+    for samples in (0, 5000):
         score = pe.Evaluator(SPACE, ROAD, shapes.box_car(), samples=samples).score(pe.Rig([blind]))
         assert score.coverage < 0.01
     assert not recwarn.list

@@ -29,7 +29,7 @@ def whole(measured, factor=1.0):
     if not isinstance(measured, SeenRows):
         return measured.astype(float)
     area = np.zeros((2, *SHAPE))
-    area[:, measured.rows] = measured.area * factor
+    area[:, measured.rows] = measured.m * factor
     return area
 
 

@@ -1,6 +1,7 @@
 """LiDARs: beams, the voxels they pass, and the vehicle that stops them."""
 
 from .beams import BeamField, beam_field
+from .kind import LIDAR
 from .model import Lidar
 
-__all__ = ["BeamField", "Lidar", "beam_field"]
+__all__ = ["LIDAR", "BeamField", "Lidar", "beam_field"]

@@ -9,9 +9,11 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ...scene.raycast import Hits
 from ...scene.sensors import Sensor
 from ...scene.vehicle import Vehicle
-from .definition import beam_directions, beam_ends
+from ..kernels import Stopped
+from .definition import beam_directions
 from .horizon import Slants, TopMap
 from .model import Lidar
 from .ties import without_zeros
@@ -19,9 +21,9 @@ from .ties import without_zeros
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class BeamField:
-    """The beams of a mounted LiDAR.
+    """The beams of a mounted LiDAR, cast against a vehicle (None: nothing stops them).
 
     `directions` (B, 3) unit, ground frame; `ends` (B,) [m]; `stopped_by` (B,) index of the vehicle
     part that stops the beam within its range, -1 where none does.
@@ -29,7 +31,17 @@ class BeamField:
 
     directions: Floats
     ends: Floats
-    stopped_by: NDArray[np.int64]
+    _max_range: float
+    _hits: Hits | None = None
+    _vehicle: Vehicle | None = None
+
+    @cached_property
+    def stopped_by(self) -> NDArray[np.int64]:
+        """(B,) part of the vehicle, or -1; worked out when it is asked for."""
+        if self._hits is None or self._vehicle is None:
+            return np.full(len(self.ends), -1)
+        parts = np.asarray(self._vehicle.parts)[self._hits.face]
+        return np.where(self._hits.distance < self._max_range, parts, -1)
 
     def stopped_count(self, part_names: tuple[str, ...]) -> dict[str, int]:
         """Stopped beams by part, most first."""
@@ -37,55 +49,52 @@ class BeamField:
         order = np.argsort(-counts, kind="stable")
         return {part_names[i]: int(counts[i]) for i in order if counts[i]}
 
-    def counts(self, part_names: tuple[str, ...]) -> tuple[int, int, dict[str, int]]:
-        """Beams, how many the vehicle stops, and by which parts."""
-        stopped_by = self.stopped_count(part_names)
-        return len(self.ends), sum(stopped_by.values()), stopped_by
 
-
-def beam_field(sensor: Sensor, vehicle: Vehicle | None) -> BeamField:
-    """Cast all beams of a LiDAR against the vehicle (None: nothing stops them)."""
-    directions = beam_directions(sensor)
+def beam_field(
+    sensor: Sensor, vehicle: Vehicle | None, directions: Floats | None = None
+) -> BeamField:
+    """Cast all beams of a LiDAR against the vehicle; `directions` if they are known already."""
+    if directions is None:
+        directions = beam_directions(sensor)
     max_range = cast(Lidar, sensor.model).max_range
     if vehicle is None:
-        free = np.full(len(directions), -1)
-        return BeamField(directions, np.full(len(directions), max_range), free)
+        return BeamField(directions, np.full(len(directions), max_range), max_range)
     hits = vehicle.first_hit(sensor.pose.position, directions)
-    stopped = hits.distance < max_range
-    parts = np.asarray(vehicle.parts)[hits.face]
-    return BeamField(directions, np.minimum(hits.distance, max_range), np.where(stopped, parts, -1))
+    ends = np.minimum(hits.distance, max_range)
+    return BeamField(directions, ends, max_range, hits, vehicle)
 
 
-def beam_counts(sensor: Sensor, vehicle: Vehicle | None) -> tuple[int, int, dict[str, int]]:
-    """Beams of a sensor, how many the vehicle stops, and by which parts; zeros for a camera."""
-    if sensor.kind != "lidar":
-        return 0, 0, {}
-    field = beam_field(sensor, vehicle)
+def stopped_beams(field: BeamField, vehicle: Vehicle | None) -> Stopped:
+    """Count a LiDAR's beams, those that the vehicle stops, and those by part."""
     names = () if vehicle is None else tuple(vehicle.part_names)
-    return field.counts(names)
+    by_part = field.stopped_count(names)
+    return Stopped(len(field.ends), sum(by_part.values()), by_part)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TurnedBeams:
     """A LiDAR's beams at one orientation: kept while the sensor moves without turning.
 
-    `directions` (B, 3) unit, ground frame; `without_zeros` the same as the kernels take them;
-    `slants` for drafts.
+    `directions` (B, 3) unit, ground frame; `without_zeros` the same as the kernels take them.
     """
 
     directions: Floats
     without_zeros: Floats
-    slants: Slants
 
     @classmethod
     def of(cls, sensor: Sensor) -> TurnedBeams:
         """Turn the beams of a LiDAR."""
         directions = beam_directions(sensor)
-        return cls(directions, without_zeros(directions), Slants.of(directions))
+        return cls(directions, without_zeros(directions))
+
+    @cached_property
+    def slants(self) -> Slants:
+        """For drafts alone: worked out when one is asked for."""
+        return Slants.of(self.directions)
 
 
 class BeamEnds:
-    """Where the beams of LiDARs on a vehicle end: cast, or read from a map of its top as a draft.
+    """Where the beams of LiDARs on a vehicle end, read from a map of its top: a draft.
 
     Parameters
     ----------
@@ -105,9 +114,8 @@ class BeamEnds:
             return False
         return self._map.is_above(np.asarray(sensor.pose.position), self._vehicle.clearance)
 
-    def of(self, sensor: Sensor, beams: TurnedBeams, draft: bool) -> Floats:
-        """(B,) distance at which each beam ends [m]: as a draft where that is asked and can be."""
-        if not (draft and self.can_draft(sensor)) or self._map is None:
-            return beam_ends(sensor, beams.directions, self._vehicle)
+    def draft(self, sensor: Sensor, beams: TurnedBeams) -> Floats:
+        """(B,) distance at which each beam of a sensor that `can_draft` is taken to end [m]."""
+        assert self._map is not None
         max_range = cast(Lidar, sensor.model).max_range
         return self._map.ends(np.asarray(sensor.pose.position), beams.slants, max_range)

@@ -1,0 +1,64 @@
+"""Cameras on the grid and on a sample, as scoring asks for them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from functools import partial, reduce
+from operator import add
+from typing import cast
+
+from numpy.typing import NDArray
+
+from ...metric.planes import SeenRows
+from ...scene.sensors import Sensor
+from ...scene.space import PerceptionSpace
+from ...scene.vehicle import SeenMesh, Vehicle
+from ..kernels import GridKernel, Measured, Planes, SampleKernel, Voxels
+from .grid import CameraPlanes
+from .model import Camera
+from .points import pixel_areas
+
+
+class CameraGrid(GridKernel):
+    """Measures areas on all voxels of a space."""
+
+    def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None) -> None:
+        self._space, self._vehicle = space, vehicle
+
+    def ready(self, sensor: Sensor) -> CameraPlanes:
+        """Look at the vehicle from the camera."""
+        seen = _seen(self._vehicle, sensor)
+        return CameraPlanes(cast(Camera, sensor.model), sensor.pose, self._space, seen)
+
+    def planes(self, groups: Sequence[Sequence[CameraPlanes]], pool: Executor) -> list[Planes]:
+        """Measure each group when its planes are asked for."""
+        return [partial(_areas, cameras) for cameras in groups]
+
+
+class CameraSample(SampleKernel):
+    """Measures areas of sampled voxels."""
+
+    def __init__(self, voxels: Voxels, vehicle: Vehicle | None) -> None:
+        self._voxels, self._vehicle = voxels, vehicle
+
+    def measure(self, sensor: Sensor, draft: bool) -> Measured:
+        """Measure a camera; there are no drafts."""
+        return Measured(sensor, self._pixels(sensor, self._vehicle))
+
+    def unhidden(self, sensor: Sensor) -> NDArray:
+        """Measure a camera as if there were no vehicle."""
+        return self._pixels(sensor, None)
+
+    def _pixels(self, sensor: Sensor, vehicle: Vehicle | None) -> NDArray:
+        camera, side = cast(Camera, sensor.model), self._voxels.space.interval
+        seen = _seen(vehicle, sensor)
+        return pixel_areas(camera, sensor.pose, self._voxels.centers, side, seen)
+
+
+def _areas(cameras: Sequence[CameraPlanes], planes: slice) -> SeenRows:
+    return reduce(add, (camera.areas(planes) for camera in cameras))
+
+
+def _seen(vehicle: Vehicle | None, sensor: Sensor) -> SeenMesh | None:
+    return None if vehicle is None else vehicle.seen_from(sensor.pose.position, through_glass=True)

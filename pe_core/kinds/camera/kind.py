@@ -1,0 +1,57 @@
+"""Camera: the row of the table of kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ...metric.entropy import RTM3D
+from ...scene.sensors import Sensor
+from ...scene.space import PerceptionSpace
+from ...scene.vehicle import Vehicle
+from ..kernels import Floats, Voxels
+from ..kind import Kind
+from . import table as tables
+from .definition import count_pixels
+from .kernels import CameraGrid, CameraSample
+from .model import Camera
+from .words import figures
+
+
+class CameraKind(Kind):
+    """Cameras: m is the number of pixels that a voxel covers."""
+
+    name, label, plural, unit = "camera", "Camera", "Cameras", "pixels"
+    model = Camera
+    curve = RTM3D
+    keys = tables.KEYS
+
+    def measure(
+        self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
+    ) -> Floats:
+        """Measure the area of each cube's image."""
+        return count_pixels(sensor, centers, side, vehicle)
+
+    def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Camera:
+        """Build a camera from its table."""
+        return tables.read(name, table)
+
+    def write(self, model: Camera) -> dict[str, Any]:
+        """Return a camera's table."""
+        return tables.write(model)
+
+    def words(self, model: Camera) -> list[str]:
+        """Picture, field of view, focal length."""
+        return figures(model)
+
+    def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> CameraGrid:
+        """Fill columns of voxels between the sides of the picture."""
+        return CameraGrid(space, vehicle)
+
+    def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> CameraSample:
+        """Take the closed form of the area where it is good."""
+        return CameraSample(voxels, vehicle)
+
+
+CAMERA = CameraKind()

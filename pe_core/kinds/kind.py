@@ -1,0 +1,80 @@
+"""What a kind of sensor is: one row of the table of kinds.
+
+A kind has to say its definition of m, and how its sensors are written and told. Its kernels are a
+matter of speed: without any, every voxel is measured by the definition.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..metric.entropy import ApCurve
+from ..scene.sensors import Sensor, SensorModel
+from ..scene.space import PerceptionSpace
+from ..scene.vehicle import Vehicle
+from .defined import DefinedGrid, DefinedSample
+from .kernels import Floats, GridKernel, SampleKernel, Voxels
+
+
+class Kind(ABC):
+    """A kind of sensor.
+
+    Attributes
+    ----------
+    name : str
+        As studies, the catalogue and ``[ap.NAME]`` have it.
+    label, plural : str
+        What people call one of them, and several.
+    unit : str
+        What a measurement counts.
+    model : type
+        Class of its intrinsics; its `kind` is the name.
+    curve : ApCurve
+        Eq. 4 of its detector, unless a study has another.
+    keys : frozenset of str
+        Keys of a sensor's table, but for those that every kind has.
+    """
+
+    name: str
+    label: str
+    plural: str
+    unit: str
+    model: type[SensorModel]
+    curve: ApCurve
+    keys: frozenset[str]
+
+    @abstractmethod
+    def measure(
+        self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
+    ) -> Floats:
+        """m of cubes with centres (V, 3) [m] and that side [m], as it is defined: (V,)."""
+
+    @abstractmethod
+    def read(self, name: str, table: Mapping[str, Any], folder: Path) -> SensorModel:
+        """Build a sensor's intrinsics from its table; files it names are relative to `folder`."""
+
+    @abstractmethod
+    def write(self, model: Any) -> dict[str, Any]:
+        """Return the table that `read` turns into this sensor again, without its kind."""
+
+    @abstractmethod
+    def words(self, model: Any) -> list[str]:
+        """Figures of a sensor for people, a line each."""
+
+    def plot(self, model: Any) -> list[str]:
+        """Lines of a small picture of a sensor in text; none by default."""
+        return []
+
+    def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> GridKernel:
+        """Return what measures sensors on all voxels of a space.
+
+        `enough` is the whole number from which on m is saturated: more changes nothing.
+        """
+        return DefinedGrid(self.measure, space, vehicle)
+
+    def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> SampleKernel:
+        """Return what measures sensors on some voxels; `enough` as on the grid."""
+        return DefinedSample(self.measure, voxels, vehicle)

@@ -1,0 +1,62 @@
+"""LiDAR: the row of the table of kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ...metric.entropy import POINTPILLARS
+from ...scene.sensors import Sensor
+from ...scene.space import PerceptionSpace
+from ...scene.vehicle import Vehicle
+from ..kernels import Floats, Voxels
+from ..kind import Kind
+from . import table as tables
+from .definition import count_beams
+from .model import Lidar
+from .on_grid import LidarGrid
+from .on_sample import LidarSample
+from .words import channel_plot, figures
+
+
+class LidarKind(Kind):
+    """LiDARs: m is the number of beams through a voxel."""
+
+    name, label, plural, unit = "lidar", "LiDAR", "LiDARs", "beams"
+    model = Lidar
+    curve = POINTPILLARS
+    keys = tables.KEYS
+
+    def measure(
+        self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
+    ) -> Floats:
+        """Count the beams that pass through each cube before they end."""
+        return count_beams(sensor, centers, side, vehicle)
+
+    def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
+        """Build a LiDAR from its table."""
+        return tables.read(name, table, folder)
+
+    def write(self, model: Lidar) -> dict[str, Any]:
+        """Return a LiDAR's table."""
+        return tables.write(model)
+
+    def words(self, model: Lidar) -> list[str]:
+        """Channels, azimuths, beams, range."""
+        return figures(model)
+
+    def plot(self, model: Lidar) -> list[str]:
+        """Where the channels are."""
+        return channel_plot(model)
+
+    def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> LidarGrid:
+        """Sweep planes of the grid."""
+        return LidarGrid(space, vehicle, enough)
+
+    def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> LidarSample:
+        """Look beams up by direction."""
+        return LidarSample(voxels, vehicle, enough)
+
+
+LIDAR = LidarKind()

@@ -1,0 +1,233 @@
+"""A kind of sensor made in this file alone goes all the way: study, grid, sample, search, result.
+
+An ultrasonic ring: m depends on the distance alone, and so does what is expected of every score.
+"""
+
+import json
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import catalog, kinds
+from pe_core.app.cli import main
+from pe_core.metric import entropy_of, late_fusion, precision_of
+from pe_core.scene.sensors import SensorModel
+from tests.engine import shapes
+
+SPACE = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 3), 0.5)
+CURVE = pe.ApCurve(0.1, 0.4)
+STUDY = """
+[space]
+x = [-8, 8]
+y = [-6, 6]
+z = [0, 3]
+interval = 0.5
+
+[ap.ultrasonic]
+a = 0.2
+
+[[sensor]]
+name = "bumper"
+model = { kind = "ultrasonic", range_m = 4.0 }
+position = [2.0, 0.0, 0.5]
+free = ["x", "y"]
+
+[[sensor]]
+name = "roof"
+model = "Pandar64"
+position = [0.0, 0.0, 1.8]
+
+[optimize]
+candidates = 4
+samples = 1024
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Ring(SensorModel):
+    """An ultrasonic ring."""
+
+    kind: ClassVar[str] = "ultrasonic"
+    name: str
+    range_m: float
+
+
+class RingKind(kinds.Kind):
+    """m is how many times the distance goes into the range, 0 beyond it."""
+
+    name, label, plural, unit = "ultrasonic", "Ultrasonic Ring", "Ultrasonic Rings", "echoes"
+    model = Ring
+    curve = CURVE
+    keys = frozenset({"range_m"})
+
+    def measure(self, sensor, centers, side, vehicle):
+        offsets = centers - np.asarray(sensor.pose.position)
+        distance = np.sqrt((offsets**2).sum(axis=1))
+        times = sensor.model.range_m / np.maximum(distance, side / 2)
+        return np.where(times >= 1.0, times, 0.0)
+
+    def read(self, name, table, folder):
+        return Ring(name, float(table["range_m"]))
+
+    def write(self, model):
+        return {"range_m": model.range_m}
+
+    def words(self, model):
+        return [f"range           {model.range_m:g} m"]
+
+
+@pytest.fixture
+def ring_kind():
+    """Have the kind in the table for a test."""
+    kind = RingKind()
+    kinds.register(kind)
+    yield kind
+    kinds.unregister(kind.name)
+
+
+def ring(name="bumper", position=(2.0, 0.0, 0.5), range_m=4.0, fusion=None):
+    return pe.Sensor(name, Ring("ring", range_m), pe.Pose(position), fusion)
+
+
+def centers_of(space):
+    index = np.stack(np.meshgrid(*map(np.arange, space.shape), indexing="ij"), axis=-1)
+    return space.center_of(index.reshape(-1, 3))
+
+
+def expected_entropy(measured, curve):
+    """Mean entropy under the uniform prior, by the equations: one group a row of `measured`."""
+    return float(np.mean(entropy_of(late_fusion([precision_of(m, curve) for m in measured]))))
+
+
+def test_the_grid_is_the_definition_and_the_equations(ring_kind):
+    sensors = [ring("a"), ring("b", (-2.0, 1.0, 0.5), 3.0)]
+    score = pe.Evaluator(SPACE, pe.Prior.uniform()).score(pe.Rig(sensors))
+    measured = [pe.measure(s, centers_of(SPACE), SPACE.interval) for s in sensors]
+    assert score.entropy == pytest.approx(expected_entropy(measured, CURVE), abs=1e-9)
+    seen = np.mean((measured[0] > 0) | (measured[1] > 0))
+    assert score.coverage == pytest.approx(seen, abs=1e-9) and 0.02 < seen < 0.5
+    alone = [expected_entropy([m], CURVE) for m in measured]
+    assert score.per_sensor["a"].entropy == pytest.approx(alone[0], abs=1e-9)
+    assert score.per_sensor["b"].lost == pytest.approx(alone[0] - score.entropy, abs=2e-9)
+
+
+def test_one_group_of_two_is_fused_early(ring_kind):
+    sensors = [ring("a", fusion="both"), ring("b", (3.0, 1.0, 0.5), 5.0, fusion="both")]
+    entropy = pe.Evaluator(SPACE, pe.Prior.uniform()).entropy(pe.Rig(sensors))
+    total = sum(pe.measure(s, centers_of(SPACE), SPACE.interval) for s in sensors)
+    assert entropy == pytest.approx(expected_entropy([total], CURVE), abs=1e-9)
+
+
+def test_a_sample_is_as_good_as_the_grid_beside_lidar_and_camera(ring_kind):
+    rig = pe.Rig([ring(), shapes.lidar_on_roof(), shapes.camera()])
+    grid = pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car()).score(rig)
+    sample = pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=60_000).score(rig)
+    assert sample.entropy == pytest.approx(grid.entropy, abs=0.08)
+    for name, own in grid.per_sensor.items():
+        assert sample.per_sensor[name].entropy == pytest.approx(own.entropy, abs=0.1)
+
+
+def test_a_study_holds_it_and_its_curve(ring_kind, tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    study = pe.load_study(path)
+    assert study.rig["bumper"].model.range_m == 4.0
+    assert study.model.curve("ultrasonic") == study.model.ultrasonic == pe.ApCurve(0.2, 0.4)
+    pe.save_study(study, tmp_path / "again.toml")
+    again = pe.load_study(tmp_path / "again.toml")
+    assert pe.study_to_dict(again) == pe.study_to_dict(study)
+    assert again.model == study.model
+
+
+def test_the_command_scores_searches_and_leaves_results(ring_kind, tmp_path, capsys):
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    assert main(["optimize", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result == json.loads((tmp_path / "out" / "result.json").read_text())
+    bumper = result["after"]["per_sensor"]["bumper"]
+    assert math.isfinite(bumper["entropy"]) and bumper["beams"] == bumper["stopped"] == 0
+    assert result["inputs"]["study"]["sensor"][0]["model"] == {"kind": "ultrasonic", "range_m": 4.0}
+    moved = {p["placements"]["bumper"]["position"][0] for p in result["history"]}
+    assert len(moved) > 1, "the search never moved the ring"
+
+
+def test_a_preset_of_ones_own_is_listed_and_told(ring_kind, capsys):
+    catalog.add("Parking Ring", {"kind": "ultrasonic", "range_m": 2.5, "source": "this test"})
+    try:
+        assert "Parking Ring" in catalog.names("ultrasonic")
+        assert catalog.load("Parking Ring") is catalog.load("Parking Ring")
+        assert main(["sensors", "Parking Ring"]) == 0
+        told = capsys.readouterr().out
+        assert "2.5 m" in told and "this test" in told
+        with pytest.raises(pe.InputError, match="a name used once"):
+            catalog.add("Parking Ring", {"kind": "ultrasonic", "range_m": 3.0})
+    finally:
+        catalog.remove("Parking Ring")
+    assert "Parking Ring" not in catalog.entries()
+    with pytest.raises(pe.InputError, match="model"):
+        catalog.load("Parking Ring")
+
+
+def test_a_kind_that_is_not_in_the_table_is_refused_everywhere():
+    rig = pe.Rig([ring()])
+    for samples in (0, 1024):
+        with pytest.raises(pe.InputError, match=r"bumper: kind: expected one of lidar, camera"):
+            pe.Evaluator(SPACE, pe.Prior.uniform(), samples=samples).entropy(rig)
+    with pytest.raises(pe.InputError, match="kind"):
+        pe.measure(rig["bumper"], np.zeros((1, 3)), 0.5)
+    with pytest.raises(pe.InputError, match="kind: expected one of lidar, camera"):
+        catalog.from_table("ring", {"kind": "ultrasonic", "range_m": 4.0})
+    with pytest.raises(pe.InputError, match="the model of a sensor, found str"):
+        pe.Sensor("wrong", "Pandar64")
+    with pytest.raises(pe.InputError, match="ultrasonic"):
+        pe.PerceptionModel(ultrasonic=CURVE)
+
+
+def test_the_table_takes_each_name_once_and_only_its_own_model(ring_kind):
+    with pytest.raises(pe.InputError, match="a name used once"):
+        kinds.register(RingKind())
+
+    class Odd(RingKind):
+        name = "odd"
+
+    with pytest.raises(pe.InputError, match=r"model\.kind: expected 'odd', found 'ultrasonic'"):
+        kinds.register(Odd())
+    assert list(kinds.KINDS) == ["lidar", "camera", "ultrasonic"]
+
+
+def test_kernels_of_ones_own_are_asked(ring_kind, monkeypatch):
+    """A kind with a grid kernel of its own is measured by it: here one that sees everything."""
+
+    class Everything(kinds.GridKernel):
+        def ready(self, sensor):
+            return sensor
+
+        def planes(self, groups, pool):
+            _, ny, nz = SPACE.shape
+            return [
+                lambda planes: np.full((planes.stop - planes.start, ny, nz), 9, np.uint8)
+                for _ in groups
+            ]
+
+    monkeypatch.setattr(RingKind, "on_grid", lambda *_: Everything())
+    score = pe.Evaluator(SPACE, pe.Prior.uniform()).score(pe.Rig([ring()]))
+    assert score.coverage == 1.0
+    nine = float(entropy_of(precision_of(9, CURVE)))
+    assert score.entropy == pytest.approx(nine, abs=1e-9)
+
+
+def test_threads_may_share_a_sampled_evaluator():
+    """Each gets the score of its own rig, whatever the others ask at the same time."""
+    rigs = [pe.Rig([shapes.lidar_on_roof(position=(x, 0.0, 1.8))]) for x in (-1.0, 0.0, 1.0, 2.0)]
+    shared = pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=2048)
+    alone = [pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=2048) for _ in rigs]
+    expected = [own.score(rig).to_dict() for own, rig in zip(alone, rigs, strict=True)]
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda rig: shared.score(rig).to_dict(), rigs * 5))
+    assert found == expected * 5

@@ -74,7 +74,7 @@ def add(name: str, table: Mapping[str, Any]) -> None:
     if name in entries():
         raise InputError("catalogue", "name", "a name used once", repr(name))
     _loaded[name] = from_table(name, table)
-    _added[name] = Entry(name, OWN, MappingProxyType(dict(table)))
+    _added[name] = Entry(name, OWN, _frozen(table))
 
 
 def remove(name: str) -> None:
@@ -137,8 +137,15 @@ def _shipped() -> Mapping[str, Entry]:
         for name, table in tomllib.loads(file.read_text("utf-8")).items():
             if name in found:
                 raise InputError(file.name, name, "a name used once", found[name].file)
-            found[name] = Entry(name, file.name, MappingProxyType(table))
+            found[name] = Entry(name, file.name, _frozen(table))
     return MappingProxyType(found)
+
+
+def _frozen(value: Any) -> Any:
+    """Return plain data that nobody can change: the catalogue is everybody's."""
+    if isinstance(value, Mapping):
+        return MappingProxyType({key: _frozen(v) for key, v in value.items()})
+    return tuple(map(_frozen, value)) if isinstance(value, (list, tuple)) else value
 
 
 def _near(name: str) -> str:

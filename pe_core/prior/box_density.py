@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..scene.frozen import frozen
 from ..scene.space import PerceptionSpace
 from .boxes import OUTSIDE, Boxes, BoxReport
 from .classes import Floats, Shape, normed
@@ -100,7 +101,7 @@ def _class_counts(boxes: _Footprints, space: PerceptionSpace) -> tuple[Shape, in
     ground, profile = np.cumsum(steps, axis=1)[:, :-1], np.cumsum(rises)[:-1]
     shape = normed(ground, profile)
     for values in shape:
-        values.flags.writeable = False  # they are kept for the next who asks
+        frozen(values)  # they are kept for the next who asks
     return shape, int(((columns > 0) & (layers > 0)).sum())
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..scene.frozen import frozen
 
 Floats = NDArray[np.float64]
 
@@ -70,11 +71,11 @@ class Boxes:
     def __post_init__(self) -> None:
         names = np.array(self.names, dtype=np.str_).reshape(-1)
         _check_names(names)
-        object.__setattr__(self, "names", _frozen(names))
+        object.__setattr__(self, "names", frozen(names))
         for column in COLUMNS:
             values = _column(column, getattr(self, column), len(names))
-            object.__setattr__(self, column, _frozen(values))
-        object.__setattr__(self, "yaw", _frozen(_as_in_a_file(self.yaw)))
+            object.__setattr__(self, column, frozen(values))
+        object.__setattr__(self, "yaw", frozen(_as_in_a_file(self.yaw)))
         object.__setattr__(self, "digest", self._digest())
 
     def __len__(self) -> int:
@@ -198,8 +199,3 @@ def _as_in_a_file(yaw: Floats) -> Floats:
 def degrees_of(yaw: Floats) -> Floats:
     """Degrees as a file holds them."""
     return np.round(yaw * (180.0 / math.pi), YAW_DECIMALS)
-
-
-def _frozen(array: Any) -> Any:
-    array.flags.writeable = False
-    return array

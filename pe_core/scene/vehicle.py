@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from .frozen import frozen, frozen_copy
 from .geometry import FARTHEST_M, cross, dot
 from .heights import top_heights
 from .raycast import Hits, SeenTriangles
@@ -54,9 +55,9 @@ class Vehicle:
     def __post_init__(self) -> None:
         triangles = _checked_triangles(self.triangles)
         parts = (
-            np.zeros(len(triangles), np.int32)
+            frozen(np.zeros(len(triangles), np.int32))
             if self.parts is None
-            else (np.asarray(self.parts, dtype=np.int32))
+            else frozen_copy(self.parts, np.int32)
         )
         names = tuple(self.part_names)
         if parts.shape != (len(triangles),) or parts.min() < 0 or parts.max() >= len(names):
@@ -75,7 +76,7 @@ class Vehicle:
     def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner, each (3,) [m]."""
         corners = self.triangles.reshape(-1, 3)
-        return corners.min(axis=0), corners.max(axis=0)
+        return frozen(corners.min(axis=0)), frozen(corners.max(axis=0))
 
     @cached_property
     def _opaque(self) -> NDArray[np.int64]:
@@ -133,7 +134,7 @@ class SeenMesh:
 
 
 def _checked_triangles(values: ArrayLike) -> Floats:
-    triangles = np.ascontiguousarray(values, dtype=np.float64)
+    triangles: Floats = frozen_copy(values, np.float64)
     if triangles.ndim != 3 or triangles.shape[1:] != (3, 3) or not len(triangles):
         raise InputError("vehicle", "triangles", "(F, 3, 3) numbers, F > 0", triangles.shape)
     bad = ~np.isfinite(triangles).all(axis=(1, 2))

@@ -17,6 +17,7 @@ from ..metric.entropy import H_BLIND
 from ..metric.fusion import Fusion
 from ..metric.planes import Group, PlaneFusion
 from ..prior.prior import ClassDensity
+from ..scene.frozen import frozen
 from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
@@ -225,4 +226,4 @@ class GridScorer:
 def _ground_map(columns: Floats) -> GroundMap:
     entropy, coverage, mass = columns
     safe = np.where(mass > 0.0, mass, np.nan)
-    return GroundMap(entropy / safe, coverage / safe, mass)
+    return GroundMap(*map(frozen, (entropy / safe, coverage / safe, mass.copy())))

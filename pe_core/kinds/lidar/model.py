@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import InputError
+from ...scene.frozen import frozen
 from ...scene.sensors import SensorModel
 
 Floats = NDArray[np.float64]
@@ -71,8 +72,9 @@ class Lidar(SensorModel):
             raise InputError(self.name, "azimuth_count", "a whole number >= 1", self.azimuth_count)
         if not (math.isfinite(self.max_range) and self.max_range > 0):
             raise InputError(self.name, "max_range", "a positive number of metres", self.max_range)
-        object.__setattr__(self, "elevations", elevations)
-        object.__setattr__(self, "azimuth_offsets", offsets)
+        object.__setattr__(self, "elevations", frozen(elevations))
+        object.__setattr__(self, "azimuth_offsets", frozen(offsets))
+        object.__setattr__(self, "horizontal_fov", tuple(self.horizontal_fov))
         if not len(self.azimuth_steps):
             raise InputError(self.name, "horizontal_fov", "room for a beam", self.horizontal_fov)
 
@@ -114,10 +116,10 @@ class Lidar(SensorModel):
         """(A,) whole numbers j of the azimuths ``j * step`` that exist, ascending."""
         low, high = self.horizontal_fov
         if high - low >= 2.0 * math.pi - 1e-9:
-            return np.arange(self.azimuth_count)
+            return frozen(np.arange(self.azimuth_count))
         margin = 1e-9  # a bound given in degrees may miss its own azimuth by a rounding
         first = math.ceil(low / self.azimuth_step - margin)
-        return np.arange(first, math.floor(high / self.azimuth_step + margin) + 1)
+        return frozen(np.arange(first, math.floor(high / self.azimuth_step + margin) + 1))
 
     @property
     def beam_count(self) -> int:
@@ -141,12 +143,12 @@ class Lidar(SensorModel):
             horizontal = math.cos(elevation) * circles[offset]
             up = np.full((len(steps), 1), math.sin(elevation))
             rows.append(np.hstack([horizontal, up]))
-        return np.concatenate(rows)
+        return frozen(np.concatenate(rows))
 
 
 def _angles(name: str, key: str, values: ArrayLike, limit: float) -> Floats:
     """Return (C,) angles in [-limit, limit], or raise `InputError`."""
-    angles = np.atleast_1d(np.asarray(values, dtype=float))
+    angles = np.atleast_1d(np.array(values, dtype=float))
     if angles.ndim != 1 or not len(angles):
         raise InputError(name, key, "at least one angle in a row", f"shape {angles.shape}")
     bad = ~(np.abs(angles) <= limit)  # written so that NaN is bad

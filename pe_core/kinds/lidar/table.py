@@ -101,6 +101,6 @@ def _azimuth_count(name: str, table: Mapping[str, Any]) -> int:
 
 def _radians(name: str, table: Mapping[str, Any], key: str) -> np.ndarray:
     values = table.get(key)
-    if not isinstance(values, list) or not values:
+    if not isinstance(values, (list, tuple)) or not values:
         raise InputError(name, key, "a list of angles", repr(values))
     return np.array([math.radians(number(name, key, v)) for v in values])

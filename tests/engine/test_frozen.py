@@ -1,0 +1,85 @@
+"""What was given and checked cannot be changed afterwards, by whoever holds the array."""
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from tests.engine import shapes
+
+
+def refuses_writing(array):
+    with pytest.raises(ValueError, match="read-only"):
+        array[...] = 0
+
+
+def test_a_lidar_keeps_its_own_angles():
+    elevations, offsets = np.array([0.1, -0.1]), np.array([0.0, 0.2])
+    lidar = pe.Lidar("mine", elevations, 4, 100.0, offsets)
+    before = lidar.directions.copy()
+    elevations[:] = offsets[:] = 1.0
+    assert lidar.elevations.tolist() == [0.1, -0.1]
+    assert lidar.azimuth_offsets.tolist() == [0.0, 0.2]
+    assert (lidar.directions == before).all()
+    arrays = lidar.elevations, lidar.azimuth_offsets, lidar.directions, lidar.azimuth_steps
+    for array in arrays:
+        refuses_writing(array)
+
+
+def test_a_vehicle_keeps_its_own_triangles():
+    triangles, parts = shapes.box((-1, -1, 0), (1, 1, 1)), np.zeros(12, np.int32)
+    vehicle = pe.Vehicle(triangles, parts, ("a", "b"))
+    triangles[:], parts[:] = 7.0, 1
+    assert vehicle.triangles.max() == 1.0 and not vehicle.parts.any()
+    assert vehicle.bounds[1].tolist() == [1.0, 1.0, 1.0]
+    refuses_writing(vehicle.triangles)
+    refuses_writing(vehicle.parts)
+    refuses_writing(pe.Vehicle(shapes.box((-1, -1, 0), (1, 1, 1))).parts)
+
+
+def test_a_read_only_mesh_is_not_copied_but_a_view_of_a_writable_one_is():
+    triangles = shapes.box((-1, -1, 0), (1, 1, 1))
+    view = triangles[:]
+    view.flags.writeable = False
+    vehicle = pe.Vehicle(view)
+    triangles[:] = 7.0
+    assert vehicle.triangles.max() == 1.0
+    assert pe.Vehicle(vehicle.triangles).triangles is vehicle.triangles
+
+
+def test_boxes_keep_their_own_columns():
+    x = np.array([1.0, 2.0])
+    one = np.ones(2)
+    boxes = pe.Boxes(np.array(["car", "car"]), x, one, one, one, one, one, one)
+    x[:] = 9.0
+    assert boxes.x.tolist() == [1.0, 2.0]
+    refuses_writing(boxes.x)
+    refuses_writing(boxes.names)
+
+
+def test_a_ground_map_is_a_result():
+    score = pe.Evaluator(shapes.small_space(), pe.Prior.uniform()).score(
+        pe.Rig([shapes.lidar_on_roof()])
+    )
+    for array in (score.ground_map.entropy, score.ground_map.coverage, score.ground_map.mass):
+        refuses_writing(array)
+
+
+def test_the_catalogue_is_everybody_s():
+    table = pe.catalog.entries()["Pandar64"].table
+    with pytest.raises(TypeError):
+        table["max_range_m"] = 1.0
+    with pytest.raises(TypeError):
+        table["elevations_deg"][0] = 1.0
+    with pytest.raises(TypeError):
+        pe.catalog.entries()["mine"] = None
+    refuses_writing(pe.catalog.load("Pandar64").elevations)
+
+
+def test_a_preset_of_ones_own_is_copied():
+    table = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60.0}
+    pe.catalog.add("frozen test", table)
+    try:
+        table["width"] = 1
+        assert pe.catalog.entries()["frozen test"].table["width"] == 640
+    finally:
+        pe.catalog.remove("frozen test")

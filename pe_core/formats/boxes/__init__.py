@@ -9,7 +9,7 @@ from pathlib import Path
 from ...errors import InputError
 from ...prior.boxes import Boxes
 from ...text.cells import quoted
-from ...text.files import decode_text, read_bytes
+from ...text.files import LABEL_BYTES, decode_text, read_bytes
 from .kitti import looks_like_kitti, read_kitti
 from .labels import Labels, joined
 from .nuscenes import read_nuscenes
@@ -65,7 +65,7 @@ def _read_folder(path: Path) -> list[Labels]:
 
 def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
     """Read one file. In a folder an empty one is a frame without objects."""
-    source, data = str(path), read_bytes(path)
+    source, data = str(path), read_bytes(path, LABEL_BYTES)
     if b"\0" in data:
         raise InputError(source, "file", LAYOUTS, "binary data")
     text = decode_text(data)

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from ...errors import InputError
-from ...text.files import read_bytes, write_bytes
+from ...text.files import MESH_BYTES, read_bytes, write_bytes
 from .glb import read_glb
 from .mesh import Mesh, make_mesh
 from .npz import dump_npz, read_npz
@@ -55,7 +55,7 @@ def read_mesh(path: str | Path) -> Mesh:
     """
     path = Path(path)
     reader = _of_suffix(path, _READERS)
-    data = read_bytes(path)
+    data = read_bytes(path, MESH_BYTES)
     # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
     with np.errstate(all="ignore"):
         return reader(path, data)

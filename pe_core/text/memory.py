@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import InputError
@@ -35,6 +36,17 @@ def require_memory(source: object, field: str, needed: int) -> None:
     if there is not None and needed > there:
         expected = f"what fits in the {size_text(there)} of memory that are free"
         raise InputError(source, field, expected, f"about {size_text(needed)}")
+
+
+@contextmanager
+def told_if_too_much(source: object) -> Iterator[None]:
+    """Tell in one line what no look ahead foresaw: no memory left, or data nested too deep."""
+    try:
+        yield
+    except MemoryError:
+        raise InputError(source, "file", "data that fit in memory", "more") from None
+    except RecursionError:
+        raise InputError(source, "file", "data less deeply nested", "too many levels") from None
 
 
 def size_text(count: int) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...errors import InputError
 from ...text.files import MESH_BYTES, read_bytes, write_bytes
+from ...text.memory import told_if_too_much
 from .glb import read_glb
 from .mesh import Mesh, make_mesh
 from .npz import dump_npz, read_npz
@@ -51,13 +52,14 @@ def read_mesh(path: str | Path) -> Mesh:
     ------
     InputError
         The file is missing, of no known suffix or not what its suffix says, cut short, has
-        an index out of range or a coordinate that is not finite, or has no triangles.
+        an index out of range or a coordinate that is not finite, has no triangles, or is
+        more than a mesh may be (`MESH_BYTES`, `MOST_TRIANGLES`) or than memory holds.
     """
     path = Path(path)
     reader = _of_suffix(path, _READERS)
     data = read_bytes(path, MESH_BYTES)
     # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"), told_if_too_much(path):
         return reader(path, data)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from ...text.memory import require_memory
 from .glb_document import Document, Item
 from .glb_nodes import placed_meshes
-from .mesh import Mesh, fan, make_mesh
+from .mesh import Mesh, fan, make_mesh, require_room
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant")
+
+MOST_CHUNKS = 100
+MOST_JSON_BYTES = 32 << 20
+JSON_UNFOLDS = 20
+"""The longest scene, and what a byte of it takes once read, at most (measured)."""
 
 
 def read_glb(path: Path, data: bytes) -> Mesh:
@@ -48,8 +55,8 @@ def read_glb(path: Path, data: bytes) -> Mesh:
         raise InputError(source, "JSON", "a well-formed glTF scene", repr(error)) from error
 
 
-def _chunks(source: str, data: bytes) -> tuple[bytes, bytes]:
-    """The JSON chunk and the binary one (empty if there is none)."""
+def _chunks(source: str, data: bytes) -> tuple[bytes, memoryview]:
+    """The JSON chunk and the binary one (empty if there is none), the latter not copied."""
     if data[:4] != b"glTF" or len(data) < 12:
         raise InputError(source, "header", "12 bytes beginning with 'glTF'", repr(data[:12]))
     version, length = struct.unpack_from("<II", data, 4)
@@ -57,29 +64,44 @@ def _chunks(source: str, data: bytes) -> tuple[bytes, bytes]:
         raise InputError(source, "version", "2", str(version))
     if length > len(data):
         raise InputError(source, "length", f"{length} bytes", f"{len(data)}")
-    chunks: dict[bytes, bytes] = {}
-    offset = 12
-    while offset + 8 <= length:
-        size, kind = struct.unpack_from("<I4s", data, offset)
-        offset += 8
-        if offset + size > length:
-            found = f"{length - offset} left"
-            raise InputError(source, f"chunk {kind!r}", f"{size} bytes", found)
-        chunks.setdefault(kind, data[offset : offset + size])
-        offset += size
+    chunks: dict[bytes, memoryview] = {}
+    for kind, chunk in _each_chunk(source, memoryview(data)[:length]):
+        chunks.setdefault(kind, chunk)
     if b"JSON" not in chunks:
         raise InputError(source, "chunk JSON", "one", "none")
-    return chunks[b"JSON"], chunks.get(b"BIN\0", b"")
+    return bytes(chunks[b"JSON"]), chunks.get(b"BIN\0", memoryview(b""))
+
+
+def _each_chunk(source: str, data: memoryview) -> Iterator[tuple[bytes, memoryview]]:
+    offset, count = 12, 0
+    while offset + 8 <= len(data):
+        size, kind = struct.unpack_from("<I4s", data, offset)
+        offset, count = offset + 8, count + 1
+        if offset + size > len(data):
+            found = f"{len(data) - offset} left"
+            raise InputError(source, f"chunk {kind!r}", f"{size} bytes", found)
+        if count > MOST_CHUNKS:
+            raise InputError(source, "chunks", f"at most {MOST_CHUNKS}", "more")
+        yield kind, data[offset : offset + size]
+        offset += size
 
 
 def _parse(source: str, text: bytes) -> Item:
+    if len(text) > MOST_JSON_BYTES:
+        expected = f"a scene of at most {MOST_JSON_BYTES:,} bytes"
+        raise InputError(source, "JSON", expected, f"{len(text):,}")
+    require_memory(source, "JSON", len(text) * JSON_UNFOLDS)
     try:
-        root = json.loads(text.decode("utf-8"))
+        root = json.loads(text.decode("utf-8"), parse_constant=_no_number)
     except (ValueError, RecursionError) as error:
         raise InputError(source, "JSON", "valid JSON in UTF-8", str(error)) from error
     if not isinstance(root, dict):
         raise InputError(source, "JSON", "an object", type(root).__name__)
     return root
+
+
+def _no_number(word: str) -> None:
+    raise ValueError(f"{word}, which JSON has no number for")
 
 
 def _require_known(document: Document) -> None:
@@ -91,34 +113,66 @@ def _require_known(document: Document) -> None:
 
 
 def _scene(document: Document) -> Mesh:
-    triangles = [np.zeros((0, 3, 3))]
-    parts = [np.zeros(0, dtype=np.int32)]
-    names: list[str] = []
-    for name, index, world in placed_meshes(document):
-        for primitive in document.item("meshes", index)["primitives"]:
-            placed = _place(_primitive(document, primitive), world)
-            triangles.append(placed)
-            parts.append(np.full(len(placed), len(names), dtype=np.int32))
-        names.append(name)
-    return make_mesh(document.source, np.concatenate(triangles), np.concatenate(parts), names)
+    """All placed meshes; how many triangles they come to is known before any is made."""
+    placed = list(placed_meshes(document))
+    sizes = {index: _size(document, index) for index in dict.fromkeys(m for _, m, _ in placed)}
+    require_room(document.source, sum(sizes[index] for _, index, _ in placed))
+    # Each mesh is made once, however many nodes show it.
+    shapes = {index: _shape(document, index) for index in sizes}
+    triangles = [np.zeros((0, 3, 3)), *(_place(shapes[m], world) for _, m, world in placed)]
+    counts = [sizes[index] for _, index, _ in placed]
+    parts = np.repeat(np.arange(len(placed), dtype=np.int32), counts)
+    names = [name for name, _, _ in placed]
+    return make_mesh(document.source, np.concatenate(triangles), parts, names)
+
+
+def _size(document: Document, index: int) -> int:
+    """How many triangles a mesh has, from its accessors' counts alone."""
+    total = 0
+    for primitive in document.item("meshes", index)["primitives"]:
+        if _has_faces(primitive):
+            count = document.count(_corner_list(primitive))
+            total += count // 3 if _mode(primitive) == _TRIANGLES else max(count - 2, 0)
+    return total
+
+
+def _mode(primitive: Item) -> Any:
+    return primitive.get("mode", _TRIANGLES)
+
+
+def _has_faces(primitive: Item) -> bool:
+    return _mode(primitive) in (_TRIANGLES, _STRIP, _FAN) and "POSITION" in primitive["attributes"]
+
+
+def _corner_list(primitive: Item) -> Any:
+    """Index of the accessor that lists a primitive's corners, one after the other."""
+    indexed = "indices" in primitive
+    return primitive["indices"] if indexed else primitive["attributes"]["POSITION"]
+
+
+def _shape(document: Document, index: int) -> NDArray[np.float64]:
+    """Triangles (F, 3, 3) of a mesh in its own frame."""
+    primitives = document.item("meshes", index)["primitives"]
+    return np.concatenate([np.zeros((0, 3, 3)), *(_primitive(document, p) for p in primitives)])
 
 
 def _primitive(document: Document, primitive: Item) -> NDArray[np.float64]:
     """Triangles (F, 3, 3) of a primitive in its mesh's own frame."""
-    mode = primitive.get("mode", _TRIANGLES)
-    if mode not in (_TRIANGLES, _STRIP, _FAN) or "POSITION" not in primitive["attributes"]:
+    if not _has_faces(primitive):
         return np.zeros((0, 3, 3))
-    points = document.accessor(primitive["attributes"]["POSITION"], "VEC3").astype(np.float64)
+    mode, listed = _mode(primitive), _corner_list(primitive)
+    positions = primitive["attributes"]["POSITION"]
+    points = document.accessor(positions, "VEC3")
     order: NDArray[Any] = np.arange(len(points))
     if "indices" in primitive:
-        order = document.accessor(primitive["indices"], "SCALAR").ravel()
+        order = document.accessor(listed, "SCALAR").ravel()
         if order.dtype.kind != "u" or (order >= len(points)).any():
             expected = f"whole numbers within the {len(points)} vertices"
-            field = f"accessors[{primitive['indices']}]"
-            raise document.error(field, expected, f"up to {order.max()}")
+            raise document.error(f"accessors[{listed}]", expected, f"up to {order.max()}")
     if mode == _TRIANGLES and len(order) % 3:
         raise document.error("primitive", "three corners to a triangle", f"{len(order)} corners")
-    return points[order[_corners(mode, len(order))]]
+    # Only the corners become doubles: many small primitives may share a long list of points.
+    return document.numbers(positions, points[order[_corners(mode, len(order))]])
 
 
 def _corners(mode: int, count: int) -> NDArray[np.int64]:

@@ -22,7 +22,7 @@ class Document:
 
     source: str
     root: Item
-    binary: bytes
+    binary: memoryview
 
     def error(self, field: str, expected: str, found: str) -> InputError:
         """An error about this file."""
@@ -55,10 +55,17 @@ class Document:
             found = f"{accessor.get('type')} of {accessor.get('componentType')}"
             raise self.error(field, f"{kind} of a known componentType", found)
         code = np.dtype(_COMPONENTS[accessor["componentType"]])
-        values = self._elements(field, accessor, code, _WIDTHS[kind])
-        if accessor.get("normalized") and code.kind in "iu":
-            return np.maximum(values / np.iinfo(code).max, -1.0)
-        return values
+        return self._elements(field, accessor, code, _WIDTHS[kind])
+
+    def numbers(self, index: Any, values: NDArray[Any]) -> NDArray[np.float64]:
+        """Values out of an accessor as what they stand for: fractions, if it is normalized."""
+        if self.item("accessors", index).get("normalized") and values.dtype.kind in "iu":
+            return np.maximum(values / np.iinfo(values.dtype).max, -1.0)
+        return values.astype(np.float64)
+
+    def count(self, index: Any) -> int:
+        """How many elements an accessor says it has."""
+        return self._whole(f"accessors[{index}]", self.item("accessors", index), "count")
 
     def _elements(
         self, field: str, accessor: Item, code: np.dtype[Any], width: int
@@ -77,7 +84,7 @@ class Document:
             raise self.error(field, expected, found)
         return np.ndarray((count, width), code, data, offset, (stride, code.itemsize))
 
-    def _view(self, field: str, view: Item) -> bytes:
+    def _view(self, field: str, view: Item) -> memoryview:
         if self._whole(field, view, "buffer") != 0 or "uri" in self.item("buffers", 0):
             raise self.error(field, "data in the file's own binary chunk", "another buffer")
         start = self._whole(field, view, "byteOffset", 0)

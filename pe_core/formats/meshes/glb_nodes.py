@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from .glb_document import Document, Item
 
+MOST_NODES = 200_000
+
 
 def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.float64]]]:
     """Each mesh of the default scene, depth first in the file's order.
@@ -23,6 +25,9 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
     world : (4, 4) float64
         From the mesh's coordinates to the scene's [m], glTF axes.
     """
+    count = len(document.root.get("nodes", []))
+    if count > MOST_NODES:
+        raise document.error("nodes", f"at most {MOST_NODES:,}", f"{count:,}")
     waiting = [(index, np.eye(4)) for index in reversed(_roots(document))]
     seen: set[int] = set()
     while waiting:

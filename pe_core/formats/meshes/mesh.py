@@ -10,6 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import InputError
+from ...text.memory import require_memory
+
+MOST_TRIANGLES = 25_000_000
+"""The most of one mesh: cars are of some millions at most."""
+TRIANGLE_BYTES = 300
+"""What one triangle takes while it is read, at most (measured): corners, copies, indices."""
+TEXT_UNFOLDS = 12
+"""What a byte of a mesh in text takes once read (measured on files as programs write them)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +67,38 @@ def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequen
     if corners.shape[1:] != (3, 3):
         raise InputError(source, "triangles", "shape (F, 3, 3)", f"shape {corners.shape}")
     _require_finite(source, corners)
-    _require_labels(source, labels, len(corners), len(names))
+    require_labels(source, labels.shape, labels.dtype, len(corners))
+    _require_within(source, labels, len(names))
     tidy, kept = _tidy_parts(labels, names)
     return Mesh(corners, tidy, kept)
+
+
+def require_room(source: str, triangles: int) -> None:
+    """Refuse more triangles than a mesh may have, or than fit in memory, before they are made.
+
+    Raises
+    ------
+    InputError
+        One line with how many there would be, or how much they would take.
+    """
+    if triangles > MOST_TRIANGLES:
+        found = f"{triangles:,}" if triangles < 10**18 else "more than 10^18"
+        raise InputError(source, "triangles", f"at most {MOST_TRIANGLES:,}", found)
+    require_memory(source, "triangles", triangles * TRIANGLE_BYTES)
+
+
+def require_labels(source: str, shape: tuple[int, ...], dtype: np.dtype[Any], faces: int) -> None:
+    """Refuse an array of parts that is not a whole number for each of the faces."""
+    if shape != (faces,):
+        raise InputError(source, "parts", f"shape ({faces},)", f"shape {shape}")
+    if dtype.kind not in "iu":
+        raise InputError(source, "parts", "whole numbers", f"dtype {dtype}")
+
+
+def fan_size(counts: NDArray[Any]) -> int:
+    """How many triangles `fan` would make, as a Python number: it cannot wrap round."""
+    sizes = counts.astype(np.float64) - 2.0
+    return int(sizes[sizes > 0.0].sum())
 
 
 def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -95,11 +132,7 @@ def _require_finite(source: str, corners: NDArray[np.float64]) -> None:
         raise InputError(source, f"triangles[{row}]", "finite coordinates", found)
 
 
-def _require_labels(source: str, labels: NDArray[Any], faces: int, names: int) -> None:
-    if labels.shape != (faces,):
-        raise InputError(source, "parts", f"shape ({faces},)", f"shape {labels.shape}")
-    if labels.dtype.kind not in "iu":
-        raise InputError(source, "parts", "whole numbers", f"dtype {labels.dtype}")
+def _require_within(source: str, labels: NDArray[Any], names: int) -> None:
     bad = np.flatnonzero((labels < 0) | (labels >= names))
     if bad.size:
         row = int(bad[0])

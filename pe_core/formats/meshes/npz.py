@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
-from .mesh import Mesh, make_mesh
+from ...text.memory import size_text
+from .mesh import Mesh, make_mesh, require_labels, require_room
+from .npz_archive import Archive, Header, told_in_one_line
+
+MOST_PARTS = 1_000_000
+MOST_NAME_BYTES = 256 << 20
+"""The most names of parts, and what they may take side by side, all as long as the longest."""
 
 
 def read_npz(path: Path, data: bytes) -> Mesh:
@@ -26,18 +33,15 @@ def read_npz(path: Path, data: bytes) -> Mesh:
         (never unpickled), coordinates not finite, or no triangles.
     """
     source = str(path)
-    arrays = _load(source, data)
-    if "triangles" not in arrays:
-        found = ", ".join(sorted(arrays)) or "an empty archive"
-        raise InputError(source, "triangles", "an array of that name", found)
-    triangles = arrays["triangles"]
-    if triangles.dtype.kind not in "fiu":
-        raise InputError(source, "triangles", "real numbers", f"dtype {triangles.dtype}")
-    if triangles.shape[1:] != (3, 3):
-        raise InputError(source, "triangles", "shape (F, 3, 3)", f"shape {triangles.shape}")
-    names = _names(source, arrays, path.stem)
-    parts = arrays.get("parts", np.zeros(len(triangles), dtype=np.int32))
-    return make_mesh(source, triangles, parts, names)
+    # A bare .npy, or anything else NumPy would understand, is not an archive.
+    if not data.startswith(b"PK"):
+        raise InputError(source, "file", "a NumPy .npz archive", "some other format")
+    with told_in_one_line(source), Archive(source, data) as archive:
+        faces = _check(source, archive.headers)
+        arrays = {name: archive.array(name) for name in archive.headers}
+    names = _names(arrays.get("part_names"), path.stem)
+    parts = arrays.get("parts", np.zeros(faces, dtype=np.int32))
+    return make_mesh(source, arrays["triangles"], parts, names)
 
 
 def dump_npz(path: Path, mesh: Mesh) -> bytes:
@@ -52,31 +56,40 @@ def dump_npz(path: Path, mesh: Mesh) -> bytes:
     return buffer.getvalue()
 
 
-def _load(source: str, data: bytes) -> dict[str, NDArray[Any]]:
-    # A bare .npy, or anything else np.load would understand, is not an archive.
-    if not data.startswith(b"PK"):
-        raise InputError(source, "file", "a NumPy .npz archive", "some other format")
-    wanted = ("triangles", "parts", "part_names")
-    try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in wanted if name in archive.files}
-    except Exception as error:  # zipfile, zlib, tokenize and NumPy raise a dozen kinds here
-        reason = " ".join(f"{type(error).__name__}: {error}".split())
-        raise InputError(source, "file", "a complete NumPy .npz archive", reason) from error
-    # A member that is not an .npy file comes out of np.load as bytes.
-    return {name: np.asarray(array) for name, array in arrays.items()}
+def _check(source: str, headers: Mapping[str, Header]) -> int:
+    """Refuse arrays of other shapes or types, and those too large; return the triangles' number."""
+    if "triangles" not in headers:
+        found = ", ".join(sorted(headers)) or "none of ours"
+        raise InputError(source, "triangles", "an array of that name", found)
+    triangles = headers["triangles"]
+    if triangles.dtype.kind not in "fiu":
+        raise InputError(source, "triangles", "real numbers", f"dtype {triangles.dtype}")
+    if triangles.shape[1:] != (3, 3):
+        raise InputError(source, "triangles", "shape (F, 3, 3)", f"shape {triangles.shape}")
+    faces = triangles.shape[0]
+    require_room(source, faces)
+    if "part_names" in headers:
+        _check_names(source, headers["part_names"], "parts" in headers)
+    elif "parts" in headers:
+        raise InputError(source, "part_names", "names for the parts array", "no such array")
+    if "parts" in headers:
+        require_labels(source, headers["parts"].shape, headers["parts"].dtype, faces)
+    return faces
 
 
-def _names(source: str, arrays: dict[str, NDArray[Any]], stem: str) -> list[str]:
-    if "part_names" not in arrays:
-        if "parts" in arrays:
-            raise InputError(source, "part_names", "names for the parts array", "no such array")
-        return [stem]
-    names = arrays["part_names"]
-    if names.ndim != 1 or names.dtype.kind != "U":
+def _check_names(source: str, names: Header, chosen: bool) -> None:
+    if len(names.shape) != 1 or names.dtype.kind != "U":
         found = f"dtype {names.dtype} of shape {names.shape}"
         raise InputError(source, "part_names", "a one-dimensional unicode array", found)
-    if "parts" not in arrays and len(names) != 1:
-        expected = f"an array choosing among the {len(names)} part names"
+    count = names.shape[0]
+    if count > MOST_PARTS or names.size > MOST_NAME_BYTES:
+        expected = f"at most {MOST_PARTS:,} names in {size_text(MOST_NAME_BYTES)}"
+        found = f"{count:,} in {size_text(names.size)}"
+        raise InputError(source, "part_names", expected, found)
+    if not chosen and count != 1:
+        expected = f"an array choosing among the {count} part names"
         raise InputError(source, "parts", expected, "no such array")
-    return [str(name) for name in names]
+
+
+def _names(names: NDArray[Any] | None, stem: str) -> list[str]:
+    return [stem] if names is None else [str(name) for name in names]

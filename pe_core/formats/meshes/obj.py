@@ -9,7 +9,8 @@ import numpy as np
 
 from ...errors import InputError
 from ...text.files import decode_text
-from .mesh import Mesh, fan, make_mesh
+from ...text.memory import require_memory
+from .mesh import TEXT_UNFOLDS, Mesh, fan, fan_size, make_mesh, require_room
 
 
 @dataclass(slots=True)
@@ -40,13 +41,16 @@ def read_obj(path: Path, data: bytes) -> Mesh:
     source = str(path)
     if b"\0" in data:
         raise InputError(source, "file", "OBJ text", "binary data")
+    require_memory(source, "file", len(data) * TEXT_UNFOLDS)
     lines = _logical_lines(decode_text(data))
     keyword = "o" if any(line.split(None, 1)[:1] == ["o"] for line in lines) else "g"
     names = {path.stem: 0}
     scan = _scan(source, lines, keyword, names)
     _check(source, lines, scan)
     points = np.array(scan.points, dtype=np.float64).reshape(-1, 3)
-    corners, faces = fan(np.array(scan.counts, dtype=np.int64))
+    counts = np.array(scan.counts, dtype=np.int64)
+    require_room(source, fan_size(counts))
+    corners, faces = fan(counts)
     triangles = points[np.array(scan.corners, dtype=np.int64)[corners]]
     return make_mesh(source, triangles, np.array(scan.labels, dtype=np.int32)[faces], list(names))
 
@@ -83,12 +87,24 @@ def dump_obj(path: Path, mesh: Mesh) -> bytes:
 def _logical_lines(text: str) -> list[str]:
     """Lines with continuations joined; joined lines leave blanks, so numbers stay true."""
     lines = text.split("\n")
-    if "\\" in text:
-        for i in range(len(lines) - 2, -1, -1):
-            # A comment may end with a Windows path; it must not swallow the next line.
-            if lines[i].endswith("\\") and not lines[i].lstrip().startswith("#"):
-                lines[i : i + 2] = [f"{lines[i][:-1]} {lines[i + 1]}", ""]
+    if "\\" not in text:
+        return lines
+    first = 0
+    while first < len(lines):
+        last = first
+        while last + 1 < len(lines) and _goes_on(lines[last]):
+            last += 1
+        if last > first:
+            pieces = [line[:-1] for line in lines[first:last]]
+            lines[first] = " ".join([*pieces, lines[last]])
+            lines[first + 1 : last + 1] = [""] * (last - first)
+        first = last + 1
     return lines
+
+
+def _goes_on(line: str) -> bool:
+    # A comment may end with a Windows path; it must not swallow the next line.
+    return line.endswith("\\") and not line.lstrip().startswith("#")
 
 
 def _scan(source: str, lines: list[str], keyword: str, names: dict[str, int]) -> _Scan:

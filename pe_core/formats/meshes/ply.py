@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...text.files import decode_text
-from .mesh import Mesh, fan, make_mesh
+from ...text.memory import require_memory
+from .mesh import TEXT_UNFOLDS, Mesh, fan, fan_size, make_mesh, require_room
 from .ply_elements import Column, Element, Property, read_element
 
 _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -23,6 +24,7 @@ _TYPES = {
     "f4": ("float", "float32"),
     "f8": ("double", "float64"),
 }
+MOST_HEADER_BYTES = 1 << 20
 _CODES = {word: code for code, words in _TYPES.items() for word in words}
 
 
@@ -50,6 +52,7 @@ def read_ply(path: Path, data: bytes) -> Mesh:
         columns[element.name], offset = read_element(source, element, body, offset)
     points = _points(source, columns.get("vertex", {}))
     faces = _faces(source, columns.get("face", {}), len(points))
+    require_room(source, fan_size(faces.counts))
     corners, _ = fan(faces.counts)
     triangles = points[faces.values.astype(np.int64)[corners]]
     return make_mesh(source, triangles, np.zeros(len(triangles), np.int32), [path.stem])
@@ -61,15 +64,19 @@ def _split(source: str, data: bytes) -> tuple[list[str], bytes]:
     ending = next((e for e in (b"\r\n", b"\n", b"\r") if data.startswith(b"ply" + e)), None)
     if ending is None:
         raise InputError(source, "header", "'ply' on the first line", repr(data[:16]))
-    header, found, body = data.partition(ending + b"end_header" + ending)
-    if not found:
-        raise InputError(source, "header", "end_header", "the end of the file")
-    return decode_text(header).split("\n"), body
+    last = ending + b"end_header" + ending
+    end = data.find(last, 0, MOST_HEADER_BYTES)
+    if end < 0:
+        whole = len(data) <= MOST_HEADER_BYTES
+        found = "the end of the file" if whole else f"none in {MOST_HEADER_BYTES:,} bytes"
+        raise InputError(source, "header", "end_header", found)
+    return decode_text(data[:end]).split("\n"), data[end + len(last) :]
 
 
 def _parse_header(source: str, lines: list[str]) -> tuple[list[Element], str]:
     """The elements, with byte orders in their types, and the byte order: '' if ASCII."""
     elements: list[Element] = []
+    names: set[str] = set()
     order: str | None = None
     for number, line in enumerate(lines, 1):
         match line.split():
@@ -78,10 +85,12 @@ def _parse_header(source: str, lines: list[str]) -> tuple[list[Element], str]:
             # A longer count is beyond any file; int() itself gives up at some length.
             case ["element", name, count] if count.isdecimal() and len(count) < 16:
                 elements.append(Element(name, int(count)))
+                names.clear()
             case ["property", *words] if elements and order is not None:
                 item = _property(source, number, words, order)
-                if item.name in {other.name for other in elements[-1].properties}:
+                if item.name in names:
                     raise InputError(source, f"line {number}", "a new name", repr(item.name))
+                names.add(item.name)
                 elements[-1].properties.append(item)
             case [] | ["ply"] | ["comment" | "obj_info", *_]:
                 pass
@@ -107,6 +116,7 @@ def _property(source: str, number: int, words: list[str], order: str) -> Propert
 
 
 def _numbers(source: str, body: bytes) -> NDArray[np.float64]:
+    require_memory(source, "data", len(body) * TEXT_UNFOLDS)
     words = decode_text(body).split()
     try:
         return np.array(list(map(float, words)), dtype="<f8")

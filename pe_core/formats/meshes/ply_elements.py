@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -9,6 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from ...text.memory import require_memory
+
+LONGEST_ROW = 2**31 - 1
+"""Bytes of a row that NumPy can read in one go."""
+WALKED_BYTES = 200
+"""What a value or list takes that is read by itself (measured)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +62,7 @@ def read_element(
     if not element.count or not element.properties:
         nothing = Column(np.zeros(0, np.int64), np.zeros(0))
         return {item.name: nothing for item in element.properties}, offset
+    _require_possible(source, element, len(data) - offset)
     # Nearly all files have lists of one length (triangles), which NumPy reads in one go.
     rows = _even_rows(element, data, offset, _first_lengths(source, element, data, offset))
     if rows is None:
@@ -67,6 +75,23 @@ def read_element(
     return columns, offset + rows.nbytes
 
 
+def _row_bytes(element: Element, lengths: Sequence[int]) -> int:
+    """Bytes of a row whose properties have so many values each."""
+    return sum(
+        np.dtype(item.type).itemsize * length
+        + (np.dtype(item.count_type).itemsize if item.count_type else 0)
+        for item, length in zip(element.properties, lengths, strict=True)
+    )
+
+
+def _require_possible(source: str, element: Element, left: int) -> None:
+    """Refuse a count of rows that would not fit even if all lists were empty."""
+    least = _row_bytes(element, [0 if item.count_type else 1 for item in element.properties])
+    if element.count * least > left:
+        found = f"data for at most {left // least:,}"
+        raise InputError(source, f"element {element.name}", f"{element.count} rows", found)
+
+
 def _first_lengths(source: str, element: Element, data: bytes, offset: int) -> list[int]:
     first = Element(element.name, 1, element.properties)
     columns, _ = _walk(source, first, data, offset)
@@ -77,14 +102,15 @@ def _even_rows(
     element: Element, data: bytes, offset: int, lengths: list[int]
 ) -> NDArray[np.void] | None:
     """All rows as one structured array, or None if a list differs in length from the first."""
+    row = _row_bytes(element, lengths)
+    if row > LONGEST_ROW or offset + element.count * row > len(data):
+        return None
     fields: list[tuple[str, str] | tuple[str, str, tuple[int]]] = []
     for i, (item, length) in enumerate(zip(element.properties, lengths, strict=True)):
         if item.count_type:
             fields.append((f"count{i}", item.count_type))
         fields.append((f"values{i}", item.type, (length,)))
     layout = np.dtype(fields)
-    if offset + element.count * layout.itemsize > len(data):
-        return None
     rows = np.frombuffer(data, layout, element.count, offset)
     for i, (item, length) in enumerate(zip(element.properties, lengths, strict=True)):
         if item.count_type and (rows[f"count{i}"] != length).any():
@@ -94,6 +120,7 @@ def _even_rows(
 
 def _walk(source: str, element: Element, data: bytes, offset: int) -> tuple[dict[str, Column], int]:
     """Row by row: for lists of several lengths, and to find the row where the data end."""
+    require_memory(source, f"element {element.name}", _walk_bytes(element))
     counts: list[list[int]] = [[] for _ in element.properties]
     values: list[list[NDArray[Any]]] = [[] for _ in element.properties]
     for row in range(element.count):
@@ -114,6 +141,10 @@ def _walk(source: str, element: Element, data: bytes, offset: int) -> tuple[dict
         for i, item in enumerate(element.properties)
     }
     return columns, offset
+
+
+def _walk_bytes(element: Element) -> int:
+    return element.count * len(element.properties) * WALKED_BYTES
 
 
 def _take(data: bytes, code: str, count: int, offset: int) -> tuple[NDArray[Any], int]:

@@ -9,7 +9,8 @@ import numpy as np
 
 from ...errors import InputError
 from ...text.files import decode_text
-from .mesh import Mesh, make_mesh
+from ...text.memory import require_memory
+from .mesh import TEXT_UNFOLDS, Mesh, make_mesh, require_room
 
 _HEADER = 84  # 80 bytes of anything, then the number of triangles
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -29,6 +30,7 @@ def read_stl(path: Path, data: bytes) -> Mesh:
     """
     # Many binary files begin with "solid" too, so the length is asked first.
     if len(data) != _binary_length(data) and _looks_ascii(data):
+        require_memory(path, "file", len(data) * TEXT_UNFOLDS)
         return _read_ascii(path, decode_text(data).split("\n"))
     return _read_binary(path, data)
 
@@ -51,6 +53,7 @@ def _read_binary(path: Path, data: bytes) -> Mesh:
         count = (wanted - _HEADER) // _FACET.itemsize
         expected = f"{wanted} bytes for the {count} triangles declared"
         raise InputError(source, "length", expected, f"{len(data)} bytes")
+    require_room(source, (wanted - _HEADER) // _FACET.itemsize)
     facets = np.frombuffer(data, dtype=_FACET, offset=_HEADER)
     return make_mesh(source, facets["corners"], np.zeros(len(facets), np.int32), [path.stem])
 
@@ -60,6 +63,7 @@ def _read_ascii(path: Path, lines: list[str]) -> Mesh:
     for number, line in enumerate(lines, 1):
         scan.take(number, line)
     scan.require(not scan.inside, len(lines), "endsolid", "the end of the file")
+    require_room(scan.source, len(scan.parts))
     return make_mesh(scan.source, np.reshape(scan.points, (-1, 3, 3)), scan.parts, scan.names)
 
 

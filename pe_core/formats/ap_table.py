@@ -33,20 +33,24 @@ def read_ap_table(path: str | Path) -> ApTable:
     rows = numbered_lines(decode_text(data))
     if not rows:
         raise InputError(source, "file", "a table with the columns m and ap", "nothing")
-    names = [name.lower() for name in _cells(rows[0][1])]
+    names = [name.lower() for name in _cells(source, *rows[0])]
     for name in COLUMNS[:2]:
         if names.count(name) != 1:
             found = ", ".join(names)
             raise InputError(
                 source, f"line {rows[0][0]}", f"one column named {name}", quoted(found)
             )
-    values = [_values(source, k, names, _cells(line)) for k, line in rows[1:]]
+    values = [_values(source, k, names, _cells(source, k, line)) for k, line in rows[1:]]
     m, ap, n = np.array(values, dtype=float).reshape(-1, 3).T
     return ApTable(m, ap, n, source)
 
 
-def _cells(line: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
+def _cells(source: str, number: int, line: str) -> list[str]:
+    try:
+        row = next(csv.reader([line], skipinitialspace=True))
+    except csv.Error as error:
+        raise InputError(source, f"line {number}", "a line of CSV", error) from None
+    return [cell.strip() for cell in row]
 
 
 def _values(

@@ -7,7 +7,8 @@ import re
 
 from ..errors import InputError
 
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+"""Each digit matches in one way alone: else long cells would take the square of their length."""
 LONGEST_QUOTE = 40
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import struct
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -152,6 +153,18 @@ def read(folder: Path, name: str, data: bytes) -> Mesh:
 
 def cut(data: bytes) -> bytes:
     return data[:-1]
+
+
+def one_line_test(cases: dict[str, tuple[str, bytes, str, str]]) -> Callable[..., None]:
+    """A test of files that are wrong: name, bytes, the field that the error names, words in it."""
+
+    @pytest.mark.filterwarnings("error")
+    @pytest.mark.parametrize(("name", "data", "field", "words"), cases.values(), ids=cases.keys())
+    def test(tmp_path: Path, name: str, data: bytes, field: str, words: str) -> None:
+        """The error names the file and the field and says what was there; NumPy does not warn."""
+        check_told_in_one_line(tmp_path, name, data, field, words)
+
+    return test
 
 
 def check_told_in_one_line(folder: Path, name: str, data: bytes, field: str, words: str) -> None:

@@ -6,8 +6,9 @@ import pytest
 
 import pe_core as pe
 from tests.engine.test_box_files import CSV, KITTI, changed
+from tests.engine.test_study_file import MINIMAL
 
-STUDY = """
+STUDY = f"""
 [space]
 x = [-25, 25]
 y = [-10, 10]
@@ -18,11 +19,7 @@ boxes = "labels"
 [[prior.focus]]
 factor = 2.0
 classes = ["pedestrian"]
-[[sensor]]
-name = "roof"
-model = "Pandar64"
-position = [-0.43, 0.0, 1.80]
-"""
+{MINIMAL}"""
 
 
 @pytest.fixture

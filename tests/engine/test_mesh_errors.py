@@ -11,10 +11,10 @@ from pe_core.errors import InputError
 from pe_core.formats.meshes import read_mesh
 from tests.engine.mesh_files import (
     BOX,
-    check_told_in_one_line,
     glb_file,
     gltf,
     npz_bytes,
+    one_line_test,
     ply_binary,
     read,
     stl_binary,
@@ -26,13 +26,7 @@ BAD = {
 }
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(("name", "data", "field", "words"), BAD.values(), ids=BAD.keys())
-def test_bad_input_is_told_in_one_line(
-    tmp_path: Path, name: str, data: bytes, field: str, words: str
-) -> None:
-    """The error names the file and the field and says what was there; NumPy does not warn."""
-    check_told_in_one_line(tmp_path, name, data, field, words)
+test_bad_input_is_told_in_one_line = one_line_test(BAD)
 
 
 @pytest.mark.parametrize("name", ["a.npz", "a.obj", "a.stl", "a.ply", "a.glb"])

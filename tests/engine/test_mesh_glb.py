@@ -16,10 +16,10 @@ from tests.engine.mesh_files import (
     POINTS,
     TRIANGLE,
     changed,
-    check_told_in_one_line,
     cut,
     glb_file,
     gltf,
+    one_line_test,
     read,
 )
 
@@ -258,10 +258,4 @@ BAD = {
 }
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(("name", "data", "field", "words"), BAD.values(), ids=BAD.keys())
-def test_bad_input_is_told_in_one_line(
-    tmp_path: Path, name: str, data: bytes, field: str, words: str
-) -> None:
-    """The error names the file and the field and says what was there; NumPy does not warn."""
-    check_told_in_one_line(tmp_path, name, data, field, words)
+test_bad_input_is_told_in_one_line = one_line_test(BAD)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pe_core.formats.meshes import Mesh, write_mesh
-from tests.engine.mesh_files import BOX, HUGE, SQUARE, check_told_in_one_line, read
+from tests.engine.mesh_files import BOX, HUGE, SQUARE, one_line_test, read
 
 
 def test_obj_vertices_are_shared(tmp_path: Path) -> None:
@@ -98,10 +98,4 @@ BAD = {
 }
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(("name", "data", "field", "words"), BAD.values(), ids=BAD.keys())
-def test_bad_input_is_told_in_one_line(
-    tmp_path: Path, name: str, data: bytes, field: str, words: str
-) -> None:
-    """The error names the file and the field and says what was there; NumPy does not warn."""
-    check_told_in_one_line(tmp_path, name, data, field, words)
+test_bad_input_is_told_in_one_line = one_line_test(BAD)

@@ -14,8 +14,8 @@ from tests.engine.mesh_files import (
     INF,
     NAN,
     POINTS,
-    check_told_in_one_line,
     cut,
+    one_line_test,
     ply_ascii,
     ply_binary,
     read,
@@ -124,10 +124,4 @@ BAD = {
 }
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(("name", "data", "field", "words"), BAD.values(), ids=BAD.keys())
-def test_bad_input_is_told_in_one_line(
-    tmp_path: Path, name: str, data: bytes, field: str, words: str
-) -> None:
-    """The error names the file and the field and says what was there; NumPy does not warn."""
-    check_told_in_one_line(tmp_path, name, data, field, words)
+test_bad_input_is_told_in_one_line = one_line_test(BAD)

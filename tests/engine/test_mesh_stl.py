@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from tests.engine.mesh_files import (
     BOX,
     FACES,
     NAN,
     TRIANGLE,
-    check_told_in_one_line,
     cut,
+    one_line_test,
     read,
     stl_ascii,
     stl_binary,
@@ -66,10 +64,4 @@ BAD = {
 }
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(("name", "data", "field", "words"), BAD.values(), ids=BAD.keys())
-def test_bad_input_is_told_in_one_line(
-    tmp_path: Path, name: str, data: bytes, field: str, words: str
-) -> None:
-    """The error names the file and the field and says what was there; NumPy does not warn."""
-    check_told_in_one_line(tmp_path, name, data, field, words)
+test_bad_input_is_told_in_one_line = one_line_test(BAD)

@@ -10,6 +10,7 @@ from ...errors import InputError
 from ...prior.boxes import Boxes
 from ...text.cells import quoted
 from ...text.files import LABEL_BYTES, decode_text, read_bytes
+from ...text.memory import require_memory, size_text, told_if_too_much
 from .kitti import looks_like_kitti, read_kitti
 from .labels import Labels, joined
 from .nuscenes import read_nuscenes
@@ -17,6 +18,8 @@ from .plain import looks_like_csv, read_csv, write_csv
 
 __all__ = ["read_boxes", "write_boxes"]
 
+JSON_UNFOLDS, ROWS_UNFOLD = 10, 20
+"""What a byte of labels takes once read (measured on files as they are met)."""
 LAYOUTS = "boxes as KITTI's label_2, as nuScenes' JSON or as CSV with a header"
 
 
@@ -40,7 +43,8 @@ def read_boxes(path: str | Path, origin: tuple[float, float, float] | None = Non
         One line with the file, the line, what was expected and what was found.
     """
     path = Path(path)
-    labels = joined(_read_folder(path) if path.is_dir() else [_read_file(path)], str(path))
+    with told_if_too_much(path):
+        labels = joined(_read_folder(path) if path.is_dir() else [_read_file(path)], str(path))
     if not labels.names:
         found = ", ".join(f"{n:,} {reason}" for reason, n in labels.left_out.items()) or "none"
         raise InputError(path, "boxes", "at least one box of a known class", found)
@@ -55,11 +59,14 @@ def write_boxes(path: str | Path, boxes: Boxes) -> None:
 def _read_folder(path: Path) -> list[Labels]:
     try:
         files = sorted(p for p in path.iterdir() if p.is_file() and not p.name.startswith("."))
+        size = sum(p.stat().st_size for p in files)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise InputError(path, "folder", "a folder that can be read", reason) from None
     if not files:
         raise InputError(path, "folder", "files with labels", "none")
+    if size > LABEL_BYTES:
+        raise InputError(path, "folder", f"at most {LABEL_BYTES:,} bytes", size_text(size))
     return [_read_file(file, may_be_empty=True) for file in files]
 
 
@@ -73,7 +80,9 @@ def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
         if may_be_empty:
             return Labels(source)
         raise InputError(source, "file", LAYOUTS, "an empty file")
-    if text.lstrip()[0] in "[{":
+    is_json = text.lstrip()[0] in "[{"
+    require_memory(source, "size", len(data) * (JSON_UNFOLDS if is_json else ROWS_UNFOLD))
+    if is_json:
         return read_nuscenes(source, _parsed(source, text))
     lines = [(n, line) for n, line in enumerate(text.split("\n"), 1) if _has_content(line)]
     if not lines:

@@ -11,8 +11,12 @@ import numpy as np
 from ...errors import InputError
 from ...prior.boxes import COLUMNS, MAX_M, SIZES, Boxes, name_is_fit
 from ...text.cells import quoted
+from ...text.values import LONGEST_NAME
 
 GROUND = (0.0, 0.0, 0.0)
+MOST_REASONS = 20
+OTHER_CLASSES = "of other unknown classes"
+"""What is left out of a file is told by so many reasons; further classes are counted together."""
 FIRST_SIZE = COLUMNS.index(SIZES[0])
 Origin = tuple[float, float, float]
 Row = tuple[float, float, float, float, float, float, float]
@@ -39,7 +43,7 @@ class Labels:
             if not abs(value) <= MAX_M:
                 expected = f"{column} within +-{MAX_M:g}"
                 raise InputError(self.source, where, expected, f"{value:g}")
-        if not name_is_fit(name):
+        if not name_is_fit(name) or len(name) > LONGEST_NAME:
             raise InputError(self.source, where, "a class in printable letters", quoted(name))
         self.names.append(name)
         self.rows.append(row)
@@ -50,8 +54,10 @@ class Labels:
         self.left_out[reason] += 1
 
     def leave_unknown(self, name: str) -> None:
-        """Count a box of a class that none of ours stands for."""
-        self.leave_out(f"of unknown class {quoted(name)}")
+        """Count a box of a class that none of ours stands for; too many of them as one."""
+        reason = f"of unknown class {quoted(name)}"
+        known = reason in self.left_out or len(self.left_out) < MOST_REASONS
+        self.leave_out(reason if known else OTHER_CLASSES)
 
     def boxes(self, origin: Origin | None = None) -> Boxes:
         """Return the boxes in the ground frame; `origin` replaces the layouts' own."""
@@ -70,5 +76,7 @@ def joined(parts: Iterable[Labels], source: str) -> Labels:
         whole.names += part.names
         whole.rows += part.rows
         whole.origins += part.origins
-        whole.left_out += part.left_out
+        for reason, count in part.left_out.items():
+            known = reason in whole.left_out or len(whole.left_out) < MOST_REASONS
+            whole.left_out[reason if known else OTHER_CLASSES] += count
     return whole

@@ -11,7 +11,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ...errors import InputError
+from ...errors import InputError, shown
+from ...text.cells import LONGEST_QUOTE
 from .labels import Labels, Row
 
 CLASSES = {
@@ -46,7 +47,7 @@ def read_nuscenes(source: str, data: Any) -> Labels:
     labels = Labels(source)
     for where, box in _boxes(source, data):
         if not isinstance(box, Mapping):
-            raise InputError(source, where, "a table", _brief(box))
+            raise InputError(source, where, "a table", shown(box))
         name = _name(source, where, box)
         row = _row(source, where, box)
         if known := _class_of(name):
@@ -61,16 +62,16 @@ def _boxes(source: str, data: Any) -> Iterator[tuple[str, Any]]:
     if isinstance(data, Mapping):
         results = data.get("results")
         if not isinstance(results, Mapping):
-            raise InputError(source, "file", LIST, f"a table of {_brief(list(data))}")
+            raise InputError(source, "file", LIST, f"a table of {shown(list(data))}")
         for sample, boxes in results.items():
-            yield from _listed(source, f"results[{sample}]", boxes)
+            yield from _listed(source, f"results[{sample[:LONGEST_QUOTE]}]", boxes)
     else:
         yield from _listed(source, "", data)
 
 
 def _listed(source: str, where: str, boxes: Any) -> Iterator[tuple[str, Any]]:
     if not isinstance(boxes, list):
-        raise InputError(source, where or "file", LIST, _brief(boxes))
+        raise InputError(source, where or "file", LIST, shown(boxes))
     yield from ((f"{where}[{i}]", box) for i, box in enumerate(boxes))
 
 
@@ -79,7 +80,7 @@ def _name(source: str, where: str, box: Mapping[str, Any]) -> str:
         if key in box:
             name = box[key]
             if not isinstance(name, str) or not name:
-                raise InputError(source, f"{where}.{key}", "a text", _brief(name))
+                raise InputError(source, f"{where}.{key}", "a text", shown(name))
             return name
     raise InputError(source, where, f"one of {', '.join(NAMES)}", "none")
 
@@ -110,7 +111,7 @@ def _numbers(
 ) -> Sequence[float]:
     values = box.get(key)
     if not isinstance(values, list) or len(values) != count or not all(map(_is_finite, values)):
-        found = "nothing" if values is None else _brief(values)
+        found = "nothing" if values is None else shown(values)
         raise InputError(source, f"{where}.{key}", f"{count} finite numbers", found)
     return [float(v) for v in values]
 
@@ -122,8 +123,3 @@ def _is_finite(value: Any) -> bool:
         return math.isfinite(value)
     except OverflowError:  # a whole number of hundreds of digits
         return False
-
-
-def _brief(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:60]}..."

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...prior.boxes import COLUMNS, Boxes, degrees_of
-from ...text.cells import parse_number, quoted
+from ...text.cells import LONGEST_QUOTE, parse_number, quoted
 from ...text.files import write_bytes
 from .labels import Labels, Row
 
@@ -65,7 +65,7 @@ def _csv_bytes(boxes: Boxes) -> bytes:
 
 def _header(source: str, line: tuple[int, str], separator: str) -> list[str]:
     cells = _cells(source, *line, separator)
-    names = [UNIT.sub("", cell.lower()) for cell in cells]
+    names = [_without_unit(cell.lower()) for cell in cells]
     wanted = (CLASS, *COLUMNS)
     for name in wanted:
         if names.count(name) != 1:
@@ -73,6 +73,11 @@ def _header(source: str, line: tuple[int, str], separator: str) -> list[str]:
             found = f"{name} twice" if name in names else f"no {name} in {quoted(line[1].strip())}"
             raise InputError(source, f"line {line[0]}", expected, found)
     return names
+
+
+def _without_unit(name: str) -> str:
+    # A name of ours is short; on a long one the pattern would take the square of its length.
+    return UNIT.sub("", name) if len(name) <= LONGEST_QUOTE else name
 
 
 def _cells(source: str, number: int, line: str, separator: str) -> list[str]:

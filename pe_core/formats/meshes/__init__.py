@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -15,6 +16,7 @@ from .glb import read_glb
 from .mesh import Mesh, make_mesh
 from .npz import dump_npz, read_npz
 from .obj import dump_obj, read_obj
+from .part_names import fit_names
 from .ply import read_ply
 from .stl import read_stl
 
@@ -46,7 +48,7 @@ def read_mesh(path: str | Path) -> Mesh:
     -------
     Mesh
         Triangles (F, 3, 3) [m], F at least 1, those without area among them; parts in the
-        order the file names them.
+        order the file names them, their names made printable (`part_names.fit_names`).
 
     Raises
     ------
@@ -60,7 +62,8 @@ def read_mesh(path: str | Path) -> Mesh:
     data = read_bytes(path, MESH_BYTES)
     # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
     with np.errstate(all="ignore"), told_if_too_much(path):
-        return reader(path, data)
+        mesh = reader(path, data)
+    return replace(mesh, part_names=fit_names(mesh.part_names))
 
 
 def write_mesh(path: str | Path, mesh: Mesh) -> None:

@@ -22,7 +22,7 @@ _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "K
 
 MOST_CHUNKS = 100
 MOST_JSON_BYTES = 32 << 20
-JSON_UNFOLDS = 20
+JSON_UNFOLDS = 30
 """The longest scene, and what a byte of it takes once read, at most (measured)."""
 
 
@@ -52,13 +52,13 @@ def read_glb(path: Path, data: bytes) -> Mesh:
         raise
     except (TypeError, ValueError, KeyError, AttributeError, OverflowError) as error:
         # The checks on the way name the usual faults; this is for JSON of another shape.
-        raise InputError(source, "JSON", "a well-formed glTF scene", repr(error)) from error
+        raise InputError(source, "JSON", "a well-formed glTF scene", error) from error
 
 
 def _chunks(source: str, data: bytes) -> tuple[bytes, memoryview]:
     """The JSON chunk and the binary one (empty if there is none), the latter not copied."""
     if data[:4] != b"glTF" or len(data) < 12:
-        raise InputError(source, "header", "12 bytes beginning with 'glTF'", repr(data[:12]))
+        raise InputError(source, "header", "12 bytes beginning with 'glTF'", data[:12])
     version, length = struct.unpack_from("<II", data, 4)
     if version != 2:
         raise InputError(source, "version", "2", str(version))

@@ -14,9 +14,9 @@ from ...text.memory import require_memory
 
 MOST_TRIANGLES = 25_000_000
 """The most of one mesh: cars are of some millions at most."""
-TRIANGLE_BYTES = 300
+TRIANGLE_BYTES = 320
 """What one triangle takes while it is read, at most (measured): corners, copies, indices."""
-TEXT_UNFOLDS = 12
+TEXT_UNFOLDS = 20
 """What a byte of a mesh in text takes once read (measured on files as programs write them)."""
 
 

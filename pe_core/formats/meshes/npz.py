@@ -39,7 +39,7 @@ def read_npz(path: Path, data: bytes) -> Mesh:
     with told_in_one_line(source), Archive(source, data) as archive:
         faces = _check(source, archive.headers)
         arrays = {name: archive.array(name) for name in archive.headers}
-    names = _names(arrays.get("part_names"), path.stem)
+        names = _names(arrays.get("part_names"), path.stem)
     parts = arrays.get("parts", np.zeros(faces, dtype=np.int32))
     return make_mesh(source, arrays["triangles"], parts, names)
 

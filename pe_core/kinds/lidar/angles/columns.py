@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ....errors import InputError
-from ....text.cells import numbered_lines, parse_number, quoted
+from ....text.cells import LONGEST_QUOTE, numbered_lines, parse_number, quoted
 from .channels import Channel, by_id, checked, parse_id
 
 NAMES = {
@@ -143,7 +143,9 @@ def _from_header(source: str, header: Row) -> Layout:
 
 def _plain(name: str) -> str:
     """``Elevation (deg)`` as ``elevation``."""
-    return UNIT.sub("", re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_"))
+    plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+    # A name of ours is short; on a long one the pattern would take the square of its length.
+    return UNIT.sub("", plain) if len(plain) <= LONGEST_QUOTE else plain
 
 
 def _column(source: str, header: Row, names: Sequence[str], role: str) -> int | None:

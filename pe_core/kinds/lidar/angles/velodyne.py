@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 
 from ....errors import InputError
 from ....text.cells import numbered_lines, parse_number, quoted
+from ....text.xml_text import parse_xml
 from .channels import Channel, by_id, checked, parse_id
 
 FIRST_LASER = 0
@@ -33,10 +34,7 @@ def read_xml(source: str, data: bytes) -> list[Channel]:
     InputError
         When it is no XML, has no ``<px>``, or a laser's values are missing or wrong.
     """
-    try:
-        root = ElementTree.fromstring(data.lstrip())
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise InputError(source, "file", "well-formed XML", error) from None
+    root = parse_xml(source, data.lstrip())
     lasers = [_xml_laser(source, i, px) for i, px in enumerate(root.iter("px"))]
     if not lasers:
         found = f"<{quoted(root.tag)[1:-1]}> without any"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from ..scene.vehicle import DEFAULT_CLEARANCE_M, Vehicle
 from ..search.optimize import AXES, PAPER_FREE, Schedule
 from ..text.files import decode_text, read_bytes, write_bytes
 from ..text.tables import Table
+from ..text.toml_reader import load_toml
 from ..text.toml_writer import dumps
 from .prior_file import prior_table, read_prior
 from .study import DEFAULT_SEARCH_SAMPLES, Search, Study
@@ -33,10 +33,7 @@ def load_study(path: str | Path) -> Study:
         One line with the file, the field, what was expected and what was found.
     """
     path = Path(path)
-    try:
-        data = tomllib.loads(decode_text(read_bytes(path)))
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(path, "study", "valid TOML", error) from None
+    data = load_toml(path, "study", decode_text(read_bytes(path)))
     return study_from_dict(data, str(path), path.parent)
 
 

@@ -40,7 +40,7 @@ class Archive:
     Raises
     ------
     InputError
-        An array comes twice, or holds pickled objects, or its member is too short for it.
+        An array comes twice or holds pickled objects.
     """
 
     def __init__(self, source: str, data: bytes) -> None:
@@ -58,8 +58,12 @@ class Archive:
         self._zip.close()
 
     def array(self, name: str) -> NDArray[Any]:
-        """Unpack an array; it takes what its header says."""
-        with self._zip.open(self._members[name]) as file:
+        """Unpack an array; it takes what its header says, if its member can be so long."""
+        info, needed = self._members[name], self.headers[name].size
+        if needed > info.file_size:
+            found = f"{info.file_size:,}"
+            raise InputError(self._source, name, f"{needed:,} bytes of values", found)
+        with self._zip.open(info) as file:
             return npy.read_array(file, allow_pickle=False)  # type: ignore[no-untyped-call]
 
     def _find(self) -> dict[str, zipfile.ZipInfo]:
@@ -73,15 +77,10 @@ class Archive:
         return found
 
     def _header(self, name: str) -> Header:
-        info = self._members[name]
-        with self._zip.open(info) as file:
+        with self._zip.open(self._members[name]) as file:
             header = _read_header(file)
-            begun = file.tell()
         if header.dtype.hasobject:
             raise InputError(self._source, "file", "arrays without pickled objects", name)
-        if begun + header.size > info.file_size:
-            found = f"{info.file_size - begun:,} for shape {header.shape} of {header.dtype}"
-            raise InputError(self._source, name, "all bytes of its values", found)
         return header
 
 

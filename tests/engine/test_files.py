@@ -1,0 +1,142 @@
+"""Reading and writing whole files, and how much memory there is: the rules that readers share."""
+
+import os
+import resource
+import sys
+from pathlib import Path
+
+import pytest
+
+from pe_core.errors import InputError
+from pe_core.text import files, memory
+from pe_core.text.files import read_bytes, write_bytes
+from pe_core.text.memory import available_bytes, require_memory, size_text, told_if_too_much
+
+
+def test_a_file_may_be_as_large_as_its_limit_and_no_larger(tmp_path):
+    path = tmp_path / "a"
+    path.write_bytes(b"12345")
+    assert read_bytes(path, 5) == b"12345"
+    with pytest.raises(InputError, match="a: size: expected a file of at most 4 bytes, found"):
+        read_bytes(path, 4)
+
+
+def test_links_to_files_are_followed(tmp_path):
+    (tmp_path / "a").write_bytes(b"data")
+    (tmp_path / "b").symlink_to("a")
+    assert read_bytes(tmp_path / "b") == b"data"
+
+
+@pytest.mark.parametrize(("grown", "whole"), [(3, True), (4, True), (5, False), (9_000_000, False)])
+def test_a_file_that_grows_while_it_is_read_is_bounded_too(tmp_path, monkeypatch, grown, whole):
+    """The size is asked before the first byte is read; then more comes."""
+    path, read = tmp_path / "log", os.read
+    path.write_bytes(b"12345678")
+
+    def read_and_grow(handle, count):
+        data = read(handle, count)
+        if path.stat().st_size == 8:
+            with path.open("ab") as file:
+                file.write(b"x" * grown)
+        assert count <= files.CHUNK
+        return data
+
+    monkeypatch.setattr(os, "read", read_and_grow)
+    if whole:
+        assert read_bytes(path, 12) == b"12345678" + b"x" * grown
+    else:
+        with pytest.raises(InputError, match="log: size: expected a file of at most 12 bytes"):
+            read_bytes(path, 12)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such thing there")
+def test_a_file_that_turns_into_a_pipe_before_it_is_opened(tmp_path, monkeypatch):
+    """The look from outside said that it is a file; opening must not block all the same."""
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "file").touch()
+    seen = os.stat(tmp_path / "file")
+    monkeypatch.setattr(os, "stat", lambda *_, **__: seen)
+    with pytest.raises(InputError, match="pipe: file: expected a readable file, found a pipe"):
+        read_bytes(tmp_path / "pipe")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such thing there")
+@pytest.mark.parametrize("kind", ["a folder", "a pipe", "a device"])
+def test_only_files_are_written_over(tmp_path, kind):
+    """Whatever stands in a file's place stays, and nothing is left beside it."""
+    path = tmp_path / "out"
+    match kind:
+        case "a folder":
+            path.mkdir()
+        case "a pipe":
+            os.mkfifo(path)
+        case "a device":
+            path.symlink_to("/dev/null")
+    before = os.lstat(path).st_mode
+    with pytest.raises(InputError, match=f"out: file: expected a place to write to, found {kind}"):
+        write_bytes(path, b"data")
+    assert os.lstat(path).st_mode == before
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+@pytest.mark.parametrize(
+    ("count", "told"),
+    [
+        (0, "0 bytes"),
+        (999, "999 bytes"),
+        (1000, "1.0 kB"),
+        (2 << 30, "2.1 GB"),
+        (999_999_999, "999.9 MB"),
+        (8 * 10**15, "8,000.0 TB"),
+        (10**4000, "more than a million TB"),
+    ],
+)
+def test_sizes_are_told_as_people_say_them(count, told):
+    assert size_text(count) == told
+
+
+def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
+    """Free memory, a container's limit, in either generation, and that of the process."""
+    (tmp_path / "meminfo").write_text("MemTotal: 9000 kB\nMemAvailable:    5000 kB\n")
+    (tmp_path / "v2").write_text("max\n")
+    (tmp_path / "v1").write_text("4000000\n")
+    monkeypatch.setattr(memory, "MEMINFO", tmp_path / "meminfo")
+    monkeypatch.setattr(memory, "GROUP_LIMITS", (tmp_path / "v2", tmp_path / "none"))
+    assert available_bytes() == 5_120_000
+    monkeypatch.setattr(memory, "GROUP_LIMITS", (tmp_path / "v2", tmp_path / "v1"))
+    assert available_bytes() == 4_000_000
+    (tmp_path / "statm").write_text("100 50 20\n")
+    monkeypatch.setattr(memory, "STATM", tmp_path / "statm")
+    most = 101 * resource.getpagesize()
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (most, most))
+    assert available_bytes() == resource.getpagesize()
+
+
+def test_work_that_fits_is_let_through_and_other_work_refused(monkeypatch):
+    monkeypatch.setattr(memory, "available_bytes", lambda: 1_500_000)
+    require_memory("car.npz", "triangles", 1_500_000)
+    message = (
+        "car.npz: triangles: expected what fits in the 1.5 MB of memory that are free, "
+        "found about 1.6 MB"
+    )
+    with pytest.raises(InputError) as caught:
+        require_memory("car.npz", "triangles", 1_600_000)
+    assert str(caught.value) == message
+    monkeypatch.setattr(memory, "available_bytes", lambda: None)
+    require_memory("car.npz", "triangles", 10**18)
+
+
+@pytest.mark.parametrize("error", [MemoryError, RecursionError])
+def test_what_nobody_foresaw_is_one_line_too(error):
+    with (
+        pytest.raises(InputError, match="^car.npz: file: expected data"),
+        told_if_too_much("car.npz"),
+    ):
+        raise error
+
+
+def test_the_machine_says_how_much_memory_it_has():
+    """Where /proc/meminfo is, there is more than this test takes."""
+    if not Path("/proc/meminfo").exists():
+        pytest.skip("another system")
+    assert available_bytes() > 10_000_000

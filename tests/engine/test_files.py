@@ -1,7 +1,6 @@
 """Reading and writing whole files, and how much memory there is: the rules that readers share."""
 
 import os
-import resource
 import sys
 from pathlib import Path
 
@@ -11,6 +10,8 @@ from pe_core.errors import InputError
 from pe_core.text import files, memory
 from pe_core.text.files import read_bytes, write_bytes
 from pe_core.text.memory import available_bytes, require_memory, size_text, told_if_too_much
+
+resource = pytest.importorskip("resource")
 
 
 def test_a_file_may_be_as_large_as_its_limit_and_no_larger(tmp_path):
@@ -128,10 +129,7 @@ def test_work_that_fits_is_let_through_and_other_work_refused(monkeypatch):
 
 @pytest.mark.parametrize("error", [MemoryError, RecursionError])
 def test_what_nobody_foresaw_is_one_line_too(error):
-    with (
-        pytest.raises(InputError, match="^car.npz: file: expected data"),
-        told_if_too_much("car.npz"),
-    ):
+    with pytest.raises(InputError, match=r"^car: file: expected data"), told_if_too_much("car"):
         raise error
 
 

@@ -30,6 +30,6 @@ def load_toml(source: object, field: str, text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except RecursionError:
-        raise InputError(source, field, "valid TOML", "too many levels of brackets") from None
+        raise InputError(source, field, "valid TOML", "lists or tables nested too deep") from None
     except ValueError as error:  # tomllib's own, and of int() when there are too many digits
         raise InputError(source, field, "valid TOML", error) from None

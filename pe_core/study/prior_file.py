@@ -13,9 +13,8 @@ from ..formats.boxes import read_boxes
 from ..prior.classes import FIELDS, SHIPPED, ObjectClass
 from ..prior.prior import FROM_BOXES, MODELS, Focus, Prior
 from ..text.tables import REQUIRED, Table
+from .names import BOXES
 
-BOXES = "boxes.csv"
-"""The name boxes get beside a study when they have no file of their own."""
 DEFAULT_MODEL = "road"
 OPTIONAL = {"lanes": (0.0,), "share": 1.0}
 """What a class of one's own need not say."""

@@ -56,7 +56,7 @@ def test_start_and_result_are_judged_by_one_evaluator(monkeypatch):
     monkeypatch.setattr(pe.Study, "evaluator", counted)
     _, outcome = finished(pe.OptimizeJob(study()))
     assert outcome.after is not outcome.before
-    assert made == [None, 2048]  # the whole grid once, the search's sample once
+    assert made == [2048, None]  # the search's sample once, the whole grid once
 
 
 def test_stop_keeps_the_best_so_far():
@@ -91,6 +91,7 @@ def test_result_files_hold_the_run(tmp_path):
     data = pe.write_outcome(outcome, tmp_path)
     assert json.loads((tmp_path / "result.json").read_text("utf-8")) == data
     assert sorted(p.name for p in tmp_path.iterdir()) == [
+        ".perception-entropy.json",
         "history.csv",
         "result.json",
         "study.toml",

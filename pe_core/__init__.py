@@ -3,8 +3,8 @@
 The metric is from Ma, Liu and Li, "Perception Entropy: A Metric for Multiple Sensors Configuration
 Evaluation and Design", ICRA 2021. Lower is better.
 
-The names in `public` are here too. They are loaded when one is first asked for: NumPy takes a while,
-and the command has to answer Ctrl-C meanwhile.
+The names in `public` are here too. They are loaded when one is first asked for: NumPy takes a
+while, and the command has to answer Ctrl-C meanwhile.
 """
 
 from importlib import import_module

@@ -1,6 +1,7 @@
 """The command ``pe``, and what all command lines share."""
 
 from .command import Parser, add_run_options, add_sensors_verb, count_up_to, run, with_options
+from .interrupts import leave
 from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
 from .summary import summary
 from .terminal import open_missing_streams, printable, show, tell
@@ -18,6 +19,7 @@ __all__ = [
     "carry_out",
     "count_up_to",
     "drive",
+    "leave",
     "open_missing_streams",
     "printable",
     "run",

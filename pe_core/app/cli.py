@@ -56,14 +56,14 @@ def parser() -> argparse.ArgumentParser:
 
 def _run_job(args: argparse.Namespace) -> Answer:
     study = with_options(load_study(args.study), args)
-    if (report := study.prior.report(study.space)) is not None:
-        tell(str(report))
     job: ScoreJob | OptimizeJob = args.job(study, args.workers)
     output = None
     if args.output is not None:
         names = result_names(study, "optimize" if isinstance(job, OptimizeJob) else "score")
         _refuse_to_replace(Path(args.study), Path(args.output))
         output = prepare_folder(args.output, names)
+    if (report := study.prior.report(study.space)) is not None:
+        tell(str(report))
     return carry_out(job, output, as_json=args.json)
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 FATAL = 128
 """Exit status of a process that a signal ended, less the signal's number."""
@@ -66,3 +68,13 @@ def _handled() -> list[signal.Signals]:
 def _default(number: signal.Signals) -> Any:
     """A handler that is not Python's own (inside Blender) cannot be named, and is not restored."""
     return signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
+
+
+def leave(status: int) -> NoReturn:
+    """Exit; at once when a signal has ended the work, whose threads may be busy for a while."""
+    if status <= FATAL:
+        sys.exit(status)
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(AttributeError, OSError, ValueError):  # it is closed, or nobody reads it
+            stream.flush()
+    os._exit(status)

@@ -116,7 +116,10 @@ def leave_scene(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) 
         from . import review  # only who wants a picture pays for it
 
         def picture(path: Path) -> None:
-            review.render_review(scene, outcome.study, outcome, path)
+            try:
+                review.render_review(scene, outcome.study, outcome, path)
+            except RuntimeError as error:
+                raise pe.InputError(path, "file", "a picture", error) from None
             complain_unless_whole(path)
 
         studies.add_to_result(data, folder, {REVIEW: picture})

@@ -19,6 +19,7 @@ from ..study import (
     Progress,
     export_study,
     files_of_other_runs,
+    prepare_folder,
     result_dict,
     write_outcome,
 )
@@ -114,76 +115,88 @@ class Saver:
     """Keeps a search's best so far as a study in the output folder."""
 
     def __init__(self, job: Job, output: Path | None) -> None:
-        self._job = job if isinstance(job, OptimizeJob) else None
-        self._output, self._saved, self._warned = output, time.monotonic(), False
-        self._saved_at_stop = False
+        self._job, self._output, self._saved = job, output, time.monotonic()
+        self._saved_at_stop = self._warned = False
 
     def save_now_and_then(self) -> None:
         """Save every few seconds, and when the search is stopped: who stopped it may not wait."""
-        if self._job is None or self._output is None:
+        if self._output is None or not self._has_better():
             return
         at_stop = self._job.stopped and not self._saved_at_stop
         if at_stop or time.monotonic() - self._saved >= SAVE_EVERY_S:
             self._saved_at_stop = self._job.stopped
-            if (error := self._save(self._output)) and not self._warned:
-                tell(f"{error}; the search goes on")
+            self._saved = time.monotonic()
+            try:
+                self._save(self._output)
+            except InputError as error:
+                if not self._warned:
+                    tell(f"{error}; the search goes on")
                 self._warned = True
 
     def save_at_last(self) -> None:
         """Save now, where that can be done, and say where."""
-        if self._job is None or self._output is None or len(self._job.history) < 2:
+        if self._output is None or not self._has_better():
             return
-        folder = self._output
-        if (error := self._save(folder)) is not None:
-            tell(str(error))
-            folder = Path(tempfile.mkdtemp(prefix=ELSEWHERE))
-            error = self._save(folder)
-        where = folder / STUDY
-        tell(f"the best placement so far is in {where}" if error is None else str(error))
+        for place in (self._output, None):
+            try:
+                tell(f"the best placement so far is in {self._save(place or _another_folder())}")
+                return
+            except InputError as error:
+                tell(str(error))
 
-    def _save(self, folder: Path) -> InputError | None:
-        """Save if there is something better than the start."""
-        assert self._job is not None
-        self._saved = time.monotonic()
-        if len(self._job.history) < 2:
-            return None
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            export_study(self._job.best, folder / STUDY)
-        except InputError as error:
-            return error
-        except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            return InputError(folder, "output", "a folder that can be written", reason)
-        return None
+    def _has_better(self) -> bool:
+        """Whether something better than the start was found."""
+        return isinstance(self._job, OptimizeJob) and len(self._job.history) > 1
+
+    def _save(self, folder: Path) -> Path:
+        assert isinstance(self._job, OptimizeJob)
+        path = prepare_folder(folder) / STUDY
+        export_study(self._job.best, path)
+        return path
 
 
 def keep(
     outcome: Outcome, output: Path, host: dict[str, str] | None, more: More | None
 ) -> tuple[int, Data]:
-    """Write the results to a folder; where that fails, to another one that is told."""
-    try:
-        data = _write(outcome, output, host, more)
-        for name in files_of_other_runs(output):
-            tell(f"{output / name}: not of this run")
-        return DONE, data
-    except InputError as error:
-        tell(str(error))
-    try:
-        elsewhere = Path(tempfile.mkdtemp(prefix=ELSEWHERE))
-        data = _write(outcome, elsewhere, host, more)
-        tell(f"the results are in {elsewhere}")
-        return BAD_INPUT, data
-    except (InputError, OSError) as error:
-        tell(f"{error}; the results are not in any file")
-        return BAD_INPUT, result_dict(outcome, host)
+    """Write the results to a folder; where that fails, to another one that is told.
+
+    Returns
+    -------
+    status : int
+    data : dict
+        What result.json holds.
+    """
+    data, kept = result_dict(outcome, host), list[Path]()
+    for place in (output, None):
+        try:
+            folder = place or _another_folder()
+            data = write_outcome(outcome, folder, host)
+            kept.append(folder)
+            if more is not None:
+                more(outcome, data, folder)
+        except InputError as error:
+            tell(str(error))
+            continue
+        _tell_of_other_runs(folder)
+        if folder != output:
+            tell(f"the results are in {folder}")
+        return (DONE if folder == output else BAD_INPUT), data
+    tell(f"all else is in {kept[0]}" if kept else "the results are not in any file")
+    _tell_of_other_runs(output)
+    return BAD_INPUT, data
 
 
-def _write(outcome: Outcome, folder: Path, host: dict[str, str] | None, more: More | None) -> Data:
-    data = write_outcome(outcome, folder, host)
-    if more is not None:
-        more(outcome, data, folder)
-    return data
+def _another_folder() -> Path:
+    try:
+        return Path(tempfile.mkdtemp(prefix=ELSEWHERE))
+    except OSError as error:
+        where = "folder for temporary files"
+        raise InputError("system", where, "one that can be written", error) from None
+
+
+def _tell_of_other_runs(folder: Path) -> None:
+    for name in files_of_other_runs(folder):
+        tell(f"{folder / name}: not of this run")
 
 
 def print_answer(text: str, status: int, out: TextIO | None) -> int:
@@ -200,8 +213,8 @@ def print_answer(text: str, status: int, out: TextIO | None) -> int:
 def _put_elsewhere(text: str) -> str:
     """Keep a text that could not be printed; return where it is, in words."""
     try:
-        path = Path(tempfile.mkdtemp(prefix=ELSEWHERE)) / "output.txt"
+        path = _another_folder() / "output.txt"
         path.write_text(text, encoding="utf-8", errors="backslashreplace")
-    except OSError as error:
-        return f"it could not be kept either: {error.strerror}"
+    except (InputError, OSError) as error:
+        return f"it could not be kept either: {error}"
     return f"what it would have said is in {path}"

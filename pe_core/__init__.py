@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # a checker knows these names, and no others
-    from .public import *
+    from .public import *  # noqa: F403
     from .public import __all__ as __all__
 else:
 

@@ -22,8 +22,10 @@ def main() -> None:
 
 def _leave(_signum: int, _frame: FrameType | None) -> None:
     """While loading there is nothing to lose."""
-    os.write(2, b"pe: interrupted\n")
-    os._exit(130)
+    try:
+        os.write(2, b"pe: interrupted\n")
+    finally:
+        os._exit(130)
 
 
 if __name__ == "__main__":

@@ -24,6 +24,8 @@ from .older_folder import files_of_0_1
 LISTING = ".perception-entropy.json"
 """Name of the list of our files: ``{"perception-entropy": 1, "files": {name: [SHA-256, ...]}}``."""
 PROGRAM, VERSION = "perception-entropy", 1
+DIGESTS_KEPT = 8
+"""Of each file: that before and this one, and those of other runs that write to the folder now."""
 Write = Callable[[Path], None]
 """Writes a file to the path it is given, which has the right suffix and is in the right folder."""
 Listed = dict[str, list[str]]
@@ -140,11 +142,12 @@ class FileSet:
 
     def _list(self, new: Collection[str]) -> None:
         """List the files before they are there: if we are killed meanwhile, both are ours."""
-        listed = {name: [digest] for name, digest in our_files(self._folder).items()}
+        listed = _listed(self._folder)
         for name in new:
             listed.setdefault(name, []).append(self._made[name][1])
-        data = {PROGRAM: VERSION, "files": dict(sorted(listed.items()))}
-        if listed:
+        recent = {name: known[-DIGESTS_KEPT:] for name, known in sorted(listed.items())}
+        data = {PROGRAM: VERSION, "files": recent}
+        if new:
             write_bytes(self._folder / LISTING, dump_json(data).encode())
 
 

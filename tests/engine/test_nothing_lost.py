@@ -13,7 +13,8 @@ import pe_core as pe
 from tests.engine import shapes
 from tests.engine.processes import GUARD_S, ROOT, Command
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals and files")
+if sys.platform == "win32":
+    pytest.skip("POSIX signals and files", allow_module_level=True)
 ENDLESS = ("--candidates", 100_000)
 SHORT = ("--candidates", 4)
 

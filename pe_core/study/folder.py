@@ -10,8 +10,9 @@ import hashlib
 import json
 import os
 import secrets
-from collections.abc import Callable, Collection, Iterable
-from contextlib import suppress
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -21,11 +22,18 @@ from ..text.files import read_bytes, write_bytes
 from ..text.json_text import dump_json
 from .older_folder import files_of_0_1
 
+try:
+    import fcntl
+except ImportError:  # on Windows two runs into one folder may refuse each other's files
+    fcntl = None  # type: ignore[assignment]
+
 LISTING = ".perception-entropy.json"
 """Name of the list of our files: ``{"perception-entropy": 1, "files": {name: [SHA-256, ...]}}``."""
 PROGRAM, VERSION = "perception-entropy", 1
 DIGESTS_KEPT = 8
-"""Of each file: that before and this one, and those of other runs that write to the folder now."""
+"""Of each file: of the last times that it was written."""
+LOCK_TRIES, LOCK_PAUSE_S = 200, 0.01
+"""How long to wait for another run that writes to the folder: it does so for milliseconds."""
 Write = Callable[[Path], None]
 """Writes a file to the path it is given, which has the right suffix and is in the right folder."""
 Listed = dict[str, list[str]]
@@ -123,7 +131,8 @@ class FileSet:
     ) -> None:
         try:
             if kind is None:
-                self._put()
+                with _alone_in(self._folder):
+                    self._put()
         except OSError as failed:
             raise InputError(
                 self._folder, "output", "a folder that can be written", _reason(failed)
@@ -149,6 +158,27 @@ class FileSet:
         data = {PROGRAM: VERSION, "files": recent}
         if new:
             write_bytes(self._folder / LISTING, dump_json(data).encode())
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Let no other run list and replace files of the folder meanwhile.
+
+    It is asked for a moment only: who holds it has been stopped, or the system has no such thing.
+    """
+    if fcntl is None:
+        yield
+        return
+    number = os.open(folder, os.O_RDONLY)
+    try:
+        for _ in range(LOCK_TRIES):
+            with suppress(OSError):
+                fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            time.sleep(LOCK_PAUSE_S)
+        yield
+    finally:
+        os.close(number)
 
 
 def sha256_of(path: Path) -> str:

@@ -2,6 +2,8 @@
 
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +13,7 @@ import pe_core as pe
 from pe_core.app.cli import main
 from pe_core.study import FileSet, files_of_other_runs
 from tests.engine import shapes
+from tests.engine.processes import ROOT
 
 LISTING = ".perception-entropy.json"
 NAMES = ("study.toml", "vehicle.npz", "boxes.csv", "history.csv", "result.json")
@@ -245,6 +248,19 @@ def test_killed_between_two_files_all_of_them_are_still_ours(tmp_path, stops_at,
         files.add("a", b"3")
         files.add("b", b"3")
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes() == b"3"
+
+
+def test_runs_into_one_folder_at_once_know_each_others_files(tmp_path):
+    code = (
+        "import sys; from pathlib import Path; from pe_core.study import FileSet\n"
+        "for i in range(40):\n"
+        "    with FileSet(Path(sys.argv[1])) as files:\n"
+        "        for name in 'ab': files.add(name, f'{sys.argv[2]} {i}'.encode())\n"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path)]
+    runs = [subprocess.Popen([*command, name], cwd=ROOT) for name in ("first", "second")]
+    assert [run.wait() for run in runs] == [0, 0]
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
 
 
 def test_files_of_another_run_are_told(study, out, capsys):

@@ -67,7 +67,8 @@ def test_an_exported_study_scores_the_same_bits_elsewhere(write, tmp_path, origi
     (tmp_path / "out").mkdir()
     pe.export_study(study, tmp_path / "out" / name)
     table = {"study.toml": "boxes.csv", "other.toml": "other.boxes.csv"}[name]
-    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == sorted([name, table])
+    expected = sorted([".perception-entropy.json", name, table])
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == expected
     (tmp_path / "labels").unlink()
     copy = pe.load_study(tmp_path / "out" / name)
     assert copy.prior.boxes.file == table and copy.prior.boxes == study.prior.boxes

@@ -12,7 +12,7 @@ from ..scene.vehicle import Vehicle
 from .gridded import GridScorer
 from .sampled import Judgement, SampledScorer
 from .sampling import CENTERED
-from .score import Score
+from .score import Score, Watch
 
 
 class Evaluator:
@@ -60,7 +60,7 @@ class Evaluator:
         else:
             self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
 
-    def score(self, rig: Rig, *, draft: bool = False) -> Score:
+    def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full: entropy, coverage, by class, by sensor, ground map.
 
         Parameters
@@ -70,15 +70,22 @@ class Evaluator:
             While a sensor is being moved: which LiDAR beams the vehicle stops is read from a map of
             its top surface, where the sensor stands above it, instead of cast. `Score.draft` says
             so. The next score without it is exact again. Sampled scores only.
+        watch : callable, optional
+            Called with the share that is done, 0 to 1, now and then while a grid is scored (a
+            sample is done too soon); when it returns False, the score is stopped.
 
         Raises
         ------
         InputError
             When a draft is asked of a grid score.
+        ScoreStopped
+            When the one who watches said so.
         """
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer.score(rig, draft=draft)
         if draft:
-            return self._drafting().score(rig, draft=True)
-        return self._scorer.score(rig)
+            self._drafting()
+        return self._scorer.score(rig, watch)
 
     def entropy(self, rig: Rig, *, draft: bool = False) -> float:
         """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for.

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotYet
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ..scene.sensors import Rig
 from ..scoring.evaluator import Evaluator
-from ..scoring.score import Score
+from ..scoring.score import Score, ScoreStopped
 from ..search.optimize import Step, optimize
 from .study import Study
 
@@ -111,24 +111,31 @@ class Job:
     ) -> Generator[Progress, None, Score | None]:
         """Score in a thread, yielding `waiting` until it is done.
 
-        None when the job is stopped meanwhile, unless it is `to_the_end`: the thread then works on
-        and nobody waits for it.
+        None when the job is stopped meanwhile, unless it is `to_the_end`: the thread then ends by
+        itself, soon, and nobody waits for it.
         """
         yield waiting
-        future = Future[Score]()
-        threading.Thread(target=self._fill, args=(future, rig), daemon=True).start()
+        future, done = Future[Score](), [waiting.fraction]
+
+        def watch(share: float) -> bool:
+            done[0] = max(waiting.fraction, share)
+            return to_the_end or not self.stopped
+
+        threading.Thread(target=self._fill, args=(future, rig, watch), daemon=True).start()
         while to_the_end or not self.stopped:
             try:
                 return future.result(timeout=WAIT_S)
+            except ScoreStopped:
+                return None
             except NotYet:
                 if future.done():
                     raise
-            yield waiting
+            yield replace(waiting, fraction=done[0])
         return None
 
-    def _fill(self, future: Future[Score], rig: Rig) -> None:
+    def _fill(self, future: Future[Score], rig: Rig, watch: Callable[[float], bool]) -> None:
         try:
-            future.set_result(self._evaluator.score(rig))
+            future.set_result(self._evaluator.score(rig, watch=watch))
         except BaseException as error:  # whatever it is, the one who waits has to know
             future.set_exception(error)
 

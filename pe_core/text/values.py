@@ -1,0 +1,251 @@
+"""The one place where a value from outside is checked: its type, its range, and the line that
+refuses it.
+
+A rule (`Number`, `Whole`, `Angle`, `Name`) says what a value may be; ``rule.checked(source, field,
+value)`` returns the value as plain Python, or raises `InputError`. NumPy's scalars are numbers,
+True and False are none, and NaN never is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import islice
+from numbers import Integral, Real
+from typing import Any
+
+from ..errors import InputError, shown
+from .degrees import as_in_file
+
+LONGEST_NAME = 255
+"""Characters in a name: what file systems and Blender allow, too."""
+LONGEST_PATH = 4096
+"""Characters in the name of a file with its folders; Linux opens none that is longer."""
+COUNT_WORDS = {2: "two", 3: "three"}
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A real number in a range.
+
+    Parameters
+    ----------
+    least, most : float
+        The range; both ends belong to it.
+    above, below : bool
+        Whether `least` (`most`) itself is left out.
+    unit : str
+        Of the value, for the message.
+    infinite : bool
+        Whether infinity is a number, too.
+    expected : str
+        Words for the message; told by the range where there are none.
+    """
+
+    least: float = -math.inf
+    most: float = math.inf
+    above: bool = False
+    below: bool = False
+    unit: str = ""
+    infinite: bool = False
+    expected: str = ""
+
+    def checked(self, source: object, field: str, value: Any) -> float:
+        """Return the value as a float, or raise `InputError`."""
+        number = value if type(value) is float else real(value)
+        if not self.holds(number):
+            raise InputError(source, field, self.words, shown(value))
+        return number
+
+    def holds(self, number: float) -> bool:
+        """Whether a float is in the range; NaN never is."""
+        low = self.least < number if self.above else self.least <= number
+        high = number < self.most if self.below else number <= self.most
+        return low and high and (self.infinite or math.isfinite(number))
+
+    @property
+    def words(self) -> str:
+        """What is expected, for messages."""
+        return self.expected or f"{self.noun}{self.range_words}"
+
+    @property
+    def noun(self) -> str:
+        """``a number``; a finite one where only infinity is not."""
+        ranged = math.isfinite(self.least) or math.isfinite(self.most)
+        return "a number" if ranged or self.infinite else "a finite number"
+
+    @property
+    def range_words(self) -> str:
+        """The range in words, with a blank in front."""
+        unit = f" {self.unit}" if self.unit else ""
+        low, high = f"{self.least:,.12g}", f"{self.most:,.12g}"
+        if self.least == -self.most and math.isfinite(self.most):
+            return f" within +-{high}{unit}"
+        ends = []
+        if math.isfinite(self.least):
+            ends.append(f"above {low}" if self.above else f"of at least {low}")
+        if math.isfinite(self.most):
+            ends.append(f"below {high}" if self.below else f"at most {high}")
+        if len(ends) == 2 and not (self.above or self.below):
+            return f" from {low} to {high}{unit}"
+        return "".join((" ", " and ".join(ends), unit)) if ends else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Angle(Number):
+    """An angle: its range in degrees, the value in radians, as a file's degrees give it back."""
+
+    def checked(self, source: object, field: str, value: Any) -> float:
+        """Return the value [rad], or raise `InputError`."""
+        number = real(value)
+        if not math.isfinite(number) or not self.holds(math.degrees(number)):
+            found = f"{math.degrees(number):g} degrees" if math.isfinite(number) else shown(value)
+            raise InputError(source, field, f"{self.words} degrees", found)
+        return as_in_file(number)
+
+    @property
+    def noun(self) -> str:
+        """``an angle``."""
+        return "an angle"
+
+
+@dataclass(frozen=True, slots=True)
+class Whole:
+    """A whole number in a range; 1800.0 is one, 180.7 and True are none."""
+
+    least: int = 0
+    most: int | None = None
+    unit: str = ""
+
+    def checked(self, source: object, field: str, value: Any) -> int:
+        """Return the value as an int, or raise `InputError`."""
+        number = _whole(value)
+        if number is None or number < self.least or (self.most is not None and number > self.most):
+            raise InputError(source, field, self.words, shown(value))
+        return number
+
+    @property
+    def words(self) -> str:
+        """What is expected, for messages."""
+        unit = f" of {self.unit}" if self.unit else ""
+        if self.most is None:
+            return f"a whole number{unit} >= {self.least}"
+        return f"a whole number{unit} from {self.least:,} to {self.most:,}"
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A text that names something: printable, on one line, not blank and not endless."""
+
+    expected: str = "a name in printable letters"
+    longest: int = LONGEST_NAME
+
+    def checked(self, source: object, field: str, value: Any) -> str:
+        """Return the value as a plain str, or raise `InputError`."""
+        if not isinstance(value, str) or len(value) > self.longest:
+            long = f"; {len(value):,} characters" if isinstance(value, str) else ""
+            most = f" ({self.longest} at most)" if long else ""
+            raise InputError(source, field, f"{self.expected}{most}", f"{_start(value)}{long}")
+        if not value.strip() or not value.isprintable():
+            raise InputError(source, field, self.expected, shown(value))
+        return str(value)
+
+
+FINITE = Number()
+ANY = Number(infinite=True)
+LENGTH_M = Number(0.0, 1e9, above=True, unit="m")
+"""A size of something. Arithmetic is safe up to there."""
+SHARE = Number(0.0, 1.0)
+WEIGHT = Number(0.0, 1e9)
+A_NAME = Name()
+A_PATH = Name("the name of a file in printable letters", LONGEST_PATH)
+
+
+def real(value: Any) -> float:
+    """Return a value as a float: NaN for what is no number, infinity for what is beyond a float."""
+    number: Any = plain(value)
+    if isinstance(number, bool) or not isinstance(number, Real):
+        return math.nan
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf if number > 0 else -math.inf  # type: ignore[operator]
+
+
+def plain(value: Any) -> Any:
+    """Return a NumPy scalar as Python's own; anything else as it is."""
+    return value.item() if getattr(value, "ndim", None) == 0 and hasattr(value, "item") else value
+
+
+def vector(
+    source: object,
+    field: str,
+    values: Any,
+    count: int,
+    rule: Number = FINITE,
+    expected: str = "",
+) -> tuple[float, ...]:
+    """Return `count` numbers of one rule, or raise `InputError` about all of them."""
+    found = listed(values, count)
+    if found is not None and len(found) == count:
+        try:
+            return tuple(rule.checked(source, field, v) for v in found)
+        except InputError:
+            pass  # one bad number is told with the others
+    numbers = f"{rule.noun.split(' ', 1)[1]}s{rule.range_words}"
+    words = expected or f"{COUNT_WORDS.get(count, count)} {numbers}"
+    raise InputError(source, field, words, shown(values))
+
+
+def pair(
+    source: object,
+    field: str,
+    values: Any,
+    rule: Number = FINITE,
+    *,
+    same: bool = False,
+) -> tuple[float, float]:
+    """Return two numbers, low before high (with `same`: or alike), or raise `InputError`."""
+    numbers = f"two {rule.noun.split(' ', 1)[1]}s{rule.range_words}"
+    words = f"{numbers}, low before high"
+    low, high = vector(source, field, values, 2, rule, words)
+    if low < high or (same and low == high):
+        return low, high
+    raise InputError(source, field, words, shown(values))
+
+
+def listed(values: Any, most: int | None = None) -> list[Any] | None:
+    """Return the elements of a list, a tuple, an array; None for what has none, as a text.
+
+    With `most` no more than one beyond it are taken: enough to tell that they are too many.
+    """
+    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
+        return None
+    try:
+        return list(islice(values, None if most is None else most + 1))
+    except TypeError:  # an array of no dimension says that it can be iterated
+        return None
+
+
+def choice(source: object, field: str, value: Any, among: Iterable[str]) -> str:
+    """Return a text that is one of several, or raise `InputError`."""
+    known = tuple(among)
+    if isinstance(value, str) and value in known:
+        return value
+    raise InputError(source, field, f"one of {', '.join(known)}", shown(value))
+
+
+def _whole(value: Any) -> int | None:
+    value = plain(value)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return None
+    if isinstance(value, Integral):
+        return int(value)
+    number = real(value)
+    return int(number) if number.is_integer() else None
+
+
+def _start(value: Any) -> str:
+    """Return the beginning of a text, and other values as they are shown."""
+    return f"{shown(value[:20])[:-1]}...'" if isinstance(value, str) else shown(value)

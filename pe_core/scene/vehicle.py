@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..text.values import A_NAME, Number
 from .frozen import frozen, frozen_copy
 from .geometry import FARTHEST_M, cross, dot
 from .heights import top_heights
@@ -20,6 +21,7 @@ Floats = NDArray[np.float64]
 
 DEFAULT_CLEARANCE_M = 0.02
 """How far a flush-mounted sensor is taken to stand proud of the skin."""
+CLEARANCE = Number(0.0, 1.0, below=True, unit="m")
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +45,8 @@ class Vehicle:
     Raises
     ------
     InputError
-        When the triangles are not (F, 3, 3), none are left, or a coordinate is not finite.
+        When the triangles are not (F, 3, 3), none are left, a coordinate is not finite, or a name
+        or the clearance is impossible.
     """
 
     triangles: Floats
@@ -59,15 +62,15 @@ class Vehicle:
             if self.parts is None
             else frozen_copy(self.parts, np.int32)
         )
-        names = tuple(self.part_names)
+        names = tuple(A_NAME.checked("vehicle", "part_names", n) for n in self.part_names)
         if parts.shape != (len(triangles),) or parts.min() < 0 or parts.max() >= len(names):
             found = f"{parts.shape} with {len(names)} names"
             raise InputError("vehicle", "parts", "one index into part_names a triangle", found)
         for name in self.glass:
             if name not in names:
                 raise InputError("vehicle", "glass", f"one of {', '.join(names)}", repr(name))
-        if not 0.0 <= self.clearance < 1.0:
-            raise InputError("vehicle", "clearance", "0 to 1 m", self.clearance)
+        clearance = CLEARANCE.checked("vehicle", "clearance", self.clearance)
+        object.__setattr__(self, "clearance", clearance)
         for key, value in (("triangles", triangles), ("parts", parts), ("part_names", names)):
             object.__setattr__(self, key, value)
         object.__setattr__(self, "glass", tuple(self.glass))

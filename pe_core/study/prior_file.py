@@ -13,6 +13,7 @@ from ..formats.boxes import read_boxes
 from ..prior.classes import FIELDS, SHIPPED, ObjectClass
 from ..prior.prior import FROM_BOXES, MODELS, Focus, Prior
 from ..text.tables import REQUIRED, Table
+from ..text.values import A_NAME, A_PATH
 from .names import BOXES
 
 DEFAULT_MODEL = "road"
@@ -51,7 +52,7 @@ def _read_boxes(table: Table, folder: Path) -> Prior:
     for key in ("model", "classes", "class"):
         if key in table:
             raise table.error(key, f"nothing beside {table.field(FROM_BOXES)}", "a value")
-    file, origin = table.text(FROM_BOXES), table.numbers("origin", 3, None)
+    file, origin = table.text(FROM_BOXES, rule=A_PATH), table.numbers("origin", 3, None)
     if origin is not None and not all(map(math.isfinite, origin)):
         raise table.error("origin", "a list of 3 finite numbers", list(origin))
     at = None if origin is None else (origin[0], origin[1], origin[2])
@@ -78,7 +79,7 @@ def _read_model(table: Table) -> Prior:
 
 def _read_class(table: Table, shipped: Sequence[ObjectClass]) -> ObjectClass:
     """Read a class; one with a shipped class's name need say only what differs."""
-    name = table.text("name")
+    name = table.text("name", rule=A_NAME)
     base = next((c for c in shipped if c.name == name), None)
 
     def default(key: str) -> Any:

@@ -20,7 +20,7 @@ import numpy as np
 from ..formats.boxes import write_boxes
 from ..formats.meshes import Mesh, write_mesh
 from ..scene.sensors import Rig
-from ..search.optimize import AXES
+from ..search.search_space import AXES
 from ..text.files import read_bytes
 from ..text.json_text import dump_json, finite
 from ..version import __version__

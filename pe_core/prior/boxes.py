@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..scene.frozen import frozen
 
 Floats = NDArray[np.float64]
@@ -155,14 +155,14 @@ def _columns_of(rows: Any) -> dict[str, Sequence[Any]]:
         )
     for i, row in enumerate(rows):
         if not isinstance(row, Sequence) or isinstance(row, str) or len(row) != len(names):
-            raise InputError("boxes", f"box {i}", ", ".join(names), repr(row))
+            raise InputError("boxes", f"box {i}", ", ".join(names), shown(row))
     return {name: [row[k] for row in rows] for k, name in enumerate(names)}
 
 
 def _check_names(names: NDArray[np.str_]) -> None:
     for name in set(names.tolist()):
         if not name_is_fit(name):
-            raise InputError("boxes", "class", "a name in printable letters", repr(name))
+            raise InputError("boxes", "class", "a name in printable letters", shown(name))
 
 
 def name_is_fit(name: str) -> bool:
@@ -174,7 +174,7 @@ def _column(name: str, values: ArrayLike, count: int) -> Floats:
     """Return one column as finite floats of its own, or complain about its first bad box."""
     try:
         column = np.array(values, dtype=np.float64).reshape(-1) + 0.0  # no negative zeros
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError("boxes", name, "numbers", "something else") from None
     if len(column) != count:
         raise InputError("boxes", name, f"{count} numbers, one a box", len(column))

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..text.values import A_NAME, Number
 from .frozen import frozen, frozen_copy
 from .geometry import FARTHEST_M, cross, dot
@@ -60,15 +60,15 @@ class Vehicle:
         parts = (
             frozen(np.zeros(len(triangles), np.int32))
             if self.parts is None
-            else frozen_copy(self.parts, np.int32)
+            else _checked_parts(self.parts, len(self.part_names))
         )
         names = tuple(A_NAME.checked("vehicle", "part_names", n) for n in self.part_names)
-        if parts.shape != (len(triangles),) or parts.min() < 0 or parts.max() >= len(names):
+        if parts.shape != (len(triangles),):
             found = f"{parts.shape} with {len(names)} names"
             raise InputError("vehicle", "parts", "one index into part_names a triangle", found)
         for name in self.glass:
             if name not in names:
-                raise InputError("vehicle", "glass", f"one of {', '.join(names)}", repr(name))
+                raise InputError("vehicle", "glass", f"one of {', '.join(names)}", shown(name))
         clearance = CLEARANCE.checked("vehicle", "clearance", self.clearance)
         object.__setattr__(self, "clearance", clearance)
         for key, value in (("triangles", triangles), ("parts", parts), ("part_names", names)):
@@ -137,7 +137,13 @@ class SeenMesh:
 
 
 def _checked_triangles(values: ArrayLike) -> Floats:
-    triangles: Floats = frozen_copy(values, np.float64)
+    expected = "(F, 3, 3) numbers, F > 0"
+    try:
+        triangles: Floats = frozen_copy(values, np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(
+            "vehicle", "triangles", "(F, 3, 3) numbers, F > 0", shown(values)
+        ) from None
     if triangles.ndim != 3 or triangles.shape[1:] != (3, 3) or not len(triangles):
         raise InputError("vehicle", "triangles", "(F, 3, 3) numbers, F > 0", triangles.shape)
     bad = ~np.isfinite(triangles).all(axis=(1, 2))
@@ -150,6 +156,19 @@ def _checked_triangles(values: ArrayLike) -> Floats:
         expected = f"coordinates within +-{FARTHEST_M:g} m"
         raise InputError("vehicle", "triangles", expected, found)
     return triangles
+
+
+def _checked_parts(values: ArrayLike, names: int) -> NDArray[np.int32]:
+    """Return indices into that many names, or raise `InputError`."""
+    try:
+        parts = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        parts = np.array(None)
+    whole = parts.dtype.kind in "iu" and parts.size > 0
+    if not whole or parts.min() < 0 or parts.max() >= names:
+        found = f"{shown(values)} with {names} names"
+        raise InputError("vehicle", "parts", "one index into part_names a triangle", found)
+    return frozen_copy(parts, np.int32)
 
 
 def _proud_of_skin(position: Floats, triangles: Floats, clearance: float) -> Floats:

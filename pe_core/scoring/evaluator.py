@@ -9,10 +9,14 @@ from ..prior.prior import Prior
 from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
+from ..text.values import Number, Whole, vector
 from .gridded import GridScorer
 from .sampled import Judgement, SampledScorer
-from .sampling import CENTERED
+from .sampling import CENTERED, samples_or_grid
 from .score import Score, Watch
+
+WORKERS = Whole(0, 1024, "threads")
+SHIFT = Number(0.0, 1.0, below=True)
 
 
 class Evaluator:
@@ -52,6 +56,11 @@ class Evaluator:
         model: PerceptionModel | None = None,
         workers: int | None = None,
     ) -> None:
+        samples = samples_or_grid("evaluator", samples)
+        if workers is not None:
+            workers = WORKERS.checked("evaluator", "workers", workers)
+        in_range = vector("evaluator", "shift", shift, 3, SHIFT)
+        shift = in_range[0], in_range[1], in_range[2]
         self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
         densities, fusion = prior.densities(space), Fusion(model or PerceptionModel())
         self._scorer: GridScorer | SampledScorer

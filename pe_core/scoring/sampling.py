@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from ..prior.prior import ClassDensity
 from ..scene.space import PerceptionSpace
 from ..text.values import Whole
@@ -25,6 +27,17 @@ MIN_SAMPLES, MAX_SAMPLES = 1024, 2**24
 SAMPLES = Whole(MIN_SAMPLES, MAX_SAMPLES, "voxels")
 CENTERED = (0.5, 0.5, 0.5)
 AT_ONCE = 1 << 16
+
+SAMPLES_OR_GRID = Whole(0, MAX_SAMPLES, "voxels")
+
+
+def samples_or_grid(source: str, value: Any) -> int:
+    """Return a number of samples, or 0 for the whole grid; `InputError` for what is neither."""
+    count = SAMPLES_OR_GRID.checked(source, "samples", value)
+    if 0 < count < MIN_SAMPLES:
+        expected = f"0 for the whole grid, or a whole number of voxels >= {MIN_SAMPLES}"
+        raise InputError(source, "samples", expected, count)
+    return count
 
 
 @dataclass(frozen=True, slots=True)

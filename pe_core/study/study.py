@@ -18,15 +18,14 @@ from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..scoring.evaluator import Evaluator
-from ..scoring.sampling import MAX_SAMPLES, MIN_SAMPLES
-from ..search import PAPER_FREE, Schedule, SearchSpace
+from ..scoring.sampling import samples_or_grid
+from ..search import AXES, PAPER_FREE, Schedule, SearchSpace
 from ..search.search_space import checked_axes, checked_bounds
 from ..text.values import A_NAME, A_PATH, Whole
 
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
 """What a TOML file can hold."""
-SAMPLES_OR_GRID = Whole(0, MAX_SAMPLES, "voxels")
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,14 +139,6 @@ def vehicle_digest(vehicle: Vehicle | None) -> str | None:
     return None if vehicle is None else hashlib.sha256(vehicle.triangles.tobytes()).hexdigest()
 
 
-def samples_or_grid(source: str, value: Any) -> int:
-    """Return a number of samples, or 0 for the whole grid; `InputError` for what is neither."""
-    count = SAMPLES_OR_GRID.checked(source, "samples", value)
-    if 0 < count < MIN_SAMPLES:
-        raise InputError(source, "samples", f"0 for the whole grid, or >= {MIN_SAMPLES}", count)
-    return count
-
-
 def _each(table: Any, field: str, check: Callable[[str, str, Any], Any]) -> dict[str, Any]:
     """Check what a mapping holds for each sensor."""
     if not isinstance(table, Mapping):
@@ -159,7 +150,8 @@ def _each(table: Any, field: str, check: Callable[[str, str, Any], Any]) -> dict
 def _checked_limits(source: str, field: str, limits: Any) -> dict[str, tuple[float, float]]:
     if not isinstance(limits, Mapping):
         raise InputError(source, field, "a mapping of axes to bounds", shown(limits))
-    return {axis: checked_bounds(source, axis, bounds) for axis, bounds in limits.items()}
+    checked = {axis: checked_bounds(source, axis, bounds) for axis, bounds in limits.items()}
+    return {axis: checked[axis] for axis in AXES if axis in checked}
 
 
 def _of_rig(search: Search, rig: Rig) -> Search:

@@ -200,7 +200,5 @@ def test_voxels_come_nearest_first_and_know_their_run():
 
 
 def test_too_few_samples_are_refused():
-    with pytest.raises(
-        pe.InputError, match="samples: expected a whole number of voxels >= 1024, found 10"
-    ):
+    with pytest.raises(pe.InputError, match=r"samples: .* voxels >= 1024, found 10"):
         pe.Evaluator(SPACE, pe.Prior.road(), samples=10)

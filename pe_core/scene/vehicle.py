@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError, shown
-from ..text.values import A_NAME, Number
+from ..text.values import A_NAME, Number, numbers
 from .frozen import frozen, frozen_copy
 from .geometry import FARTHEST_M, cross, dot
 from .heights import top_heights
@@ -138,23 +138,21 @@ class SeenMesh:
 
 def _checked_triangles(values: ArrayLike) -> Floats:
     expected = "(F, 3, 3) numbers, F > 0"
-    try:
-        triangles: Floats = frozen_copy(values, np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(
-            "vehicle", "triangles", "(F, 3, 3) numbers, F > 0", shown(values)
-        ) from None
+    plain = isinstance(values, np.ndarray) and values.dtype.kind in "iuf"
+    if (found := values if plain else numbers(values)) is None:
+        raise InputError("vehicle", "triangles", expected, shown(values))
+    triangles: Floats = frozen_copy(found, np.float64)
     if triangles.ndim != 3 or triangles.shape[1:] != (3, 3) or not len(triangles):
-        raise InputError("vehicle", "triangles", "(F, 3, 3) numbers, F > 0", triangles.shape)
+        raise InputError("vehicle", "triangles", expected, triangles.shape)
     bad = ~np.isfinite(triangles).all(axis=(1, 2))
     if bad.any():
-        found = f"triangle {int(np.flatnonzero(bad)[0])} with NaN or infinity"
-        raise InputError("vehicle", "triangles", "finite coordinates", found)
+        which = f"triangle {int(np.flatnonzero(bad)[0])} with NaN or infinity"
+        raise InputError("vehicle", "triangles", "finite coordinates", which)
     far = np.abs(triangles).max(axis=(1, 2)) > FARTHEST_M
     if far.any():
-        found = f"triangle {int(np.flatnonzero(far)[0])} beyond"
+        which = f"triangle {int(np.flatnonzero(far)[0])} beyond"
         expected = f"coordinates within +-{FARTHEST_M:g} m"
-        raise InputError("vehicle", "triangles", expected, found)
+        raise InputError("vehicle", "triangles", expected, which)
     return triangles
 
 

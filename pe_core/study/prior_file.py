@@ -10,10 +10,11 @@ from typing import Any
 
 from ..errors import InputError
 from ..formats.boxes import read_boxes
+from ..prior.boxes import ORIGIN
 from ..prior.classes import FIELDS, SHIPPED, ObjectClass
 from ..prior.prior import FROM_BOXES, MODELS, Focus, Prior
 from ..text.tables import REQUIRED, Table
-from ..text.values import A_NAME, A_PATH
+from ..text.values import A_NAME, A_PATH, vector
 from .names import BOXES
 
 DEFAULT_MODEL = "road"
@@ -53,8 +54,8 @@ def _read_boxes(table: Table, folder: Path) -> Prior:
         if key in table:
             raise table.error(key, f"nothing beside {table.field(FROM_BOXES)}", "a value")
     file, origin = table.text(FROM_BOXES, rule=A_PATH), table.numbers("origin", 3, None)
-    if origin is not None and not all(map(math.isfinite, origin)):
-        raise table.error("origin", "a list of 3 finite numbers", list(origin))
+    if origin is not None:
+        origin = vector(table.source, table.field("origin"), origin, 3, ORIGIN)
     at = None if origin is None else (origin[0], origin[1], origin[2])
     return Prior.from_boxes(replace(read_boxes(folder / file, at), file=file))
 

@@ -15,6 +15,9 @@ from itertools import islice
 from numbers import Integral, Real
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..errors import InputError, shown
 from .degrees import as_in_file
 
@@ -238,6 +241,22 @@ def listed(values: Any, most: int | None = None) -> list[Any] | None:
         return list(islice(values, None if most is None else most + 1))
     except TypeError:  # an array of no dimension says that it can be iterated
         return None
+
+
+def numbers(values: Any) -> NDArray[np.float64] | None:
+    """Return an array of one's own of floats, NaN where there is no number; None for what is none.
+
+    True, False and texts are no numbers here either.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        return None
+    if array.dtype.kind in "iuf":
+        return np.array(array, dtype=np.float64)
+    if array.dtype.kind != "O":
+        return None
+    return np.array([real(v) for v in array.flat], dtype=np.float64).reshape(array.shape)
 
 
 def choice(source: object, field: str, value: Any, among: Iterable[str]) -> str:

@@ -14,7 +14,7 @@ from ...errors import InputError, shown
 from ...scene.frozen import frozen
 from ...scene.sensors import SensorModel
 from ...text.degrees import all_as_in_file
-from ...text.values import A_NAME, Angle, Number, Whole, pair
+from ...text.values import A_NAME, Angle, Number, Whole, numbers, pair
 
 Floats = NDArray[np.float64]
 
@@ -165,10 +165,10 @@ class Lidar(SensorModel):
 
 def _angles(name: str, key: str, values: ArrayLike, limit_deg: float) -> Floats:
     """Return (C,) angles within +-limit_deg as a file holds them [rad], or raise `InputError`."""
-    try:
-        angles = np.atleast_1d(np.array(values, dtype=float))
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(name, key, "angles", shown(values)) from None
+    angles = numbers(values)
+    if angles is None:
+        raise InputError(name, key, "angles", shown(values))
+    angles = np.atleast_1d(angles)
     if angles.ndim != 1 or not len(angles):
         raise InputError(name, key, "at least one angle in a row", f"shape {angles.shape}")
     bad = ~(np.abs(angles) <= math.radians(limit_deg))  # written so that NaN is bad

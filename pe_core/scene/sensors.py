@@ -58,8 +58,8 @@ class Sensor:
             raise InputError(who, "model", "the model of a sensor", type(self.model).__name__)
         if not isinstance(self.pose, Pose):
             raise InputError(who, "pose", "a Pose", type(self.pose).__name__)
-        if self.fusion is not None:
-            object.__setattr__(self, "fusion", A_NAME.checked(who, "fusion", self.fusion))
+        fusion = None if self.fusion in (None, "") else A_NAME.checked(who, "fusion", self.fusion)
+        object.__setattr__(self, "fusion", fusion)
 
     @property
     def kind(self) -> str:

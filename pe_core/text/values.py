@@ -174,7 +174,7 @@ SHARE = Number(0.0, 1.0)
 WEIGHT = Number(0.0, cap=1e9)
 A_NAME = Name()
 A_TEXT = Name("a text", LONGEST_PATH)
-A_PATH = Name("the name of a file in printable letters", LONGEST_PATH)
+A_PATH = Name("the name of a file", LONGEST_PATH)
 
 
 def real(value: Any) -> float:

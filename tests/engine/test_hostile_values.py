@@ -148,7 +148,9 @@ def paths(value, path=()):
         for key in value:
             yield from paths(value[key], (*path, key))
     elif isinstance(value, list):
-        for i in range(len(value) if path == ("sensor",) else 1):  # of numbers, the first
+        for i in range(
+            len(value) if path == ("sensor",) else min(1, len(value))
+        ):  # of numbers, the first
             yield from paths(value[i], (*path, i))
 
 

@@ -69,9 +69,9 @@ class Number:
         """Whether a float is in the range; NaN never is."""
         low = self.least < number if self.above else self.least <= number
         high = number < self.most if self.below else number <= self.most
-        if not math.isfinite(number):
-            return low and high and self.infinite
-        return low and high and abs(number) <= self.cap
+        if not (low and high):
+            return False
+        return abs(number) <= self.cap and (self.infinite or -math.inf < number < math.inf)
 
     def words(self, number: float = math.nan, count: int = 1) -> str:
         """What is expected, said to one who gave `number`; in the plural for more than one."""
@@ -118,7 +118,7 @@ class Angle(Number):
 
     def checked(self, source: object, field: str, value: Any) -> float:
         """Return the value [rad], or raise `InputError`."""
-        number = real(value)
+        number = value if type(value) is float else real(value)
         if not self.holds(math.degrees(number)):
             told = f"{math.degrees(number):g} degrees" if math.isfinite(number) else shown(value)
             raise InputError(source, field, self.words(math.degrees(number)), told)
@@ -227,7 +227,7 @@ def pair(
     low, high = vector(source, field, values, 2, rule, more)
     if low < high or (same and low == high):
         return low, high
-    raise InputError(source, field, rule.words(count=2) + more, shown(values))
+    raise InputError(source, field, rule.words(count=2) + more, shown([low, high]))
 
 
 def listed(values: Any, most: int | None = None) -> list[Any] | None:
@@ -235,6 +235,8 @@ def listed(values: Any, most: int | None = None) -> list[Any] | None:
 
     With `most` no more than one beyond it are taken: enough to tell that they are too many.
     """
+    if type(values) in (tuple, list):  # the usual case, and the search's: it makes many poses
+        return list(values)
     if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
         return None
     try:

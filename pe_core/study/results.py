@@ -28,7 +28,7 @@ from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
 from .jobs import HistoryRow, Outcome
 from .names import BESIDE_RESULT, BOXES, HISTORY, MESH, RESULT, SCHEMA, STUDY
 from .study import Study, vehicle_digest
-from .study_file import save_study, study_to_dict
+from .study_file import study_bytes, study_to_dict
 
 
 def result_names(study: Study, kind: str) -> list[str]:
@@ -169,7 +169,7 @@ def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
         writers[table] = lambda at: write_boxes(at, boxes)
         named = replace(boxes, file=table, origin=None)
         study = replace(study, prior=replace(study.prior, boxes=named))
-    writers[name] = lambda at: save_study(study, at)
+    writers[name] = study_bytes(study)
     return writers
 
 

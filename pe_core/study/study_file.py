@@ -64,7 +64,12 @@ def save_study(study: Study, path: str | Path) -> None:
     _check_beside(path, "vehicle.mesh", study.vehicle is not None, study.mesh)
     boxes = study.prior.boxes
     _check_beside(path, "prior.boxes", boxes is not None, boxes.file if boxes else None)
-    write_bytes(path, dumps(study_to_dict(study)).encode())
+    write_bytes(path, study_bytes(study))
+
+
+def study_bytes(study: Study) -> bytes:
+    """Return a study file's text; the files that it names are not looked for."""
+    return dumps(study_to_dict(study)).encode()
 
 
 def study_from_dict(data: Any, source: str = "study", folder: Path | None = None) -> Study:

@@ -82,11 +82,10 @@ def test_one_evaluator_is_made_where_search_and_score_look_at_the_same(monkeypat
 
 def test_a_search_that_cannot_be_made_is_refused_before_any_work(monkeypatch):
     given = study()
-    few = replace(given, search=replace(given.search, samples=100))
     below = replace(given, search=replace(given.search, limits={"roof": {"z": (0.0, 1.0)}}))
     monkeypatch.setattr(pe.Evaluator, "score", lambda *_: pytest.fail("work was begun"))
-    with pytest.raises(pe.InputError, match="samples: expected at least"):
-        finished(pe.OptimizeJob(few))
+    with pytest.raises(pe.InputError, match=r"optimize: samples: expected 0 .* >= 1024"):
+        replace(given.search, samples=100)
     with pytest.raises(pe.InputError, match="bounds of z: expected bounds around the start"):
         finished(pe.OptimizeJob(below))
 
@@ -114,8 +113,9 @@ def test_stop_while_the_result_is_scored_cuts_nothing_short():
 
 def test_an_exception_in_the_scoring_thread_is_raised():
     given = study()
-    with pytest.raises(pe.InputError, match="samples: expected at least"):
-        finished(pe.ScoreJob(replace(given, samples=3)))
+    nothing_counts = pe.Prior.road([pe.Focus(0.0)])
+    with pytest.raises(pe.InputError, match="some weight left in the space"):
+        finished(pe.ScoreJob(replace(given, prior=nothing_counts)))
 
 
 def test_what_is_no_number_is_null_in_the_result():

@@ -23,7 +23,9 @@ def main(argv: list[str]) -> int:
     bpy.ops.wm.read_factory_settings(use_empty=True)  # nothing of a user's own takes part
     register()
     try:
-        return app.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG, out)
+        status = app.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG, out)
+        commands.flush(out)
+        return status
     finally:
         unregister()
 
@@ -41,4 +43,4 @@ def open_file(name: str) -> app.Answer:
     return "", app.DONE
 
 
-sys.exit(main(sys.argv[1:]))
+app.leave(main(sys.argv[1:]))

@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
-import secrets
 import signal
 import sys
 import tempfile
@@ -21,14 +20,20 @@ import bpy
 from . import bridge
 from .engine import app, pe, studies
 
-REVIEW, OPTIMIZED = "review.png", "optimized.blend"
+OPTIMIZED, REVIEW = studies.OPTIMIZED, studies.REVIEW
+ENDS = {
+    b"\x89PNG": b"IEND\xaeB`\x82",
+    b"\x28\xb5\x2f\xfd": b"\xb1\xea\x92\x8f",
+}
+"""What ends a file that begins so: a PNG, and a compressed .blend (zstd with a table of frames)."""
 IN_BLENDER = "blender -b FILE.blend --command pe"
 
 
 def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
     """Run the command on the file that is open; results go to `out`, all else to stderr.
 
-    Returns the exit status: 0 done, 1 bad input, 2 usage, 130 interrupted.
+    Returns the exit status: 0 done; 1 bad input, or results that are elsewhere; 2 usage; 128 and
+    its number for a signal.
     """
     try:
         with contextlib.redirect_stdout(out):
@@ -40,7 +45,7 @@ def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
 
 def parser(prog: str) -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    top = argparse.ArgumentParser(prog=prog, description="Perception entropy of vehicle sensors.")
+    top = app.Parser(prog=prog, description="Perception entropy of vehicle sensors.")
     top.add_argument("--version", action="version", version=f"pe {pe.__version__}")
     verbs = top.add_subparsers(required=True, metavar="VERB")
     score = verbs.add_parser("score", help="score the sensors of the scene")
@@ -48,7 +53,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
         app.add_run_options(verb, search=job is pe.OptimizeJob)
         verb.add_argument("--no-render", action="store_true", help=f"no {REVIEW}")
-        verb.set_defaults(function=run_job, job=job)
+        verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
     export = verbs.add_parser("export", help="write the scene as a study with its mesh")
     export.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for them")
     export.set_defaults(function=export_study)
@@ -58,23 +63,30 @@ def parser(prog: str) -> argparse.ArgumentParser:
 
 def run_job(args: argparse.Namespace) -> app.Answer:
     """Score or optimize, and leave the results in the output folder."""
-    study = app.with_options(opened_study(), args)
-    output = None if args.output is None else pe.prepare_folder(args.output)
-    outcome = app.drive(args.job(study, args.workers), output)
-    host = bridge.blender_version()
-    if output is None:
-        data = pe.result_dict(outcome, host)
-    else:
-        data = pe.write_outcome(outcome, output, host)
+    study, kind = app.with_options(opened_study(), args), args.kind
+    output, names = args.output, [OPTIMIZED] * (kind == "optimize")
+    if output is not None:
+        names += [REVIEW] * (not args.no_render) + studies.result_names(study, kind)
+        output = pe.prepare_folder(output, names)
+
+    def leave(outcome: pe.Outcome, data: dict, folder: Path) -> None:
         with quiet_blender():
-            leave_scene(outcome, output, render=not args.no_render)
-    return app.answer(outcome, data, as_json=args.json)
+            leave_scene(outcome, data, folder, render=not args.no_render)
+
+    return app.carry_out(
+        args.job(study, args.workers),
+        output,
+        as_json=args.json,
+        host=bridge.blender_version(),
+        more=leave,
+    )
 
 
 def export_study(args: argparse.Namespace) -> app.Answer:
     """Write the scene as a study file, with the vehicle's mesh."""
+    study = opened_study()
     path = pe.prepare_folder(args.output) / studies.STUDY
-    pe.export_study(opened_study(), path)
+    pe.export_study(study, path)
     return str(path), app.DONE
 
 
@@ -93,35 +105,51 @@ def opened_study() -> pe.Study:
         raise error.at(path) if error.source == "scene" else error from None
 
 
-def leave_scene(outcome: pe.Outcome, output: Path, *, render: bool) -> None:
+def leave_scene(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) -> None:
     """Write what only Blender can: the scene with the sensors moved, and the picture."""
     scene = bpy.context.scene
     if outcome.kind == "optimize":
         bridge.place_rig(scene, outcome.study.rig)
         bridge.store_outcome(scene, outcome)
-        save_copy(output / OPTIMIZED)
+        studies.add_to_result(data, folder, {OPTIMIZED: save_copy})
     if render:
         from . import review  # only who wants a picture pays for it
 
-        review.render_review(scene, outcome.study, outcome, output / REVIEW)
+        def picture(path: Path) -> None:
+            try:
+                review.render_review(scene, outcome.study, outcome, path)
+            except RuntimeError as error:
+                raise pe.InputError(path, "file", "a picture", error) from None
+            complain_unless_whole(path)
+
+        studies.add_to_result(data, folder, {REVIEW: picture})
 
 
 def save_copy(path: Path) -> None:
-    """Save the open scene to another file, all of it or nothing; the open file stays as it is."""
-    temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.blend")
+    """Save the open scene to another file; the open file stays as it is."""
     try:
-        bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, compress=True)
-        os.replace(temporary, path)
-    except (OSError, RuntimeError) as error:
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
+    except RuntimeError as error:
         raise pe.InputError(path, "file", "a place to write to", error) from None
-    finally:
-        temporary.unlink(missing_ok=True)
+    complain_unless_whole(path)
+
+
+def complain_unless_whole(path: Path) -> None:
+    """Raise `InputError` when a file has not the end that its beginning promises.
+
+    On a full disk Blender leaves half a file, or none, and says nothing.
+    """
+    data = path.read_bytes() if path.is_file() else b""
+    end = next((end for begin, end in ENDS.items() if data.startswith(begin)), b"")
+    if not data or not data.endswith(end):
+        found = f"that {len(data)} bytes of it could be written"
+        raise pe.InputError(path, "file", "room to write to", found)
 
 
 @contextlib.contextmanager
 def quiet_blender() -> Iterator[None]:
     """Keep back what Blender and the graphics driver print, unless the work fails."""
-    sys.stderr.flush()
+    flush(sys.stderr)
     shown = os.dup(2)
     with tempfile.TemporaryFile() as kept:
         os.dup2(kept.fileno(), 1)
@@ -129,11 +157,12 @@ def quiet_blender() -> Iterator[None]:
         try:
             yield
         except BaseException:
-            kept.seek(0)
-            os.write(shown, kept.read())
+            with contextlib.suppress(OSError):
+                kept.seek(0)
+                os.write(shown, kept.read())
             raise
         finally:
-            sys.stderr.flush()
+            flush(sys.stderr)
             os.dup2(shown, 1)
             os.dup2(shown, 2)
             os.close(shown)
@@ -143,13 +172,25 @@ def take_over_process() -> TextIO:
     """Make Ctrl-C Python's and stdout ours; return the stream that results go to.
 
     Blender prints what it reads, renders and saves on stdout: that goes to stderr from now on.
-    Its own handler of Ctrl-C would leave the results behind.
+    Its own handler of Ctrl-C would leave the results behind. A pipe that nobody reads, or a file
+    that may not grow, is an error where we write and not the end of the process.
     """
+    app.open_missing_streams()
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    sys.stdout.flush()
+    for name in ("SIGPIPE", "SIGXFSZ"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
+    flush(sys.stdout)
     out = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     return out
+
+
+def flush(stream: TextIO | None) -> None:
+    """Hand on what a stream still holds, where it goes anywhere."""
+    if stream is not None:
+        with contextlib.suppress(OSError, ValueError):
+            stream.flush()
 
 
 def in_blender(argv: Sequence[str]) -> int:

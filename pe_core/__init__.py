@@ -2,84 +2,28 @@
 
 The metric is from Ma, Liu and Li, "Perception Entropy: A Metric for Multiple Sensors Configuration
 Evaluation and Design", ICRA 2021. Lower is better.
+
+The names in `public` are here too. They are loaded when one is first asked for: NumPy takes a
+while, and the command has to answer Ctrl-C meanwhile.
 """
 
-from . import catalog
-from .errors import InputError
-from .formats import Mesh, read_boxes, read_mesh, write_boxes, write_mesh
-from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
-from .metric import ApCurve
-from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
-from .scene import PerceptionSpace, Pose, Rig, Sensor, Vehicle
-from .scoring import Evaluator, GroundMap, PartScore, Score, SensorScore
-from .search import Schedule, SearchSpace, Step, optimize
-from .study import (
-    Job,
-    OptimizeJob,
-    Outcome,
-    Progress,
-    ScoreJob,
-    Search,
-    Study,
-    export_study,
-    load_study,
-    prepare_folder,
-    result_dict,
-    save_study,
-    study_from_dict,
-    study_to_dict,
-    write_outcome,
-)
-from .version import __version__
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "ApCurve",
-    "BeamField",
-    "BoxReport",
-    "Boxes",
-    "Camera",
-    "Evaluator",
-    "Focus",
-    "GroundMap",
-    "InputError",
-    "Job",
-    "Lidar",
-    "Mesh",
-    "ObjectClass",
-    "OptimizeJob",
-    "Outcome",
-    "PartScore",
-    "PerceptionModel",
-    "PerceptionSpace",
-    "Pose",
-    "Prior",
-    "Progress",
-    "Rig",
-    "Schedule",
-    "Score",
-    "ScoreJob",
-    "Search",
-    "SearchSpace",
-    "Sensor",
-    "SensorScore",
-    "Step",
-    "Study",
-    "Vehicle",
-    "__version__",
-    "beam_field",
-    "catalog",
-    "export_study",
-    "load_study",
-    "measure",
-    "optimize",
-    "prepare_folder",
-    "read_boxes",
-    "read_mesh",
-    "result_dict",
-    "save_study",
-    "study_from_dict",
-    "study_to_dict",
-    "write_boxes",
-    "write_mesh",
-    "write_outcome",
-]
+if TYPE_CHECKING:  # a checker knows these names, and no others
+    from .public import *  # noqa: F403
+    from .public import __all__ as __all__
+else:
+
+    def __getattr__(name: str) -> object:
+        if not name.startswith("__") and find_spec(f"{__name__}.{name}"):
+            return import_module(f".{name}", __name__)
+        public = import_module(".public", __name__)
+        if name != "__all__" and name not in public.__all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = globals()[name] = getattr(public, name)
+        return value
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *import_module(".public", __name__).__all__})

@@ -25,7 +25,7 @@ class PE_OT_export_study(ExportHelper, bpy.types.Operator):
         path = Path(bpy.path.abspath(self.filepath))
         try:
             study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-            pe.export_study(study, path)
+            pe.export_study(study, path, replace_study=True)  # the file dialog has asked
         except pe.InputError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

@@ -76,8 +76,11 @@ class JobOperator:
             bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
         )
 
-    def _apply(self, scene: bpy.types.Scene | None, outcome: pe.Outcome) -> set[str]:
+    def _apply(self, scene: bpy.types.Scene | None, outcome: pe.Outcome | None) -> set[str]:
         """Write placements and result to the scene; undo takes both back in one step."""
+        if outcome is None:
+            self.report({"INFO"}, "Stopped before a score was complete: nothing was changed")
+            return {"CANCELLED"}
         if scene is None:
             self.report({"WARNING"}, "The scene is gone; its result was dropped")
             return {"CANCELLED"}

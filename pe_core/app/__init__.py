@@ -1,18 +1,11 @@
 """The command ``pe``, and what all command lines share."""
 
-from .command import (
-    BAD_INPUT,
-    DONE,
-    INTERRUPTED,
-    USAGE,
-    Answer,
-    add_run_options,
-    add_sensors_verb,
-    answer,
-    drive,
-    run,
-    with_options,
-)
+from .command import Parser, add_run_options, add_sensors_verb, count_up_to, run, with_options
+from .interrupts import leave
+from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
+from .summary import summary
+from .terminal import open_missing_streams, printable, show, tell
+from .work import carry_out, drive
 
 __all__ = [
     "BAD_INPUT",
@@ -20,10 +13,18 @@ __all__ = [
     "INTERRUPTED",
     "USAGE",
     "Answer",
+    "Parser",
     "add_run_options",
     "add_sensors_verb",
-    "answer",
+    "carry_out",
+    "count_up_to",
     "drive",
+    "leave",
+    "open_missing_streams",
+    "printable",
     "run",
+    "show",
+    "summary",
+    "tell",
     "with_options",
 ]

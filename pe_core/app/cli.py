@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from importlib.metadata import entry_points
+from pathlib import Path
 
-from ..study.jobs import Job, OptimizeJob, ScoreJob
-from ..study.results import prepare_folder, result_dict, write_outcome
-from ..study.study_file import load_study
+from ..errors import InputError
+from ..study import STUDY, OptimizeJob, ScoreJob, load_study, prepare_folder, result_names
 from ..version import __version__
-from .command import Answer, add_run_options, add_sensors_verb, answer, drive, run, with_options
+from .command import Parser, add_run_options, add_sensors_verb, run, with_options
+from .status import Answer
+from .terminal import open_missing_streams, tell
+from .work import carry_out
 
 VERBS = "pe_core.verbs"
 """Packages built on the engine add verbs by entry points of this group: functions that take the
@@ -19,14 +21,25 @@ parser's verbs."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit status: 0, 1 bad input, 2 usage, 130 interrupted."""
-    args = parser().parse_args(argv)
-    return run(lambda: args.function(args))
+    """Run the command and return its exit status.
+
+    0 done; 1 bad input, or results that are elsewhere; 2 usage; 128 and its number for a signal.
+    """
+    open_missing_streams()
+
+    def work() -> Answer:
+        args = parser().parse_args(argv)
+        answer: Answer = args.function(args)
+        return answer
+
+    return run(work)
 
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    top = argparse.ArgumentParser(prog="pe", description="Perception entropy of vehicle sensors.")
+    top: argparse.ArgumentParser = Parser(
+        prog="pe", description="Perception entropy of vehicle sensors."
+    )
     top.add_argument("--version", action="version", version=f"pe {__version__}")
     verbs = top.add_subparsers(required=True, metavar="VERB")
     score = verbs.add_parser("score", help="score a study's rig")
@@ -43,10 +56,23 @@ def parser() -> argparse.ArgumentParser:
 
 def _run_job(args: argparse.Namespace) -> Answer:
     study = with_options(load_study(args.study), args)
+    job: ScoreJob | OptimizeJob = args.job(study, args.workers)
+    output = None
+    if args.output is not None:
+        names = result_names(study, "optimize" if isinstance(job, OptimizeJob) else "score")
+        _refuse_to_replace(Path(args.study), Path(args.output))
+        output = prepare_folder(args.output, names)
     if (report := study.prior.report(study.space)) is not None:
-        print(f"pe: {report}", file=sys.stderr)
-    output = None if args.output is None else prepare_folder(args.output)
-    job: Job = args.job(study, args.workers)
-    outcome = drive(job, output)
-    data = result_dict(outcome) if output is None else write_outcome(outcome, output)
-    return answer(outcome, data, as_json=args.json)
+        tell(str(report))
+    return carry_out(job, output, as_json=args.json)
+
+
+def _refuse_to_replace(study: Path, output: Path) -> None:
+    """Raise `InputError` when the results would take the place of the study that is read."""
+    try:
+        same = (output / STUDY).samefile(study)
+    except (OSError, ValueError):
+        return
+    if same:
+        expected = "another folder than that of the study"
+        raise InputError(study, "output", expected, f"its own: {STUDY} would be written over")

@@ -1,4 +1,4 @@
-"""What every command line shares: options, the blocking driver of a job, exit status.
+"""What every command line shares: parser, options, the verb ``sensors``, exit status.
 
 Used by `pe`, by `blender --command pe` and by bpy as a module, so that they behave alike.
 """
@@ -8,27 +8,33 @@ from __future__ import annotations
 import argparse
 import signal
 import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, NoReturn, TextIO
 
 from .. import catalog
 from ..errors import InputError
-from ..study.jobs import Job, OptimizeJob, Outcome, Progress
-from ..study.results import STUDY, export_study
-from ..study.study import Study
-from ..text import dump_json
+from ..study import Study
+from ..text.cells import quoted
+from .interrupts import FATAL
 from .sensor_text import describe
+from .status import BAD_INPUT, DONE, Answer
+from .terminal import one_line, printable, show, tell
+from .work import print_answer
 
-DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
-Answer = tuple[str, int]
-"""What a verb prints on stdout, and its exit status."""
-REPORT_EVERY_S = {True: 0.2, False: 5.0}
-"""How often progress is shown: on a terminal, where it overwrites itself, and in a log."""
-SAVE_EVERY_S = 10.0
+MOST_WORKERS, MOST_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
+"""Greatest values of options: more threads or voxels than anyone has a use for."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose messages neither fail nor hand on what would steer the terminal."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong in the usage, and exit with status 2."""
+        super().error(one_line(message))
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        show(printable(message), file or sys.stderr)
 
 
 def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
@@ -37,25 +43,33 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     parser.add_argument("--json", action="store_true", help="print result.json on stdout")
     parser.add_argument(
         "--grid-samples",
-        type=_count,
+        type=count_up_to(MOST_VOXELS),
         metavar="N",
         help="score on N sampled voxels instead of the whole grid (0: the grid)",
     )
-    parser.add_argument("--workers", type=_count, metavar="N", help="threads (default: all)")
+    workers = count_up_to(MOST_WORKERS)
+    parser.add_argument("--workers", type=workers, metavar="N", help="threads (default: all)")
     if search:
-        parser.add_argument("--seed", type=_count, metavar="N", help="seed of the search")
-        parser.add_argument(
-            "--candidates", type=_count, metavar="N", help="placements tried in a round"
+        options = (
+            ("--seed", LAST_SEED, "seed of the search"),
+            ("--candidates", MOST_VOXELS, "placements tried in a round"),
+            ("--samples", MOST_VOXELS, "voxels a candidate is judged on"),
         )
-        parser.add_argument(
-            "--samples", type=_count, metavar="N", help="voxels a candidate is judged on"
-        )
+        for option, greatest, about in options:
+            parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
 
 
-def _count(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"expected a whole number >= 0, found {text!r}")
-    return int(text)
+def count_up_to(greatest: int) -> Callable[[str], int]:
+    """Return what reads a whole number from 0 to a greatest one from the command line."""
+
+    def count(text: str) -> int:
+        digits = text.isascii() and text.isdecimal() and len(text) <= len(str(greatest))
+        if not digits or int(text) > greatest:
+            expected = f"expected a whole number from 0 to {greatest}, found {quoted(text)}"
+            raise argparse.ArgumentTypeError(expected)
+        return int(text)
+
+    return count
 
 
 def with_options(study: Study, args: argparse.Namespace) -> Study:
@@ -87,116 +101,22 @@ def _show_sensors(args: argparse.Namespace) -> Answer:
     return "\n".join(f"{e.kind:7} {e.name}" for e in catalog.entries().values()), DONE
 
 
-def answer(outcome: Outcome, data: dict[str, Any], *, as_json: bool) -> Answer:
-    """Return what is printed of an outcome, and the exit status that goes with it."""
-    text = dump_json(data) if as_json else summary(outcome)
-    return text, INTERRUPTED if outcome.stopped else DONE
-
-
-def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) -> Outcome:
-    """Run a job to its end, with progress on `stream` (stderr).
-
-    The first Ctrl-C asks the job to stop: the best so far is judged and kept. The second one
-    raises KeyboardInterrupt. During a search the best so far is also kept in `output`.
-    """
-    stream = stream or sys.stderr
-    reported, stage, saved = 0.0, "", time.monotonic()
-    pause_s = REPORT_EVERY_S[stream.isatty()]
-    with _first_interrupt(job.stop):
-        for progress in job:
-            now = time.monotonic()
-            if now - reported >= pause_s or progress.stage != stage:
-                _report(progress, stream)
-                reported, stage = now, progress.stage
-            if output and isinstance(job, OptimizeJob) and now - saved >= SAVE_EVERY_S:
-                export_study(job.best, output / STUDY)
-                saved = now
-    _clear(stream)
-    assert job.outcome is not None
-    return job.outcome
-
-
-@contextmanager
-def _first_interrupt(stop: Callable[[], None]) -> Iterator[None]:
-    """Call `stop` at the first Ctrl-C; let the second one interrupt for good."""
-
-    def handler(signum: int, frame: object) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        stop()
-
-    try:
-        before = signal.signal(signal.SIGINT, handler)
-    except ValueError:  # not the main thread: someone else handles Ctrl-C
-        yield
-        return
-    try:
-        yield
-    finally:  # None: the handler before was not Python's own (inside Blender) and can't be named
-        signal.signal(signal.SIGINT, signal.default_int_handler if before is None else before)
-
-
-def _report(progress: Progress, stream: TextIO) -> None:
-    entropy = "" if progress.entropy is None else f"  entropy {progress.entropy:.4f}"
-    line = f"{progress.stage} {progress.fraction:4.0%}{entropy}"
-    if stream.isatty():
-        stream.write(f"\r\x1b[K{line}")
-    else:
-        stream.write(f"{line}\n")
-    stream.flush()
-
-
-def _clear(stream: TextIO) -> None:
-    if stream.isatty():
-        stream.write("\r\x1b[K")
-        stream.flush()
-
-
-def summary(outcome: Outcome) -> str:
-    """Return an outcome in a few lines, for people."""
-    if outcome.kind == "score":
-        lines = [f"entropy   {_with_error(outcome.after.entropy, outcome.after.stderr)}"]
-        lines.append(f"coverage  {outcome.after.coverage:.1%}")
-    else:
-        before, after = outcome.before, outcome.after
-        lines = [
-            f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats",
-            f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
-        ]
-    scores = outcome.after.per_sensor
-    for sensor in outcome.study.rig:
-        x, y, z = sensor.pose.position
-        roll, pitch, yaw = sensor.pose.rotation_deg
-        own = scores[sensor.name]
-        stopped = f", {own.stopped / own.beams:.1%} of its beams stopped" if own.stopped else ""
-        lines.append(
-            f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
-            f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"
-        )
-    if outcome.stopped:
-        lines.append("stopped early: this is the best placement found so far")
-    return "\n".join(lines)
-
-
-def _with_error(entropy: float, stderr: float) -> str:
-    return f"{entropy:.4f} nats" if stderr == 0.0 else f"{entropy:.4f} +- {stderr:.4f} nats"
-
-
 def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
     """Run a command, print its text on `out` (stdout), and return its exit status.
 
-    Bad input is one line on stderr and status 1, an interrupt is status 130.
+    Bad input is one line on stderr and status 1; a signal that ends the command is 128 and its
+    number: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
     """
     try:
         text, status = main()
-        if text:
-            print(text.removesuffix("\n"), file=out or sys.stdout, flush=True)
-        return status
+        return print_answer(text, status, out or sys.stdout)
     except InputError as error:
-        print(f"pe: {error}", file=sys.stderr)
+        tell(str(error))
         return BAD_INPUT
-    except KeyboardInterrupt:
-        print("pe: interrupted", file=sys.stderr)
-        return INTERRUPTED
-    except BrokenPipeError:  # the reader of our output has gone, as `| head` does
-        sys.stderr.close()
-        return DONE
+    except KeyboardInterrupt as error:
+        note = getattr(error, "note", "")
+        tell(f"interrupted; {note}" if note else "interrupted")
+        return FATAL + getattr(error, "signum", signal.SIGINT)
+    except BrokenPipeError as error:  # of a stream that a verb writes to itself
+        tell(str(error))
+        return BAD_INPUT

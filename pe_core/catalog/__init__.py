@@ -12,9 +12,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..kinds import kind_named, kind_of
 from ..scene.sensors import SensorModel
+from ..text.values import A_NAME, A_TEXT
 
 PAPER_FILE = "paper.toml"
 """The paper's own sensors come first in lists."""
@@ -91,10 +92,11 @@ def load(name: str) -> SensorModel:
     InputError
         When there is no such sensor; the message offers near ones.
     """
+    name = A_TEXT.checked("catalogue", "model", name)
     if name not in _loaded:
         entry = entries().get(name)
         if entry is None:
-            raise InputError("catalogue", "model", f"a name such as {_near(name)}", repr(name))
+            raise InputError("catalogue", "model", f"a name such as {_near(name)}", shown(name))
         _loaded.setdefault(name, from_table(name, entry.table))
     return _loaded[name]
 
@@ -113,8 +115,11 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
     InputError
         When a value or the file of angles is wrong, or there is no such kind.
     """
+    name = A_NAME.checked("sensor", "name", name)
+    if not isinstance(table, Mapping):
+        raise InputError(name, "model", "a table", shown(table))
     kind = kind_named(table.get("kind"), name)
-    unknown = sorted(set(table) - kind.keys - COMMON_KEYS)
+    unknown = sorted(map(str, set(table) - kind.keys - COMMON_KEYS))
     if unknown:
         raise InputError(
             name, unknown[0], f"one of {', '.join(sorted(kind.keys))}", "an unknown key"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..metric.entropy import ApCurve
+from ..text.values import choice
 from .table import KINDS, kind_named
 
 BLIND_RULES = ("floor", "literal")
@@ -31,12 +32,11 @@ class PerceptionModel:
     _curves: dict[str, ApCurve]
 
     def __init__(self, blind: str = "floor", **curves: ApCurve) -> None:
-        if blind not in BLIND_RULES:
-            raise InputError("fusion", "blind", '"floor" or "literal"', repr(blind))
+        choice("fusion", "blind", blind, BLIND_RULES)
         for name, curve in curves.items():
             kind_named(name, "perception model")
             if not isinstance(curve, ApCurve):
-                raise InputError("perception model", name, "an ApCurve", repr(curve))
+                raise InputError("perception model", name, "an ApCurve", shown(curve))
         object.__setattr__(self, "blind", blind)
         object.__setattr__(self, "_curves", dict(curves))
 

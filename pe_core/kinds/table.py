@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..scene.sensors import Sensor, SensorModel
 from .kind import Kind
 
@@ -45,7 +45,7 @@ def kind_named(name: object, source: str, field: str = "kind") -> Kind:
     """
     found = _kinds.get(name) if isinstance(name, str) else None
     if found is None:
-        raise InputError(source, field, f"one of {', '.join(_kinds)}", repr(name))
+        raise InputError(source, field, f"one of {', '.join(_kinds)}", shown(name))
     return found
 
 

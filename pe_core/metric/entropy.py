@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..text.values import Number
 
 Floats = NDArray[np.float64]
 
@@ -21,6 +21,9 @@ AP_MIN, AP_MAX = 0.001, 0.999
 GAUSSIAN_2D = 1.0 + math.log(2.0 * math.pi)
 BLIND_PRECISION = (1.0 / AP_MIN - 1.0) ** -2
 """1 / sigma^2 of a sensor that sees nothing: ``f`` of eq. 7."""
+
+SLOPE = Number(1e-12, cap=1e3, noun="slope")
+OFFSET = Number(cap=1e3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +34,8 @@ class ApCurve:
     b: float
 
     def __post_init__(self) -> None:
-        for name in ("a", "b"):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, (int, float)):
-                raise InputError("AP curve", name, "a number", repr(value))
-            if not math.isfinite(value):
-                raise InputError("AP curve", name, "a finite number", value)
-        if self.a <= 0:
-            raise InputError("AP curve", "a", "a positive slope", self.a)
+        for name, rule in (("a", SLOPE), ("b", OFFSET)):
+            object.__setattr__(self, name, rule.checked("AP curve", name, getattr(self, name)))
 
     @property
     def saturation(self) -> float:

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..scene.frozen import frozen
+from ..text.values import A_PATH, Number, numbers, vector
 
 Floats = NDArray[np.float64]
 
@@ -24,6 +25,7 @@ MAX_M = 1e9
 """A number beyond this is no length of anything; arithmetic on it is safe up to here."""
 YAW_DECIMALS = 9
 """Yaws are rounded to what a file holds, in degrees, so that a copy is the same to the bit."""
+ORIGIN = Number(cap=1e6, unit="m")
 OUTSIDE = "outside the space"
 
 
@@ -76,6 +78,10 @@ class Boxes:
             values = _column(column, getattr(self, column), len(names))
             object.__setattr__(self, column, frozen(values))
         object.__setattr__(self, "yaw", frozen(_as_in_a_file(self.yaw)))
+        if self.file is not None:
+            object.__setattr__(self, "file", A_PATH.checked("boxes", "file", self.file))
+        if self.origin is not None:
+            object.__setattr__(self, "origin", vector("boxes", "origin", self.origin, 3, ORIGIN))
         object.__setattr__(self, "digest", self._digest())
 
     def __len__(self) -> int:
@@ -155,14 +161,14 @@ def _columns_of(rows: Any) -> dict[str, Sequence[Any]]:
         )
     for i, row in enumerate(rows):
         if not isinstance(row, Sequence) or isinstance(row, str) or len(row) != len(names):
-            raise InputError("boxes", f"box {i}", ", ".join(names), repr(row))
+            raise InputError("boxes", f"box {i}", ", ".join(names), shown(row))
     return {name: [row[k] for row in rows] for k, name in enumerate(names)}
 
 
 def _check_names(names: NDArray[np.str_]) -> None:
     for name in set(names.tolist()):
         if not name_is_fit(name):
-            raise InputError("boxes", "class", "a name in printable letters", repr(name))
+            raise InputError("boxes", "class", "a name in printable letters", shown(name))
 
 
 def name_is_fit(name: str) -> bool:
@@ -172,10 +178,10 @@ def name_is_fit(name: str) -> bool:
 
 def _column(name: str, values: ArrayLike, count: int) -> Floats:
     """Return one column as finite floats of its own, or complain about its first bad box."""
-    try:
-        column = np.array(values, dtype=np.float64).reshape(-1) + 0.0  # no negative zeros
-    except (TypeError, ValueError):
-        raise InputError("boxes", name, "numbers", "something else") from None
+    found = numbers(values)
+    if found is None:
+        raise InputError("boxes", name, "numbers", "something else")
+    column = found.reshape(-1) + 0.0  # no negative zeros
     if len(column) != count:
         raise InputError("boxes", name, f"{count} numbers, one a box", len(column))
     wrong = ~(np.abs(column) <= MAX_M)

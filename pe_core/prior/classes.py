@@ -10,12 +10,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..scene.space import PerceptionSpace
+from ..text.values import A_NAME, LENGTH, SHARE, WEIGHT, Number, listed, real, vector
 
 Floats = NDArray[np.float64]
 Shape = tuple[Floats, Floats]
 """Density over the ground (nx, ny) and profile over height (nz,), each summing to 1."""
+
+RULES = {
+    **dict.fromkeys(("height_spread", "decay_x", "laplace_y", "gauss_y"), LENGTH),
+    "laplace_share": SHARE,
+    "share": WEIGHT,
+}
+LANE = Number(cap=1e9, unit="m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,29 +67,21 @@ class ObjectClass:
     share: float = 1.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "size", tuple(self.size))
-        object.__setattr__(self, "lanes", tuple(self.lanes))
-        if not (isinstance(self.name, str) and self.name):
-            raise InputError("prior class", "name", "a text", repr(self.name))
-        self._check("size", len(self.size) == 3 and all(map(_is_length, self.size)), "3 lengths")
-        for name in ("height_spread", "decay_x", "laplace_y", "gauss_y"):
-            self._check(name, _is_length(getattr(self, name)), "a length")
-        self._check("laplace_share", 0.0 <= self.laplace_share <= 1.0, "a number from 0 to 1")
-        lanes_ok = len(self.lanes) > 0 and all(map(math.isfinite, self.lanes))
-        self._check("lanes", lanes_ok, "one or more finite numbers")
-        self._check("share", 0.0 <= self.share < math.inf, "a finite number >= 0")
+        who = f"prior class {A_NAME.checked('prior class', 'name', self.name)!r}"
+        object.__setattr__(self, "size", vector(who, "size", self.size, 3, LENGTH))
+        for name, rule in RULES.items():
+            object.__setattr__(self, name, rule.checked(who, name, getattr(self, name)))
+        object.__setattr__(self, "lanes", _lanes(who, self.lanes))
 
-    def _check(self, name: str, ok: bool, expected: str) -> None:
-        if not ok:
-            more = f"{expected} above 0 m" if "length" in expected else expected
-            raise InputError(f"prior class {self.name!r}", name, more, getattr(self, name))
+
+def _lanes(who: str, values: Any) -> tuple[float, ...]:
+    lanes = listed(values) or []
+    if not lanes or not all(LANE.holds(real(lane)) for lane in lanes):
+        raise InputError(who, "lanes", "one or more finite numbers", shown(values))
+    return tuple(map(real, lanes))
 
 
 FIELDS = tuple(field.name for field in fields(ObjectClass))
-
-
-def _is_length(value: float) -> bool:
-    return 0.0 < value < math.inf
 
 
 ROAD_CLASSES = (

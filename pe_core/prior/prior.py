@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..scene.space import PerceptionSpace
+from ..text.values import A_NAME, ANY, WEIGHT, choice, listed, pair
 from .box_density import voxelised
 from .boxes import Boxes, BoxReport
 from .classes import (
@@ -54,12 +55,16 @@ class Focus:
     classes: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.factor) and self.factor >= 0.0):
-            raise InputError("focus", "factor", "a finite number >= 0", self.factor)
+        factor = WEIGHT.checked("focus", "factor", self.factor)
+        object.__setattr__(self, "factor", factor)
         for name in "xy":
-            low, high = getattr(self, name)
-            if not low < high:
-                raise InputError("focus", name, "two numbers, low before high", [low, high])
+            object.__setattr__(self, name, pair("focus", name, getattr(self, name), ANY))
+        if self.classes is not None:
+            names = listed(self.classes)
+            if names is None:
+                raise InputError("focus", "classes", "a list of names", shown(self.classes))
+            checked = tuple(A_NAME.checked("focus", "classes", n) for n in names)
+            object.__setattr__(self, "classes", checked)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +93,9 @@ class Prior:
     boxes: Boxes | None = None
 
     def __post_init__(self) -> None:
-        if self.model not in MODELS:
-            raise InputError("prior", "model", f"one of {', '.join(MODELS)}", repr(self.model))
+        choice("prior", "model", self.model, MODELS)
+        for name in ("classes", "focus"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
         if bool(self.classes) != (self.model in SHIPPED):
             expected = "at least one" if self.model in SHIPPED else f"none with {self.model!r}"
             raise InputError("prior", "classes", expected, len(self.classes))
@@ -103,7 +109,7 @@ class Prior:
         for focus in self.focus:
             for name in focus.classes or ():
                 if name not in names:
-                    raise InputError("focus", "classes", f"one of {', '.join(names)}", repr(name))
+                    raise InputError("focus", "classes", f"one of {', '.join(names)}", shown(name))
 
     @classmethod
     def road(cls, focus: Sequence[Focus] = ()) -> Prior:
@@ -166,8 +172,9 @@ class Prior:
             for name, (ground, _) in zip(names, shapes, strict=True)
         ]
         total = sum(float(g.sum()) for g in grounds)
-        if not total > 0.0:
-            raise InputError("prior", "focus", "some weight left in the space", "none")
+        if not 0.0 < total < math.inf:
+            found = "infinitely much" if total else "none"
+            raise InputError("prior", "focus", "some weight left in the space", found)
         return [
             ClassDensity(name, ground / total, profile)
             for name, ground, (_, profile) in zip(names, grounds, shapes, strict=True)
@@ -189,5 +196,6 @@ class Prior:
             if focus.classes is None or name in focus.classes:
                 rows = (x > focus.x[0]) & (x < focus.x[1])
                 columns = (y > focus.y[0]) & (y < focus.y[1])
-                weights[np.ix_(rows, columns)] *= focus.factor
+                with np.errstate(over="ignore"):  # too many large factors: `densities` complains
+                    weights[np.ix_(rows, columns)] *= focus.factor
         return weights

@@ -12,14 +12,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..text.degrees import degrees_in_file
+from ..text.values import Angle, Number, vector
 
 Floats = NDArray[np.float64]
 
 FARTHEST_M = 1e4
 """No sensor of a vehicle is farther from it than this; kernels count on it."""
-ROUND_TRIP_DECIMALS_DEG = 9
-"""Degrees are written with this many decimals: what a file says is then exactly what was scored."""
+TURNS_DEG = 3600.0
+"""Ten turns: an angle beyond is taken for a slip of the pen."""
+METRES = Number(-FARTHEST_M, FARTHEST_M, unit="m")
+ROTATION = Angle(-TURNS_DEG, TURNS_DEG)
+ROTATION_DEG = Number(-TURNS_DEG, TURNS_DEG, unit="degrees")
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,51 +38,41 @@ class Pose:
         Roll, pitch, yaw [rad]; ``ground_from_sensor = Rz(yaw) Ry(pitch) Rx(roll)``.
         Positive pitch is nose down.
 
+    Angles are kept as a file's degrees give them back: one that is the `math.radians` of no float
+    moves by a unit in its last place.
+
     Raises
     ------
     InputError
-        When a number is missing, NaN or infinite, or a position beyond 10 km.
+        When a number is missing, NaN or infinite, a position beyond 10 km or an angle beyond ten
+        turns.
     """
 
     position: tuple[float, float, float]
     rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        position = three_numbers("pose", "position", self.position)
-        if max(map(abs, position)) > FARTHEST_M:
-            expected = f"three numbers within +-{FARTHEST_M:g} m"
-            raise InputError("pose", "position", expected, position)
+        position = vector("pose", "position", self.position, 3, METRES)
         object.__setattr__(self, "position", position)
-        object.__setattr__(self, "rpy", three_numbers("pose", "rpy", self.rpy))
+        object.__setattr__(self, "rpy", vector("pose", "rpy", self.rpy, 3, ROTATION))
 
     @classmethod
     def from_degrees(cls, position: ArrayLike, rotation_deg: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
         """Pose from roll, pitch and yaw in degrees, as files and the user interface hold them."""
-        degrees = three_numbers("pose", "rotation", rotation_deg)
-        radians = (math.radians(degrees[0]), math.radians(degrees[1]), math.radians(degrees[2]))
-        return cls(three_numbers("pose", "position", position), radians)
+        degrees = vector("pose", "rotation", rotation_deg, 3, ROTATION_DEG)
+        roll, pitch, yaw = (math.radians(d) for d in degrees)
+        return cls(position, (roll, pitch, yaw))  # type: ignore[arg-type]  # checked when made
 
     @property
     def rotation_deg(self) -> tuple[float, float, float]:
         """Roll, pitch, yaw [deg], rounded so that `from_degrees` gives the same bits again."""
-        roll, pitch, yaw = (round(math.degrees(a), ROUND_TRIP_DECIMALS_DEG) + 0.0 for a in self.rpy)
+        roll, pitch, yaw = (degrees_in_file(a) for a in self.rpy)
         return roll, pitch, yaw
 
     @property
     def ground_from_sensor(self) -> Floats:
         """(3, 3) rotation from the sensor frame to the ground frame (inverse of R in eq. 1)."""
         return rotation_matrix(*self.rpy)
-
-
-def three_numbers(source: str, field: str, values: ArrayLike) -> tuple[float, float, float]:
-    """Return three finite floats, or raise `InputError`."""
-    try:
-        numbers = tuple(float(v) for v in values)  # type: ignore[union-attr, arg-type]
-    except (TypeError, ValueError):
-        numbers = ()
-    if len(numbers) != 3 or not all(math.isfinite(v) for v in numbers):
-        raise InputError(source, field, "three finite numbers", repr(values))
-    return numbers
 
 
 def rotation_matrix(roll: float, pitch: float, yaw: float) -> Floats:

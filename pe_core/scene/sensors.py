@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 from ..errors import InputError
+from ..text.values import A_NAME
 from .geometry import Pose
 
 
@@ -42,7 +43,7 @@ class Sensor:
     Raises
     ------
     InputError
-        When the model is none.
+        When the model is none, or a name is not one line of printable letters.
     """
 
     name: str
@@ -51,9 +52,14 @@ class Sensor:
     fusion: str | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "name", A_NAME.checked("sensor", "name", self.name))
+        who = f"sensor {self.name!r}"
         if not isinstance(self.model, SensorModel):
-            found = type(self.model).__name__
-            raise InputError(f"sensor {self.name!r}", "model", "the model of a sensor", found)
+            raise InputError(who, "model", "the model of a sensor", type(self.model).__name__)
+        if not isinstance(self.pose, Pose):
+            raise InputError(who, "pose", "a Pose", type(self.pose).__name__)
+        fusion = None if self.fusion in (None, "") else A_NAME.checked(who, "fusion", self.fusion)
+        object.__setattr__(self, "fusion", fusion)
 
     @property
     def kind(self) -> str:
@@ -91,6 +97,9 @@ class Rig:
         object.__setattr__(self, "sensors", tuple(self.sensors))
         if not self.sensors:
             raise InputError("rig", "sensors", "at least one sensor", "none")
+        for each in self.sensors:
+            if not isinstance(each, Sensor):
+                raise InputError("rig", "sensors", "sensors", type(each).__name__)
         names = [s.name for s in self.sensors]
         twice = sorted({n for n in names if names.count(n) > 1})
         if twice:

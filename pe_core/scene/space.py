@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..text.values import Number, pair
 
 PAPER_INTERVAL_M = 0.1
 MAX_VOXELS = 2**31
 """A grid larger than this (32 times the paper's) is taken for a slip of the pen."""
 DIVIDES_TOLERANCE = 1e-6
 """How far from a whole number of voxels, in voxels, an extent may be (0.1 is no binary number)."""
+MAX_COLUMNS = 2**25
+"""Each class of the prior holds a number a column; 26 times the paper's."""
+EDGE_M = 1e6
+"""No space reaches farther than this."""
+INTERVAL = Number(1e-3, EDGE_M, unit="m", noun="length")
+BOUND = Number(cap=EDGE_M, unit="m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +38,8 @@ class PerceptionSpace:
     Raises
     ------
     InputError
-        When a bound is not finite, an extent is not positive, or the interval does not divide it.
+        When a bound is not finite, an extent is not positive, the interval does not divide it, or
+        the voxels are too many.
     """
 
     x: tuple[float, float] = (-80.0, 80.0)
@@ -41,14 +48,14 @@ class PerceptionSpace:
     interval: float = PAPER_INTERVAL_M
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "interval", _positive(self.interval))
+        object.__setattr__(self, "interval", INTERVAL.checked("space", "interval", self.interval))
         for name in "xyz":
-            object.__setattr__(self, name, _bounds(name, getattr(self, name)))
+            object.__setattr__(self, name, pair("space", name, getattr(self, name), BOUND))
             _check_divides(name, getattr(self, name), self.interval)
-        if math.prod(self.shape) > MAX_VOXELS:
-            raise InputError(
-                "space", "interval", f"at most {MAX_VOXELS} voxels", math.prod(self.shape)
-            )
+        if self.size > MAX_VOXELS:
+            raise InputError("space", "interval", f"at most {MAX_VOXELS} voxels", self.size)
+        if (columns := self.shape[0] * self.shape[1]) > MAX_COLUMNS:
+            raise InputError("space", "interval", f"at most {MAX_COLUMNS} columns", columns)
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -74,24 +81,6 @@ class PerceptionSpace:
     def center_of(self, index: NDArray[np.integer]) -> NDArray[np.float64]:
         """Centres (V, 3) [m] of the voxels with (V, 3) indices."""
         return np.asarray(self.origin) + (np.asarray(index) + 0.5) * self.interval
-
-
-def _positive(value: float) -> float:
-    if not (_is_number(value) and value > 0):
-        raise InputError("space", "interval", "a positive number of metres", repr(value))
-    return float(value)
-
-
-def _bounds(name: str, bounds: Sequence[float]) -> tuple[float, float]:
-    ok = isinstance(bounds, Sequence) and len(bounds) == 2 and all(map(_is_number, bounds))
-    if not ok or not bounds[0] < bounds[1]:
-        raise InputError("space", name, "two finite numbers, low before high", repr(bounds))
-    return float(bounds[0]), float(bounds[1])
-
-
-def _is_number(value: object) -> bool:
-    real = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
-    return real and math.isfinite(value)  # type: ignore[arg-type]
 
 
 def _check_divides(name: str, bounds: tuple[float, float], interval: float) -> None:

@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import InputError, shown
+from ..text.values import A_NAME, Number, numbers
 from .frozen import frozen, frozen_copy
 from .geometry import FARTHEST_M, cross, dot
 from .heights import top_heights
@@ -20,6 +21,7 @@ Floats = NDArray[np.float64]
 
 DEFAULT_CLEARANCE_M = 0.02
 """How far a flush-mounted sensor is taken to stand proud of the skin."""
+CLEARANCE = Number(0.0, 1.0, below=True, unit="m")
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +45,8 @@ class Vehicle:
     Raises
     ------
     InputError
-        When the triangles are not (F, 3, 3), none are left, or a coordinate is not finite.
+        When the triangles are not (F, 3, 3), none are left, a coordinate is not finite, or a name
+        or the clearance is impossible.
     """
 
     triangles: Floats
@@ -57,17 +60,17 @@ class Vehicle:
         parts = (
             frozen(np.zeros(len(triangles), np.int32))
             if self.parts is None
-            else frozen_copy(self.parts, np.int32)
+            else _checked_parts(self.parts, len(self.part_names))
         )
-        names = tuple(self.part_names)
-        if parts.shape != (len(triangles),) or parts.min() < 0 or parts.max() >= len(names):
+        names = tuple(A_NAME.checked("vehicle", "part_names", n) for n in self.part_names)
+        if parts.shape != (len(triangles),):
             found = f"{parts.shape} with {len(names)} names"
             raise InputError("vehicle", "parts", "one index into part_names a triangle", found)
         for name in self.glass:
             if name not in names:
-                raise InputError("vehicle", "glass", f"one of {', '.join(names)}", repr(name))
-        if not 0.0 <= self.clearance < 1.0:
-            raise InputError("vehicle", "clearance", "0 to 1 m", self.clearance)
+                raise InputError("vehicle", "glass", f"one of {', '.join(names)}", shown(name))
+        clearance = CLEARANCE.checked("vehicle", "clearance", self.clearance)
+        object.__setattr__(self, "clearance", clearance)
         for key, value in (("triangles", triangles), ("parts", parts), ("part_names", names)):
             object.__setattr__(self, key, value)
         object.__setattr__(self, "glass", tuple(self.glass))
@@ -134,19 +137,36 @@ class SeenMesh:
 
 
 def _checked_triangles(values: ArrayLike) -> Floats:
-    triangles: Floats = frozen_copy(values, np.float64)
+    expected = "(F, 3, 3) numbers, F > 0"
+    plain = isinstance(values, np.ndarray) and values.dtype.kind in "iuf"
+    if (found := values if plain else numbers(values)) is None:
+        raise InputError("vehicle", "triangles", expected, shown(values))
+    triangles: Floats = frozen_copy(found, np.float64)
     if triangles.ndim != 3 or triangles.shape[1:] != (3, 3) or not len(triangles):
-        raise InputError("vehicle", "triangles", "(F, 3, 3) numbers, F > 0", triangles.shape)
+        raise InputError("vehicle", "triangles", expected, triangles.shape)
     bad = ~np.isfinite(triangles).all(axis=(1, 2))
     if bad.any():
-        found = f"triangle {int(np.flatnonzero(bad)[0])} with NaN or infinity"
-        raise InputError("vehicle", "triangles", "finite coordinates", found)
+        which = f"triangle {int(np.flatnonzero(bad)[0])} with NaN or infinity"
+        raise InputError("vehicle", "triangles", "finite coordinates", which)
     far = np.abs(triangles).max(axis=(1, 2)) > FARTHEST_M
     if far.any():
-        found = f"triangle {int(np.flatnonzero(far)[0])} beyond"
+        which = f"triangle {int(np.flatnonzero(far)[0])} beyond"
         expected = f"coordinates within +-{FARTHEST_M:g} m"
-        raise InputError("vehicle", "triangles", expected, found)
+        raise InputError("vehicle", "triangles", expected, which)
     return triangles
+
+
+def _checked_parts(values: ArrayLike, names: int) -> NDArray[np.int32]:
+    """Return indices into that many names, or raise `InputError`."""
+    try:
+        parts = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        parts = np.array(None)
+    whole = parts.dtype.kind in "iu" and parts.size > 0
+    if not whole or parts.min() < 0 or parts.max() >= names:
+        found = f"{shown(values)} with {names} names"
+        raise InputError("vehicle", "parts", "one index into part_names a triangle", found)
+    return frozen_copy(parts, np.int32)
 
 
 def _proud_of_skin(position: Floats, triangles: Floats, clearance: float) -> Floats:

@@ -3,7 +3,7 @@
 from .evaluator import Evaluator
 from .sampled import Judgement
 from .sampling import VoxelSample, draw
-from .score import GroundMap, PartScore, Score, SensorScore
+from .score import GroundMap, PartScore, Score, ScoreStopped, SensorScore
 
 __all__ = [
     "Evaluator",
@@ -11,6 +11,7 @@ __all__ = [
     "Judgement",
     "PartScore",
     "Score",
+    "ScoreStopped",
     "SensorScore",
     "VoxelSample",
     "draw",

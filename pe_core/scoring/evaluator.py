@@ -9,10 +9,14 @@ from ..prior.prior import Prior
 from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
+from ..text.values import Number, Whole, vector
 from .gridded import GridScorer
 from .sampled import Judgement, SampledScorer
-from .sampling import CENTERED
-from .score import Score
+from .sampling import CENTERED, samples_or_grid
+from .score import Score, Watch
+
+WORKERS = Whole(0, 1024, "threads")
+SHIFT = Number(0.0, 1.0, below=True)
 
 
 class Evaluator:
@@ -52,6 +56,11 @@ class Evaluator:
         model: PerceptionModel | None = None,
         workers: int | None = None,
     ) -> None:
+        samples = samples_or_grid("evaluator", samples)
+        if workers is not None:
+            workers = WORKERS.checked("evaluator", "workers", workers)
+        in_range = vector("evaluator", "shift", shift, 3, SHIFT)
+        shift = in_range[0], in_range[1], in_range[2]
         self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
         densities, fusion = prior.densities(space), Fusion(model or PerceptionModel())
         self._scorer: GridScorer | SampledScorer
@@ -60,7 +69,7 @@ class Evaluator:
         else:
             self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
 
-    def score(self, rig: Rig, *, draft: bool = False) -> Score:
+    def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full: entropy, coverage, by class, by sensor, ground map.
 
         Parameters
@@ -70,15 +79,22 @@ class Evaluator:
             While a sensor is being moved: which LiDAR beams the vehicle stops is read from a map of
             its top surface, where the sensor stands above it, instead of cast. `Score.draft` says
             so. The next score without it is exact again. Sampled scores only.
+        watch : callable, optional
+            Called with the share that is done, 0 to 1, now and then while a grid is scored (a
+            sample is done too soon); when it returns False, the score is stopped.
 
         Raises
         ------
         InputError
             When a draft is asked of a grid score.
+        ScoreStopped
+            When the one who watches said so.
         """
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer.score(rig, draft=draft)
         if draft:
-            return self._drafting().score(rig, draft=True)
-        return self._scorer.score(rig)
+            self._drafting()
+        return self._scorer.score(rig, watch)
 
     def entropy(self, rig: Rig, *, draft: bool = False) -> float:
         """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for.

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from threading import Lock
-from typing import Any, NamedTuple
+from threading import Event, Lock
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +21,21 @@ from ..scene.frozen import frozen
 from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
-from .score import GroundMap, PartScore, Score, SensorScore, rounded, sensor_score
+from .score import (
+    GroundMap,
+    PartScore,
+    Score,
+    ScoreStopped,
+    SensorScore,
+    Watch,
+    rounded,
+    sensor_score,
+)
 from .subsets import Names, fused_early, parts_of
 from .weights import outside_masses
 from .zones import column_zones
 
+T = TypeVar("T")
 Floats = NDArray[np.float64]
 Measured = tuple[str, Planes]
 """The kind of some sensors, and what measures them on a run of x-planes."""
@@ -41,6 +51,32 @@ class Sums(NamedTuple):
 
     entropy: Floats
     coverage: Floats
+
+
+class _Watched:
+    """Tells who watches a score how far it is; told to stop, threads end at their next block."""
+
+    def __init__(self, watch: Watch | None) -> None:
+        self._watch, self._stopped = watch, Event()
+        self._tell(0.0)
+
+    def check(self) -> None:
+        """Raise `ScoreStopped` if there is nothing to go on for; called in threads."""
+        if self._stopped.is_set():
+            raise ScoreStopped
+
+    def taken(self, blocks: Iterable[T], count: int) -> list[T]:
+        """Take so many blocks as they are done."""
+        found = []
+        for block in blocks:
+            found.append(block)
+            self._tell(len(found) / count)
+        return found
+
+    def _tell(self, share: float) -> None:
+        if self._watch is not None and not self._watch(share):
+            self._stopped.set()
+        self.check()
 
 
 class GridScorer:
@@ -79,19 +115,20 @@ class GridScorer:
 
             return self._mean(np.sum(list(pool.map(work, self._blocks())), axis=0))
 
-    def score(self, rig: Rig) -> Score:
+    def score(self, rig: Rig, watch: Watch | None = None) -> Score:
         """Everything a grid score tells."""
-        parts = parts_of(rig)
+        parts, watched = parts_of(rig), _Watched(watch)
         with self._is_free, ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
             measured = self._measured([[s] for s in rig], ready, pool)
 
             def work(planes: slice) -> tuple[Floats, Floats]:
+                watched.check()
                 values = {s.name: m(planes) for s, (_, m) in zip(rig, measured, strict=True)}
                 fused = [fused_early(rig, values, members) for members in parts]
                 return self._reduced(fused, planes)
 
-            blocks = list(pool.map(work, self._blocks()))
+            blocks = watched.taken(pool.map(work, self._blocks()), len(self._blocks()))
         sums = np.sum([by_part for by_part, _ in blocks], axis=0)
         by_part = {members: Sums(*own) for members, own in zip(parts, sums, strict=True)}
         columns = np.concatenate([columns for _, columns in blocks], axis=1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..prior.prior import ClassDensity
 from ..scene.space import PerceptionSpace
+from ..text.values import Whole
 from .sobol import scrambled_sobol
 
 Floats = NDArray[np.float64]
@@ -20,9 +22,22 @@ AZIMUTH, HEIGHT, RING = range(3)
 and the height, in which beams are spaced; the third the distance."""
 BLOCKS = 16
 """The sample is judged in this many runs of the sequence, each a lattice of its own."""
-MIN_SAMPLES = 1024
+MIN_SAMPLES, MAX_SAMPLES = 1024, 2**24
+"""Fewer say nothing; more than 16.8 million need more memory than a grid score."""
+SAMPLES = Whole(MIN_SAMPLES, MAX_SAMPLES, "voxels")
 CENTERED = (0.5, 0.5, 0.5)
 AT_ONCE = 1 << 16
+
+SAMPLES_OR_GRID = Whole(0, MAX_SAMPLES, "voxels")
+
+
+def samples_or_grid(source: str, value: Any) -> int:
+    """Return a number of samples, or 0 for the whole grid; `InputError` for what is neither."""
+    count = SAMPLES_OR_GRID.checked(source, "samples", value)
+    if 0 < count < MIN_SAMPLES:
+        expected = f"0 for the whole grid, or a whole number of voxels >= {MIN_SAMPLES}"
+        raise InputError(source, "samples", expected, count)
+    return count
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +81,7 @@ def draw(
     shift : (3,) float
         Three numbers in [0, 1) that scramble the sequence.
     """
-    if count < MIN_SAMPLES:
-        raise InputError("evaluator", "samples", f"at least {MIN_SAMPLES}", count)
+    count = SAMPLES.checked("evaluator", "samples", count)
     u = scrambled_sobol(count, shift)
     ground = np.sum([d.ground for d in densities], axis=0)
     i, j = _draw_column(ground, space, u[:, RING], u[:, AZIMUTH])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -12,6 +13,14 @@ from ..kinds import Stopped
 
 DECIMALS = 9
 """Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
+
+
+Watch = Callable[[float], bool]
+"""Is told how much of a score is done, 0 to 1, now and then; says whether to go on."""
+
+
+class ScoreStopped(Exception):
+    """A score was stopped by the one who watched it: there is none."""
 
 
 @dataclass(frozen=True, slots=True)

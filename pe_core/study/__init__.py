@@ -1,13 +1,16 @@
 """Studies: their files, the work on them, and the results it leaves."""
 
+from .folder import FileSet, check_files, prepare_folder
 from .jobs import HistoryRow, Job, OptimizeJob, Outcome, Progress, ScoreJob
+from .names import MESH, OPTIMIZED, RESULT, REVIEW, STUDY
 from .results import (
-    MESH,
-    STUDY,
+    add_to_result,
     export_study,
+    files_of_other_runs,
     placements,
-    prepare_folder,
     result_dict,
+    result_names,
+    study_writers,
     write_outcome,
 )
 from .study import Search, Study
@@ -15,7 +18,11 @@ from .study_file import load_study, save_study, study_from_dict, study_to_dict
 
 __all__ = [
     "MESH",
+    "OPTIMIZED",
+    "RESULT",
+    "REVIEW",
     "STUDY",
+    "FileSet",
     "HistoryRow",
     "Job",
     "OptimizeJob",
@@ -24,13 +31,18 @@ __all__ = [
     "ScoreJob",
     "Search",
     "Study",
+    "add_to_result",
+    "check_files",
     "export_study",
+    "files_of_other_runs",
     "load_study",
     "placements",
     "prepare_folder",
     "result_dict",
+    "result_names",
     "save_study",
     "study_from_dict",
     "study_to_dict",
+    "study_writers",
     "write_outcome",
 ]

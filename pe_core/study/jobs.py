@@ -1,21 +1,22 @@
 """Long work as one job with any driver: a blocking loop, or a timer that steps it.
 
 A job is iterated; it yields `Progress` at least every few hundredths of a second and leaves its
-result in `outcome`. `stop()` asks it to wind down: the best so far is then judged and kept.
+result in `outcome`. `stop()` asks it to wind down: a search's best so far is then judged and kept.
 """
 
 from __future__ import annotations
 
+import threading
 import time
-from collections.abc import Generator, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotYet
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ..scene.sensors import Rig
 from ..scoring.evaluator import Evaluator
-from ..scoring.score import Score
+from ..scoring.score import Score, ScoreStopped
 from ..search.optimize import Step, optimize
 from .study import Study
 
@@ -88,7 +89,11 @@ class Job:
         raise NotImplementedError
 
     def stop(self) -> None:
-        """Search no further; judge and keep the best so far."""
+        """Search no further; judge and keep the best so far.
+
+        Before a first score is complete there is nothing to keep: the job then ends without one,
+        and `outcome` stays None.
+        """
         self.stopped = True
 
     @property
@@ -101,18 +106,38 @@ class Job:
         """What judges the study's rig, and the search's: the two differ in nothing else."""
         return self.study.evaluator(workers=self.workers)
 
-    def _score(self, rig: Rig, waiting: Progress) -> Generator[Progress, None, Score]:
-        """Score in a thread, yielding `waiting` until it is done."""
+    def _score(
+        self, rig: Rig, waiting: Progress, *, to_the_end: bool = False
+    ) -> Generator[Progress, None, Score | None]:
+        """Score in a thread, yielding `waiting` until it is done.
+
+        None when the job is stopped meanwhile, unless it is `to_the_end`: the thread then ends by
+        itself, soon, and nobody waits for it.
+        """
         yield waiting
-        with ThreadPoolExecutor(1) as pool:
-            future = pool.submit(lambda: self._evaluator.score(rig))
-            while True:
-                try:
-                    return future.result(timeout=WAIT_S)
-                except NotYet:
-                    if future.done():
-                        raise
-                    yield waiting
+        future, done = Future[Score](), [waiting.fraction]
+
+        def watch(share: float) -> bool:
+            done[0] = max(waiting.fraction, share)
+            return to_the_end or not self.stopped
+
+        threading.Thread(target=self._fill, args=(future, rig, watch), daemon=True).start()
+        while to_the_end or not self.stopped:
+            try:
+                return future.result(timeout=WAIT_S)
+            except ScoreStopped:
+                return None
+            except NotYet:
+                if future.done():
+                    raise
+            yield replace(waiting, fraction=done[0])
+        return None
+
+    def _fill(self, future: Future[Score], rig: Rig, watch: Callable[[float], bool]) -> None:
+        try:
+            future.set_result(self._evaluator.score(rig, watch=watch))
+        except BaseException as error:  # whatever it is, the one who waits has to know
+            future.set_exception(error)
 
 
 class ScoreJob(Job):
@@ -120,6 +145,8 @@ class ScoreJob(Job):
 
     def __iter__(self) -> Iterator[Progress]:
         score = yield from self._score(self.study.rig, Progress("scoring", 0.0))
+        if score is None:
+            return
         self.outcome = Outcome("score", self.study, self.study, score, score, seconds=self.seconds)
         yield Progress("done", 1.0, score.entropy)
 
@@ -137,15 +164,23 @@ class OptimizeJob(Job):
         """The study with the best placement so far."""
         return self.study.with_rig(self.history[-1].rig) if self.history else self.study
 
+    @cached_property
+    def _search_evaluator(self) -> Evaluator:
+        """What judges candidates: the study's own evaluator where that is the same."""
+        samples = self.study.search.samples
+        if samples == self.study.samples:
+            return self._evaluator
+        return self.study.evaluator(samples, self.workers)
+
     def __iter__(self) -> Iterator[Progress]:
+        yield Progress("preparing", 0.0)
+        self._check()
         before = yield from self._score(self.study.rig, Progress("scoring the start", 0.0))
+        if before is None:
+            return
         yield from self._search()
-        after, best = before, self.study
-        if self.best.rig is not self.study.rig:
-            waiting = Progress("scoring the result", 1.0, self.history[-1].entropy)
-            found = yield from self._score(self.best.rig, waiting)
-            if found.entropy < before.entropy:  # the search's sample may flatter a placement
-                after, best = found, self.best
+        stopped = self.stopped
+        after, best = yield from self._better_of(before)
         self.outcome = Outcome(
             "optimize",
             self.study,
@@ -154,14 +189,29 @@ class OptimizeJob(Job):
             after,
             tuple(self.history),
             self.evaluations,
-            self.stopped,
+            stopped,
             self.seconds,
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 
+    def _check(self) -> None:
+        """Raise `InputError` for a search that cannot be made, before any work is done."""
+        self.study.search_space()
+        if self.study.search.samples != self.study.samples:
+            _ = self._search_evaluator  # complains of too few samples
+
+    def _better_of(self, before: Score) -> Generator[Progress, None, tuple[Score, Study]]:
+        """Score what was found; the start's score and study where that is no better."""
+        if self.best.rig is self.study.rig:
+            return before, self.study
+        waiting = Progress("scoring the result", 1.0, self.history[-1].entropy, self.evaluations)
+        found = yield from self._score(self.best.rig, waiting, to_the_end=True)
+        if found is not None and found.entropy < before.entropy:
+            return found, self.best
+        return before, self.study  # the search's sample flattered a placement
+
     def _search(self) -> Iterator[Progress]:
-        search = self.study.search
-        evaluator = self.study.evaluator(search.samples, self.workers)
+        search, evaluator = self.study.search, self._search_evaluator
         space = self.study.search_space()
         for step in optimize(evaluator, self.study.rig, space, search.seed, search.schedule):
             self._note(step)

@@ -10,12 +10,13 @@ from typing import Any
 
 from ..errors import InputError
 from ..formats.boxes import read_boxes
+from ..prior.boxes import ORIGIN
 from ..prior.classes import FIELDS, SHIPPED, ObjectClass
 from ..prior.prior import FROM_BOXES, MODELS, Focus, Prior
 from ..text.tables import REQUIRED, Table
+from ..text.values import A_NAME, A_PATH, vector
+from .names import BOXES
 
-BOXES = "boxes.csv"
-"""The name boxes get beside a study when they have no file of their own."""
 DEFAULT_MODEL = "road"
 OPTIONAL = {"lanes": (0.0,), "share": 1.0}
 """What a class of one's own need not say."""
@@ -52,9 +53,9 @@ def _read_boxes(table: Table, folder: Path) -> Prior:
     for key in ("model", "classes", "class"):
         if key in table:
             raise table.error(key, f"nothing beside {table.field(FROM_BOXES)}", "a value")
-    file, origin = table.text(FROM_BOXES), table.numbers("origin", 3, None)
-    if origin is not None and not all(map(math.isfinite, origin)):
-        raise table.error("origin", "a list of 3 finite numbers", list(origin))
+    file, origin = table.text(FROM_BOXES, rule=A_PATH), table.numbers("origin", 3, None)
+    if origin is not None:
+        origin = vector(table.source, table.field("origin"), origin, 3, ORIGIN)
     at = None if origin is None else (origin[0], origin[1], origin[2])
     return Prior.from_boxes(replace(read_boxes(folder / file, at), file=file))
 
@@ -79,7 +80,7 @@ def _read_model(table: Table) -> Prior:
 
 def _read_class(table: Table, shipped: Sequence[ObjectClass]) -> ObjectClass:
     """Read a class; one with a shipped class's name need say only what differs."""
-    name = table.text("name")
+    name = table.text("name", rule=A_NAME)
     base = next((c for c in shipped if c.name == name), None)
 
     def default(key: str) -> Any:

@@ -1,53 +1,53 @@
-"""What a run leaves in its output folder: result.json, history.csv, study.toml."""
+"""What a run leaves in its output folder: result.json, history.csv, study.toml.
+
+The files of a run are one set: `FileSet` puts them there together, result.json last, and that names
+the SHA-256 of the others.
+"""
 
 from __future__ import annotations
 
 import csv
 import io
+import json
 import platform
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
 from ..formats.boxes import write_boxes
 from ..formats.meshes import Mesh, write_mesh
 from ..scene.sensors import Rig
-from ..search.optimize import AXES
-from ..text.files import write_bytes
+from ..search.search_space import AXES
+from ..text.files import read_bytes
 from ..text.json_text import dump_json, finite
 from ..version import __version__
+from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
 from .jobs import HistoryRow, Outcome
-from .prior_file import BOXES
+from .names import BESIDE_RESULT, BOXES, HISTORY, MESH, RESULT, SCHEMA, STUDY
 from .study import Study, vehicle_digest
-from .study_file import save_study, study_to_dict
-
-SCHEMA = 1
-RESULT, HISTORY, STUDY, MESH = "result.json", "history.csv", "study.toml", "vehicle.npz"
+from .study_file import study_bytes, study_to_dict
 
 
-def prepare_folder(folder: str | Path) -> Path:
-    """Make the output folder, or raise `InputError` now rather than after the work is done."""
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".writable"
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InputError(folder, "output", "a folder that can be written", reason) from None
-    return folder
+def result_names(study: Study, kind: str) -> list[str]:
+    """Names of the files that a run of this kind (score or optimize) writes to its folder."""
+    vehicle, boxes = study.vehicle is not None, study.prior.boxes is not None
+    with_study = [STUDY, *[MESH] * vehicle, *[BOXES] * boxes]
+    return [*with_study, *[HISTORY] * (kind == "optimize"), RESULT]
 
 
 def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[str, Any]:
     """Return a run as plain JSON data.
 
     Everything outside `run` follows from the study alone: two runs of the same study agree in it
-    to the last bit.
+    to the last bit. JSON has no word for what is not a number: that is null.
     """
+    return finite(_result(outcome, host or {}))
+
+
+def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
     return {
         "schema": SCHEMA,
         "kind": outcome.kind,
@@ -64,7 +64,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         "stopped": outcome.stopped,
         "history": [_history_dict(row) for row in outcome.history],
         "inputs": {
-            "study": finite(study_to_dict(outcome.start)),
+            "study": study_to_dict(outcome.start),
             "vehicle_triangles": _triangle_count(outcome.study),
             "vehicle_sha256": vehicle_digest(outcome.study.vehicle),
         },
@@ -74,7 +74,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
                 "perception-entropy": __version__,
                 "numpy": np.__version__,
                 "python": platform.python_version(),
-                **(host or {}),
+                **host,
             },
         },
     }
@@ -91,31 +91,86 @@ def placements(rig: Rig) -> dict[str, dict[str, list[float]]]:
 def write_outcome(
     outcome: Outcome, folder: str | Path, host: dict[str, str] | None = None
 ) -> dict[str, Any]:
-    """Write result.json, history.csv (of a search) and the study; return result.json's data."""
-    folder = prepare_folder(folder)
-    data = result_dict(outcome, host)
+    """Write result.json, history.csv (of a search) and the study; return result.json's data.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or a file of one of these names in it is not ours: then all
+        of it stays as it was.
+    """
+    folder, data = prepare_folder(folder), result_dict(outcome, host)
+    writers = study_writers(outcome.study, STUDY)
     if outcome.kind == "optimize":
-        write_bytes(folder / HISTORY, history_csv(outcome.history).encode())
-    export_study(outcome.study, folder / STUDY)
-    write_bytes(folder / RESULT, dump_json(data).encode())
+        writers[HISTORY] = history_csv(outcome.history).encode(errors="backslashreplace")
+    add_to_result(data, folder, writers)
     return data
 
 
-def export_study(study: Study, path: str | Path) -> None:
-    """Write a study, its vehicle's mesh and its prior's boxes side by side, to run anywhere."""
+def add_to_result(data: dict[str, Any], folder: Path, writers: Mapping[str, Write | bytes]) -> None:
+    """Write files of a run together with its result.json, in which their SHA-256 is noted."""
+    with FileSet(folder) as files:
+        digests = {name: files.add(name, write) for name, write in writers.items()}
+        run = {**data["run"], "files": {**data["run"].get("files", {}), **digests}}
+        text = dump_json({**data, "run": run})
+        files.add(RESULT, text.encode(errors="backslashreplace"))
+    data["run"] = run
+
+
+def files_of_other_runs(folder: Path) -> list[str]:
+    """Return names of result files in a folder that are not of the run its result.json tells of.
+
+    They are an earlier run's, a later one's that was cut off, or were changed by hand.
+    """
+    try:
+        named = json.loads(read_bytes(folder / RESULT))["run"]["files"]
+        ours = set(our_files(folder))
+        there = [n for n in BESIDE_RESULT if n in ours or n in named]
+        digests = {n: sha256_of(folder / n) for n in there}
+        return [n for n, digest in digests.items() if digest and digest != named.get(n)]
+    except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
+        return []
+
+
+def export_study(study: Study, path: str | Path, *, replace_study: bool = False) -> None:
+    """Write a study, its vehicle's mesh and its prior's boxes side by side, to run anywhere.
+
+    Parameters
+    ----------
+    study : Study
+    path : path
+        Of the study file; mesh and boxes are named after it.
+    replace_study : bool
+        The user has agreed to replace the file at `path`, whoever wrote it. This does not go for
+        the files beside it.
+
+    Raises
+    ------
+    InputError
+        A file is there that was not written by this program, or changed since, or one cannot be
+        written: then none is.
+    """
     path = Path(path)
+    with FileSet(path.parent, (path.name,) if replace_study else ()) as files:
+        for name, write in study_writers(study, path.name).items():
+            files.add(name, write)
+
+
+def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
+    """Return what writes a study file of this name, and the files beside it, by name."""
+    path, writers = Path(name), dict[str, Write | bytes]()
     if study.vehicle is not None:
         vehicle = study.vehicle
-        mesh = path.with_name(MESH) if path.name == STUDY else path.with_suffix(".npz")
-        parts = np.asarray(vehicle.parts)
-        write_mesh(mesh, Mesh(vehicle.triangles, parts, tuple(vehicle.part_names)))
-        study = study.with_mesh(mesh.name)
-    if study.prior.boxes is not None:
-        table = path.with_name(BOXES) if path.name == STUDY else path.with_suffix(f".{BOXES}")
-        write_boxes(table, study.prior.boxes)
-        boxes = replace(study.prior.boxes, file=table.name, origin=None)
-        study = replace(study, prior=replace(study.prior, boxes=boxes))
-    save_study(study, path)
+        mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
+        study = study.with_mesh(MESH if name == STUDY else path.with_suffix(".npz").name)
+        writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
+    if (boxes := study.prior.boxes) is not None:
+        table = BOXES if name == STUDY else path.with_suffix(f".{BOXES}").name
+        writers[table] = lambda at: write_boxes(at, boxes)
+        named = replace(boxes, file=table, origin=None)
+        study = replace(study, prior=replace(study.prior, boxes=named))
+    writers[name] = study_bytes(study)
+    return writers
 
 
 def history_csv(history: tuple[HistoryRow, ...]) -> str:

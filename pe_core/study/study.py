@@ -7,19 +7,25 @@ is why they agree to the bit.
 from __future__ import annotations
 
 import hashlib
-import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
+from ..errors import InputError, shown
 from ..kinds import PerceptionModel
 from ..prior.prior import Prior
 from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..scoring.evaluator import Evaluator
-from ..search.optimize import Schedule, SearchSpace
+from ..scoring.sampling import samples_or_grid
+from ..search import AXES, PAPER_FREE, Schedule, SearchSpace
+from ..search.search_space import checked_axes, checked_bounds
+from ..text.values import A_NAME, A_PATH, Whole
 
 DEFAULT_SEARCH_SAMPLES = 65_536
+SEED = Whole(0, 2**63 - 1)
+"""What a TOML file can hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +37,16 @@ class Search:
     free : mapping of sensor name to axes
         Which of x, y, z, roll, pitch, yaw each sensor may change.
     limits : mapping of sensor name to mapping of axis to (low, high)
-        Bounds that replace the default ones; metres and degrees.
+        Bounds that replace the default ones; metres and radians.
     seed : int
     samples : int
         Voxels a candidate is judged on; 0 for the whole grid.
     schedule : Schedule
+
+    Raises
+    ------
+    InputError
+        When an axis is none, bounds are not low before high, or a number is out of its range.
     """
 
     free: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -44,13 +55,28 @@ class Search:
     samples: int = DEFAULT_SEARCH_SAMPLES
     schedule: Schedule = field(default_factory=Schedule)
 
+    def __post_init__(self) -> None:
+        who = "optimize"
+        object.__setattr__(self, "free", _each(self.free, "free", checked_axes))
+        object.__setattr__(self, "limits", _each(self.limits, "bounds", _checked_limits))
+        object.__setattr__(self, "seed", SEED.checked(who, "seed", self.seed))
+        object.__setattr__(self, "samples", samples_or_grid(who, self.samples))
+        if not isinstance(self.schedule, Schedule):
+            raise InputError(who, "schedule", "a Schedule", type(self.schedule).__name__)
+
 
 @dataclass(frozen=True, eq=False)
 class Study:
     """Space, prior, perception model, vehicle, rig, and how to search.
 
     `mesh` names the file the vehicle was read from (or is written to); `samples` is the number of
-    voxels a score looks at, 0 for all of them.
+    voxels a score looks at, 0 for all of them. Of `search`, what concerns the rig's sensors is
+    kept; one that it does not name is free as in the paper.
+
+    Raises
+    ------
+    InputError
+        When a field is not of its type, or the samples are too few.
     """
 
     rig: Rig
@@ -61,6 +87,18 @@ class Study:
     search: Search = field(default_factory=Search)
     samples: int = 0
     mesh: str | None = None
+
+    def __post_init__(self) -> None:
+        for name, kind in FIELDS.items():
+            if not isinstance(getattr(self, name), kind):
+                found = type(getattr(self, name)).__name__
+                raise InputError("study", name, f"a {kind.__name__}", found)
+        if self.vehicle is not None and not isinstance(self.vehicle, Vehicle):
+            raise InputError("study", "vehicle", "a Vehicle", type(self.vehicle).__name__)
+        if self.mesh is not None:
+            object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
+        object.__setattr__(self, "samples", samples_or_grid("study", self.samples))
+        object.__setattr__(self, "search", _of_rig(self.search, self.rig))
 
     def evaluator(self, samples: int | None = None, workers: int | None = None) -> Evaluator:
         """Return the evaluator of this study; `samples` replaces the study's own."""
@@ -75,11 +113,8 @@ class Study:
 
     def search_space(self) -> SearchSpace:
         """Return free axes and bounds, in radians."""
-        limits = {
-            name: {a: _to_radians(a, bounds) for a, bounds in axes.items()}
-            for name, axes in self.search.limits.items()
-        }
-        return SearchSpace.on_vehicle(self.rig, self.vehicle, self.search.free, limits)
+        free, limits = self.search.free, self.search.limits
+        return SearchSpace.on_vehicle(self.rig, self.vehicle, free, limits)
 
     def with_rig(self, rig: Rig) -> Study:
         """Return the study with other placements."""
@@ -90,12 +125,38 @@ class Study:
         return replace(self, mesh=mesh)
 
 
+FIELDS: dict[str, type] = {
+    "rig": Rig,
+    "space": PerceptionSpace,
+    "prior": Prior,
+    "model": PerceptionModel,
+    "search": Search,
+}
+
+
 def vehicle_digest(vehicle: Vehicle | None) -> str | None:
     """SHA-256 of the vehicle's triangles: tells whether two runs saw the same body."""
     return None if vehicle is None else hashlib.sha256(vehicle.triangles.tobytes()).hexdigest()
 
 
-def _to_radians(axis: str, bounds: tuple[float, float]) -> tuple[float, float]:
-    if axis in "xyz":
-        return bounds
-    return math.radians(bounds[0]), math.radians(bounds[1])
+def _each(table: Any, field: str, check: Callable[[str, str, Any], Any]) -> dict[str, Any]:
+    """Check what a mapping holds for each sensor."""
+    if not isinstance(table, Mapping):
+        raise InputError("optimize", field, "a mapping of sensors' names", shown(table))
+    names = [A_NAME.checked("optimize", field, name) for name in table]
+    return {name: check(f"sensor {name!r}", field, table[name]) for name in names}
+
+
+def _checked_limits(source: str, field: str, limits: Any) -> dict[str, tuple[float, float]]:
+    if not isinstance(limits, Mapping):
+        raise InputError(source, field, "a mapping of axes to bounds", shown(limits))
+    checked = {axis: checked_bounds(source, axis, bounds) for axis, bounds in limits.items()}
+    return {axis: checked[axis] for axis in AXES if axis in checked}
+
+
+def _of_rig(search: Search, rig: Rig) -> Search:
+    """Return the search with an entry for each of the rig's sensors, in its order."""
+    names = [sensor.name for sensor in rig]
+    free = {name: search.free.get(name, PAPER_FREE) for name in names}
+    limits = {name: own for name in names if (own := search.limits.get(name))}
+    return replace(search, free=free, limits=limits)

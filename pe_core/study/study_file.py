@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import os
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from .. import catalog
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..formats.meshes import read_mesh
 from ..kinds import BLIND_RULES, KINDS, PerceptionModel
 from ..metric.entropy import ApCurve
@@ -15,13 +18,16 @@ from ..scene.geometry import Pose
 from ..scene.sensors import Rig, Sensor, SensorModel
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import DEFAULT_CLEARANCE_M, Vehicle
-from ..search.optimize import AXES, PAPER_FREE, Schedule
+from ..search import AXES, PAPER_FREE, Schedule
+from ..search.search_space import POSITION_AXES, checked_axes, checked_bounds
+from ..text.degrees import degrees_in_file
 from ..text.files import decode_text, read_bytes, write_bytes
 from ..text.tables import Table
 from ..text.toml_reader import load_toml
 from ..text.toml_writer import dumps
+from ..text.values import A_NAME, A_PATH
 from .prior_file import prior_table, read_prior
-from .study import DEFAULT_SEARCH_SAMPLES, Search, Study
+from .study import DEFAULT_SEARCH_SAMPLES, SEED, Search, Study
 
 
 def load_study(path: str | Path) -> Study:
@@ -38,8 +44,25 @@ def load_study(path: str | Path) -> Study:
 
 
 def save_study(study: Study, path: str | Path) -> None:
-    """Write a study's TOML file, atomically. The mesh is not written; see `mesh_io.write_mesh`."""
-    write_bytes(Path(path), dumps(study_to_dict(study)).encode())
+    """Write a study's TOML file, atomically.
+
+    The mesh and the boxes are not written, but have to be there; `export_study` writes them, too.
+
+    Raises
+    ------
+    InputError
+        When the vehicle's mesh or the prior's boxes are in no file, or the study cannot be written.
+    """
+    path = Path(path)
+    _check_beside(path, "vehicle.mesh", study.vehicle is not None, study.mesh)
+    boxes = study.prior.boxes
+    _check_beside(path, "prior.boxes", boxes is not None, boxes.file if boxes else None)
+    write_bytes(path, study_bytes(study))
+
+
+def study_bytes(study: Study) -> bytes:
+    """Return a study file's text; the files that it names are not looked for."""
+    return dumps(study_to_dict(study)).encode()
 
 
 def study_from_dict(data: Any, source: str = "study", folder: Path | None = None) -> Study:
@@ -72,6 +95,13 @@ def study_to_dict(study: Study) -> dict[str, Any]:
     }
     plain: dict[str, Any] = _without_none(data)
     return plain
+
+
+def _check_beside(path: Path, field: str, needed: bool, file: str | None) -> None:
+    """Complain of a file that a study would name, but that is not there when it is read again."""
+    if needed and not (file and os.path.exists(path.parent / file)):
+        expected = "a file beside the study (pe.export_study writes it)"
+        raise InputError(path, field, expected, shown(file) if file else "none")
 
 
 def _named(error: InputError, source: str) -> InputError:
@@ -131,7 +161,9 @@ def _read_curve(table: Table, default: ApCurve) -> ApCurve:
 
 
 def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, str | None]:
-    mesh = table.text("mesh", None)
+    mesh = table.text("mesh", None, rule=A_PATH)
+    if mesh is None and any(key in table for key in ("glass", "clearance")):
+        raise table.error("mesh", "the file of the vehicle's mesh", "nothing")
     glass = table.texts("glass", ())
     clearance = table.number("clearance", DEFAULT_CLEARANCE_M)
     table.finish()
@@ -142,42 +174,49 @@ def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, str | Non
 
 
 def _read_sensor(table: Table, folder: Path) -> Sensor:
-    name = table.text("name")
+    name = table.text("name", rule=A_NAME)
     position = table.numbers("position", 3)
     rotation = table.numbers("rotation", 3, (0.0, 0.0, 0.0))
-    model = table.raw("model")
+    fusion = table.text("fusion", None, rule=A_NAME)
     try:
         pose = Pose.from_degrees(position, rotation)
-        intrinsics = (
-            catalog.load(model)
-            if isinstance(model, str)
-            else catalog.from_table(name, model, folder)
-        )
+        intrinsics = _read_intrinsics(table, name, folder)
     except InputError as error:
+        if error.source == table.source:
+            raise
         raise table.error(error.field, error.expected, error.found) from None
-    except (AttributeError, TypeError):
-        raise table.error("model", "a catalogue name or a table", repr(model)) from None
-    return Sensor(name, intrinsics, pose, table.text("fusion", None))
+    return Sensor(name, intrinsics, pose, fusion)
+
+
+def _read_intrinsics(table: Table, sensor: str, folder: Path) -> SensorModel:
+    """Return the sensor of the catalogue, or one of the user's own, called as the table says."""
+    model = table.raw("model")
+    if isinstance(model, str):
+        return catalog.load(model)
+    if not isinstance(model, Mapping):
+        raise table.error("model", "a catalogue name or a table", shown(model))
+    own = dict(model)
+    return catalog.from_table(own.pop("name", sensor), own, folder)
 
 
 def _axes(table: Table, key: str, default: tuple[str, ...]) -> tuple[str, ...]:
-    axes = table.texts(key, default)
-    for axis in axes:
-        if axis not in AXES:
-            raise table.error(key, f"some of {', '.join(AXES)}", repr(axis))
-    return axes
+    return checked_axes(table.source, table.field(key), table.texts(key, default))
 
 
 def _read_limits(table: Table) -> dict[str, tuple[float, float]]:
+    """Return the bounds of a sensor's axes; degrees become radians."""
     limits = {}
     for axis in AXES:
-        if axis in table:
-            low, high = table.numbers(axis, 2)
-            if not low <= high:
-                raise table.error(axis, "low before high", [low, high])
-            limits[axis] = (low, high)
-    for axis in AXES:
-        table.raw(axis, None)  # known names, whether present or not
+        bounds = table.raw(axis, None)
+        if bounds is None:
+            continue
+        low, high = table.numbers(axis, 2)
+        if axis not in POSITION_AXES:
+            low, high = math.radians(low), math.radians(high)
+        try:
+            limits[axis] = checked_bounds(table.source, axis, (low, high))
+        except InputError as error:
+            raise table.error(axis, error.expected, shown(bounds)) from None
     table.finish()
     return limits
 
@@ -187,16 +226,31 @@ def _read_search(
     free: Mapping[str, tuple[str, ...]],
     limits: Mapping[str, Mapping[str, tuple[float, float]]],
 ) -> Search:
-    schedule = Schedule(candidates=table.whole("candidates", Schedule().candidates, 1))
     search = Search(
         free,
         limits,
-        table.whole("seed", 0),
+        table.whole("seed", 0, SEED),
         table.whole("samples", DEFAULT_SEARCH_SAMPLES),
-        schedule,
+        _read_schedule(table),
     )
     table.finish()
     return search
+
+
+def _read_schedule(table: Table) -> Schedule:
+    """Return the schedule: each of its fields is a key, in degrees where it is in radians."""
+    values: dict[str, Any] = {}
+    for field in fields(Schedule):
+        key = field.name.replace("_rad", "_deg")
+        if key in table:
+            value = table.raw(key) if key == "candidates" else table.number(key)
+            values[field.name] = value if key == field.name else math.radians(value)
+        table.raw(key, None)  # a known name, whether present or not
+    try:
+        return Schedule(**values)
+    except InputError as error:
+        key = error.field.replace("_rad", "_deg")
+        raise table.error(key, error.expected, error.found) from None
 
 
 def _vehicle_table(study: Study) -> dict[str, Any] | None:
@@ -210,10 +264,11 @@ def _vehicle_table(study: Study) -> dict[str, Any] | None:
 
 
 def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
-    limits = {a: list(b) for a, b in search.limits.get(sensor.name, {}).items()}
+    own = search.limits.get(sensor.name, {})
+    limits = {axis: [_in_file(axis, v) for v in bounds] for axis, bounds in own.items()}
     return {
         "name": sensor.name,
-        "model": _model_value(sensor.model),
+        "model": _model_value(sensor),
         "position": list(sensor.pose.position),
         "rotation": list(sensor.pose.rotation_deg),
         "fusion": sensor.fusion,
@@ -222,19 +277,32 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
     }
 
 
-def _model_value(model: SensorModel) -> str | dict[str, Any]:
+def _model_value(sensor: Sensor) -> str | dict[str, Any]:
     """Return the catalogue's name, or the intrinsics of a sensor that is not in it."""
+    model = sensor.model
     if model.name in catalog.entries() and catalog.load(model.name) is model:
         return model.name
-    return catalog.to_table(model)
+    name = {} if model.name == sensor.name else {"name": model.name}
+    return name | catalog.to_table(model)
 
 
 def _search_table(search: Search) -> dict[str, Any]:
     return {
         "seed": search.seed,
         "samples": search.samples,
-        "candidates": search.schedule.candidates,
+        **{
+            field.name.replace("_rad", "_deg"): _in_file(
+                field.name, getattr(search.schedule, field.name)
+            )
+            for field in fields(Schedule)
+        },
     }
+
+
+def _in_file(name: str, value: Any) -> Any:
+    """Return a value as the file holds it: angles in degrees."""
+    angle = name in AXES[3:] or name.endswith("_rad")
+    return degrees_in_file(value) if angle else value
 
 
 def _without_none(value: Any) -> Any:

@@ -12,11 +12,13 @@ def dump_json(data: Any) -> str:
 
 
 def finite(value: Any) -> Any:
-    """JSON has no infinity: bounds that are infinite become texts."""
+    """JSON has no infinity: bounds that are infinite become texts. What is not a number is null."""
     if isinstance(value, dict):
         return {k: finite(v) for k, v in value.items()}
     if isinstance(value, list):
         return [finite(v) for v in value]
     if isinstance(value, float) and value in (float("inf"), float("-inf")):
         return str(value)
+    if isinstance(value, float) and value != value:
+        return None
     return value

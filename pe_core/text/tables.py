@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from ..errors import InputError
+from ..errors import InputError, shown
+from .values import A_TEXT, ANY, Name, Number, Whole, choice, listed, real
 
 REQUIRED = object()
+WHOLE = Whole()
 
 
 class Table:
@@ -50,54 +51,53 @@ class Table:
             raise self.error(key, "a value", "nothing")
         return default
 
-    def number(self, key: str, default: Any = REQUIRED) -> float:
-        """Return a number, infinity included."""
-        value = self.raw(key, default)
-        if value is default and default is not REQUIRED:
-            return default  # type: ignore[no-any-return]
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or math.isnan(value):
-            raise self.error(key, "a number", repr(value))
-        return float(value)
+    def number(self, key: str, default: Any = REQUIRED, rule: Number = ANY) -> float:
+        """Return a number of a rule; of any size, infinity included, if none is named."""
+        return self._checked(key, default, lambda v: rule.checked(self.source, self.field(key), v))
 
-    def whole(self, key: str, default: Any = REQUIRED, least: int = 0) -> int:
-        """Return a whole number of at least `least`."""
-        value = self.raw(key, default)
-        if value is default and default is not REQUIRED:
-            return default  # type: ignore[no-any-return]
-        if isinstance(value, bool) or not isinstance(value, int) or value < least:
-            raise self.error(key, f"a whole number >= {least}", repr(value))
-        return value
+    def whole(self, key: str, default: Any = REQUIRED, rule: Whole = WHOLE) -> int:
+        """Return a whole number of a rule; of at least 0 if none is named."""
+        return self._checked(key, default, lambda v: rule.checked(self.source, self.field(key), v))
 
-    def text(self, key: str, default: Any = REQUIRED, choices: Sequence[str] = ()) -> str:
-        """Return a text, one of the choices if there are any."""
-        value = self.raw(key, default)
-        if value is default and default is not REQUIRED:
-            return default  # type: ignore[no-any-return]
-        if not isinstance(value, str) or not value or (choices and value not in choices):
-            expected = f"one of {', '.join(choices)}" if choices else "a text"
-            raise self.error(key, expected, repr(value))
-        return value
+    def text(
+        self,
+        key: str,
+        default: Any = REQUIRED,
+        choices: Sequence[str] = (),
+        rule: Name = A_TEXT,
+    ) -> str:
+        """Return a text of a rule, or one of the choices if there are any."""
+        field = self.field(key)
+        if choices:
+            return self._checked(key, default, lambda v: choice(self.source, field, v, choices))
+        return self._checked(key, default, lambda v: rule.checked(self.source, field, v))
 
     def numbers(self, key: str, count: int, default: Any = REQUIRED) -> tuple[float, ...]:
         """Return `count` numbers."""
-        value = self.raw(key, default)
-        if value is default and default is not REQUIRED:
-            return default  # type: ignore[no-any-return]
-        ok = isinstance(value, (list, tuple)) and len(value) == count
-        if not ok or any(isinstance(v, bool) or not isinstance(v, (int, float)) for v in value):
-            raise self.error(key, f"a list of {count} numbers", repr(value))
-        if any(math.isnan(v) for v in value):
-            raise self.error(key, f"a list of {count} numbers", repr(value))
-        return tuple(float(v) for v in value)
+
+        def checked(value: Any) -> tuple[float, ...]:
+            found = listed(value, count)
+            if found is None or len(found) != count or not all(ANY.holds(real(v)) for v in found):
+                raise self.error(key, f"a list of {count} numbers", shown(value))
+            return tuple(map(real, found))
+
+        return self._checked(key, default, checked)
 
     def texts(self, key: str, default: Any = REQUIRED) -> tuple[str, ...]:
         """Return a list of texts."""
+
+        def checked(value: Any) -> tuple[str, ...]:
+            found = listed(value)
+            if found is None or not all(isinstance(v, str) for v in found):
+                raise self.error(key, "a list of texts", shown(value))
+            return tuple(found)
+
+        return self._checked(key, default, checked)
+
+    def _checked(self, key: str, default: Any, check: Callable[[Any], Any]) -> Any:
+        """Return a value after a check, or the default as it is."""
         value = self.raw(key, default)
-        if value is default and default is not REQUIRED:
-            return default  # type: ignore[no-any-return]
-        if not isinstance(value, (list, tuple)) or not all(isinstance(v, str) for v in value):
-            raise self.error(key, "a list of texts", repr(value))
-        return tuple(value)
+        return value if value is default and default is not REQUIRED else check(value)
 
     def table(self, key: str) -> Table:
         """Return a sub-table; an empty one when it is absent."""
@@ -107,7 +107,7 @@ class Table:
         """Return an array of tables; empty when it is absent."""
         value = self.raw(key, [])
         if not isinstance(value, list):
-            raise self.error(key, f"an array of tables [[{self.field(key)}]]", repr(value))
+            raise self.error(key, f"an array of tables [[{self.field(key)}]]", shown(value))
         return [Table(v, self.source, f"{self.field(key)}[{i}]") for i, v in enumerate(value)]
 
     def finish(self) -> None:

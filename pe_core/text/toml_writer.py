@@ -57,4 +57,4 @@ def _value(value: object) -> str:
 def _float(value: float) -> str:
     if math.isinf(value):
         return "inf" if value > 0 else "-inf"
-    return "nan" if math.isnan(value) else repr(value)
+    return "nan" if math.isnan(value) else float.__repr__(value)  # NumPy's own names its type

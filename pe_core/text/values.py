@@ -15,6 +15,9 @@ from itertools import islice
 from numbers import Integral, Real
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..errors import InputError, shown
 from .degrees import as_in_file
 
@@ -35,79 +38,91 @@ class Number:
         The range; both ends belong to it.
     above, below : bool
         Whether `least` (`most`) itself is left out.
+    cap : float
+        A size beyond which numbers make no sense, to keep arithmetic safe; told only to whom it
+        concerns.
     unit : str
         Of the value, for the message.
+    noun : str
+        What the value is called.
     infinite : bool
         Whether infinity is a number, too.
-    expected : str
-        Words for the message; told by the range where there are none.
     """
 
     least: float = -math.inf
     most: float = math.inf
     above: bool = False
     below: bool = False
+    cap: float = math.inf
     unit: str = ""
+    noun: str = "number"
     infinite: bool = False
-    expected: str = ""
 
     def checked(self, source: object, field: str, value: Any) -> float:
         """Return the value as a float, or raise `InputError`."""
         number = value if type(value) is float else real(value)
         if not self.holds(number):
-            raise InputError(source, field, self.words, shown(value))
+            raise InputError(source, field, self.words(number), shown(value))
         return number
 
     def holds(self, number: float) -> bool:
         """Whether a float is in the range; NaN never is."""
         low = self.least < number if self.above else self.least <= number
         high = number < self.most if self.below else number <= self.most
-        return low and high and (self.infinite or math.isfinite(number))
+        if not (low and high):
+            return False
+        return abs(number) <= self.cap and (self.infinite or -math.inf < number < math.inf)
+
+    def words(self, number: float = math.nan, count: int = 1) -> str:
+        """What is expected, said to one who gave `number`; in the plural for more than one."""
+        plain = not self.infinite and (self._is_plain or count > 1)
+        noun = f"finite {self.noun}" if plain else self.noun
+        if count == 1:
+            noun = f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"
+        else:
+            noun = f"{COUNT_WORDS.get(count, count)} {noun}s"
+        if self.cap < abs(number) < math.inf:
+            return f"{noun} within +-{self.cap:.12g}{self._unit}"
+        return f"{noun}{self._range}"
 
     @property
-    def words(self) -> str:
-        """What is expected, for messages."""
-        return self.expected or f"{self.noun}{self.range_words}"
+    def _is_plain(self) -> bool:
+        return not (math.isfinite(self.least) or math.isfinite(self.most))
 
     @property
-    def noun(self) -> str:
-        """``a number``; a finite one where only infinity is not."""
-        ranged = math.isfinite(self.least) or math.isfinite(self.most)
-        return "a number" if ranged or self.infinite else "a finite number"
+    def _unit(self) -> str:
+        return f" {self.unit}" if self.unit else ""
 
     @property
-    def range_words(self) -> str:
+    def _range(self) -> str:
         """The range in words, with a blank in front."""
-        unit = f" {self.unit}" if self.unit else ""
-        low, high = f"{self.least:,.12g}", f"{self.most:,.12g}"
-        if self.least == -self.most and math.isfinite(self.most):
-            return f" within +-{high}{unit}"
-        ends = []
-        if math.isfinite(self.least):
-            ends.append(f"above {low}" if self.above else f"of at least {low}")
-        if math.isfinite(self.most):
-            ends.append(f"below {high}" if self.below else f"at most {high}")
-        if len(ends) == 2 and not (self.above or self.below):
-            return f" from {low} to {high}{unit}"
-        return "".join((" ", " and ".join(ends), unit)) if ends else ""
+        low, high = f"{self.least:.12g}", f"{self.most:.12g}"
+        if self._is_plain:
+            return ""
+        if self.least == -self.most:
+            return f" within +-{high}{self._unit}"
+        start = f"above {low}" if self.above else f">= {low}"
+        end = f"below {high}" if self.below else f"<= {high}"
+        if math.isinf(self.least) or math.isinf(self.most):
+            return f" {end if math.isinf(self.least) else start}{self._unit}"
+        both = f"{start} and {end}" if self.above or self.below else f"from {low} to {high}"
+        return f" {both}{self._unit}"
 
 
 @dataclass(frozen=True, slots=True)
 class Angle(Number):
     """An angle: its range in degrees, the value in radians, as a file's degrees give it back."""
 
+    unit: str = "degrees"
+    noun: str = "angle"
+
     def checked(self, source: object, field: str, value: Any) -> float:
         """Return the value [rad], or raise `InputError`."""
-        number = real(value)
-        if not math.isfinite(number) or not self.holds(math.degrees(number)):
-            found = f"{math.degrees(number):g} degrees" if math.isfinite(number) else shown(value)
-            raise InputError(source, field, f"{self.words} degrees", found)
+        number = value if type(value) is float else real(value)
+        if not self.holds(math.degrees(number)):
+            told = f"{math.degrees(number):g} degrees" if math.isfinite(number) else shown(value)
+            raise InputError(source, field, self.words(math.degrees(number)), told)
         return as_in_file(number)
-
-    @property
-    def noun(self) -> str:
-        """``an angle``."""
-        return "an angle"
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,17 +136,16 @@ class Whole:
     def checked(self, source: object, field: str, value: Any) -> int:
         """Return the value as an int, or raise `InputError`."""
         number = _whole(value)
-        if number is None or number < self.least or (self.most is not None and number > self.most):
-            raise InputError(source, field, self.words, shown(value))
+        if number is None or number < self.least:
+            raise InputError(source, field, f"{self._noun} >= {self.least}", shown(value))
+        if self.most is not None and number > self.most:
+            expected = f"{self._noun} from {self.least} to {self.most}"
+            raise InputError(source, field, expected, shown(value))
         return number
 
     @property
-    def words(self) -> str:
-        """What is expected, for messages."""
-        unit = f" of {self.unit}" if self.unit else ""
-        if self.most is None:
-            return f"a whole number{unit} >= {self.least}"
-        return f"a whole number{unit} from {self.least:,} to {self.most:,}"
+    def _noun(self) -> str:
+        return f"a whole number of {self.unit}" if self.unit else "a whole number"
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,23 +168,24 @@ class Name:
 
 FINITE = Number()
 ANY = Number(infinite=True)
-LENGTH_M = Number(0.0, 1e9, above=True, unit="m")
-"""A size of something. Arithmetic is safe up to there."""
+LENGTH = Number(0.0, above=True, cap=1e9, unit="m", noun="length")
+"""A size of something."""
 SHARE = Number(0.0, 1.0)
-WEIGHT = Number(0.0, 1e9)
+WEIGHT = Number(0.0, cap=1e9)
 A_NAME = Name()
-A_PATH = Name("the name of a file in printable letters", LONGEST_PATH)
+A_TEXT = Name("a text", LONGEST_PATH)
+A_PATH = Name("the name of a file", LONGEST_PATH)
 
 
 def real(value: Any) -> float:
-    """Return a value as a float: NaN for what is no number, infinity for what is beyond a float."""
+    """Return a value as a float; NaN for what is no number, or a whole one beyond a float."""
     number: Any = plain(value)
     if isinstance(number, bool) or not isinstance(number, Real):
         return math.nan
     try:
         return float(number)
     except OverflowError:
-        return math.inf if number > 0 else -math.inf  # type: ignore[operator]
+        return math.nan
 
 
 def plain(value: Any) -> Any:
@@ -184,18 +199,19 @@ def vector(
     values: Any,
     count: int,
     rule: Number = FINITE,
-    expected: str = "",
+    more: str = "",
 ) -> tuple[float, ...]:
-    """Return `count` numbers of one rule, or raise `InputError` about all of them."""
-    found = listed(values, count)
+    """Return `count` numbers of one rule, or raise `InputError` about all of them.
+
+    `more` is added to the words for what is expected.
+    """
+    found, worst = listed(values, count), math.nan
     if found is not None and len(found) == count:
         try:
             return tuple(rule.checked(source, field, v) for v in found)
-        except InputError:
-            pass  # one bad number is told with the others
-    numbers = f"{rule.noun.split(' ', 1)[1]}s{rule.range_words}"
-    words = expected or f"{COUNT_WORDS.get(count, count)} {numbers}"
-    raise InputError(source, field, words, shown(values))
+        except InputError:  # one bad number is told with the others
+            worst = max((abs(real(v)) for v in found), key=lambda v: v if v == v else math.inf)
+    raise InputError(source, field, rule.words(worst, count) + more, shown(values))
 
 
 def pair(
@@ -207,12 +223,11 @@ def pair(
     same: bool = False,
 ) -> tuple[float, float]:
     """Return two numbers, low before high (with `same`: or alike), or raise `InputError`."""
-    numbers = f"two {rule.noun.split(' ', 1)[1]}s{rule.range_words}"
-    words = f"{numbers}, low before high"
-    low, high = vector(source, field, values, 2, rule, words)
+    more = ", low before high"
+    low, high = vector(source, field, values, 2, rule, more)
     if low < high or (same and low == high):
         return low, high
-    raise InputError(source, field, words, shown(values))
+    raise InputError(source, field, rule.words(count=2) + more, shown([low, high]))
 
 
 def listed(values: Any, most: int | None = None) -> list[Any] | None:
@@ -220,12 +235,30 @@ def listed(values: Any, most: int | None = None) -> list[Any] | None:
 
     With `most` no more than one beyond it are taken: enough to tell that they are too many.
     """
+    if type(values) in (tuple, list):  # the usual case, and the search's: it makes many poses
+        return list(values)
     if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
         return None
     try:
         return list(islice(values, None if most is None else most + 1))
     except TypeError:  # an array of no dimension says that it can be iterated
         return None
+
+
+def numbers(values: Any) -> NDArray[np.float64] | None:
+    """Return an array of one's own of floats, NaN where there is no number; None for what is none.
+
+    True, False and texts are no numbers here either.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        return None
+    if array.dtype.kind in "iuf":
+        return np.array(array, dtype=np.float64)
+    if array.dtype.kind != "O":
+        return None
+    return np.array([real(v) for v in array.flat], dtype=np.float64).reshape(array.shape)
 
 
 def choice(source: object, field: str, value: Any, among: Iterable[str]) -> str:

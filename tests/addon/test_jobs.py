@@ -1,20 +1,21 @@
 """Score and optimize from the scene: the engine's own numbers, to the bit."""
 
 import json
+from types import SimpleNamespace
 
 import bpy
 import pytest
 
 from blender_addon import bridge, stale
 from blender_addon.engine import pe, text
-from blender_addon.operators import running
+from blender_addon.operators import job, running
 from tests.addon import scenes
 
 
-def finished(job):
-    for _ in job:
+def finished(work):
+    for _ in work:
         pass
-    return job.outcome
+    return work.outcome
 
 
 def stored(scene) -> dict:
@@ -104,6 +105,14 @@ def test_stopped_search_keeps_the_best(car):
     bridge.store_outcome(car, job.outcome)
     assert job.outcome.after.entropy <= job.outcome.before.entropy
     assert scenes.study().rig["roof"].pose == job.outcome.study.rig["roof"].pose
+
+
+def test_stopped_before_a_score_is_complete_changes_nothing(car):
+    told = []
+    operator = SimpleNamespace(report=lambda *words: told.append(words))
+    assert job.PE_OT_optimize._apply(operator, car, None) == {"CANCELLED"}
+    assert told == [({"INFO"}, "Stopped before a score was complete: nothing was changed")]
+    assert not car.perception_entropy.has_result
 
 
 def test_bad_input_is_an_error_and_changes_nothing(car):

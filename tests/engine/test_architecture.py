@@ -28,6 +28,10 @@ ALLOWED = {
         *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
         *("formats", "scoring", "search", "catalog"),
     },
+    "public": {
+        *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
+        *("search", "catalog", "study"),
+    },
     "app": {"errors", "version", "text", "kinds", "catalog", "study"},
     "__main__": {"app"},
 }
@@ -107,6 +111,16 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
             if isinstance(node, ast.Constant)
         } & {"lidar", "camera"}
         assert inside == ("kinds", "__init__.py") or not named | texts, path
+
+
+def test_importing_the_engine_loads_no_numpy_until_a_name_is_asked_for():
+    code = (
+        "import sys, pe_core as pe; assert 'numpy' not in sys.modules; pe.Study; "
+        "assert 'numpy' in sys.modules; assert set(pe.__all__) <= set(dir(pe)); "
+        "assert all(hasattr(pe, n) for n in (*pe.__all__, 'scene', 'study')); "
+        "assert not hasattr(pe, 'bogus')"
+    )
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT.parent).returncode == 0
 
 
 def test_importing_the_engine_loads_no_blender():

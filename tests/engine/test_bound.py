@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring import Judgement
-from pe_core.search.optimize import SearchSpace
+from pe_core.search import SearchSpace
 from tests.engine import shapes
 
 SPACE = shapes.small_space()

@@ -2,12 +2,15 @@
 
 import csv
 import json
+import math
+import threading
 from dataclasses import replace
 
 import pytest
 
 import pe_core as pe
 from pe_core.study.jobs import HistoryRow
+from pe_core.text import dump_json
 from tests.engine import shapes
 
 
@@ -56,7 +59,72 @@ def test_start_and_result_are_judged_by_one_evaluator(monkeypatch):
     monkeypatch.setattr(pe.Study, "evaluator", counted)
     _, outcome = finished(pe.OptimizeJob(study()))
     assert outcome.after is not outcome.before
-    assert made == [None, 2048]  # the whole grid once, the search's sample once
+    assert made == [2048, None]  # the search's sample once, the whole grid once
+
+
+@pytest.mark.parametrize("samples", [0, 4096])
+def test_one_evaluator_is_made_where_search_and_score_look_at_the_same(monkeypatch, samples):
+    made, plain = [], pe.Study.evaluator
+
+    def counted(self, samples=None, workers=None):
+        made.append(samples)
+        return plain(self, samples, workers)
+
+    given = study(candidates=1)
+    given = replace(given, samples=samples, search=replace(given.search, samples=samples))
+    expected = [given.evaluator().score(given.rig).to_dict()]
+    monkeypatch.setattr(pe.Study, "evaluator", counted)
+    _, outcome = finished(pe.OptimizeJob(given))
+    assert made == [None]
+    assert outcome.before.to_dict() == expected[0]
+    assert outcome.history[0].entropy == outcome.before.entropy
+
+
+def test_a_search_that_cannot_be_made_is_refused_before_any_work(monkeypatch):
+    given = study()
+    below = replace(given, search=replace(given.search, limits={"roof": {"z": (0.0, 1.0)}}))
+    monkeypatch.setattr(pe.Evaluator, "score", lambda *_: pytest.fail("work was begun"))
+    with pytest.raises(pe.InputError, match=r"optimize: samples: expected 0 .* >= 1024"):
+        replace(given.search, samples=100)
+    with pytest.raises(pe.InputError, match="bounds of z: expected bounds around the start"):
+        finished(pe.OptimizeJob(below))
+
+
+@pytest.mark.parametrize("job_class", [pe.ScoreJob, pe.OptimizeJob])
+def test_stop_before_a_score_is_complete_leaves_no_outcome(job_class, monkeypatch):
+    goes_on = threading.Event()
+    monkeypatch.setattr(pe.Evaluator, "score", lambda *_: goes_on.wait())
+    job = job_class(study())
+    for progress in job:
+        if progress.stage.startswith("scoring"):
+            job.stop()
+    assert job.outcome is None
+    goes_on.set()
+
+
+def test_stop_while_the_result_is_scored_cuts_nothing_short():
+    job = pe.OptimizeJob(study())
+    for progress in job:
+        if progress.stage == "scoring the result":
+            job.stop()
+    assert job.outcome.evaluations == 1 + 7 * 6 and not job.outcome.stopped
+    assert job.outcome.after.entropy < job.outcome.before.entropy
+
+
+def test_an_exception_in_the_scoring_thread_is_raised():
+    given = study()
+    nothing_counts = pe.Prior.road([pe.Focus(0.0)])
+    with pytest.raises(pe.InputError, match="some weight left in the space"):
+        finished(pe.ScoreJob(replace(given, prior=nothing_counts)))
+
+
+def test_what_is_no_number_is_null_in_the_result():
+    _, outcome = finished(pe.ScoreJob(study()))
+    broken = replace(outcome, after=replace(outcome.after, entropy=math.nan, stderr=math.inf))
+    data = pe.result_dict(broken)
+    assert (data["entropy"], data["after"]["entropy"]) == (None, None)
+    assert data["after"]["stderr"] == "inf"
+    assert "NaN" not in dump_json(data)
 
 
 def test_stop_keeps_the_best_so_far():
@@ -91,6 +159,7 @@ def test_result_files_hold_the_run(tmp_path):
     data = pe.write_outcome(outcome, tmp_path)
     assert json.loads((tmp_path / "result.json").read_text("utf-8")) == data
     assert sorted(p.name for p in tmp_path.iterdir()) == [
+        ".perception-entropy.json",
         "history.csv",
         "result.json",
         "study.toml",

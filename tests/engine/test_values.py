@@ -60,11 +60,14 @@ def test_infinity_is_a_number_where_the_rule_says_so():
     [
         (values.Number(0.0, 1.0), [0, 1], [-1e-9, 1.001], "a number from 0 to 1"),
         (values.Number(0.0, above=True, unit="m"), [5e-324], [0, -1], "a number above 0 m"),
-        (values.Number(0.0, unit="m"), [0], [-1], "a number of at least 0 m"),
+        (values.Number(0.0, unit="m"), [0], [-1], "a number >= 0 m"),
         (values.Number(-5.0, 5.0, unit="m"), [-5, 5], [6], "a number within +-5 m"),
-        (values.Number(0.0, 1.0, below=True), [0], [1], "a number of at least 0 and below 1"),
+        (values.Number(0.0, 1.0, below=True), [0], [1], "a number >= 0 and below 1"),
         (values.Whole(1), [1, 10**30], [0, -1, 1.5], "a whole number >= 1"),
-        (values.Whole(1, 9000, "pixels"), [1, 9e3], [0, 9001], "of pixels from 1 to 9,000"),
+        (values.Whole(1, 9000, "pixels"), [1, 9e3], [9001], "number of pixels from 1 to 9000"),
+        (values.Whole(1, 9000, "pixels"), [1], [0, 1.5], "a whole number of pixels >= 1"),
+        (values.LENGTH, [1e9], [0.0, -1.0, math.inf], "a length above 0 m"),
+        (values.LENGTH, [1e-9], [2e9, 1e308], "a length within +-1000000000 m"),
         (values.Angle(-90.0, 90.0), [math.pi / 2, 0], [2.0], "an angle within +-90 degrees"),
     ],
 )
@@ -104,7 +107,9 @@ def test_vectors_have_their_count_and_are_told_whole():
     for bad in ([1, 2], [1, 2, 3, 4], "123", {1: 1, 2: 2, 3: 3}, [1, 2, math.nan], None, 3, DEEP):
         with pytest.raises(InputError, match="expected three finite numbers, found"):
             values.vector("a", "b", bad, 3)
-    with pytest.raises(InputError, match=r"two numbers within \+-9 m, low before high, found \[1"):
+    with pytest.raises(
+        InputError, match=r"two finite numbers within \+-9 m, low before high, found \[1"
+    ):
         values.pair("a", "b", [1, 10], values.Number(-9.0, 9.0, unit="m"))
 
 

@@ -6,8 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ...errors import InputError
 from ...scene.sensors import SensorModel
+from ...text.values import A_NAME, Angle, Whole
+
+PIXELS = Whole(1, 1_000_000, "pixels")
+FOV = Angle(0.001, 180.0, below=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,12 +24,12 @@ class Camera(SensorModel):
     width, height : int
         Active resolution [px].
     hfov : float
-        Horizontal field of view [rad], below 180 degrees.
+        Horizontal field of view [rad], below 180 degrees; as a file's degrees give it back.
 
     Raises
     ------
     InputError
-        When the resolution or the field of view is not possible.
+        When the name, the resolution or the field of view is not possible.
     """
 
     kind: ClassVar[str] = "camera"
@@ -38,12 +41,9 @@ class Camera(SensorModel):
     hfov: float
 
     def __post_init__(self) -> None:
-        for key in ("width", "height"):
-            if not (isinstance(getattr(self, key), int) and getattr(self, key) > 0):
-                raise InputError(self.name, key, "a whole number of pixels", getattr(self, key))
-        if not 0.0 < self.hfov < math.pi:
-            found = f"{math.degrees(self.hfov):g}"
-            raise InputError(self.name, "hfov", "above 0 and below 180 degrees", found)
+        name = A_NAME.checked("camera", "name", self.name)
+        for key, rule in (("width", PIXELS), ("height", PIXELS), ("hfov", FOV)):
+            object.__setattr__(self, key, rule.checked(name, key, getattr(self, key)))
 
     @property
     def focal_px(self) -> float:

@@ -10,13 +10,20 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import InputError
+from ...errors import InputError, shown
 from ...scene.frozen import frozen
 from ...scene.sensors import SensorModel
+from ...text.degrees import all_as_in_file
+from ...text.values import A_NAME, Angle, Number, Whole, numbers, pair
 
 Floats = NDArray[np.float64]
 
 FULL_CIRCLE = (-math.pi, math.pi)
+STEPS = Whole(1, 360_000, "azimuths")
+RANGE = Number(0.0, above=True, cap=1e5, unit="m", noun="length")
+FOV = Angle(-720.0, 720.0)
+MAX_BEAMS = 10_000_000
+"""A frame of more (sixty times that of the largest in the catalogue) is a slip of the pen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +48,14 @@ class Lidar(SensorModel):
     horizontal_fov : (low, high) float
         Azimuths the sensor scans, before the offsets [rad].
 
+    Angles are kept as a file's degrees give them back: one that is the `math.radians` of no float
+    moves by a unit in its last place.
+
     Raises
     ------
     InputError
-        When there are no beams, or an angle or the range is not a finite number in its range.
+        When there are no beams or more than ten million, or a name, an angle, a count or the range
+        is impossible.
     """
 
     kind: ClassVar[str] = "lidar"
@@ -58,25 +69,31 @@ class Lidar(SensorModel):
     horizontal_fov: tuple[float, float] = FULL_CIRCLE
 
     def __post_init__(self) -> None:
-        elevations = _angles(self.name, "elevations", self.elevations, math.pi / 2)
+        name = A_NAME.checked("lidar", "name", self.name)
+        elevations = _angles(name, "elevations", self.elevations, 90.0)
         offsets = (
             np.zeros_like(elevations)
             if self.azimuth_offsets is None
-            else _angles(self.name, "azimuth_offsets", self.azimuth_offsets, math.pi)
+            else _angles(name, "azimuth_offsets", self.azimuth_offsets, 180.0)
         )
         if offsets.shape != elevations.shape:
             raise InputError(
-                self.name, "azimuth_offsets", f"{len(elevations)}, one a channel", len(offsets)
+                name, "azimuth_offsets", f"{len(elevations)}, one a channel", len(offsets)
             )
-        if int(self.azimuth_count) != self.azimuth_count or self.azimuth_count < 1:
-            raise InputError(self.name, "azimuth_count", "a whole number >= 1", self.azimuth_count)
-        if not (math.isfinite(self.max_range) and self.max_range > 0):
-            raise InputError(self.name, "max_range", "a positive number of metres", self.max_range)
-        object.__setattr__(self, "elevations", frozen(elevations))
-        object.__setattr__(self, "azimuth_offsets", frozen(offsets))
-        object.__setattr__(self, "horizontal_fov", tuple(self.horizontal_fov))
+        fov = pair(name, "horizontal_fov", self.horizontal_fov, FOV, same=True)
+        checked = {
+            "elevations": frozen(elevations),
+            "azimuth_offsets": frozen(offsets),
+            "azimuth_count": STEPS.checked(name, "azimuth_count", self.azimuth_count),
+            "max_range": RANGE.checked(name, "max_range", self.max_range),
+            "horizontal_fov": fov,
+        }
+        for key, value in checked.items():
+            object.__setattr__(self, key, value)
         if not len(self.azimuth_steps):
-            raise InputError(self.name, "horizontal_fov", "room for a beam", self.horizontal_fov)
+            raise InputError(name, "horizontal_fov", "room for a beam", self.horizontal_fov)
+        if self.beam_count > MAX_BEAMS:
+            raise InputError(name, "elevations", f"at most {MAX_BEAMS} beams", self.beam_count)
 
     @classmethod
     def from_directions(cls, name: str, directions: ArrayLike, max_range: float) -> Lidar:
@@ -146,13 +163,16 @@ class Lidar(SensorModel):
         return frozen(np.concatenate(rows))
 
 
-def _angles(name: str, key: str, values: ArrayLike, limit: float) -> Floats:
-    """Return (C,) angles in [-limit, limit], or raise `InputError`."""
-    angles = np.atleast_1d(np.array(values, dtype=float))
+def _angles(name: str, key: str, values: ArrayLike, limit_deg: float) -> Floats:
+    """Return (C,) angles within +-limit_deg as a file holds them [rad], or raise `InputError`."""
+    angles = numbers(values)
+    if angles is None:
+        raise InputError(name, key, "angles", shown(values))
+    angles = np.atleast_1d(angles)
     if angles.ndim != 1 or not len(angles):
         raise InputError(name, key, "at least one angle in a row", f"shape {angles.shape}")
-    bad = ~(np.abs(angles) <= limit)  # written so that NaN is bad
+    bad = ~(np.abs(angles) <= math.radians(limit_deg))  # written so that NaN is bad
     if bad.any():
         found = f"{math.degrees(angles[bad][0]):g} (channel {int(np.flatnonzero(bad)[0])})"
-        raise InputError(name, key, f"angles within +-{math.degrees(limit):g} degrees", found)
-    return angles
+        raise InputError(name, key, f"angles within +-{limit_deg:g} degrees", found)
+    return all_as_in_file(angles)

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import InputError
-from ..fields import number
+from ...errors import InputError, shown
+from ...text.degrees import degrees_in_file
+from ...text.values import A_PATH, Number, listed, vector
 from .angles import read_angles
-from .model import Lidar
+from .model import RANGE, STEPS, Lidar
 
 KEYS = frozenset(
     {
@@ -26,19 +27,20 @@ KEYS = frozenset(
     }
 )
 
+DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
+STEP_DEG = Number(0.001, 360.0, unit="degrees", noun="angle")
+
 
 def read(name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
     """Build a LiDAR from its table; a file of `angles` is relative to `folder`."""
     elevations, offsets = _channels(name, table, folder)
     fov = table.get("horizontal_fov_deg", (-180.0, 180.0))
-    if not (isinstance(fov, (list, tuple)) and len(fov) == 2):
-        raise InputError(name, "horizontal_fov_deg", "two angles", repr(fov))
-    low, high = (math.radians(number(name, "horizontal_fov_deg", v)) for v in fov)
+    low, high = map(math.radians, vector(name, "horizontal_fov_deg", fov, 2, DEGREES))
     return Lidar(
         name,
         elevations,
         _azimuth_count(name, table),
-        number(name, "max_range_m", table.get("max_range_m")),
+        RANGE.checked(name, "max_range_m", table.get("max_range_m")),
         offsets,  # type: ignore[arg-type]
         (low, high),
     )
@@ -49,11 +51,11 @@ def write(model: Lidar) -> dict[str, Any]:
     table: dict[str, Any] = {
         "azimuth_count": model.azimuth_count,
         "max_range_m": model.max_range,
-        "horizontal_fov_deg": [round(math.degrees(a), 9) for a in model.horizontal_fov],
-        "elevations_deg": [round(math.degrees(a), 9) for a in model.elevations],
+        "horizontal_fov_deg": [degrees_in_file(a) for a in model.horizontal_fov],
+        "elevations_deg": [degrees_in_file(a) for a in model.elevations.tolist()],
     }
-    if model.azimuth_offsets.any():
-        table["azimuth_offsets_deg"] = [round(math.degrees(a), 9) for a in model.azimuth_offsets]
+    if any(offsets := model.azimuth_offsets.tolist()):
+        table["azimuth_offsets_deg"] = [degrees_in_file(a) for a in offsets]
     return table
 
 
@@ -72,9 +74,7 @@ def _channels(
 def _channels_of_file(
     name: str, table: Mapping[str, Any], folder: Path
 ) -> tuple[np.ndarray, np.ndarray]:
-    file = table["angles"]
-    if not isinstance(file, str) or not file:
-        raise InputError(name, "angles", "the name of a file", repr(file))
+    file = A_PATH.checked(name, "angles", table["angles"])
     for key in ("elevations_deg", "azimuth_offsets_deg"):
         if key in table:
             raise InputError(name, "angles", f"either a file of angles or {key}", "both")
@@ -92,15 +92,13 @@ def _channels_of_file(
 def _azimuth_count(name: str, table: Mapping[str, Any]) -> int:
     """Steps in a circle: given, or 360 degrees over the nominal step, rounded."""
     if "azimuth_count" in table:
-        return int(number(name, "azimuth_count", table["azimuth_count"]))
-    step = number(name, "azimuth_step_deg", table.get("azimuth_step_deg"))
-    if not 0.0 < step <= 360.0:
-        raise InputError(name, "azimuth_step_deg", "above 0 and up to 360 degrees", step)
+        return STEPS.checked(name, "azimuth_count", table["azimuth_count"])
+    step = STEP_DEG.checked(name, "azimuth_step_deg", table.get("azimuth_step_deg"))
     return round(360.0 / step)
 
 
 def _radians(name: str, table: Mapping[str, Any], key: str) -> np.ndarray:
-    values = table.get(key)
-    if not isinstance(values, (list, tuple)) or not values:
-        raise InputError(name, key, "a list of angles", repr(values))
-    return np.array([math.radians(number(name, key, v)) for v in values])
+    values = listed(table.get(key))
+    if not values:
+        raise InputError(name, key, "a list of angles", shown(table.get(key)))
+    return np.array([math.radians(DEGREES.checked(name, key, v)) for v in values])

@@ -1,0 +1,80 @@
+"""Ctrl-C, and being told to end: the first time wind down, the second time go."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+FATAL = 128
+"""Exit status of a process that a signal ended, less the signal's number."""
+NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+
+
+class Interrupted(KeyboardInterrupt):
+    """The work ends now, because of a signal; `note` says what became of it."""
+
+    def __init__(self, signum: int = signal.SIGINT, note: str = "") -> None:
+        super().__init__()
+        self.signum, self.note = signum, note
+
+
+@dataclass
+class Received:
+    """The signal that asked for an end; None if there was none."""
+
+    signum: int | None = None
+
+    def status(self, otherwise: int) -> int:
+        """Return the exit status that tells of the signal."""
+        return otherwise if self.signum is None else FATAL + self.signum
+
+
+@contextmanager
+def stop_at_first(stop: Callable[[], None]) -> Iterator[Received]:
+    """Call `stop` at the first Ctrl-C, SIGTERM or SIGHUP; raise `Interrupted` at the second."""
+    received = Received()
+
+    def handler(signum: int, _frame: object) -> None:
+        if received.signum is not None:
+            raise Interrupted(signum)
+        received.signum = signum
+        stop()
+
+    before = {}
+    try:
+        for number in _handled():
+            before[number] = signal.signal(number, handler)
+    except ValueError:  # not the main thread: someone else handles signals
+        yield received
+        return
+    try:
+        yield received
+    finally:
+        for number, old in before.items():
+            signal.signal(number, _default(number) if old is None else old)
+
+
+def _handled() -> list[signal.Signals]:
+    numbers = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
+    ignored = {n for n in numbers if signal.getsignal(n) is signal.SIG_IGN}
+    return [n for n in numbers if n == signal.SIGINT or n not in ignored]  # nohup means it
+
+
+def _default(number: signal.Signals) -> Any:
+    """A handler that is not Python's own (inside Blender) cannot be named, and is not restored."""
+    return signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
+
+
+def leave(status: int) -> NoReturn:
+    """Exit; at once when a signal has ended the work, whose threads may be busy for a while."""
+    if status <= FATAL:
+        sys.exit(status)
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(AttributeError, OSError, ValueError):  # it is closed, or nobody reads it
+            stream.flush()
+    os._exit(status)

@@ -1,0 +1,35 @@
+"""An outcome in a few lines, for people."""
+
+from __future__ import annotations
+
+from ..study import Outcome
+
+
+def summary(outcome: Outcome) -> str:
+    """Return an outcome in a few lines, for people."""
+    if outcome.kind == "score":
+        lines = [f"entropy   {_with_error(outcome.after.entropy, outcome.after.stderr)}"]
+        lines.append(f"coverage  {outcome.after.coverage:.1%}")
+    else:
+        before, after = outcome.before, outcome.after
+        lines = [
+            f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats",
+            f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
+        ]
+    scores = outcome.after.per_sensor
+    for sensor in outcome.study.rig:
+        x, y, z = sensor.pose.position
+        roll, pitch, yaw = sensor.pose.rotation_deg
+        own = scores[sensor.name]
+        stopped = f", {own.stopped / own.beams:.1%} of its beams stopped" if own.stopped else ""
+        lines.append(
+            f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
+            f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"
+        )
+    if outcome.stopped:
+        lines.append("stopped early: this is the best placement found so far")
+    return "\n".join(lines)
+
+
+def _with_error(entropy: float, stderr: float) -> str:
+    return f"{entropy:.4f} nats" if stderr == 0.0 else f"{entropy:.4f} +- {stderr:.4f} nats"

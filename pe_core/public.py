@@ -1,0 +1,81 @@
+"""The names of the engine that other programs use."""
+
+from . import catalog
+from .errors import InputError
+from .formats import Mesh, read_boxes, read_mesh, write_boxes, write_mesh
+from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
+from .metric import ApCurve
+from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
+from .scene import PerceptionSpace, Pose, Rig, Sensor, Vehicle
+from .scoring import Evaluator, GroundMap, PartScore, Score, SensorScore
+from .search import Schedule, SearchSpace, Step, optimize
+from .study import (
+    Job,
+    OptimizeJob,
+    Outcome,
+    Progress,
+    ScoreJob,
+    Search,
+    Study,
+    export_study,
+    load_study,
+    prepare_folder,
+    result_dict,
+    save_study,
+    study_from_dict,
+    study_to_dict,
+    write_outcome,
+)
+from .version import __version__
+
+__all__ = [
+    "ApCurve",
+    "BeamField",
+    "BoxReport",
+    "Boxes",
+    "Camera",
+    "Evaluator",
+    "Focus",
+    "GroundMap",
+    "InputError",
+    "Job",
+    "Lidar",
+    "Mesh",
+    "ObjectClass",
+    "OptimizeJob",
+    "Outcome",
+    "PartScore",
+    "PerceptionModel",
+    "PerceptionSpace",
+    "Pose",
+    "Prior",
+    "Progress",
+    "Rig",
+    "Schedule",
+    "Score",
+    "ScoreJob",
+    "Search",
+    "SearchSpace",
+    "Sensor",
+    "SensorScore",
+    "Step",
+    "Study",
+    "Vehicle",
+    "__version__",
+    "beam_field",
+    "catalog",
+    "export_study",
+    "load_study",
+    "measure",
+    "optimize",
+    "prepare_folder",
+    "read_boxes",
+    "read_mesh",
+    "result_dict",
+    "save_study",
+    "study_from_dict",
+    "study_to_dict",
+    "write_boxes",
+    "write_mesh",
+    "write_outcome",
+]

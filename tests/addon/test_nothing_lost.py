@@ -1,0 +1,147 @@
+"""``python -m blender_addon`` with signals, full disks and files of a user's own in the way."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+
+from blender_addon import commands
+from blender_addon.engine import pe
+from tests.addon import scenes
+from tests.addon.test_commands import FAST, ROOT, TIMEOUT_S, command, complaints, run, wait_for
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals and files")
+
+
+@pytest.fixture
+def blend(car, tmp_path) -> Path:
+    path = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {p.name: p.read_bytes() for p in folder.iterdir()}
+
+
+@pytest.mark.parametrize("name", ["optimized.blend", "review.png"])
+def test_a_users_own_file_is_refused_before_the_work(blend, tmp_path, name):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / name).write_text("mine")
+    answer = run("blender_addon", blend, "optimize", *FAST, "-o", out)
+    assert answer.returncode == 1
+    (line,) = complaints(answer)
+    assert line.startswith(f"pe: {out / name}: output: ") and "scoring" not in answer.stderr
+    assert contents(out) == {name: b"mine"}
+
+
+def test_the_same_folder_again_is_one_set(blend, tmp_path):
+    out = tmp_path / "out"
+    for seed in ("3", "4"):
+        answer = run("blender_addon", blend, "optimize", *FAST[:-1], seed, "-o", out)
+        assert answer.returncode == 0, answer.stderr
+    named = json.loads((out / "result.json").read_text())["run"]["files"]
+    expected = ("history.csv", "optimized.blend", "review.png", "study.toml", "vehicle.npz")
+    assert sorted(named) == list(expected)
+    assert pe.study.files_of_other_runs(out) == []
+
+
+def test_being_told_to_end_keeps_the_best(blend, tmp_path):
+    out, log = tmp_path / "out", tmp_path / "log"
+    arguments = (*FAST[:4], "--candidates", 100_000, "-o", out, "--no-render")
+    with log.open("w") as stderr:
+        process = subprocess.Popen(
+            command("blender_addon", blend, "optimize", *arguments),
+            cwd=ROOT,
+            stdout=subprocess.DEVNULL,
+            stderr=stderr,
+        )
+        try:
+            wait_for("optimizing", log)
+            process.send_signal(signal.SIGTERM)
+            assert process.wait(TIMEOUT_S) == 143, log.read_text()
+        finally:
+            process.kill()
+    assert json.loads((out / "result.json").read_text())["stopped"]
+    assert pe.study.files_of_other_runs(out) == []
+    assert (out / "optimized.blend").exists()
+
+
+def test_a_full_stderr_ends_nothing(blend, tmp_path):
+    out = tmp_path / "out"
+    arguments = command("blender_addon", blend, "score", *FAST[:2], "-o", out, "--no-render")
+    with open("/dev/full", "w") as full:
+        answer = subprocess.run(
+            arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=full, timeout=TIMEOUT_S
+        )
+    assert answer.returncode == 0 and b"entropy" in answer.stdout
+    assert (out / "result.json").exists()
+
+
+def test_a_scene_that_does_not_fit_on_the_disk_leaves_the_old_one(blend, tmp_path):
+    """What Blender saves may have no more bytes than the engine's files; nothing else fails."""
+    import resource
+
+    out, elsewhere = tmp_path / "out", tmp_path / "tmp"
+    elsewhere.mkdir()
+    optimize = ("blender_addon", blend, "optimize", *FAST, "-o", out, "--no-render")
+    assert run(*optimize).returncode == 0
+    before = (out / "optimized.blend").read_bytes()
+    assert len(before) > 50_000 > len((out / "result.json").read_bytes())
+    answer = subprocess.run(
+        command(*optimize),
+        cwd=ROOT,
+        env={**os.environ, "TMPDIR": str(elsewhere), "OCIO": ""},
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000)),
+    )
+    assert answer.returncode == 1, answer.stderr
+    told = complaints(answer)
+    assert told and told[0].startswith(f"pe: {out / 'optimized.blend'}: file: expected ")
+    assert told[-2:] == [
+        f"pe: all else is in {out}",
+        f"pe: {out / 'optimized.blend'}: not of this run",
+    ]
+    assert (out / "optimized.blend").read_bytes() == before
+    assert [p.name for p in out.glob(".*")] == [".perception-entropy.json"]
+
+
+@pytest.mark.parametrize("name", ["cut.blend", "cut.png", "empty.png"])
+def test_half_a_file_is_told(addon, tmp_path, name):
+    path = tmp_path / name
+    path.write_bytes(
+        {"cut.blend": b"\x28\xb5\x2f\xfdhalf", "cut.png": b"\x89PNGhalf"}.get(name, b"")
+    )
+    with pytest.raises(pe.InputError, match="expected room to write to"):
+        commands.complain_unless_whole(path)
+
+
+def test_the_export_of_the_panel_replaces_the_chosen_file_and_no_other(car, tmp_path):
+    path, mesh = tmp_path / "car.toml", tmp_path / "car.npz"
+    path.write_text("chosen in the dialog")
+    mesh.write_text("mine")
+    with pytest.raises(RuntimeError, match=r"car\.npz: output: expected no file"):
+        bpy.ops.pe.export_study(filepath=str(path))
+    assert (path.read_text(), mesh.read_text()) == ("chosen in the dialog", "mine")
+    mesh.unlink()
+    assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
+    assert pe.load_study(path).rig["roof"].pose == scenes.study().rig["roof"].pose
+
+
+def test_the_verb_export_replaces_what_it_wrote_and_no_other(blend, tmp_path):
+    out = tmp_path / "out"
+    for _ in range(2):
+        assert run("blender_addon", blend, "export", "-o", out).returncode == 0
+    (out / "study.toml").write_text("mine now")
+    answer = run("blender_addon", blend, "export", "-o", out)
+    assert answer.returncode == 1
+    assert complaints(answer)[0].startswith(f"pe: {out / 'study.toml'}: output: ")
+    assert (out / "study.toml").read_text() == "mine now"

@@ -1,0 +1,92 @@
+"""The command in a process of its own, watched line by line: signals at known places."""
+
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pe_core as pe
+
+ROOT = Path(pe.__file__).parent.parent
+GUARD_S = 120
+TELL_ALL = "from pe_core.app import work; work.REPORT_EVERY_S = {True: 0.0, False: 0.0}\n"
+"""Every step of a job is told, so that a test knows where it is."""
+HANG = """
+from pe_core.scoring.evaluator import Evaluator
+import threading
+plain, calls = Evaluator.score, []
+def score(self, rig, **options):
+    calls.append(rig)
+    if len(calls) == {nth}:
+        threading.Event().wait()
+    return plain(self, rig, **options)
+Evaluator.score = score
+"""
+"""The n-th full score never ends."""
+RUN = "from pe_core.__main__ import main; main()"
+
+
+class Command:
+    """A running ``pe``; its stderr is read as it comes."""
+
+    def __init__(self, *arguments, hang_in_score=0, **options):
+        script = TELL_ALL + HANG.format(nth=hang_in_score) + RUN
+        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", script, *map(str, arguments)], cwd=ROOT, text=True, **options
+        )
+        self.lines: list[str] = []
+        self._more = threading.Condition()
+        self._ended = False
+        if self.process.stderr is not None:
+            threading.Thread(target=self._read, daemon=True).start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+
+    def _read(self):
+        for line in self.process.stderr:
+            with self._more:
+                self.lines.append(line)
+                self._more.notify_all()
+        with self._more:
+            self._ended = True
+            self._more.notify_all()
+
+    def wait_for(self, is_it):
+        """Wait for a line of stderr, and return it."""
+        with self._more:
+            found = self._more.wait_for(
+                lambda: next(filter(is_it, self.lines), None) or self._ended, GUARD_S
+            )
+        assert isinstance(found, str), "".join(self.lines)
+        return found
+
+    def wait_for_stage(self, stage):
+        """Wait until a stage has begun."""
+        return self.wait_for(lambda line: line.startswith(stage))
+
+    def wait_for_better(self):
+        """Wait until the search has found something better than the start."""
+        start = self.wait_for_stage("optimizing").split()[-1]
+        return self.wait_for(lambda line: "optimizing" in line and line.split()[-1] != start)
+
+    def send(self, signum):
+        """Send a signal."""
+        self.process.send_signal(signum)
+
+    def end(self):
+        """Wait for the end; return the exit status."""
+        status = self.process.wait(GUARD_S)
+        with self._more:
+            self._more.wait_for(lambda: self._ended or self.process.stderr is None, GUARD_S)
+        return status
+
+    @property
+    def complaints(self):
+        """What it said beside its progress."""
+        return [line for line in self.lines if line.startswith("pe: ")]

@@ -1,0 +1,364 @@
+"""Every key of a study file given every hostile value: taken, or refused in one short line."""
+
+import json
+import math
+import warnings
+from copy import deepcopy
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.study.study_file import study_from_dict
+from pe_core.text.toml_writer import dumps
+from tests.engine import shapes
+
+LONGEST_LINE = 300
+
+
+def nested(depth, of=list):
+    value = 1
+    for _ in range(depth):
+        value = [value] if of is list else {"a": value}
+    return value
+
+
+VALUES = {
+    "nan": math.nan,
+    "inf": math.inf,
+    "-inf": -math.inf,
+    "1e308": 1e308,
+    "-1e308": -1e308,
+    "5e-324": 5e-324,
+    "0": 0,
+    "-1": -1,
+    "0.5": 0.5,
+    "180.7": 180.7,
+    "10**18": 10**18,
+    "10**400": 10**400,
+    "5000 digits": 10**5000,
+    "true": True,
+    "empty": "",
+    "blank": "  ",
+    "long": "x" * 10**6,
+    "turned": "a\u202eb",
+    "bell": "a\x07\x1b[31mb",
+    "line": "a\nb",
+    "nul": "a\0b",
+    "surrogate": "a\ud800b",
+    "[]": [],
+    "{}": {},
+    "[[]]": [[]],
+    "lists": nested(1000),
+    "tables": nested(1000, dict),
+    "many": [0.5] * 10**4,
+    "three nan": [math.nan] * 3,
+    "two 1e308": [-1e308, 1e308],
+    "two inf": [-math.inf, math.inf],
+    "two 10**400": [0, 10**400],
+    "two 5000 digits": [0, 10**5000],
+    "two texts": ["a", "\u202e"],
+    "three 1e308": [1e308] * 3,
+    "three 5000 digits": [10**5000] * 3,
+    "null": None,
+}
+NOT_WRITTEN = {"surrogate", "null", "lists", "tables", *(n for n in VALUES if "5000" in n)}
+"""Of these Python writes no TOML; the texts below hold their like."""
+
+STUDY = {
+    "samples": 2048,
+    "space": {"x": [-8, 8], "y": [-4, 4], "z": [0, 4], "interval": 0.5},
+    "prior": {
+        "model": "road",
+        "classes": ["car", "tram"],
+        "focus": [{"factor": 2.0, "x": [0, 5], "y": [-1, 1], "classes": ["car"]}],
+        "class": [
+            {
+                "name": "tram",
+                "size": [15, 2.5, 3.6],
+                "height_spread": 0.3,
+                "decay_x": 50,
+                "laplace_y": 5,
+                "gauss_y": 2,
+                "laplace_share": 0.5,
+                "lanes": [-3, 3],
+                "share": 0.5,
+            }
+        ],
+    },
+    "ap": {"lidar": {"a": 0.152, "b": 0.659}, "camera": {"a": 0.055, "b": 0.155}},
+    "fusion": {"blind": "floor"},
+    "vehicle": {"mesh": "car.npz", "glass": ["cabin"], "clearance": 0.02},
+    "sensor": [
+        {
+            "name": "roof",
+            "model": {
+                "kind": "lidar",
+                "name": "mine",
+                "elevations_deg": [-15.0, -5.0, 0.0],
+                "azimuth_count": 90,
+                "max_range_m": 80,
+                "azimuth_offsets_deg": [0, 1, 0],
+                "horizontal_fov_deg": [-170, 170],
+            },
+            "position": [0.0, 0.0, 2.0],
+            "rotation": [0.0, 0.0, 0.0],
+            "fusion": "top",
+            "free": ["x", "yaw"],
+            "bounds": {"x": [-1, 1], "y": [-1, 1], "z": [1, 3], "roll": [-9, 9], "yaw": [-9, 9]},
+        },
+        {
+            "name": "nose",
+            "model": {
+                "kind": "lidar",
+                "angles": "angles.csv",
+                "azimuth_step_deg": 4.0,
+                "max_range_m": 9,
+            },
+            "position": [2.0, 0.0, 1.0],
+        },
+        {
+            "name": "eye",
+            "model": {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60},
+            "position": [1.0, 0.0, 1.6],
+        },
+        {"name": "known", "model": "Pandar40", "position": [0.0, 0.0, 1.9]},
+    ],
+    "optimize": {
+        "free": ["x"],
+        "seed": 1,
+        "samples": 1024,
+        "candidates": 3,
+        "reach_m": 1.0,
+        "reach_deg": 30.0,
+        "floor_m": 0.01,
+        "floor_deg": 0.3,
+        "decay": 0.5,
+    },
+}
+SPACE = shapes.small_space()
+BOXES = {"boxes": "boxes.csv", "origin": [0.0, 0.0, 0.0], "focus": []}
+
+
+def paths(value, path=()):
+    """The way to everything in a study: to its tables, its lists, their elements."""
+    if path:
+        yield path
+    if isinstance(value, dict):
+        for key in value:
+            yield from paths(value[key], (*path, key))
+    elif isinstance(value, list):
+        for i in range(
+            len(value) if path == ("sensor",) else min(1, len(value))
+        ):  # of numbers, the first
+            yield from paths(value[i], (*path, i))
+
+
+def changed(path, value, study=STUDY):
+    study = deepcopy(study)
+    table = study
+    for key in path[:-1]:
+        table = table[key]
+    table[path[-1]] = value
+    return study
+
+
+def key_of(path):
+    """The last name on the way."""
+    return [key for key in path if isinstance(key, str)][-1]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("hostile")
+    car = shapes.box_car()
+    pe.write_mesh(folder / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    (folder / "angles.csv").write_text("elevation_deg\n-1\n2\n", "utf-8")
+    (folder / "boxes.csv").write_text(
+        "class,x,y,z,length,width,height,yaw\ncar,3,1,0.7,4,2,1.4,30\n", "utf-8"
+    )
+    return folder
+
+
+def refused(read, *words):
+    """The line a study is refused with, checked; None if it is taken."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            read()
+        except pe.InputError as error:
+            line = str(error)
+            assert len(line) < LONGEST_LINE and line.isprintable(), line
+            assert any(word in line for word in words), (words, line)
+            return line
+    return None
+
+
+def names_of(path):
+    """What a message about a value may call it: its key, or the table's it stands in."""
+    names = [key.removesuffix("_deg") for key in path if isinstance(key, str)]
+    more = {"position": ["bounds of"], "rotation": ["bounds of"], "elevations": ["a channel"]}
+    return [*names[-2:], *more.get(names[-1], [])]
+
+
+ALL = [*paths(STUDY), *((*("prior",), *path) for path in paths(BOXES))]
+
+
+@pytest.mark.parametrize("path", ALL, ids=lambda p: ".".join(map(str, p)))
+def test_every_key_takes_a_hostile_value_or_refuses_it_in_one_line(folder, path):
+    base = STUDY | {"prior": BOXES} if path[:2] in BOX_PATHS else STUDY
+    if path[0] != "vehicle":
+        base = {key: value for key, value in base.items() if key != "vehicle"}
+    for value in VALUES.values():
+        data = changed(path, value, base)
+        refused(lambda data=data: study_from_dict(data, "study.toml", folder), *names_of(path))
+
+
+BOX_PATHS = {("prior", "boxes"), ("prior", "origin")}
+
+
+@pytest.mark.parametrize("name", [n for n in VALUES if n not in NOT_WRITTEN])
+def test_a_file_is_refused_in_the_same_way(folder, tmp_path, name):
+    value = VALUES[name]
+    for path in (("samples",), ("space", "interval"), ("sensor", 0, "name"), ("optimize", "seed")):
+        file = folder / "hostile.toml"
+        file.write_text(dumps(changed(path, value)), "utf-8")
+        refused(lambda file=file: pe.load_study(file), key_of(path), "TOML")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "samples = " + "9" * 5000,
+        "samples = " + "[" * 5000 + "]" * 5000,
+        "a" + ".a" * 1500 + " = 1",
+        "samples = " + "{a=" * 3000 + "1" + "}" * 3000,
+        'samples = "\\ud800"',
+        "samples = 1979-13-45",
+        "samples = \x00",
+        "\x1b[31m = \u202e",
+    ],
+    ids=["digits", "lists", "dotted", "tables", "surrogate", "date", "nul", "terminal"],
+)
+def test_a_file_that_python_cannot_hold_is_one_line(tmp_path, text):
+    file = tmp_path / "study.toml"
+    file.write_text(text, "utf-8")
+    assert refused(
+        lambda: pe.load_study(file), "TOML", "parts", "sensor", "samples", "a.a", "one of"
+    )
+
+
+def test_a_study_of_nothing_hostile_is_taken(folder):
+    for data in (STUDY, STUDY | {"prior": BOXES}):
+        study = study_from_dict(data, "study.toml", folder)
+        assert len(study.rig) == 4 and study.vehicle is not None
+
+
+EXTREMES = [
+    ("ap", "lidar", "a", 1e-12),
+    ("ap", "lidar", "a", 1e3),
+    ("ap", "lidar", "b", -1e3),
+    ("ap", "camera", "b", 1e3),
+    ("prior", "focus", 0, "factor", 1e9),
+    ("prior", "focus", 0, "factor", 5e-324),
+    ("prior", "focus", 0, "x", [-math.inf, math.inf]),
+    ("prior", "class", 0, "size", [1e9, 1e9, 1e9]),
+    ("prior", "class", 0, "size", [5e-324, 5e-324, 5e-324]),
+    ("prior", "class", 0, "height_spread", 5e-324),
+    ("prior", "class", 0, "height_spread", 1e9),
+    ("prior", "class", 0, "decay_x", 5e-324),
+    ("prior", "class", 0, "laplace_y", 5e-324),
+    ("prior", "class", 0, "gauss_y", 5e-324),
+    ("prior", "class", 0, "gauss_y", 1e9),
+    ("prior", "class", 0, "share", 1e9),
+    ("prior", "class", 0, "share", 0.0),
+    ("prior", "class", 0, "lanes", [1e9]),
+    ("sensor", 0, "position", [1e4, -1e4, 1e4]),
+    ("sensor", 0, "position", [0.0, 0.0, 0.0]),
+    ("sensor", 0, "rotation", [3600.0, -3600.0, 3600.0]),
+    ("sensor", 0, "model", "max_range_m", 5e-324),
+    ("sensor", 0, "model", "max_range_m", 1e5),
+    ("sensor", 0, "model", "elevations_deg", [-90.0, 90.0, 5e-324]),
+    ("sensor", 0, "model", "azimuth_count", 1),
+    ("sensor", 2, "model", "hfov_deg", 0.001),
+    ("sensor", 2, "model", "hfov_deg", 179.999),
+    ("sensor", 2, "model", "width", 1_000_000),
+    ("vehicle", "clearance", 0.999),
+    ("vehicle", "clearance", 5e-324),
+    ("space", {"x": [999_992, 1_000_000], "y": [-4, 4], "z": [0, 4], "interval": 0.5}),
+    ("space", {"x": [-0.002, 0.002], "y": [-0.002, 0.002], "z": [2, 2.004], "interval": 0.001}),
+]
+
+
+@pytest.mark.parametrize("samples", [0, 1024])
+@pytest.mark.parametrize("change", EXTREMES, ids=lambda c: "-".join(map(str, c)))
+def test_the_extremes_that_are_taken_score_to_finite_numbers(folder, change, samples):
+    data = changed(change[:-1], change[-1]) | {"samples": samples}
+    if change[0] in ("sensor", "space"):
+        for sensor in data["sensor"]:
+            sensor.pop("bounds", None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        study = study_from_dict(data, "study.toml", folder)
+        try:
+            (*_, _) = job = pe.ScoreJob(study, 1)
+        except pe.InputError as error:
+            assert "weight" in str(error) or "no box" in str(error)
+            return
+    text = json.dumps(pe.result_dict(job.outcome), allow_nan=False)
+    assert "NaN" not in text and math.isfinite(job.outcome.after.entropy)
+
+
+def test_too_much_focus_is_refused_where_it_meets():
+    focus = [pe.Focus(1e9) for _ in range(40)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(pe.InputError, match="some weight left in the space"):
+            pe.Prior.road(focus).densities(shapes.small_space())
+
+
+NUMBERS = [v for v in VALUES.values() if isinstance(v, (int, float))]
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda v: pe.Pose((v, 0, 0)),
+        lambda v: pe.Pose((0, 0, 0), (v, 0, 0)),
+        lambda v: pe.PerceptionSpace(interval=v),
+        lambda v: pe.PerceptionSpace(x=(0, v)),
+        lambda v: pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), clearance=v),
+        lambda v: pe.Vehicle([[[v] * 3] * 3]),
+        lambda v: pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), [v] * 12),
+        lambda v: pe.Boxes(["car"], *([v] for _ in range(7))),
+        lambda v: pe.Boxes.of([("car", v, 0, 0, 1, 1, 1, 0)]),
+        lambda v: pe.Focus(v),
+        lambda v: pe.Focus(1.0, (0, v)),
+        lambda v: pe.ApCurve(v, 0.0),
+        lambda v: pe.ApCurve(0.1, v),
+        lambda v: pe.Schedule(candidates=v),
+        lambda v: pe.Schedule(decay=v),
+        lambda v: pe.Schedule(reach_m=v),
+        lambda v: pe.Schedule(floor_rad=v),
+        lambda v: pe.Search(seed=v),
+        lambda v: pe.Search(samples=v),
+        lambda v: pe.Search(limits={"a": {"x": (0, v)}}),
+        lambda v: pe.Lidar("a", [0.0], v, 10.0),
+        lambda v: pe.Lidar("a", [v], 10, 10.0),
+        lambda v: pe.Lidar("a", [0.0], 10, v),
+        lambda v: pe.Lidar("a", [0.0], 10, 10.0, [v]),
+        lambda v: pe.Lidar("a", [0.0], 10, 10.0, None, (0, v)),
+        lambda v: pe.Camera("a", v, 10, 1.0),
+        lambda v: pe.Camera("a", 10, 10, v),
+        lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), samples=v if v != 10**18 else 5),
+        lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), workers=v),
+        lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), samples=1024, shift=(v, 0.5, 0.5)),
+    ],
+)
+def test_what_is_made_in_python_is_checked_by_the_same_rules(make):
+    for value in NUMBERS:
+        refused(lambda v=value: make(v), "")
+        if isinstance(value, float):
+            refused(lambda v=value: make(np.float64(v)), "")
+    for value in (math.nan, np.float64("nan"), 10**400, 10**5000, True, np.True_, "1", "x" * 10**6):
+        assert refused(lambda v=value: make(v), ""), value

@@ -1,0 +1,255 @@
+"""Signals, streams and folders that go away: a search never ends without its result."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+
+import pytest
+
+import pe_core as pe
+from tests.engine import shapes
+from tests.engine.processes import GUARD_S, ROOT, Command
+
+if sys.platform == "win32":
+    pytest.skip("POSIX signals and files", allow_module_level=True)
+ENDLESS = ("--candidates", 100_000)
+SHORT = ("--candidates", 4)
+
+
+@pytest.fixture
+def study(tmp_path):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    search = pe.Search({"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=4))
+    path = tmp_path / "car.toml"
+    pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    return path
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "out"
+
+
+@pytest.fixture
+def elsewhere(tmp_path):
+    """The system's folder for temporary files, as the command sees it."""
+    folder = tmp_path / "tmp"
+    folder.mkdir()
+    return folder
+
+
+def environment(elsewhere):
+    return {**os.environ, "TMPDIR": str(elsewhere)}
+
+
+def result(folder):
+    """Return result.json, after checking that the set is whole and of one run."""
+    data = json.loads((folder / "result.json").read_text("utf-8"))
+    assert pe.study.files_of_other_runs(folder) == []
+    best = pe.load_study(folder / "study.toml")
+    assert pe.study.placements(best.rig) == data["placements"]["after"]
+    assert best.evaluator().score(best.rig).to_dict() == data["after"]
+    assert (folder / "history.csv").read_text().count("\n") == len(data["history"]) + 1
+    return data
+
+
+def entropy_of(path):
+    study = pe.load_study(path)
+    return study.evaluator().entropy(study.rig)
+
+
+SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
+
+
+@pytest.mark.parametrize("signum", SIGNALS)
+def test_the_first_signal_judges_and_keeps_the_best(study, out, signum):
+    with Command("optimize", study, "-o", out, *ENDLESS) as command:
+        command.wait_for_better()
+        command.send(signum)
+        assert command.end() == SIGNALS[signum]
+    data = result(out)
+    assert data["stopped"] and data["after"]["entropy"] <= data["before"]["entropy"]
+
+
+@pytest.mark.parametrize("signum", SIGNALS)
+def test_the_second_signal_ends_at_once_with_the_best_kept(study, out, signum):
+    with Command("optimize", study, "-o", out, *ENDLESS, hang_in_score=2) as command:
+        command.wait_for_better()
+        command.send(signal.SIGINT)
+        command.wait_for_stage("scoring the result")  # it would wait there for ever
+        command.send(signum)
+        assert command.end() == SIGNALS[signum]
+    assert entropy_of(out / "study.toml") < entropy_of(study)
+    assert not (out / "result.json").exists()
+    assert f"the best placement so far is in {out / 'study.toml'}" in "".join(command.complaints)
+
+
+@pytest.mark.parametrize("signum", SIGNALS)
+@pytest.mark.parametrize("verb", ["score", "optimize"])
+def test_a_signal_during_the_first_score_ends_it_with_nothing_written(study, out, verb, signum):
+    with Command(verb, study, "-o", out, hang_in_score=1) as command:
+        command.wait_for_stage("scoring")
+        command.send(signum)
+        assert command.end() == SIGNALS[signum]
+    expected = "pe: interrupted; no score was complete, so nothing was written\n"
+    assert command.complaints == [expected]
+    assert list(out.iterdir()) == []
+
+
+def test_nohup_means_it(study, out):
+    def ignore_hangups():
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+
+    with Command("optimize", study, "-o", out, *ENDLESS, preexec_fn=ignore_hangups) as command:
+        command.wait_for_better()
+        command.send(signal.SIGHUP)
+        command.send(signal.SIGTERM)
+        assert command.end() == 143  # of two signals that count, it would be the second
+
+
+@pytest.mark.parametrize("module", ["numpy", "pe_core.app.status"])
+def test_ctrl_c_while_loading_is_one_line(module):
+    """Python tells of each module that it has loaded; many more follow these."""
+    process = subprocess.Popen(
+        [sys.executable, "-X", "importtime", "-m", "pe_core", "sensors"],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    told = []
+    for line in process.stderr:
+        told.append(line)
+        if line.split("|")[-1].strip().startswith(module):
+            process.send_signal(signal.SIGINT)
+            break
+    _, rest = process.communicate(timeout=GUARD_S)
+    own = [line for line in (*told, *rest.splitlines()) if not line.startswith("import time:")]
+    assert (process.returncode, [line.strip() for line in own]) == (130, ["pe: interrupted"])
+
+
+def test_a_full_stderr_ends_nothing(study, out):
+    with (
+        open("/dev/full", "w") as full,
+        Command("optimize", study, "-o", out, *SHORT, stderr=full) as command,
+    ):
+        text = command.process.stdout.read()
+        assert command.end() == 0
+    assert text.startswith("entropy ")
+    assert not result(out)["stopped"]
+
+
+@pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)])
+def test_closed_streams_end_nothing(study, out, closed):
+    def close():
+        for number in closed:
+            os.close(number)
+
+    with Command("optimize", study, "-o", out, *SHORT, preexec_fn=close) as command:
+        assert command.end() == 0
+    assert not result(out)["stopped"]
+
+
+def test_a_reader_that_goes_away_ends_nothing(study, out):
+    """``pe optimize ... 2>&1 | head -1``"""
+    read, write = os.pipe()
+    with Command("optimize", study, "-o", out, *SHORT, stdout=write, stderr=write) as command:
+        os.close(write)
+        assert os.read(read, 1)
+        os.close(read)
+        assert command.end() == 0
+    assert not result(out)["stopped"]
+
+
+def test_an_answer_that_cannot_be_printed_is_kept(study, out, elsewhere):
+    with open("/dev/full", "w") as full:
+        options = {"stdout": full, "env": environment(elsewhere)}
+        with Command("optimize", study, "-o", out, *SHORT, "--json", **options) as command:
+            assert command.end() == 1
+    (line,) = command.complaints
+    (kept,) = elsewhere.rglob("output.txt")
+    assert "no space left on device" in line.lower() and str(kept) in line
+    assert json.loads(kept.read_text("utf-8")) == result(out)
+
+
+def test_a_folder_that_vanishes_is_made_again(study, out):
+    with Command("optimize", study, "-o", out, *ENDLESS) as command:
+        command.wait_for_better()
+        shutil.rmtree(out)
+        command.send(signal.SIGTERM)
+        assert command.end() == 143
+    assert result(out)["stopped"]
+
+
+def test_results_that_cannot_be_written_go_elsewhere(study, out, elsewhere):
+    with Command("optimize", study, "-o", out, *ENDLESS, env=environment(elsewhere)) as command:
+        command.wait_for_better()
+        out.rmdir()
+        out.write_text("in the way")
+        command.send(signal.SIGINT)
+        assert command.end() == 1
+    (folder,) = elsewhere.iterdir()
+    assert result(folder)["stopped"]
+    assert f"pe: the results are in {folder}\n" in command.complaints
+    assert out.read_text() == "in the way"
+
+
+def test_the_best_goes_elsewhere_at_the_second_signal_too(study, out, elsewhere):
+    options = {"env": environment(elsewhere), "hang_in_score": 2}
+    with Command("optimize", study, "-o", out, *ENDLESS, **options) as command:
+        command.wait_for_better()
+        out.rmdir()
+        out.write_text("in the way")
+        command.send(signal.SIGINT)
+        command.wait_for_stage("scoring the result")
+        command.send(signal.SIGINT)
+        assert command.end() == 130
+    (folder,) = elsewhere.iterdir()
+    assert entropy_of(folder / "study.toml") < entropy_of(study)
+    assert str(folder) in command.complaints[-2]
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_that_may_not_be_written_any_more(study, out, elsewhere):
+    with Command("optimize", study, "-o", out, *ENDLESS, env=environment(elsewhere)) as command:
+        command.wait_for_better()
+        out.chmod(0o500)
+        command.send(signal.SIGINT)
+        assert command.end() == 1
+    out.chmod(0o700)
+    (folder,) = elsewhere.iterdir()
+    assert result(folder)["stopped"]
+
+
+def test_a_full_disk_leaves_the_old_set_whole(study, out, elsewhere):
+    """A file may have no more bytes than a small study has: the result is larger."""
+    import resource
+
+    def quota():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+
+    with Command("optimize", study, "-o", out, *SHORT) as command:
+        assert command.end() == 0
+    before = {p.name: p.read_bytes() for p in out.iterdir()}
+    options = {"env": environment(elsewhere), "preexec_fn": quota}
+    with Command("optimize", study, "-o", out, *SHORT, "--seed", 9, **options) as command:
+        text = command.process.stdout.read()
+        assert command.end() == 1
+    assert {p.name: p.read_bytes() for p in out.iterdir()} == before
+    assert text.startswith("entropy ")  # what nobody could write is at least said
+    assert "file too large" in command.complaints[0].lower()
+    assert command.complaints[-1] == "pe: the results are not in any file\n"
+
+
+def test_a_file_that_appears_meanwhile_is_not_written_over(study, out, elsewhere):
+    with Command("optimize", study, "-o", out, *ENDLESS, env=environment(elsewhere)) as command:
+        command.wait_for_better()
+        (out / "history.csv").write_text("mine")
+        command.send(signal.SIGTERM)
+        assert command.end() == 1
+    assert (out / "history.csv").read_text() == "mine"
+    (folder,) = elsewhere.iterdir()
+    assert result(folder)["stopped"]

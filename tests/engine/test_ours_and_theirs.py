@@ -1,0 +1,293 @@
+"""Results are written over no file that we did not write, and the set of a run is one."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.app.cli import main
+from pe_core.study import FileSet, files_of_other_runs
+from tests.engine import shapes
+from tests.engine.processes import ROOT
+
+LISTING = ".perception-entropy.json"
+NAMES = ("study.toml", "vehicle.npz", "boxes.csv", "history.csv", "result.json")
+SHORT = ("--candidates", "2", "--samples", "2048")
+
+
+def a_study(boxes=True, x=-0.43):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (x, 0.0, 1.8))])
+    prior = pe.Prior.from_boxes(shapes_boxes()) if boxes else pe.Prior.road()
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), prior)
+
+
+def shapes_boxes():
+    columns = [np.array([v]) for v in (20.0, 3.0, 0.8, 4.0, 2.0, 1.6, 0.5)]
+    return pe.Boxes(np.array(["car"]), *columns)
+
+
+@pytest.fixture
+def study(tmp_path):
+    path = tmp_path / "input" / "car.toml"
+    path.parent.mkdir()
+    pe.export_study(a_study(), path)
+    return path
+
+
+@pytest.fixture
+def out(tmp_path):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    return folder
+
+
+@pytest.fixture
+def no_work(monkeypatch):
+    """Fail when anything is scored."""
+
+    def never(*_args, **_options):
+        raise AssertionError("work was begun")
+
+    monkeypatch.setattr(pe.Study, "evaluator", never)
+
+
+def optimize(study, out, *options):
+    return main(["optimize", str(study), "-o", str(out), *SHORT, *options])
+
+
+def contents(folder):
+    return {p.name: p.read_bytes() for p in folder.iterdir()}
+
+
+def one_line(capsys):
+    (line,) = capsys.readouterr().err.splitlines()
+    return line
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_users_own_file_is_refused_before_the_work(study, out, name, capsys, no_work):
+    (out / name).write_text("mine")
+    assert optimize(study, out) == 1
+    line = one_line(capsys)
+    assert line.startswith(f"pe: {out / name}: output: ") and "choose another folder" in line
+    assert contents(out) == {name: b"mine"}
+
+
+@pytest.mark.parametrize("make", [Path.mkdir, lambda p: p.symlink_to("nowhere")])
+def test_a_folder_or_a_link_of_that_name_is_refused(study, out, make, capsys, no_work):
+    make(out / "result.json")
+    assert optimize(study, out) == 1
+    assert "result.json: output: " in one_line(capsys)
+
+
+def test_files_that_a_run_does_not_write_are_nobodys_business(study, out):
+    for name in ("history.csv", "optimized.blend", ".writable", "notes.txt"):
+        (out / name).write_text("mine")
+    assert main(["score", str(study), "-o", str(out)]) == 0
+    for name in ("history.csv", "optimized.blend", ".writable", "notes.txt"):
+        assert (out / name).read_text() == "mine"
+
+
+def test_the_folder_of_the_study_is_refused(tmp_path, capsys, monkeypatch, no_work):
+    pe.export_study(a_study(), tmp_path / "study.toml")
+    before = contents(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert optimize("study.toml", ".") == 1
+    line = one_line(capsys)
+    assert line == (
+        "pe: study.toml: output: expected another folder than that of the study, "
+        "found its own: study.toml would be written over"
+    )
+    assert contents(tmp_path) == before
+
+
+def test_the_same_folder_again_needs_no_questions(study, out, capsys):
+    assert optimize(study, out) == 0
+    assert optimize(study, out, "--seed", "8") == 0
+    assert json.loads((out / "result.json").read_text())["seed"] == 8
+    assert files_of_other_runs(out) == []
+    assert "output: " not in capsys.readouterr().err
+
+
+def test_an_edited_study_in_a_result_folder_is_the_users(study, out, capsys):
+    assert optimize(study, out) == 0
+    edited = (out / "study.toml").read_text() + "# a note\n"
+    (out / "study.toml").write_text(edited)
+    capsys.readouterr()
+    assert optimize(study, out) == 1
+    assert f"{out / 'study.toml'}: output: " in one_line(capsys)
+    assert (out / "study.toml").read_text() == edited
+
+
+def make_it_0_1(folder):
+    """Leave a folder as 0.1.0 did: no list, no digests in result.json."""
+    (folder / LISTING).unlink()
+    data = json.loads((folder / "result.json").read_text())
+    del data["run"]["files"]
+    (folder / "result.json").write_text(json.dumps(data, indent=2))
+
+
+def test_a_folder_of_0_1_is_known_by_its_result(study, out):
+    assert optimize(study, out) == 0
+    make_it_0_1(out)
+    assert optimize(study, out, "--seed", "8") == 0
+    assert json.loads((out / "result.json").read_text())["seed"] == 8
+
+
+@pytest.mark.parametrize("name", ["study.toml", "vehicle.npz", "boxes.csv", "history.csv"])
+def test_in_a_folder_of_0_1_what_does_not_fit_the_result_is_the_users(study, out, name, tmp_path):
+    assert optimize(study, out) == 0
+    make_it_0_1(out)
+    others = {
+        "study.toml": (out / "study.toml").read_text().replace("position = [", "position = [0.01"),
+        "vehicle.npz": "mine",
+        "boxes.csv": None,
+        "history.csv": "evaluation,round,entropy,x\n",
+    }
+    if others[name] is None:  # boxes are known by the study that names them
+        text = (out / "study.toml").read_text().replace('"boxes.csv"', '"others.csv"')
+        (out / "study.toml").write_text(text)
+    else:
+        (out / name).write_text(others[name])
+    before = contents(out)
+    assert optimize(study, out) == 1
+    assert contents(out) == before
+
+
+def test_someone_elses_result_json_makes_nothing_ours(study, out):
+    (out / "result.json").write_text('{"schema": 1, "kind": "other"}')
+    before = contents(out)
+    assert optimize(study, out) == 1
+    assert contents(out) == before
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[1]", '{"perception-entropy": 1, "files": [3]}'])
+def test_a_damaged_list_is_told(study, out, text, capsys):
+    (out / LISTING).write_text(text)
+    assert optimize(study, out) == 1
+    assert f"{out / LISTING}: file: expected this program's list" in one_line(capsys)
+
+
+def test_an_export_replaces_what_was_chosen_and_not_its_neighbours(tmp_path):
+    path, mesh = tmp_path / "car.toml", tmp_path / "car.npz"
+    path.write_text("mine")
+    with pytest.raises(pe.InputError, match=r"car\.toml: output: expected no file"):
+        pe.export_study(a_study(), path)
+    mesh.write_text("mine too")
+    before = contents(tmp_path)
+    with pytest.raises(pe.InputError, match=r"car\.npz: output: expected no file"):
+        pe.export_study(a_study(), path, replace_study=True)
+    assert contents(tmp_path) == before
+    mesh.unlink()
+    pe.export_study(a_study(), path, replace_study=True)
+    assert pe.load_study(path).rig["roof"].pose.position[0] == -0.43
+    pe.export_study(a_study(x=0.1), path)  # all three are ours now
+    assert pe.load_study(path).rig["roof"].pose.position[0] == 0.1
+
+
+def test_the_same_bytes_are_left_alone_and_stay_the_users(tmp_path):
+    for _ in range(2):
+        with FileSet(tmp_path) as files:
+            (tmp_path / "mesh.npz").write_bytes(b"mine")
+            files.add("mesh.npz", b"mine")
+    with pytest.raises(pe.InputError, match="expected no file"), FileSet(tmp_path) as files:
+        files.add("mesh.npz", b"another")
+    assert contents(tmp_path) == {"mesh.npz": b"mine"}
+
+
+def test_a_set_is_written_whole_or_not_at_all(tmp_path):
+    with FileSet(tmp_path) as files:
+        files.add("a", b"1")
+        files.add("b", b"1")
+    before = contents(tmp_path)
+
+    def fails(path):
+        path.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(pe.InputError, match="no space left"), FileSet(tmp_path) as files:
+        files.add("a", b"2")
+        files.add("b", fails)
+    assert contents(tmp_path) == before
+
+
+def test_a_writer_that_writes_nothing_is_told(tmp_path):
+    with pytest.raises(pe.InputError, match="nothing was written"), FileSet(tmp_path) as files:
+        files.add("a", lambda path: None)
+
+
+@pytest.mark.parametrize("stops_at", [0, 1, 2])
+def test_killed_between_two_files_all_of_them_are_still_ours(tmp_path, stops_at, monkeypatch):
+    """The list is written first: what was not replaced yet is known by its old digest."""
+    with FileSet(tmp_path) as files:
+        files.add("a", b"1")
+        files.add("b", b"1")
+    replace, done = pe.study.folder.os.replace, []
+
+    def replace_some(source, target):
+        if not str(target).endswith(LISTING):
+            if len(done) == stops_at:
+                raise KeyboardInterrupt
+            done.append(target)
+        replace(source, target)
+
+    monkeypatch.setattr("os.replace", replace_some)
+    try:
+        with FileSet(tmp_path) as files:
+            files.add("a", b"2")
+            files.add("b", b"2")
+    except KeyboardInterrupt:
+        assert stops_at < 2
+    monkeypatch.setattr("os.replace", replace)
+    with FileSet(tmp_path) as files:
+        files.add("a", b"3")
+        files.add("b", b"3")
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes() == b"3"
+
+
+def test_runs_into_one_folder_at_once_know_each_others_files(tmp_path):
+    code = (
+        "import sys; from pathlib import Path; from pe_core.study import FileSet\n"
+        "for i in range(40):\n"
+        "    with FileSet(Path(sys.argv[1])) as files:\n"
+        "        for name in 'ab': files.add(name, f'{sys.argv[2]} {i}'.encode())\n"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path)]
+    runs = [subprocess.Popen([*command, name], cwd=ROOT) for name in ("first", "second")]
+    assert [run.wait() for run in runs] == [0, 0]
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+
+
+def test_files_of_another_run_are_told(study, out, capsys):
+    assert optimize(study, out) == 0
+    assert main(["score", str(study), "-o", str(out)]) == 0
+    assert files_of_other_runs(out) == ["history.csv"]
+    assert f"pe: {out / 'history.csv'}: not of this run\n" in capsys.readouterr().err
+
+
+def test_a_study_newer_than_the_result_is_told(study, out):
+    """As after a search that was killed: it had saved its best so far."""
+    assert optimize(study, out) == 0
+    pe.export_study(a_study(x=0.2), out / "study.toml")
+    assert files_of_other_runs(out) == ["study.toml"]
+
+
+def test_a_copied_folder_brings_its_list_along(study, out, tmp_path):
+    assert optimize(study, out) == 0
+    copy = tmp_path / "copy"
+    shutil.copytree(out, copy)
+    assert optimize(study, copy) == 0
+
+
+@pytest.mark.parametrize("found", ["a file", "below a file", "nothing"])
+def test_an_output_that_is_no_folder_is_one_line(study, tmp_path, found, capsys, no_work):
+    (tmp_path / "file").write_text("mine")
+    folder = {"a file": tmp_path / "file", "below a file": tmp_path / "file" / "out", "nothing": ""}
+    assert optimize(study, folder[found]) == 1
+    assert "output: expected " in one_line(capsys)
+    assert (tmp_path / "file").read_text() == "mine"

@@ -1,0 +1,333 @@
+"""A study file holds the whole study: random studies, written and read, are equal to the bit."""
+
+import math
+import struct
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+import pe_core as pe
+from pe_core.search import AXES
+from pe_core.study.study_file import study_from_dict, study_to_dict
+from pe_core.text.toml_writer import dumps
+from tests.engine import shapes
+
+BOX_TABLE = "class,x,y,z,length,width,height,yaw\ncar,9,1,0.7,4,2,1.4,30\ntram,-20,3,2,15,2.5,4,0\n"
+PARTS = ("body", "cabin")
+REPEATABLE = settings(
+    max_examples=80,
+    derandomize=True,
+    deadline=None,
+    database=None,
+    phases=[Phase.generate],  # shrinking a whole study takes minutes
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+
+
+# --- equality, field by field -------------------------------------------------------------------
+
+
+def differences(a, b, path="study"):
+    """Where two values differ by a bit; dataclasses are walked, so a new field is compared too."""
+    if type(a) is not type(b):
+        return [f"{path}: {type(a).__name__} is not {type(b).__name__}"]
+    if isinstance(a, float):
+        return [] if struct.pack("<d", a) == struct.pack("<d", b) else [f"{path}: {a!r} {b!r}"]
+    if isinstance(a, np.ndarray):
+        same = a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+        return [] if same else [f"{path}: arrays differ"]
+    pairs = children(a, b)
+    if pairs is None:
+        return [] if a == b else [f"{path}: {a!r} {b!r}"]
+    if len(pairs[0]) != len(pairs[1]) or list(pairs[0]) != list(pairs[1]):
+        return [f"{path}: {list(pairs[0])} {list(pairs[1])}"]
+    return [
+        d for key in pairs[0] for d in differences(pairs[0][key], pairs[1][key], f"{path}.{key}")
+    ]
+
+
+def children(a, b):
+    """What two values are made of, by name; None for what is one value."""
+    if is_dataclass(a):
+        return [{f.name: getattr(v, f.name) for f in fields(v)} for v in (a, b)]
+    if isinstance(a, pe.PerceptionModel):
+        return [{"blind": v.blind, **v.curves} for v in (a, b)]
+    if isinstance(a, dict):
+        return [a, b]
+    if isinstance(a, (list, tuple)):
+        return [dict(enumerate(v)) for v in (a, b)]
+    return None
+
+
+# --- random studies -------------------------------------------------------------------------------
+
+NAMES = st.text(
+    st.characters(codec="utf-8", exclude_categories=("C", "Zl", "Zp", "Zs")), min_size=1, max_size=9
+)
+TURN = st.floats(-2 * math.pi, 2 * math.pi)
+METRES = st.floats(-50, 50)
+SIZES = st.floats(1e-3, 1e3)
+
+
+def pairs(values, start=None):
+    """Two numbers, low before high, with a start between them if there is one."""
+    held = st.just(start) if start is not None else values
+    return st.tuples(values, values, held).map(lambda v: (min(v), max(v)))
+
+
+@st.composite
+def lidars(draw):
+    count = draw(st.integers(1, 5))
+    angles = st.lists(st.floats(-math.pi / 2, math.pi / 2), min_size=count, max_size=count)
+    fov = draw(
+        st.one_of(
+            st.just((-math.pi, math.pi)),
+            st.tuples(st.floats(-math.pi, -0.5), st.floats(0.5, math.pi)),
+        )
+    )
+    offsets = draw(st.one_of(st.none(), angles))
+    steps, range_m = draw(st.integers(30, 4000)), draw(st.floats(0.5, 900))
+    return pe.Lidar(draw(NAMES), draw(angles), steps, range_m, offsets, fov)
+
+
+CAMERAS = st.builds(
+    pe.Camera, NAMES, st.integers(1, 9000), st.integers(1, 9000), st.floats(0.01, math.pi - 0.01)
+)
+CATALOGUE = st.sampled_from(pe.catalog.names()).map(pe.catalog.load)
+POSES = st.builds(pe.Pose, st.tuples(METRES, METRES, METRES), st.tuples(TURN, TURN, TURN))
+
+
+@st.composite
+def rigs(draw):
+    names = draw(st.lists(NAMES, min_size=1, max_size=4, unique=True))
+    sensors = []
+    for name in names:
+        model = draw(st.one_of(CATALOGUE, lidars(), CAMERAS))
+        group = draw(st.one_of(st.none(), NAMES))
+        fusion = None if group is None else f"{model.kind} {group} shared"
+        sensors.append(pe.Sensor(name, model, draw(POSES), fusion))
+    return pe.Rig(sensors)
+
+
+@st.composite
+def searches(draw, rig):
+    free, limits = {}, {}
+    for sensor in rig:
+        if draw(st.booleans()):
+            free[sensor.name] = tuple(draw(st.lists(st.sampled_from(AXES), unique=True)))
+        start = dict(zip(AXES, (*sensor.pose.position, *sensor.pose.rpy), strict=True))
+        axes = draw(st.lists(st.sampled_from(AXES), unique=True))
+        limits[sensor.name] = {
+            a: draw(pairs(METRES if a in "xyz" else TURN, start[a])) for a in axes
+        }
+    schedule = pe.Schedule(
+        draw(st.integers(1, 10**6)),
+        draw(st.floats(0, 100)),
+        draw(st.floats(0, math.pi)),
+        draw(st.floats(1e-4, 10)),
+        draw(st.floats(1e-4, 3)),
+        draw(st.floats(0.01, 0.95)),
+    )
+    samples = draw(st.sampled_from([0, 1024, 65_536]))
+    return pe.Search(free, limits, draw(st.integers(0, 2**63 - 1)), samples, schedule)
+
+
+@st.composite
+def object_classes(draw):
+    share = draw(st.floats(0, 1))
+    lanes = tuple(draw(st.lists(METRES, min_size=1, max_size=3)))
+    scales = [draw(SIZES) for _ in range(4)]
+    size = tuple(draw(SIZES) for _ in range(3))
+    return pe.ObjectClass(draw(NAMES), size, *scales, share, lanes, draw(st.floats(0, 9)))
+
+
+@st.composite
+def priors(draw, folder):
+    kind = draw(st.sampled_from(["road", "highway", "uniform", "boxes", "own"]))
+    if kind == "boxes":
+        prior = pe.study_from_dict(
+            {"sensor": [SENSOR], "prior": {"boxes": "table.csv", "origin": [1, 0.1, 0]}},
+            folder=folder,
+        ).prior
+    elif kind == "own":
+        own = draw(st.lists(object_classes(), max_size=2, unique_by=lambda c: c.name))
+        shipped = draw(st.permutations(pe.Prior.road().classes))
+        count = draw(st.integers(1, 5))
+        names = {c.name for c in own}
+        prior = pe.Prior("road", (*own, *(c for c in shipped[:count] if c.name not in names)))
+    else:
+        prior = getattr(pe.Prior, kind)()
+    edges = st.one_of(st.just((-math.inf, math.inf)), pairs(METRES).filter(lambda p: p[0] < p[1]))
+    some = st.lists(st.sampled_from(prior.class_names), unique=True).map(tuple)
+    one = st.builds(pe.Focus, st.floats(0, 9), edges, edges, st.one_of(st.none(), some))
+    return type(prior)(
+        prior.model, prior.classes, tuple(draw(st.lists(one, max_size=2))), prior.boxes
+    )
+
+
+SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
+
+
+@st.composite
+def spaces(draw):
+    interval = draw(st.sampled_from([0.1, 0.5, 0.3, 1.0, 0.25]))
+    bounds = []
+    for _ in "xyz":
+        low, voxels = draw(st.integers(-500, 500)), draw(st.integers(1, 900))
+        bounds.append((low * interval, (low + voxels) * interval))
+    return pe.PerceptionSpace(*bounds, interval)
+
+
+@st.composite
+def vehicles(draw):
+    car = shapes.box_car()
+    moved = car.triangles + draw(st.tuples(METRES, METRES, METRES))
+    glass = draw(st.lists(st.sampled_from(PARTS), unique=True))
+    names = draw(st.lists(NAMES, min_size=2, max_size=2, unique=True))
+    renamed = dict(zip(PARTS, names, strict=True))
+    clearance = draw(st.floats(0, 0.99))
+    return pe.Vehicle(moved, car.parts, tuple(names), tuple(renamed[g] for g in glass), clearance)
+
+
+@st.composite
+def studies(draw, folder):
+    rig = draw(rigs())
+    vehicle = draw(st.one_of(st.none(), vehicles()))
+    lidar, camera = [pe.ApCurve(draw(st.floats(1e-3, 9)), draw(st.floats(-9, 9))) for _ in range(2)]
+    return pe.Study(
+        rig,
+        vehicle,
+        draw(spaces()),
+        draw(priors(folder)),
+        pe.PerceptionModel(draw(st.sampled_from(["floor", "literal"])), lidar=lidar, camera=camera),
+        draw(searches(rig)),
+        draw(st.sampled_from([0, 1024, 10_007])),
+        None if vehicle is None else "body.npz",
+    )
+
+
+# --- the tests ------------------------------------------------------------------------------------
+
+
+@REPEATABLE
+@given(st.data())
+def test_a_random_study_comes_back_from_its_file_equal_in_every_field(data):
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "table.csv").write_text(BOX_TABLE, "utf-8")
+        study = data.draw(studies(folder))
+        if study.vehicle is not None:
+            body = study.vehicle
+            mesh = pe.Mesh(body.triangles, body.parts, body.part_names)
+            pe.write_mesh(folder / study.mesh, mesh)
+        pe.save_study(study, folder / "study.toml")
+        again = pe.load_study(folder / "study.toml")
+    assert differences(study, again) == []
+    assert study_to_dict(again) == study_to_dict(study)
+    assert dumps(study_to_dict(again)) == dumps(study_to_dict(study))
+
+
+@settings(REPEATABLE, max_examples=30)
+@given(st.data())
+def test_an_exported_study_holds_the_same_prior_and_vehicle(data):
+    with TemporaryDirectory() as first, TemporaryDirectory() as second:
+        folder = Path(first)
+        (folder / "table.csv").write_text(BOX_TABLE, "utf-8")
+        study = data.draw(studies(folder))
+        pe.export_study(study, Path(second) / "study.toml")
+        again = pe.load_study(Path(second) / "study.toml")
+    assert again.prior == study.prior
+    assert not differences(study.vehicle, again.vehicle)
+    assert not differences(study.rig, again.rig)
+    assert not differences(study.search, again.search)
+
+
+def test_a_difference_of_one_bit_or_a_forgotten_field_is_seen():
+    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]))
+    moved = pe.Pose((-0.43, 0.0, math.nextafter(1.8, 2.0)))
+    rig = pe.Rig([shapes.lidar_on_roof().moved(moved)])
+    (line,) = differences(study, study.with_rig(rig))
+    assert line.startswith("study.rig.sensors.0.pose.position.2: 1.8")
+    for field in fields(pe.Schedule):
+        value = getattr(pe.Schedule(), field.name)
+        other = pe.Schedule(**{field.name: 7 if isinstance(value, int) else value * 0.9})
+        assert differences(pe.Schedule(), other)
+    assert differences(0.0, -0.0) and differences(1, 1.0) and differences((1,), (1, 2))
+
+
+def test_every_field_of_the_schedule_is_a_key_of_the_file():
+    study = study_from_dict(
+        {
+            "sensor": [SENSOR],
+            "optimize": {
+                "candidates": 5,
+                "reach_m": 0.5,
+                "reach_deg": 10,
+                "floor_m": 0.2,
+                "floor_deg": 4,
+                "decay": 0.25,
+            },
+        }
+    )
+    schedule = study.search.schedule
+    assert schedule == pe.Schedule(5, 0.5, math.radians(10), 0.2, math.radians(4), 0.25)
+    assert schedule.scales == [1.0]
+
+
+def test_bounds_are_degrees_in_files_and_radians_in_python():
+    sensor = SENSOR | {"bounds": {"yaw": [-10, 20], "z": [1, 3]}}
+    study = study_from_dict({"sensor": [sensor]})
+    held = {"z": (1.0, 3.0), "yaw": (math.radians(-10), math.radians(20))}
+    assert study.search.limits == {"roof": held}
+    assert study_to_dict(study)["sensor"][0]["bounds"] == {"z": [1.0, 3.0], "yaw": [-10.0, 20.0]}
+
+
+def test_the_model_of_an_own_sensor_keeps_its_name():
+    model = pe.Camera("my camera", 640, 480, 1.0)
+    study = pe.Study(pe.Rig([pe.Sensor("nose", model)]))
+    again = study_from_dict(study_to_dict(study))
+    assert again.rig["nose"].model.name == "my camera"
+
+
+def test_a_search_knows_its_rig_s_sensors():
+    search = pe.Search({"gone": ("x",)}, {"gone": {"x": (0.0, 1.0)}, "roof": {}})
+    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), search=search)
+    assert study.search.free == {"roof": ("x", "y", "z", "pitch")} and study.search.limits == {}
+
+
+@pytest.mark.parametrize("mesh", [None, "gone.npz"])
+def test_a_vehicle_in_no_file_is_not_saved_but_exported(tmp_path, mesh):
+    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), shapes.box_car(), mesh=mesh)
+    with pytest.raises(pe.InputError, match=r"vehicle\.mesh: .*pe\.export_study writes it"):
+        pe.save_study(study, tmp_path / "study.toml")
+    assert not list(tmp_path.iterdir())
+    pe.export_study(study, tmp_path / "study.toml")
+    again = pe.load_study(tmp_path / "study.toml")
+    assert not differences(again.vehicle, study.vehicle)
+
+
+def test_boxes_in_no_file_are_not_saved_but_exported(tmp_path):
+    boxes = [("car", 1.0, 2.0, 0.75, 4.0, 2.0, 1.5, 0.5)]
+    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), prior=pe.Prior.from_boxes(boxes))
+    with pytest.raises(pe.InputError, match=r"prior\.boxes: .*pe\.export_study writes it"):
+        pe.save_study(study, tmp_path / "study.toml")
+    pe.export_study(study, tmp_path / "study.toml")
+    assert pe.load_study(tmp_path / "study.toml").prior == study.prior
+
+
+def test_a_vehicle_s_figures_without_its_mesh_are_refused():
+    with pytest.raises(pe.InputError, match=r"vehicle\.mesh: expected the file .*, found nothing"):
+        study_from_dict({"sensor": [SENSOR], "vehicle": {"glass": ["cabin"], "clearance": 0.1}})
+    assert study_from_dict({"sensor": [SENSOR], "vehicle": {}}).vehicle is None
+
+
+def test_a_placement_rounded_past_its_bound_can_be_read_again():
+    sensor = SENSOR | {"position": [0, 0, 1.5], "bounds": {"z": [1.500004, 2.0]}}
+    assert study_from_dict({"sensor": [sensor]}).rig["roof"].pose.position[2] == 1.5
+    with pytest.raises(pe.InputError, match="bounds of z"):
+        study_from_dict({"sensor": [sensor | {"position": [0, 0, 1.49999]}]})

@@ -1,0 +1,80 @@
+"""Who watches a grid score is told how far it is, and can end it."""
+
+import threading
+
+import pytest
+
+import pe_core as pe
+from pe_core.scoring import ScoreStopped
+from tests.engine import shapes
+
+SPACE = pe.PerceptionSpace((-40, 40), (-10, 10), (0, 4), 0.5)  # five blocks of 32 planes
+
+GUARD_S = 60.0
+"""Only so that a failure does not hang."""
+
+
+def evaluator(samples=0):
+    return pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=samples)
+
+
+def rig():
+    return pe.Rig([shapes.lidar_on_roof(), shapes.camera()])
+
+
+def test_the_share_rises_to_the_whole_and_changes_no_score():
+    told = []
+    score = evaluator().score(rig(), watch=lambda share: told.append(share) or True)
+    assert told == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
+    assert score.to_dict() == evaluator().score(rig()).to_dict()
+
+
+@pytest.mark.parametrize("at", [0.0, 0.4, 1.0])
+def test_a_score_ends_when_it_is_told_and_the_next_is_sound(at):
+    own = evaluator()
+    told = []
+
+    def watch(share):
+        told.append(share)
+        return share < at
+
+    with pytest.raises(ScoreStopped):
+        own.score(rig(), watch=watch)
+    assert told[-1] == pytest.approx(at) and told == sorted(told)
+    assert own.score(rig()).to_dict() == evaluator().score(rig()).to_dict()
+
+
+def test_a_job_tells_how_far_its_score_is():
+    study = pe.Study(rig(), shapes.box_car(), SPACE)
+    job = pe.ScoreJob(study)
+    shares = [progress.fraction for progress in job]
+    assert shares == sorted(shares) and shares[0] == 0.0 and shares[-1] == 1.0
+    assert job.outcome is not None
+
+
+def test_a_stopped_job_s_thread_stops_as_well(monkeypatch):
+    """Its score is given up, and does not run on behind the program's back."""
+    started, go, done = threading.Event(), threading.Event(), threading.Event()
+    ended, whole = [], pe.Evaluator.score
+
+    def score(self, *args, **kwargs):
+        started.set()
+        go.wait(GUARD_S)
+        try:
+            ended.append(whole(self, *args, **kwargs))
+        except ScoreStopped:
+            ended.append("stopped")
+            raise
+        finally:
+            done.set()
+
+    monkeypatch.setattr(pe.Evaluator, "score", score)
+    job = pe.ScoreJob(pe.Study(rig(), shapes.box_car(), SPACE))
+    steps = iter(job)
+    next(steps)
+    next(steps)
+    assert started.wait(GUARD_S)
+    job.stop()
+    assert not list(steps) and job.outcome is None
+    go.set()
+    assert done.wait(GUARD_S) and ended == ["stopped"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import commands, operators, panels, properties, stale
+from . import commands, operators, panels, properties, roster, stale
 from .overlay import handler as overlay
 
 CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
@@ -15,6 +15,7 @@ def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties.add_pointers()
+    roster.register()
     stale.register()
     overlay.register()
     commands.register()
@@ -25,6 +26,7 @@ def unregister() -> None:
     commands.unregister()
     overlay.unregister()
     stale.unregister()
+    roster.unregister()
     properties.remove_pointers()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import bpy
 
-from . import bridge
-from .engine import catalog, search
-from .operators import running
-from .operators.add_sensor import CAMERA_MODEL, LIDAR_MODEL
+from .choices import CUSTOM, FROM_BOXES, REGIONS
+from .operators import listed_sensors, offers, running
+from .properties import AXIS_LABELS
 
-AXIS_LABELS = dict(zip(search.AXES, ("X", "Y", "Z", "Roll", "Pitch", "Yaw"), strict=True))
+KIND = "pe_kind"
+"""What a button tells its menu, in Blender's context: the kind of sensor to list."""
 
 
 class Tab:
@@ -44,20 +44,18 @@ class PE_PT_main(Tab, bpy.types.Panel):
 
 
 def draw_add(layout: bpy.types.UILayout) -> None:
-    """Draw a button for the usual sensor of each kind, and a menu of all the others."""
+    """Draw for each kind a button for its usual sensor, and a menu of all of them."""
     row = layout.row()
-    for label, model, menu in (
-        ("Add LiDAR", LIDAR_MODEL, PE_MT_add_lidar),
-        ("Add Camera", CAMERA_MODEL, PE_MT_add_camera),
-    ):
+    for offer in offers():
         pair = row.row(align=True)
-        pair.operator("pe.add_sensor", text=label, icon="ADD").model = model
-        pair.menu(menu.bl_idname, text="", icon="DOWNARROW_HLT")
+        pair.operator("pe.add_sensor", text=f"Add {offer.label}", icon="ADD").model = offer.usual
+        pair.context_string_set(KIND, offer.kind)
+        pair.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
 
 
 def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw a row for each sensor: beams shown, name, model, entropy alone."""
-    objects = bridge.sensor_objects(context.scene)
+    objects = listed_sensors(context.scene)
     box = layout.box().column(align=True)
     if not objects:
         box.label(text="No sensors yet", icon="INFO")
@@ -114,8 +112,8 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         layout.prop(settings, "fusion")
         layout.label(text=f"The search may change, for {obj.name}:")
         row = layout.row(align=True)
-        for index, axis in enumerate(search.AXES):
-            row.prop(settings, "free", index=index, text=AXIS_LABELS[axis], toggle=True)
+        for index, label in enumerate(AXIS_LABELS):
+            row.prop(settings, "free", index=index, text=label, toggle=True)
         if settings.has_result:
             draw_sensor_result(layout, settings)
 
@@ -158,7 +156,7 @@ class PE_PT_search(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
-        boxes = ("boxes",) if settings.prior == bridge.FROM_BOXES else ()
+        boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
         figures = ("candidates", "seed", "search_samples", "score_samples")
         draw_properties(self.layout, settings, ("prior", *boxes, *figures))
 
@@ -179,7 +177,7 @@ class PE_UL_focus(bpy.types.UIList):
         name, figures = columns(layout, 0.4)
         name.prop(item, "name", text="", emboss=False)
         region, factor = columns(figures, 0.61)
-        region.label(text=bridge.REGIONS[item.region].short, translate=False)
+        region.label(text=REGIONS[item.region].short, translate=False)
         factor.alignment = "RIGHT"
         factor.label(text=f"× {item.factor:g}", translate=False)
 
@@ -212,7 +210,7 @@ class PE_PT_focus(Tab, bpy.types.Panel):
 def draw_focus(layout: bpy.types.UILayout, focus: bpy.types.PropertyGroup) -> None:
     """Draw the settings of one focus."""
     draw_properties(layout, focus, ("factor", "region"))
-    if focus.region == bridge.CUSTOM:
+    if focus.region == CUSTOM:
         for name in ("x_range", "y_range"):
             low, high = getattr(focus, name)
             pair = layout.column(align=True)
@@ -271,35 +269,21 @@ def draw_properties(
         layout.prop(settings, name)
 
 
-class PE_MT_add_lidar(bpy.types.Menu):
-    """All LiDARs of the catalogue"""
+class PE_MT_add_sensor(bpy.types.Menu):
+    """All sensors of this kind in the catalogue"""
 
-    bl_idname = "PE_MT_add_lidar"
-    bl_label = "Add LiDAR"
+    bl_idname = "PE_MT_add_sensor"
+    bl_label = "Add Sensor"
 
-    def draw(self, _context: bpy.types.Context) -> None:
-        draw_models(self.layout, "lidar")
-
-
-class PE_MT_add_camera(bpy.types.Menu):
-    """All cameras of the catalogue"""
-
-    bl_idname = "PE_MT_add_camera"
-    bl_label = "Add Camera"
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        draw_models(self.layout, "camera")
-
-
-def draw_models(layout: bpy.types.UILayout, kind: str) -> None:
-    """Draw a menu entry for every model of a kind."""
-    for name in catalog.names(kind):
-        layout.operator("pe.add_sensor", text=name, translate=False).model = name
+    def draw(self, context: bpy.types.Context) -> None:
+        kind = getattr(context, KIND, None)  # of none in particular: all
+        for offer in offers():
+            for name in offer.models if kind in (None, offer.kind) else ():
+                self.layout.operator("pe.add_sensor", text=name, translate=False).model = name
 
 
 CLASSES = (
-    PE_MT_add_lidar,
-    PE_MT_add_camera,
+    PE_MT_add_sensor,
     PE_PT_main,
     PE_PT_sensor,
     PE_PT_part,

@@ -18,9 +18,9 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import bridge, stale
-from .engine import catalog, pe, search
-from .overlay import handler as overlay
+from . import changes
+from .choices import PRIORS, REGION_ITEMS
+from .engine import catalog, kinds, pe, search
 
 DEFAULT_CANDIDATES = 150
 DEFAULT_BEAM_LIMIT = 5_000
@@ -31,41 +31,31 @@ DEFAULT_REGION = "front"
 RANGE_DECIMALS = 3
 # Before 4.5 every path could be relative to the .blend file; since then a property has to say so.
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
+AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
+"""Of `search.AXES`."""
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
-
-PRIORS = (
-    ("road", "Road", "Cars, trucks, cyclists, pedestrians and cones as met on public roads", 0),
-    ("highway", "Highway", "Cars, trucks, motorcyclists and cones on and round three lanes", 2),
-    ("uniform", "Uniform", "Every place in the perception space matters the same", 1),
-    (bridge.FROM_BOXES, "Labelled Boxes", "Objects where a file of labels has them", 3),
-)
-"""A .blend file holds the numbers."""
 
 OBJECT_CLASSES = tuple(
     (name, name.capitalize(), f"Weigh {name}s") for name in pe.Prior.road().class_names
 )
-REGIONS = tuple(
-    (region.key, region.label, region.description) for region in bridge.REGIONS.values()
-)
 
 
-def redraw_overlay(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+def redraw(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Update callback of what only changes the picture."""
-    overlay.tag_redraw()
+    changes.picture.tell()
 
 
 def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Update callback of what changes the score."""
-    overlay.tag_redraw()
-    stale.check_soon()
+    changes.study.tell()
 
 
 def model_suggestions(
     _settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
 ) -> list[tuple[str, str]]:
     """Return the catalogue's names with what they are; Blender filters by what was typed."""
-    kinds = {"lidar": "LiDAR", "camera": "Camera"}
-    return [(entry.name, kinds[entry.kind]) for entry in catalog.entries().values()]
+    labels = {n: kind.label for kind in kinds.KINDS.values() for n in catalog.names(kind.name)}
+    return [(name, labels[name]) for name in catalog.names() if name in labels]
 
 
 class PE_FocusSettings(bpy.types.PropertyGroup):
@@ -81,7 +71,7 @@ class PE_FocusSettings(bpy.types.PropertyGroup):
         update=changed,
     )
     region: EnumProperty(
-        items=REGIONS,
+        items=REGION_ITEMS,
         name="Region",
         description="Which part of the ground",
         default=DEFAULT_REGION,
@@ -178,7 +168,7 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
         name="Show Beams",
         description="Draw beams and frustums of the sensors in the 3D view",
         default=True,
-        update=redraw_overlay,
+        update=redraw,
     )
     beam_limit: IntProperty(
         name="Most Beams",
@@ -186,7 +176,7 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
         default=DEFAULT_BEAM_LIMIT,
         min=1,
         soft_max=200_000,
-        update=redraw_overlay,
+        update=redraw,
     )
     beam_length: FloatProperty(
         name="Beam Length",
@@ -196,7 +186,7 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
         soft_max=200.0,
         subtype="DISTANCE",
         unit="LENGTH",
-        update=redraw_overlay,
+        update=redraw,
     )
 
     has_result: BoolProperty(name="Has Result", description="A score is stored")
@@ -256,7 +246,7 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
         name="Show Beams",
         description="Draw this sensor's beams or frustum in the 3D view",
         default=True,
-        update=redraw_overlay,
+        update=redraw,
     )
     placed: FloatVectorProperty(
         name="Placed",

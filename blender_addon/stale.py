@@ -9,7 +9,7 @@ from __future__ import annotations
 import bpy
 from bpy.app.handlers import persistent
 
-from . import bridge
+from . import bridge, changes, roster
 
 CHECK_AFTER_S = 0.25
 
@@ -40,7 +40,7 @@ def check() -> None:
         settings = scene.perception_entropy
         if not settings.has_result:
             continue
-        stale = bridge.signature(scene) != settings.result_signature
+        stale = bridge.signature(scene, roster.sensors(scene)) != settings.result_signature
         if stale != settings.result_stale:
             settings.result_stale = stale
 
@@ -58,10 +58,12 @@ def register() -> None:
     """Start listening."""
     for handlers, function in _handlers():
         handlers.append(function)
+    changes.study.connect(check_soon)
 
 
 def unregister() -> None:
     """Stop listening, also to the check that may be due."""
+    changes.study.disconnect(check_soon)
     for handlers, function in reversed(_handlers()):
         handlers.remove(function)
     if bpy.app.timers.is_registered(check):

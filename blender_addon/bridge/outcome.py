@@ -23,9 +23,10 @@ def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
     settings.result_coverage = outcome.after.coverage
     settings.result_stderr = outcome.after.stderr
     settings.result_json = json.dumps(pe.result_dict(outcome, blender_version()))
-    for obj in sensor_objects(scene):
+    sensors = sensor_objects(scene)
+    for obj in sensors:
         _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
-    settings.result_signature = signature(scene)
+    settings.result_signature = signature(scene, sensors)
     settings.result_stale = False
     settings.has_result = True
 

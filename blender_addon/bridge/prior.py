@@ -2,59 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import bpy
 import numpy as np
 
+from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, Area
 from ..engine import pe
 
-Range = tuple[float, float]
-"""Low and high bound [m]."""
-Area = tuple[Range, Range]
-"""Ranges of x and y."""
-
-ALL: Range = (-math.inf, math.inf)
-AHEAD: Range = (0.0, math.inf)
-BEHIND: Range = (-math.inf, 0.0)
-FAR_M = 40.0
-CUSTOM = "custom"
-UNIFORM, FROM_BOXES = "uniform", "boxes"
-MODELS = {"road": pe.Prior.road, "highway": pe.Prior.highway, UNIFORM: pe.Prior.uniform}
-
-
-@dataclass(frozen=True)
-class Region:
-    """A part of the ground that a focus can be chosen for; several areas where it is not one."""
-
-    key: str
-    label: str
-    short: str
-    description: str
-    areas: tuple[Area, ...] = ()
-
-
-REGIONS = {
-    region.key: region
-    for region in (
-        Region("everywhere", "Everywhere", "everywhere", "The whole space", ((ALL, ALL),)),
-        Region("front", "Front", "x > 0", "All that is ahead of the origin", ((AHEAD, ALL),)),
-        Region("rear", "Rear", "x < 0", "All that is behind the origin", ((BEHIND, ALL),)),
-        Region("left", "Left", "y > 0", "All on the vehicle's left", ((ALL, AHEAD),)),
-        Region("right", "Right", "y < 0", "All on the vehicle's right", ((ALL, BEHIND),)),
-        Region(
-            "far",
-            "Far Ahead and Behind",
-            f"|x| > {FAR_M:g} m",
-            f"What is more than {FAR_M:g} m ahead or behind",
-            (((-math.inf, -FAR_M), ALL), ((FAR_M, math.inf), ALL)),
-        ),
-        Region(CUSTOM, "Custom", "custom", "Bounds of your own"),
-    )
-}
-"""The regions to choose from, in the order of the menu. A .blend file holds the place in it."""
+MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.uniform}
 
 
 def prior_from_scene(scene: bpy.types.Scene) -> pe.Prior:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
@@ -24,15 +25,14 @@ def sensor_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     return sorted(found, key=lambda obj: obj.name)
 
 
-def rig_from_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> pe.Rig:
-    """Return the visible sensors of a scene as a rig.
+def rig_from_objects(objects: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> pe.Rig:
+    """Return the visible ones of a scene's sensors as a rig.
 
     Raises
     ------
     InputError
         When there is none, or one of them is no possible sensor.
     """
-    objects = sensor_objects(scene)
     visible = [obj for obj in objects if obj.visible_get(view_layer=depsgraph.view_layer)]
     if not visible:
         found = f"{len(objects)} hidden" if objects else "none"

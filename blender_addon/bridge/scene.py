@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 
 import bpy
 
 from ..engine import pe, studies
 from .prior import prior_from_scene, prior_signature
-from .rig import free_axes, rig_from_scene, sensor_objects, view_layer_of
+from .rig import free_axes, rig_from_objects, sensor_objects, view_layer_of
 from .vehicle import vehicle_from_collection, visible_members
 
 SIGNATURE_DECIMALS = 5
@@ -28,24 +29,26 @@ def study_from_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> 
         expected = "a collection with the vehicle's meshes"
         raise pe.InputError("scene", "vehicle collection", expected, "none chosen")
     vehicle = vehicle_from_collection(settings.vehicle, depsgraph)
+    objects = sensor_objects(scene)
     return pe.Study(
-        rig_from_scene(scene, depsgraph),
+        rig_from_objects(objects, depsgraph),
         vehicle,
         prior=prior_from_scene(scene),
-        search=_search(scene),
+        search=_search(settings, objects),
         samples=settings.score_samples,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
     )
 
 
-def signature(scene: bpy.types.Scene) -> str:
+def signature(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object] | None = None) -> str:
     """Return a text that changes when a sensor or the vehicle moves, or a setting changes.
 
     It is cheap, not complete: a mesh edited without a change in its number of points is not seen.
+    `sensors` are the scene's, by name, when they have been looked for already.
     """
     settings, layer = scene.perception_entropy, view_layer_of(scene)
     seen: list[object] = [*prior_signature(scene), settings.score_samples]
-    for obj in sensor_objects(scene):
+    for obj in sensor_objects(scene) if sensors is None else sensors:
         own, visible = obj.perception_entropy, obj.visible_get(view_layer=layer)
         seen += [obj.name, own.model, own.fusion, visible, _rounded(obj)]
     if settings.vehicle is not None:
@@ -61,9 +64,8 @@ def _rounded(obj: bpy.types.Object) -> list[float]:
     return [round(v, SIGNATURE_DECIMALS) + 0.0 for row in obj.matrix_world for v in row]
 
 
-def _search(scene: bpy.types.Scene) -> pe.Search:
-    settings = scene.perception_entropy
-    free = {obj.name: free_axes(obj) for obj in sensor_objects(scene)}
+def _search(settings: bpy.types.PropertyGroup, sensors: Sequence[bpy.types.Object]) -> pe.Search:
+    free = {obj.name: free_axes(obj) for obj in sensors}
     schedule = pe.Schedule(candidates=settings.candidates)
     return pe.Search(
         free=free, seed=settings.seed, samples=settings.search_samples, schedule=schedule

@@ -1,6 +1,13 @@
-"""Operators: what can be pressed. Each reads the scene, calls the engine, writes the result."""
+"""Operators: what can be pressed. Each reads the scene, calls the engine, writes the result.
 
-from . import add_sensor, export, focus, job, review, select
+Panels take from here what there is to press and to choose from.
+"""
+
+from . import add_sensor, export, focus, job, review, running, select
+from .mounting import Offer, offers
+from .select import listed_sensors
+
+__all__ = ["CLASSES", "Offer", "listed_sensors", "offers", "running"]
 
 CLASSES = (
     *add_sensor.CLASSES,

@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 import bpy
-import numpy as np
 from bpy.props import StringProperty
-from mathutils import Vector
 
-from .. import bridge
-from ..engine import catalog, pe
+from ..engine import catalog, kinds, pe
 from ..properties import DEFAULT_MODEL, model_suggestions
+from .mounting import Mount, mount_of, sensible_place
 
 COLLECTION = "Sensors"
-LIDAR_MODEL, CAMERA_MODEL = DEFAULT_MODEL, "Camera 90 deg"
-
-LIDAR_ABOVE_ROOF_M = 0.3
-CAMERA_ABOVE_ROOF_M = 0.05
-ROOF_DEPTH_M = 0.1
-"""What lies this near to the vehicle's highest point is its roof."""
-WITHOUT_VEHICLE_M = {"lidar": (0.0, 0.0, 1.8), "camera": (0.0, 0.0, 1.5)}
-
-DISPLAY = {"lidar": ("SPHERE", 0.12), "camera": ("ARROWS", 0.25)}
-NAMES = {"lidar": "LiDAR", "camera": "Camera"}
 
 
 class PE_OT_add_sensor(bpy.types.Operator):
@@ -48,13 +36,14 @@ class PE_OT_add_sensor(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
-            kind = "lidar" if isinstance(catalog.load(self.model), pe.Lidar) else "camera"
+            kind = kinds.kind_of(catalog.load(self.model))
+            mount = mount_of(kind.name)
             choose_vehicle(context.scene)
-            location = sensible_place(context, kind)
+            location = sensible_place(context, mount)
         except pe.InputError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        obj = new_sensor(context, NAMES[kind], self.model, kind)
+        obj = new_sensor(context, kind.label, self.model, mount)
         obj.location = location
         select_only(context, obj)
         return {"FINISHED"}
@@ -73,37 +62,10 @@ def choose_vehicle(scene: bpy.types.Scene) -> None:
             settings.vehicle = solid[0]
 
 
-def sensible_place(context: bpy.types.Context, kind: str) -> Vector:
-    """Return the 3D cursor, or while that is at the origin a place on the vehicle's roof."""
-    cursor = context.scene.cursor.location
-    collection = context.scene.perception_entropy.vehicle
-    if cursor.length > 0.0:
-        return cursor.copy()
-    if collection is None:
-        return Vector(WITHOUT_VEHICLE_M[kind])
-    vehicle = bridge.vehicle_from_collection(collection, context.evaluated_depsgraph_get())
-    return Vector(on_roof(vehicle, kind))
-
-
-def on_roof(vehicle: pe.Vehicle, kind: str) -> tuple[float, float, float]:
-    """Return a place above the middle of the roof for a LiDAR, at its front edge for a camera."""
-    corners = vehicle.triangles.reshape(-1, 3)
-    top = corners[:, 2].max()
-    roof = corners[corners[:, 2] > top - ROOF_DEPTH_M]
-    low, high = roof.min(axis=0), roof.max(axis=0)
-    middle = (low + high) / 2.0
-    if kind == "lidar":
-        place = (middle[0], middle[1], top + LIDAR_ABOVE_ROOF_M)
-    else:
-        place = (high[0], middle[1], top + CAMERA_ABOVE_ROOF_M)
-    x, y, z = np.round(place, 2).tolist()
-    return x, y, z
-
-
-def new_sensor(context: bpy.types.Context, name: str, model: str, kind: str) -> bpy.types.Object:
+def new_sensor(context: bpy.types.Context, name: str, model: str, mount: Mount) -> bpy.types.Object:
     """Make a sensor in the scene's collection of sensors."""
     obj = bpy.data.objects.new(name, None)
-    obj.empty_display_type, obj.empty_display_size = DISPLAY[kind]
+    obj.empty_display_type, obj.empty_display_size = mount.display, mount.size_m
     sensors_collection(context.scene).objects.link(obj)
     if obj.name not in context.view_layer.objects:  # that collection is excluded from the view
         context.scene.collection.objects.link(obj)

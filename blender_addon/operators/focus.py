@@ -5,8 +5,9 @@ from __future__ import annotations
 import bpy
 from bpy.props import EnumProperty
 
-from .. import stale
-from ..properties import DEFAULT_REGION, REGIONS
+from .. import changes
+from ..choices import REGION_ITEMS
+from ..properties import DEFAULT_REGION
 
 
 class PE_OT_add_focus(bpy.types.Operator):
@@ -17,7 +18,7 @@ class PE_OT_add_focus(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     region: EnumProperty(
-        items=REGIONS,
+        items=REGION_ITEMS,
         name="Region",
         description="Which part of the ground",
         default=DEFAULT_REGION,
@@ -29,7 +30,7 @@ class PE_OT_add_focus(bpy.types.Operator):
         row = settings.focus.add()
         row.name, row.region = name, self.region
         settings.focus_index = len(settings.focus) - 1
-        stale.check_soon()
+        changes.study.tell()
         self.report({"INFO"}, f"Added {name}")
         return {"FINISHED"}
 
@@ -55,7 +56,7 @@ class PE_OT_remove_focus(bpy.types.Operator):
         name = settings.focus[index].name
         settings.focus.remove(index)
         settings.focus_index = max(0, min(index, len(settings.focus) - 1))
-        stale.check_soon()
+        changes.study.tell()
         self.report({"INFO"}, f"Removed {name}")
         return {"FINISHED"}
 

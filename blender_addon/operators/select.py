@@ -5,7 +5,13 @@ from __future__ import annotations
 import bpy
 from bpy.props import StringProperty
 
+from .. import roster
 from .add_sensor import select_only
+
+
+def listed_sensors(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """All sensors of a scene by name, for a list of them."""
+    return roster.sensors(scene)
 
 
 class PE_OT_select_sensor(bpy.types.Operator):

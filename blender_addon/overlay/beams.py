@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    import pe_core as pe
+    from ..engine import pe
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -7,11 +7,10 @@ from collections.abc import Hashable
 
 import bpy
 
-from .. import bridge
-from ..bridge.rig import mounted_on_sensor
-from ..bridge.vehicle import visible_members
+from .. import bridge, roster
 from ..engine import pe
-from .geometry import OverlayGeometry, sensor_geometry
+from .geometry import OverlayGeometry
+from .kinds import beam_budget, sensor_geometry
 
 
 class OverlayCache:
@@ -40,8 +39,7 @@ class OverlayCache:
         if sensors:
             self._update_vehicle(scene, depsgraph)
         settings = scene.perception_entropy
-        lidars = sum(sensor.kind == "lidar" for sensor in sensors)
-        budget = max(1, settings.beam_limit // max(1, lidars))
+        budget = beam_budget(sensors, settings.beam_limit)
         before, self._shown = self._shown, {}
         for sensor in sensors:
             model = sensor.model.name
@@ -70,7 +68,7 @@ class OverlayCache:
 def shown_sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> list[pe.Sensor]:
     """Sensors to draw, without those that are not possible; a score says what is wrong there."""
     found = []
-    for each in bridge.sensor_objects(scene):
+    for each in roster.sensors(scene):
         if each.perception_entropy.show:
             with contextlib.suppress(pe.InputError):
                 found.append(bridge.sensor_from_object(each, depsgraph))
@@ -81,8 +79,8 @@ def vehicle_members(
     collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
 ) -> tuple[str, ...]:
     """Names of the objects of the vehicle that count."""
-    members = visible_members(collection, depsgraph.view_layer)
-    return tuple(sorted(each.name_full for each in members if not mounted_on_sensor(each)))
+    members = bridge.visible_members(collection, depsgraph.view_layer)
+    return tuple(sorted(each.name_full for each in members if not bridge.mounted_on_sensor(each)))
 
 
 def touches_vehicle(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
@@ -96,7 +94,7 @@ def touches_vehicle(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> b
     collection = scene.perception_entropy.vehicle
     if collection is None or not changed:
         return False
-    parts = {each for each in changed if not mounted_on_sensor(each)}
+    parts = {each for each in changed if not bridge.mounted_on_sensor(each)}
     return not parts.isdisjoint(_with_instanced(collection))
 
 

@@ -1,7 +1,7 @@
 """What is drawn in which colour.
 
-Blue, vermillion and purple are told apart with any kind of colour vision (Okabe and Ito, "Color
-Universal Design", 2008). Values are sRGB with alpha.
+Blue, vermillion, purple and green are told apart with any kind of colour vision (Okabe and Ito,
+"Color Universal Design", 2008). Values are sRGB with alpha.
 """
 
 from __future__ import annotations
@@ -15,13 +15,15 @@ Rgba = tuple[float, float, float, float]
 class Palette:
     """Colours for one kind of background.
 
-    `free` and `stopped` are a LiDAR's beams, `camera` a frustum's lines, `camera_face` its sides.
+    `free` and `stopped` are a LiDAR's beams, `camera` a frustum's lines, `camera_face` its sides;
+    `other` are lines of kinds that have no colour of their own.
     """
 
     free: Rgba
     stopped: Rgba
     camera: Rgba
     camera_face: Rgba
+    other: Rgba
 
 
 VIEWPORT = Palette(
@@ -29,6 +31,7 @@ VIEWPORT = Palette(
     stopped=(0.95, 0.42, 0.05, 0.40),
     camera=(0.87, 0.58, 0.74, 0.85),
     camera_face=(0.80, 0.47, 0.65, 0.07),
+    other=(0.20, 0.80, 0.62, 0.85),
 )
 """For the viewport's dark grey."""
 
@@ -37,5 +40,6 @@ PAPER = Palette(
     stopped=(0.84, 0.37, 0.0, 1.0),
     camera=(0.60, 0.25, 0.45, 0.9),
     camera_face=(0.80, 0.47, 0.65, 0.14),
+    other=(0.0, 0.50, 0.37, 0.9),
 )
 """For a light page."""

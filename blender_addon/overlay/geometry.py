@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .beams import Beams, shown_beams
+from .beams import Beams
 from .colors import VIEWPORT, Palette, Rgba
 
 if TYPE_CHECKING:
-    import pe_core as pe
+    from ..engine import pe
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -22,10 +22,10 @@ FULL_ROOM_SR = 2.4e-3
 """A beam with this solid angle to itself (2 by 4 degrees) is drawn in full colour, closer ones
 fainter: dense channels do not become a wall, and sparse ones still show."""
 LEAST_SHARE = 0.05
-FRUSTUM_SHARE = 0.25
-"""How long frustums are beside the beams."""
 FACE_CORNERS = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1))
 EDGES = ((0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 5))
+RING_POINTS, TICK_SHARE = 48, 0.35
+"""Corners of a ring, and the length of its tick in units of its radius."""
 MARK_GAP, MARK_HEIGHT, MARK_HALF_WIDTH = 0.08, 0.25, 0.2
 """The mark over a picture's upper edge, in units of half the picture's height."""
 
@@ -57,22 +57,6 @@ class OverlayGeometry:
 
     lines: Primitives
     faces: Primitives
-
-
-def sensor_geometry(
-    sensor: pe.Sensor,
-    vehicle: pe.Vehicle | None,
-    budget: int,
-    length_m: float,
-    palette: Palette = VIEWPORT,
-) -> OverlayGeometry:
-    """Everything drawn for one sensor: at most `budget` beams, or a frustum."""
-    if sensor.kind == "lidar":
-        beams = shown_beams(sensor, vehicle, budget)
-        return OverlayGeometry(beam_lines(sensor, beams, length_m, palette), Primitives.empty())
-    length_m *= FRUSTUM_SHARE
-    lines = frustum_lines(sensor, length_m, palette)
-    return OverlayGeometry(lines, frustum_faces(sensor, length_m, palette))
 
 
 def beam_lines(
@@ -132,6 +116,16 @@ def frustum_faces(sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPOR
     """Sides of a camera's view: four triangles from the pinhole."""
     points = frustum_points(sensor, length_m)[np.array(FACE_CORNERS).ravel()]
     return _colored(points, palette.camera_face)
+
+
+def ring_lines(sensor: pe.Sensor, radius_m: float, palette: Palette = VIEWPORT) -> Primitives:
+    """Ring around a sensor in its own level plane, and a tick where it looks ahead."""
+    angles = np.linspace(0.0, 2.0 * np.pi, RING_POINTS + 1)
+    ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
+    tick = np.array([[1.0, 0.0, 0.0], [1.0 + TICK_SHARE, 0.0, 0.0]])
+    points = np.vstack([np.stack([ring[:-1], ring[1:]], axis=1).reshape(-1, 3), tick]) * radius_m
+    points = points @ sensor.pose.ground_from_sensor.T + np.asarray(sensor.pose.position)
+    return _colored(points, palette.other)
 
 
 def _rays(sensor: pe.Sensor, directions: Floats, ends: Floats, color: Rgba) -> Primitives:

@@ -7,10 +7,12 @@ import gpu
 from bpy.app.handlers import persistent
 from gpu_extras.batch import batch_for_shader
 
+from .. import changes
 from .cache import OverlayCache, touches_vehicle
 from .geometry import OverlayGeometry, Primitives
 
 LINE_WIDTH_PX = 1.2
+VIEW = bpy.types.SpaceView3D
 
 Batches = tuple[OverlayGeometry, gpu.types.GPUBatch | None, gpu.types.GPUBatch | None]
 
@@ -23,16 +25,19 @@ _handles: list[object] = []
 def register() -> None:
     """Start drawing; Blender draws every view once an add-on has been registered."""
     if not _handles:
-        space = bpy.types.SpaceView3D
-        _handles.append(space.draw_handler_add(draw, (), "WINDOW", "POST_VIEW"))
+        _handles.append(VIEW.draw_handler_add(draw, (), "WINDOW", "POST_VIEW"))
         for handlers, function in _handlers():
             handlers.append(function)
+        for signal in (changes.study, changes.picture):
+            signal.connect(tag_redraw)
 
 
 def unregister() -> None:
     """Stop drawing, and leave nothing behind."""
     while _handles:
-        bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+        for signal in (changes.study, changes.picture):
+            signal.disconnect(tag_redraw)
+        VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
         for handlers, function in reversed(_handlers()):
             handlers.remove(function)
     forget()

@@ -16,7 +16,7 @@ from .stage import stage
 from .subject import RING_TEXT, RINGS_M, Subject
 
 if TYPE_CHECKING:
-    import pe_core as pe
+    from ..engine import pe
 
 __all__ = ["render_review"]
 

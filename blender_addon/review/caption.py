@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    import pe_core as pe
+    from ..engine import pe
 
 MOST_ROWS = 6
 MOST_PARTS = 3

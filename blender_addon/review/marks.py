@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..overlay.colors import PAPER, Rgba
+from ..overlay.kinds import drawing_of
 from .lettering import FAINT_INK, Lettering
 
 if TYPE_CHECKING:
-    import pe_core as pe
+    from ..engine import pe
 
 Floats = NDArray[np.float64]
 
@@ -29,12 +30,12 @@ RING_AZIMUTHS_DEG = (-35.0, 105.0, -60.0, 130.0, -90.0, 160.0, -115.0, 170.0, -1
 def mark_sensors(pen: Lettering, rig: pe.Rig, moves: list[tuple[Floats, Floats]]) -> None:
     """Put a dot on each sensor and its name above it, clear of other names and of the rings."""
     scale = pen.view.frame.scale
-    colors = {"lidar": PAPER.free, "camera": PAPER.camera}
     places = pen.view.pixels(np.array([sensor.pose.position for sensor in rig]))
     taken = [_room_of_ring(pen, start) for start, _ in moves]
     for (x, y), sensor in sorted(zip(places.tolist(), rig, strict=True), key=lambda pair: pair[0]):
+        color = drawing_of(sensor.kind).color(PAPER)
         pen.disc((x, y), 7.5 * scale, WHITE, layer=3)
-        pen.disc((x, y), 5.5 * scale, (*colors[sensor.kind][:3], 1.0), layer=4)
+        pen.disc((x, y), 5.5 * scale, (*color[:3], 1.0), layer=4)
         half = scale * (NAME * LETTER_WIDTH * len(sensor.name) / 2 + NAME_PADDING)
         base = y - scale * NAME_RISE
         while any(abs(x - a) < half + b and abs(base - c) < scale * NAME_STEP for a, b, c in taken):

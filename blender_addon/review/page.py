@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..engine import kinds
 from ..overlay.colors import PAPER, Rgba
+from ..overlay.kinds import drawing_of
 from .camera import DESIGN_HEIGHT, Frame
 from .caption import Caption
 from .lettering import FAINT_INK, Lettering
 from .marks import GHOST
 
 if TYPE_CHECKING:
-    import pe_core as pe
+    from ..engine import pe
 
 MARGIN, HEAD_HEIGHT = 44, 120
 HEADLINE, HEADLINE_Y, DETAIL_Y = 34, 62, 95
@@ -33,14 +35,14 @@ def frame_of(rows: int, size: tuple[int, int]) -> Frame:
 
 def legend_of(rig: pe.Rig, *, stopped: bool, moved: bool) -> Legend:
     """Return text, colour and mark ("line" or "ring") of what is in the picture."""
-    kinds = {sensor.kind for sensor in rig}
+    present = {sensor.kind for sensor in rig}
     entries: Legend = []
-    if "lidar" in kinds:
-        entries.append(("LiDAR beam", PAPER.free, "line"))
-    if stopped:
-        entries.append(("stopped by the vehicle", PAPER.stopped, "line"))
-    if "camera" in kinds:
-        entries.append(("camera view", PAPER.camera, "line"))
+    for kind in kinds.KINDS.values():
+        if kind.name in present:
+            drawing = drawing_of(kind.name)
+            entries.append((drawing.look.legend or kind.label, drawing.color(PAPER), "line"))
+            if drawing.beams and stopped:
+                entries.append(("stopped by the vehicle", PAPER.stopped, "line"))
     if moved:
         entries.append(("where it started", GHOST, "ring"))
     return entries

@@ -10,34 +10,22 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bridge.rig import mounted_on_sensor, view_layer_of
-from ..bridge.vehicle import visible_members
-from ..overlay.beams import Beams, shown_beams
+from .. import bridge
 from ..overlay.colors import PAPER, Rgba
-from ..overlay.geometry import (
-    beam_lines,
-    frustum_faces,
-    frustum_lines,
-    frustum_points,
-)
+from ..overlay.kinds import Look, Sketch, beam_budget, drawing_of
 from . import shapes
 from .camera import View
 from .shapes import Faces
 from .stage import Stage
 
 if TYPE_CHECKING:
-    import pe_core as pe
+    from ..engine import pe
 
 Floats = NDArray[np.float64]
 
 BEAMS, CHANNELS = 760, 12
 """Beams drawn over all LiDARs, and of how many channels each: a pattern, not a wall."""
-BEAM_M, FRUSTUM_M = 5.5, 2.0
-VIEW_SHARE = 0.62
-"""How much of a beam has to be in the picture: its end is faint."""
-LINE_PX, FRAME_PX, RING_PX = 1.3, 1.8, 1.2
-CLEAR_M = 0.22
-"""Beams begin this far from the sensor, so that it is not lost among them."""
+RING_PX = 1.2
 RINGS_M = (5.0, 10.0)
 RING: Rgba = (0.55, 0.58, 0.62, 0.5)
 RING_TEXT: Rgba = (0.45, 0.48, 0.52, 1.0)
@@ -52,22 +40,22 @@ class Subject:
 
     study: pe.Study
     start: pe.Rig | None
-    beams: dict[str, Beams]
+    sketches: dict[str, Sketch]
 
     @classmethod
     def of(cls, study: pe.Study, outcome: pe.Outcome) -> Subject:
         """Choose the beams to be shown."""
-        lidars = [sensor for sensor in study.rig if sensor.kind == "lidar"]
-        beams = {
-            each.name: shown_beams(each, study.vehicle, BEAMS // len(lidars), CHANNELS)
-            for each in lidars
+        rig, budget = study.rig, beam_budget(list(study.rig), BEAMS)
+        sketches = {
+            each.name: drawing_of(each.kind).sketch(each, study.vehicle, budget, CHANNELS)
+            for each in rig
         }
-        return cls(study, outcome.start.rig if outcome.kind == "optimize" else None, beams)
+        return cls(study, outcome.start.rig if outcome.kind == "optimize" else None, sketches)
 
     @property
     def any_stopped(self) -> bool:
         """Whether the vehicle stops a beam."""
-        return any(beams.stopped.any() for beams in self.beams.values())
+        return any(sketch.stopped for sketch in self.sketches.values())
 
     def moves(self) -> list[tuple[Floats, Floats]]:
         """Start and end (3,) [m] of each sensor that was moved."""
@@ -83,12 +71,7 @@ class Subject:
         if self.study.vehicle is not None:
             points.append(np.array(list(product(*zip(*self.study.vehicle.bounds, strict=True)))))
         for sensor in self.study.rig:
-            if sensor.kind == "camera":
-                points.append(frustum_points(sensor, FRUSTUM_M))
-            else:
-                ends = beam_lines(sensor, self.beams[sensor.name], BEAM_M, PAPER).points[1::2]
-                start = np.array(sensor.pose.position)
-                points.append(start + VIEW_SHARE * (ends - start))
+            points.append(self.sketches[sensor.name].points(_look(sensor).length_m))
         return np.vstack(points)
 
     def build(self, stage: Stage, view: View, scene: bpy.types.Scene) -> None:
@@ -112,18 +95,19 @@ class Subject:
 
     def _build_view(self, stage: Stage, view: View, sensor: pe.Sensor) -> None:
         """What one sensor sees."""
-        if sensor.kind == "camera":
-            lines = frustum_lines(sensor, FRUSTUM_M, PAPER)
-            stage.add_faces("Frustum", shapes.ribbons(lines, view, FRAME_PX), view)
-            faces = shapes.triangles(frustum_faces(sensor, FRUSTUM_M, PAPER))
-            stage.add_faces("Frustum", faces)
-            return
-        lines = beam_lines(sensor, self.beams[sensor.name], BEAM_M, PAPER)
-        lines = shapes.begun_later(lines, CLEAR_M)
-        stage.add_faces("Beams", shapes.ribbons(lines, view, LINE_PX), view)
+        sketch, look = self.sketches[sensor.name], _look(sensor)
+        lines = sketch.lines(look.length_m, PAPER)
+        if look.clear_m:
+            lines = shapes.begun_later(lines, look.clear_m)
+        stage.add_faces("View", shapes.ribbons(lines, view, look.line_px), view)
+        stage.add_faces("View", shapes.triangles(sketch.faces(look.length_m, PAPER)))
 
     def _positions(self) -> Floats:
         return np.array([sensor.pose.position for sensor in self.study.rig])
+
+
+def _look(sensor: pe.Sensor) -> Look:
+    return drawing_of(sensor.kind).look
 
 
 def vehicle_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
@@ -131,5 +115,5 @@ def vehicle_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     collection = scene.perception_entropy.vehicle
     if collection is None:
         return []
-    members = visible_members(collection, view_layer_of(scene))
-    return [each for each in members if not mounted_on_sensor(each)]
+    members = bridge.visible_members(collection, bridge.view_layer_of(scene))
+    return [each for each in members if not bridge.mounted_on_sensor(each)]

@@ -76,7 +76,7 @@ def test_a_camera_behind_the_glass_sees_out_and_a_lidar_does_not(
 ):
     rays = in_view(pe.catalog.load(model), yaw, pitch)
     assert np.isinf(study.vehicle.first_hit(position, rays, through_glass=True).distance).all()
-    hits = study.vehicle.first_hit(position, rays, "lidar")
+    hits = study.vehicle.first_hit(position, rays)
     assert set(study.vehicle.parts[hits.face]) == {study.vehicle.part_names.index(pane)}
 
 

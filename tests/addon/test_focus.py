@@ -5,7 +5,7 @@ import math
 import bpy
 import pytest
 
-from blender_addon import bridge, stale
+from blender_addon import bridge, choices, stale
 from blender_addon.engine import pe
 from tests.addon import scenes
 
@@ -55,7 +55,7 @@ def test_new_row_doubles_the_front_for_all_classes(scene):
 
 
 def test_every_region_is_tested():
-    assert list(AREAS) == list(bridge.REGIONS)
+    assert list(AREAS) == list(choices.REGIONS)
 
 
 @pytest.mark.parametrize("region", AREAS)

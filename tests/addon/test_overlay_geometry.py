@@ -22,12 +22,13 @@ def load_overlay():
     sys.modules[name] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(sys.modules[name])
     modules = (
-        importlib.import_module(f"{name}.{each}") for each in ("beams", "colors", "geometry")
+        importlib.import_module(f"{name}.{each}")
+        for each in ("beams", "colors", "geometry", "kinds")
     )
     return tuple(modules)
 
 
-beams, colors, geometry = load_overlay()
+beams, colors, geometry, kinds = load_overlay()
 
 LENGTH_M = 15.0
 
@@ -214,9 +215,9 @@ def test_frustum_is_as_wide_as_the_picture():
 
 
 def test_a_camera_is_a_frustum_and_a_lidar_is_lines(vehicle):
-    camera = geometry.sensor_geometry(sensor(SQUARE), vehicle, 100, LENGTH_M)
+    camera = kinds.sensor_geometry(sensor(SQUARE), vehicle, 100, LENGTH_M)
     assert camera.lines.points.shape == (22, 3) and camera.faces.points.shape == (12, 3)
-    mounted = geometry.sensor_geometry(sensor(), vehicle, 100, LENGTH_M)
+    mounted = kinds.sensor_geometry(sensor(), vehicle, 100, LENGTH_M)
     assert len(mounted.lines.points) <= 200 and mounted.faces.points.shape == (0, 3)
     for each in (camera.lines, camera.faces, mounted.lines, mounted.faces):
         assert each.points.dtype == each.colors.dtype == np.float32

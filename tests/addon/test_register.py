@@ -1,8 +1,19 @@
 """Registering, unregistering, and what is left behind: nothing."""
 
+from typing import ClassVar
+
 import bpy
+import pytest
 
 import blender_addon
+from blender_addon import changes, commands, roster, stale
+from blender_addon.operators import running
+from blender_addon.overlay import handler
+
+ROUNDS = 100
+
+
+SIGNALS = (changes.study, changes.picture)
 
 
 def traces() -> dict[str, list[str]]:
@@ -14,6 +25,8 @@ def traces() -> dict[str, list[str]]:
         "classes": [name for name in dir(bpy.types) if name.startswith("PE_")],
         "handlers": [f.__name__ for f in functions if f.__module__.startswith("blender_addon")],
         "properties": [c.__name__ for c in carriers if hasattr(c, "perception_entropy")],
+        "listeners": [f.__name__ for s in SIGNALS for f in s.listeners],
+        "timers": [f.__name__ for f in (stale.check,) if bpy.app.timers.is_registered(f)],
     }
 
 
@@ -29,6 +42,93 @@ def test_register_unregister_register_leaves_nothing_behind():
     assert traces() == registered
     blender_addon.unregister()
     assert traces() == before
+
+
+def extended_menus() -> list[str]:
+    """Return the menus and panels of Blender that something of ours draws into."""
+    found = []
+    for name in dir(bpy.types):
+        draw = getattr(getattr(bpy.types, name), "draw", None)
+        ours = (f.__module__ for f in getattr(draw, "_draw_funcs", ()))
+        found += [name for module in ours if module.startswith("blender_addon")]
+    return found
+
+
+class View3D:
+    """Stands for Blender's 3D views: counts what is drawn into them."""
+
+    handles: ClassVar[set] = set()
+
+    @classmethod
+    def draw_handler_add(cls, function, *_):
+        handle = object()
+        cls.handles.add(handle)
+        return handle
+
+    @classmethod
+    def draw_handler_remove(cls, handle, _region):
+        cls.handles.remove(handle)
+
+
+@pytest.fixture
+def view3d(monkeypatch):
+    """Return a stand-in for the 3D views: Blender does not tell what is drawn into its own."""
+    monkeypatch.setattr(handler, "VIEW", View3D)
+    return View3D
+
+
+def test_a_hundred_rounds_leave_nothing_behind(view3d):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    before, kept = traces(), None
+    assert not any(before.values())
+    for _ in range(ROUNDS):
+        blender_addon.register()
+        assert len(view3d.handles) == 1
+        bpy.app.timers.register(stale.check)  # a change just before it is switched off
+        blender_addon.operators.listed_sensors(bpy.context.scene)
+        kept = kept or traces()
+        assert traces() == kept
+        blender_addon.unregister()
+        assert traces() == before
+        assert not view3d.handles
+    assert all(kept[each] for each in ("classes", "handlers", "properties", "listeners", "timers"))
+    assert running.current is None and not commands._registered and not roster._found
+    assert not extended_menus()
+    assert not handler._handles and not handler._batches and not handler._shaders
+
+
+@pytest.fixture
+def heard():
+    """Return what the signals tell, as it comes."""
+    told = []
+    listeners = {
+        changes.study: lambda: told.append("study"),
+        changes.picture: lambda: told.append("picture"),
+    }
+    for signal, listener in listeners.items():
+        signal.connect(listener)
+        signal.connect(listener)  # asked for twice, called once
+    yield told
+    for signal, listener in listeners.items():
+        signal.disconnect(listener)
+        signal.disconnect(listener)
+        assert listener not in signal.listeners
+
+
+def test_a_change_is_told_to_those_who_listen(car, heard):
+    settings = car.perception_entropy
+    settings.beam_limit = 10
+    assert heard == ["picture"]
+    settings.score_samples = 10
+    assert heard == ["picture", "study"]
+    car.objects["roof"].perception_entropy.model = "Pandar40"
+    bpy.ops.pe.add_focus()
+    assert len(heard) > 3 and set(heard[2:]) == {"study"}
+
+
+def test_picture_and_check_follow_a_change(car):
+    assert {f.__name__ for f in changes.picture.listeners} == {"tag_redraw"}
+    assert {f.__name__ for f in changes.study.listeners} == {"tag_redraw", "check_soon", "forget"}
 
 
 def test_all_that_is_documented_is_there(addon):

@@ -1,0 +1,183 @@
+"""The arrows of ARCHITECTURE.md, held against every import of the add-on."""
+
+import ast
+import importlib
+from pathlib import Path
+
+import pytest
+
+import blender_addon
+from blender_addon import engine
+
+ROOT = Path(blender_addon.__file__).parent
+PACKAGE = "blender_addon"
+ARRAYS = {"overlay.beams", "overlay.colors", "overlay.geometry", "overlay.kinds"}
+"""Modules that need neither a scene nor a GPU."""
+
+ALLOWED = {
+    "changes": set(),
+    "choices": set(),
+    "engine": set(),
+    "properties": {"changes", "choices", "engine"},
+    "bridge": {"choices", "engine"},
+    "roster": {"bridge", "changes"},
+    "stale": {"bridge", "changes", "roster"},
+    "overlay": {"engine"},
+    "overlay.cache": {"bridge", "engine", "overlay", "roster"},
+    "overlay.handler": {"changes", "overlay", "overlay.cache"},
+    "review": {"bridge", "engine", "overlay"},
+    "operators": {"bridge", "changes", "choices", "engine", "properties", "review", "roster"},
+    "panels": {"choices", "operators", "properties"},
+    "commands": {"bridge", "engine", "review"},
+    "__init__": {
+        *("commands", "operators", "overlay.handler", "panels", "properties", "roster", "stale")
+    },
+    "__main__": {"__init__", "commands", "engine"},
+}
+"""What each module or package may import. What stands below a package is part of it, unless it has
+a line of its own."""
+
+
+def files():
+    """Every file of the add-on by its name below it: ``overlay.handler``, ``bridge``, ``__init__``.
+
+    A copy of the engine is there while the extension is built.
+    """
+    for path in sorted(ROOT.rglob("*.py")):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        if parts[0] != "pe_core":
+            yield (
+                ".".join(parts[:-1] if len(parts) > 1 and parts[-1] == "__init__" else parts),
+                path,
+            )
+
+
+FILES = dict(files())
+
+
+def unit_of(name):
+    """The line of the table that a module belongs to; itself when there is none."""
+    units = [unit for unit in ALLOWED if name == unit or name.startswith(f"{unit}.")]
+    return max(units, key=len, default=name)
+
+
+def imports(name, path):
+    """Yield the full name of everything a file imports, inside functions too: modules and names."""
+    package = [PACKAGE, *([] if name == "__init__" else name.split("."))]
+    if path.name != "__init__.py":
+        package = package[:-1]
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            start = package[: len(package) - node.level + 1] if node.level else []
+            module = [*start, *(node.module.split(".") if node.module else [])]
+            yield from (".".join([*module, alias.name]) for alias in node.names)
+
+
+def imported_files(name, path):
+    """Yield the names of the add-on's own files that a file imports."""
+    for full in imports(name, path):
+        top, _, inner = full.partition(".")
+        if top == PACKAGE:
+            while inner and inner not in FILES:
+                inner = inner.rpartition(".")[0]
+            yield inner or "__init__"
+
+
+def edges():
+    """All (from, to) between lines of the table."""
+    pairs = {
+        (unit_of(n), unit_of(to)) for n, path in FILES.items() for to in imported_files(n, path)
+    }
+    return {(a, b) for a, b in pairs if a != b}
+
+
+def test_every_import_goes_along_an_arrow():
+    assert {unit_of(name) for name in FILES} == set(ALLOWED)
+    found = edges()
+    wrong = sorted(f"{a} -> {b}" for a, b in found if b not in ALLOWED[a])
+    assert not wrong
+    unused = sorted(f"{a} -> {b}" for a, to in ALLOWED.items() for b in to if (a, b) not in found)
+    assert not unused, "the table promises less freedom than it gives"
+
+
+def test_arrows_point_one_way():
+    left = {unit: set(to) for unit, to in ALLOWED.items()}
+    while left:
+        leaves = {unit for unit, to in left.items() if not to & set(left)}
+        assert leaves, f"a circle among {sorted(left)}"
+        left = {unit: to for unit, to in left.items() if unit not in leaves}
+
+
+def test_imports_are_seen_wherever_they_stand(tmp_path):
+    """The test above is worth what it sees: inside functions, and by every way to write them."""
+    path = tmp_path / "job.py"
+    path.write_text(
+        "from .. import stale as s, bridge\n"
+        "from ..overlay import handler\n"
+        "def f():\n    from . import running\n    import blender_addon.review.page\n"
+    )
+    found = list(imported_files("operators.job", path))
+    expected = ["stale", "bridge", "overlay.handler", "operators.running", "review.page"]
+    assert found == expected
+    (tmp_path / "__init__.py").write_text("from .rig import x\nfrom ..engine import pe\n")
+    found = list(imported_files("bridge", tmp_path / "__init__.py"))
+    assert found == ["bridge.rig", "engine"]
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_bridge_is_taken_by_its_face(name):
+    inside = {to for to in imported_files(name, FILES[name]) if to.startswith("bridge.")}
+    assert not inside or unit_of(name) == "bridge"
+
+
+@pytest.mark.parametrize("name", sorted(ARRAYS))
+def test_what_is_drawn_is_made_without_scene_or_gpu(name):
+    foreign = {full.partition(".")[0] for full in imports(name, FILES[name])}
+    assert not foreign & {"bpy", "gpu", "gpu_extras", "mathutils", "bpy_extras"}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_engine_comes_through_its_door(name):
+    tops = {full.partition(".")[0] for full in imports(name, FILES[name])}
+    assert not tops & {"pe_core", "pe_report"}
+    assert name == "engine" or "importlib" not in tops
+
+
+def rooms():
+    """The engine's modules that the door has, by the name they have there."""
+    return {n: m for n, m in vars(engine).items() if getattr(m, "__name__", "").startswith("pe_")}
+
+
+def test_the_door_leads_into_rooms_only():
+    for name, room in rooms().items():
+        assert hasattr(room, "__path__"), f"{name} is {room.__name__}, inside a room"
+        assert room.__name__.count(".") <= 1, f"{name} is {room.__name__}, inside a room"
+
+
+def public_names(room):
+    """What a room shows: its ``__all__``; without one, what does not begin with an underscore."""
+    return set(getattr(room, "__all__", (n for n in dir(room) if not n.startswith("_"))))
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_only_the_faces_of_rooms_are_used(name):
+    tree = ast.parse(FILES[name].read_text("utf-8"))
+    taken = {
+        alias.asname or alias.name: alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module == "engine"
+        for alias in node.names
+    }
+    assert set(taken.values()) <= set(rooms())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            room = taken.get(node.value.id)
+            if room is not None:
+                assert node.attr in public_names(rooms()[room]), f"{room}.{node.attr}"
+
+
+def test_every_module_can_be_imported():
+    for name in set(FILES) - {"__init__", "__main__"}:
+        assert importlib.import_module(f"{PACKAGE}.{name}")

@@ -1,0 +1,104 @@
+"""A scene is looked through for its sensors once a need, however large it is."""
+
+import sys
+
+import bpy
+import pytest
+
+from blender_addon import roster, stale
+from blender_addon.bridge.rig import sensor_objects
+from blender_addon.operators import listed_sensors
+from blender_addon.overlay.cache import OverlayCache
+from tests.addon import scenes
+
+OTHERS = 2000
+
+
+@pytest.fixture
+def crowd(car):
+    """The car with its LiDAR among many other objects."""
+    for number in range(OTHERS):
+        car.collection.objects.link(bpy.data.objects.new(f"thing {number}", None))
+    bpy.context.view_layer.update()
+    return car
+
+
+@pytest.fixture
+def looks():
+    """Return a function that counts how often a piece of work looks through a scene."""
+
+    def count(work) -> int:
+        calls = []
+
+        def note(frame, event, _argument):
+            if event == "call" and frame.f_code is sensor_objects.__code__:
+                calls.append(frame)
+
+        sys.setprofile(note)
+        try:
+            work()
+        finally:
+            sys.setprofile(None)
+        return len(calls)
+
+    return count
+
+
+def draw(scene, cache):
+    """What a redraw of panel and 3D view asks for."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return [obj.name for obj in listed_sensors(scene)], list(cache.update(scene, depsgraph))
+
+
+def test_a_score_looks_once_before_the_work_and_once_after(crowd, looks):
+    assert looks(bpy.ops.pe.score) == 2  # four times before there was this test
+
+
+def test_redraws_without_a_change_look_once(crowd, looks):
+    cache = OverlayCache()
+
+    def work():
+        for _ in range(10):
+            assert draw(crowd, cache) == (["roof"], ["roof"])
+        crowd.perception_entropy.has_result = True
+        stale.check()
+
+    roster.forget()
+    assert looks(work) == 1  # twenty-one times before
+    assert looks(work) == 0
+
+
+def test_a_change_is_seen_at_the_next_redraw(car):
+    cache = OverlayCache()
+    assert draw(car, cache)[0] == ["roof"]
+    copy = car.objects["roof"].copy()
+    copy.name = "copy"
+    car.collection.objects.link(copy)
+    bpy.context.view_layer.update()
+    assert draw(car, cache) == (["copy", "roof"],) * 2
+    copy.name = "zenith"
+    bpy.context.view_layer.update()
+    assert draw(car, cache) == (["roof", "zenith"],) * 2
+    copy.perception_entropy.is_sensor = False
+    assert draw(car, cache) == (["roof"],) * 2
+    bpy.data.objects.remove(car.objects["roof"])
+    assert draw(car, cache) == ([], [])
+    copy.perception_entropy.is_sensor = True
+    assert draw(car, cache)[0] == ["zenith"]
+
+
+def test_undo_and_a_new_file_are_seen(car):
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.pe.add_sensor("EXEC_DEFAULT", True)
+    assert len(listed_sensors(bpy.context.scene)) == 2
+    bpy.ops.ed.undo()
+    assert [obj.name for obj in listed_sensors(bpy.context.scene)] == ["roof"]
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert listed_sensors(bpy.context.scene) == []
+
+
+def test_scenes_are_told_apart(car):
+    other = bpy.data.scenes.new("other")
+    assert [obj.name for obj in listed_sensors(car)] == ["roof"]
+    assert listed_sensors(other) == []
+    assert scenes.study().rig.sensors[0].name == "roof"

@@ -18,12 +18,3 @@ kinds = import_module(f"{_NAME}.kinds")
 search = import_module(f"{_NAME}.search")
 studies = import_module(f"{_NAME}.study")
 text = import_module(f"{_NAME}.text")
-
-if not hasattr(kinds, "KINDS"):  # STANDIN
-    from types import SimpleNamespace as _N
-
-    kinds.KINDS = {
-        "lidar": _N(name="lidar", label="LiDAR"),
-        "camera": _N(name="camera", label="Camera"),
-    }
-    kinds.kind_of = lambda m: kinds.KINDS[m.kind]

@@ -45,14 +45,20 @@ def rig_from_objects(objects: Sequence[bpy.types.Object], depsgraph: bpy.types.D
 
 
 def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Sensor:
-    """Return one object's model, placement and fusion group as a sensor."""
+    """Return one object's model, placement and fusion group as a sensor.
+
+    Raises
+    ------
+    InputError
+        When it is no possible sensor; the line names the object.
+    """
     settings = obj.perception_entropy
     try:
-        model = catalog.load(settings.model)
+        model, pose = catalog.load(settings.model), pose_of(obj, depsgraph)
+        return pe.Sensor(obj.name, model, pose, settings.fusion or None)
     except pe.InputError as error:
-        field = f"sensor {obj.name!r}: model"
+        field = f"sensor {obj.name!r}: {error.field}"
         raise pe.InputError("scene", field, error.expected, error.found) from None
-    return pe.Sensor(obj.name, model, pose_of(obj, depsgraph), settings.fusion or None)
 
 
 def free_axes(obj: bpy.types.Object) -> tuple[str, ...]:
@@ -68,7 +74,7 @@ def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
     the same numbers.
     """
     ground_from_sensor = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=float)
-    _check_rigid(obj.name, ground_from_sensor)
+    _check_rigid(ground_from_sensor)
     written = _pose_from_numbers(obj.perception_entropy.placed)
     if _stands_at(ground_from_sensor, written):
         return written
@@ -124,22 +130,20 @@ def view_layer_of(scene: bpy.types.Scene) -> bpy.types.ViewLayer:
     return bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
 
 
-def _check_rigid(name: str, matrix: np.ndarray) -> None:
+def _check_rigid(matrix: np.ndarray) -> None:
     """Complain about a sensor that is scaled, sheared or mirrored, or nowhere at all."""
-    field = f"sensor {name!r}"
     if not np.isfinite(matrix).all():
-        raise pe.InputError("scene", f"{field}: placement", "finite numbers", "NaN or infinity")
+        raise pe.InputError("object", "placement", "finite numbers", "NaN or infinity")
     axes = matrix[:3, :3]
     lengths = np.sqrt((axes**2).sum(axis=0))
     if np.abs(lengths - 1.0).max() > SCALE_TOLERANCE:
         expected = "1 in each direction (its drawn size is the empty's display size)"
         found = ", ".join(f"{length:.4g}" for length in lengths)
-        raise pe.InputError("scene", f"{field}: scale", expected, found)
+        raise pe.InputError("object", "scale", expected, found)
     if np.abs(axes.T @ axes - np.eye(3)).max() > SCALE_TOLERANCE:
-        expected = "axes at right angles"
-        raise pe.InputError("scene", f"{field}: rotation", expected, "shear from its parent")
+        raise pe.InputError("object", "rotation", "axes at right angles", "shear from its parent")
     if np.linalg.det(axes) < 0.0:
-        raise pe.InputError("scene", f"{field}: scale", "no mirroring", "a negative scale")
+        raise pe.InputError("object", "scale", "no mirroring", "a negative scale")
 
 
 def _stands_at(ground_from_sensor: np.ndarray, pose: pe.Pose) -> bool:

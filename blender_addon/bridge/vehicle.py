@@ -72,10 +72,11 @@ def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> 
         triangles = _triangles_local(obj, local)
         if not len(triangles):
             continue
-        placed = _placed(triangles, np.array(instance.matrix_world, dtype=float))
-        if not np.isfinite(placed).all():
+        ground_from_object = np.array(instance.matrix_world, dtype=float)
+        if not (np.isfinite(triangles).all() and np.isfinite(ground_from_object).all()):
             field = f"vehicle object {original.name!r}"
             raise pe.InputError("scene", field, "finite coordinates", "NaN or infinity")
+        placed = _placed(triangles, ground_from_object)
         yield Part(original.name_full, placed, original.perception_entropy.see_through)
 
 

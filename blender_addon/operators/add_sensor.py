@@ -5,9 +5,10 @@ from __future__ import annotations
 import bpy
 from bpy.props import StringProperty
 
-from ..engine import catalog, kinds, pe
+from ..engine import catalog, kinds
 from ..properties import DEFAULT_MODEL, model_suggestions
 from .mounting import Mount, mount_of, sensible_place
+from .reports import REFUSALS, refuse
 
 COLLECTION = "Sensors"
 
@@ -40,9 +41,8 @@ class PE_OT_add_sensor(bpy.types.Operator):
             mount = mount_of(kind.name)
             choose_vehicle(context.scene)
             location = sensible_place(context, mount)
-        except pe.InputError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        except REFUSALS as error:
+            return refuse(self, error)
         obj = new_sensor(context, kind.label, self.model, mount)
         obj.location = location
         select_only(context, obj)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from .. import bridge
 from ..engine import pe
+from .reports import REFUSALS, chosen_file, refuse, tell
 
 
 class PE_OT_export_study(ExportHelper, bpy.types.Operator):
@@ -22,14 +21,13 @@ class PE_OT_export_study(ExportHelper, bpy.types.Operator):
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        path = Path(bpy.path.abspath(self.filepath))
         try:
+            path = chosen_file(self.filepath)
             study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
             pe.export_study(study, path, replace_study=True)  # the file dialog has asked
-        except pe.InputError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {path}")
+        except REFUSALS as error:
+            return refuse(self, error)
+        tell(self, "INFO", f"Wrote {path}")
         return {"FINISHED"}
 
 

@@ -8,6 +8,7 @@ from bpy.props import EnumProperty
 from .. import changes
 from ..choices import REGION_ITEMS
 from ..properties import DEFAULT_REGION
+from .reports import tell
 
 
 class PE_OT_add_focus(bpy.types.Operator):
@@ -31,7 +32,7 @@ class PE_OT_add_focus(bpy.types.Operator):
         row.name, row.region = name, self.region
         settings.focus_index = len(settings.focus) - 1
         changes.study.tell()
-        self.report({"INFO"}, f"Added {name}")
+        tell(self, "INFO", f"Added {name}")
         return {"FINISHED"}
 
 
@@ -57,7 +58,7 @@ class PE_OT_remove_focus(bpy.types.Operator):
         settings.focus.remove(index)
         settings.focus_index = max(0, min(index, len(settings.focus) - 1))
         changes.study.tell()
-        self.report({"INFO"}, f"Removed {name}")
+        tell(self, "INFO", f"Removed {name}")
         return {"FINISHED"}
 
 

@@ -7,6 +7,7 @@ import bpy
 from .. import bridge
 from ..engine import pe
 from . import running
+from .reports import REFUSALS, refuse, tell
 
 
 class JobOperator:
@@ -31,8 +32,8 @@ class JobOperator:
             for _ in job:
                 pass
             return self._apply(context.scene, job.outcome)
-        except pe.InputError as error:
-            return self._refuse(error)
+        except REFUSALS as error:
+            return refuse(self, error)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Start, and let the window's timer do the rest."""
@@ -40,8 +41,8 @@ class JobOperator:
             return self.execute(context)
         try:
             running.begin(context, self._job(context))
-        except pe.InputError as error:
-            return self._refuse(error)
+        except REFUSALS as error:
+            return refuse(self, error)
         context.window_manager.modal_handler_add(self)
         running.current.show(context)
         return {"RUNNING_MODAL"}
@@ -61,8 +62,8 @@ class JobOperator:
                 return self._apply(bpy.data.scenes.get(job.scene_name), job.job.outcome)
             job.show_soon(context)
             return {"PASS_THROUGH"}
-        except pe.InputError as error:
-            return self._refuse(error)
+        except REFUSALS as error:
+            return refuse(self, error)
         finally:
             if not more:
                 running.end(context)
@@ -82,18 +83,14 @@ class JobOperator:
             self.report({"INFO"}, "Stopped before a score was complete: nothing was changed")
             return {"CANCELLED"}
         if scene is None:
-            self.report({"WARNING"}, "The scene is gone; its result was dropped")
+            tell(self, "WARNING", "The scene is gone; its result was dropped")
             return {"CANCELLED"}
         gone = self.write(scene, outcome)
         if gone:
-            self.report({"WARNING"}, f"No longer there, so not placed: {', '.join(gone)}")
+            tell(self, "WARNING", f"No longer there, so not placed: {', '.join(gone)}")
         else:
-            self.report({"INFO"}, self.message(outcome))
+            tell(self, "INFO", self.message(outcome))
         return {"FINISHED"}
-
-    def _refuse(self, error: pe.InputError) -> set[str]:
-        self.report({"ERROR"}, str(error))
-        return {"CANCELLED"}
 
 
 class PE_OT_score(JobOperator, bpy.types.Operator):

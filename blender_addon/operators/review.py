@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from .. import bridge
 from ..engine import pe
+from .reports import REFUSALS, chosen_file, refuse, tell
 
 
 class PE_OT_render_review(ExportHelper, bpy.types.Operator):
@@ -24,17 +23,16 @@ class PE_OT_render_review(ExportHelper, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         from .. import review  # only who wants a picture pays for it
 
-        path = Path(bpy.path.abspath(self.filepath))
         try:
+            path = chosen_file(self.filepath)
             study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
             job = pe.ScoreJob(study)
             for _ in job:
                 pass
             review.render_review(context.scene, study, job.outcome, path)
-        except pe.InputError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {path}")
+        except REFUSALS as error:
+            return refuse(self, error)
+        tell(self, "INFO", f"Wrote {path}")
         return {"FINISHED"}
 
 

@@ -7,6 +7,7 @@ from bpy.props import StringProperty
 
 from .. import roster
 from .add_sensor import select_only
+from .reports import tell
 
 
 def listed_sensors(scene: bpy.types.Scene) -> list[bpy.types.Object]:
@@ -30,7 +31,7 @@ class PE_OT_select_sensor(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.view_layer.objects.get(self.name)
         if obj is None or not obj.visible_get():
-            self.report({"WARNING"}, f"{self.name} is hidden")
+            tell(self, "WARNING", f"{self.name} is hidden")
             return {"CANCELLED"}
         select_only(context, obj)
         return {"FINISHED"}

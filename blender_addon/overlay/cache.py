@@ -12,6 +12,8 @@ from ..engine import pe
 from .geometry import OverlayGeometry
 from .kinds import beam_budget, sensor_geometry
 
+LEAST_LENGTH_M = 0.1
+
 
 class OverlayCache:
     """Remembers names, plain values and arrays; never a Blender object."""
@@ -40,13 +42,13 @@ class OverlayCache:
             self._update_vehicle(scene, depsgraph)
         settings = scene.perception_entropy
         budget = beam_budget(sensors, settings.beam_limit)
+        length_m = max(LEAST_LENGTH_M, settings.beam_length)  # also of a length that is no number
         before, self._shown = self._shown, {}
         for sensor in sensors:
-            model = sensor.model.name
-            key = self._vehicle_key, model, sensor.pose, budget, settings.beam_length
+            key = self._vehicle_key, sensor.model, sensor.pose, budget, length_m
             known = before.get(sensor.name)
             if known is None or known[0] != key:
-                built = sensor_geometry(sensor, self._vehicle, budget, settings.beam_length)
+                built = sensor_geometry(sensor, self._vehicle, budget, length_m)
                 known = key, built
             self._shown[sensor.name] = known
         return {name: geometry for name, (_, geometry) in self._shown.items()}

@@ -46,6 +46,11 @@ def render_review(
         PNG to write; it appears when it is complete.
     size : (width, height)
         [px].
+
+    Raises
+    ------
+    InputError
+        When the picture cannot be written there.
     """
     words = caption_of(study, outcome)
     subject = Subject.of(study, outcome)

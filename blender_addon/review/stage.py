@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from ..engine import pe
 from .camera import HFOV_DEG, View
 from .shapes import Faces
 
@@ -67,14 +68,24 @@ class Stage:
         self.scene.render.resolution_y = view.frame.height
 
     def render(self, path: Path) -> None:
-        """Write the picture; a reader never sees half of it."""
+        """Write the picture; a reader never sees half of it.
+
+        Raises
+        ------
+        InputError
+            When it cannot be written there.
+        """
         partial = path.with_name(f".{path.stem}.partial.png")
         self.scene.render.filepath = str(partial)
         try:
             bpy.ops.render.render(write_still=True, scene=self.scene.name)
             partial.replace(path)
+        except (OSError, RuntimeError) as error:  # Blender's own words end in a line break
+            found = str(error).strip().removeprefix("Error: ")
+            raise pe.InputError(path, "picture", "a place to write to", found) from None
         finally:
-            partial.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                partial.unlink()
 
 
 @contextlib.contextmanager

@@ -1,0 +1,42 @@
+"""Panels and menus drawn without a window: a layout that notes what is put into it."""
+
+from types import SimpleNamespace
+
+
+class Layout:
+    """Takes what a panel draws, in rows and columns alike, and notes it in order."""
+
+    def __init__(self, notes=None):
+        self.notes = [] if notes is None else notes
+
+    def texts(self, of: str) -> list[str]:
+        """Texts of all labels, or of all buttons of operators."""
+        return [text for kind, text in self.notes if kind == of]
+
+    def label(self, text="", **_):
+        self.notes.append(("label", text))
+
+    def operator(self, name, text=None, **_):
+        self.notes.append(("operator", name if text is None else text))
+        return SimpleNamespace()
+
+    def menu(self, name, **_):
+        self.notes.append(("menu", name))
+
+    def prop(self, _owner, name, **_):
+        self.notes.append(("prop", name))
+
+    def context_string_set(self, name, value):
+        self.notes.append((name, value))
+
+    def _inner(self, **_):
+        return Layout(self.notes)
+
+    row = column = split = box = _inner
+
+
+def drawn(cls, **context) -> Layout:
+    """Return what a panel or a menu draws in a context of these members."""
+    layout = Layout()
+    cls.draw(SimpleNamespace(layout=layout), SimpleNamespace(**context))
+    return layout

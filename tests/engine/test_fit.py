@@ -9,17 +9,11 @@ import pe_core as pe
 from pe_core.formats import read_ap_table
 from pe_core.metric import ApTable, fit_ap_curve, study_snippet
 
-PAPER = {"lidar": (0.152, 0.659), "camera": (0.055, 0.155)}
-
 
 def table(m, ap, n=None):
     m = np.array(m, dtype=float)
     weights = np.ones(len(m)) if n is None else np.array(n, dtype=float)
     return ApTable(m, np.array(ap, dtype=float), weights)
-
-
-def clipped(m, a, b):
-    return [min(max(a * math.log(v) + b, 0.001), 0.999) for v in m]
 
 
 def written(tmp_path, text):
@@ -28,13 +22,29 @@ def written(tmp_path, text):
     return path
 
 
-@pytest.mark.parametrize("kind", PAPER)
-def test_points_of_the_papers_curve_give_its_coefficients_back(kind):
-    m = np.geomspace(1e-4, 1e7, 60)
-    fit = fit_ap_curve(table(m, clipped(m, *PAPER[kind])))
-    assert (fit.curve.a, fit.curve.b) == pytest.approx(PAPER[kind], abs=1e-12)
-    assert fit.a_error < 1e-10 and fit.b_error < 1e-10 and fit.rms < 1e-10
-    assert "at the clip" in fit.left_out
+def test_a_line_by_hand():
+    """AP 0.2, 0.3, 0.5 at ln m = 0, 1, 2: slope 0.15 and 0.3333 in the middle, so 0.1833 at 0.
+
+    Residuals 1/60, -2/60, 1/60: their squares sum to 1/600, over 3 - 2 points a variance of 1/600.
+    Slope: its root over the root of 2, the spread of ln m; intercept: over that of 1/3 + 1/2.
+    """
+    fit = fit_ap_curve(table([1.0, math.e, math.e**2], [0.2, 0.3, 0.5]))
+    assert fit.curve.a == pytest.approx(0.15, abs=1e-12)
+    assert fit.curve.b == pytest.approx(0.55 / 3, abs=1e-12)
+    assert fit.rms == pytest.approx(math.sqrt(1 / 1800), abs=1e-12)
+    assert fit.a_error == pytest.approx(math.sqrt(1 / 1200), abs=1e-12)
+    assert fit.b_error == pytest.approx(math.sqrt(1 / 720), abs=1e-12)
+    assert fit.used.all() and fit.left_out == {}
+
+
+def test_what_is_left_out_does_not_bend_the_line():
+    """The same three points, and beside them one without a measurement and three at the clip."""
+    m = [0.0, 0.01, 1.0, math.e, math.e**2, 100.0, 200.0]
+    ap = [0.4, 0.001, 0.2, 0.3, 0.5, 0.999, 1.0]
+    fit = fit_ap_curve(table(m, ap))
+    assert fit.why == ("no measurement", "at the clip", "", "", "", "at the clip", "at the clip")
+    assert fit.left_out == {"no measurement": 1, "at the clip": 3}
+    assert (fit.curve.a, fit.curve.b) == pytest.approx((0.15, 0.55 / 3), abs=1e-12)
 
 
 def test_errors_are_those_of_least_squares():
@@ -71,12 +81,13 @@ def test_a_single_highest_point_is_not_saturated():
 
 
 def test_the_snippet_is_part_of_a_study(tmp_path):
-    m = [0.1, 0.2, 0.4, 0.8]
-    fit = fit_ap_curve(table(m, clipped(m, 0.2, 0.7)))
+    fit = fit_ap_curve(table([1.0, math.e, math.e**2, math.e**3], [0.21, 0.33, 0.48, 0.62]))
     text = study_snippet(fit, "camera")
     sensor = '[[sensor]]\nname = "a"\nmodel = "Pandar64"\nposition = [0, 0, 2]\n'
     study = pe.load_study(written(tmp_path, text + sensor))
-    assert (study.model.camera.a, study.model.camera.b) == pytest.approx((0.2, 0.7))
+    # slope: (3 (0.62 - 0.21) + 0.48 - 0.33) / 10; intercept: 1.64 / 4 less 1.5 slopes
+    assert (study.model.camera.a, study.model.camera.b) == (0.138, 0.203)
+    assert text.startswith("# AP = a ln m + b, fitted to 4 of 4 points of table\n[ap.camera]\n")
     assert study.model.lidar == pe.PerceptionModel().lidar
 
 

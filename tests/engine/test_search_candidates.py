@@ -126,7 +126,7 @@ def test_coordinates_are_uniform_and_the_check_tells_a_normal_distribution(axis,
 
 
 def test_coordinates_are_drawn_independently():
-    """Correlation of any two of six axes of two sensors: 4 / sqrt(n) at most, far below a copy's 1."""
+    """Correlations of six axes of two sensors: 4 / sqrt(n) at most, far below the 1 of a copy."""
     recorder, steps = searched(flat, {"a": WIDE, "b": WIDE}, candidates=2000)
     drawn = [moves(recorder, steps, name, axis)[0] for name in "ab" for axis in AXES]
     correlation = np.corrcoef(drawn) - np.eye(len(drawn))
@@ -154,7 +154,7 @@ def test_axes_that_are_not_free_never_move():
     bounds = {"a": {"x": (-50.0, 50.0), "yaw": (-9.0, 9.0)}, "b": {}}
     rig = rig_of("a", "b", "c")
     recorder, steps = searched(distance_to({"x": 2.0, "yaw": 1.0}), bounds, rig)
-    (x, y, z), (roll, pitch, yaw) = START
+    (_, y, z), (roll, pitch, _) = START
     for asked in (*recorder.rigs, *(s.best for s in steps)):
         own = asked["a"].pose
         assert own.position[1:] == (y, z)

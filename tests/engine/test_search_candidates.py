@@ -50,10 +50,18 @@ def moves(recorder, steps, sensor, axis):
     return [(values[some] - centers[some[0] - 1]) * factor for some in rounds_of(steps)]
 
 
-@pytest.mark.parametrize("axis", AXES)
-def test_every_candidate_lies_in_its_round_s_neighbourhood_round_the_best_before_it(axis):
+@pytest.fixture(scope="module")
+def long_search():
+    """All six axes of two sensors, 400 candidates a round, towards a target."""
     target = {"x": 2.1, "y": -1.7, "z": 3.3, "roll": 0.5, "pitch": -0.6, "yaw": 1.4}
-    recorder, steps = searched(distance_to(target), {"a": WIDE, "b": WIDE}, candidates=400)
+    return searched(distance_to(target), {"a": WIDE, "b": WIDE}, candidates=400)
+
+
+@pytest.mark.parametrize("axis", AXES)
+def test_every_candidate_lies_in_its_round_s_neighbourhood_round_the_best_before_it(
+    axis, long_search
+):
+    recorder, steps = long_search
     widths, rounding = (METRES, ROUNDED_M) if axis in "xyz" else (DEGREES, ROUNDED_DEG)
     for sensor in ("a", "b"):
         found = moves(recorder, steps, sensor, axis)

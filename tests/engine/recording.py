@@ -2,25 +2,31 @@
 
 import math
 
+from pe_core.scoring import Judgement
 from pe_core.search import AXES, pose_values
 
 
 class Recorder:
     """Scores a rig by a function of its poses; keeps every rig, its value and what it was told.
 
-    Duck-typed: what a search asks of an `Evaluator`, and nothing else.
+    Duck-typed: what a search asks of an `Evaluator`, and nothing else. With `bounds`, candidates
+    that are no better are answered with what they have to be below, a lower bound.
     """
 
-    def __init__(self, landscape):
-        self.landscape = landscape
+    def __init__(self, landscape, bounds=False):
+        self.landscape, self.bounds = landscape, bounds
         self.rigs, self.values, self.below = [], [], []
 
-    def entropy(self, rig, *, below=math.inf, **_):
+    def entropy(self, rig):
+        return self.judge(rig, math.inf).entropy
+
+    def judge(self, rig, below):
         value = self.landscape(rig)
         self.rigs.append(rig)
         self.values.append(value)
         self.below.append(below)
-        return value
+        told = below if self.bounds and value >= below else value
+        return Judgement(told, told != value)
 
     def of(self, sensor):
         """Coordinates of one sensor in every rig asked for, by axis: metres and radians."""

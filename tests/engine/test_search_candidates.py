@@ -203,6 +203,16 @@ def test_a_candidate_has_to_be_below_the_best_so_far():
     assert recorder.below[1:] == [before.entropy for before in steps[:-1]]
 
 
+def test_lower_bounds_in_place_of_entropies_change_nothing():
+    landscape, bounds = distance_to({"x": 2.0, "pitch": 0.3}), {"a": WIDE}
+    plain, steps = searched(landscape, bounds)
+    told = Recorder(landscape, bounds=True)
+    space, schedule = pe.SearchSpace(bounds), pe.Schedule(candidates=40)
+    again = list(pe.optimize(told, plain.rigs[0], space, 0, schedule))
+    assert [(s.entropy, s.improved) for s in again] == [(s.entropy, s.improved) for s in steps]
+    assert told.values == plain.values
+
+
 @pytest.mark.parametrize("candidates", [1, 7])
 def test_candidates_are_counted_exactly(candidates):
     recorder, steps = searched(flat, {"a": WIDE}, candidates=candidates)

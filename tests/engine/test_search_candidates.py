@@ -296,7 +296,10 @@ def test_the_neighbourhood_shrinks_until_both_floors_are_reached(metres, degrees
     [
         ({"candidates": 0}, "candidates"),
         ({"decay": 0.0}, "decay"),
+        ({"decay": -0.5}, "decay"),
         ({"decay": 1.0}, "decay"),
+        ({"decay": 1.5}, "decay"),
+        ({"decay": math.nan}, "decay"),
     ],
 )
 def test_schedules_without_an_end_are_refused(options, message):
@@ -324,3 +327,36 @@ def test_free_axes_can_be_each_sensor_s_own_and_bounds_replace_the_default_ones(
     )
     assert set(space.bounds["a"]) == {"yaw", "z"} and space.bounds["a"]["z"] == (1.8, 2.0)
     assert set(space.bounds["b"]) == {"x", "y", "z", "pitch"}
+
+
+def test_bounds_may_begin_and_end_at_the_start():
+    (x, _, _), (_, pitch, _) = START
+    rad = rig_of("a")["a"].pose.rpy[1]
+    space = pe.SearchSpace({"a": {"x": (x, x + 1.0), "pitch": (rad - 1.0, rad)}})
+    assert space.checked(rig_of("a")) is space
+    assert math.degrees(rad) == pytest.approx(pitch)
+    recorder, _ = searched(flat, space.bounds)
+    assert min(recorder.of("a")["x"]) == x
+
+
+@pytest.mark.parametrize(
+    ("axis", "bounds", "message"),
+    [
+        (
+            "x",
+            (0.4, 2.0),
+            "a: bounds of x: expected bounds around the start, 0.3 m, found 0.4 m to",
+        ),
+        ("x", (-2.0, 0.2), "found -2 m to 0.2 m"),
+        ("pitch", (0.0, 1.0), "the start, -3 deg, found 0 deg to 57.2958 deg"),
+        ("up", (0.0, 1.0), "a: free: expected some of x, y, z, roll, pitch, yaw, found 'up'"),
+    ],
+)
+def test_bounds_that_leave_out_the_start_are_one_line(axis, bounds, message):
+    with pytest.raises(pe.InputError, match=message):
+        pe.SearchSpace({"a": {axis: bounds}}).checked(rig_of("a"))
+
+
+def test_a_sensor_that_is_not_in_the_rig_is_one_line():
+    with pytest.raises(pe.InputError, match=r"search space: sensor: .* found 'mast'"):
+        pe.SearchSpace({"mast": {}}).checked(rig_of("a"))

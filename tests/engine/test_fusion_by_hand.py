@@ -1,0 +1,222 @@
+"""Fusion of a handful of voxels worked by hand, and what a perception model takes and refuses."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.metric import H_BLIND, POINTPILLARS, RTM3D, ApTable, fit_ap_curve
+from pe_core.metric.fusion import Fusion, early_fusion, group_sum, late_fusion
+from pe_core.metric.planes import PlaneFusion, SeenRows
+
+# Entropies as test_by_hand.py derives them: no, one, two, three beams; 100 pixels; fused late.
+H0, H1, H2, H3, HC = 16.651386624, 1.520194952, 0.484427819, -0.277049759, 3.580001643
+H1_1, H1_C, H2_C, H1_1_C = 0.827047906, 1.400211369, 0.440172737, 0.765257677
+SATURATED = -10.975632491
+F = 1.0 / 998_001.0
+"""1 / 999^2: what a blind sensor is worth."""
+
+
+def fused(groups, **model):
+    entropies, seen = Fusion(pe.PerceptionModel(**model)).entropies(groups)
+    return entropies.tolist(), seen.tolist()
+
+
+BEAMS = ("lidar", np.array([0, 1, 0, 2, 300], np.uint16))
+MORE = ("lidar", np.array([0, 1, 1, 0, 0], np.uint8))
+PIXELS = ("camera", np.array([0.0, 100.0, 100.0, 100.0, 0.0]))
+
+
+@pytest.mark.parametrize(
+    ("groups", "expected", "seen"),
+    [
+        ([BEAMS], [H0, H1, H0, H2, SATURATED], [0, 1, 0, 1, 1]),
+        ([PIXELS], [H0, HC, HC, HC, H0], [0, 1, 1, 1, 0]),
+        ([BEAMS, PIXELS], [H0, H1_C, HC, H2_C, SATURATED], [0, 1, 1, 1, 1]),
+        ([PIXELS, BEAMS], [H0, H1_C, HC, H2_C, SATURATED], [0, 1, 1, 1, 1]),
+        ([BEAMS, MORE], [H0, H1_1, H1, H2, SATURATED], [0, 1, 1, 1, 1]),
+        ([BEAMS, MORE, PIXELS], [H0, H1_1_C, H1_C, H2_C, SATURATED], [0, 1, 1, 1, 1]),
+    ],
+)
+def test_entropies_of_a_sample(groups, expected, seen):
+    entropies, found = fused(groups)
+    assert entropies == pytest.approx(expected, abs=1e-8)
+    assert found == [bool(s) for s in seen]
+
+
+def test_by_the_letter_every_group_is_worth_something():
+    """Two groups: where neither sees anything, 1 / sigma^2 is 2 f, and H is less by ln 2."""
+    entropies, seen = fused([BEAMS, PIXELS], blind="literal")
+    one = -math.log(3.734754603 + 0.4761013265) + H0 + math.log(F)
+    two = -math.log(10.5217995 + 0.4761013265) + H0 + math.log(F)
+    only = -math.log(0.4761013265 + F) + H0 + math.log(F)
+    assert entropies[:4] == pytest.approx([H0 - math.log(2.0), one, only, two], abs=1e-8)
+    assert seen == [False, True, True, True, True]
+    assert fused([BEAMS], blind="literal")[0][0] == pytest.approx(H0)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_entropies_of_a_plane(kind):
+    """A plane of 3 x 2 voxels and, before it, one that must not be taken for it.
+
+    Single precision is looked at to 11 binary digits: 1.1e-4 in H at 100 pixels.
+    """
+    beams = np.array([[[9, 9], [9, 9], [9, 9]], [[0, 1], [2, 0], [1, 3]]], np.uint16)
+    area = np.array([[[7.0, 7.0]], [[100.0, 0.0]]], kind)
+    groups = [("lidar", beams), ("camera", SeenRows(slice(1, 2), area))]
+    fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (3, 2))
+    expected = [[H0, H1], [H2_C, H0], [H1, H3]]
+    np.testing.assert_allclose(fusion.entropies(groups, 1), expected, atol=2e-4)
+    seen = [[False, True], [True, False], [True, True]]
+    assert fusion.seen(groups, 1).tolist() == seen
+    assert fusion.seen(groups[1:], 1).tolist() == [[False] * 2, [True, False], [False] * 2]
+    alone = fusion.entropies(groups[1:], 1)
+    np.testing.assert_allclose(alone, [[H0, H0], [HC, H0], [H0, H0]], atol=2e-4)
+
+
+def test_two_groups_of_beams_in_a_plane():
+    beams = np.array([[[0, 1], [1, 2]]], np.uint16)
+    more = np.array([[[0, 1], [0, 0]]], np.uint8)
+    area = SeenRows(slice(0, 1), np.array([[[0.0, 100.0]]]))
+    groups = [("lidar", beams), ("lidar", more), ("camera", area)]
+    fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (2, 2))
+    np.testing.assert_allclose(
+        fusion.entropies(groups, 0), [[H0, H1_1_C], [H1, H2]], rtol=0.0, atol=1e-8
+    )
+    np.testing.assert_allclose(
+        fusion.entropies(groups[:2], 0), [[H0, H1_1], [H1, H2]], rtol=0.0, atol=1e-8
+    )
+    assert fusion.seen(groups, 0).tolist() == [[False, True], [True, True]]
+    literal = PlaneFusion(Fusion(pe.PerceptionModel("literal")), (2, 2))
+    assert literal.entropies(groups, 0)[0, 0] == pytest.approx(H0 - math.log(3.0), abs=1e-8)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_no_pixels_are_none_even_where_the_least_is_enough(kind):
+    """A curve that is saturated whatever it is given leaves what is not seen as it is."""
+    model = pe.PerceptionModel(camera=pe.ApCurve(1e-9, 5.0))
+    area = np.array([[[0.0, 1e-9, 1e9]]], kind)
+    fusion = PlaneFusion(Fusion(model), (1, 3))
+    found = fusion.entropies([("camera", SeenRows(slice(0, 1), area))], 0)
+    expected = [[H0, SATURATED, SATURATED]]
+    np.testing.assert_allclose(found, expected, atol=1e-5)
+
+
+def test_areas_far_beyond_a_picture_and_far_below_a_pixel_are_told_apart():
+    """1e-6 px, where AP is clipped, and 4e9, beyond 4,617,918 px, where it is too."""
+    area = np.array([[[1e-6, 4e9, 1.0]]], np.float32)
+    fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (1, 3))
+    found = fusion.entropies([("camera", SeenRows(slice(0, 1), area))], 0)
+    np.testing.assert_allclose(found, [[H0, SATURATED, 6.229700087]], atol=1e-3)
+
+
+def test_rows_seen_add_up_where_they_overlap():
+    left = SeenRows(slice(2, 4), np.full((1, 2, 1), 1.0, np.float32))
+    right = SeenRows(slice(3, 6), np.full((1, 3, 1), 10.0, np.float32))
+    none = SeenRows(slice(0, 0), np.zeros((1, 0, 1), np.float32))
+    for both in (left + right, right + left):
+        assert both.rows == slice(2, 6) and both.m.dtype == np.float32
+        assert both.m[0, :, 0].tolist() == [1.0, 11.0, 10.0, 10.0]
+    assert left + none is left and none + left is left
+    assert (left + SeenRows(slice(2, 4), np.ones((1, 2, 1)))).m.dtype == np.float64
+
+
+def test_counts_of_few_bits_add_up_beyond_them():
+    small = [np.array([200, 255], np.uint8)] * 3
+    assert group_sum(small).tolist() == [600, 765]
+    assert group_sum(small[:1]) is small[0]
+    assert group_sum([np.array([0.5]), np.array([0.25])]).tolist() == [0.75]
+    assert early_fusion(small).tolist() == [600.0, 765.0]
+
+
+def test_late_fusion_by_hand():
+    """f + (5 f - f) + (1 - f) above the floor; 5 f + 1 by the letter."""
+    assert float(late_fusion([5.0 * F, 1.0])) == pytest.approx(1.0 + 4.0 * F, abs=1e-15)
+    assert float(late_fusion([5.0 * F, 1.0], "literal")) == pytest.approx(1.0 + 5.0 * F, abs=1e-15)
+
+
+def test_whole_numbers_are_looked_up_as_far_as_they_matter():
+    """AP is clipped from 9.36 beams on: 10 are enough; a flat curve needs all that 16 bits hold."""
+    fusion = Fusion(pe.PerceptionModel())
+    assert fusion.enough("lidar") == 10
+    assert fusion.precision(np.array([0, 10, 65_535]), "lidar").tolist() == pytest.approx(
+        [F, 998_001.0, 998_001.0]
+    )
+    assert fusion.precision(np.array([100.0]), "camera")[0] == pytest.approx(0.4761013265)
+    flat = Fusion(pe.PerceptionModel(lidar=pe.ApCurve(1e-4, 0.5)))
+    assert flat.enough("lidar") == 65_535
+
+
+def test_a_model_tells_its_curves():
+    own = pe.ApCurve(0.2, 0.5)
+    model = pe.PerceptionModel(lidar=own)
+    assert model.curve("lidar") is own and model.lidar is own
+    assert model.camera == RTM3D and model.curves == {"lidar": own, "camera": RTM3D}
+    assert pe.PerceptionModel().lidar == POINTPILLARS
+    with pytest.raises(AttributeError, match="sonar"):
+        _ = model.sonar
+
+
+def test_models_are_equal_when_they_say_the_same():
+    own = pe.ApCurve(0.2, 0.5)
+    plain = pe.PerceptionModel()
+    assert plain == pe.PerceptionModel("floor", lidar=POINTPILLARS)
+    assert plain != pe.PerceptionModel("literal") and plain != pe.PerceptionModel(lidar=own)
+    assert plain != "floor" and hash(plain) == hash(pe.PerceptionModel(camera=RTM3D))
+    assert len({plain, pe.PerceptionModel("literal"), pe.PerceptionModel(lidar=own)}) == 3
+    assert repr(pe.PerceptionModel(lidar=own)).startswith(
+        "PerceptionModel(blind='floor', lidar=ApCurve(a=0.2, b=0.5), camera="
+    )
+
+
+def test_a_model_goes_to_other_processes_and_cannot_be_changed():
+    model = pe.PerceptionModel("literal", camera=pe.ApCurve(0.1, 0.2))
+    again = pickle.loads(pickle.dumps(model))
+    assert again == model and again.blind == "literal" and again.camera == model.camera
+    for name in ("blind", "lidar", "more"):
+        with pytest.raises(AttributeError, match=name):
+            setattr(model, name, "floor")
+    assert model.blind == "literal"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"blind": "maybe"}, 'fusion: blind: expected "floor" or "literal", found \'maybe\''),
+        ({"sonar": POINTPILLARS}, "'sonar'"),
+        ({"lidar": (0.2, 0.5)}, "perception model: lidar: expected an ApCurve"),
+    ],
+)
+def test_impossible_models_are_refused(options, message):
+    with pytest.raises(pe.InputError, match=message):
+        pe.PerceptionModel(**options)
+
+
+@pytest.mark.parametrize("a", [True, "x", math.inf, -math.inf, math.nan, 0, -0.1])
+def test_impossible_slopes_are_refused(a):
+    with pytest.raises(pe.InputError, match="AP curve: a: expected a "):
+        pe.ApCurve(a, 0.5)
+
+
+def test_a_curve_too_flat_to_saturate_says_so():
+    """exp(700) is about as far as a number goes: (0.999 - 0.5) / 700 = 0.000713."""
+    assert pe.ApCurve(1e-4, 0.5).saturation == math.inf
+    assert pe.ApCurve(0.00072, 0.5).saturation == pytest.approx(math.exp(0.499 / 0.00072))
+    assert pe.ApCurve(1.0, -1.0).saturation == pytest.approx(math.exp(1.999))
+
+
+def table(m, ap):
+    return ApTable(np.array(m, float), np.array(ap, float), np.ones(len(m)))
+
+
+def test_points_within_two_hundredths_of_the_highest_are_saturated():
+    """0.80 and 0.79 are, from m = 8 on; 0.78 is 0.02 below and so is not."""
+    fit = fit_ap_curve(table([1, 2, 4, 8, 16, 32], [0.2, 0.4, 0.78, 0.79, 0.80, 0.5]))
+    assert fit.why == ("", "", "", "saturated", "saturated", "saturated")
+    assert fit.left_out == {"saturated": 3} and fit.used.tolist() == [True] * 3 + [False] * 3
+
+
+def test_a_blind_voxel_is_h_blind():
+    assert pytest.approx(H0, abs=1e-9) == H_BLIND

@@ -5,13 +5,16 @@ PYTHON_VENV := .venv/bin/python
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: demo test bench lint extension clean help
+.PHONY: demo test mutants bench lint extension clean help
 
 demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, the better .blend
 	@tools/demo.sh $(ARGS)
 
 test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
 	@$(PYTHON_VENV) -m pytest $(or $(ARGS),tests)
+
+mutants: .venv/dev.stamp  ## change the engine line by line: does a test fail? half an hour
+	@$(PYTHON_VENV) tools/mutants.py $(ARGS)
 
 bench: .venv/dev.stamp  ## measure speed
 	@$(PYTHON_VENV) -m benchmarks $(ARGS)

@@ -19,6 +19,7 @@ ROUNDED_M, ROUNDED_DEG = 0.5e-5, 0.5e-4
 """What rounding a placement to 0.01 mm and 0.0001 degrees may add."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 WIDE = dict.fromkeys("xyz", (-50.0, 50.0)) | dict.fromkeys(("roll", "pitch", "yaw"), (-9.0, 9.0))
+ONE_ROUND = {"floor_m": 0.5, "floor_rad": math.radians(15.0)}
 START = (0.3, -0.2, 1.9), (2.0, -3.0, 40.0)
 
 
@@ -123,7 +124,7 @@ def farthest_from_uniform(values):
 @pytest.mark.parametrize(("axis", "width"), [("y", 1.0), ("pitch", 30.0)])
 def test_coordinates_are_uniform_and_the_check_tells_a_normal_distribution(axis, width):
     """4000 draws: 1.63 / sqrt(n) is passed by 99 of 100 uniform samples."""
-    recorder, steps = searched(flat, {"a": {axis: (-50.0, 50.0)}}, candidates=4000)
+    recorder, steps = searched(flat, {"a": {axis: (-50.0, 50.0)}}, candidates=4000, **ONE_ROUND)
     allowed = 1.63 / math.sqrt(4000)
     drawn = moves(recorder, steps, "a", axis)[0] / width
     assert farthest_from_uniform(drawn) < allowed
@@ -135,7 +136,7 @@ def test_coordinates_are_uniform_and_the_check_tells_a_normal_distribution(axis,
 
 def test_coordinates_are_drawn_independently():
     """Correlations of six axes of two sensors: 4 / sqrt(n) at most, far below the 1 of a copy."""
-    recorder, steps = searched(flat, {"a": WIDE, "b": WIDE}, candidates=2000)
+    recorder, steps = searched(flat, {"a": WIDE, "b": WIDE}, candidates=2000, **ONE_ROUND)
     drawn = [moves(recorder, steps, name, axis)[0] for name in "ab" for axis in AXES]
     correlation = np.corrcoef(drawn) - np.eye(len(drawn))
     assert np.abs(correlation).max() < 4 / math.sqrt(2000)
@@ -145,7 +146,7 @@ def test_coordinates_are_clipped_to_their_bounds():
     """x from 0.3 may go 0.25 m up and 0.5 m down: of the first round's draws within 1 m, 3 in 8
     are held at the upper bound and 2 in 8 at the lower."""
     bounds = {"a": {"x": (-0.2, 0.55), "pitch": (math.radians(-9.0), math.radians(12.0))}}
-    recorder, _ = searched(flat, bounds, candidates=4000)
+    recorder, _ = searched(flat, bounds, candidates=4000, **ONE_ROUND)
     x = np.array(recorder.of("a")["x"])
     assert (x.min(), x.max()) == (-0.2, 0.55)
     first = x[1:4001]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.metric import H_BLIND, POINTPILLARS, RTM3D, ApTable, fit_ap_curve
+from pe_core.metric import H_BLIND, POINTPILLARS, RTM3D, ApTable, average_precision, fit_ap_curve
 from pe_core.metric.fusion import Fusion, early_fusion, group_sum, late_fusion
 from pe_core.metric.planes import PlaneFusion, SeenRows
 
@@ -205,6 +205,11 @@ def test_a_curve_too_flat_to_saturate_says_so():
     assert pe.ApCurve(1e-4, 0.5).saturation == math.inf
     assert pe.ApCurve(0.00072, 0.5).saturation == pytest.approx(math.exp(0.499 / 0.00072))
     assert pe.ApCurve(1.0, -1.0).saturation == pytest.approx(math.exp(1.999))
+
+
+def test_a_measurement_that_is_a_rounding_below_nothing_is_nothing():
+    """Areas are sums: one may come out at -1e-12. No logarithm of it is taken."""
+    assert average_precision([-1e-12, -1.0, 0.0], RTM3D).tolist() == [0.001] * 3
 
 
 def table(m, ap):

@@ -301,13 +301,20 @@ def report(
 def _rooms(table: dict[str, dict[str, object]], wanted: list[str]) -> list[Room]:
     rooms = []
     for name, own in table.items():
-        files = [str(p.relative_to(ROOT)) for f in own["files"] for p in sorted(ROOT.glob(f))]
+        files = [file for pattern in own["files"] for file in _files_of(pattern)]
         tests = tuple(_path_of(test) for test in own["tests"])
         rooms.append(Room(name, tuple(dict.fromkeys(files)), tests, own["mutants"]))
     unknown = set(wanted) - {room.name for room in rooms}
     if unknown:
         raise SystemExit(f"no room {unknown.pop()!r}; there are {', '.join(table)}")
     return [room for room in rooms if not wanted or room.name in wanted]
+
+
+def _files_of(pattern: str) -> list[str]:
+    found = sorted(str(path.relative_to(ROOT)) for path in ROOT.glob(pattern))
+    if not found:
+        raise SystemExit(f"{SETTINGS.name}: there is no file {pattern}")
+    return found
 
 
 def _path_of(test: str) -> str:

@@ -1,0 +1,157 @@
+"""The least and the greatest values that are taken, and the next ones, which are not."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import kinds
+from pe_core.text.values import numbers
+from tests.engine import shapes
+
+DEG = math.pi / 180.0
+LIDAR = {"kind": "lidar", "elevations_deg": [0.0], "azimuth_step_deg": 90.0, "max_range_m": 50.0}
+CAMERA = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60.0}
+
+
+def lidar(**options):
+    values = {"elevations": [0.0], "azimuth_count": 4, "max_range": 50.0} | options
+    return pe.Lidar("mine", **values)
+
+
+def camera(width=640, height=480, hfov_deg=60.0):
+    return pe.Camera("mine", width, height, hfov_deg * DEG)
+
+
+def in_table(table, **changes):
+    return pe.catalog.from_table("mine", table | changes)
+
+
+def cls(**changes):
+    return dataclasses.replace(pe.Prior.road().classes[0], **changes)
+
+
+def evaluator(**options):
+    return pe.Evaluator(shapes.small_space(1.0), pe.Prior.uniform(), **options)
+
+
+def space(**options):
+    return pe.PerceptionSpace(
+        **({"x": (0, 1), "y": (0, 1), "z": (0, 1), "interval": 0.5} | options)
+    )
+
+
+def vehicle(**options):
+    return pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), **options)
+
+
+# what is made, the option, values that are taken, values that are not
+LIMITS = [
+    (lidar, "azimuth_count", (1, 360_000, 1800.0), (0, -1, 360_001, 180.7, True, "4", None)),
+    (lidar, "max_range", (1e-6, 1e5), (0.0, -1.0, 1.1e5, math.inf, math.nan, True, "50")),
+    (lidar, "elevations", ([90 * DEG], [-90 * DEG]), ([90.001 * DEG], [-91 * DEG], [math.nan], [])),
+    (
+        lidar,
+        "azimuth_offsets",
+        ([180 * DEG], [-180 * DEG]),
+        ([180.001 * DEG], [-181 * DEG], [math.inf], [0.0, 0.0]),
+    ),
+    (
+        lidar,
+        "horizontal_fov",
+        ((-720 * DEG, 720 * DEG), (0.0, 0.0)),
+        ((-721 * DEG, 0.0), (0.0, 721 * DEG), (0.1, 0.2), (0.0,), (0.0, math.nan), 1.0),
+    ),
+    (camera, "width", (1, 1_000_000), (0, 1_000_001, 100.9, True, -5)),
+    (camera, "height", (1, 1_000_000), (0, 1_000_001, 100.9, True, -5)),
+    (camera, "hfov_deg", (0.0011, 179.999), (0.0009, 180.0, 200.0, -60.0, math.nan)),
+    (pe.ApCurve, "a", (1e-12, 1e3), (9e-13, 0.0, -1.0, 1.1e3, math.inf, math.nan, True, "x")),
+    (pe.ApCurve, "b", (-1e3, 0.0, 1e3), (-1.1e3, 1.1e3, math.inf, math.nan, True, None)),
+    (cls, "laplace_share", (0.0, 1.0), (-0.001, 1.001, math.nan)),
+    (cls, "share", (0.0, 1e9), (-0.001, 1.1e9, math.inf)),
+    (cls, "decay_x", (1e-6, 1e9), (0.0, -1.0, 1.1e9)),
+    (cls, "lanes", ((-1e9,), (0.0, 1e9)), ((), (1.1e9,), (math.nan,))),
+    (cls, "size", ((1.0, 1.0, 1.0),), ((1.0, 1.0), (1.0, 1.0, 0.0), (1.0, 1.0, 1.0, 1.0))),
+    (pe.Focus, "factor", (0.0, 1e9), (-1.0, 1.1e9, math.inf, math.nan)),
+    (evaluator, "samples", (0, 1024), (-1, 1, 1023, 2**24 + 1, 2000.5, True)),
+    (evaluator, "workers", (1, 1024), (-1, 1025, 1.5)),
+    (evaluator, "shift", ((0.0, 0.0, 0.999),), ((0.0, 0.0, 1.0), (-0.1, 0.0, 0.0), (0.5, 0.5))),
+    (space, "interval", (1e-3, 1.0), (9e-4, 0.3, 0.0, -0.5, math.nan, True)),
+    (space, "x", ((-1e6, -1e6 + 1.0), (0, 1)), ((-1.1e6, 0), (1, 1), (2, 1), (0.0, math.inf))),
+    (vehicle, "clearance", (0.0, 0.999), (-0.001, 1.0, math.nan)),
+    (vehicle, "parts", ([0] * 12,), ([0] * 11, [1] * 12, [-1] * 12)),
+    (pe.Schedule, "candidates", (1, 10_000_000), (0, 10_000_001, 2.5, True)),
+    (pe.Schedule, "reach_m", (0.0, 1e4), (-0.1, 1.1e4, math.nan)),
+    (pe.Schedule, "reach_rad", (0.0, 359.9 * DEG), (-0.1, 361 * DEG)),
+    (pe.Schedule, "floor_m", (1e-6, 1e4), (0.0, -0.1, 1.1e4)),
+    (pe.Schedule, "floor_rad", (1e-6, 359.9 * DEG), (0.0, -0.1, 361 * DEG)),
+    (pe.Schedule, "decay", (0.001, 0.99), (0.0, 1.0, -0.5, 1.5, math.nan)),
+]
+CASES = [
+    pytest.param(make, key, value, taken, id=f"{key} {value} {'taken' if taken else 'refused'}")
+    for make, key, good, bad in LIMITS
+    for values, taken in ((good, True), (bad, False))
+    for value in values
+]
+OTHERS = {pe.ApCurve: {"a": 0.1, "b": 0.1}, pe.Focus: {}}
+
+
+@pytest.mark.parametrize(("make", "key", "value", "taken"), CASES)
+def test_limits(make, key, value, taken):
+    options = OTHERS.get(make, {}) | {key: value}
+    if taken:
+        make(**options)
+    else:
+        with pytest.raises(pe.InputError):
+            make(**options)
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "good", "bad"),
+    [
+        (LIDAR, "azimuth_step_deg", (0.001, 360.0), (0.0009, 361.0, 0.0, True, None)),
+        (LIDAR, "horizontal_fov_deg", ([-180.0, 180.0],), ([0.0], [0.0, "x"], [1e7, 1e7], None)),
+        (LIDAR, "elevations_deg", ([90.0, -90.0],), ([90.1], [], "x", [True])),
+        (CAMERA, "hfov_deg", (0.0011, 179.9), (0.0009, 180.0, None)),
+        (CAMERA, "width", (1, 640.0), (0, 640.5, True)),
+    ],
+)
+def test_limits_of_tables(table, key, good, bad):
+    for value in good:
+        in_table(table, **{key: value})
+    for value in bad:
+        with pytest.raises(pe.InputError, match=f"mine: {key.removesuffix('_deg')}"):
+            in_table(table, **{key: value})
+
+
+@pytest.mark.parametrize("thing", ["study", "rig", "sensor", "lidar", "camera", "vehicle"])
+def test_what_is_large_is_equal_to_itself_alone(thing):
+    """These are compared by identity, and can be kept in sets: nobody wants arrays compared."""
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar()), shapes.camera()])
+    made = {
+        "study": lambda: pe.Study(rig),
+        "rig": lambda: pe.Rig(rig.sensors),
+        "sensor": lambda: rig.sensors[0].moved(rig.sensors[0].pose),
+        "lidar": shapes.small_lidar,
+        "camera": lambda: shapes.camera().model,
+        "vehicle": shapes.box_car,
+    }[thing]
+    one, other = made(), made()
+    assert one != other and one == one and len({one, other, one}) == 2
+
+
+def test_a_kind_has_to_say_what_it_measures_and_how_it_is_written():
+    assert kinds.Kind.__abstractmethods__ == {"measure", "read", "write", "words"}
+    assert kinds.GridKernel.__abstractmethods__ == {"ready", "planes"}
+    assert kinds.SampleKernel.__abstractmethods__ == {"measure", "unhidden"}
+
+
+def test_numbers_of_an_array():
+    assert numbers([1, 2.5]).tolist() == [1.0, 2.5]
+    assert numbers(np.array([[1, 2]], np.uint8)).tolist() == [[1.0, 2.0]]
+    mixed = numbers([1, None, "2", True, 10**400])
+    assert mixed[0] == 1.0 and np.isnan(mixed[1:4]).all()
+    assert numbers(["1", "2"]) is None and numbers([True, False]) is None
+    assert numbers([[1.0], [1.0, 2.0]]) is None and numbers([1j]) is None

@@ -7,6 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import kinds
+from pe_core.kinds.camera.points import pixel_areas
 from pe_core.kinds.lidar import table as lidar_table
 from tests.engine import shapes
 
@@ -236,6 +237,21 @@ def test_pixel_areas_by_hand(center, area):
     x, y, z = center
     mirrored = pe.measure(sensor, [[x, -y, -z]], 1.0)[0]
     assert mirrored == pytest.approx(area, abs=1e-6)
+
+
+def test_from_afar_a_sample_takes_faces_for_flat_patches():
+    """f^2 s^2 (a + 3 s / 2) / (d^3 - d s^2 / 2), a the way to the near faces along all axes.
+
+    At (20, 3, -2): a = 19.5 + 2.5 + 1.5, so 100^2 (23.5 + 1.5) / (8000 - 10). At (14, 0, 0), nearer
+    than 15 sides, and at the picture's border it is the exact area.
+    """
+    pose, model = pe.Pose((0.0, 0.0, 0.0)), camera()
+    centers = np.array([[20.0, 3.0, -2.0], [14.0, 0.0, 0.0], [20.0, 19.5, 0.0]])
+    found = pixel_areas(model, pose, centers, 1.0, None)
+    exact = pe.measure(pe.Sensor("s", model, pose), centers, 1.0)
+    assert found[0] == pytest.approx(1e4 * 25.0 / 7990.0, rel=1e-12)
+    assert found[0] != exact[0] and abs(found[0] / exact[0] - 1.0) < 0.003
+    assert found[1:].tolist() == exact[1:].tolist()
 
 
 def test_a_camera_on_its_side_sees_high_and_narrow():

@@ -7,6 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import kinds
+from pe_core.kinds.camera.area import frustum_distance
 from pe_core.kinds.camera.points import pixel_areas
 from pe_core.kinds.lidar import table as lidar_table
 from tests.engine import shapes
@@ -237,6 +238,14 @@ def test_pixel_areas_by_hand(center, area):
     x, y, z = center
     mirrored = pe.measure(sensor, [[x, -y, -z]], 1.0)[0]
     assert mirrored == pytest.approx(area, abs=1e-6)
+
+
+def test_how_far_inside_the_frustum():
+    """Its sides lean by 45 degrees, its top by atan(1 / 2): distances along their normals."""
+    depth, left, up = np.array([[10.0, 0.0, 0.0], [10.0, -9.0, 0.0], [10.0, 0.0, 7.0]]).T
+    root2, root5 = math.sqrt(2.0), math.sqrt(5.0)
+    expected = [10.0 / root5, 1.0 / root2, (10.0 - 14.0) / root5]
+    assert frustum_distance(camera(), depth, left, up).tolist() == pytest.approx(expected)
 
 
 def test_from_afar_a_sample_takes_faces_for_flat_patches():

@@ -15,6 +15,7 @@ from typing import Any
 from ..errors import InputError, shown
 from ..kinds import kind_named, kind_of
 from ..scene.sensors import SensorModel
+from ..text.fixed import fixed
 from ..text.values import A_NAME, A_TEXT
 
 PAPER_FILE = "paper.toml"
@@ -75,7 +76,7 @@ def add(name: str, table: Mapping[str, Any]) -> None:
     if name in entries():
         raise InputError("catalogue", "name", "a name used once", repr(name))
     _loaded[name] = from_table(name, table)
-    _added[name] = Entry(name, OWN, _frozen(table))
+    _added[name] = Entry(name, OWN, fixed(table))
 
 
 def remove(name: str) -> None:
@@ -142,15 +143,8 @@ def _shipped() -> Mapping[str, Entry]:
         for name, table in tomllib.loads(file.read_text("utf-8")).items():
             if name in found:
                 raise InputError(file.name, name, "a name used once", found[name].file)
-            found[name] = Entry(name, file.name, _frozen(table))
+            found[name] = Entry(name, file.name, fixed(table))
     return MappingProxyType(found)
-
-
-def _frozen(value: Any) -> Any:
-    """Return plain data that nobody can change: the catalogue is everybody's."""
-    if isinstance(value, Mapping):
-        return MappingProxyType({key: _frozen(v) for key, v in value.items()})
-    return tuple(map(_frozen, value)) if isinstance(value, (list, tuple)) else value
 
 
 def _near(name: str) -> str:

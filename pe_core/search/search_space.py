@@ -11,6 +11,7 @@ from ..errors import InputError, shown
 from ..scene.geometry import FARTHEST_M, METRES, ROTATION, Pose
 from ..scene.sensors import Rig, Sensor
 from ..scene.vehicle import Vehicle
+from ..text.fixed import FixedDict
 from ..text.values import listed, pair
 from .schedule import Schedule
 
@@ -44,6 +45,9 @@ class SearchSpace:
     """
 
     bounds: Mapping[str, Mapping[str, Bounds]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bounds", FixedDict(self.bounds))
 
     @classmethod
     def on_vehicle(

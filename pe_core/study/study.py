@@ -21,6 +21,7 @@ from ..scoring.evaluator import Evaluator
 from ..scoring.sampling import samples_or_grid
 from ..search import AXES, PAPER_FREE, Schedule, SearchSpace
 from ..search.search_space import checked_axes, checked_bounds
+from ..text.fixed import FixedDict
 from ..text.values import A_NAME, A_PATH, Whole
 
 DEFAULT_SEARCH_SAMPLES = 65_536
@@ -57,8 +58,8 @@ class Search:
 
     def __post_init__(self) -> None:
         who = "optimize"
-        object.__setattr__(self, "free", _each(self.free, "free", checked_axes))
-        object.__setattr__(self, "limits", _each(self.limits, "bounds", _checked_limits))
+        object.__setattr__(self, "free", FixedDict(_each(self.free, "free", checked_axes)))
+        object.__setattr__(self, "limits", FixedDict(_each(self.limits, "bounds", _checked_limits)))
         object.__setattr__(self, "seed", SEED.checked(who, "seed", self.seed))
         object.__setattr__(self, "samples", samples_or_grid(who, self.samples))
         if not isinstance(self.schedule, Schedule):

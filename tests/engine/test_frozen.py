@@ -1,5 +1,7 @@
 """What was given and checked cannot be changed afterwards, by whoever holds the array."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -83,3 +85,26 @@ def test_a_preset_of_ones_own_is_copied():
         assert pe.catalog.entries()["frozen test"].table["width"] == 640
     finally:
         pe.catalog.remove("frozen test")
+
+
+def test_a_search_is_copied_and_fixed_and_can_be_sent_to_another_process():
+    free, limits = {"roof": ["x"]}, {"roof": {"x": [0.0, 1.0]}}
+    search = pe.Search(free=free, limits=limits)
+    space = pe.SearchSpace(limits)
+    free["roof"].append("y")
+    limits["roof"]["x"][1] = 5.0
+    assert search.free == {"roof": ("x",)}
+    assert search.limits == space.bounds == {"roof": {"x": (0.0, 1.0)}}
+    for mapping in (search.free, search.limits["roof"], space.bounds["roof"]):
+        for change in (
+            lambda m: m.update(y=1),
+            lambda m: m.pop("x", None),
+            lambda m: m.setdefault("y", 1),
+            lambda m: m.clear(),
+            lambda m: m.__setitem__("x", 1),
+            lambda m: m.__delitem__("x"),
+        ):
+            with pytest.raises(TypeError, match="fixed"):
+                change(mapping)
+    again = pickle.loads(pickle.dumps(search))
+    assert again == search and type(again.limits["roof"]) is type(search.limits["roof"])

@@ -52,7 +52,7 @@ DIGITS = 11
 """Binary digits of a pixel area that are looked at: what is left out is below 1 part in 2048."""
 SHIFT = 24 - DIGITS
 LEAST_OCTAVE, OCTAVES = -32, 64
-"""Areas from 2^-32 px on are told apart: far below what `camera_area` takes for nothing."""
+"""Areas from 2^-32 px on are told apart: far below what a camera's exact area takes for nothing."""
 
 
 class PlaneFusion:

@@ -74,7 +74,7 @@ def bracket(
     rotation = ground_from_sensor.astype(np.float32)
     step = np.float32(2.0 * np.pi / azimuth_count)
     for some in blocks(len(points[0]), AT_ONCE):
-        seen = _Silhouettes.of([p[some] for p in points], rotation, step)
+        seen = Silhouettes.of([p[some] for p in points], rotation, step)
         block = _bounds(seen, slopes, azimuth_count)
         for whole, part in zip(
             (out.least, out.most, out.row, out.rows, out.column, out.columns), block, strict=True
@@ -84,7 +84,7 @@ def bracket(
 
 
 @dataclass(frozen=True, slots=True)
-class _Silhouettes:
+class Silhouettes:
     """Cubes as they are seen, in the sensor frame; lengths in voxel sides, (V,) each.
 
     `flat` and `z` are the centre's distance from the sensor's axis and its height, `middle` its
@@ -104,7 +104,7 @@ class _Silhouettes:
     tall: np.float32
 
     @classmethod
-    def of(cls, points: Sequence[Singles], rotation: Singles, step: np.float32) -> _Silhouettes:
+    def of(cls, points: Sequence[Singles], rotation: Singles, step: np.float32) -> Silhouettes:
         """See cubes with centres along the ground axes."""
         x, y, z = (
             rotation[0, w] * points[0] + rotation[1, w] * points[1] + rotation[2, w] * points[2]
@@ -122,7 +122,7 @@ class _Silhouettes:
         return cls(flat, z, middle, step, radial, sideways, up, deep, wide, np.abs(up).sum())
 
 
-def _bounds(seen: _Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts, ...]:
+def _bounds(seen: Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts, ...]:
     """Fields of a `Bracket`."""
     deep, wide, tall = seen.deep + SLACK, seen.wide + SLACK, seen.tall + SLACK
     beside = seen.flat > deep * np.float32(1.1)
@@ -147,9 +147,9 @@ def _slope(up: Singles, over_if_above: Singles, over_if_below: Singles) -> Singl
     return up / np.where(up > 0, over_if_above, over_if_below)
 
 
-def _inner(seen: _Silhouettes, slopes: SlopeBounds) -> tuple[Counts, Counts]:
+def _inner(seen: Silhouettes, slopes: SlopeBounds) -> tuple[Counts, Counts]:
     """Rows and columns of the inner window."""
-    width, height, skew = _slice(seen)
+    width, height, skew = slice_through(seen)
     drift = np.abs(skew) * width
     near, far = seen.flat - drift, np.sqrt((seen.flat + drift) ** 2 + width * width)
     near = np.maximum(near, np.float32(1e-3))
@@ -167,7 +167,7 @@ def _inner(seen: _Silhouettes, slopes: SlopeBounds) -> tuple[Counts, Counts]:
     return rows, np.maximum(columns, 0).astype(np.int32)
 
 
-def _slice(seen: _Silhouettes) -> tuple[Singles, Singles, Singles]:
+def slice_through(seen: Silhouettes) -> tuple[Singles, Singles, Singles]:
     """Half width and half height of a rectangle inside the slice, and how far the slice recedes.
 
     That is the distance by which it is farther from the axis, for each side it reaches to the left.

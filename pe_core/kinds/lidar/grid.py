@@ -41,7 +41,7 @@ ONE = np.uint16(1)
 
 @dataclass(frozen=True, slots=True)
 class Paths:
-    """Beams cut to the space: `origin` (3,), `directions` (B, 3), `start` and `end` (B,), voxels."""
+    """Beams cut to the space, in voxels: `origin` (3,), `directions` (B, 3), `start`, `end` (B,)."""
 
     origin: Floats
     directions: Floats

@@ -51,7 +51,7 @@ def late_fusion(precisions: Iterable[ArrayLike], blind: str = "floor") -> Floats
     """Fuse 1 / sigma^2 over groups and cameras, eq. 7; returns the fused 1 / sigma^2.
 
     "floor" sums the precision above that of a blind sensor, f = 1 / 999^2:
-    ``f + sum(1 / sigma_i^2 - f)``. "literal" is the plain sum.
+    ``f + sum(1 / sigma_i^2 - f)``. "literal" is the literal formula (eq. 7), the plain sum.
     """
     floor = BLIND_PRECISION if blind == "floor" else 0.0
     fused = sum(np.asarray(p, dtype=float) - floor for p in precisions)

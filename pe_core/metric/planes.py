@@ -61,7 +61,8 @@ class PlaneFusion:
     def __init__(self, fusion: Fusion, shape: tuple[int, int]) -> None:
         self._fusion, self._shape = fusion, shape
         self._known: dict[tuple[str, str, int], Floats] = {}
-        """Tables by kind and what they are of, a few each."""
+        """Tables by what they are of, kind and number of blind groups: two a kind, and one more for
+        each number of groups that was asked for (by the floor rule, one)."""
 
     def entropies(self, groups: Sequence[Group], plane: int) -> Floats:
         """Entropy H (ny, nz) of the voxels of one of the planes [nats]."""

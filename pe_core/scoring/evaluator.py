@@ -124,7 +124,7 @@ class Evaluator:
         -------
         Judgement
             The entropy; or, where that is not below `below`, perhaps a lower bound of it that is
-            not below it either. `is_lower_bound` says so: no lower bound is good for ranks or models.
+            not below it either. `is_lower_bound` says so: such a number is none to rank by.
         """
         if isinstance(self._scorer, SampledScorer):
             return self._scorer.judge(rig, below)

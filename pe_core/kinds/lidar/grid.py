@@ -24,7 +24,7 @@ from .ties import position_in_voxels, without_zeros
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Fixed = NDArray[np.uint64]
-Counts = NDArray[np.uint16]
+HeldCounts = NDArray[np.uint16]
 
 FRACTION_BITS = 40
 FRACTION = np.uint64(FRACTION_BITS)
@@ -41,7 +41,7 @@ ONE = np.uint16(1)
 
 @dataclass(frozen=True, slots=True)
 class Paths:
-    """Beams cut to the space, in voxels: `origin` (3,), `directions` (B, 3), `start`, `end` (B,)."""
+    """Beams cut to the space, in voxels: `origin` (3,), `directions` (B, 3), `start`, `end`."""
 
     origin: Floats
     directions: Floats
@@ -62,7 +62,7 @@ class BeamGrid:
         self._crowded: list[tuple[slice, ...]] = []
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> HeldCounts:
         """(nx, ny, nz) beams through each voxel; a view."""
         return self._padded[1:-1, 1:-1, 1:-1]
 

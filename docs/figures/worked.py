@@ -106,8 +106,7 @@ class Bracketed:
     @property
     def inner(self) -> Window:
         """Lies in the slice: slopes over its own farthest and nearest distance."""
-        drift, z = abs(self.skew) * self.width, self.place[2]
-        near, far = self.flat - drift, math.hypot(self.flat + drift, self.width)
+        (near, far), z = self.inner_distances, self.place[2]
         low, high = z - self.height, z + self.height
         left = math.atan(self.width / (self.flat + self.skew * self.width)) / STEP
         right = math.atan(self.width / (self.flat - self.skew * self.width)) / STEP
@@ -117,6 +116,12 @@ class Bracketed:
             low / (near if low > 0 else far),
             high / (far if high > 0 else near),
         )
+
+    @property
+    def inner_distances(self) -> tuple[float, float]:
+        """Least and greatest distance of the slice's rectangle from the axis."""
+        drift = abs(self.skew) * self.width
+        return self.flat - drift, math.hypot(self.flat + drift, self.width)
 
     @property
     def near(self) -> float:
@@ -168,6 +173,11 @@ def bracket_rows() -> list[str]:
         _row("the slice: how it recedes to the left", "skew", f"{b.skew:.3f}"),
         _row(
             "half sides of the rectangle in it", "width, height", f"{b.width:.3f}, {b.height:.3f}"
+        ),
+        _row(
+            "distances of that rectangle, nearest and farthest",
+            "flat - abs(skew) width, sqrt((flat + abs(skew) width)^2 + width^2)",
+            _together(b.inner_distances),
         ),
         _row(
             "**inner** azimuths",

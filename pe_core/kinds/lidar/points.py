@@ -49,7 +49,7 @@ class VoxelPoints:
     def farthest(self, position: Floats) -> float:
         """Return a distance no voxel's centre is farther than, from a position, in sides."""
         gaps = np.maximum(np.abs(self._low - position), np.abs(self._high - position))
-        return math.sqrt(float(gaps @ gaps))
+        return math.hypot(*gaps.tolist())
 
     def offsets(self, position: Floats, some: Ints | slice = slice(None)) -> Floats:
         """Centres (V, 3) of some voxels seen from a position (3,), in voxel sides."""

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .rows import ROWS, Row
+from .rows import ROWS, Timing
 
 REPORT = Path(__file__).with_name("README.md")
 HEAD = ["work", "ours", "yardstick", "its time", "ratio", "our peak memory"]
@@ -34,14 +34,14 @@ def main(names: list[str]) -> int:
     return 0
 
 
-def _apart(name: str) -> Row:
+def _apart(name: str) -> Timing:
     """Run a row in a process of its own."""
     command = [sys.executable, "-m", __package__, name]
     done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
-    return Row(**json.loads(done.stdout))
+    return Timing(**json.loads(done.stdout))
 
 
-def _cells(row: Row) -> list[str]:
+def _cells(row: Timing) -> list[str]:
     theirs = "no compiler" if row.yardstick_s is None else _time(row.yardstick_s)
     ratio = "" if row.yardstick_s is None else f"{row.ours_s / row.yardstick_s:.3g}"
     memory = f"{row.peak_mb:.0f} MB"
@@ -52,7 +52,7 @@ def _time(seconds: float) -> str:
     return f"{seconds * 1e3:.1f} ms" if seconds < 1.0 else f"{seconds:.2f} s"
 
 
-def _report(rows: list[Row]) -> str:
+def _report(rows: list[Timing]) -> str:
     lines = [
         "# Benchmarks",
         "",

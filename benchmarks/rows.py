@@ -26,7 +26,7 @@ Work = Callable[[], object]
 
 
 @dataclass(frozen=True)
-class Row:
+class Timing:
     """One line of the table: what was done, our seconds and memory; the yardstick, its seconds."""
 
     work: str
@@ -36,17 +36,17 @@ class Row:
     yardstick_s: float | None
 
 
-def grid_free() -> Row:
+def grid_free() -> Timing:
     """A Pandar64 on the grid of 64 million voxels, against the literal loop in C++."""
     return _against_literal(None, "no vehicle")
 
 
-def grid_on_car() -> Row:
+def grid_on_car() -> Timing:
     """The same, on a vehicle."""
     return _against_literal(car(), "vehicle of 20,000 triangles")
 
 
-def _against_literal(vehicle: pe.Vehicle | None, label: str) -> Row:
+def _against_literal(vehicle: pe.Vehicle | None, label: str) -> Timing:
     study = plain_study(vehicle)
     evaluator = study.evaluator(0)
     ours, entropy = _best(lambda: evaluator.entropy(study.rig))
@@ -57,30 +57,30 @@ def _against_literal(vehicle: pe.Vehicle | None, label: str) -> Row:
     again, _ = _best(lambda: evaluator.entropy(study.rig))
     seconds = theirs and min(theirs[1], literal.run(study)[1])
     work = f"grid score, Pandar64, {label}"
-    return Row(work, min(ours, again), peak, "literal C++, 2 threads", seconds)
+    return Timing(work, min(ours, again), peak, "literal C++, 2 threads", seconds)
 
 
-def grid_two_lidars() -> Row:
+def grid_two_lidars() -> Timing:
     """Two LiDARs, summed early, against one."""
     return _against_one(two_lidars, "two Pandar64")
 
 
-def grid_two_lidars_two_cameras() -> Row:
+def grid_two_lidars_two_cameras() -> Timing:
     """Four sensors, fused early and late, against one."""
     return _against_one(two_lidars_two_cameras, "two Pandar40 and two cameras")
 
 
-def _against_one(several: Callable[[pe.Study], pe.Study], label: str) -> Row:
+def _against_one(several: Callable[[pe.Study], pe.Study], label: str) -> Timing:
     study = plain_study(car())
     evaluator, rig = study.evaluator(0), several(study).rig
     ours, theirs = _best_in_turn(
         lambda: evaluator.entropy(rig), lambda: evaluator.entropy(study.rig)
     )
     work = f"grid score, {label}, vehicle"
-    return Row(work, ours, _peak_mb(), "one Pandar64, vehicle", theirs)
+    return Timing(work, ours, _peak_mb(), "one Pandar64, vehicle", theirs)
 
 
-def full_score() -> Row:
+def full_score() -> Timing:
     """All a grid score tells of four sensors (9 rigs' worth), against all it tells of one."""
     study = plain_study(car())
     evaluator, rig = study.evaluator(0), two_lidars_two_cameras(study).rig
@@ -88,31 +88,31 @@ def full_score() -> Row:
         lambda: evaluator.score(rig), lambda: evaluator.score(study.rig), 2
     )
     work = "the same with each sensor alone and failing, zones, map"
-    return Row(work, ours, _peak_mb(), "the same of one Pandar64", theirs)
+    return Timing(work, ours, _peak_mb(), "the same of one Pandar64", theirs)
 
 
-def samples_free() -> Row:
+def samples_free() -> Timing:
     """Score again after one sensor moved, against a full grid score."""
     return _after_a_move(None, "no vehicle")
 
 
-def samples_on_car() -> Row:
+def samples_on_car() -> Timing:
     """The same, on a vehicle."""
     return _after_a_move(car(), "vehicle")
 
 
-def samples_on_car_draft() -> Row:
+def samples_on_car_draft() -> Timing:
     """The same as a draft, as while a sensor is dragged."""
     return _after_a_move(car(), "vehicle, draft", draft=True)
 
 
-def _after_a_move(vehicle: pe.Vehicle | None, label: str, draft: bool = False) -> Row:
+def _after_a_move(vehicle: pe.Vehicle | None, label: str, draft: bool = False) -> Timing:
     study = plain_study(vehicle)
     ours, _ = _best(_moving(study, study.evaluator(262_144), draft), 8)
     peak = _peak_mb()
     grid, _ = _best(lambda: study.evaluator(0).entropy(study.rig), 1)
     work = f"262,144 samples after a move, {label}"
-    return Row(work, ours, peak, "grid score, first", grid)
+    return Timing(work, ours, peak, "grid score, first", grid)
 
 
 def _moving(study: pe.Study, evaluator: pe.Evaluator, draft: bool) -> Work:
@@ -127,7 +127,7 @@ def _moving(study: pe.Study, evaluator: pe.Evaluator, draft: bool) -> Work:
     return call
 
 
-def rays() -> Row:
+def rays() -> Timing:
     """First hits of a frame, against brute force over all triangles (on a part of the rays)."""
     vehicle, directions, position = rays_of(car())
     ours, _ = _best(lambda: vehicle.first_hit(position, directions))
@@ -137,10 +137,10 @@ def rays() -> Row:
     rate = len(directions) / ours / 1e6
     work = f"first hit of {len(directions):,} rays ({rate:.1f} million a second)"
     seconds = brute * len(directions) / len(some)
-    return Row(work, ours, peak, "every ray against every triangle", seconds)
+    return Timing(work, ours, peak, "every ray against every triangle", seconds)
 
 
-ROWS: dict[str, Callable[[], Row]] = {
+ROWS: dict[str, Callable[[], Timing]] = {
     row.__name__: row
     for row in (
         grid_free,

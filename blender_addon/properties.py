@@ -138,7 +138,7 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
     )
     score_samples: IntProperty(
         name="Score Voxels",
-        description="Voxels a score looks at; 0 for all 64 million of them",
+        description="Voxels a score looks at; 0: all, 64 million",
         default=0,
         min=0,
         update=changed,
@@ -153,7 +153,7 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
     )
     search_samples: IntProperty(
         name="Search Voxels",
-        description="Voxels a candidate is judged on; 0 for all 64 million of them",
+        description="Voxels a candidate is judged on; 0: all, 64 million",
         default=pe.Search().samples,
         min=0,
     )

@@ -12,7 +12,7 @@ class Effort:
     Attributes
     ----------
     samples : int
-        Voxels a score looks at; 0 for the whole grid.
+        Voxels a score looks at; 0: all.
     candidates, search_samples : int
         Placements a round, and voxels each is judged on.
     pilot_candidates : int

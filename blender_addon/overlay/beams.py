@@ -84,12 +84,12 @@ def _stopped(sensor: pe.Sensor, seen: object, looked: Ints) -> Ints:
     """Numbers of the beams that the vehicle stops, of those looked at and those beside them."""
     lidar, ground_from_sensor = sensor.model, sensor.pose.ground_from_sensor
 
-    def of(numbers: Ints) -> Ints:
+    def stopped_of(numbers: Ints) -> Ints:
         directions = lidar.directions[numbers] @ ground_from_sensor.T
         return numbers[_ends(lidar, seen, directions)[1]]
 
-    found = of(looked)
-    return np.union1d(found, of(np.setdiff1d(_beside(lidar, found), looked)))
+    found = stopped_of(looked)
+    return np.union1d(found, stopped_of(np.setdiff1d(_beside(lidar, found), looked)))
 
 
 def _beside(lidar: pe.Lidar, beams: Ints) -> Ints:

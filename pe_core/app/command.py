@@ -45,7 +45,7 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
         "--grid-samples",
         type=count_up_to(MOST_VOXELS),
         metavar="N",
-        help="score on N sampled voxels instead of the whole grid (0: the grid)",
+        help="voxels a score looks at (0: all)",
     )
     workers = count_up_to(MOST_WORKERS)
     parser.add_argument("--workers", type=workers, metavar="N", help="threads (default: all)")
@@ -53,7 +53,7 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
         options = (
             ("--seed", LAST_SEED, "seed of the search"),
             ("--candidates", MOST_VOXELS, "placements tried in a round"),
-            ("--samples", MOST_VOXELS, "voxels a candidate is judged on"),
+            ("--samples", MOST_VOXELS, "voxels a candidate is judged on (0: all)"),
         )
         for option, greatest, about in options:
             parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)

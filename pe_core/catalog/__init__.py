@@ -1,4 +1,8 @@
-"""Sensor presets, one TOML file a maker, each figure with its source."""
+"""Sensor presets, one TOML file a maker; each says where its figures come from.
+
+Two have no document behind them and say so (Waymo's cameras: general knowledge); three are no
+product, but cameras to compare with.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +50,7 @@ class Entry:
 
 _added: dict[str, Entry] = {}
 _loaded: dict[str, SensorModel] = {}
-"""Sensors by name, once each: as many as the catalogue has entries."""
+"""Sensors by name, once each: as many as the catalogue has entries, shipped and added."""
 
 
 def entries() -> Mapping[str, Entry]:
@@ -136,7 +140,7 @@ def to_table(model: SensorModel) -> dict[str, Any]:
 
 @cache
 def _shipped() -> Mapping[str, Entry]:
-    """The entries of the files."""
+    """The entries of the files, read once."""
     found: dict[str, Entry] = {}
     files = [f for f in resources.files(__package__).iterdir() if f.name.endswith(".toml")]
     for file in sorted(files, key=lambda f: (f.name != PAPER_FILE, f.name)):

@@ -16,7 +16,8 @@ class PerceptionModel:
     Parameters
     ----------
     blind : {"floor", "literal"}
-        "floor": a sensor that sees nothing changes nothing. "literal": eq. 7 as printed.
+        "floor": a sensor that sees nothing changes nothing. "literal": the literal formula (eq. 7),
+        in which it votes.
     **curves : ApCurve
         By kind, ``lidar=ApCurve(0.2, 0.5)``; a kind's own by default. They are attributes as well:
         ``model.lidar`` is ``model.curve("lidar")``.

@@ -51,14 +51,14 @@ def late_fusion(precisions: Iterable[ArrayLike], blind: str = "floor") -> Floats
     """Fuse 1 / sigma^2 over groups and cameras, eq. 7; returns the fused 1 / sigma^2.
 
     "floor" sums the precision above that of a blind sensor, f = 1 / 999^2:
-    ``f + sum(1 / sigma_i^2 - f)``. "literal" is the plain sum.
+    ``f + sum(1 / sigma_i^2 - f)``. "literal" is the literal formula (eq. 7), the plain sum.
     """
     floor = BLIND_PRECISION if blind == "floor" else 0.0
     fused = sum(np.asarray(p, dtype=float) - floor for p in precisions)
     return np.asarray(fused + floor, dtype=float)
 
 
-class Tables(NamedTuple):
+class ByCount(NamedTuple):
     """1 / sigma^2 and entropy of a lone group by its m = 0, 1, ...; AP is saturated at the end."""
 
     precision: Floats
@@ -70,15 +70,15 @@ class Fusion:
 
     def __init__(self, model: Curves) -> None:
         self.model = model
-        self._known: dict[str, Tables] = {}  # by kind: as many as there are
+        self._known: dict[str, ByCount] = {}  # by kind: as many as there are
 
-    def tables(self, kind: str) -> Tables:
+    def tables(self, kind: str) -> ByCount:
         """Return what whole numbers of a kind are looked up in."""
         if kind not in self._known:
             curve = self.model.curve(kind)
             precision = precision_of(np.arange(self.enough(kind) + 1), curve)
             entropy = entropy_of(late_fusion([precision], self.model.blind))
-            self._known[kind] = Tables(precision, entropy)
+            self._known[kind] = ByCount(precision, entropy)
         return self._known[kind]
 
     def enough(self, kind: str) -> int:

@@ -52,7 +52,7 @@ DIGITS = 11
 """Binary digits of a pixel area that are looked at: what is left out is below 1 part in 2048."""
 SHIFT = 24 - DIGITS
 LEAST_OCTAVE, OCTAVES = -32, 64
-"""Areas from 2^-32 px on are told apart: far below what `camera_area` takes for nothing."""
+"""Areas from 2^-32 px on are told apart: far below what a camera's exact area takes for nothing."""
 
 
 class PlaneFusion:
@@ -61,7 +61,8 @@ class PlaneFusion:
     def __init__(self, fusion: Fusion, shape: tuple[int, int]) -> None:
         self._fusion, self._shape = fusion, shape
         self._known: dict[tuple[str, str, int], Floats] = {}
-        """Tables by kind and what they are of, a few each."""
+        """Tables by what they are of, kind and number of blind groups: two a kind, and one more for
+        each number of groups that was asked for (by the floor rule, one)."""
 
     def entropies(self, groups: Sequence[Group], plane: int) -> Floats:
         """Entropy H (ny, nz) of the voxels of one of the planes [nats]."""

@@ -43,7 +43,7 @@ def voxelised(boxes: Boxes, space: PerceptionSpace) -> Voxelised:
 
     A voxel belongs to a box when its centre lies inside; a box without any (thinner than a voxel)
     has the column or layer that holds its own centre. A class that is not met in the space has no
-    mass.
+    mass. The last two results are kept, by the boxes (the object) and the space.
 
     Raises
     ------

@@ -71,7 +71,7 @@ class Pose:
 
     @property
     def ground_from_sensor(self) -> Floats:
-        """(3, 3) rotation from the sensor frame to the ground frame (inverse of R in eq. 1)."""
+        """(3, 3) rotation from the sensor frame to the ground frame (G of eq. 1)."""
         return rotation_matrix(*self.rpy)
 
 

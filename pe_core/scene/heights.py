@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .raycast import ranges
+from .numbering import count_up
 from .space import PerceptionSpace
 
 Floats = NDArray[np.float64]
@@ -40,7 +40,7 @@ def _candidates(triangles: Floats, space: PerceptionSpace) -> tuple[NDArray, NDA
         last.append(np.clip(np.floor(w.max(axis=1)), -1, limit).astype(int))
     wide, high = (np.maximum(hi - lo + 1, 0) for lo, hi in zip(first, last, strict=True))
     n = wide * high
-    step, rows = ranges(n), np.repeat(np.maximum(high, 1), n)
+    step, rows = count_up(n), np.repeat(np.maximum(high, 1), n)
     i = np.repeat(first[0], n) + step // rows
     j = np.repeat(first[1], n) + step % rows
     return np.repeat(np.arange(len(triangles)), n), i * space.shape[1] + j

@@ -1,6 +1,6 @@
 """First hit of many rays from one point on a triangle mesh.
 
-All rays of a sensor start at the same point, so a triangle is seen in a fixed window of directions.
+All rays of a sensor start at the same point, so a triangle is seen in fixed directions.
 Directions are binned on a cube map (six faces of CELLS x CELLS); a triangle is listed in every bin
 its projection may touch; a ray is tested against its own bin's triangles only. The test uses the
 planes through the origin and each edge, computed from the two end points alone, so that triangles
@@ -16,10 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .geometry import cross, dot
+from .numbering import count_up
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Window = tuple[Ints, Ints]
+Span = tuple[Ints, Ints]
+"""First and last bin of triangles along one coordinate."""
 
 CELLS = 64
 """Bins along a side of a cube face: 6 * 64**2 fits 16 bits, which NumPy sorts by radix."""
@@ -103,7 +105,7 @@ class SeenTriangles:
 
     def _test(self, directions: Floats, rays: Ints, at: Ints, n: Ints, hits: Hits) -> None:
         """Test rays against `n` triangles each, from entry `at` on; keep what is nearer."""
-        ray, face = np.repeat(rays, n), self._faces[np.repeat(at, n) + ranges(n)]
+        ray, face = np.repeat(rays, n), self._faces[np.repeat(at, n) + count_up(n)]
         ray, face, distance = self._crossings(directions, ray, face)
         better = (distance > 0.0) & (distance < hits.distance[ray])
         ray, face, distance = ray[better], face[better], distance[better]
@@ -126,13 +128,6 @@ class SeenTriangles:
         real = toward != 0.0  # edge-on and zero-area triangles stop nothing
         ray, face, toward = ray[real], face[real], toward[real]
         return ray, face, self._offsets[face] / toward
-
-
-def ranges(counts: Ints) -> Ints:
-    """``[0..c0), [0..c1), ...`` in one row."""
-    ends = np.cumsum(counts)
-    total = int(ends[-1]) if len(ends) else 0
-    return np.arange(total) - np.repeat(ends - counts, counts)
 
 
 def _portions(counts: Ints) -> list[slice]:
@@ -161,16 +156,16 @@ def _cells_on_face(corners: Floats, face: int) -> tuple[Ints, Ints]:
     axis, behind = divmod(face, 2)
     depth = -corners[axis] if behind else corners[axis]
     u, v = corners[(axis + 1) % 3], corners[(axis + 2) % 3]
-    index, (iu0, iu1), (iv0, iv1) = windows(depth, u, v)
+    index, (iu0, iu1), (iv0, iv1) = spans(depth, u, v)
     wide, high = iu1 - iu0 + 1, iv1 - iv0 + 1
     n = wide * high
-    step, rows = ranges(n), np.repeat(high, n)
+    step, rows = count_up(n), np.repeat(high, n)
     row = step // rows
     first = (face * CELLS + iu0) * CELLS + iv0
     return np.repeat(first, n) + row * CELLS + (step - row * rows), np.repeat(index, n)
 
 
-def windows(depth: Floats, u: Floats, v: Floats) -> tuple[Ints, Window, Window]:
+def spans(depth: Floats, u: Floats, v: Floats) -> tuple[Ints, Span, Span]:
     """Triangles, of corners (3, F), that may show in the square |u|, |v| <= depth; and where.
 
     Returns their indices (G,), and for u and v the first and last bin (G,) of each: never fewer
@@ -178,7 +173,7 @@ def windows(depth: Floats, u: Floats, v: Floats) -> tuple[Ints, Window, Window]:
     """
     index = np.flatnonzero(_may_be_seen(depth, u, v))
     depth = depth[:, index]
-    return index, _window(depth, u[:, index]), _window(depth, v[:, index])
+    return index, _span(depth, u[:, index]), _span(depth, v[:, index])
 
 
 def _may_be_seen(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
@@ -189,7 +184,7 @@ def _may_be_seen(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
     return seen
 
 
-def _window(depth: Floats, w: Floats) -> Window:
+def _span(depth: Floats, w: Floats) -> Span:
     """First and last bin of (3, F) corners along one coordinate.
 
     Where a corner is behind, the part in front is bounded by its farthest depth: a surface that

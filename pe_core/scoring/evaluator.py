@@ -29,7 +29,7 @@ class Evaluator:
     vehicle : Vehicle, optional
         None: nothing hides anything, and no voxel is excluded.
     samples : int
-        Score on about this many voxels drawn from the prior; 0 for all there are. The sample is
+        Score on about this many voxels drawn from the prior; 0: all. The sample is
         fixed: two rigs are compared on the same voxels.
     shift : (3,) float
         Three numbers in [0, 1) that scramble the sample's sequence: others give another sample as
@@ -124,7 +124,7 @@ class Evaluator:
         -------
         Judgement
             The entropy; or, where that is not below `below`, perhaps a lower bound of it that is
-            not below it either. `is_lower_bound` says so: no bound is good for ranks or models.
+            not below it either. `is_lower_bound` says so: such a number is none to rank by.
         """
         if isinstance(self._scorer, SampledScorer):
             return self._scorer.judge(rig, below)

@@ -31,13 +31,13 @@ from .score import (
     rounded,
     sensor_score,
 )
-from .subsets import Names, fused_early, parts_of
+from .subsets import Members, fused_early, parts_of
 from .weights import outside_masses
 from .zones import column_zones
 
 T = TypeVar("T")
 Floats = NDArray[np.float64]
-Measured = tuple[str, Planes]
+MeasuredGroup = tuple[str, Planes]
 """The kind of some sensors, and what measures them on a run of x-planes."""
 
 BLOCK_PLANES = 32
@@ -161,7 +161,7 @@ class GridScorer:
 
     def _measured(
         self, groups: Sequence[Sequence[Sensor]], ready: Mapping[str, Any], pool: Executor
-    ) -> list[Measured]:
+    ) -> list[MeasuredGroup]:
         """Sum the sensors of each group, which are of one kind."""
         kinds = [sensors[0].kind for sensors in groups]
         found: dict[int, Planes] = {}
@@ -249,7 +249,7 @@ class GridScorer:
         return found
 
     def _sensor(
-        self, sensor: Sensor, rig: Rig, by_part: Mapping[Names, Sums], ready: Any
+        self, sensor: Sensor, rig: Rig, by_part: Mapping[Members, Sums], ready: Any
     ) -> SensorScore:
         names = tuple(s.name for s in rig)
         whole, alone = by_part[names], by_part[(sensor.name,)]

@@ -53,7 +53,7 @@ class SampledScorer:
         self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
         outside_masses(densities, space, tops)  # complains when nothing is left to weigh
         self._kernels: dict[str, SampleKernel] = {}  # by kind: as many as there are
-        self._measured: dict[str, Measured] = {}
+        self._measured: dict[str, Measured] = {}  # by sensor name: those of the last rig
         self._is_free = RLock()
 
     def entropy(self, rig: Rig, draft: bool = False) -> float:

@@ -32,10 +32,10 @@ SAMPLES_OR_GRID = Whole(0, MAX_SAMPLES, "voxels")
 
 
 def samples_or_grid(source: str, value: Any) -> int:
-    """Return a number of samples, or 0 for the whole grid; `InputError` for what is neither."""
+    """Return a number of samples (0: all); `InputError` for what is none."""
     count = SAMPLES_OR_GRID.checked(source, "samples", value)
     if 0 < count < MIN_SAMPLES:
-        expected = f"0 for the whole grid, or a whole number of voxels >= {MIN_SAMPLES}"
+        expected = f"0 (all), or a whole number of voxels >= {MIN_SAMPLES}"
         raise InputError(source, "samples", expected, count)
     return count
 

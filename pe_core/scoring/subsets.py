@@ -8,10 +8,10 @@ from typing import Any
 from ..metric.fusion import group_sum
 from ..scene.sensors import Rig
 
-Names = tuple[str, ...]
+Members = tuple[str, ...]
 
 
-def parts_of(rig: Rig) -> list[Names]:
+def parts_of(rig: Rig) -> list[Members]:
     """The whole rig, then each sensor alone, then the rig without each; only what differs."""
     names = tuple(s.name for s in rig)
     if len(names) == 1:

@@ -41,7 +41,7 @@ class Search:
         Bounds that replace the default ones; metres and radians.
     seed : int
     samples : int
-        Voxels a candidate is judged on; 0 for the whole grid.
+        Voxels a candidate is judged on; 0: all.
     schedule : Schedule
 
     Raises
@@ -71,7 +71,7 @@ class Study:
     """Space, prior, perception model, vehicle, rig, and how to search.
 
     `mesh` names the file the vehicle was read from (or is written to); `samples` is the number of
-    voxels a score looks at, 0 for all of them. Of `search`, what concerns the rig's sensors is
+    voxels a score looks at, 0: all. Of `search`, what concerns the rig's sensors is
     kept; one that it does not name is free as in the paper.
 
     Raises

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 import pe_core as pe
-from pe_core.kinds.lidar.points import Lattice, VoxelPoints, count_beams
+from pe_core.kinds.lidar.lattice import lattice_of
+from pe_core.kinds.lidar.points import PlacedLidar, VoxelPoints, count_through
 from pe_core.kinds.lidar.ties import position_in_voxels, without_zeros
 
 BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
@@ -64,12 +65,11 @@ def small_space(interval=0.5):
 def counted(sensor, space, index, vehicle=None, enough=None):
     """Beams through voxels of a space, as the sampled kernels count them."""
     field = pe.beam_field(sensor, vehicle)
-    return count_beams(
-        VoxelPoints(index),
+    lidar = PlacedLidar(
+        lattice_of(sensor.model),
         position_in_voxels(sensor.pose.position, space.origin, space.interval),
-        Lattice.of(sensor.model),
         sensor.pose.ground_from_sensor,
         without_zeros(field.directions),
         field.ends / space.interval,
-        enough,
     )
+    return count_through(VoxelPoints(index), lidar, enough)

@@ -1,4 +1,4 @@
-"""What an optimizer is told of a candidate that is no better: a bound, without the vehicle."""
+"""What an optimizer is told of a candidate that is no better: a lower bound of its entropy."""
 
 import math
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.kinds.lidar.azimuths import MOST_AZIMUTHS
+from pe_core.kinds.lidar.slopes import SlopeCounts
 from pe_core.kinds.lidar.ties import position_in_voxels
-from pe_core.kinds.lidar.upright import MOST_AZIMUTHS, SlopeTable, Upright
+from pe_core.kinds.lidar.upright import Upright
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-30, 30), (-15, 15), (0, 5), 0.1)
@@ -93,7 +95,7 @@ def test_few_voxels_are_left_to_the_exact_test(place):
     rng = np.random.default_rng(4)
     index = rng.integers(0, SPACE.shape, (50_000, 3))
     position = position_in_voxels(PLACES[place], SPACE.origin, SPACE.interval)
-    table = SlopeTable.of(PANDAR64)
+    table = SlopeCounts.of(PANDAR64)
     stopped = np.zeros((64, PANDAR64.azimuth_count), bool)
     upright = Upright.of(table, np.eye(3), stopped, 0.0)
     counts, unsure = upright.count([c.astype(np.float32) for c in index.T], position)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from ...errors import InputError
 from ...text.cells import NUMBER, parse_number, quoted
-from .labels import Labels, Row
+from .labels import BoxNumbers, Labels
 
 CAMERA = (-0.33, 0.0, 1.65)
 """The camera in the ground frame under the middle of the wheelbase [m]. KITTI's set-up: 1.65 m
@@ -78,7 +78,7 @@ def _add(labels: Labels, where: str, cells: Sequence[str]) -> None:
         labels.leave_unknown(cells[0])
 
 
-def _in_ground_axes(source: str, where: str, cells: Sequence[str]) -> Row:
+def _in_ground_axes(source: str, where: str, cells: Sequence[str]) -> BoxNumbers:
     """Return a box with axes as the ground frame's, from the camera."""
     texts = cells[FIRST_NUMBER : FIRST_NUMBER + len(NUMBERS)]
     height, width, length, right, down, forward, turn = (

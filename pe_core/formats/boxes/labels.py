@@ -19,7 +19,7 @@ OTHER_CLASSES = "of other unknown classes"
 """What is left out of a file is told by so many reasons; further classes are counted together."""
 FIRST_SIZE = COLUMNS.index(SIZES[0])
 Origin = tuple[float, float, float]
-Row = tuple[float, float, float, float, float, float, float]
+BoxNumbers = tuple[float, float, float, float, float, float, float]
 """A box as in `boxes.COLUMNS`: axes as the ground frame's, yaw in radians."""
 
 
@@ -29,11 +29,11 @@ class Labels:
 
     source: str
     names: list[str] = field(default_factory=list)
-    rows: list[Row] = field(default_factory=list)
+    rows: list[BoxNumbers] = field(default_factory=list)
     origins: list[Origin] = field(default_factory=list)
     left_out: Counter[str] = field(default_factory=Counter)
 
-    def add(self, where: str, name: str, row: Row, origin: Origin = GROUND) -> None:
+    def add(self, where: str, name: str, row: BoxNumbers, origin: Origin = GROUND) -> None:
         """Take a box; `where` says which one, for messages."""
         for column, value in zip(SIZES, row[FIRST_SIZE : FIRST_SIZE + 3], strict=True):
             if not value > 0.0:

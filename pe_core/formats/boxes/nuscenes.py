@@ -13,7 +13,7 @@ from typing import Any
 
 from ...errors import InputError, shown
 from ...text.cells import LONGEST_QUOTE
-from .labels import Labels, Row
+from .labels import BoxNumbers, Labels
 
 CLASSES = {
     "car": "car",
@@ -96,7 +96,7 @@ def _class_of(name: str) -> str | None:
     return CLASSES.get(words[1])
 
 
-def _row(source: str, where: str, box: Mapping[str, Any]) -> Row:
+def _row(source: str, where: str, box: Mapping[str, Any]) -> BoxNumbers:
     x, y, z = _numbers(source, where, box, "translation", 3)
     width, length, height = _numbers(source, where, box, "size", 3)
     w, i, j, k = _numbers(source, where, box, "rotation", 4)

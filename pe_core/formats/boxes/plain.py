@@ -14,7 +14,7 @@ from ...errors import InputError
 from ...prior.boxes import COLUMNS, Boxes, degrees_of
 from ...text.cells import LONGEST_QUOTE, parse_number, quoted
 from ...text.files import write_bytes
-from .labels import Labels, Row
+from .labels import BoxNumbers, Labels
 
 CLASS = "class"
 SEPARATORS = ",;\t"
@@ -54,7 +54,10 @@ def write_csv(path: Path, boxes: Boxes) -> None:
 
 @lru_cache(maxsize=1)
 def _csv_bytes(boxes: Boxes) -> bytes:
-    """The file's bytes; a search writes the same ones every few seconds."""
+    """The file's bytes; a search writes the same ones every few seconds.
+
+    Those of the last boxes are kept, by the object: boxes do not change.
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
     text.write(",".join((CLASS, *COLUMNS)) + "\n")
@@ -88,7 +91,7 @@ def _cells(source: str, number: int, line: str, separator: str) -> list[str]:
     return [cell.strip() for cell in row]
 
 
-def _row(source: str, where: str, cells: Sequence[str], where_is: dict[str, int]) -> Row:
+def _row(source: str, where: str, cells: Sequence[str], where_is: dict[str, int]) -> BoxNumbers:
     x, y, z, length, width, height, yaw = (
         parse_number(source, where, c, cells[where_is[c]]) for c in COLUMNS
     )

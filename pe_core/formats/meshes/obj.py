@@ -14,7 +14,7 @@ from .mesh import TEXT_UNFOLDS, Mesh, fan, fan_size, make_mesh, require_room
 
 
 @dataclass(slots=True)
-class _Scan:
+class _Statements:
     """What the lines said: corners of all faces end to end, their vertices and lines."""
 
     points: list[float] = field(default_factory=list)
@@ -107,8 +107,8 @@ def _goes_on(line: str) -> bool:
     return line.endswith("\\") and not line.lstrip().startswith("#")
 
 
-def _scan(source: str, lines: list[str], keyword: str, names: dict[str, int]) -> _Scan:
-    scan = _Scan()
+def _scan(source: str, lines: list[str], keyword: str, names: dict[str, int]) -> _Statements:
+    scan = _Statements()
     label = 0
     for number, line in enumerate(lines, 1):
         words = line.split()
@@ -131,7 +131,7 @@ def _scan(source: str, lines: list[str], keyword: str, names: dict[str, int]) ->
     return scan
 
 
-def _scan_face(scan: _Scan, line: str) -> None:
+def _scan_face(scan: _Statements, line: str) -> None:
     words = line.partition("#")[0].split()
     known = len(scan.points) // 3
     for word in words[1:]:
@@ -141,7 +141,7 @@ def _scan_face(scan: _Scan, line: str) -> None:
     scan.counts.append(len(words) - 1)
 
 
-def _check(source: str, lines: list[str], scan: _Scan) -> None:
+def _check(source: str, lines: list[str], scan: _Statements) -> None:
     total = len(scan.point_lines)
     # Python's own min and max: an index can be too long for any NumPy integer.
     if scan.corners and not 0 <= min(scan.corners) <= max(scan.corners) < total:

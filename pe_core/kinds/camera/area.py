@@ -15,7 +15,8 @@ from ...scene.geometry import Pose
 from .model import Camera
 
 Floats = NDArray[np.float64]
-Planes = tuple[Floats, Floats, Floats]
+SensorAxes = tuple[Floats, Floats, Floats]
+"""Depth (forward), left and up of points, each (V,) [m]."""
 
 QUAD = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 """Corners of a face, in order, in half sides along its two axes."""
@@ -36,8 +37,8 @@ def clipped_pixel_area(camera: Camera, pose: Pose, centers: Floats, side: float)
     return area
 
 
-def _in_sensor_frame(pose: Pose, centers: Floats) -> Planes:
-    """Depth (forward), left and up of points, each (V,) [m]."""
+def _in_sensor_frame(pose: Pose, centers: Floats) -> SensorAxes:
+    """Ground-frame points as the camera sees them."""
     x, y, z = (centers[:, k] - pose.position[k] for k in range(3))
     axes = pose.ground_from_sensor.T
     depth, left, up = (a[0] * x + a[1] * y + a[2] * z for a in axes)
@@ -69,22 +70,18 @@ def _area_in_view(camera: Camera, pose: Pose, centers: Floats, side: float) -> F
     area = np.zeros(len(centers))
     for k in range(3):
         toward = -np.sign(offsets[k]) * half  # the face on the camera's side
+        face = (depth + toward * axes[k, 0], left + toward * axes[k, 1], up + toward * axes[k, 2])
+        i, j = (k + 1) % 3, (k + 2) % 3
         corners = [
-            _project(camera, (depth, left, up), axes, k, toward, a * half, b * half)
-            for a, b in QUAD
+            _project(camera, face, (a * half) * axes[i] + (b * half) * axes[j]) for a, b in QUAD
         ]
         area += np.where(np.abs(offsets[k]) > half, _clipped_quad_area(corners, camera), 0.0)
     return np.where((depth > reach) & (area > ROUNDING_PX), area, 0.0)
 
 
-def _project(
-    camera: Camera, center: Planes, axes: Floats, k: int, n: Floats, a: float, b: float
-) -> tuple[Floats, Floats]:
-    """Image position [px], right and down, of a corner n along axis k, a and b along the others."""
-    i, j = (k + 1) % 3, (k + 2) % 3
-    depth, left, up = (
-        center[w] + n * axes[k, w] + (a * axes[i, w] + b * axes[j, w]) for w in range(3)
-    )
+def _project(camera: Camera, face: SensorAxes, corner: Floats) -> tuple[Floats, Floats]:
+    """Image position [px], right and down, of the faces' corner that is (3,) from their centres."""
+    depth, left, up = (center + along for center, along in zip(face, corner, strict=True))
     scale = camera.focal_px / np.where(depth > 0.0, depth, 1.0)
     return camera.width / 2.0 - left * scale, camera.height / 2.0 - up * scale
 

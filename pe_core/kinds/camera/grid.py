@@ -1,9 +1,9 @@
 """Pixel areas of the voxels of a run of x-planes.
 
 Where a column of voxels (along z) enters and leaves the picture follows from the four sides of the
-frustum. The voxels between are filled with the closed form of `camera_points`, in single precision;
+frustum. The voxels between are filled with the closed form of `camera.points`, in single precision;
 depth and the faces' distances are a term of x and one of y and z, which all planes share. Voxels on
-the picture's border, near the camera, or perhaps behind the vehicle are listed from such bounds as
+the picture's border, near the camera, or perhaps behind the vehicle are listed from such sides as
 well, and handed to the exact functions, all of a run at once.
 """
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...metric.planes import SeenRows
 from ...scene.geometry import Pose, dot
-from ...scene.raycast import ranges
+from ...scene.numbering import count_up
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import SeenMesh
 from .area import clipped_pixel_area
@@ -27,7 +27,7 @@ from .shadow import ShadowMap
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
-Bound = tuple[Floats, float]
+HalfSpace = tuple[Floats, float]
 """A direction, and how far along it from the camera a voxel's centre has to be [m]."""
 
 MARGIN = 1e-6
@@ -36,25 +36,25 @@ LEVEL = 1e-12
 """Least slope along z of a side of the frustum, so that it can be divided by."""
 
 
-class Columns(NamedTuple):
-    """A run of voxels in each column, `first` to before `end`, (n, rows) each."""
+class ColumnRuns(NamedTuple):
+    """A run of voxels in each column (along z), `first` to before `end`, (n, rows) each."""
 
     first: Ints
     end: Ints
 
-    def within(self, outer: Columns) -> Columns:
+    def within(self, outer: ColumnRuns) -> ColumnRuns:
         """Cut to the outer runs; an empty one is put at the outer one's end."""
         first = np.clip(self.first, outer.first, outer.end)
         end = np.clip(self.end, first, outer.end)
         empty = first == end
-        return Columns(np.where(empty, outer.end, first), np.where(empty, outer.end, end))
+        return ColumnRuns(np.where(empty, outer.end, first), np.where(empty, outer.end, end))
 
     def listed(self, nz: int) -> Ints:
         """Numbers (V,) of all voxels of the runs, counted through planes, rows and heights."""
         first, end = self.first.reshape(-1), self.end.reshape(-1)
         some = np.flatnonzero(end > first)
         counts = end[some] - first[some]
-        return np.repeat(some * nz + first[some], counts) + ranges(counts)
+        return np.repeat(some * nz + first[some], counts) + count_up(counts)
 
 
 class CameraPlanes:
@@ -89,17 +89,18 @@ class CameraPlanes:
         """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""
         rows = self._rows_in_view(planes)
         near = NEAR_SIDES * self._space.interval
-        touched = self._columns(planes, rows, [(self._forward, 0.0), *self._at_sides(-1.0)])
-        plain = self._columns(planes, rows, [(self._forward, near), *self._at_sides(1.0)])
+        touched = self._runs(planes, rows, [(self._forward, 0.0), *self._at_sides(-1.0)])
+        plain = self._runs(planes, rows, [(self._forward, near), *self._at_sides(1.0)])
         plain = plain.within(touched)
         area = self._filled(planes, rows, plain)
         nz = area.shape[2]
-        before, behind = Columns(touched.first, plain.first), Columns(plain.end, touched.end)
+        before = ColumnRuns(touched.first, plain.first)
+        behind = ColumnRuns(plain.end, touched.end)
         edge = np.concatenate([before.listed(nz), behind.listed(nz)])
         self._settle_edges(area, edge, (planes.start, rows.start))
         if self._shadow is not None and not self._shadow.empty:
-            sides = _sides(self._pose, *self._shadow.window)
-            shaded = self._columns(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
+            sides = _sides(self._pose, *self._shadow.extent)
+            shaded = self._runs(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
             shaded_or_edge = np.concatenate([edge, shaded.listed(nz)])
             self._settle_hidden(area, shaded_or_edge, (planes.start, rows.start))
         return SeenRows(rows, area)
@@ -108,8 +109,8 @@ class CameraPlanes:
         """Distance along an axis from the camera to the nearer face across it; 0 inside."""
         return np.maximum(np.abs(offset) - self._space.interval / 2.0, 0.0)
 
-    def _at_sides(self, radii: float) -> list[Bound]:
-        """Bounds of voxels inside the frustum's sides by so many of their own radii."""
+    def _at_sides(self, radii: float) -> list[HalfSpace]:
+        """Half spaces of voxels inside the frustum's sides by so many of their own radii."""
         return [(n, radii * self._radius(n)) for n in self._sides]
 
     def _radius(self, normal: Floats) -> float:
@@ -120,32 +121,32 @@ class CameraPlanes:
         """Rows (y) that may touch the picture, on some of the planes and at some height."""
         x, y, z = self._offsets[0][planes], self._offsets[1], self._offsets[2]
         inside = np.ones(len(y), bool)
-        for n, bound in [(self._forward, 0.0), *self._at_sides(-1.0)]:
+        for n, least in [(self._forward, 0.0), *self._at_sides(-1.0)]:
             most = max(n[0] * x[0], n[0] * x[-1]) + max(n[2] * z[0], n[2] * z[-1])
-            inside &= n[1] * y > bound - most
+            inside &= n[1] * y > least - most
         return _span(inside)
 
-    def _columns(self, planes: slice, rows: slice, bounds: list[Bound]) -> Columns:
-        """Voxels that lie beyond all bounds."""
+    def _runs(self, planes: slice, rows: slice, half_spaces: list[HalfSpace]) -> ColumnRuns:
+        """Voxels that lie in all half spaces."""
         x, y = self._offsets[0][planes], self._offsets[1][rows]
         nz, step = len(self._offsets[2]), self._space.interval
         lowest = self._offsets[2][0] / step
         low, high = np.zeros((len(x), len(y))), np.full((len(x), len(y)), float(nz))
-        for n, bound in bounds:
+        for n, least in half_spaces:
             slope = n[2] if abs(n[2]) > LEVEL else LEVEL
             scale = 1.0 / (slope * step)
-            here = (bound * scale - lowest) - (n[0] * scale) * x
-            crossing = np.add.outer(here, (-n[1] * scale) * y)  # height of the bound, in voxels
+            here = (least * scale - lowest) - (n[0] * scale) * x
+            crossing = np.add.outer(here, (-n[1] * scale) * y)  # height of its border, in voxels
             if slope > 0.0:
                 np.maximum(low, crossing, out=low)
             else:
                 np.minimum(high, crossing, out=high)
         first = np.minimum(np.ceil(low), nz).astype(np.int64)
         end = np.clip(np.ceil(high), first, nz).astype(np.int64)
-        return Columns(first, end)
+        return ColumnRuns(first, end)
 
-    def _filled(self, planes: slice, rows: slice, plain: Columns) -> Singles:
-        """Areas of small flat faces in the runs, see `camera_points`; 0 elsewhere."""
+    def _filled(self, planes: slice, rows: slice, plain: ColumnRuns) -> Singles:
+        """Areas of small flat faces in the runs, see `camera.points`; 0 elsewhere."""
         depth, away = self._depth[rows], self._away[rows]
         x = self._offsets[0][planes]
         area = np.empty((len(x), *depth.shape), np.float32)

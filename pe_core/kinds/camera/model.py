@@ -15,7 +15,7 @@ FOV = Angle(0.001, 180.0, below=True)
 
 @dataclass(frozen=True, eq=False)
 class Camera(SensorModel):
-    """Intrinsics of a pinhole camera (eq. 2): square pixels, centred principal point.
+    """Intrinsics of a pinhole camera (eq. 3): square pixels, centred principal point.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Camera(SensorModel):
 
     @property
     def focal_px(self) -> float:
-        """Focal length ``W / (2 tan(r_h / 2))`` [px], eq. 2."""
+        """Focal length ``W / (2 tan(r_h / 2))`` [px], for eq. 3."""
         return self.width / (2.0 * math.tan(self.hfov / 2.0))
 
     @property

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...scene.geometry import Pose, rotate
-from ...scene.raycast import CELLS, ranges, windows
+from ...scene.numbering import count_up
+from ...scene.raycast import CELLS, spans
 from .model import Camera
 
 Floats = NDArray[np.float64]
@@ -31,10 +32,10 @@ class ShadowMap:
         self._high = BORDER * camera.height / 2.0 / camera.focal_px
         corners = rotate(pose.ground_from_sensor.T, triangles).transpose(2, 1, 0)
         depth, left, up = np.ascontiguousarray(corners)
-        _, (i0, i1), (j0, j1) = windows(depth, left / self._wide, up / self._high)
+        _, (i0, i1), (j0, j1) = spans(depth, left / self._wide, up / self._high)
         high = j1 - j0 + 1
         n = (i1 - i0 + 1) * high
-        step, rows = ranges(n), np.repeat(high, n)
+        step, rows = count_up(n), np.repeat(high, n)
         row = step // rows
         self._hit = np.zeros(CELLS * CELLS, bool)
         bins = (np.repeat(i0, n) + row) * CELLS + np.repeat(j0, n) + (step - row * rows)
@@ -42,7 +43,7 @@ class ShadowMap:
         self.empty = not len(bins)
 
     @property
-    def window(self) -> tuple[tuple[float, float], tuple[float, float]]:
+    def extent(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Least and greatest left / depth, and up / depth, of the bins that may be touched."""
         hit = self._hit.reshape(CELLS, CELLS)
         ends = (np.flatnonzero(hit.any(axis=axis))[[0, -1]] for axis in (1, 0))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...scene.raycast import ranges
+from ...scene.numbering import count_up
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -56,7 +56,7 @@ class BeamBands:
         first = _band(np.maximum(low, -math.pi / 2))
         n = _band(np.minimum(high, math.pi / 2)) - first + 1
         voxel = np.repeat(np.arange(len(n)), n)
-        start = (np.repeat(first, n) + ranges(n)) * STRIDE
+        start = (np.repeat(first, n) + count_up(n)) * STRIDE
         round_ = half[voxel] >= math.pi
         middle = np.where(round_, 0.0, azimuth[voxel])
         reach = np.where(round_, math.pi, half[voxel])
@@ -65,7 +65,7 @@ class BeamBands:
         i1 = np.searchsorted(self.keys, start + middle + reach, side="left")
         i1 = np.where(round_, i1, np.searchsorted(self.keys, start + middle + reach, side="right"))
         n = i1 - i0
-        return np.repeat(voxel, n), self.beams[np.repeat(i0, n) + ranges(n)]
+        return np.repeat(voxel, n), self.beams[np.repeat(i0, n) + count_up(n)]
 
 
 def _band(elevation: Floats) -> Ints:

@@ -24,7 +24,7 @@ from .ties import position_in_voxels, without_zeros
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Fixed = NDArray[np.uint64]
-Counts = NDArray[np.uint16]
+HeldCounts = NDArray[np.uint16]
 
 FRACTION_BITS = 40
 FRACTION = np.uint64(FRACTION_BITS)
@@ -40,7 +40,7 @@ ONE = np.uint16(1)
 
 
 @dataclass(frozen=True, slots=True)
-class Beams:
+class Paths:
     """Beams cut to the space, in voxels: `origin` (3,), `directions` (B, 3), `start`, `end`."""
 
     origin: Floats
@@ -62,7 +62,7 @@ class BeamGrid:
         self._crowded: list[tuple[slice, ...]] = []
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> HeldCounts:
         """(nx, ny, nz) beams through each voxel; a view."""
         return self._padded[1:-1, 1:-1, 1:-1]
 
@@ -84,20 +84,20 @@ class BeamGrid:
         ends : (B,) float
             A voxel entered farther than this is not counted [m].
         """
-        beams = _cut_to_space(origin, directions, ends, self.space)
-        self._crowded.append(_around(beams.origin, self._padded.shape))
-        self._add_at_origin(beams)
+        paths = _cut_to_space(origin, directions, ends, self.space)
+        self._crowded.append(_around(paths.origin, self._padded.shape))
+        self._add_at_origin(paths)
         for axis in range(3):
             for sign in (1, -1):
-                run = _Run.start(beams, self.space.shape, axis, sign)
+                run = _Run.of(paths, self.space.shape, axis, sign)
                 for few in run.portions(MOST):
                     self._add_held(few, axis, sign)
 
-    def _add_at_origin(self, beams: Beams) -> None:
+    def _add_at_origin(self, paths: Paths) -> None:
         """Add the beams that start in the space to the voxel that holds the sensor."""
-        inside = int((beams.start == 0.0).sum())
+        inside = int((paths.start == 0.0).sum())
         if inside:
-            here = tuple(np.floor(beams.origin).astype(int))
+            here = tuple(np.floor(paths.origin).astype(int))
             self.counts[here] = min(int(self.counts[here]) + inside, MOST)
 
     def _add_held(self, run: _Run, axis: int, sign: int) -> None:
@@ -144,7 +144,7 @@ def _others(axis: int) -> tuple[int, int]:
 
 def _cut_to_space(
     origin: Sequence[float], directions: Floats, ends: Floats, space: PerceptionSpace
-) -> Beams:
+) -> Paths:
     """Drop the beams that miss the space; say where the others are inside it, in voxels."""
     cells = position_in_voxels(origin, space.origin, space.interval)
     speeds = without_zeros(directions)
@@ -155,12 +155,12 @@ def _cut_to_space(
         enter = np.maximum(enter, np.minimum(t0, t1))
         leave = np.minimum(leave, np.maximum(t0, t1))
     keep = np.flatnonzero(enter <= leave)
-    return Beams(cells, speeds[keep], enter[keep], leave[keep])
+    return Paths(cells, speeds[keep], enter[keep], leave[keep])
 
 
 @dataclass(slots=True)
 class _Run:
-    """The beams of one sweep, sorted so that those still on their way are always the first ones.
+    """The paths of one sweep, sorted so that those still on their way are always the first ones.
 
     `at` (2, B) are the crossing points along the two other axes, in fixed point and one voxel up:
     the cells outside the grid that a rounding may reach then have indices as well. `arrival` says
@@ -174,22 +174,22 @@ class _Run:
     arrival: Ints | None
 
     @classmethod
-    def start(cls, beams: Beams, shape: tuple[int, ...], axis: int, sign: int) -> _Run:
+    def of(cls, paths: Paths, shape: tuple[int, ...], axis: int, sign: int) -> _Run:
         """Place the beams on their first plane."""
-        origin, speed = beams.origin[axis], sign * beams.directions[:, axis]
+        origin, speed = paths.origin[axis], sign * paths.directions[:, axis]
         first = math.floor(origin) + 1 if sign > 0 else math.ceil(origin) - 1
         first = max(first, 0) if sign > 0 else min(first, shape[axis])
         ahead = sign * (first - origin)
         room = shape[axis] - 1 - first if sign > 0 else first - 1
-        arrival = np.maximum(np.ceil(beams.start * speed - ahead - EARLY), 0.0)
-        last = np.minimum(np.floor(beams.end * speed - ahead), room)
+        arrival = np.maximum(np.ceil(paths.start * speed - ahead - EARLY), 0.0)
+        last = np.minimum(np.floor(paths.end * speed - ahead), room)
         moving = np.flatnonzero((speed > 0.0) & (last >= arrival))
         order = moving[np.argsort(-last[moving], kind="stable")]
         last, arrival = last[order].astype(np.int64), arrival[order].astype(np.int64)
         count = int(last[0]) + 1 if len(order) else 0
         active = np.searchsorted(-last, -np.arange(count), side="right")
-        slopes = np.stack([beams.directions[order, a] / speed[order] for a in _others(axis)])
-        places = beams.origin[_others(axis), None] + slopes * ahead + 1.0
+        slopes = np.stack([paths.directions[order, a] / speed[order] for a in _others(axis)])
+        places = paths.origin[_others(axis), None] + slopes * ahead + 1.0
         planes = [first + sign * k for k in range(count)]
         late = arrival if arrival.any() else None
         return cls(planes, active.tolist(), _fixed(places), _fixed(slopes), late)

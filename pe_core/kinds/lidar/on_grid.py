@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...scene.numbering import blocks
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
@@ -22,7 +23,7 @@ BLOCK_PLANES = 32
 
 
 @dataclass(frozen=True, slots=True)
-class CastBeams:
+class CastLidar:
     """A LiDAR with its beams cast."""
 
     sensor: Sensor
@@ -39,15 +40,15 @@ class LidarGrid(GridKernel):
     def _grid(self) -> BeamGrid:
         return BeamGrid(self._space)  # kept: a new one is slow to touch for the first time
 
-    def ready(self, sensor: Sensor) -> CastBeams:
+    def ready(self, sensor: Sensor) -> CastLidar:
         """Cast the beams."""
-        return CastBeams(sensor, beam_field(sensor, self._vehicle))
+        return CastLidar(sensor, beam_field(sensor, self._vehicle))
 
-    def stopped(self, ready: CastBeams) -> Stopped:
+    def stopped(self, ready: CastLidar) -> Stopped:
         """Count the beams that the vehicle stops."""
         return stopped_beams(ready.field, self._vehicle)
 
-    def planes(self, groups: Sequence[Sequence[CastBeams]], pool: Executor) -> list[Planes]:
+    def planes(self, groups: Sequence[Sequence[CastLidar]], pool: Executor) -> list[Planes]:
         """Count each group's beams on the whole grid, now; several groups are kept small."""
         found: list[Planes] = []
         for sensors in groups:
@@ -69,9 +70,5 @@ def compact(counts: NDArray[np.uint16], enough: int, pool: Executor | None = Non
         for i in range(planes.start, planes.stop):
             kept[i] = np.minimum(counts[i], enough) if small else counts[i]
 
-    list((pool.map if pool else map)(work, _blocks(len(counts))))
+    list((pool.map if pool else map)(work, blocks(len(counts), BLOCK_PLANES)))
     return kept
-
-
-def _blocks(planes: int) -> Iterator[slice]:
-    return (slice(i, min(i + BLOCK_PLANES, planes)) for i in range(0, planes, BLOCK_PLANES))

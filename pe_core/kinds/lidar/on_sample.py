@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from functools import lru_cache
 from typing import cast
 
 import numpy as np
@@ -13,18 +12,10 @@ from ...scene.sensors import Sensor
 from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Measured, SampleKernel, Stopped, Voxels
 from .beams import BeamEnds, TurnedBeams, beam_field, stopped_beams
+from .lattice import lattice_of
 from .model import Lidar
-from .points import Lattice, VoxelPoints, count_beams
+from .points import PlacedLidar, VoxelPoints, count_through
 from .ties import position_in_voxels
-
-LATTICES_KEPT = 16
-"""Models whose tables are kept, by the model object; a rig has few, a search the same few."""
-
-
-@lru_cache(maxsize=LATTICES_KEPT)
-def lattice_of(model: Lidar) -> Lattice:
-    """Return a model's beams for looking them up by direction."""
-    return Lattice.of(model)
 
 
 class LidarSample(SampleKernel):
@@ -35,6 +26,7 @@ class LidarSample(SampleKernel):
         self._points = VoxelPoints(voxels.index)
         self._ends = BeamEnds(vehicle)
         self._turned: dict[str, tuple[Sensor, TurnedBeams]] = {}
+        """By the sensor's name, with the sensor they hold for: as many as the last rig had."""
 
     def measure(self, sensor: Sensor, draft: bool) -> Measured:
         """Count a LiDAR's beams; a draft has them stopped by a map of the vehicle's top."""
@@ -73,12 +65,11 @@ class LidarSample(SampleKernel):
 
     def _count(self, sensor: Sensor, beams: TurnedBeams, ends: Floats) -> NDArray:
         side = self._space.interval
-        return count_beams(
-            self._points,
-            position_in_voxels(sensor.pose.position, self._space.origin, side),
+        lidar = PlacedLidar(
             lattice_of(cast(Lidar, sensor.model)),
+            position_in_voxels(sensor.pose.position, self._space.origin, side),
             sensor.pose.ground_from_sensor,
             beams.without_zeros,
             ends / side,
-            self._enough,
         )
+        return count_through(self._points, lidar, self._enough)

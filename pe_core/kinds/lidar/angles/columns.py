@@ -32,7 +32,7 @@ LAYOUTS = "a column named elevation, or Hesai or Velodyne channel angles"
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class Line:
     """A line's number and its cells."""
 
     line: int
@@ -85,13 +85,13 @@ def read_columns(source: str, text: str) -> list[Channel]:
     return by_id(source, channels, first)
 
 
-def _rows(text: str) -> list[Row]:
+def _rows(text: str) -> list[Line]:
     """Cells of the lines, without Hesai's preamble; the first line tells the separator."""
     lines = numbered_lines(text)
     while lines and lines[0][1].strip().lower().startswith(PREAMBLE):
         lines = lines[1:]
     separator = next((s for s in ";,\t" if lines and s in lines[0][1]), None)
-    return [Row(n, _cells(line, separator)) for n, line in lines]
+    return [Line(n, _cells(line, separator)) for n, line in lines]
 
 
 def _cells(line: str, separator: str | None) -> tuple[str, ...]:
@@ -102,7 +102,7 @@ def _cells(line: str, separator: str | None) -> tuple[str, ...]:
     return tuple(cells)
 
 
-def _without_checksum(rows: list[Row]) -> list[Row]:
+def _without_checksum(rows: list[Line]) -> list[Line]:
     return rows[:-1] if rows and CHECKSUM.fullmatch(rows[-1].cells[0]) else rows
 
 
@@ -115,7 +115,7 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _without_header(source: str, rows: Sequence[Row]) -> Layout:
+def _without_header(source: str, rows: Sequence[Line]) -> Layout:
     """One or two columns: elevation, azimuth offset."""
     width = len(rows[0].cells)
     if width > 2:
@@ -128,7 +128,7 @@ def _without_header(source: str, rows: Sequence[Row]) -> Layout:
     return Layout(width, 0, 1 if width == 2 else None)
 
 
-def _from_header(source: str, header: Row) -> Layout:
+def _from_header(source: str, header: Line) -> Layout:
     names = [_plain(cell) for cell in header.cells]
     columns = {role: _column(source, header, names, role) for role in NAMES}
     elevation, azimuth, number = (columns[role] for role in NAMES)
@@ -148,7 +148,7 @@ def _plain(name: str) -> str:
     return UNIT.sub("", plain) if len(plain) <= LONGEST_QUOTE else plain
 
 
-def _column(source: str, header: Row, names: Sequence[str], role: str) -> int | None:
+def _column(source: str, header: Line, names: Sequence[str], role: str) -> int | None:
     """Index of the one column of that role, None if there is none."""
     found = [i for i, name in enumerate(names) if name in NAMES[role]]
     if len(found) > 1:
@@ -157,7 +157,7 @@ def _column(source: str, header: Row, names: Sequence[str], role: str) -> int | 
     return found[0] if found else None
 
 
-def _check_unknown(source: str, header: Row, names: Sequence[str]) -> None:
+def _check_unknown(source: str, header: Line, names: Sequence[str]) -> None:
     """Refuse a column that looks like an angle but is not one of the known names."""
     known = set().union(*NAMES.values())
     for cell, name in zip(header.cells, names, strict=True):
@@ -166,7 +166,7 @@ def _check_unknown(source: str, header: Row, names: Sequence[str]) -> None:
             raise InputError(source, header.where, expected, quoted(cell))
 
 
-def _channel(source: str, layout: Layout, row: Row) -> Channel:
+def _channel(source: str, layout: Layout, row: Line) -> Channel:
     if len(row.cells) > layout.width:
         expected = f"no more columns than the header, {layout.width}"
         raise InputError(source, row.where, expected, len(row.cells))

@@ -22,7 +22,7 @@ XML_KEYS = ("id_", "vertCorrection_", "rotCorrection_")
 YAML_KEYS = ("laser_id", "vert_correction", "rot_correction")
 LASERS = re.compile(r"^lasers[ \t]*:", re.MULTILINE)
 
-Item = tuple[int, list[str]]
+YamlItem = tuple[int, list[str]]
 """Number of the line with an item's dash, and its lines after the dash."""
 
 
@@ -91,9 +91,9 @@ def _enabled(source: str, root: ElementTree.Element, count: int) -> list[bool]:
     return [flag == "1" for flag in flags[:count]]
 
 
-def _yaml_items(source: str, text: str) -> tuple[list[Item], int | None]:
+def _yaml_items(source: str, text: str) -> tuple[list[YamlItem], int | None]:
     """The entries below ``lasers:``, and the number of lasers if the file says it."""
-    items: list[Item] = []
+    items: list[YamlItem] = []
     count, inside = None, False
     for number, line in numbered_lines(text):
         body, where = line.strip(), f"line {number}"
@@ -112,7 +112,7 @@ def _yaml_items(source: str, text: str) -> tuple[list[Item], int | None]:
     return items, count
 
 
-def _yaml_laser(source: str, item: Item) -> Channel:
+def _yaml_laser(source: str, item: YamlItem) -> Channel:
     number, lines = item
     where, body = f"line {number}", " ".join(lines).strip()
     if body.startswith("{"):

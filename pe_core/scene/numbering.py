@@ -1,0 +1,23 @@
+"""Rows of numbers, for working on many things at once: counted up, and cut into blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+Ints = NDArray[np.int64]
+
+
+def count_up(counts: Ints) -> Ints:
+    """``0 .. c0 - 1, 0 .. c1 - 1, ...`` in one row: a number for each of what comes in counts."""
+    ends = np.cumsum(counts)
+    total = int(ends[-1]) if len(ends) else 0
+    return np.arange(total) - np.repeat(ends - counts, counts)
+
+
+def blocks(total: int, size: int) -> Iterator[slice]:
+    """Cut a row of `total` into runs of `size`, the last one shorter: to stay in the cache."""
+    for start in range(0, total, size):
+        yield slice(start, min(start + size, total))

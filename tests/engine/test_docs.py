@@ -1,0 +1,105 @@
+"""What the pages say of the code holds: worked numbers, figures, paths, sources."""
+
+import importlib.util
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+import pe_core as pe
+
+ROOT = Path(__file__).parents[2]
+FIGURES = ROOT / "docs" / "figures"
+ENGINE = (ROOT / "docs" / "engine.md").read_text("utf-8")
+PAGES = ["README.md", "docs/engine.md", "docs/metric.md", "docs/study.md", "docs/blender.md"]
+
+
+@pytest.fixture(scope="module")
+def figures(request):
+    """The scripts beside the figures: `worked` and `kernels`."""
+    found = {}
+    sys.path.insert(0, str(FIGURES))
+    for name in ("worked", "svg", "kernels"):
+        spec = importlib.util.spec_from_file_location(name, FIGURES / f"{name}.py")
+        found[name] = sys.modules[name] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(found[name])
+    yield found
+    sys.path.remove(str(FIGURES))
+    for name in found:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def worked(figures):
+    return figures["worked"]
+
+
+@pytest.mark.parametrize("rows", ["bracket_rows", "upright_rows"])
+def test_the_page_has_the_worked_voxels_word_for_word(worked, rows):
+    assert "\n".join(getattr(worked, rows)()) in ENGINE
+
+
+def test_the_bracket_worked_by_hand_is_the_kernel_s(worked):
+    """Windows by formulas on plain numbers; rows and columns by the kernel; m by the definition."""
+    by_hand, kernel = worked.bracketed(), worked.kernel_bracket()
+    outer, inner = by_hand.outer, by_hand.inner
+    assert outer.rows == list(range(int(kernel.row[0]), int(kernel.row[0] + kernel.rows[0])))
+    first = int(kernel.column[0])
+    assert outer.columns == list(range(first, first + int(kernel.columns[0])))
+    assert (inner.beams, outer.beams) == (kernel.least[0], kernel.most[0]) == (8, 20)
+    assert inner.beams < worked.defined(worked.TILTED, worked.TILTED_CENTER) < outer.beams
+
+
+def test_the_upright_voxel_worked_by_hand_is_the_kernel_s(worked):
+    by_hand = worked.crossings()
+    assert [c.azimuth for c in by_hand] == worked.kernel_azimuths()
+    total = sum(len(c.channels) for c in by_hand)
+    assert worked.kernel_upright() == (total, False)
+    assert worked.defined(worked.LEVEL, worked.LEVEL_CENTER) == total == 8
+
+
+@pytest.mark.parametrize("name", ["bracket.svg", "upright.svg"])
+def test_figures_are_what_their_script_draws(figures, name):
+    drawn = figures["kernels"].FIGURES[name]()
+    assert (ROOT / "docs" / "images" / name).read_text("utf-8") == drawn
+    assert f"(images/{name})" in ENGINE
+
+
+def paths_named(text):
+    """Paths of files and folders between backticks, without what follows a colon."""
+    return re.findall(r"`([\w./]+(?:\.py|/))(?::[^`]*)?`", text)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_paths_that_a_page_names_are_there(page):
+    """From the checkout's root, from the engine's, or from that of a room of LiDARs or cameras."""
+    for path in paths_named((ROOT / page).read_text("utf-8")):
+        places = [ROOT, *(ROOT / "pe_core" / room for room in ("", "kinds", "scoring"))]
+        places += [ROOT / "pe_core" / "kinds" / kind for kind in ("lidar", "camera")]
+        assert any((place / path).exists() for place in places), path
+
+
+def test_the_check_of_paths_finds_them():
+    assert paths_named("in `lidar/ties.py`, `a/b.py: f`, `kinds/`, `x / y`") == [
+        "lidar/ties.py",
+        "a/b.py",
+        "kinds/",
+    ]
+
+
+def test_functions_that_the_table_of_equations_names_are_there():
+    table = (ROOT / "docs" / "metric.md").read_text("utf-8")
+    named = re.findall(r"`([\w/]+\.py): (\w+)`", table)
+    assert len(named) == 8
+    for path, function in named:
+        room = ROOT / "pe_core" / ("" if path.startswith("metric") else "kinds")
+        assert f"\ndef {function}(" in (room / path).read_text("utf-8"), function
+
+
+def test_entries_of_the_catalogue_without_a_source_are_the_two_it_tells_of():
+    unknown = [e.name for e in pe.catalog.entries().values() if "general knowledge" in e.source]
+    assert unknown == ["Waymo front", "Waymo side"]
+    assert all(e.source not in ("", "same") for e in pe.catalog.entries().values())
+    no_product = [e.name for e in pe.catalog.entries().values() if "no product" in e.source]
+    assert len(no_product) == 3

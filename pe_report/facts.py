@@ -9,7 +9,7 @@ from typing import Any
 from pe_core.metric import H_BLIND
 
 from .claims import best_search
-from .effort import Effort
+from .effort import from_dict
 from .paper import PRIORS, ROW
 
 
@@ -21,7 +21,7 @@ class Facts:
         self.claims: Sequence[Mapping[str, Any]] = data["claims"]
         self.values = {name: entry["value"] for name, entry in data["results"].items()}
         self.seconds = {name: entry["seconds"] for name, entry in data["results"].items()}
-        self.effort = effort_of(self.made["effort"])
+        self.effort = from_dict(self.made["effort"])
 
     def __getitem__(self, name: str) -> Any:
         return self.values[name]
@@ -85,13 +85,6 @@ class Facts:
         """Return one ordering's verdict."""
         key = (experiment, where, prior)
         return next(c for c in self.claims if (c["experiment"], c["where"], c["prior"]) == key)
-
-
-def effort_of(data: Mapping[str, Any]) -> Effort:
-    """Return the effort that results.json names."""
-    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
-    values["rows"] = tuple((row, prior) for row, prior in data["rows"])
-    return Effort(**values)
 
 
 def table(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:

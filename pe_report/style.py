@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import io
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,9 +13,13 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from pe_core.text import write_bytes
+
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 SKY, PURPLE, GREY = "#56B4E9", "#CC79A7", "#8A8A8A"
 PALETTE = (BLUE, ORANGE, GREEN, VERMILION, PURPLE)
+
+LONGEST_NAME = 48
 
 LOOK = {
     "font.size": 9.5,
@@ -42,7 +48,23 @@ def finished(axes: Axes) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
+def one_line(name: str) -> str:
+    """Return a name from a file as a plot can show it: one line, nothing unprintable, not long."""
+    line = "".join(c if c.isprintable() else "?" for c in name)
+    return line if len(line) <= LONGEST_NAME else f"{line[: LONGEST_NAME - 3]}..."
+
+
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure, without the software's version in it: the same plot is the same file."""
-    figure.savefig(path, metadata={"Software": None})
+    """Write a figure, without the software's version in it: the same plot is the same file.
+
+    Raises
+    ------
+    InputError
+        When it cannot be written there.
+    """
+    picture = io.BytesIO()
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # a box is shown
+        figure.savefig(picture, metadata={"Software": None})
     plt.close(figure)
+    write_bytes(path, picture.getvalue())

@@ -14,17 +14,23 @@ from .paper import PRIORS, ROW
 
 
 class Facts:
-    """Look-ups in complete results."""
+    """Look-ups in complete results; `said` has the verdicts that were drawn from them, by name."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.made: Mapping[str, Any] = data["made"]
         self.claims: Sequence[Mapping[str, Any]] = data["claims"]
         self.values = {name: entry["value"] for name, entry in data["results"].items()}
         self.seconds = {name: entry["seconds"] for name, entry in data["results"].items()}
+        self.said: dict[str, str] = {}
         self.effort = from_dict(self.made["effort"])
 
     def __getitem__(self, name: str) -> Any:
         return self.values[name]
+
+    def say(self, name: str, words: str) -> str:
+        """Note a verdict by name, and return its words."""
+        self.said[name] = words
+        return words
 
     def named(self, prefix: str) -> dict[str, Any]:
         """Return what begins with a prefix, by the rest of its name."""
@@ -81,16 +87,15 @@ class Facts:
         yes, no = ([c["prior"] for c in about if c["holds"] is v] for v in verdicts)
         return yes, no
 
+    def reversed(self, experiment: str, priors: Sequence[str]) -> bool:
+        """Whether the rig the paper finds worse is lower at its placements, under some priors."""
+        found = [self.claim(experiment, "printed", prior) for prior in priors]
+        return all(c["worse_entropy"] < c["better_entropy"] for c in found)
+
     def claim(self, experiment: str, where: str, prior: str = PRIORS[0]) -> Mapping[str, Any]:
         """Return one ordering's verdict."""
         key = (experiment, where, prior)
         return next(c for c in self.claims if (c["experiment"], c["where"], c["prior"]) == key)
-
-
-def table(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
-    """Return a table in Markdown."""
-    rule = ["---"] * len(head)
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in (head, rule, *lines))
 
 
 def placement_text(placements: Mapping[str, Any]) -> str:
@@ -99,13 +104,6 @@ def placement_text(placements: Mapping[str, Any]) -> str:
         "({:.2f}, {:.2f}, {:.2f}), {:.1f}°".format(*p["position"], p["rotation"][1])
         for p in placements.values()
     )
-
-
-def joined(names: Sequence[str]) -> str:
-    """Return names as in a sentence."""
-    if len(names) < 2:
-        return "".join(names) or "none"
-    return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def printed_text(row: str) -> str:

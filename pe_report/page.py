@@ -9,8 +9,8 @@ from typing import Any
 
 from pe_core.text import write_bytes
 
-from . import sections
 from .facts import Facts
+from .sections import SECTIONS
 
 PAGE = "README.md"
 WIDTH = 100
@@ -23,21 +23,7 @@ def write_page(data: Mapping[str, Any], folder: Path) -> None:
 
 def page(facts: Facts) -> str:
     """Return the page as Markdown."""
-    parts = (
-        sections.head,
-        sections.orderings,
-        sections.rows,
-        sections.experiment_1,
-        sections.experiment_2,
-        sections.experiment_3,
-        sections.experiment_4,
-        sections.pitch,
-        sections.sensitivity,
-        sections.ap_curve,
-        sections.priors,
-        sections.how_made,
-    )
-    blocks = (block for part in parts for block in part(facts).strip().split("\n\n"))
+    blocks = (block for part in SECTIONS for block in part(facts).strip().split("\n\n"))
     return "\n\n".join(map(_wrapped, blocks)) + "\n"
 
 

@@ -80,9 +80,9 @@ def _longer(facts: Facts, names: list[str]) -> str:
     ]
     if not lower:
         return facts.say("3: pilots", "No pilot ends lower than the best of the longer searches.")
-    names = joined([ROW[row].label for row in lower])
+    told = joined([ROW[row].label for row in lower])
     chance = "both are random, and judged on a sample of the voxels"
-    return facts.say("3: pilots", f"The pilot of {names} ends lower than its searches: {chance}.")
+    return facts.say("3: pilots", f"The pilot of {told} ends lower than its searches: {chance}.")
 
 
 def _placement(facts: Facts) -> str:

@@ -18,7 +18,8 @@ from matplotlib.lines import Line2D
 from .facts import Facts
 from .paper import PRIORS, ROW, ROWS
 from .placements import draw_placements
-from .style import BLUE, GREY, ORANGE, PALETTE, SKY, VERMILION, finished, one_line, save, style
+from .style import BLUE, GREY, ORANGE, PALETTE, SKY, VERMILION, finished, save, style
+from .words import one_line
 
 HFOV_COLORS = {30: SKY, 60: BLUE, 120: ORANGE}
 PRINTED_60 = ROW["2_60deg"].entropy

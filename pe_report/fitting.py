@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,18 +15,26 @@ from pe_core.text import dump_json, write_bytes
 
 from .cli import PLOT, SNIPPET
 from .drawing import figures
+from .words import one_line
+
+LONGEST_FILE = 255
 
 
 def fit(args: argparse.Namespace) -> Answer:
     """Run the verb."""
     found = fit_ap_curve(read_ap_table(args.table), args.saturation)
-    snippet = study_snippet(found, args.kind)
+    snippet = study_snippet(_named(found, Path(args.table)), args.kind)
     if args.output is not None:
         folder = prepare_folder(args.output)
         write_bytes(folder / SNIPPET, snippet.encode())
         figures().ap_curves(folder / PLOT, {Path(args.table).stem: fit_data(found)})
     text = dump_json(fit_data(found)) if args.json else f"{_fit_summary(found)}\n\n{snippet}"
     return text, DONE
+
+
+def _named(fit: CurveFit, path: Path) -> CurveFit:
+    """Return the fit with a file's name that a comment can hold."""
+    return replace(fit, table=replace(fit.table, source=one_line(path.name, LONGEST_FILE)))
 
 
 def fit_data(fit: CurveFit) -> dict[str, Any]:

@@ -103,8 +103,9 @@ def _free_name(folder: Path, made: object) -> Path:
     commit = made.get("commit") if isinstance(made, dict) else None
     words = re.findall(r"[0-9A-Za-z]+", str(commit or "unknown")[:LONGEST_COMMIT])
     stem = "-".join(["results", *words])
-    names = (f"{stem}{more}.json" for more in ("", *(f"-{k}" for k in itertools.count(2))))
-    return next(folder / name for name in names if not (folder / name).exists())
+    endings = itertools.chain([""], (f"-{k}" for k in itertools.count(2)))
+    names = (folder / f"{stem}{ending}.json" for ending in endings)
+    return next(name for name in names if not name.exists())
 
 
 def _rename(path: Path, name: Path) -> None:

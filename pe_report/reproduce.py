@@ -42,11 +42,11 @@ def reproduce(args: argparse.Namespace) -> Answer:
     data = _results(args, folder)
     if data is None:
         return "", INTERRUPTED
+    write_page(data, folder)
     if drawn:
         figures().draw_all(data, folder)
     else:
         _tell(f"pe: no plots, for want of matplotlib: {EXTRA}")
-    write_page(data, folder)
     text = dump_json(data) if args.json else summary(data)
     return text, DONE if _like_the_paper(data) else UNLIKE
 

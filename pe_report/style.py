@@ -19,8 +19,6 @@ BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 SKY, PURPLE, GREY = "#56B4E9", "#CC79A7", "#8A8A8A"
 PALETTE = (BLUE, ORANGE, GREEN, VERMILION, PURPLE)
 
-LONGEST_NAME = 48
-
 LOOK = {
     "font.size": 9.5,
     "axes.titlesize": 9.5,
@@ -46,12 +44,6 @@ def style(draw: Callable[..., None]) -> Callable[..., None]:
 def finished(axes: Axes) -> None:
     """Take off the frame's upper and right side."""
     axes.spines[["top", "right"]].set_visible(False)
-
-
-def one_line(name: str) -> str:
-    """Return a name from a file as a plot can show it: one line, nothing unprintable, not long."""
-    line = "".join(c if c.isprintable() else "?" for c in name)
-    return line if len(line) <= LONGEST_NAME else f"{line[: LONGEST_NAME - 3]}..."
 
 
 def save(figure: Figure, path: Path) -> None:

@@ -20,6 +20,15 @@ MOUNT_M = 0.5
 AT_BOUND_M = 0.2
 """A search that ends this near to a bound ends at it."""
 
+LONGEST_NAME = 48
+"""Characters of a name that a plot has room for."""
+
+
+def one_line(name: str, longest: int = LONGEST_NAME) -> str:
+    """Return a name from a file as it can be shown: one line, nothing unprintable, not long."""
+    line = "".join(c if c.isprintable() else "?" for c in name)
+    return line if len(line) <= longest else f"{line[: longest - 3]}..."
+
 
 def joined(names: Sequence[str]) -> str:
     """Return names as in a sentence."""

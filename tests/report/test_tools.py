@@ -38,7 +38,10 @@ def archive(folder, **sources):
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("a_list", f"{SECURITY}{OTHER}deb [arch=amd64] http://one.example/pub/debian trixie main\n"),
+        (
+            "a_list",
+            f"{SECURITY}{OTHER}deb [arch=amd64] http://one.example/pub/debian trixie main\n",
+        ),
         ("a_sources", STANZA.format("http://one.example/pub/debian/")),
     ],
 )
@@ -52,7 +55,9 @@ def test_the_archive_and_the_proxy_are_apts_own(tmp_path, name, text):
 
 def test_of_a_list_of_mirrors_the_first_is_taken(tmp_path):
     mirrors = tmp_path / "debian.list"
-    mirrors.write_text("https://first.example/debian/\tpriority:1\nhttps://second.example/debian/\n")
+    mirrors.write_text(
+        "https://first.example/debian/\tpriority:1\nhttps://second.example/debian/\n"
+    )
     run = archive(tmp_path, a_sources=STANZA.format(f"mirror+file:{mirrors}"))
     assert run.stdout.startswith("https://first.example/debian/\n")
 

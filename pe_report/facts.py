@@ -12,6 +12,9 @@ from .claims import best_search
 from .effort import from_dict
 from .paper import PRIORS, ROW
 
+LEAST_S = 1e-3
+"""The ledger's smallest step."""
+
 
 class Facts:
     """Look-ups in complete results; `said` has the verdicts that were drawn from them, by name."""
@@ -77,8 +80,9 @@ class Facts:
         return f"{statistics.mean(found):.3f} ± {statistics.stdev(found):.3f}"
 
     def search_seconds(self) -> list[float]:
-        """Seconds of all searches."""
-        return [s for name, s in self.seconds.items() if name.startswith("search/")]
+        """Seconds of all searches, none so short that it rounds to nothing."""
+        found = [s for name, s in self.seconds.items() if name.startswith("search/")]
+        return [max(s, LEAST_S) for s in found]
 
     def holding(self, experiment: str, where: str) -> tuple[list[str], list[str]]:
         """Priors under which an ordering holds, and does not."""

@@ -12,7 +12,7 @@ from pe_core.text import dump_json, read_bytes
 
 from .claims import claims
 from .effort import FULL, QUICK, Effort, to_dict
-from .paper import PRIORS, ROW
+from .paper import CORNERS, PRIORS, ROW
 from .plan import names
 from .shape import Each, Items, Maybe, Number, Object, Shape, Text, check_keys
 
@@ -21,7 +21,8 @@ SCHEMA = 1
 ENTROPY, SHARE = Number(-1e3, 1e3), Number(0.0, 1.0)
 SEEN = Number(1e-9, 1.0)
 """A share that something is divided by."""
-PLACE = Object({"position": Items(Number(), 3), "rotation": Items(Number(), 3)})
+METRES, DEGREES = Number(-100.0, 100.0), Number(-360.0, 360.0)
+PLACE = Object({"position": Items(METRES, 3), "rotation": Items(DEGREES, 3)})
 SCORE = Object(
     {"entropy": ENTROPY, "coverage": SEEN, "stderr": Number(), "per_class": Each(ENTROPY)}
 )
@@ -29,7 +30,9 @@ SHAPES: Mapping[str, Shape] = {
     "printed": SCORE,
     "swapped": SCORE,
     "lidars": SCORE,
-    "pitch": Object({"entropy": ENTROPY, "alone": Each(ENTROPY)}),
+    "pitch": Object(
+        {"entropy": ENTROPY, "alone": Object(dict.fromkeys(CORNERS["front"], ENTROPY))}
+    ),
     "bound": Object(
         {
             "in_view": SEEN,

@@ -32,5 +32,6 @@ def how_made(facts: Facts) -> str:
 | cost | {len(searches)} searches and {len(facts.seconds) - len(searches)} other tasks, {total / 60:.0f} minutes of one processor |
 | one search | {min(searches) / 60:.1f} to {longest / 60:.1f} minutes on one processor; the paper's takes "around an hour" ({HOUR_S / longest:.0f} to {HOUR_S / min(searches):.0f} times as long) |
 
-Again: `pe reproduce` (or `pe reproduce --quick`, in a minute, for the orderings alone).
+Again: `pe reproduce` (or `pe reproduce --quick`, in a minute, for the orderings alone). `pe reproduce
+--check` computes again what needs no search, and compares it with results.json digit by digit.
 """

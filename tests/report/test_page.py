@@ -253,6 +253,13 @@ def test_moved_searches_are_neither_above_the_roof_nor_at_the_corners(verdicts):
     assert "the same corners" not in text and "about the same height" not in text
 
 
+def test_searches_that_took_no_time_have_a_page():
+    data = turned(lambda values: None)
+    for entry in data["results"].values():
+        entry["seconds"] = 0.0
+    assert "one search" in told(data)[1]
+
+
 @pytest.mark.parametrize(
     ("off_m", "verdict"), [(0.24, "about the same height"), (0.26, "0.26 m higher on average")]
 )

@@ -2,12 +2,15 @@
 
 import copy
 import json
+import random
 
 import pytest
 
 from pe_core import InputError
 from pe_report.effort import FULL, QUICK
+from pe_report.facts import Facts
 from pe_report.ledger import Ledger
+from pe_report.page import page
 from pe_report.read import read_results
 from tests.report.conftest import ROOT, pe, pe_without_matplotlib
 
@@ -27,6 +30,7 @@ NOT_JSON = {
     "another result": b'{"schema": 2, "kind": "optimize", "seed": 0}',
 }
 
+ONE = {"entropy": 1.0, "alone": {"lidar_a": 1.0, "lidar_b": 1.0}}
 PITCH = "results/pitch|0/value/"
 SEARCH = "results/search|3_front|road|front|2/value/"
 CHANGES = {
@@ -49,6 +53,7 @@ CHANGES = {
     PITCH + "entropy": "5.1",
     f"{PITCH}entropy ": 5.1,
     PITCH + "alone": {},
+    PITCH + "alone/lidar_c": 1.0,
     PITCH + "alone/lidar_a": True,
     PITCH + "alone/lidar_b": 1e999,
     "results/printed|4_cameras|uniform/value/entropy": 10**400,
@@ -62,9 +67,10 @@ CHANGES = {
     "results/fit|kitti_car/value/left_out": [""],
     "results/vary|no vehicle|1_hdl64e/value/coverage": "all",
     SEARCH + "placements": {},
+    SEARCH + "placements/lidar_b/position": [1.0, 2e9, 1.0],
     SEARCH + "placements/lidar_a/position": [1.0, 2.0],
     SEARCH + "placements/lidar_b/rotation": [1.0, 2.0, float("1e300")],
-    "results/pitch|0.001": {"value": {"entropy": 1.0, "alone": {"a": 1.0}}, "seconds": 1.0},
+    "results/pitch|0.001": {"value": ONE, "seconds": 1.0},
     "results/nothing": {"value": {}, "seconds": 1.0},
     "results/search|none|road|front|0": {"value": {}, "seconds": 1.0},
 }
@@ -114,13 +120,56 @@ def test_an_incomplete_file_is_refused(tmp_path, name):
     refused(path)
 
 
+def places(at, path=()):
+    """The places of all values in JSON data, of long lists the first few."""
+    pairs = (
+        at.items() if isinstance(at, dict) else enumerate(at[:6]) if isinstance(at, list) else ()
+    )
+    for key, value in pairs:
+        yield (*path, key)
+        yield from places(value, (*path, key))
+
+
+def spoiled(rng, every):
+    """The committed results with one value lost, or something else in its place."""
+    *folders, last = rng.choice(every)
+    data = at = copy.copy(COMMITTED)
+    for key in folders:
+        at[key] = copy.copy(at[key])
+        at = at[key]
+    if rng.random() < 0.1:
+        del at[last]
+    else:
+        at[last] = rng.choice(STRANGE)
+    return data
+
+
+NUMBERS = (-1, 0, 1e300, -1e300, 1e-300, 10**400, 1e12, 100.0, float("nan"), float("inf"))
+WORDS = ("", "x", "\x1b[2J", "\ud800", "a" * 10**5)
+STRANGE = (*NUMBERS, *WORDS, None, True, [], {}, [[]], {"a": 1})
+
+
+def test_whatever_one_value_is_there_is_a_page_or_one_line(tmp_path):
+    rng, every, path = random.Random(8), list(places(COMMITTED)), tmp_path / "results.json"
+    pages = 0
+    for _ in range(120):
+        path.write_text(json.dumps(spoiled(rng, every)), "utf-8")
+        try:
+            data = read_results(path)
+        except InputError as error:
+            assert str(error).isprintable() and len(str(error)) < 400
+        else:
+            pages += page(Facts(data)).startswith("# ")
+    assert 0 < pages < 120
+
+
 def test_the_committed_file_is_right():
     assert read_results(DOCS / "results.json") == COMMITTED
 
 
 def test_results_of_this_run_that_are_damaged_are_not_gone_on_with(tmp_path):
     ledger = Ledger(tmp_path, QUICK)
-    ledger.note("pitch/0", {"entropy": 1.0, "alone": {"a": 1.0}}, 0.1)
+    ledger.note("pitch/0", ONE, 0.1)
     text = ledger.path.read_text("utf-8")
     ledger.path.write_text(text.replace('"seconds": 0.1', '"seconds": "long"'), "utf-8")
     with pytest.raises(InputError, match=r"results.pitch/0.seconds: expected a number"):
@@ -128,7 +177,7 @@ def test_results_of_this_run_that_are_damaged_are_not_gone_on_with(tmp_path):
 
 
 def test_results_of_another_commit_are_kept_under_their_own_name(tmp_path):
-    value = {"entropy": 1.0, "alone": {"a": 1.0}}
+    value = ONE
     ledger = Ledger(tmp_path, QUICK)
     ledger.note("pitch/0", value, 0.1)
     assert Ledger(tmp_path, QUICK).found == 1 and Ledger(tmp_path, QUICK).aside is None
@@ -149,7 +198,7 @@ def test_results_of_another_commit_are_kept_under_their_own_name(tmp_path):
 
 
 def test_results_of_another_effort_are_kept(tmp_path):
-    Ledger(tmp_path, QUICK).note("pitch/0", {"entropy": 1.0, "alone": {"a": 1.0}}, 0.1)
+    Ledger(tmp_path, QUICK).note("pitch/0", ONE, 0.1)
     full = Ledger(tmp_path, FULL)
     assert full.found == 0 and full.aside.name.startswith("results-")
 

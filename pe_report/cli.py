@@ -6,14 +6,13 @@ What they do is imported when they are called, so that the other verbs start wit
 from __future__ import annotations
 
 import argparse
-import re
 
-from pe_core.app import Answer
+from pe_core.app import Answer, count_up_to
 from pe_core.metric import SATURATION
 
 FOLDER, QUICK_FOLDER = "docs/reproduction", "reproduction-quick"
 SNIPPET, PLOT = "ap.toml", "ap.png"
-COUNT_DIGITS = 9
+MOST_WORKERS = 1024
 
 
 def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -60,16 +59,12 @@ def _add_reproduce(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -
     )
     reproduce.add_argument("--json", action="store_true", help="print results.json on stdout")
     reproduce.add_argument(
-        "--workers", type=_count, metavar="N", help="processes (default, and at most: all)"
+        "--workers",
+        type=count_up_to(MOST_WORKERS),
+        metavar="N",
+        help="processes (default, and at most: all)",
     )
     reproduce.set_defaults(function=_reproduce)
-
-
-def _count(text: str) -> int:
-    if not re.fullmatch(f"[0-9]{{1,{COUNT_DIGITS}}}", text):
-        found = repr(text[:80])
-        raise argparse.ArgumentTypeError(f"expected a whole number >= 0, found {found}")
-    return int(text)
 
 
 def _fit(args: argparse.Namespace) -> Answer:

@@ -11,7 +11,8 @@ from pe_core import prepare_folder
 from pe_core.app import DONE, Answer
 from pe_core.formats import read_ap_table
 from pe_core.metric import CurveFit, fit_ap_curve, study_snippet
-from pe_core.text import dump_json, write_bytes
+from pe_core.study import FileSet
+from pe_core.text import dump_json
 
 from .cli import PLOT, SNIPPET
 from .drawing import figures
@@ -25,9 +26,11 @@ def fit(args: argparse.Namespace) -> Answer:
     found = fit_ap_curve(read_ap_table(args.table), args.saturation)
     snippet = study_snippet(_named(found, Path(args.table)), args.kind)
     if args.output is not None:
-        folder = prepare_folder(args.output)
-        write_bytes(folder / SNIPPET, snippet.encode())
-        figures().ap_curves(folder / PLOT, {Path(args.table).stem: fit_data(found)})
+        folder = prepare_folder(args.output, (SNIPPET, PLOT))
+        curves = {Path(args.table).stem: fit_data(found)}
+        with FileSet(folder) as files:
+            files.add(SNIPPET, snippet.encode())
+            files.add(PLOT, lambda path: figures().ap_curves(path, curves))
     text = dump_json(fit_data(found)) if args.json else f"{_fit_summary(found)}\n\n{snippet}"
     return text, DONE
 

@@ -7,13 +7,23 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pe_core.text import write_bytes
+from pe_core import InputError
+from pe_core.text import read_bytes, write_bytes
 
 from .facts import Facts
 from .sections import SECTIONS
 
 PAGE = "README.md"
+TITLE = "# The paper's experiments, reproduced"
 WIDTH = 100
+
+
+def check_ours(folder: Path) -> None:
+    """Raise `InputError` when a page of somebody else's is where ours would be."""
+    path = folder / PAGE
+    if path.is_file() and not read_bytes(path).startswith(TITLE.encode()):
+        found = "another; it stays as it is, choose another folder"
+        raise InputError(path, "output", "no file, or a page of pe reproduce", found)
 
 
 def write_page(data: Mapping[str, Any], folder: Path) -> None:

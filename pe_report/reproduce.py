@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pe_core import InputError, prepare_folder
-from pe_core.app import DONE, INTERRUPTED, Answer
+from pe_core.app import DONE, Answer, show, tell
 from pe_core.text import dump_json
 
 from .again import differences
@@ -18,10 +18,10 @@ from .cli import FOLDER, QUICK_FOLDER
 from .drawing import EXTRA, figures, has_matplotlib
 from .effort import FULL, QUICK, Effort
 from .ledger import RESULTS, Ledger
-from .page import write_page
+from .page import check_ours, write_page
 from .problems import STUDIES
 from .read import read_results
-from .runner import run_all
+from .runner import Ended, run_all
 
 UNLIKE = 1
 """Exit status when an ordering holds under none of the priors, or a figure came out otherwise."""
@@ -36,17 +36,16 @@ def reproduce(args: argparse.Namespace) -> Answer:
     if args.check:
         return _checked(folder)
     folder = prepare_folder(folder)
+    check_ours(folder)
     drawn = has_matplotlib()
     if not (drawn or args.json):
         figures()  # complains now, not after an hour
     data = _results(args, folder)
-    if data is None:
-        return "", INTERRUPTED
     write_page(data, folder)
     if drawn:
         figures().draw_all(data, folder)
     else:
-        _tell(f"pe: no plots, for want of matplotlib: {EXTRA}")
+        tell(f"no plots, for want of matplotlib: {EXTRA}")
     text = dump_json(data) if args.json else summary(data)
     return text, DONE if _like_the_paper(data) else UNLIKE
 
@@ -59,8 +58,8 @@ def _checked(folder: Path) -> Answer:
     return "\n".join(lines), UNLIKE if unlike else DONE
 
 
-def _results(args: argparse.Namespace, folder: Path) -> dict[str, Any] | None:
-    """Return complete results, those that are there or new ones; None when interrupted."""
+def _results(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
+    """Return complete results, those that are there or new ones."""
     if args.page_only:
         return read_results(folder / RESULTS)
     effort = QUICK if args.quick else FULL
@@ -71,9 +70,9 @@ def _results(args: argparse.Namespace, folder: Path) -> dict[str, Any] | None:
         _tell(f"results of another run go to {ledger.aside}")
     try:
         run_all(effort, ledger, args.workers, _tell)
-    except KeyboardInterrupt:
-        _tell(f"pe: interrupted; {ledger.path} keeps what is done, the same command goes on")
-        return None
+    except Ended as end:
+        end.note = f"{ledger.path} keeps what is done, the same command goes on"
+        raise
     return finish(ledger, effort)
 
 
@@ -103,4 +102,5 @@ def _like_the_paper(data: Mapping[str, Any]) -> bool:
 
 
 def _tell(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
+    """Say how far it is; whoever closed stderr is not told."""
+    show(f"{line}\n", sys.stderr)

@@ -23,8 +23,16 @@ from .plan import Task, plan
 
 Tell = Callable[[str], None]
 Plan = Callable[[Effort, Mapping[str, Any]], list[Task]]
-ENDING = ("SIGTERM", "SIGHUP")
+ENDING = ("SIGINT", "SIGTERM", "SIGHUP")
 """Signals that ask a process to end; Windows has no SIGHUP."""
+
+
+class Ended(KeyboardInterrupt):
+    """The run ends now, because of a signal; `note` says what became of it."""
+
+    def __init__(self, signum: int) -> None:
+        super().__init__()
+        self.signum, self.note = signum, ""
 
 
 def run_all(
@@ -45,7 +53,7 @@ def run_all(
 
     Raises
     ------
-    KeyboardInterrupt
+    Ended
         At Ctrl-C, SIGTERM and SIGHUP, once the processes are gone; what had been found is in the
         ledger.
     InputError
@@ -57,7 +65,7 @@ def run_all(
         min(workers or processors, processors), context, initializer=_live_as_long_as_the_parent
     )
     running: dict[Future[tuple[dict[str, Any], float]], Task] = {}
-    with _signals_interrupt():
+    with _signals_end():
         try:
             while _next_results(pool, running, ledger, tell, tasks_now(effort, ledger.values)):
                 pass
@@ -96,14 +104,13 @@ def _next_results(
 
 
 @contextmanager
-def _signals_interrupt() -> Iterator[None]:
-    """Let what asks the process to end do what Ctrl-C does."""
+def _signals_end() -> Iterator[None]:
+    """Raise `Ended` at Ctrl-C and at what else asks the process to end."""
     before = {}
     try:
-        for name in ENDING:
-            number = getattr(signal, name, None)
-            if number and signal.getsignal(number) is not signal.SIG_IGN:  # as under nohup
-                before[number] = signal.signal(number, signal.default_int_handler)
+        for number in _numbers():
+            if number == signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN:  # nohup
+                before[number] = signal.signal(number, _end)
     except ValueError:  # not the main thread: signals are someone else's
         yield
         return
@@ -114,6 +121,14 @@ def _signals_interrupt() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL if handler is None else handler)
 
 
+def _numbers() -> list[signal.Signals]:
+    return [getattr(signal, name) for name in ENDING if hasattr(signal, name)]
+
+
+def _end(signum: int, _frame: object) -> None:
+    raise Ended(signum)
+
+
 def _run(function: str, arguments: dict[str, Any]) -> tuple[dict[str, Any], float]:
     started = time.perf_counter()
     value = tasks.FUNCTIONS[function](**arguments)
@@ -122,9 +137,8 @@ def _run(function: str, arguments: dict[str, Any]) -> tuple[dict[str, Any], floa
 
 def _live_as_long_as_the_parent() -> None:
     """Leave signals to the parent, and end with it, however it ends."""
-    for name in ("SIGINT", *ENDING):
-        if number := getattr(signal, name, None):
-            signal.signal(number, signal.SIG_IGN)
+    for number in _numbers():
+        signal.signal(number, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     assert parent is not None
     threading.Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()

@@ -96,4 +96,12 @@ def test_a_folder_in_the_place_of_the_plot_is_one_line(tmp_path):
     (tmp_path / "ap.png").mkdir()
     run = pe("fit", TABLE, "--output", tmp_path)
     assert run.returncode == 1 and not run.stdout and run.stderr.count("\n") == 1
-    assert f"{tmp_path / 'ap.png'}: file: expected a place to write to" in run.stderr
+    assert run.stderr.startswith(f"pe: {tmp_path / 'ap.png'}: output: expected no file, or one ")
+
+
+def test_a_file_of_the_users_own_is_not_written_over(tmp_path):
+    (tmp_path / "ap.toml").write_text("mine")
+    run = pe("fit", TABLE, "--output", tmp_path)
+    assert run.returncode == 1 and run.stderr.count("\n") == 1 and "ap.toml" in run.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["ap.toml"]
+    assert (tmp_path / "ap.toml").read_text() == "mine"

@@ -212,6 +212,14 @@ def test_a_folder_in_the_place_of_a_file_is_one_line(tmp_path, name):
     assert f"{tmp_path / name}: file: expected a place to write to" in run.stderr
 
 
+def test_a_page_of_the_users_own_is_not_written_over(tmp_path):
+    (tmp_path / "README.md").write_text("# My project")
+    (tmp_path / "results.json").write_bytes((DOCS / "results.json").read_bytes())
+    run = pe("reproduce", "--page-only", "--json", "--output", tmp_path)
+    assert run.returncode == 1 and not run.stdout and run.stderr.count("\n") == 1
+    assert (tmp_path / "README.md").read_text() == "# My project"
+
+
 def test_the_page_alone_needs_no_matplotlib_and_is_the_committed_one(tmp_path):
     (tmp_path / "results.json").write_bytes((DOCS / "results.json").read_bytes())
     run = pe_without_matplotlib("reproduce", "--page-only", "--json", "--output", tmp_path)

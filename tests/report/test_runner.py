@@ -17,7 +17,7 @@ from pathlib import Path
 from pe_report.effort import QUICK
 from pe_report.ledger import Ledger
 from pe_report.plan import Task
-from pe_report.runner import run_all
+from pe_report.runner import Ended, run_all
 
 ENDLESS = {"row": "2_60deg", "prior": "road", "start": "roof", "seed": 0,
            "candidates": 10**9, "search_samples": 64, "samples": 64}
@@ -31,8 +31,8 @@ if __name__ == "__main__":
     try:
         ledger = Ledger(Path(sys.argv[1]), QUICK)
         run_all(QUICK, ledger, 2, lambda line: print(line, flush=True), plan)
-    except KeyboardInterrupt:
-        sys.exit("interrupted")
+    except Ended as end:
+        sys.exit(f"ended by {end.signum}")
 """
 """One short task, and one that goes on until it is ended."""
 
@@ -56,7 +56,7 @@ def test_a_signal_ends_the_workers_and_keeps_what_is_done(tmp_path, name):
     process = started(tmp_path)
     process.send_signal(getattr(signal, name))
     _, error = process.communicate(timeout=120)
-    assert process.returncode == 1 and error == "interrupted\n"
+    assert process.returncode == 1 and error == f"ended by {getattr(signal, name).value}\n"
     assert list(json.loads((tmp_path / "results.json").read_text("utf-8"))["results"]) == [
         "bound_curve/60"
     ]

@@ -47,11 +47,11 @@ def _orderings(facts: Facts) -> str:
     total = len(every) + len(some) + len(never)
     parts = [
         (every, "under every prior"),
-        (some, "under some priors alone"),
+        (some, "under some of the priors"),
         (never, "under none"),
     ]
     counted = [f"{len(keys)} {where}" for keys, where in parts if keys]
-    told = f"of {total} orderings {joined(counted)} come out as in the paper"
+    told = f"of the {total} orderings, {joined(counted)} come out as in the paper"
     return facts.say("head: orderings", told)
 
 
@@ -66,7 +66,7 @@ def _mounted(facts: Facts) -> str:
 
 def _absolute(facts: Facts) -> str:
     near = [r for r in ROWS if abs(facts.entropy(r.name) - r.entropy) <= FIGURE_NATS]
-    told = f"of its {len(ROWS)} absolute figures {how_many(len(near), len(ROWS))} come out, to {FIGURE_NATS} nats,"
+    told = f"of the {len(ROWS)} absolute figures, {how_many(len(near), len(ROWS))} come out to {FIGURE_NATS} nats"
     return facts.say("head: figures", f"{told} under `{PRIORS[0]}`")
 
 

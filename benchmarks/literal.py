@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 
 import pe_core as pe
-from pe_core.kinds.lidar.ties import without_zeros
 
 SOURCE = Path(__file__).with_name("literal.cpp")
 THREADS = 2
+NO_SPEED = 1e-30
+"""Stands for a direction component of exactly 0, which the loop divides by."""
 
 
 def compiled(folder: Path) -> Path | None:
@@ -51,7 +52,8 @@ def _problem(study: pe.Study) -> np.ndarray:
     order = np.argsort(lidar.elevations)
     field = pe.beam_field(sensor, study.vehicle)
     by_channel = (len(order), lidar.azimuth_count)
-    directions = without_zeros(field.directions).reshape(*by_channel, 3)[order]
+    moving = np.where(field.directions == 0.0, NO_SPEED, field.directions)
+    directions = moving.reshape(*by_channel, 3)[order]
     densities = study.prior.densities(space)
     blank = np.full(space.shape[:2], -np.inf)
     top = blank if study.vehicle is None else study.vehicle.top(space)

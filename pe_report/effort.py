@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -80,3 +81,17 @@ def pitch_differences(effort: Effort) -> list[float]:
     """Return the pitch differences of the figure [deg]."""
     count = round(PITCH_REACH_DEG / effort.pitch_step_deg)
     return [round(k * effort.pitch_step_deg, 4) + 0.0 for k in range(-count, count + 1)]
+
+
+def to_dict(effort: Effort) -> dict[str, Any]:
+    """Return an effort as results.json has it."""
+    data = asdict(effort)
+    data["rows"] = [list(pair) for pair in effort.rows]
+    return {key: list(v) if isinstance(v, tuple) else v for key, v in data.items()}
+
+
+def from_dict(data: dict[str, Any]) -> Effort:
+    """Return the effort that results.json names."""
+    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
+    values["rows"] = tuple((row, prior) for row, prior in data["rows"])
+    return Effort(**values)

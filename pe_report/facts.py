@@ -9,22 +9,31 @@ from typing import Any
 from pe_core.metric import H_BLIND
 
 from .claims import best_search
-from .effort import Effort
+from .effort import from_dict
 from .paper import PRIORS, ROW
+
+LEAST_S = 1e-3
+"""The ledger's smallest step."""
 
 
 class Facts:
-    """Look-ups in complete results."""
+    """Look-ups in complete results; `said` has the verdicts that were drawn from them, by name."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.made: Mapping[str, Any] = data["made"]
         self.claims: Sequence[Mapping[str, Any]] = data["claims"]
         self.values = {name: entry["value"] for name, entry in data["results"].items()}
         self.seconds = {name: entry["seconds"] for name, entry in data["results"].items()}
-        self.effort = effort_of(self.made["effort"])
+        self.said: dict[str, str] = {}
+        self.effort = from_dict(self.made["effort"])
 
     def __getitem__(self, name: str) -> Any:
         return self.values[name]
+
+    def say(self, name: str, words: str) -> str:
+        """Note a verdict by name, and return its words."""
+        self.said[name] = words
+        return words
 
     def named(self, prefix: str) -> dict[str, Any]:
         """Return what begins with a prefix, by the rest of its name."""
@@ -71,8 +80,9 @@ class Facts:
         return f"{statistics.mean(found):.3f} ± {statistics.stdev(found):.3f}"
 
     def search_seconds(self) -> list[float]:
-        """Seconds of all searches."""
-        return [s for name, s in self.seconds.items() if name.startswith("search/")]
+        """Seconds of all searches, none so short that it rounds to nothing."""
+        found = [s for name, s in self.seconds.items() if name.startswith("search/")]
+        return [max(s, LEAST_S) for s in found]
 
     def holding(self, experiment: str, where: str) -> tuple[list[str], list[str]]:
         """Priors under which an ordering holds, and does not."""
@@ -81,23 +91,15 @@ class Facts:
         yes, no = ([c["prior"] for c in about if c["holds"] is v] for v in verdicts)
         return yes, no
 
+    def reversed(self, experiment: str, priors: Sequence[str]) -> bool:
+        """Whether the rig the paper finds worse is lower at its placements, under some priors."""
+        found = [self.claim(experiment, "printed", prior) for prior in priors]
+        return all(c["worse_entropy"] < c["better_entropy"] for c in found)
+
     def claim(self, experiment: str, where: str, prior: str = PRIORS[0]) -> Mapping[str, Any]:
         """Return one ordering's verdict."""
         key = (experiment, where, prior)
         return next(c for c in self.claims if (c["experiment"], c["where"], c["prior"]) == key)
-
-
-def effort_of(data: Mapping[str, Any]) -> Effort:
-    """Return the effort that results.json names."""
-    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
-    values["rows"] = tuple((row, prior) for row, prior in data["rows"])
-    return Effort(**values)
-
-
-def table(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
-    """Return a table in Markdown."""
-    rule = ["---"] * len(head)
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in (head, rule, *lines))
 
 
 def placement_text(placements: Mapping[str, Any]) -> str:
@@ -106,13 +108,6 @@ def placement_text(placements: Mapping[str, Any]) -> str:
         "({:.2f}, {:.2f}, {:.2f}), {:.1f}°".format(*p["position"], p["rotation"][1])
         for p in placements.values()
     )
-
-
-def joined(names: Sequence[str]) -> str:
-    """Return names as in a sentence."""
-    if len(names) < 2:
-        return "".join(names) or "none"
-    return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def printed_text(row: str) -> str:

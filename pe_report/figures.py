@@ -19,6 +19,7 @@ from .facts import Facts
 from .paper import PRIORS, ROW, ROWS
 from .placements import draw_placements
 from .style import BLUE, GREY, ORANGE, PALETTE, SKY, VERMILION, finished, save, style
+from .words import one_line
 
 HFOV_COLORS = {30: SKY, 60: BLUE, 120: ORANGE}
 PRINTED_60 = ROW["2_60deg"].entropy
@@ -56,7 +57,8 @@ def priors(path: Path, values: Mapping[str, Any]) -> None:
             shown["vmax"] *= 2.0  # an even prior in a colour of the middle
         image = left.imshow(1e6 * ground.T, extent=(-80, 80, -40, 40), **shown)
         classes = ", ".join(values[f"prior/{name}"]["classes"])
-        left.set_title(f"{name}: {classes}" if name != "uniform" else name, loc="left")
+        title = one_line(f"{name}: {classes}" if name != "uniform" else name)
+        left.set_title(title, loc="left", parse_math=False)
         left.set_ylabel("y [m]")
         figure.colorbar(image, ax=left, pad=0.01, label="10⁻⁶ / m²")
         height = values[f"prior/{name}"]
@@ -171,7 +173,7 @@ def ap_curves(path: Path, fits: Mapping[str, Any]) -> None:
     )
     for axes, (name, fit) in zip(grid[0], fits.items(), strict=True):
         _ap_curve(axes, fit)
-        axes.set_title(name.replace("_", " "), loc="left")
+        axes.set_title(one_line(name.replace("_", " ")), loc="left", parse_math=False)
     grid[0][0].set_ylabel("AP")
     marks = [
         Line2D([], [], marker="o", color=BLUE, ls="none", label="taken"),

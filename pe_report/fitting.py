@@ -3,45 +3,41 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from pe_core import prepare_folder
 from pe_core.app import DONE, Answer
-from pe_core.errors import InputError
 from pe_core.formats import read_ap_table
-from pe_core.metric import SATURATION, CurveFit, fit_ap_curve, study_snippet
-from pe_core.study import prepare_folder
-from pe_core.text import dump_json, write_bytes
+from pe_core.metric import CurveFit, fit_ap_curve, study_snippet
+from pe_core.study import FileSet
+from pe_core.text import dump_json
 
-SNIPPET, PLOT = "ap.toml", "ap.png"
+from .cli import PLOT, SNIPPET
+from .drawing import figures
+from .words import one_line
 
-
-def add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add ``fit`` to the parser of ``pe``."""
-    fit = verbs.add_parser("fit", help="find a and b of AP = a ln m + b in a table")
-    fit.add_argument("table", metavar="TABLE", help="CSV with the columns m and ap, and perhaps n")
-    fit.add_argument("--kind", choices=("lidar", "camera"), default="lidar", help="of the sensor")
-    fit.add_argument(
-        "--saturation",
-        type=float,
-        default=SATURATION,
-        metavar="AP",
-        help=f"points this near to the largest AP are saturated (default {SATURATION})",
-    )
-    fit.add_argument("-o", "--output", metavar="DIR", help=f"folder for {SNIPPET} and {PLOT}")
-    fit.add_argument("--json", action="store_true", help="print JSON on stdout")
-    fit.set_defaults(function=_fit)
+LONGEST_FILE = 255
 
 
-def _fit(args: argparse.Namespace) -> Answer:
-    fit = fit_ap_curve(read_ap_table(args.table), args.saturation)
-    snippet = study_snippet(fit, args.kind)
+def fit(args: argparse.Namespace) -> Answer:
+    """Run the verb."""
+    found = fit_ap_curve(read_ap_table(args.table), args.saturation)
+    snippet = study_snippet(_named(found, Path(args.table)), args.kind)
     if args.output is not None:
-        folder = prepare_folder(args.output)
-        write_bytes(folder / SNIPPET, snippet.encode())
-        matplotlib_figures().ap_curves(folder / PLOT, {Path(args.table).stem: fit_data(fit)})
-    text = dump_json(fit_data(fit)) if args.json else f"{_fit_summary(fit)}\n\n{snippet}"
+        folder = prepare_folder(args.output, (SNIPPET, PLOT))
+        curves = {Path(args.table).stem: fit_data(found)}
+        with FileSet(folder) as files:
+            files.add(SNIPPET, snippet.encode())
+            files.add(PLOT, lambda path: figures().ap_curves(path, curves))
+    text = dump_json(fit_data(found)) if args.json else f"{_fit_summary(found)}\n\n{snippet}"
     return text, DONE
+
+
+def _named(fit: CurveFit, path: Path) -> CurveFit:
+    """Return the fit with a file's name that a comment can hold."""
+    return replace(fit, table=replace(fit.table, source=one_line(path.name, LONGEST_FILE)))
 
 
 def fit_data(fit: CurveFit) -> dict[str, Any]:
@@ -69,13 +65,3 @@ def _fit_summary(fit: CurveFit) -> str:
         f"rms of AP  {fit.rms:.4f}\n"
         f"points  {taken} of {every}{left}"
     )
-
-
-def matplotlib_figures() -> Any:
-    """Return the module of figures, or raise `InputError` where matplotlib is missing."""
-    try:
-        from . import figures
-    except ImportError:
-        expected = 'matplotlib: pip install "perception-entropy[report]"'
-        raise InputError("pe", "plots", expected, "no matplotlib") from None
-    return figures

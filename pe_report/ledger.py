@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import platform
+import re
 import subprocess
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import pe_core as pe
-from pe_core.text import dump_json, read_bytes, write_bytes
+from pe_core.text import dump_json, write_bytes
 
-from .effort import Effort
+from .effort import Effort, to_dict
+from .read import SCHEMA, checked_results, read_json
 
 RESULTS = "results.json"
-SCHEMA = 1
+LONGEST_COMMIT = 40
 
 
 class Ledger:
@@ -29,16 +31,33 @@ class Ledger:
     folder : Path
         Where results.json is, or will be.
     effort : Effort
-        Results of another effort, commit or NumPy are not gone on with.
+        Results of another effort, commit or NumPy are not gone on with: they are kept under a name
+        of their own.
+
+    Attributes
+    ----------
+    found : int
+        Results that were there.
+    aside : Path or None
+        Where the results of another run go once there is one of this run.
+
+    Raises
+    ------
+    InputError
+        When the file is no JSON, or one of this run that is damaged.
     """
 
     def __init__(self, folder: Path, effort: Effort) -> None:
         self.path = folder / RESULTS
         self.made = made_by(effort)
         self.results: dict[str, dict[str, Any]] = {}
-        before = _read(self.path) if self.path.exists() else {}
-        if before.get("schema") == SCHEMA and before.get("made") == self.made:
-            self.results = before["results"]
+        self.aside: Path | None = None
+        if self.path.exists():
+            before = read_json(self.path)
+            if before.get("schema") == SCHEMA and before.get("made") == self.made:
+                self.results = checked_results(self.path, before.get("results"))
+            else:
+                self.aside = _free_name(folder, before.get("made"))
         self.found = len(self.results)
 
     @property
@@ -55,22 +74,11 @@ class Ledger:
         """Write the file, with whatever is said of the results as a whole; return its data."""
         ordered = dict(sorted(self.results.items()))
         data = {"schema": SCHEMA, "made": self.made, **more, "results": ordered}
+        if self.aside is not None:
+            _rename(self.path, self.aside)
+            self.aside = None
         write_bytes(self.path, dump_json(data).encode())
         return data
-
-
-def read_results(path: Path) -> dict[str, Any]:
-    """Read a complete results.json.
-
-    Raises
-    ------
-    InputError
-        When it is not one, or of another version.
-    """
-    data = _read(path)
-    if data.get("schema") != SCHEMA or "claims" not in data:
-        raise pe.InputError(str(path), "schema", f"complete results of schema {SCHEMA}", "others")
-    return data
 
 
 def made_by(effort: Effort) -> dict[str, Any]:
@@ -83,21 +91,28 @@ def made_by(effort: Effort) -> dict[str, Any]:
                 "numpy": np.__version__,
                 "python": platform.python_version(),
                 "machine": f"{_processor()}, {os.cpu_count()} processors",
-                "effort": asdict(effort),
+                "effort": to_dict(effort),
             }
         )
     )
     return data
 
 
-def _read(path: Path) -> dict[str, Any]:
+def _free_name(folder: Path, made: object) -> Path:
+    """Return the name that results of another run are kept by: results-COMMIT.json."""
+    commit = made.get("commit") if isinstance(made, dict) else None
+    words = re.findall(r"[0-9A-Za-z]+", str(commit or "unknown")[:LONGEST_COMMIT])
+    stem = "-".join(["results", *words])
+    endings = itertools.chain([""], (f"-{k}" for k in itertools.count(2)))
+    names = (folder / f"{stem}{ending}.json" for ending in endings)
+    return next(name for name in names if not name.exists())
+
+
+def _rename(path: Path, name: Path) -> None:
     try:
-        data = json.loads(read_bytes(path))
-    except ValueError as error:
-        raise pe.InputError(str(path), "file", "valid JSON", error) from None
-    if not isinstance(data, dict):
-        raise pe.InputError(str(path), "file", "a JSON object", type(data).__name__)
-    return data
+        path.rename(name)
+    except OSError as error:
+        raise pe.InputError(name, "file", "a place to write to", error.strerror) from None
 
 
 def _commit() -> str:

@@ -7,13 +7,23 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pe_core.text import write_bytes
+from pe_core import InputError
+from pe_core.text import read_bytes, write_bytes
 
-from . import sections
 from .facts import Facts
+from .sections import SECTIONS
 
 PAGE = "README.md"
+TITLE = "# The paper's experiments, reproduced"
 WIDTH = 100
+
+
+def check_ours(folder: Path) -> None:
+    """Raise `InputError` when a page of somebody else's is where ours would be."""
+    path = folder / PAGE
+    if path.is_file() and not read_bytes(path).startswith(TITLE.encode()):
+        found = "another; it stays as it is, choose another folder"
+        raise InputError(path, "output", "no file, or a page of pe reproduce", found)
 
 
 def write_page(data: Mapping[str, Any], folder: Path) -> None:
@@ -23,21 +33,7 @@ def write_page(data: Mapping[str, Any], folder: Path) -> None:
 
 def page(facts: Facts) -> str:
     """Return the page as Markdown."""
-    parts = (
-        sections.head,
-        sections.orderings,
-        sections.rows,
-        sections.experiment_1,
-        sections.experiment_2,
-        sections.experiment_3,
-        sections.experiment_4,
-        sections.pitch,
-        sections.sensitivity,
-        sections.ap_curve,
-        sections.priors,
-        sections.how_made,
-    )
-    blocks = (block for part in parts for block in part(facts).strip().split("\n\n"))
+    blocks = (block for part in SECTIONS for block in part(facts).strip().split("\n\n"))
     return "\n\n".join(map(_wrapped, blocks)) + "\n"
 
 

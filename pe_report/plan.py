@@ -31,9 +31,18 @@ def plan(effort: Effort, known: Mapping[str, Any]) -> list[Task]:
 
     Where a row has several starts, short pilots tell the best one, which is then searched.
     """
-    every = [*_searches(effort, known), *_scores(effort), *_pitch(effort), *_vary(effort)]
-    every += [*_bounds(), *_plots()]
+    every = [*_searches(effort, known), *scores_and_figures(effort)]
     return [task for task in every if task.name not in known]
+
+
+def names(effort: Effort, known: Mapping[str, Any]) -> list[str]:
+    """Names of all tasks, once the pilots are known."""
+    return [task.name for task in (*_searches(effort, known), *scores_and_figures(effort))]
+
+
+def scores_and_figures(effort: Effort) -> list[Task]:
+    """Return the tasks that need no search."""
+    return [*_scores(effort), *_pitch(effort), *_vary(effort), *_bounds(), *_plots()]
 
 
 def best_start(row: str, prior: str, known: Mapping[str, Any], effort: Effort) -> str | None:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import multiprocessing
+import multiprocessing.connection
 import os
 import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from typing import Any
+
+from pe_core import InputError
 
 from . import tasks
 from .effort import Effort
@@ -16,37 +22,111 @@ from .ledger import Ledger
 from .plan import Task, plan
 
 Tell = Callable[[str], None]
+Plan = Callable[[Effort, Mapping[str, Any]], list[Task]]
+ENDING = ("SIGINT", "SIGTERM", "SIGHUP")
+"""Signals that ask a process to end; Windows has no SIGHUP."""
 
 
-def run_all(effort: Effort, ledger: Ledger, workers: int | None, tell: Tell) -> None:
+class Ended(KeyboardInterrupt):
+    """The run ends now, because of a signal; `note` says what became of it."""
+
+    def __init__(self, signum: int) -> None:
+        super().__init__()
+        self.signum, self.note = signum, ""
+
+
+def run_all(
+    effort: Effort, ledger: Ledger, workers: int | None, tell: Tell, tasks_now: Plan = plan
+) -> None:
     """Run every task that the ledger does not know yet.
+
+    Parameters
+    ----------
+    effort : Effort
+    ledger : Ledger
+    workers : int or None
+        Processes, no more than there are processors; None or 0 for as many.
+    tell : callable
+        Takes a line for each result.
+    tasks_now : callable, optional
+        Returns the tasks that can run, from the effort and the values known.
 
     Raises
     ------
-    KeyboardInterrupt
-        At Ctrl-C, once the processes are gone; what had been found is in the ledger.
+    Ended
+        At Ctrl-C, SIGTERM and SIGHUP, once the processes are gone; what had been found is in the
+        ledger.
+    InputError
+        When a process was killed.
     """
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(workers or os.cpu_count(), context, initializer=_be_quiet)
+    processors = os.cpu_count() or 1
+    pool = ProcessPoolExecutor(
+        min(workers or processors, processors), context, initializer=_live_as_long_as_the_parent
+    )
     running: dict[Future[tuple[dict[str, Any], float]], Task] = {}
+    with _signals_end():
+        try:
+            while _next_results(pool, running, ledger, tell, tasks_now(effort, ledger.values)):
+                pass
+        except BaseException as error:
+            for process in list((getattr(pool, "_processes", None) or {}).values()):
+                process.kill()
+            if isinstance(error, BrokenProcessPool):
+                found = "one that was killed; what is done is kept"
+                raise InputError("workers", "process", "to run to its end", found) from None
+            raise
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _next_results(
+    pool: ProcessPoolExecutor,
+    running: dict[Future[tuple[dict[str, Any], float]], Task],
+    ledger: Ledger,
+    tell: Tell,
+    can_run: list[Task],
+) -> bool:
+    """Start what can run, keep what is done next; False when there is nothing left."""
+    busy = {task.name for task in running.values()}
+    for task in can_run:
+        if task.name not in busy:
+            running[pool.submit(_run, task.function, task.arguments)] = task
+    if not running:
+        return False
+    for future in wait(running, return_when=FIRST_COMPLETED).done:
+        value, seconds = future.result()
+        task = running.pop(future)
+        ledger.note(task.name, value, seconds)
+        done = len(ledger.results)
+        tell(f"[{done}/{done + len(running)}] {task.name}  {seconds:.1f} s")
+    return True
+
+
+@contextmanager
+def _signals_end() -> Iterator[None]:
+    """Raise `Ended` at Ctrl-C and at what else asks the process to end."""
+    before = {}
     try:
-        while True:
-            busy = {task.name for task in running.values()}
-            for task in plan(effort, ledger.values):
-                if task.name not in busy:
-                    running[pool.submit(_run, task.function, task.arguments)] = task
-            if not running:
-                return
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                task = running.pop(future)
-                value, seconds = future.result()
-                ledger.note(task.name, value, seconds)
-                done = len(ledger.results)
-                tell(f"[{done}/{done + len(running)}] {task.name}  {seconds:.1f} s")
+        for number in _numbers():
+            if number == signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN:  # nohup
+                before[number] = signal.signal(number, _end)
+    except ValueError:  # not the main thread: signals are someone else's
+        yield
+        return
+    try:
+        yield
     finally:
-        for process in list(getattr(pool, "_processes", {}).values()) if running else []:
-            process.terminate()
-        pool.shutdown(cancel_futures=True)
+        for number, handler in before.items():
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+
+
+def _numbers() -> list[signal.Signals]:
+    return [getattr(signal, name) for name in ENDING if hasattr(signal, name)]
+
+
+def _end(signum: int, _frame: object) -> None:
+    raise Ended(signum)
 
 
 def _run(function: str, arguments: dict[str, Any]) -> tuple[dict[str, Any], float]:
@@ -55,6 +135,15 @@ def _run(function: str, arguments: dict[str, Any]) -> tuple[dict[str, Any], floa
     return value, time.perf_counter() - started
 
 
-def _be_quiet() -> None:
-    """Leave Ctrl-C to the parent."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _live_as_long_as_the_parent() -> None:
+    """Leave signals to the parent, and end with it, however it ends."""
+    for number in _numbers():
+        signal.signal(number, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    threading.Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_after(sentinel: int) -> None:
+    multiprocessing.connection.wait([sentinel])
+    os._exit(1)

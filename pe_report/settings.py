@@ -56,9 +56,10 @@ def _interval(side: float) -> Change:
     return changed
 
 
+SHIPPED = "as shipped"
 NEARER = "positions as in KITTI"
 SETTINGS: dict[str, Change] = {
-    "as shipped": lambda study: study,
+    SHIPPED: lambda study: study,
     "objects half as far ahead and behind": _along(0.5),
     "twice as far ahead and behind": _along(2.0),
     "half as far to the sides": _across(0.5),
@@ -70,3 +71,10 @@ SETTINGS: dict[str, Change] = {
 }
 """By name: the change to a study. Expected counts are a setting of their own (`expected`)."""
 EXPECTED = "expected beam counts, no vehicle"
+GROUPS = {
+    "the side of the voxels": tuple(name for name in SETTINGS if name.startswith("voxels")),
+    "the prior's scales": (*(name for name in SETTINGS if "as far" in name), NEARER),
+    "the vehicle": ("no vehicle",),
+    "expected counts": (EXPECTED,),
+}
+"""What the settings change."""

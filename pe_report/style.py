@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import io
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +12,8 @@ from typing import Any
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from pe_core.text import write_bytes
 
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 SKY, PURPLE, GREY = "#56B4E9", "#CC79A7", "#8A8A8A"
@@ -43,6 +47,16 @@ def finished(axes: Axes) -> None:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure, without the software's version in it: the same plot is the same file."""
-    figure.savefig(path, metadata={"Software": None})
+    """Write a figure, without the software's version in it: the same plot is the same file.
+
+    Raises
+    ------
+    InputError
+        When it cannot be written there.
+    """
+    picture = io.BytesIO()
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # a box is shown
+        figure.savefig(picture, metadata={"Software": None})
     plt.close(figure)
+    write_bytes(path, picture.getvalue())

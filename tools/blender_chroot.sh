@@ -3,13 +3,12 @@
 #
 # build:  tools/blender_chroot.sh --build SUITE FOLDER
 # run:    FOLDER.sh ARGUMENTS...        a copy of this file, standing beside FOLDER
+# ask:    tools/blender_chroot.sh --archive   where a build would take its packages from
 #
 # The run behaves like `blender ARGUMENTS`: same directory, same files, same environment, Blender's
 # exit status. Mounts are made in a namespace of this process alone: they end with it, also when it
 # is killed, and two runs do not meet.
 set -euo pipefail
-
-readonly MIRROR=http://deb.debian.org/debian
 
 # Debian's package leaves out NumPy and what sid's Blender imports and opens on top; the last
 # draws without a graphics card.
@@ -52,10 +51,47 @@ share_host_folders() {
     done
 }
 
+# The addresses of apt's sources of packages, one a line; arguments narrow them down.
+apt_sources() {
+    # shellcheck disable=SC2016  # for apt to expand
+    apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "$@" | sort -u
+}
+
+# The Debian archive that this machine's own packages come from: the suite alone is another.
+# Apt knows which source that is once it has fetched lists; before, the address has to tell.
+archive() {
+    local found
+    found=${DEBIAN_ARCHIVE:-$(apt_sources 'Origin: Debian' 'Label: Debian' | sed -n 1p)}
+    [ -n "$found" ] || found=$(apt_sources --no-release-info | sed -nE '\#/debian(\.list)?/?$#p' | sed -n 1p)
+    case "$found" in
+        mirror+file:*) # a list of mirrors, the best first
+            found=${found#mirror+file:}
+            found=$(sed -nE 's#^([a-z]+://[^[:space:]]+).*#\1#p' "${found%/}" | sed -n 1p)
+            ;;
+    esac
+    if [ -z "$found" ]; then
+        echo "blender_chroot: no Debian archive among apt's sources; set DEBIAN_ARCHIVE" >&2
+        return 1
+    fi
+    echo "$found"
+}
+
+# Apt's own proxy for all that fetches, unless the environment has one.
+use_apt_proxy() {
+    local proxy
+    eval "$(apt-config shell proxy Acquire::http::Proxy)"
+    [ -z "${proxy:-}" ] || [ "$proxy" = DIRECT ] || export http_proxy="${http_proxy:-$proxy}"
+    proxy=
+    eval "$(apt-config shell proxy Acquire::https::Proxy)"
+    [ -z "${proxy:-}" ] || [ "$proxy" = DIRECT ] || export https_proxy="${https_proxy:-$proxy}"
+}
+
 build() {
-    local suite=$1
+    local suite=$1 from
     root=$2
-    debootstrap --variant=minbase "$suite" "$root" "$MIRROR"
+    from=$(archive)
+    use_apt_proxy
+    debootstrap --variant=minbase "$suite" "$root" "$from"
     mount --rbind /dev "$root/dev"
     mount -t proc proc "$root/proc" || mount --rbind /proc "$root/proc"
     export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
@@ -79,6 +115,7 @@ run() {
 case "${1:-}" in
     --build) shift && in_private_mounts --build-inside "$@" ;;
     --build-inside) shift && build "$@" ;;
+    --archive) archive && use_apt_proxy && echo "proxy ${http_proxy:-none}" ;;
     --run-inside) shift && run "$@" ;;
     *) in_private_mounts --run-inside "$@" ;;
 esac

@@ -17,6 +17,15 @@ def pe(*arguments, cwd=ROOT):
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=600)
 
 
+def pe_without_matplotlib(*arguments):
+    """Run the command where matplotlib cannot be imported."""
+    code = (
+        "import sys; sys.modules['matplotlib'] = None; from pe_core.app.cli import main; "
+        f"sys.exit(main({[str(a) for a in arguments]!r}))"
+    )
+    return subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+
+
 @pytest.fixture(scope="session")
 def quick(tmp_path_factory):
     """The folder, the data and the run of ``pe reproduce --quick``."""

@@ -1,13 +1,11 @@
 """``pe fit``: what it prints, writes and refuses."""
 
 import json
-import subprocess
-import sys
 import tomllib
 
 import pytest
 
-from tests.report.conftest import ROOT, pe
+from tests.report.conftest import ROOT, pe, pe_without_matplotlib
 
 TABLE = ROOT / "pe_report" / "data" / "paper_lidar.csv"
 LINE = """m,ap
@@ -58,10 +56,62 @@ def test_a_wrong_table_is_one_line_and_status_1(tmp_path):
 
 
 def test_without_matplotlib_the_line_says_what_to_install(tmp_path):
-    code = (
-        "import sys; sys.modules['matplotlib'] = None; from pe_core.app.cli import main; "
-        f"sys.exit(main(['fit', {str(TABLE)!r}, '-o', {str(tmp_path)!r}]))"
-    )
-    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert run.returncode == 1
+    run = pe_without_matplotlib("fit", TABLE, "-o", tmp_path)
+    assert run.returncode == 1 and not run.stdout
     assert "matplotlib" in run.stderr and "[report]" in run.stderr and run.stderr.count("\n") == 1
+    assert run.stderr.count("pe:") == 1
+
+
+def test_without_a_folder_nothing_is_drawn_and_matplotlib_is_not_needed():
+    run = pe_without_matplotlib("fit", TABLE)
+    assert run.returncode == 0 and "a  0.1520" in run.stdout and not run.stderr
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "$\\frac{$",
+        "$a^{$",
+        "a_b^c",
+        "costs $5 or $6",
+        "\x1b[31m\x07",
+        "two\nlines",
+        "\u4e2d\U0001f697",
+        "n" * 200,
+    ],
+)
+def test_a_name_is_drawn_as_it_is_never_as_a_formula(tmp_path, name):
+    """What matplotlib cannot show is replaced; it neither fails nor warns."""
+    table = tmp_path / f"{name}.csv"
+    table.write_bytes(TABLE.read_bytes())
+    run = pe("fit", table, "--output", tmp_path / "new")
+    assert run.returncode == 0 and not run.stderr
+    assert (tmp_path / "new" / "ap.png").read_bytes().startswith(b"\x89PNG")
+    snippet = (tmp_path / "new" / "ap.toml").read_text("utf-8")
+    assert list(tomllib.loads(snippet)) == ["ap"] and snippet in run.stdout
+
+
+def test_a_dollar_is_drawn_as_a_dollar(tmp_path):
+    """Read as formulas, both of these would draw nothing but an x."""
+    pictures = []
+    for name in ("$x$", "$ x $"):
+        table = tmp_path / f"{name}.csv"
+        table.write_bytes(TABLE.read_bytes())
+        pe("fit", table, "--output", tmp_path / name)
+        pictures.append((tmp_path / name / "ap.png").read_bytes())
+    assert pictures[0] != pictures[1]
+
+
+def test_a_folder_in_the_place_of_the_plot_is_one_line(tmp_path):
+    (tmp_path / "ap.png").mkdir()
+    run = pe("fit", TABLE, "--output", tmp_path)
+    assert run.returncode == 1 and not run.stdout and run.stderr.count("\n") == 1
+    assert run.stderr.startswith(f"pe: {tmp_path / 'ap.png'}: output: expected no file, or one ")
+
+
+def test_a_file_of_the_users_own_is_not_written_over(tmp_path):
+    (tmp_path / "ap.toml").write_text("mine")
+    run = pe("fit", TABLE, "--output", tmp_path)
+    assert run.returncode == 1 and run.stderr.count("\n") == 1 and "ap.toml" in run.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["ap.toml"]
+    assert (tmp_path / "ap.toml").read_text() == "mine"

@@ -1,0 +1,192 @@
+"""Reading results.json: a file may be damaged, so all of it is checked before anything is drawn."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pe_core import InputError
+from pe_core.text import dump_json, read_bytes
+
+from .claims import claims
+from .effort import FULL, QUICK, Effort, to_dict
+from .paper import CORNERS, PRIORS, ROW
+from .plan import names
+from .shape import Each, Items, Maybe, Number, Object, Shape, Text, check_keys
+
+SCHEMA = 1
+
+ENTROPY, SHARE = Number(-1e3, 1e3), Number(0.0, 1.0)
+SEEN = Number(1e-9, 1.0)
+"""A share that something is divided by."""
+METRES, DEGREES = Number(-100.0, 100.0), Number(-360.0, 360.0)
+PLACE = Object({"position": Items(METRES, 3), "rotation": Items(DEGREES, 3)})
+SCORE = Object(
+    {"entropy": ENTROPY, "coverage": SEEN, "stderr": Number(), "per_class": Each(ENTROPY)}
+)
+SHAPES: Mapping[str, Shape] = {
+    "printed": SCORE,
+    "swapped": SCORE,
+    "lidars": SCORE,
+    "pitch": Object(
+        {"entropy": ENTROPY, "alone": Object(dict.fromkeys(CORNERS["front"], ENTROPY))}
+    ),
+    "bound": Object(
+        {
+            "in_view": SEEN,
+            "least": ENTROPY,
+            "least_all_round": ENTROPY,
+            "farthest_m": Number(0.0),
+            "nearer_than_that": SHARE,
+            "most_unseen": Number(),
+        }
+    ),
+    "bound_curve": Object({"distance_m": Items(Number(0.0)), "entropy": Items(ENTROPY)}),
+    "prior": Object(
+        {
+            "classes": Items(Text()),
+            "ground": Items(Items(Number(0.0))),
+            "height_m": Items(Number()),
+            "height": Items(Number(0.0)),
+        }
+    ),
+    "fit": Object(
+        {
+            **{key: Number() for key in ("a", "b", "a_error", "b_error", "rms")},
+            "m": Items(Number(0.0)),
+            "ap": Items(SHARE),
+            "n": Items(Number(0.0)),
+            "left_out": Items(Text()),
+        }
+    ),
+}
+"""What a result looks like, by the first part of its name."""
+VARIED = (Object({"entropy": ENTROPY, "coverage": Maybe(SEEN)}), SCORE)
+EVEN = (("fit", ("m", "ap", "n", "left_out")), ("prior", ("height_m", "height")))
+EVEN_CURVE = ("bound_curve", ("distance_m", "entropy"))
+"""Lists of a result that are as long as each other."""
+MADE = ("commit", "version", "numpy", "python", "machine")
+
+
+def read_results(path: Path) -> dict[str, Any]:
+    """Read a complete results.json.
+
+    Raises
+    ------
+    InputError
+        When it is not one, of another version, damaged, or its verdicts are not what its figures
+        say.
+    """
+    data = read_json(path)
+    if data.get("schema") != SCHEMA or "claims" not in data:
+        raise InputError(path, "schema", f"complete results of schema {SCHEMA}", "others")
+    check_keys(data, ("schema", "made", "claims", "results"), path, "file")
+    effort = _checked_made(path, data["made"])
+    results = checked_results(path, data["results"])
+    _check_complete(path, effort, results)
+    values = {name: entry["value"] for name, entry in results.items()}
+    judged = [claim.to_dict() for claim in claims(values, effort)]
+    if data["claims"] != json.loads(dump_json(judged)):
+        raise InputError(path, "claims", "the verdicts that the results give", "others")
+    return data
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """Read a file of JSON.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read, or holds something else than an object.
+    """
+    text = read_bytes(path)
+    try:
+        data = json.loads(text, parse_constant=_refuse)
+    except RecursionError:
+        raise InputError(path, "file", "valid JSON", "brackets in brackets, too deep") from None
+    except ValueError as error:
+        raise InputError(path, "file", "valid JSON", error) from None
+    if not isinstance(data, dict):
+        raise InputError(path, "file", "a JSON object", type(data).__name__)
+    return data
+
+
+def checked_results(path: Path, results: Any) -> dict[str, dict[str, Any]]:
+    """Return results by task name, each with its value and seconds, or raise `InputError`."""
+    if not isinstance(results, dict):
+        raise InputError(path, "results", "an object", type(results).__name__)
+    for name, entry in results.items():
+        Text().check(name, path, "results")
+        field = f"results.{name}"
+        check_keys(entry, ("value", "seconds"), path, field)
+        Number(0.0).check(entry["seconds"], path, f"{field}.seconds")
+        _check_value(path, name, entry["value"], f"{field}.value")
+    return results
+
+
+def _refuse(constant: str) -> float:
+    raise ValueError(f"{constant}, which JSON has no word for")
+
+
+def _checked_made(path: Path, made: Any) -> Effort:
+    """Return the effort, which is one of the two there are."""
+    check_keys(made, (*MADE, "effort"), path, "made")
+    for key in MADE:
+        Text().check(made[key], path, f"made.{key}")
+    for effort in (FULL, QUICK):
+        if made["effort"] == to_dict(effort):
+            return effort
+    raise InputError(path, "made.effort", "that of pe reproduce, or with --quick", "another")
+
+
+def _check_value(path: Path, name: str, value: Any, field: str) -> None:
+    kind, _, rest = name.partition("/")
+    if kind in ("search", "pilot"):
+        _search_shape(path, rest).check(value, path, field)
+    elif kind == "vary":
+        full = isinstance(value, dict) and "stderr" in value
+        VARIED[full].check(value, path, field)
+    elif kind in SHAPES:
+        SHAPES[kind].check(value, path, field)
+        _check_lists(path, kind, value, field)
+    else:
+        raise InputError(path, "results", "what pe reproduce computes", ascii(name[:60]))
+
+
+def _search_shape(path: Path, rest: str) -> Shape:
+    """A search's result has a place for every sensor of its row."""
+    row, _, start = rest.partition("/")
+    if row not in ROW or start.split("/")[0] not in PRIORS:
+        raise InputError(path, "results", "searches of the paper's rows", ascii(rest[:60]))
+    sensors = next(iter(ROW[row].starts.values()))
+    return Object(
+        {
+            "entropy": ENTROPY,
+            "coverage": SEEN,
+            "start_entropy": ENTROPY,
+            "evaluations": Number(0.0),
+            "placements": Object(dict.fromkeys(sensors, PLACE)),
+        }
+    )
+
+
+def _check_lists(path: Path, kind: str, value: Mapping[str, Any], field: str) -> None:
+    """Lists that belong together are equally long, and a curve has a point to draw."""
+    for about, keys in (*EVEN, EVEN_CURVE):
+        if about == kind and len({len(value[key]) for key in keys}) > 1:
+            raise InputError(path, field, f"{', '.join(keys)} of one length", "different lengths")
+    if kind == "prior" and len({len(line) for line in value["ground"]}) > 1:
+        raise InputError(path, f"{field}.ground", "lines of one length", "different lengths")
+    if kind == "fit" and not max(value["m"]) > 0.0:
+        raise InputError(path, f"{field}.m", "a measurement above 0", "none")
+
+
+def _check_complete(path: Path, effort: Effort, results: Mapping[str, Any]) -> None:
+    values = {name: entry["value"] for name, entry in results.items()}
+    expected = set(names(effort, values))
+    for name in sorted(expected - set(results))[:1]:
+        raise InputError(path, "results", f"a complete run, with {name}", "none")
+    for name in sorted(set(results) - expected)[:1]:
+        raise InputError(path, "results", "only what this effort computes", name)

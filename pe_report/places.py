@@ -11,18 +11,18 @@ from .paper import HALF_LENGTH_M, HALF_WIDTH_M, ROOF_M
 from .problems import study_of
 from .words import ABOUT_M, APART_DEG, APART_M, MOUNT_M
 
-Places = Mapping[str, tuple[float, float, float]]
+PlaceOf = Mapping[str, tuple[float, float, float]]
 
 ROOF_ROWS, CORNER_ROWS = ("1_pandar64", "1_hdl64e"), ("3_default", "3_front")
 """Rows of LiDARs above a car's roof, and at a bus's corners."""
 
 
-def printed(row: str) -> Places:
+def printed(row: str) -> PlaceOf:
     """Return the paper's positions of a row [m], by sensor."""
     return {s.name: s.pose.position for s in study_of(row).rig}
 
 
-def ends(facts: Facts, row: str, prior: str = "road") -> list[Places]:
+def ends(facts: Facts, row: str, prior: str = "road") -> list[PlaceOf]:
     """Return the positions at the end of every search of a row [m], by sensor."""
     return [{n: tuple(p["position"]) for n, p in at.items()} for at in facts.ends(row, prior)]
 
@@ -38,12 +38,12 @@ def highest(row: str) -> float:
     return max(axes["z"][1] for axes in bounds.values())
 
 
-def above_the_roof(places: Places) -> bool:
+def above_the_roof(places: PlaceOf) -> bool:
     """Whether all sensors are above the sedan's roof."""
     return all(position[2] > ROOF_M for position in places.values())
 
 
-def corners(places: Places) -> list[tuple[int, int]] | None:
+def corners(places: PlaceOf) -> list[tuple[int, int]] | None:
     """Corners of the bus that sensors are at, by the signs of x and y; None where one is at none.
 
     A pair is told with its mirror image to the other side as one: the one that begins on the left.

@@ -12,21 +12,21 @@ from pe_core.text import dump_json, read_bytes
 
 from .claims import claims
 from .effort import FULL, QUICK, Effort, to_dict
+from .form import Amount, Each, Form, ListOf, Maybe, Object, Text, check_keys
 from .paper import CORNERS, PRIORS, ROW
 from .plan import names
-from .shape import Each, Items, Maybe, Number, Object, Shape, Text, check_keys
 
 SCHEMA = 1
 
-ENTROPY, SHARE = Number(-1e3, 1e3), Number(0.0, 1.0)
-SEEN = Number(1e-9, 1.0)
+ENTROPY, SHARE = Amount(-1e3, 1e3), Amount(0.0, 1.0)
+SEEN = Amount(1e-9, 1.0)
 """A share that something is divided by."""
-METRES, DEGREES = Number(-100.0, 100.0), Number(-360.0, 360.0)
-PLACE = Object({"position": Items(METRES, 3), "rotation": Items(DEGREES, 3)})
+METRES, DEGREES = Amount(-100.0, 100.0), Amount(-360.0, 360.0)
+PLACE = Object({"position": ListOf(METRES, 3), "rotation": ListOf(DEGREES, 3)})
 SCORE = Object(
-    {"entropy": ENTROPY, "coverage": SEEN, "stderr": Number(), "per_class": Each(ENTROPY)}
+    {"entropy": ENTROPY, "coverage": SEEN, "stderr": Amount(), "per_class": Each(ENTROPY)}
 )
-SHAPES: Mapping[str, Shape] = {
+SHAPES: Mapping[str, Form] = {
     "printed": SCORE,
     "swapped": SCORE,
     "lidars": SCORE,
@@ -38,27 +38,27 @@ SHAPES: Mapping[str, Shape] = {
             "in_view": SEEN,
             "least": ENTROPY,
             "least_all_round": ENTROPY,
-            "farthest_m": Number(0.0),
+            "farthest_m": Amount(0.0),
             "nearer_than_that": SHARE,
-            "most_unseen": Number(),
+            "most_unseen": Amount(),
         }
     ),
-    "bound_curve": Object({"distance_m": Items(Number(0.0)), "entropy": Items(ENTROPY)}),
+    "bound_curve": Object({"distance_m": ListOf(Amount(0.0)), "entropy": ListOf(ENTROPY)}),
     "prior": Object(
         {
-            "classes": Items(Text()),
-            "ground": Items(Items(Number(0.0))),
-            "height_m": Items(Number()),
-            "height": Items(Number(0.0)),
+            "classes": ListOf(Text()),
+            "ground": ListOf(ListOf(Amount(0.0))),
+            "height_m": ListOf(Amount()),
+            "height": ListOf(Amount(0.0)),
         }
     ),
     "fit": Object(
         {
-            **{key: Number() for key in ("a", "b", "a_error", "b_error", "rms")},
-            "m": Items(Number(0.0)),
-            "ap": Items(SHARE),
-            "n": Items(Number(0.0)),
-            "left_out": Items(Text()),
+            **{key: Amount() for key in ("a", "b", "a_error", "b_error", "rms")},
+            "m": ListOf(Amount(0.0)),
+            "ap": ListOf(SHARE),
+            "n": ListOf(Amount(0.0)),
+            "left_out": ListOf(Text()),
         }
     ),
 }
@@ -121,7 +121,7 @@ def checked_results(path: Path, results: Any) -> dict[str, dict[str, Any]]:
         Text().check(name, path, "results")
         field = f"results.{name}"
         check_keys(entry, ("value", "seconds"), path, field)
-        Number(0.0).check(entry["seconds"], path, f"{field}.seconds")
+        Amount(0.0).check(entry["seconds"], path, f"{field}.seconds")
         _check_value(path, name, entry["value"], f"{field}.value")
     return results
 
@@ -155,7 +155,7 @@ def _check_value(path: Path, name: str, value: Any, field: str) -> None:
         raise InputError(path, "results", "what pe reproduce computes", ascii(name[:60]))
 
 
-def _search_shape(path: Path, rest: str) -> Shape:
+def _search_shape(path: Path, rest: str) -> Form:
     """A search's result has a place for every sensor of its row."""
     row, _, start = rest.partition("/")
     if row not in ROW or start.split("/")[0] not in PRIORS:
@@ -166,7 +166,7 @@ def _search_shape(path: Path, rest: str) -> Shape:
             "entropy": ENTROPY,
             "coverage": SEEN,
             "start_entropy": ENTROPY,
-            "evaluations": Number(0.0),
+            "evaluations": Amount(0.0),
             "placements": Object(dict.fromkeys(sensors, PLACE)),
         }
     )

@@ -7,7 +7,7 @@ from ..facts import Facts
 from ..paper import PITCH_HEIGHT_M
 from ..words import joined
 
-Curve = list[tuple[float, float]]
+Points = list[tuple[float, float]]
 
 DENSE_DEG = 1.0 / 3.0
 """Spacing of the Pandar40's dense channels."""
@@ -45,7 +45,7 @@ def _verdict(facts: Facts) -> str:
     return facts.say("pitch", told)
 
 
-def _worst(facts: Facts, curve: Curve) -> str:
+def _worst(facts: Facts, curve: Points) -> str:
     near = [(d, h) for d, h in curve if abs(d) <= SMALL_DEG]
     worst = max(near, key=lambda pair: pair[1])
     word = "Equal pitch is" if worst[0] == 0.0 else f"Not equal pitch but {worst[0]:g} deg is"
@@ -53,7 +53,7 @@ def _worst(facts: Facts, curve: Curve) -> str:
     return f"{told} ({worst[1]:.4f})."
 
 
-def _period(facts: Facts, curve: Curve) -> str:
+def _period(facts: Facts, curve: Points) -> str:
     """Say whether the peaks of the curve are as far apart as the dense channels are."""
     triples = zip(curve, curve[1:], curve[2:], strict=False)
     peaks = [b[0] for a, b, c in triples if a[1] < b[1] > c[1]]
@@ -68,7 +68,7 @@ def _period(facts: Facts, curve: Curve) -> str:
     )
 
 
-def _alone(facts: Facts, curve: Curve) -> str:
+def _alone(facts: Facts, curve: Points) -> str:
     """Say how much less each LiDAR alone changes than both together."""
     near = [d for d, _ in curve if abs(d) <= SMALL_DEG]
     alone = [facts[f"pitch/{d:g}"]["alone"] for d in near]

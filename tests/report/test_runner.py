@@ -20,7 +20,7 @@ from pe_report.plan import Task
 from pe_report.runner import Ended, run_all
 
 ENDLESS = {"row": "2_60deg", "prior": "road", "start": "roof", "seed": 0,
-           "candidates": 10**9, "search_samples": 64, "samples": 64}
+           "candidates": 10**7, "search_samples": 1024, "samples": 1024}
 
 def plan(effort, known):
     every = [Task("bound_curve/60", "bound_curve", {"hfov_deg": 60}),

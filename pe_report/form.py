@@ -1,4 +1,4 @@
-"""What JSON data has to look like: shapes that check a value and name what is wrong in it."""
+"""What JSON data has to look like: forms that check a value and name what is wrong in it."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ LARGEST = 1e12
 """No figure is larger; what is comes from a damaged file."""
 
 
-class Shape(Protocol):
+class Form(Protocol):
     """Anything that can check a value."""
 
     def check(self, value: Any, source: object, field: str) -> None:
-        """Raise `InputError` naming the field, unless the value has this shape."""
+        """Raise `InputError` naming the field, unless the value has this form."""
 
 
 @dataclass(frozen=True)
-class Number:
+class Amount:
     """A finite number from `low` to `high`."""
 
     low: float = -LARGEST
@@ -54,21 +54,21 @@ class Text:
 
 @dataclass(frozen=True)
 class Maybe:
-    """null, or something of a shape."""
+    """null, or something of a form."""
 
-    shape: Shape
+    form: Form
 
     def check(self, value: Any, source: object, field: str) -> None:
         """Check what is not null."""
         if value is not None:
-            self.shape.check(value, source, field)
+            self.form.check(value, source, field)
 
 
 @dataclass(frozen=True)
-class Items:
-    """A list of things of one shape: `count` of them, or at least one."""
+class ListOf:
+    """A list of things of one form: `count` of them, or at least one."""
 
-    shape: Shape
+    form: Form
     count: int | None = None
 
     def check(self, value: Any, source: object, field: str) -> None:
@@ -80,27 +80,27 @@ class Items:
             )
             raise InputError(source, field, expected, short(value))
         for k, item in enumerate(value):
-            self.shape.check(item, source, f"{field}[{k}]")
+            self.form.check(item, source, f"{field}[{k}]")
 
 
 @dataclass(frozen=True)
 class Object:
     """An object with these keys and no others."""
 
-    keys: Mapping[str, Shape]
+    keys: Mapping[str, Form]
 
     def check(self, value: Any, source: object, field: str) -> None:
         """Check an object, each value under its key."""
         check_keys(value, self.keys, source, field)
-        for key, shape in self.keys.items():
-            shape.check(value[key], source, f"{field}.{key}")
+        for key, form in self.keys.items():
+            form.check(value[key], source, f"{field}.{key}")
 
 
 @dataclass(frozen=True)
 class Each:
-    """An object of things of one shape under any names, which are printable; at least one."""
+    """An object of things of one form under any names, which are printable; at least one."""
 
-    shape: Shape
+    form: Form
 
     def check(self, value: Any, source: object, field: str) -> None:
         """Check an object, each value under its name."""
@@ -108,7 +108,7 @@ class Each:
             raise InputError(source, field, "an object with something in it", short(value))
         for name, item in value.items():
             Text().check(name, source, field)
-            self.shape.check(item, source, f"{field}.{name}")
+            self.form.check(item, source, f"{field}.{name}")
 
 
 def check_keys(value: Any, keys: Collection[str], source: object, field: str) -> None:

@@ -310,12 +310,12 @@ def test_schedules_without_an_end_are_refused(options, message):
 
 @pytest.mark.parametrize("unit", ["m", "rad"])
 def test_a_schedule_has_a_thousand_rounds_at_most(unit):
-    """From 1 to exp(-10) by factors of exp(-0.01): 1000. The other neighbourhood is at its floor."""
+    """From 1 to exp(-10) by factors of exp(-0.01): 1000. The other one is at its floor."""
     other = {"m": "rad", "rad": "m"}[unit]
     sizes = {f"reach_{unit}": 1.0, f"floor_{unit}": math.exp(-10.0)}
     sizes |= {f"reach_{other}": 0.5, f"floor_{other}": 0.5}
     assert len(pe.Schedule(decay=math.exp(-0.010005), **sizes).scales) == 1000  # 999.5, rounded up
-    with pytest.raises(pe.InputError, match="decay: expected at most 1000 rounds .*, found 1001"):
+    with pytest.raises(pe.InputError, match=r"decay: expected at most 1000 rounds .*, found 1001"):
         pe.Schedule(decay=math.exp(-0.009995), **sizes)
     assert pe.Schedule(reach_m=0.0, reach_rad=0.0).scales == []
 

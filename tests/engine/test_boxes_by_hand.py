@@ -1,12 +1,14 @@
 """Labelled boxes on a space of 3 x 2 x 2 voxels, counted by hand."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import pe_core as pe
 from pe_core.prior import BoxReport
+from pe_core.prior.box_density import voxelised
 
 SPACE = pe.PerceptionSpace((0.0, 3.0), (0.0, 2.0), (0.0, 2.0), 1.0)
 
@@ -153,6 +155,23 @@ def test_numbers_are_kept_as_a_file_would_hold_them():
         [5.729577951, 360.0 - 229.183118052, 515.662015618 - 360.0], abs=1e-9
     )
     assert np.degrees(boxes.yaw).round(9).tolist() == pytest.approx(degrees.tolist(), abs=1e-13)
+
+
+def test_what_is_kept_of_boxes_cannot_be_changed():
+    """Counted once for a space: the next who asks gets the same arrays."""
+    voxels = voxelised(pe.Boxes.of([ROW]), pe.PerceptionSpace((0, 3), (0, 3), (0, 6), 1.0))
+    for ground, profile in voxels.shapes:
+        for values in (ground, profile):
+            with pytest.raises(ValueError, match="read-only"):
+                values[0] = 1.0
+
+
+def test_the_labels_origin_is_three_lengths_of_a_thousand_kilometres_at_most():
+    for origin in ((1e6, -1e6, 0.0), None):
+        assert replace(pe.Boxes.of([ROW]), origin=origin).origin == origin
+    for origin in ((1.0, 2.0), (1_000_000.5, 0.0, 0.0), (0.0, 0.0, math.nan), (1, 2, 3, 4)):
+        with pytest.raises(pe.InputError, match="boxes: origin"):
+            replace(pe.Boxes.of([ROW]), origin=origin)
 
 
 def test_boxes_are_equal_when_they_hold_the_same():

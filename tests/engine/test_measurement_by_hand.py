@@ -326,6 +326,16 @@ def test_kinds_are_known_by_name_and_by_sensor():
     assert list(kinds.KINDS)[:2] == ["lidar", "camera"]
 
 
+def test_what_kinds_of_sensors_have_in_common():
+    """LiDARs share a fusion group and are stopped by glass; cameras stand alone and see through."""
+    assert (pe.Lidar.fuses_early, pe.Lidar.sees_through_glass) == (True, False)
+    assert (pe.Camera.fuses_early, pe.Camera.sees_through_glass) == (False, True)
+    models = [lidar(), lidar(), camera(), camera()]
+    rig = pe.Rig([pe.Sensor(n, m) for n, m in zip("abcd", models, strict=True)])
+    groups = [[s.name for s in members] for members in rig.groups.values()]
+    assert groups == [["a", "b"], ["c"], ["d"]]
+
+
 LIDAR = {"kind": "lidar", "elevations_deg": [-10, 0.5], "azimuth_step_deg": 0.7, "max_range_m": 80}
 CAMERA = {"kind": "camera", "width": 200, "height": 100, "hfov_deg": 90}
 

@@ -308,6 +308,18 @@ def test_schedules_without_an_end_are_refused(options, message):
         pe.Schedule(**options)
 
 
+@pytest.mark.parametrize("unit", ["m", "rad"])
+def test_a_schedule_has_a_thousand_rounds_at_most(unit):
+    """From 1 to exp(-10) by factors of exp(-0.01): 1000. The other one is at its floor."""
+    other = {"m": "rad", "rad": "m"}[unit]
+    sizes = {f"reach_{unit}": 1.0, f"floor_{unit}": math.exp(-10.0)}
+    sizes |= {f"reach_{other}": 0.5, f"floor_{other}": 0.5}
+    assert len(pe.Schedule(decay=math.exp(-0.010005), **sizes).scales) == 1000  # 999.5, rounded up
+    with pytest.raises(pe.InputError, match=r"decay: expected at most 1000 rounds .*, found 1001"):
+        pe.Schedule(decay=math.exp(-0.009995), **sizes)
+    assert pe.Schedule(reach_m=0.0, reach_rad=0.0).scales == []
+
+
 def test_where_a_sensor_may_go_when_nobody_says():
     """With a vehicle its outline, from 0.2 m above ground to 0.75 m above its top; without one
     1 m from the start; angles all round, pitch from straight up to straight down."""
@@ -338,6 +350,19 @@ def test_bounds_may_begin_and_end_at_the_start():
     assert math.degrees(rad) == pytest.approx(pitch)
     recorder, _ = searched(flat, space.bounds)
     assert min(recorder.of("a")["x"]) == x
+
+
+@pytest.mark.parametrize(
+    ("axis", "start", "rounding"),
+    [("x", START[0][0], 0.5e-5), ("pitch", math.radians(START[1][1]), math.radians(0.5e-4))],
+)
+def test_a_start_may_lie_beyond_its_bounds_by_what_rounding_does(axis, start, rounding):
+    """0.5 of 0.01 mm and of 0.0001 degrees: a search leaves placements there."""
+    for low, high in ((start + 0.98 * rounding, 5.0), (-5.0, start - 0.98 * rounding)):
+        pe.SearchSpace({"a": {axis: (low, high)}}).checked(rig_of("a"))
+    for low, high in ((start + 1.02 * rounding, 5.0), (-5.0, start - 1.02 * rounding)):
+        with pytest.raises(pe.InputError, match=f"bounds of {axis}: expected bounds around"):
+            pe.SearchSpace({"a": {axis: (low, high)}}).checked(rig_of("a"))
 
 
 @pytest.mark.parametrize(

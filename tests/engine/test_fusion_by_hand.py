@@ -203,6 +203,7 @@ def test_impossible_slopes_are_refused(a):
 def test_a_curve_too_flat_to_saturate_says_so():
     """exp(700) is about as far as a number goes: (0.999 - 0.5) / 700 = 0.000713."""
     assert pe.ApCurve(1e-4, 0.5).saturation == math.inf
+    assert pe.ApCurve(0.499 / 700.5, 0.5).saturation == math.inf
     assert pe.ApCurve(0.00072, 0.5).saturation == pytest.approx(math.exp(0.499 / 0.00072))
     assert pe.ApCurve(1.0, -1.0).saturation == pytest.approx(math.exp(1.999))
 

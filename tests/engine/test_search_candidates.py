@@ -386,3 +386,15 @@ def test_bounds_that_leave_out_the_start_are_one_line(axis, bounds, message):
 def test_a_sensor_that_is_not_in_the_rig_is_one_line():
     with pytest.raises(pe.InputError, match=r"search space: sensor: .* found 'mast'"):
         pe.SearchSpace({"mast": {}}).checked(rig_of("a"))
+
+
+def test_bounds_have_the_range_of_positions_and_of_angles():
+    """10 km and ten turns; both ends may be one."""
+    (x, _, _), turns = START[0], math.radians(3600.0)
+    for axis, bounds in (("x", (-1e4, 1e4)), ("pitch", (-turns, turns)), ("x", (x, x))):
+        assert (
+            pe.SearchSpace({"a": {axis: bounds}}).checked(rig_of("a")).bounds["a"][axis] == bounds
+        )
+    for axis, bounds in (("x", (-1.1e4, 1.0)), ("pitch", (-1.01 * turns, 1.0))):
+        with pytest.raises(pe.InputError, match=f"bounds of {axis}"):
+            pe.SearchSpace({"a": {axis: bounds}}).checked(rig_of("a"))

@@ -56,7 +56,7 @@ def shown_beams(
     if vehicle is None:
         shown, stopped, seen = spread(lidar, budget, channels), np.empty(0, np.int64), None
     else:
-        seen = vehicle.seen_from(sensor.pose.position)
+        seen = vehicle.seen_from(sensor.pose.position, sensor.model.sees_through_glass)
         shown = spread(lidar, budget - int(budget * STOPPED_SHARE), channels)
         stopped = _stopped(sensor, seen, np.union1d(shown, spread(lidar, LOOKED_AT)))
     free = np.setdiff1d(shown, stopped)

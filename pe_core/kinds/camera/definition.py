@@ -29,5 +29,5 @@ def hidden_by(vehicle: Vehicle, sensor: Sensor, centers: Floats) -> NDArray[np.b
     offsets = centers - np.asarray(sensor.pose.position)
     distance = np.sqrt(dot(offsets, offsets))
     directions = offsets / distance[:, None]
-    hits = vehicle.first_hit(sensor.pose.position, directions, through_glass=True)
+    hits = vehicle.first_hit(sensor.pose.position, directions, sensor.model.sees_through_glass)
     return hits.distance < distance

@@ -61,4 +61,6 @@ def _areas(cameras: Sequence[CameraPlanes], planes: slice) -> SeenRows:
 
 
 def _seen(vehicle: Vehicle | None, sensor: Sensor) -> SeenMesh | None:
-    return None if vehicle is None else vehicle.seen_from(sensor.pose.position, through_glass=True)
+    if vehicle is None:
+        return None
+    return vehicle.seen_from(sensor.pose.position, sensor.model.sees_through_glass)

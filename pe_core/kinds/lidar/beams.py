@@ -59,7 +59,7 @@ def beam_field(
     max_range = cast(Lidar, sensor.model).max_range
     if vehicle is None:
         return BeamField(directions, np.full(len(directions), max_range), max_range)
-    hits = vehicle.first_hit(sensor.pose.position, directions)
+    hits = vehicle.first_hit(sensor.pose.position, directions, sensor.model.sees_through_glass)
     ends = np.minimum(hits.distance, max_range)
     return BeamField(directions, ends, max_range, hits, vehicle)
 

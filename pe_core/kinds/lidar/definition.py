@@ -32,7 +32,9 @@ def beam_ends(sensor: Sensor, directions: Floats, vehicle: Vehicle | None) -> Fl
     max_range = cast(Lidar, sensor.model).max_range
     if vehicle is None:
         return np.full(len(directions), max_range)
-    return np.minimum(vehicle.first_hit(sensor.pose.position, directions).distance, max_range)
+    glass = sensor.model.sees_through_glass
+    hits = vehicle.first_hit(sensor.pose.position, directions, glass)
+    return np.minimum(hits.distance, max_range)
 
 
 def count_beams(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:

@@ -16,6 +16,7 @@ from .geometry import FARTHEST_M, cross, dot
 from .heights import top_heights
 from .raycast import Hits, SeenTriangles
 from .space import PerceptionSpace
+from .triangle_tree import TriangleTree
 
 Floats = NDArray[np.float64]
 
@@ -86,12 +87,20 @@ class Vehicle:
         glass = [self.part_names.index(name) for name in self.glass]
         return np.flatnonzero(~np.isin(self.parts, glass))
 
+    @cached_property
+    def _tree(self) -> TriangleTree:
+        return TriangleTree(self.triangles)
+
+    @cached_property
+    def _tree_without_glass(self) -> TriangleTree:
+        return TriangleTree(self.triangles[self._opaque]) if self.glass else self._tree
+
     def seen_from(self, position: Sequence[float], through_glass: bool = False) -> SeenMesh:
         """Return the vehicle as a sensor sees it from a position [m]; perhaps through its glass."""
-        faces = self._opaque if through_glass else None
-        triangles = self.triangles if faces is None else self.triangles[faces]
-        origin = _proud_of_skin(np.asarray(position, dtype=float), triangles, self.clearance)
-        return SeenMesh(SeenTriangles(triangles - origin), faces)
+        tree = self._tree_without_glass if through_glass else self._tree
+        triangles = self.triangles[self._opaque] if through_glass else self.triangles
+        origin = _proud_of_skin(np.asarray(position, dtype=float), triangles, tree, self.clearance)
+        return SeenMesh(SeenTriangles(tree, origin), self._opaque if through_glass else None)
 
     def first_hit(
         self, position: Sequence[float], directions: ArrayLike, through_glass: bool = False
@@ -169,11 +178,14 @@ def _checked_parts(values: ArrayLike, names: int) -> NDArray[np.int32]:
     return frozen_copy(parts, np.int32)
 
 
-def _proud_of_skin(position: Floats, triangles: Floats, clearance: float) -> Floats:
+def _proud_of_skin(
+    position: Floats, triangles: Floats, tree: TriangleTree, clearance: float
+) -> Floats:
     """Lift a position nearer to the skin than `clearance` to that distance, on the open side."""
-    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    beside = triangles[tree.near(position, clearance * 1.001 + 1e-9)]
+    low, high = beside.min(axis=1), beside.max(axis=1)
     gap = np.maximum(np.maximum(low - position, position - high), 0.0)
-    near = triangles[dot(gap, gap) < clearance**2]
+    near = beside[dot(gap, gap) < clearance**2]
     if not len(near):
         return position
     points = closest_points(position, near)
@@ -186,14 +198,14 @@ def _proud_of_skin(position: Floats, triangles: Floats, clearance: float) -> Flo
     if length == 0.0:
         return position
     lift = clearance * normal / length
-    return points[nearest] + _open_side(points[nearest], lift, triangles)
+    return points[nearest] + _open_side(points[nearest], lift, tree)
 
 
-def _open_side(point: Floats, lift: Floats, triangles: Floats) -> Floats:
+def _open_side(point: Floats, lift: Floats, tree: TriangleTree) -> Floats:
     """Of ``+lift`` and ``-lift``, the side where a ray along it runs farther (outside)."""
     direction = lift / np.sqrt(dot(lift, lift))
     free = [
-        SeenTriangles(triangles - (point + side * lift)).first_hit(side * direction[None])
+        SeenTriangles(tree, point + side * lift).first_hit(side * direction[None])
         for side in (1.0, -1.0)
     ]
     return lift if free[0].distance[0] >= free[1].distance[0] else -lift

@@ -1,0 +1,122 @@
+"""Which voxels the vehicle hides on the grid, against a ray to each of them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.kinds.camera.grid import CameraPlanes
+from pe_core.kinds.camera.shadow import Shadow
+from pe_core.scene.geometry import dot
+from tests.engine import fixed_bins, shapes
+from tests.engine.test_camera_kernels import whole_grid
+
+ASSETS = Path(pe.__file__).parents[1] / "blend_assets"
+SPACE = pe.PerceptionSpace((-16, 16), (-8, 8), (0, 4), 0.2)
+
+
+def shipped(name):
+    return pe.read_mesh(ASSETS / f"{name}.npz").triangles
+
+
+def roof():
+    """Two triangles a side: one quad, seen at a grazing angle."""
+    corners = np.array([[-5.0, -1.2, 3.0], [5, -1.2, 3], [5, 1.2, 3], [-5, 1.2, 3]])
+    return corners[[[0, 1, 2], [0, 2, 3]]]
+
+
+def lattice():
+    """Corners at even steps, so that rays to voxels run through corners and along edges."""
+    return shapes.refined(shapes.box((-2.0, -1.0, 0.2), (2.0, 1.0, 1.4)), 3)
+
+
+def turned():
+    """The same with every other triangle wound the other way, and one missing on top."""
+    triangles = lattice()
+    triangles[::2] = triangles[::2, ::-1]
+    return np.delete(triangles, np.argmax(triangles[:, :, 2].min(axis=1)), axis=0)
+
+
+CASES = {
+    "bonnet": (lambda: shipped("sedan"), (0.6, 0.0, 1.3), (0, 4, 0), 60),
+    "roof of the sedan": (lambda: shipped("sedan"), (-0.4, 0.1, 1.5), (0, 10, 160), 100),
+    "inside the sedan": (lambda: shipped("sedan"), (0.2, 0.3, 1.1), (0, 0, 90), 100),
+    "roof of the bus": (lambda: shipped("bus"), (-1.0, 0.1, 2.65), (0, 5, 0), 60),
+    "mirror": (lambda: shipped("bus"), (2.9, 1.2, 1.8), (0, 3, 175), 60),
+    "quad": (roof, (0.0, 0.0, 3.05), (0, 0, 0), 60),
+    "quad, along its side": (roof, (-4.9, 1.2, 3.05), (0, 2, 0), 60),
+    "lattice": (lattice, (0.1, 0.1, 1.5), (0, 8, 0), 90),
+    "lattice, on its side": (lattice, (-0.3, -0.1, 1.6), (90, 0, -75), 110),
+    "turned": (turned, (0.1, 0.1, 1.5), (0, 15, 45), 100),
+    "down": (lattice, (0.2, 0.2, 2.6), (10, 85, 5), 60),
+    "from outside": (lattice, (-7.0, 5.0, 2.0), (0, 5, -40), 60),
+}
+
+
+def hidden_by_rays(triangles, offsets):
+    distance = np.sqrt(dot(offsets, offsets))
+    hits = fixed_bins.SeenTriangles(triangles).first_hit(offsets / distance[:, None])
+    return hits.distance < distance
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_hidden_voxels_are_those_whose_ray_is_stopped(case):
+    mesh, position, rotation, hfov = CASES[case]
+    vehicle = pe.Vehicle(mesh())
+    sensor = shapes.camera(float(hfov), position, rotation)
+    free = whole_grid(sensor, SPACE, None, 20).reshape(-1)
+    area = whole_grid(sensor, SPACE, vehicle, 20).reshape(-1)
+    seen = np.flatnonzero(free)
+    index = np.stack(np.unravel_index(seen, SPACE.shape), axis=1)
+    offsets = SPACE.center_of(index) - np.asarray(position)
+    origin = vehicle.seen_from(position).seen.origin
+    hidden = hidden_by_rays(vehicle.triangles - origin, offsets)
+    assert 20 < hidden.sum() < len(hidden)
+    assert (area[seen[hidden]] == 0).all()
+    assert area[seen[~hidden]].tobytes() == free[seen[~hidden]].tobytes()
+
+
+def shade_of(triangles, position, corners):
+    """Over the whole space, with the picture's corners given."""
+    offsets = [SPACE.centers(k) - position[k] for k in range(3)]
+    seen = pe.Vehicle(triangles, clearance=0.0).seen_from(position)
+    shade = Shadow(offsets, seen, corners).of(slice(0, 160), slice(0, 80))
+    grid = np.stack(np.meshgrid(*offsets, indexing="ij"), axis=-1).reshape(-1, 3)
+    return shade, grid
+
+
+ALL_ROUND = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
+
+
+@pytest.mark.parametrize("mesh", [roof, lattice, turned, lambda: shipped("bus")])
+@pytest.mark.parametrize("position", [(0.05, 0.15, 3.05), (0.1, 0.1, 1.5), (-3.3, 1.4, 2.0)])
+def test_what_is_sure_is_so_all_round(mesh, position):
+    """Every voxel of the space, in view or not."""
+    triangles = mesh()
+    shade, grid = shade_of(triangles, position, ALL_ROUND)
+    hidden = hidden_by_rays(triangles - np.array(position), grid)
+    sure, unsure = shade.hidden.reshape(-1), shade.unsure.reshape(-1)
+    assert hidden[sure].all()
+    assert not hidden[~sure & ~unsure].any()
+    assert not (sure & unsure).any()
+
+
+def test_little_is_left_to_ask_over_a_plain_roof():
+    shade, grid = shade_of(roof(), (0.0, 0.0, 3.05), ALL_ROUND)
+    hidden = hidden_by_rays(roof() - [0.0, 0.0, 3.05], grid).reshape(shade.hidden.shape)
+    steep = np.abs(grid[:, 2]) > np.abs(grid[:, :2]).max(axis=1)
+    assert shade.hidden.sum() > 0.8 * hidden.sum()
+    assert (shade.unsure.reshape(-1) & ~steep).sum() < 0.1 * len(grid)
+
+
+def test_a_hole_of_one_triangle_is_seen_through():
+    whole, holed = lattice(), np.delete(lattice(), np.argmax(lattice()[:, :, 2].min(axis=1)), 0)
+    position = (0.1, 0.1, 1.5)
+    seen = [
+        whole_grid(shapes.camera(100.0, position, (0, 30, 0)), SPACE, pe.Vehicle(t), 20)
+        for t in (whole, holed)
+    ]
+    camera = shapes.camera(100.0, position, (0, 30, 0))
+    assert CameraPlanes(camera.model, camera.pose, SPACE, None) is not None
+    assert (seen[1] >= seen[0]).all()

@@ -1,0 +1,171 @@
+"""First hits against every triangle tested, and against the bins they were once found with."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.scene.geometry import cross, dot
+from pe_core.scene.raycast import SeenTriangles
+from pe_core.scene.triangle_tree import TriangleTree
+from tests.engine import fixed_bins, shapes
+
+ASSETS = Path(pe.__file__).parents[1] / "blend_assets"
+
+
+def every_triangle(triangles, directions):
+    """The definition: nearest of all triangles, of equals the lowest; rays from the origin."""
+    a, b, c = (triangles[:, i] for i in range(3))
+    edges, normal = (cross(a, b), cross(b, c), cross(c, a)), cross(b - a, c - a)
+    offset = dot(normal, a)
+    best, which = np.full(len(directions), np.inf), np.full(len(directions), -1)
+    for number, d in enumerate(directions):
+        sides = np.stack([dot(e, d) for e in edges])
+        toward = dot(normal, d)
+        met = ((sides >= 0).all(axis=0) | (sides <= 0).all(axis=0)) & (toward != 0)
+        distance = np.where(met, offset / np.where(toward == 0, 1.0, toward), np.inf)
+        distance[distance <= 0] = np.inf
+        if np.isfinite(distance).any():
+            which[number] = np.argmin(distance)
+            best[number] = distance[which[number]]
+    return best, which
+
+
+def directions_of(points):
+    """Unit vectors to points that are not the origin."""
+    size = np.sqrt(dot(points, points))
+    return points[size > 0] / size[size > 0, None]
+
+
+def rays_at(triangles, rng, count=600):
+    """All round; to corners, along edges, to their middles, and into the triangles."""
+    some = triangles[rng.choice(len(triangles), min(count, len(triangles)), replace=False)]
+    corner, ahead = some[:, 0], some[:, 1]
+    aims = [
+        rng.normal(size=(2 * count, 3)),
+        corner,
+        (corner + ahead) / 2,
+        ahead - corner,
+        some.mean(axis=1),
+        corner * [1, 1, 0],
+    ]
+    axes = np.concatenate([np.eye(3), -np.eye(3), [[1, 1, 1], [1, -1, 0], [-1, 1, 1]]])
+    return directions_of(np.concatenate([*aims, axes]))
+
+
+def soup(rng):
+    return rng.normal(0, 2, (300, 1, 3)) + rng.normal(0, 0.7, (300, 3, 3))
+
+
+def slivers(rng):
+    """Long thin triangles, down to a thinness of 1e-12."""
+    start, along = rng.normal(0, 3, (2, 300, 3))
+    aside = rng.normal(size=(300, 3)) * 10.0 ** rng.uniform(-12, -1, (300, 1))
+    return np.stack([start, start + along, start + aside], axis=1)
+
+
+def coincident(rng):
+    """Each triangle three times: turned, and with its corners moved round."""
+    one = soup(rng)[:80]
+    return np.concatenate([one, one[:, ::-1], one[:, [1, 2, 0]]])
+
+
+def edge_on(rng):
+    """Triangles in planes that hold the origin, among others."""
+    flat = rng.normal(0, 2, (90, 3, 3))
+    for axis in range(3):
+        flat[30 * axis : 30 * axis + 30, :, axis] = 0.0
+    spread = rng.normal(size=(30, 3, 2)) @ rng.normal(size=(30, 2, 3))
+    return np.concatenate([flat, spread, soup(rng)[:50]])
+
+
+def lattice(rng):
+    """A box of even steps: rays to its corners and edges are told apart by rounding alone."""
+    return shapes.refined(shapes.box((-1.0, -0.6, -0.5), (1.4, 0.8, 0.7)), 3)
+
+
+MESHES = {f.__name__: f for f in (soup, slivers, coincident, edge_on, lattice)}
+
+
+def assert_same(triangles, directions):
+    hits = SeenTriangles(TriangleTree(triangles), np.zeros(3)).first_hit(directions)
+    distance, face = every_triangle(triangles, directions)
+    assert hits.distance.tobytes() == distance.tobytes()
+    assert hits.face.tolist() == face.tolist()
+    before = fixed_bins.SeenTriangles(triangles).first_hit(directions)
+    assert hits.distance.tobytes() == before.distance.tobytes()
+    return hits
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+@pytest.mark.parametrize("seed", range(3))
+def test_hits_are_those_of_every_triangle_tested(mesh, seed):
+    rng = np.random.default_rng(seed)
+    triangles = MESHES[mesh](rng)
+    hits = assert_same(triangles, rays_at(triangles, rng))
+    assert np.count_nonzero(hits.face >= 0) > 50
+
+
+def test_triangles_whose_area_is_rounding_stop_what_they_did():
+    """Tested against all rays they stop some far off; only rays that pass by them are tested."""
+    rng = np.random.default_rng(2)
+    start, along = rng.normal(0, 3, (2, 300, 3))
+    flat = np.stack([start, start + along, start + 2 * along], axis=1)
+    directions = rays_at(flat, rng)
+    hits = SeenTriangles(TriangleTree(flat), np.zeros(3)).first_hit(directions)
+    before = fixed_bins.SeenTriangles(flat).first_hit(directions)
+    assert hits.distance.tobytes() == before.distance.tobytes()
+
+
+@pytest.mark.parametrize("distance", [0.03, 1.0, 5.0, 20.0, 80.0])
+@pytest.mark.parametrize("way", [(0.0, 0.0, 1.0), (0.6, -0.8, 0.0), (-0.48, 0.6, 0.64)])
+def test_from_near_and_from_afar(distance, way):
+    """Over the face of a lattice box, beside it, and off its corner."""
+    rng = np.random.default_rng(5)
+    triangles = shapes.refined(shapes.box((-2.0, -1.0, 0.0), (2.0, 1.0, 1.5)), 3)
+    way = np.array(way)
+    outside = np.min(np.where(way == 0, np.inf, [2.0, 1.0, 1.5] / np.where(way == 0, 1, abs(way))))
+    origin = way * (outside + distance)
+    seen = triangles - origin
+    hits = assert_same(seen, rays_at(seen, rng, 400))
+    assert np.count_nonzero(hits.face >= 0) > 100
+
+
+@pytest.mark.parametrize("count", [1, 2, 50])
+def test_few_rays_at_many_triangles(count):
+    triangles = shapes.refined(shapes.box((1.0, -3.0, -2.0), (4.0, 3.0, 2.0)), 5)
+    rng = np.random.default_rng(count)
+    assert_same(triangles, directions_of(rng.normal([5, 0, 0], 1, (count, 3))))
+
+
+def test_no_rays_and_no_triangles():
+    none = SeenTriangles(TriangleTree(np.zeros((0, 3, 3))), np.zeros(3))
+    assert none.first_hit(np.eye(3)).face.tolist() == [-1, -1, -1]
+    assert not len(none.first_hit(np.zeros((0, 3))).face)
+
+
+@pytest.mark.parametrize("mesh", ["sedan", "bus"])
+@pytest.mark.parametrize("up", [0.03, 0.4, -0.6, 8.0])
+def test_a_frame_at_a_shipped_vehicle_is_to_the_bit_what_it_was(mesh, up):
+    vehicle = pe.Vehicle(pe.read_mesh(ASSETS / f"{mesh}.npz").triangles)
+    origin = np.array([-0.4, 0.02, vehicle.bounds[1][2] + up])
+    directions = pe.catalog.load("Pandar64").directions
+    seen = vehicle.seen_from(origin)
+    before = fixed_bins.SeenTriangles(vehicle.triangles - seen.seen.origin).first_hit(directions)
+    hits = seen.first_hit(directions)
+    assert hits.distance.tobytes() == before.distance.tobytes()
+    tied = hits.face != before.face  # before, a tie could go to a higher triangle
+    assert (hits.face[tied] < before.face[tied]).all() and tied.mean() < 1e-3
+
+
+def test_boxes_near_a_point_miss_no_triangle():
+    rng = np.random.default_rng(0)
+    triangles = soup(rng)
+    tree = TriangleTree(triangles)
+    for point in rng.normal(0, 2, (20, 3)):
+        low, high = triangles.min(axis=1), triangles.max(axis=1)
+        gap = np.maximum(np.maximum(low - point, point - high), 0.0)
+        near = np.flatnonzero(dot(gap, gap) <= 0.3**2)
+        assert set(near) <= set(tree.near(point, 0.3).tolist())
+        assert len(tree.near(point, 0.3)) < 200

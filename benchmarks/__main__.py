@@ -42,7 +42,7 @@ def _apart(name: str) -> Timing:
 
 
 def _cells(row: Timing) -> list[str]:
-    theirs = "no compiler" if row.yardstick_s is None else _time(row.yardstick_s)
+    theirs = "not installed" if row.yardstick_s is None else _time(row.yardstick_s)
     ratio = "" if row.yardstick_s is None else f"{row.ours_s / row.yardstick_s:.3g}"
     memory = f"{row.peak_mb:.0f} MB"
     return [row.work, _time(row.ours_s), row.yardstick, theirs, ratio, memory]

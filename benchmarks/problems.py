@@ -56,6 +56,26 @@ def rays_of(vehicle: pe.Vehicle) -> tuple[pe.Vehicle, np.ndarray, tuple[float, f
     return vehicle, pe.catalog.load("Pandar64").directions, ROOF_LIDAR
 
 
+def grazing_camera() -> pe.Sensor:
+    """A camera of 60 degrees, level, 5 cm over the car's roof."""
+    camera = pe.Camera("grazing", 1920, 1080, np.radians(60.0))
+    return pe.Sensor("grazing", camera, pe.Pose((-1.2, 0.02, 1.5)))
+
+
+def rays_to_voxels(sensor: pe.Sensor, space: pe.PerceptionSpace) -> np.ndarray:
+    """(V, 3) unit directions from a level camera to the voxels in its picture, single precision."""
+    camera, position = sensor.model, sensor.pose.position
+    wide, high = np.tan(camera.hfov / 2.0), np.tan(camera.vfov / 2.0)
+    parts = []
+    for x in space.centers(0) - position[0]:
+        y, z = space.centers(1) - position[1], space.centers(2) - position[2]
+        y, z = y[np.abs(y) < wide * x], z[np.abs(z) < high * x]
+        grid = np.stack(np.broadcast_arrays(x, *np.meshgrid(y, z)), axis=-1).reshape(-1, 3)
+        size = np.sqrt(np.sum(grid * grid, axis=1, keepdims=True))
+        parts.append((grid / size).astype(np.float32))
+    return np.concatenate(parts)
+
+
 def raw_cast(triangles: np.ndarray, position: object, directions: np.ndarray) -> np.ndarray:
     """Distances by brute force (Moller and Trumbore), a ray at a time."""
     origin = np.asarray(position)

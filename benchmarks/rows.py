@@ -12,17 +12,22 @@ import numpy as np
 import pe_core as pe
 
 from . import literal
+from .embree import Embree
 from .problems import (
+    ROOF_LIDAR,
     car,
+    grazing_camera,
     plain_study,
     raw_cast,
     rays_of,
+    rays_to_voxels,
     two_lidars,
     two_lidars_two_cameras,
 )
 
 REPEATS = 5
 Work = Callable[[], object]
+Position = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -140,6 +145,60 @@ def rays() -> Timing:
     return Timing(work, ours, peak, "every ray against every triangle", seconds)
 
 
+def rays_close() -> Timing:
+    """A frame from 3 cm over the roof, against embree on a thread, its tree built beforehand."""
+    return _against_embree(car(), (-0.4, 0.02, 1.48), "3 cm over a roof")
+
+
+def rays_from_roof() -> Timing:
+    """A frame from the usual place."""
+    return _against_embree(car(), ROOF_LIDAR, "38 cm over a roof")
+
+
+def rays_from_afar() -> Timing:
+    """A frame from 20 m off."""
+    return _against_embree(car(), (-22.0, 1.0, 1.2), "20 m off")
+
+
+def rays_at_many_triangles() -> Timing:
+    """A frame from 3 cm over a car of millions of triangles."""
+    return _against_embree(car(6_000_000), (-0.4, 0.02, 1.48), "3 cm over a roof")
+
+
+def _against_embree(vehicle: pe.Vehicle, position: Position, label: str) -> Timing:
+    _, directions, _ = rays_of(vehicle)
+    vehicle.seen_from(position)  # builds the tree
+    embree = Embree.of(vehicle.triangles)
+    work = f"first hit of a frame, {len(vehicle.triangles):,} triangles, {label}"
+    return _with_embree(
+        work, embree, lambda: vehicle.first_hit(position, directions), position, directions
+    )
+
+
+def rays_of_a_camera() -> Timing:
+    """A grazing camera on the grid, against embree on the rays to the voxels in its picture."""
+    study, vehicle = plain_study(None), car(1_500)
+    sensor = grazing_camera()
+    rig = pe.Rig([sensor])
+    evaluator = pe.Evaluator(study.space, study.prior, vehicle)
+    directions = rays_to_voxels(sensor, study.space)
+    work = (
+        f"grid score, camera 5 cm over a roof ({len(directions) / 1e6:.0f} million voxels in view)"
+    )
+    embree, position = Embree.of(vehicle.triangles), sensor.pose.position
+    return _with_embree(work, embree, lambda: evaluator.entropy(rig), position, directions)
+
+
+def _with_embree(
+    work: str, embree: Embree | None, ours: Work, position: Position, directions: np.ndarray
+) -> Timing:
+    yardstick = "embree, one thread, the same rays"
+    if embree is None:
+        return Timing(work, _best(ours)[0], _peak_mb(), yardstick, None)
+    mine, theirs = _best_in_turn(ours, lambda: embree.first_hit(position, directions))
+    return Timing(work, mine, _peak_mb(), yardstick, theirs)
+
+
 ROWS: dict[str, Callable[[], Timing]] = {
     row.__name__: row
     for row in (
@@ -152,6 +211,11 @@ ROWS: dict[str, Callable[[], Timing]] = {
         samples_on_car,
         samples_on_car_draft,
         rays,
+        rays_close,
+        rays_from_roof,
+        rays_from_afar,
+        rays_at_many_triangles,
+        rays_of_a_camera,
     )
 }
 

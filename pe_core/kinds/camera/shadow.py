@@ -7,6 +7,7 @@ worked out once for the row or the height, and a voxel costs a look at its bin's
 from __future__ import annotations
 
 from dataclasses import dataclass
+from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +73,7 @@ class Shadow:
         self._offsets, self._seen, self._corners = offsets, seen, corners
         self._highest = float(np.abs(offsets[2]).max())
         self._faces: dict[Face, FaceShadow] = {}
+        self._making = Lock()
 
     def of(self, planes: slice, rows: slice) -> Shade:
         """Judge the voxels of planes across x, in some rows (y)."""
@@ -98,11 +100,12 @@ class Shadow:
 
     def _face(self, face: Face) -> FaceShadow:
         """One of the four sides; made when a voxel first lies there."""
-        if face not in self._faces:
-            look = Look(self._seen.seen.tree, self._seen.seen.origin, face)
-            kind = AcrossX if face.axes[0] == 0 else AlongX
-            self._faces[face] = kind(look, _view(self._corners, face), self._offsets)
-        return self._faces[face]
+        with self._making:  # threads share the planes
+            if face not in self._faces:
+                look = Look(self._seen.seen.tree, self._seen.seen.origin, face)
+                kind = AcrossX if face.axes[0] == 0 else AlongX
+                self._faces[face] = kind(look, _view(self._corners, face), self._offsets)
+            return self._faces[face]
 
 
 def _view(corners: Floats, face: Face) -> Ends:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.scene import raycast
 from pe_core.scene.geometry import cross, dot
 from pe_core.scene.raycast import SeenTriangles
 from pe_core.scene.triangle_tree import TriangleTree
@@ -105,6 +106,17 @@ def test_hits_are_those_of_every_triangle_tested(mesh, seed):
     triangles = MESHES[mesh](rng)
     hits = assert_same(triangles, rays_at(triangles, rng))
     assert np.count_nonzero(hits.face >= 0) > 50
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+def test_hits_do_not_depend_on_how_much_is_looked_at_at_once(mesh, monkeypatch):
+    """A box at a time, some rays at a time: ties are then between what was met and what is."""
+    monkeypatch.setattr(raycast, "FIRST_BOXES", 1)
+    monkeypatch.setattr(raycast, "MOST_BOXES", 2)
+    monkeypatch.setattr(raycast, "PAIRS_AT_ONCE", 16)
+    rng = np.random.default_rng(9)
+    triangles = MESHES[mesh](rng)
+    assert_same(triangles, rays_at(triangles, rng, 200))
 
 
 def test_triangles_whose_area_is_rounding_stop_what_they_did():

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bins import Raster, RowSpans, Spans
-from .looking import Ends, Look
+from .looking import Ends, FaceLook
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -56,7 +56,7 @@ class BinnedRays:
         self._sums = sums.reshape(-1)
 
     @classmethod
-    def within(cls, look: Look, ends: Ends, d: Floats, size: Floats) -> BinnedRays | None:
+    def within(cls, look: FaceLook, ends: Ends, d: Floats, size: Floats) -> BinnedRays | None:
         """Rays that pass a face within a rectangle; None where none does.
 
         `d` (3, B) are the directions of all rays, `size` their absolute values.
@@ -94,7 +94,7 @@ class BinnedRays:
         """Whether some ray's bin is touched by each rectangle."""
         return (self.count_in(u, v) > 0) & self.raster.touches(u, v)
 
-    def of(self, spans: RowSpans) -> tuple[Ints, Ints]:
+    def in_bins(self, spans: RowSpans) -> tuple[Ints, Ints]:
         """First ray of each run of bins, and how many there are."""
         row = spans.row * self.raster.count
         first = self._starts[row + spans.first]

@@ -28,7 +28,7 @@ SIDE_MARGIN = 1e-11
 
 
 @dataclass(frozen=True, slots=True)
-class Face:
+class CubeFace:
     """A face of the cube: axes of depth, u and v; `sign` is -1 where depth runs against its own."""
 
     axes: tuple[int, int, int]
@@ -40,7 +40,9 @@ class Face:
         return depth if self.sign > 0.0 else -depth, u, v
 
 
-FACES = tuple(Face((a, (a + 1) % 3, (a + 2) % 3), sign) for a in range(3) for sign in (1.0, -1.0))
+FACES = tuple(
+    CubeFace((a, (a + 1) % 3, (a + 2) % 3), sign) for a in range(3) for sign in (1.0, -1.0)
+)
 """Faces towards +x, -x, +y, -y, +z, -z."""
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from .bins import MARGIN, SIDE_MARGIN, Raster, greatest_of, least_of, row_spans, spans_of_triangles
 from .crossings import Targets
 from .geometry import cross, dot
-from .looking import Look
+from .looking import FaceLook
 from .numbering import count_up
 
 Floats = NDArray[np.float64]
@@ -45,7 +45,7 @@ class Cover:
 
     Parameters
     ----------
-    look : Look
+    look : FaceLook
     raster : Raster
 
     Attributes
@@ -54,7 +54,7 @@ class Cover:
         Depths, row after row of the raster [m]; inf where nothing is, or there may be a gap.
     """
 
-    def __init__(self, look: Look, raster: Raster) -> None:
+    def __init__(self, look: FaceLook, raster: Raster) -> None:
         self.raster, self._look = raster, look
         self.near = np.full(raster.count**2, np.inf, np.float32)
         self.far = np.full(raster.count**2, np.inf, np.float32)
@@ -97,10 +97,10 @@ def _side(targets: Targets) -> Floats:
     return np.sign(targets.offset) * (np.abs(targets.offset) > EDGE_ON * np.sqrt(size))
 
 
-def _in_bins(targets: Targets, look: Look, raster: Raster) -> Iterator[_Pairs]:
+def _in_bins(targets: Targets, look: FaceLook, raster: Raster) -> Iterator[_Pairs]:
     """All pairs of triangles and bins, some at a time."""
     spans = targets.spans(look.face, raster, np.ones(len(targets.offset), bool))
-    shown = _Shown(targets, look, raster)
+    shown = _Depths(targets, look, raster)
     counts = spans.last - spans.first + 1
     ends = np.cumsum(counts) // PAIRS_AT_ONCE
     edges = [0, *(np.flatnonzero(np.diff(ends)) + 1).tolist(), len(counts)]
@@ -110,10 +110,10 @@ def _in_bins(targets: Targets, look: Look, raster: Raster) -> Iterator[_Pairs]:
         yield shown.pairs(item, row, np.repeat(spans.first[a:b], n) + count_up(n))
 
 
-class _Shown:
+class _Depths:
     """Depths of triangles over bins."""
 
-    def __init__(self, targets: Targets, look: Look, raster: Raster) -> None:
+    def __init__(self, targets: Targets, look: FaceLook, raster: Raster) -> None:
         self._window = raster
         self._side = _side(targets)
         known = self._side != 0.0
@@ -163,7 +163,7 @@ def _depth(inverse: Floats, otherwise: float) -> Floats:
 class _Sheet:
     """The triangles that are seen from one side."""
 
-    def __init__(self, raster: Raster, side: float, look: Look) -> None:
+    def __init__(self, raster: Raster, side: float, look: FaceLook) -> None:
         self._window, self._side, self._look = raster, side, look
         self._far = np.zeros(raster.count**2, np.float32)
         self._middle = np.zeros(raster.count**2, bool)
@@ -198,7 +198,7 @@ class _Sheet:
         )
 
 
-def _bins_of_lines(a: Floats, b: Floats, look: Look, raster: Raster) -> Ints:
+def _bins_of_lines(a: Floats, b: Floats, look: FaceLook, raster: Raster) -> Ints:
     """Bins that lines from corners a to b, each (L, 3), may show in."""
     depth, u, v = look.face.split(np.stack([a, b, b]).transpose(2, 0, 1))
     spans = (spans_of_triangles(depth, u), spans_of_triangles(depth, v))

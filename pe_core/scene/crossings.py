@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .bins import Face, Raster, RowSpans, Spans, greatest_of, row_spans
+from .bins import CubeFace, Raster, RowSpans, Spans, greatest_of, row_spans
 from .geometry import cross, dot
 
 Floats = NDArray[np.float64]
@@ -59,7 +59,7 @@ class Targets:
         self.offset = dot(normals, a)
         self.normal = np.ascontiguousarray(normals.T)
 
-    def spans(self, face: Face, raster: Raster, cut: NDArray[np.bool_]) -> RowSpans:
+    def spans(self, face: CubeFace, raster: Raster, cut: NDArray[np.bool_]) -> RowSpans:
         """Bins that the triangles may show in: their rectangles', those `cut` (G,) to shape."""
         u, v = self.triangles.u, self.triangles.v
         return row_spans(raster, (u, v), self.sides(face), self.reach, cut)
@@ -70,7 +70,7 @@ class Targets:
         corners = self.triangles.corners
         return greatest_of(dot(corners, corners).T)
 
-    def sides(self, face: Face) -> list[Floats]:
+    def sides(self, face: CubeFace) -> list[Floats]:
         """Each edge's plane in the face's axes (3, G), positive inside; 0 seen edge-on."""
         reach = self.reach
         turned = np.sign(self.offset) * (np.abs(self.offset) > EDGE_ON * reach * np.sqrt(reach))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .bins import BOX_MARGIN, Face, Spans, greatest_of, spans_of_boxes, spans_of_triangles
+from .bins import BOX_MARGIN, CubeFace, Spans, greatest_of, spans_of_boxes, spans_of_triangles
 from .crossings import Facing
 from .triangle_tree import TriangleTree
 
@@ -21,7 +21,7 @@ Ends = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True, slots=True)
-class Boxes:
+class SeenBoxes:
     """Boxes (N,) of a level: their numbers, rectangles, and what each is not nearer than [m]."""
 
     number: Ints
@@ -29,14 +29,14 @@ class Boxes:
     v: Spans
     near: Floats
 
-    def __getitem__(self, some: NDArray | slice) -> Boxes:
+    def __getitem__(self, some: NDArray | slice) -> SeenBoxes:
         """Return some of the boxes."""
         u, v = ((w[0][some], w[1][some]) for w in (self.u, self.v))
-        return Boxes(self.number[some], u, v, self.near[some])
+        return SeenBoxes(self.number[some], u, v, self.near[some])
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class FaceLook:
     """A mesh's tree, looked at from a point through one face.
 
     `origin` (3,) in the frame of the mesh [m].
@@ -44,7 +44,7 @@ class Look:
 
     tree: TriangleTree
     origin: Floats
-    face: Face
+    face: CubeFace
 
     def ends(self) -> Ends | None:
         """Least and greatest u, and v, that the mesh shows at; None where it does not."""
@@ -56,7 +56,7 @@ class Look:
         u, v = boxes.u, boxes.v
         return (float(u[0].min()), float(u[1].max())), (float(v[0].min()), float(v[1].max()))
 
-    def boxes(self, chosen: Chosen) -> Boxes:
+    def boxes(self, chosen: Chosen) -> SeenBoxes:
         """Return the lowest boxes that are chosen, nearest first."""
         level = len(self.tree.boxes) - 1
         boxes = self._shown(np.arange(len(self.tree.boxes[level])), level)
@@ -77,7 +77,7 @@ class Look:
         shown = (greatest_of(depth) > 0.0) & chosen(*spans)
         return facing[np.flatnonzero(shown)]
 
-    def _shown(self, boxes: Ints, level: int) -> Boxes:
+    def _shown(self, boxes: Ints, level: int) -> SeenBoxes:
         """Those of some boxes of a level that show on the face."""
         low, high = self.tree.boxes[level][boxes].transpose(1, 2, 0) - self.origin[:, None]
         (near, u0, v0), (far, u1, v1) = self.face.split(low), self.face.split(high)
@@ -87,4 +87,4 @@ class Look:
         x, y, z = np.maximum(np.maximum(low, -high), 0.0)
         distance = np.sqrt(x * x + y * y + z * z) * (1.0 - BOX_MARGIN)
         shown = (far > 0.0) & (u[0] <= u[1]) & (v[0] <= v[1])
-        return Boxes(boxes, u, v, distance)[np.flatnonzero(shown)]
+        return SeenBoxes(boxes, u, v, distance)[np.flatnonzero(shown)]

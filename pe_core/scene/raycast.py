@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from .binned_rays import BinnedRays
 from .bins import FACES
 from .crossings import Targets, least_distance
-from .looking import Look
+from .looking import FaceLook
 from .numbering import count_up
 from .triangle_tree import TriangleTree
 
@@ -66,7 +66,7 @@ class SeenTriangles:
         d = np.ascontiguousarray(directions.T)
         size = np.abs(d)
         for face in FACES:
-            look = Look(self.tree, self.origin, face)
+            look = FaceLook(self.tree, self.origin, face)
             ends = look.ends()
             rays = None if ends is None else BinnedRays.within(look, ends, d, size)
             if rays is not None:
@@ -74,7 +74,7 @@ class SeenTriangles:
         return hits
 
 
-def _cast(look: Look, rays: BinnedRays, hits: Hits) -> None:
+def _cast(look: FaceLook, rays: BinnedRays, hits: Hits) -> None:
     """Cast the rays of one face."""
     boxes, count = look.boxes(rays.any_in), FIRST_BOXES
     while len(boxes.number):
@@ -88,11 +88,11 @@ def _cast(look: Look, rays: BinnedRays, hits: Hits) -> None:
         boxes, count = boxes[count:], min(2 * count, MOST_BOXES)
 
 
-def _meet(targets: Targets, near: Floats, look: Look, rays: BinnedRays, hits: Hits) -> None:
+def _meet(targets: Targets, near: Floats, look: FaceLook, rays: BinnedRays, hits: Hits) -> None:
     """Test triangles, nearest first, against the rays of the bins they show in."""
     u, v = targets.triangles.u, targets.triangles.v
     spans = targets.spans(look.face, rays.raster, rays.count_in(u, v) > WORTH_CUTTING)
-    first, count = rays.of(spans)
+    first, count = rays.in_bins(spans)
     some = np.flatnonzero(count)
     item, first, count = spans.item[some], first[some], count[some]
     number = look.tree.number[targets.triangles.number]

@@ -81,7 +81,7 @@ def shade_of(triangles, position, corners):
     """Over the whole space, with the picture's corners given."""
     offsets = [SPACE.centers(k) - position[k] for k in range(3)]
     seen = pe.Vehicle(triangles, clearance=0.0).seen_from(position)
-    shade = Shadow(offsets, seen, corners).of(slice(0, 160), slice(0, 80))
+    shade = Shadow(offsets, seen, corners).judge(slice(0, 160), slice(0, 80))
     grid = np.stack(np.meshgrid(*offsets, indexing="ij"), axis=-1).reshape(-1, 3)
     return shade, grid
 
@@ -139,7 +139,7 @@ def test_rays_that_slip_between_triangles_at_a_corner_are_not_overlooked(corner)
     aligned = np.round(np.multiply.outer(np.arange(2, 11), corner), 1)
     slips = ~hidden_by_rays(fan(corner), aligned)
     seen = pe.Vehicle(fan(corner), clearance=0.0).seen_from((0.0, 0.0, 0.0))
-    shade = Shadow(offsets, seen, ALL_ROUND).of(slice(0, 401), slice(0, 401))
+    shade = Shadow(offsets, seen, ALL_ROUND).judge(slice(0, 401), slice(0, 401))
     i, j, k = (np.searchsorted(w, aligned[:, a] - 0.05) for a, w in enumerate(offsets))
     assert shade.unsure[i, j, k].all() and not shade.hidden[i, j, k].any()
     assert shade.hidden.sum() > 1000

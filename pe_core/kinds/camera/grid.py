@@ -199,7 +199,7 @@ class CameraPlanes:
         """Set the areas of voxels that the vehicle hides to 0."""
         assert self._seen is not None and self._shadow is not None
         planes, rows = (slice(f, f + n) for f, n in zip(first, area.shape[:2], strict=True))
-        shade = self._shadow.of(planes, rows)
+        shade = self._shadow.judge(planes, rows)
         np.copyto(area, 0.0, where=shade.hidden)
         index = np.flatnonzero(shade.unsure)
         index = index[area.reshape(-1)[index] > 0.0]

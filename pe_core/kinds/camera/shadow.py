@@ -12,9 +12,9 @@ from threading import Lock
 import numpy as np
 from numpy.typing import NDArray
 
-from ...scene.bins import FACES, Face, Raster
+from ...scene.bins import FACES, CubeFace, Raster
 from ...scene.cover import Cover
-from ...scene.looking import Ends, Look
+from ...scene.looking import Ends, FaceLook
 from ...scene.numbering import count_up
 from ...scene.vehicle import SeenMesh
 
@@ -72,10 +72,10 @@ class Shadow:
     def __init__(self, offsets: list[Floats], seen: SeenMesh, corners: Floats) -> None:
         self._offsets, self._seen, self._corners = offsets, seen, corners
         self._highest = float(np.abs(offsets[2]).max())
-        self._faces: dict[Face, FaceShadow] = {}
+        self._faces: dict[CubeFace, FaceShadow] = {}
         self._making = Lock()
 
-    def of(self, planes: slice, rows: slice) -> Shade:
+    def judge(self, planes: slice, rows: slice) -> Shade:
         """Judge the voxels of planes across x, in some rows (y)."""
         x, y = self._offsets[0][planes], self._offsets[1][rows]
         shade = Shade.none((len(x), len(y), len(self._offsets[2])))
@@ -98,17 +98,17 @@ class Shadow:
             nearer = np.maximum(np.abs(y), abs(x))[:, None]
             shade.doubt(np.abs(self._offsets[2]) > nearer)
 
-    def _face(self, face: Face) -> FaceShadow:
+    def _face(self, face: CubeFace) -> FaceShadow:
         """One of the four sides; made when a voxel first lies there."""
         with self._making:  # threads share the planes
             if face not in self._faces:
-                look = Look(self._seen.seen.tree, self._seen.seen.origin, face)
+                look = FaceLook(self._seen.seen.tree, self._seen.seen.origin, face)
                 kind = AcrossX if face.axes[0] == 0 else AlongX
                 self._faces[face] = kind(look, _view(self._corners, face), self._offsets)
             return self._faces[face]
 
 
-def _view(corners: Floats, face: Face) -> Ends:
+def _view(corners: Floats, face: CubeFace) -> Ends:
     """Rectangle of a face that holds the picture; all of it where a corner is behind."""
     depth, u, v = face.split(corners.T)
     if depth.min() <= 0.0:
@@ -117,7 +117,7 @@ def _view(corners: Floats, face: Face) -> Ends:
     return (float(u.min()), float(u.max())), (float(v.min()), float(v.max()))
 
 
-def _cover(look: Look, ends: Ends, view: Ends, offsets: list[Floats]) -> Cover | None:
+def _cover(look: FaceLook, ends: Ends, view: Ends, offsets: list[Floats]) -> Cover | None:
     """Where the mesh shows in the picture, in bins that suit the voxels there."""
     u, v = ((max(a[0], b[0]), min(a[1], b[1])) for a, b in zip(ends, view, strict=True))
     if u[0] >= u[1] or v[0] >= v[1]:
@@ -127,7 +127,7 @@ def _cover(look: Look, ends: Ends, view: Ends, offsets: list[Floats]) -> Cover |
     return Cover(look, Raster(u, v, int(np.clip(side, LEAST_BINS, MOST_BINS))))
 
 
-def _voxels_within(face: Face, ends: Ends, offsets: list[Floats]) -> float:
+def _voxels_within(face: CubeFace, ends: Ends, offsets: list[Floats]) -> float:
     """About how many voxels lie in a rectangle of a face."""
     depth = face.sign * offsets[face.axes[0]]
     depth = depth[depth > 0.0]
@@ -142,7 +142,7 @@ def _voxels_within(face: Face, ends: Ends, offsets: list[Floats]) -> float:
 class FaceShadow:
     """The shadow on voxels that are seen through one side of the cube round the camera."""
 
-    def __init__(self, look: Look, view: Ends, offsets: list[Floats]) -> None:
+    def __init__(self, look: FaceLook, view: Ends, offsets: list[Floats]) -> None:
         self._ends, self._offsets = look.ends(), offsets
         self._cover = None if self._ends is None else _cover(look, self._ends, view, offsets)
         if self._cover is not None:
@@ -156,7 +156,7 @@ class FaceShadow:
         """Of the corners' places on the face: what a row lies at, ascending, and the height's."""
         raise NotImplementedError
 
-    def _corners(self, look: Look) -> tuple[Floats, Floats]:
+    def _corners(self, look: FaceLook) -> tuple[Floats, Floats]:
         triangle, corner = look.tree.edges.first.T
         depth, u, v = look.face.split((look.tree.triangles[triangle, corner] - look.origin).T)
         some = (depth > np.abs(u)) & (depth > np.abs(v))
@@ -211,7 +211,7 @@ class AcrossX(FaceShadow):
 class AlongX(FaceShadow):
     """Towards y or against it: a row of voxels lies at one depth, in a column of bins."""
 
-    def __init__(self, look: Look, view: Ends, offsets: list[Floats]) -> None:
+    def __init__(self, look: FaceLook, view: Ends, offsets: list[Floats]) -> None:
         super().__init__(look, view, offsets)
         _, y, z = offsets
         u = z / np.where(y == 0.0, 1.0, np.abs(y))[:, None]  # no row beside the camera lies here

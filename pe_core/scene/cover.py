@@ -182,6 +182,8 @@ class _Sheet:
 
     def covered(self) -> Singles:
         """Depth beyond which all of a bin is hidden; inf where its middle is not, or by an edge."""
+        if not self._middle.any():  # perhaps no triangle shows this side
+            return np.full(len(self._far), np.inf, np.float32)
         self._middle[self._outline()] = False
         return np.where(self._middle, self._far, np.inf).astype(np.float32)
 

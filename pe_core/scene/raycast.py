@@ -60,6 +60,11 @@ class SeenTriangles:
     def __init__(self, tree: TriangleTree, origin: Floats) -> None:
         self.tree, self.origin = tree, np.asarray(origin, dtype=float)
 
+    @property
+    def triangles(self) -> Floats:
+        """(F, 3, 3) corners relative to the origin, in the order of the tree [m]."""
+        return self.tree.triangles - self.origin
+
     def first_hit(self, directions: Floats) -> Hits:
         """First triangle hit by each of (B, 3) unit directions; of equals, the lowest index."""
         hits = Hits(np.full(len(directions), np.inf), np.full(len(directions), -1))

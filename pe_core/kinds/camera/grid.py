@@ -3,9 +3,9 @@
 Where a column of voxels (along z) enters and leaves the picture follows from the four sides of the
 frustum. The voxels between are filled with the closed form of `camera.points`, in single precision;
 depth and the faces' distances are a term of x and one of y and z, which all planes share. Voxels on
-the picture's border or near the camera are listed from such sides as well, and handed to the exact
-functions, all of a run at once; so are those which, for all `camera.shadow` can tell, the vehicle
-may hide.
+the picture's border, near the camera, or perhaps behind the vehicle are listed from such sides as
+well, and handed to the exact functions, all of a run at once. Where the vehicle may hide very many,
+`camera.cover_shadow` tells most of them without a ray.
 """
 
 from __future__ import annotations
@@ -21,9 +21,10 @@ from ...scene.numbering import count_up
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import SeenMesh
 from .area import clipped_pixel_area
+from .cover_shadow import CoverShadow
 from .model import Camera
 from .points import NEAR_SIDES, hidden
-from .shadow import Shadow
+from .shadow import BORDER, ShadowMap
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -33,8 +34,10 @@ HalfSpace = tuple[Floats, float]
 
 MARGIN = 1e-6
 """Voxels are taken this much larger, in sides, against rounding."""
-BORDER = 1.05
-"""What the vehicle surely hides is known to this far beyond the picture's edges."""
+MANY_RAYS = 50_000
+"""Rays in a run of planes from about which on a map of what the vehicle covers saves time."""
+ASKED = 16
+"""Of so many voxels one is asked, to tell how many the vehicle may hide."""
 LEVEL = 1e-12
 """Least slope along z of a side of the frustum, so that it can be divided by."""
 
@@ -86,9 +89,10 @@ class CameraPlanes:
         self._away = np.add.outer(self._away_from(y), self._away_from(z)).astype(np.float32)
         below = np.tri(len(z) + 1, len(z), -1, dtype=np.int32)  # row k: 1 for heights below k
         self._keep_below, self._keep_from = -below, below - 1  # masks: all bits, or none
-        self._shadow = (
-            None if seen is None else Shadow(self._offsets, seen, self._corners(wide, high))
-        )
+        self._shadow = self._cover = None
+        if seen is not None:
+            self._shadow = ShadowMap(camera, pose, seen.seen.triangles)
+            self._cover = CoverShadow(self._offsets, seen, self._corners(wide, high))
 
     def areas(self, planes: slice) -> SeenRows:
         """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""
@@ -103,12 +107,16 @@ class CameraPlanes:
         behind = ColumnRuns(plain.end, touched.end)
         edge = np.concatenate([before.listed(nz), behind.listed(nz)])
         self._settle_edges(area, edge, (planes.start, rows.start))
-        if self._shadow is not None:
-            self._settle_hidden(area, (planes.start, rows.start))
+        # where no triangle falls into the map, hidden voxels on the border stay visible (issue 14)
+        if self._shadow is not None and not self._shadow.empty:
+            sides = _sides(self._pose, *self._shadow.extent)
+            shaded = self._runs(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
+            shaded_or_edge = np.concatenate([edge, shaded.listed(nz)])
+            self._settle_hidden(area, shaded_or_edge, (planes.start, rows.start))
         return SeenRows(rows, area)
 
     def _corners(self, wide: float, high: float) -> Floats:
-        """Directions (4, 3) to the corners of a picture somewhat larger than the camera's."""
+        """Directions (4, 3) to the corners of the shadow's map."""
         forward, left, up = self._pose.ground_from_sensor.T
         ends = [(i * BORDER * wide, j * BORDER * high) for i in (-1.0, 1.0) for j in (-1.0, 1.0)]
         return np.array([forward + a * left + b * up for a, b in ends])
@@ -195,16 +203,39 @@ class CameraPlanes:
         exact = clipped_pixel_area(self._camera, self._pose, centers, self._space.interval)
         area.reshape(-1)[index] = exact
 
-    def _settle_hidden(self, area: Singles, first: tuple[int, int]) -> None:
-        """Set the areas of voxels that the vehicle hides to 0."""
-        assert self._seen is not None and self._shadow is not None
+    def _settle_hidden(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
+        """Set the areas of those voxels to 0 that the vehicle does hide."""
+        assert self._seen is not None
+        index = index[area.reshape(-1)[index] > 0.0]
+        some, _ = self._perhaps(index[::ASKED], area.shape, first)
+        if len(some) * ASKED > MANY_RAYS:
+            index, offsets = self._unsure(area, first)
+        else:
+            index, offsets = self._perhaps(index, area.shape, first)
+        area.reshape(-1)[index[hidden(self._seen, offsets)]] = 0.0
+
+    def _perhaps(
+        self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]
+    ) -> tuple[Ints, Floats]:
+        """Those of some voxels that the vehicle may hide, and where they lie from the camera."""
+        assert self._shadow is not None
+        offsets = self._offsets_of(index, shape, first)
+        views = (dot(offsets, axis) for axis in self._pose.ground_from_sensor.T)
+        perhaps = np.flatnonzero(self._shadow.may_hide(*views))
+        return index[perhaps], offsets[perhaps]
+
+    def _unsure(self, area: Singles, first: tuple[int, int]) -> tuple[Ints, Floats]:
+        """Set what is surely hidden to 0; the seen voxels that are not sure, and where they lie."""
+        assert self._cover is not None
         planes, rows = (slice(f, f + n) for f, n in zip(first, area.shape[:2], strict=True))
-        shade = self._shadow.judge(planes, rows)
+        shade = self._cover.judge(planes, rows)
         np.copyto(area, 0.0, where=shade.hidden)
         index = np.flatnonzero(shade.unsure)
         index = index[area.reshape(-1)[index] > 0.0]
-        offsets = self._centers(index, area.shape, first) - np.asarray(self._pose.position)
-        area.reshape(-1)[index[hidden(self._seen, offsets)]] = 0.0
+        return index, self._offsets_of(index, area.shape, first)
+
+    def _offsets_of(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> Floats:
+        return self._centers(index, shape, first) - np.asarray(self._pose.position)
 
     def _centers(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> Floats:
         """Centres (V, 3) of voxels numbered from a plane and a row on."""

@@ -68,6 +68,8 @@ class SeenTriangles:
     def first_hit(self, directions: Floats) -> Hits:
         """First triangle hit by each of (B, 3) unit directions; of equals, the lowest index."""
         hits = Hits(np.full(len(directions), np.inf), np.full(len(directions), -1))
+        if not len(directions):
+            return hits
         d = np.ascontiguousarray(directions.T)
         size = np.abs(d)
         for face in FACES:

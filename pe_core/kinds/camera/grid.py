@@ -207,12 +207,16 @@ class CameraPlanes:
         """Set the areas of those voxels to 0 that the vehicle does hide."""
         assert self._seen is not None
         index = index[area.reshape(-1)[index] > 0.0]
-        some, _ = self._perhaps(index[::ASKED], area.shape, first)
-        if len(some) * ASKED > MANY_RAYS:
+        if len(index) > MANY_RAYS and self._many_perhaps(index, area.shape, first):
             index, offsets = self._unsure(area, first)
         else:
             index, offsets = self._perhaps(index, area.shape, first)
         area.reshape(-1)[index[hidden(self._seen, offsets)]] = 0.0
+
+    def _many_perhaps(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> bool:
+        """Whether the vehicle may hide very many of some voxels, to judge by some of those."""
+        some, _ = self._perhaps(index[::ASKED], shape, first)
+        return len(some) * ASKED > MANY_RAYS
 
     def _perhaps(
         self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]

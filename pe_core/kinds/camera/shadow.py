@@ -12,7 +12,7 @@ from .model import Camera
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Span = tuple[Ints, Ints]
+Extent = tuple[Ints, Ints]
 """First and last bin of triangles along one coordinate."""
 
 CELLS = 64
@@ -39,7 +39,7 @@ class ShadowMap:
         self._high = BORDER * camera.height / 2.0 / camera.focal_px
         corners = rotate(pose.ground_from_sensor.T, triangles).transpose(2, 1, 0)
         depth, left, up = np.ascontiguousarray(corners)
-        (i0, i1), (j0, j1) = _spans(depth, left / self._wide, up / self._high)
+        (i0, i1), (j0, j1) = _bins(depth, left / self._wide, up / self._high)
         high = j1 - j0 + 1
         n = (i1 - i0 + 1) * high
         step, rows = count_up(n), np.repeat(high, n)
@@ -70,17 +70,15 @@ class ShadowMap:
         return np.clip((u + 1.0) * (CELLS / 2), 0, CELLS - 1).astype(np.int32)
 
 
-def _spans(depth: Floats, u: Floats, v: Floats) -> tuple[Span, Span]:
+def _bins(depth: Floats, u: Floats, v: Floats) -> tuple[Extent, Extent]:
     """First and last bin along u and v of triangles, of corners (3, F), that may show in the map.
 
     Never fewer bins than a triangle touches.
     """
     index = np.flatnonzero(_may_be_seen(depth, u, v))
     depth = depth[:, index]
-    u0, u1 = spans_of_triangles(depth, u[:, index])
-    v0, v1 = spans_of_triangles(depth, v[:, index])
-    rows, columns = (MAP.rows(u0), MAP.rows(u1)), (MAP.columns(v0), MAP.columns(v1))
-    (i0, i1), (j0, j1) = ((a.astype(np.int64), b.astype(np.int64)) for a, b in (rows, columns))
+    i0, i1 = (MAP.rows(w).astype(np.int64) for w in spans_of_triangles(depth, u[:, index]))
+    j0, j1 = (MAP.columns(w).astype(np.int64) for w in spans_of_triangles(depth, v[:, index]))
     return (i0, i1), (j0, j1)
 
 

@@ -1,11 +1,9 @@
-"""A kind of sensor made in this file alone is added, scored, searched, listed and drawn in Blender.
+"""The kind of sensor in `toy_kind` is added, scored, searched, listed and drawn in Blender.
 
 An ultrasonic ring: m depends on the distance alone. No module of the add-on knows of it.
 """
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
 import bpy
 import numpy as np
@@ -19,43 +17,11 @@ from blender_addon.overlay.cache import OverlayCache
 from blender_addon.review import render_review
 from blender_addon.review.page import legend_of
 from pe_core import catalog, kinds
-from pe_core.scene.sensors import SensorModel
 from tests.addon import scenes
 from tests.addon.layouts import Layout, drawn
+from tests.engine.toy_kind import Ring, RingKind
 
 PRESET = "Parking Ring"
-
-
-@dataclass(frozen=True, eq=False)
-class Ring(SensorModel):
-    """An ultrasonic ring."""
-
-    kind: ClassVar[str] = "ultrasonic"
-    name: str
-    range_m: float
-
-
-class RingKind(kinds.Kind):
-    """m is how many times the distance goes into the range, 0 beyond it."""
-
-    name, label, plural, unit = "ultrasonic", "Ultrasonic Ring", "Ultrasonic Rings", "echoes"
-    model = Ring
-    curve = pe.ApCurve(0.1, 0.4)
-    keys = frozenset({"range_m"})
-
-    def measure(self, sensor, centers, side, vehicle):
-        distance = np.linalg.norm(centers - np.asarray(sensor.pose.position), axis=1)
-        times = sensor.model.range_m / np.maximum(distance, side / 2)
-        return np.where(times >= 1.0, times, 0.0)
-
-    def read(self, name, table, folder):
-        return Ring(name, float(table["range_m"]))
-
-    def write(self, model):
-        return {"range_m": model.range_m}
-
-    def words(self, model):
-        return [f"range           {model.range_m:g} m"]
 
 
 @pytest.fixture

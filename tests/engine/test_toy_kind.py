@@ -1,4 +1,4 @@
-"""A kind of sensor made in this file alone goes all the way: study, grid, sample, search, result.
+"""The kind of sensor in `toy_kind` goes all the way: study, grid, sample, search, result.
 
 An ultrasonic ring: m depends on the distance alone, and so does what is expected of every score.
 """
@@ -6,8 +6,6 @@ An ultrasonic ring: m depends on the distance alone, and so does what is expecte
 import json
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -16,11 +14,10 @@ import pe_core as pe
 from pe_core import catalog, kinds
 from pe_core.app.cli import main
 from pe_core.metric import entropy_of, late_fusion, precision_of
-from pe_core.scene.sensors import SensorModel
 from tests.engine import shapes
+from tests.engine.toy_kind import CURVE, Ring, RingKind
 
 SPACE = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 3), 0.5)
-CURVE = pe.ApCurve(0.1, 0.4)
 STUDY = """
 [space]
 x = [-8, 8]
@@ -46,39 +43,6 @@ position = [0.0, 0.0, 1.8]
 candidates = 4
 samples = 1024
 """
-
-
-@dataclass(frozen=True, eq=False)
-class Ring(SensorModel):
-    """An ultrasonic ring."""
-
-    kind: ClassVar[str] = "ultrasonic"
-    name: str
-    range_m: float
-
-
-class RingKind(kinds.Kind):
-    """m is how many times the distance goes into the range, 0 beyond it."""
-
-    name, label, plural, unit = "ultrasonic", "Ultrasonic Ring", "Ultrasonic Rings", "echoes"
-    model = Ring
-    curve = CURVE
-    keys = frozenset({"range_m"})
-
-    def measure(self, sensor, centers, side, vehicle):
-        offsets = centers - np.asarray(sensor.pose.position)
-        distance = np.sqrt((offsets**2).sum(axis=1))
-        times = sensor.model.range_m / np.maximum(distance, side / 2)
-        return np.where(times >= 1.0, times, 0.0)
-
-    def read(self, name, table, folder):
-        return Ring(name, float(table["range_m"]))
-
-    def write(self, model):
-        return {"range_m": model.range_m}
-
-    def words(self, model):
-        return [f"range           {model.range_m:g} m"]
 
 
 @pytest.fixture

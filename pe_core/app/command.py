@@ -14,10 +14,10 @@ from typing import Any, NoReturn, TextIO
 
 from .. import catalog
 from ..errors import InputError
+from ..kinds import kind_of
 from ..study import Study
 from ..text.cells import quoted
 from .interrupts import FATAL
-from .sensor_text import describe
 from .status import BAD_INPUT, DONE, Answer
 from .terminal import one_line, printable, show, tell
 from .work import print_answer
@@ -96,9 +96,17 @@ def add_sensors_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser])
 
 def _show_sensors(args: argparse.Namespace) -> Answer:
     if args.name:
-        catalog.load(args.name)  # complains about a name that is not there
-        return describe(catalog.entries()[args.name]), DONE
+        return describe(args.name), DONE
     return "\n".join(f"{e.kind:7} {e.name}" for e in catalog.entries().values()), DONE
+
+
+def describe(name: str) -> str:
+    """Return the figures of a sensor of the catalogue, their source, and a plot if there is one."""
+    model = catalog.load(name)
+    kind = kind_of(model)
+    plot = kind.plot(model)
+    source = f"source          {catalog.entries()[name].source}"
+    return "\n".join([name, *kind.words(model), source, *(["", *plot] if plot else [])])
 
 
 def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:

@@ -20,6 +20,10 @@ Planes = Callable[[slice], NDArray | SeenRows]
 """m of a fusion group on a run of x-planes: whole numbers (n, ny, nz), or the rows it sees."""
 
 
+BLOCK_PLANES = 32
+"""x-planes a thread takes at a time; the exact areas of a camera are worked out together."""
+
+
 @dataclass(frozen=True, slots=True)
 class Voxels:
     """Some voxels of a space: `index` (V, 3) and `centers` (V, 3) [m]."""

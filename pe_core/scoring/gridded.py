@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinds import GridKernel, kind_of
-from ..kinds.kernels import Planes
+from ..kinds.kernels import BLOCK_PLANES, Planes
 from ..metric.entropy import H_BLIND
 from ..metric.fusion import Fusion
 from ..metric.planes import Group, PlaneFusion
 from ..prior.prior import ClassDensity
 from ..scene.frozen import frozen
+from ..scene.numbering import blocks
 from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
@@ -40,8 +41,6 @@ Floats = NDArray[np.float64]
 MeasuredGroup = tuple[str, Planes]
 """The kind of some sensors, and what measures them on a run of x-planes."""
 
-BLOCK_PLANES = 32
-"""x-planes a thread takes at a time; the exact areas of a camera are worked out together."""
 PRODUCT_AT_ONCE = 1 << 18
 """Multiplications BLAS is given at a time: for more it wakes threads, which are ours already."""
 
@@ -65,11 +64,11 @@ class _Watched:
         if self._stopped.is_set():
             raise ScoreStopped
 
-    def taken(self, blocks: Iterable[T], count: int) -> list[T]:
-        """Take so many blocks as they are done."""
+    def taken(self, results: Iterable[T], count: int) -> list[T]:
+        """Take the results of so many blocks as they are done."""
         found = []
-        for block in blocks:
-            found.append(block)
+        for result in results:
+            found.append(result)
             self._tell(len(found) / count)
         return found
 
@@ -128,10 +127,10 @@ class GridScorer:
                 fused = [fused_early(rig, values, members) for members in parts]
                 return self._reduced(fused, planes)
 
-            blocks = watched.taken(pool.map(work, self._blocks()), len(self._blocks()))
-        sums = np.sum([by_part for by_part, _ in blocks], axis=0)
+            found = watched.taken(pool.map(work, self._blocks()), len(self._blocks()))
+        sums = np.sum([by_part for by_part, _ in found], axis=0)
         by_part = {members: Sums(*own) for members, own in zip(parts, sums, strict=True)}
-        columns = np.concatenate([columns for _, columns in blocks], axis=1)
+        columns = np.concatenate([columns for _, columns in found], axis=1)
         whole = by_part[parts[0]]
         return Score(
             self._mean(whole.entropy),
@@ -174,7 +173,7 @@ class GridScorer:
     def _blocks(self) -> list[slice]:
         """Runs of x-planes."""
         nx = self._space.shape[0]
-        return [slice(i, min(i + BLOCK_PLANES, nx)) for i in range(0, nx, BLOCK_PLANES)]
+        return list(blocks(nx, BLOCK_PLANES))
 
     def _weighed(
         self, parts: Sequence[Sequence[Group]], planes: slice, *, coverage: bool

@@ -115,10 +115,11 @@ class Job:
         itself, soon, and nobody waits for it.
         """
         yield waiting
-        future, done = Future[Score](), [waiting.fraction]
+        future, done = Future[Score](), waiting.fraction
 
         def watch(share: float) -> bool:
-            done[0] = max(waiting.fraction, share)
+            nonlocal done
+            done = max(waiting.fraction, share)
             return to_the_end or not self.stopped
 
         threading.Thread(target=self._fill, args=(future, rig, watch), daemon=True).start()
@@ -130,7 +131,7 @@ class Job:
             except NotYet:
                 if future.done():
                     raise
-            yield replace(waiting, fraction=done[0])
+            yield replace(waiting, fraction=done)
         return None
 
     def _fill(self, future: Future[Score], rig: Rig, watch: Callable[[float], bool]) -> None:

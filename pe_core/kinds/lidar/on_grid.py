@@ -14,12 +14,9 @@ from ...scene.numbering import blocks
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
-from ..kernels import GridKernel, Planes, Stopped
+from ..kernels import BLOCK_PLANES, GridKernel, Planes, Stopped
 from .beams import BeamField, beam_field, stopped_beams
 from .grid import BeamGrid
-
-BLOCK_PLANES = 32
-"""x-planes a thread copies at a time."""
 
 
 @dataclass(frozen=True, slots=True)

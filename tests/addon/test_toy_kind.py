@@ -46,14 +46,14 @@ def test_it_is_offered_beside_the_others(ring_kind):
     ]
     assert (PRESET, "Ultrasonic Ring") in properties.model_suggestions(None, None, "")
     layout = Layout()
-    panels.draw_add(layout)
+    panels.main.draw_add(layout)
     assert layout.texts("operator") == ["Add LiDAR", "Add Camera", "Add Ultrasonic Ring"]
 
 
 def test_its_menu_lists_its_presets(ring_kind):
-    menu = panels.PE_MT_add_sensor
-    assert drawn(menu, **{panels.KIND: "ultrasonic"}).texts("operator") == [PRESET]
-    assert drawn(menu, **{panels.KIND: "camera"}).texts("operator") == catalog.names("camera")
+    menu = panels.main.PE_MT_add_sensor
+    assert drawn(menu, **{panels.main.KIND: "ultrasonic"}).texts("operator") == [PRESET]
+    assert drawn(menu, **{panels.main.KIND: "camera"}).texts("operator") == catalog.names("camera")
     assert set(drawn(menu).texts("operator")) == set(catalog.names())
 
 
@@ -79,11 +79,11 @@ def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
 def test_the_panel_shows_what_was_stored(ring_kind, ring):
     bpy.ops.pe.score()
     layout, own = Layout(), ring.perception_entropy
-    panels.draw_sensors(layout, bpy.context)
+    panels.main.draw_sensors(layout, bpy.context)
     assert layout.texts("operator") == ["bumper", "roof"]
     assert layout.texts("label")[:2] == [PRESET, f"{own.entropy:.2f}"]
     layout = Layout()
-    panels.draw_sensor_result(layout, own)
+    panels.sensor.draw_sensor_result(layout, own)
     assert layout.texts("label") == [f"Alone  {own.entropy:.4f} nats, covers {own.coverage:.1%}"]
 
 

@@ -1,0 +1,13 @@
+"""The sidebar tab: draws what is stored, computes nothing. Panels stand in the order of CLASSES."""
+
+from . import export, focus, main, overlay, part, search, sensor
+
+CLASSES = (
+    *main.CLASSES,
+    *sensor.CLASSES,
+    *part.CLASSES,
+    *search.CLASSES,
+    *focus.CLASSES,
+    *overlay.CLASSES,
+    *export.CLASSES,
+)

@@ -1,0 +1,26 @@
+"""How to score and to search."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..choices import FROM_BOXES
+from .layout import Tab, draw_properties
+
+
+class PE_PT_search(Tab, bpy.types.Panel):
+    """How to score and to search"""
+
+    bl_idname = "PE_PT_search"
+    bl_label = "Search"
+    bl_parent_id = "PE_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
+        boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
+        figures = ("candidates", "seed", "search_samples", "score_samples")
+        draw_properties(self.layout, settings, ("prior", *boxes, *figures))
+
+
+CLASSES = (PE_PT_search,)

@@ -1,0 +1,30 @@
+"""What the add-on stores in a .blend file: on the scene, and on every object.
+
+Here is what the user typed, and small summaries of the last result. Arrays live elsewhere.
+"""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import PointerProperty
+
+from .callbacks import model_suggestions
+from .focus import DEFAULT_REGION, PE_FocusSettings
+from .scene import PE_SceneSettings
+from .sensor import AXIS_LABELS, DEFAULT_MODEL, PE_ObjectSettings
+
+__all__ = ["AXIS_LABELS", "CLASSES", "DEFAULT_MODEL", "DEFAULT_REGION", "model_suggestions"]
+
+CLASSES = (PE_FocusSettings, PE_SceneSettings, PE_ObjectSettings)
+
+
+def add_pointers() -> None:
+    """Hang the settings on scenes and objects."""
+    bpy.types.Scene.perception_entropy = PointerProperty(type=PE_SceneSettings)
+    bpy.types.Object.perception_entropy = PointerProperty(type=PE_ObjectSettings)
+
+
+def remove_pointers() -> None:
+    """Take them off again; what files hold stays in them."""
+    del bpy.types.Object.perception_entropy
+    del bpy.types.Scene.perception_entropy

@@ -1,0 +1,26 @@
+"""What happens when a property is set, and what its field suggests."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import changes
+from ..engine import catalog, kinds
+
+
+def redraw(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Update callback of what only changes the picture."""
+    changes.picture.tell()
+
+
+def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Update callback of what changes the score."""
+    changes.study.tell()
+
+
+def model_suggestions(
+    _settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
+) -> list[tuple[str, str]]:
+    """Return the catalogue's names with what they are; Blender filters by what was typed."""
+    labels = {n: kind.label for kind in kinds.KINDS.values() for n in catalog.names(kind.name)}
+    return [(name, labels[name]) for name in catalog.names() if name in labels]

@@ -1,0 +1,134 @@
+"""What is stored on the scene: the study's settings, and a small summary of the last result."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from ..choices import PRIORS
+from ..engine import pe
+from .callbacks import changed, redraw
+from .focus import PE_FocusSettings
+
+DEFAULT_CANDIDATES = 150
+DEFAULT_BEAM_LIMIT = 5_000
+DEFAULT_BEAM_LENGTH_M = 8.0
+# Before 4.5 every path could be relative to the .blend file; since then a property has to say so.
+PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
+
+
+class PE_SceneSettings(bpy.types.PropertyGroup):
+    """The study's settings, and the last result."""
+
+    vehicle: PointerProperty(
+        type=bpy.types.Collection,
+        name="Vehicle",
+        description="Collection of the vehicle's meshes: x forward, y left, z up, in metres, "
+        "with the origin on the ground",
+        update=changed,
+    )
+    prior: EnumProperty(
+        items=PRIORS,
+        name="Prior",
+        description="Where objects are to be expected",
+        update=changed,
+    )
+    boxes: StringProperty(
+        name="Boxes",
+        description="File of labelled boxes: KITTI's labels, nuScenes' JSON or CSV",
+        subtype="FILE_PATH",
+        options=PATH_OPTIONS,
+        update=changed,
+    )
+    focus: CollectionProperty(
+        type=PE_FocusSettings,
+        name="Focus",
+        description="What counts more than the prior says, or less",
+    )
+    focus_index: IntProperty(
+        name="Selected Focus", description="Row of the list whose settings are shown", min=0
+    )
+    score_samples: IntProperty(
+        name="Score Voxels",
+        description="Voxels a score looks at; 0: all, 64 million",
+        default=0,
+        min=0,
+        update=changed,
+    )
+    candidates: IntProperty(
+        name="Candidates",
+        description="Placements tried in each of the seven rounds of a search. The paper tries "
+        "1000",
+        default=DEFAULT_CANDIDATES,
+        min=1,
+        soft_max=1000,
+    )
+    search_samples: IntProperty(
+        name="Search Voxels",
+        description="Voxels a candidate is judged on; 0: all, 64 million",
+        default=pe.Search().samples,
+        min=0,
+    )
+    seed: IntProperty(
+        name="Seed",
+        description="The same seed finds the same placement",
+        default=0,
+        min=0,
+    )
+
+    show_overlay: BoolProperty(
+        name="Show Beams",
+        description="Draw beams and frustums of the sensors in the 3D view",
+        default=True,
+        update=redraw,
+    )
+    beam_limit: IntProperty(
+        name="Most Beams",
+        description="Draw no more beams than this, evenly chosen; more make the view slow",
+        default=DEFAULT_BEAM_LIMIT,
+        min=1,
+        soft_max=200_000,
+        update=redraw,
+    )
+    beam_length: FloatProperty(
+        name="Beam Length",
+        description="How far beams are drawn that meet nothing",
+        default=DEFAULT_BEAM_LENGTH_M,
+        min=0.1,
+        soft_max=200.0,
+        subtype="DISTANCE",
+        unit="LENGTH",
+        update=redraw,
+    )
+
+    has_result: BoolProperty(name="Has Result", description="A score is stored")
+    result_kind: StringProperty(name="Kind", description="score or optimize")
+    result_entropy: FloatProperty(
+        name="Perception Entropy", description="In nats; lower is better. Rounded for display"
+    )
+    result_before: FloatProperty(
+        name="Before", description="Perception entropy of the placement the search started from"
+    )
+    result_coverage: FloatProperty(
+        name="Coverage", description="Share of the prior that some sensor sees, 0 to 1"
+    )
+    result_stderr: FloatProperty(
+        name="Standard Error", description="Of the perception entropy; 0 when all voxels count"
+    )
+    result_json: StringProperty(
+        name="Result", description="The last result in full, as result.json holds it"
+    )
+    result_signature: StringProperty(
+        name="Signature", description="What was scored, to tell whether it still stands"
+    )
+    result_stale: BoolProperty(
+        name="Stale", description="The scene has changed since the result was made"
+    )

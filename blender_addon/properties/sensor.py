@@ -1,0 +1,82 @@
+"""What is stored on an object: what makes it a sensor, and its part in the last result."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    BoolVectorProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    StringProperty,
+)
+
+from ..engine import search
+from .callbacks import changed, model_suggestions, redraw
+
+DEFAULT_MODEL = "Pandar64"
+AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
+"""Of `search.AXES`."""
+FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
+
+
+class PE_ObjectSettings(bpy.types.PropertyGroup):
+    """What makes an object a sensor, and its part in the last result."""
+
+    is_sensor: BoolProperty(
+        name="Is a Sensor",
+        description="This object is a sensor: its x axis looks ahead, z is up",
+        update=changed,
+    )
+    model: StringProperty(
+        name="Model",
+        description="Name of the sensor in the catalogue",
+        default=DEFAULT_MODEL,
+        search=model_suggestions,
+        search_options=set(),
+        update=changed,
+    )
+    fusion: StringProperty(
+        name="Fusion",
+        description="Sensors of one group count their beams or pixels together. When empty, all "
+        "LiDARs are one group and each camera stands alone",
+        update=changed,
+    )
+    free: BoolVectorProperty(
+        name="Free Axes",
+        description="What the search may change",
+        size=len(search.AXES),
+        default=FREE_BY_DEFAULT,
+    )
+    show: BoolProperty(
+        name="Show Beams",
+        description="Draw this sensor's beams or frustum in the 3D view",
+        default=True,
+        update=redraw,
+    )
+    placed: FloatVectorProperty(
+        name="Placed",
+        description="Placement last written by a search: x, y, z [m], roll, pitch, yaw [deg]",
+        size=len(search.AXES),
+        options={"HIDDEN"},
+    )
+
+    has_result: BoolProperty(name="Has Result", description="The last result knows this sensor")
+    entropy: FloatProperty(
+        name="Alone", description="Perception entropy if this were the only sensor [nats]"
+    )
+    coverage: FloatProperty(
+        name="Coverage", description="Share of the prior that this sensor sees, 0 to 1"
+    )
+    beams: IntProperty(name="Beams", description="Beams of one revolution; 0 for a camera")
+    stopped: IntProperty(name="Stopped", description="Beams that the vehicle itself stops")
+    stopped_text: StringProperty(
+        name="Stopped By", description="Which parts of the vehicle stop how many beams"
+    )
+
+    see_through: BoolProperty(
+        name="Cameras See Through",
+        description="Glass: cameras see through this object; LiDAR beams are stopped all the same",
+        update=changed,
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import commands, operators, panels, properties, roster, stale
+from . import body, commands, operators, panels, properties, roster, stale, worker
 from .overlay import handler as overlay
 
 CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
@@ -16,6 +16,7 @@ def register() -> None:
         bpy.utils.register_class(cls)
     properties.add_pointers()
     roster.register()
+    body.register()
     stale.register()
     overlay.register()
     commands.register()
@@ -23,9 +24,11 @@ def register() -> None:
 
 def unregister() -> None:
     """Called by Blender when the add-on is switched off: everything above, backwards."""
+    worker.unregister()
     commands.unregister()
     overlay.unregister()
     stale.unregister()
+    body.unregister()
     roster.unregister()
     properties.remove_pointers()
     for cls in reversed(CLASSES):

@@ -42,3 +42,8 @@ study = Signal()
 """What changes the score: sensors, vehicle, prior, focus. What is drawn may change with it."""
 picture = Signal()
 """What changes the picture in the 3D view alone."""
+
+moved = Signal()
+"""A sensor or the vehicle is being moved: told a moment after, from a timer, as long as it moves."""
+rested = Signal()
+"""What was moved rests: told once, a moment after the last move."""

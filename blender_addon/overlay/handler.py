@@ -8,7 +8,7 @@ from bpy.app.handlers import persistent
 from gpu_extras.batch import batch_for_shader
 
 from .. import changes
-from .cache import OverlayCache, touches_vehicle
+from .cache import OverlayCache
 from .geometry import OverlayGeometry, Primitives
 
 LINE_WIDTH_PX = 1.2
@@ -55,33 +55,14 @@ def tag_redraw() -> None:
 
 
 @persistent
-def note_changes(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """After an update: remember when it was the vehicle's."""
-    if touches_vehicle(scene, depsgraph):
-        _cache.vehicle_changed()
-
-
-@persistent
 def forget(*_: object) -> None:
     """Drop everything that belongs to the file that was open."""
     _cache.clear()
     _batches.clear()
 
 
-@persistent
-def note_undo(*_: object) -> None:
-    """After a step back or forth: any object may be another one."""
-    _cache.vehicle_changed()
-
-
 def _handlers() -> tuple[tuple[list, object], ...]:
-    lists = bpy.app.handlers
-    return (
-        (lists.depsgraph_update_post, note_changes),
-        (lists.undo_post, note_undo),
-        (lists.redo_post, note_undo),
-        (lists.load_post, forget),
-    )
+    return ((bpy.app.handlers.load_post, forget),)
 
 
 def draw() -> None:

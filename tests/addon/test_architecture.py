@@ -22,16 +22,19 @@ ALLOWED = {
     "properties": {"changes", "choices", "engine"},
     "bridge": {"choices", "engine"},
     "roster": {"bridge", "changes"},
+    "body": {"bridge", "engine"},
+    "worker": set(),
     "stale": {"bridge", "changes", "roster"},
     "overlay": {"engine"},
-    "overlay.cache": {"bridge", "engine", "overlay", "roster"},
+    "overlay.cache": {"body", "bridge", "engine", "overlay", "roster"},
     "overlay.handler": {"changes", "overlay", "overlay.cache"},
     "review": {"bridge", "engine", "overlay"},
     "operators": {"bridge", "changes", "choices", "engine", "properties", "review", "roster"},
     "panels": {"choices", "operators", "properties"},
     "commands": {"bridge", "engine", "review"},
     "__init__": {
-        *("commands", "operators", "overlay.handler", "panels", "properties", "roster", "stale")
+        *("body", "commands", "operators", "overlay.handler", "panels", "properties", "roster"),
+        *("stale", "worker"),
     },
     "__main__": {"__init__", "commands", "engine"},
 }

@@ -5,9 +5,9 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 import blender_addon  # noqa: E402
-from blender_addon import bridge  # noqa: E402
+from blender_addon import body, bridge  # noqa: E402
 from blender_addon.overlay import handler  # noqa: E402
-from blender_addon.overlay.cache import OverlayCache, touches_vehicle  # noqa: E402
+from blender_addon.overlay.cache import OverlayCache  # noqa: E402
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_a_moved_vehicle_is_noticed(scene):
     seen = []
 
     def watch(of_scene, depsgraph):
-        seen.append(touches_vehicle(of_scene, depsgraph))
+        seen.append(body.touched(of_scene, depsgraph))
 
     bpy.app.handlers.depsgraph_update_post.append(watch)
     try:

@@ -1,0 +1,148 @@
+"""The vehicle as the engine knows it: read when it changes, and kept until then.
+
+Reading takes a tenth of a second for half a million triangles: too long for each move of the mouse.
+What is told of a change comes from Blender's own updates, moved vertices included.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Hashable
+from typing import NamedTuple
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import bridge
+from .engine import pe
+
+
+class Body(NamedTuple):
+    """A vehicle, or None where there is none that can be scored; `key` tells it from others."""
+
+    vehicle: pe.Vehicle | None
+    key: Hashable
+
+
+NOTHING = Body(None, None)
+
+
+class BodyCache:
+    """Remembers one vehicle by plain values; never a Blender object."""
+
+    def __init__(self) -> None:
+        self._version = 0
+        self._body = NOTHING
+
+    @property
+    def version(self) -> int:
+        """Rises whenever the vehicle may have changed."""
+        return self._version
+
+    def changed(self) -> None:
+        """Note that the vehicle's objects are not what they were."""
+        self._version += 1
+
+    def clear(self) -> None:
+        """Forget everything, as another file is about to be shown."""
+        self._body = NOTHING
+        self._version += 1
+
+    def read(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Body:
+        """Return the scene's vehicle; read it only when it may be another than before."""
+        collection = scene.perception_entropy.vehicle
+        members = () if collection is None else members_of(collection, depsgraph)
+        of = "" if collection is None else collection.name_full
+        key = (scene.name, of, self._version, members)
+        if key != self._body.key:
+            vehicle = None
+            if members:
+                # A score says what is wrong with a vehicle; here it is as if there were none.
+                with contextlib.suppress(pe.InputError):
+                    vehicle = bridge.vehicle_from_collection(collection, depsgraph)
+            self._body = Body(vehicle, key)
+        return self._body
+
+
+shared = BodyCache()
+"""The vehicle of the scene that is looked at."""
+
+
+def members_of(
+    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
+) -> tuple[tuple[str, bool], ...]:
+    """Names of the objects of the vehicle that count, and whether cameras see through them."""
+    members = bridge.visible_members(collection, depsgraph.view_layer)
+    counted = (each for each in members if not bridge.mounted_on_sensor(each))
+    return tuple(sorted((each.name_full, each.perception_entropy.see_through) for each in counted))
+
+
+def touched(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Whether an update moved or reshaped an object of the vehicle."""
+    changed = {
+        update.id.original
+        for update in depsgraph.updates
+        if isinstance(update.id, bpy.types.Object)
+        and (update.is_updated_geometry or update.is_updated_transform)
+    }
+    collection = scene.perception_entropy.vehicle
+    if collection is None or not changed:
+        return False
+    parts = {each for each in changed if not bridge.mounted_on_sensor(each)}
+    return not parts.isdisjoint(_with_instanced(collection))
+
+
+def _with_instanced(collection: bpy.types.Collection) -> set[bpy.types.Object]:
+    """Objects of a collection, and of those that it holds instances of."""
+    found: set[bpy.types.Object] = set()
+    waiting, known = [collection], {collection}
+    while waiting:
+        members = set(waiting.pop().all_objects)
+        found |= members
+        inner = {each.instance_collection for each in members} - known - {None}
+        waiting += inner
+        known |= inner
+    return found
+
+
+@persistent
+def note_changes(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """After an update: remember when it was the vehicle's."""
+    if touched(scene, depsgraph):
+        shared.changed()
+
+
+@persistent
+def note_undo(*_: object) -> None:
+    """After a step back or forth: any object may be another one."""
+    shared.changed()
+
+
+@persistent
+def forget(*_: object) -> None:
+    """Before another file comes: nothing of this one may be kept."""
+    shared.clear()
+
+
+def _handlers() -> tuple[tuple[list, object], ...]:
+    lists = bpy.app.handlers
+    return (
+        (lists.depsgraph_update_post, note_changes),
+        (lists.undo_post, note_undo),
+        (lists.redo_post, note_undo),
+        (lists.load_pre, forget),
+        (lists.load_post, forget),
+    )
+
+
+def register() -> None:
+    """Start listening."""
+    for handlers, function in _handlers():
+        handlers.append(function)
+
+
+def unregister() -> None:
+    """Stop listening, and forget the vehicle."""
+    for handlers, function in reversed(_handlers()):
+        handlers.remove(function)
+    shared.clear()

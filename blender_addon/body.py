@@ -128,6 +128,7 @@ def _handlers() -> tuple[tuple[list, object], ...]:
     lists = bpy.app.handlers
     return (
         (lists.depsgraph_update_post, note_changes),
+        (lists.frame_change_post, note_changes),
         (lists.undo_post, note_undo),
         (lists.redo_post, note_undo),
         (lists.load_pre, forget),

@@ -44,6 +44,6 @@ picture = Signal()
 """What changes the picture in the 3D view alone."""
 
 moved = Signal()
-"""A sensor or the vehicle is being moved: told a moment after, from a timer, as long as it moves."""
+"""A sensor or the vehicle is moving: told a moment after, from a timer, as long as that lasts."""
 rested = Signal()
 """What was moved rests: told once, a moment after the last move."""

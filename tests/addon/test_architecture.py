@@ -23,6 +23,7 @@ ALLOWED = {
     "bridge": {"choices", "engine"},
     "roster": {"bridge", "changes"},
     "body": {"bridge", "engine"},
+    "motion": {"body", "changes", "roster"},
     "worker": set(),
     "stale": {"bridge", "changes", "roster"},
     "overlay": {"engine"},
@@ -33,8 +34,8 @@ ALLOWED = {
     "panels": {"choices", "operators", "properties"},
     "commands": {"bridge", "engine", "review"},
     "__init__": {
-        *("body", "commands", "operators", "overlay.handler", "panels", "properties", "roster"),
-        *("stale", "worker"),
+        *("body", "commands", "motion", "operators", "overlay.handler", "panels", "properties"),
+        *("roster", "stale", "worker"),
     },
     "__main__": {"__init__", "commands", "engine"},
 }

@@ -6,14 +6,15 @@ import bpy
 import pytest
 
 import blender_addon
-from blender_addon import changes, commands, roster, stale
+from blender_addon import changes, commands, motion, roster, stale
 from blender_addon.operators import running
 from blender_addon.overlay import handler
 
 ROUNDS = 100
 
 
-SIGNALS = (changes.study, changes.picture)
+SIGNALS = (changes.study, changes.picture, changes.moved, changes.rested)
+TIMERS = (stale.check, motion.tell_moved, motion.tell_rested)
 
 
 def traces() -> dict[str, list[str]]:
@@ -26,7 +27,7 @@ def traces() -> dict[str, list[str]]:
         "handlers": [f.__name__ for f in functions if f.__module__.startswith("blender_addon")],
         "properties": [c.__name__ for c in carriers if hasattr(c, "perception_entropy")],
         "listeners": [f.__name__ for s in SIGNALS for f in s.listeners],
-        "timers": [f.__name__ for f in (stale.check,) if bpy.app.timers.is_registered(f)],
+        "timers": [f.__name__ for f in TIMERS if bpy.app.timers.is_registered(f)],
     }
 
 
@@ -84,7 +85,8 @@ def test_a_hundred_rounds_leave_nothing_behind(view3d):
     for _ in range(ROUNDS):
         blender_addon.register()
         assert len(view3d.handles) == 1
-        bpy.app.timers.register(stale.check)  # a change just before it is switched off
+        for timer in TIMERS:  # a change just before it is switched off
+            bpy.app.timers.register(timer)
         blender_addon.operators.listed_sensors(bpy.context.scene)
         kept = kept or traces()
         assert traces() == kept
@@ -128,7 +130,9 @@ def test_a_change_is_told_to_those_who_listen(car, heard):
 
 def test_picture_and_check_follow_a_change(car):
     assert {f.__name__ for f in changes.picture.listeners} == {"tag_redraw"}
-    assert {f.__name__ for f in changes.study.listeners} == {"tag_redraw", "check_soon", "forget"}
+    assert {f.__name__ for f in changes.study.listeners} == {
+        *("tag_redraw", "check_soon", "forget", "note"),
+    }
 
 
 def test_all_that_is_documented_is_there(addon):

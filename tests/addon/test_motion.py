@@ -1,0 +1,167 @@
+"""What moves is told while it moves and once it rests; what does not concern the score is not."""
+
+import bpy
+import pytest
+
+import blender_addon
+from blender_addon import changes, motion
+from tests.addon import scenes
+
+MOVED, RESTED = "moved", "rested"
+
+
+class Timers:
+    """Blender's timers and the time, as a test wants them."""
+
+    def __init__(self):
+        self.now, self.waiting = 0.0, {}
+
+    def is_registered(self, function):
+        return function in self.waiting
+
+    def register(self, function, first_interval):
+        self.waiting[function] = self.now + first_interval
+
+    def unregister(self, function):
+        del self.waiting[function]
+
+    def monotonic(self):
+        return self.now
+
+    def pass_by(self, seconds):
+        """Let time pass, and call what is due on the way."""
+        end = self.now + seconds
+        while due := [(at, f) for f, at in self.waiting.items() if at <= end]:
+            at, function = min(due, key=lambda pair: pair[0])
+            self.now = max(at, self.now)
+            del self.waiting[function]
+            again = function()
+            if again is not None:
+                self.waiting[function] = self.now + again
+        self.now = end
+
+
+@pytest.fixture
+def timers(monkeypatch, car):
+    """A window on the car, as far as motion sees one."""
+    made = Timers()
+    app = type("App", (), {"timers": made, "background": False, "handlers": bpy.app.handlers})
+    seen = type("Bpy", (), {"app": app, "types": bpy.types})
+    monkeypatch.setattr(motion, "bpy", seen)
+    monkeypatch.setattr(motion, "time", made)
+    drag(car.objects["roof"])  # from here on it is known what there is
+    made.pass_by(10.0)
+    yield made
+    for function in list(made.waiting):
+        made.unregister(function)
+
+
+@pytest.fixture
+def heard(timers):
+    """What is told, as it comes, from now on."""
+    told = []
+    listeners = {changes.moved: lambda: told.append(MOVED)}
+    listeners[changes.rested] = lambda: told.append(RESTED)
+    for signal, listener in listeners.items():
+        signal.connect(listener)
+    yield told
+    for signal, listener in listeners.items():
+        signal.disconnect(listener)
+
+
+def drag(obj):
+    obj.location.x += 0.1
+    bpy.context.view_layer.update()
+
+
+def test_a_drag_is_told_as_long_as_it_lasts_and_its_rest_once(car, timers, heard):
+    for _ in range(5):
+        drag(car.objects["roof"])
+        timers.pass_by(0.1)
+    assert heard == [MOVED] * 5
+    timers.pass_by(10.0)
+    assert heard == [MOVED] * 5 + [RESTED] and not timers.waiting
+
+
+def move_a_point(car):
+    car.objects["body"].data.vertices[0].co.x += 0.1
+    car.objects["body"].data.update()
+
+
+def follow_a_parent(car):
+    parent = bpy.data.objects.new("mast", None)
+    car.collection.objects.link(parent)
+    car.objects["roof"].parent = parent
+    bpy.context.view_layer.update()
+    parent.location.x += 0.1
+
+
+def play(car):
+    sensor = car.objects["roof"]
+    sensor.keyframe_insert("location", frame=1)
+    sensor.location.x += 1.0
+    sensor.keyframe_insert("location", frame=10)
+    car.frame_set(5)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda car: drag(car.objects["cabin"]),
+        move_a_point,
+        follow_a_parent,
+        play,
+        lambda car: setattr(car.objects["roof"].perception_entropy, "model", "Pandar40"),
+        lambda car: bpy.data.objects.remove(car.objects["roof"]),
+        lambda car: bpy.data.objects.remove(car.objects["cabin"]),
+        lambda car: car.objects["roof"].hide_set(True),
+        lambda car: setattr(car.objects["cabin"], "hide_viewport", True),
+        lambda car: scenes.add_sensor("second"),
+    ],
+    ids=[
+        *("part", "points", "parent", "frame", "model", "sensor gone", "part gone"),
+        *("sensor hidden", "part hidden", "sensor added"),
+    ],
+)
+def test_whatever_changes_a_sensor_or_the_vehicle_is_told(car, timers, heard, change):
+    change(car)
+    bpy.context.view_layer.update()
+    timers.pass_by(10.0)
+    assert MOVED in heard and heard[-1] == RESTED
+
+
+def test_what_concerns_no_score_is_not_told(car, timers, heard):
+    other = bpy.data.objects.new("lamp", None)
+    car.collection.objects.link(other)
+    drag(other)
+    other.select_set(True)
+    bpy.context.view_layer.update()
+    timers.pass_by(10.0)
+    assert heard == []
+
+
+def test_undo_is_told(car, timers, heard):
+    for message in ("before", "after"):
+        bpy.ops.ed.undo_push(message=message)
+    timers.pass_by(10.0)
+    heard.clear()
+    bpy.ops.ed.undo()
+    timers.pass_by(10.0)
+    assert heard == [MOVED, RESTED]
+
+
+def test_without_a_window_there_is_no_timer(car):
+    drag(car.objects["roof"])
+    assert not any(map(bpy.app.timers.is_registered, (motion.tell_moved, motion.tell_rested)))
+
+
+def test_switched_off_in_the_middle_of_a_drag(car, timers, heard):
+    drag(car.objects["roof"])
+    assert timers.waiting
+    blender_addon.unregister()
+    try:
+        assert not timers.waiting and not motion._known
+        timers.pass_by(10.0)
+        assert heard == []
+    finally:
+        blender_addon.register()

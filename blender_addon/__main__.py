@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 import bpy
 
@@ -43,4 +45,10 @@ def open_file(name: str) -> app.Answer:
     return "", app.DONE
 
 
-app.leave(main(sys.argv[1:]))
+def leave(status: int) -> NoReturn:
+    """End the process: bpy 4.5 does not end by itself once it has evaluated a driver by Python."""
+    shutil.rmtree(bpy.app.tempdir, ignore_errors=True)  # as its own exit would
+    app.leave(status, at_once=True)
+
+
+leave(main(sys.argv[1:]))

@@ -70,9 +70,9 @@ def _default(number: signal.Signals) -> Any:
     return signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
 
 
-def leave(status: int) -> NoReturn:
+def leave(status: int, *, at_once: bool = False) -> NoReturn:
     """Exit; at once when a signal has ended the work, whose threads may be busy for a while."""
-    if status <= FATAL:
+    if status <= FATAL and not at_once:
         sys.exit(status)
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, OSError, ValueError):  # it is closed, or nobody reads it

@@ -27,6 +27,8 @@ YAW_DECIMALS = 9
 """Yaws are rounded to what a file holds, in degrees, so that a copy is the same to the bit."""
 ORIGIN = Number(cap=1e6, unit="m")
 OUTSIDE = "outside the space"
+MAX_CLASSES = 64
+"""Data sets have up to 30. Thousands are no classes but, for instance, numbers of tracks."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,8 +55,8 @@ class Boxes:
     Raises
     ------
     InputError
-        When columns differ in length, a number is not finite, a size is not positive, or a name is
-        empty or cannot be printed.
+        When columns differ in length, a number is not finite, a size is not positive, a name is
+        empty or cannot be printed, or there are more than 64 names.
     """
 
     names: NDArray[np.str_]
@@ -82,6 +84,7 @@ class Boxes:
             object.__setattr__(self, "file", A_PATH.checked("boxes", "file", self.file))
         if self.origin is not None:
             object.__setattr__(self, "origin", vector("boxes", "origin", self.origin, 3, ORIGIN))
+        self._check_classes()
         object.__setattr__(self, "digest", self._digest())
 
     def __len__(self) -> int:
@@ -119,6 +122,12 @@ class Boxes:
     def source(self) -> str:
         """What messages call them."""
         return self.file or "boxes"
+
+    def _check_classes(self) -> None:
+        count = len(set(self.names.tolist()))
+        if count > MAX_CLASSES:
+            expected = f"at most {MAX_CLASSES} names (is this the column of the class?)"
+            raise InputError(self.source, "class", expected, f"{count:,}")
 
     def _digest(self) -> str:
         """SHA-256 of all boxes."""

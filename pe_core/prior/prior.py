@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import InputError, shown
 from ..scene.space import PerceptionSpace
+from ..text.memory import require_memory
 from ..text.values import A_NAME, ANY, WEIGHT, choice, listed, pair
 from .box_density import voxelised
 from .boxes import Boxes, BoxReport
@@ -33,6 +34,8 @@ __all__ = ["HIGHWAY_CLASSES", "ROAD_CLASSES", "ClassDensity", "Focus", "ObjectCl
 
 FROM_BOXES, UNIFORM = "boxes", "uniform"
 MODELS = (*SHIPPED, UNIFORM, FROM_BOXES)
+CLASS_BYTES = 32
+"""What a score holds of each class for each column of the space, at its most (measured: 29)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,9 +167,12 @@ class Prior:
         Raises
         ------
         InputError
-            When nothing is left of the prior after the focus weights, or no box is in the space.
+            When nothing is left of the prior after the focus weights, no box is in the space, or so
+        many classes on so many columns do not fit in memory.
         """
-        shapes, names = self._shapes(space), self.class_names
+        names = self.class_names
+        require_memory("prior", "classes", len(names) * math.prod(space.shape[:2]) * CLASS_BYTES)
+        shapes = self._shapes(space)
         grounds = [
             ground * self._weights(name, space)
             for name, (ground, _) in zip(names, shapes, strict=True)

@@ -163,3 +163,25 @@ def wait_for(text: str, log: Path) -> None:
     while text not in log.read_text():
         assert time.monotonic() < deadline, log.read_text()
         time.sleep(0.1)
+
+
+DRIVE = """
+import os, sys, bpy
+bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
+curve = bpy.data.objects["body"].driver_add("location", 2)
+curve.driver.type, curve.driver.expression = "SCRIPTED", "[0.9, frame][0]"
+bpy.context.preferences.filepaths.use_scripts_auto_execute = True
+bpy.ops.wm.save_as_mainfile(filepath=sys.argv[1])
+os._exit(0)  # bpy 4.5 would not end by itself
+"""
+
+
+def test_the_process_ends_though_the_file_has_a_driver_in_python(blend):
+    """Plain bpy 4.5 hangs at its exit after it has evaluated one."""
+    made = subprocess.run(
+        [sys.executable, "-c", DRIVE, str(blend)], capture_output=True, timeout=TIMEOUT_S
+    )
+    assert made.returncode == 0, made.stderr
+    answer = run("blender_addon", blend, "score", *FAST[:2], "--json")
+    assert answer.returncode == 0, answer.stderr
+    assert json.loads(answer.stdout)["after"]["entropy"] > 0.0

@@ -2,12 +2,14 @@
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
 
 import pe_core as pe
 from pe_core.formats.boxes.kitti import CAMERA
+from pe_core.text import memory
 from tests.engine import shapes
 
 CSV = """class,x,y,z,length,width,height,yaw
@@ -298,3 +300,23 @@ def test_many_boxes_are_what_each_of_them_is(write):
                 getattr(table, column), getattr(tables[0], column), atol=1e-12
             )
         np.testing.assert_allclose(np.exp(1j * table.yaw), np.exp(1j * tables[0].yaw), atol=1e-9)
+
+
+def test_a_column_of_tracks_is_no_column_of_classes(tmp_path):
+    """300 names took 7 GB, and a score of each."""
+    path = tmp_path / "labels.csv"
+    rows = [f"track {n},10,2,0.75,4.5,1.8,1.5,90" for n in range(300)]
+    path.write_text("\n".join([CSV.splitlines()[0], *rows]))
+    expected = "at most 64 names (is this the column of the class?), found 300"
+    with pytest.raises(pe.InputError, match=re.escape(f"labels.csv: class: expected {expected}")):
+        pe.read_boxes(path)
+    path.write_text("\n".join([CSV.splitlines()[0], *rows[:64]]))
+    assert len(pe.read_boxes(path).classes) == 64
+
+
+def test_classes_that_do_not_fit_in_memory_are_told_before_work(monkeypatch):
+    rows = [(f"class {n}", 10, 2, 0.75, 4.5, 1.8, 1.5, 0.0) for n in range(50)]
+    prior, space = pe.Prior.from_boxes(rows), pe.PerceptionSpace()
+    monkeypatch.setattr(memory, "available_bytes", lambda: 10**9)
+    with pytest.raises(pe.InputError, match="prior: classes: expected what fits in the 1"):
+        prior.densities(space)

@@ -63,10 +63,12 @@ class Labels:
         """Return the boxes in the ground frame; `origin` replaces the layouts' own."""
         columns = np.array(self.rows, dtype=np.float64).T
         columns[:3] += np.array(self.origins).T if origin is None else np.array([origin]).T
-        x, y, z, length, width, height, yaw = columns
         left_out = tuple(self.left_out.items())
         names = np.array(self.names)
-        return Boxes(names, x, y, z, length, width, height, yaw, origin=origin, left_out=left_out)
+        try:
+            return Boxes(names, *columns, origin=origin, left_out=left_out)
+        except InputError as error:
+            raise error.at(self.source) from None
 
 
 def joined(parts: Iterable[Labels], source: str) -> Labels:

@@ -6,7 +6,7 @@ from .formats import Mesh, read_boxes, read_mesh, write_boxes, write_mesh
 from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
 from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
-from .scene import PerceptionSpace, Pose, Rig, Sensor, Vehicle
+from .scene import Housing, PerceptionSpace, Pose, Rig, Sensor, Vehicle, cuts_body
 from .scoring import Evaluator, GroundMap, PartScore, Score, SensorScore
 from .search import Schedule, SearchSpace, Step, optimize
 from .study import (
@@ -37,6 +37,7 @@ __all__ = [
     "Evaluator",
     "Focus",
     "GroundMap",
+    "Housing",
     "InputError",
     "Job",
     "Lidar",
@@ -64,6 +65,7 @@ __all__ = [
     "__version__",
     "beam_field",
     "catalog",
+    "cuts_body",
     "export_study",
     "load_study",
     "measure",

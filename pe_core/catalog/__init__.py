@@ -18,15 +18,17 @@ from typing import Any
 
 from ..errors import InputError, shown
 from ..kinds import kind_named, kind_of
+from ..scene.housing import Housing
 from ..scene.sensors import SensorModel
 from ..text.fixed import fixed
 from ..text.values import A_NAME, A_TEXT
+from .housings import read_housing
 
 PAPER_FILE = "paper.toml"
 """The paper's own sensors come first in lists."""
 OWN = "own"
 """In place of a file's name, for presets that a program has added."""
-COMMON_KEYS = frozenset({"kind", "source", "note"})
+COMMON_KEYS = frozenset({"kind", "source", "note", "housing"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +108,19 @@ def load(name: str) -> SensorModel:
     return _loaded[name]
 
 
+def housing(name: str) -> Housing | None:
+    """Return the housing of the sensor of that name, None where no size of it is known.
+
+    Raises
+    ------
+    InputError
+        When the catalogue's table of it is wrong.
+    """
+    entry = entries().get(name)
+    table = None if entry is None else entry.table.get("housing")
+    return None if table is None else read_housing(name, table)
+
+
 def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) -> SensorModel:
     """Build a sensor from a catalogue table, or a user's own of the same form.
 
@@ -113,7 +128,8 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
     ``max_range_m``; optional ``azimuth_offsets_deg`` (counter-clockwise from above) and
     ``horizontal_fov_deg``. In place of elevations and offsets, ``angles``: a file that
     `read_angles` reads, relative to `folder`. Camera: ``kind = "camera"``, ``width``,
-    ``height``, ``hfov_deg``. Other kinds: the keys of their row.
+    ``height``, ``hfov_deg``. Other kinds: the keys of their row. All: ``source``, ``note``, and
+    ``housing`` (see `read_housing`), which is no part of the sensor.
 
     Raises
     ------
@@ -129,6 +145,8 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
         raise InputError(
             name, unknown[0], f"one of {', '.join(sorted(kind.keys))}", "an unknown key"
         )
+    if "housing" in table:
+        read_housing(name, table["housing"])
     return kind.read(name, table, folder or Path())
 
 

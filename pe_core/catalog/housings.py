@@ -1,0 +1,58 @@
+"""The table of a sensor's housing in the catalogue."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ..errors import InputError, shown
+from ..scene.housing import NEAR, SHAPES, Housing
+from ..text.values import A_TEXT, LENGTH, choice, vector
+
+KEYS = {
+    "cylinder": frozenset({"shape", "diameter", "height", "optical_height", "source"}),
+    "box": frozenset({"shape", "size", "optical_center", "source"}),
+}
+
+
+def read_housing(name: str, table: Any) -> Housing:
+    """Build a housing from its table; lengths in metres.
+
+    ``shape = "cylinder"``, ``diameter``, ``height``, and ``optical_height``, of the optical centre
+    above the base (without it: half way up). Or ``shape = "box"``, ``size`` along x, y and z, and
+    ``optical_center`` from the middle of the base (without it: in the middle of the front).
+    ``source``: where the figures come from, and what is assumed.
+
+    Raises
+    ------
+    InputError
+        When it is no table, a key is unknown or a value impossible.
+    """
+    if not isinstance(table, Mapping):
+        raise InputError(name, "housing", "a table", shown(table))
+    shape = choice(name, "housing.shape", table.get("shape"), SHAPES)
+    unknown = sorted(map(str, set(table) - KEYS[shape]))
+    if unknown:
+        known = ", ".join(sorted(KEYS[shape]))
+        raise InputError(name, f"housing.{unknown[0]}", f"one of {known}", "an unknown key")
+    source = A_TEXT.checked(name, "housing.source", table.get("source"))
+    size, center = (_box if shape == "box" else _cylinder)(name, table)
+    return Housing(shape, size, center, source)
+
+
+def _cylinder(name: str, table: Mapping[str, Any]) -> tuple[Any, Any]:
+    """A cylinder's size and optical centre."""
+    diameter, height = (
+        LENGTH.checked(name, f"housing.{key}", table.get(key)) for key in ("diameter", "height")
+    )
+    half = height / 2.0
+    center = NEAR.checked(name, "housing.optical_height", table.get("optical_height", half))
+    return (diameter, diameter, height), (0.0, 0.0, center)
+
+
+def _box(name: str, table: Mapping[str, Any]) -> tuple[Any, Any]:
+    """A box's size and optical centre."""
+    size = vector(name, "housing.size", table.get("size"), 3, LENGTH)
+    front = (size[0] / 2.0, 0.0, size[2] / 2.0)
+    given = table.get("optical_center", front)
+    return size, vector(name, "housing.optical_center", given, 3, NEAR)

@@ -1,5 +1,6 @@
 """Kinds of sensors: one folder a kind, with its beams or pixels and all that counts them."""
 
+from .by_name import MeasuredByName
 from .camera import CAMERA, Camera
 from .kernels import GridKernel, Measured, SampleKernel, Stopped, Voxels
 from .kind import Kind
@@ -17,6 +18,7 @@ __all__ = [
     "Kind",
     "Lidar",
     "Measured",
+    "MeasuredByName",
     "PerceptionModel",
     "SampleKernel",
     "Stopped",

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinds import Measured, SampleKernel, Voxels, kind_of
+from ..kinds import MeasuredByName, Voxels
 from ..metric.entropy import H_BLIND
 from ..metric.fusion import Fusion
 from ..prior.prior import ClassDensity
@@ -35,8 +35,7 @@ class Judgement(NamedTuple):
 class SampledScorer:
     """Scores rigs on one fixed sample of voxels; a sensor that has not moved is not remeasured.
 
-    What was measured last is kept by the sensor's name, for the sensors of the last rig. One thread
-    at a time: others wait.
+    One thread at a time: others wait.
     """
 
     def __init__(
@@ -48,19 +47,19 @@ class SampledScorer:
         samples: int,
         shift: tuple[float, float, float] = CENTERED,
     ) -> None:
-        self._space, self._vehicle, self._fusion = space, vehicle, fusion
+        self._vehicle, self._fusion = vehicle, fusion
         tops = None if vehicle is None else vehicle.top(space)
         self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
         outside_masses(densities, space, tops)  # complains when nothing is left to weigh
-        self._kernels: dict[str, SampleKernel] = {}  # by kind: as many as there are
-        self._measured: dict[str, Measured] = {}  # by sensor name: those of the last rig
+        voxels = Voxels(space, self._sample.index, self._sample.centers)
+        self._sensors = MeasuredByName(voxels, vehicle, fusion.enough)
         self._is_free = RLock()
 
     def entropy(self, rig: Rig, draft: bool = False) -> float:
         """Perception entropy alone."""
         with self._is_free:
-            self._measure(rig, draft)
-            return self._entropy_of(rig, {name: known.m for name, known in self._measured.items()})
+            self._sensors.measure(rig, draft)
+            return self._entropy_of(rig, self._sensors.m)
 
     def judge(self, rig: Rig, below: float) -> Judgement:
         """Perception entropy, or a lower bound of it where that already is not below `below`."""
@@ -77,24 +76,24 @@ class SampledScorer:
         The vehicle takes beams and pixels away and adds none, so without it the entropy is no
         higher. It is asked about one moved sensor after the other, as long as that may matter.
         """
-        moved = [s for s in rig if self._known(s, False) is None]
+        known = {s.name: self._sensors.known(s, False) for s in rig}
+        moved = [s for s in rig if known[s.name] is None]
         m = {
-            s.name: self._kernel(s).unhidden(s) if s in moved else self._measured[s.name].m
+            s.name: self._sensors.unhidden(s) if (own := known[s.name]) is None else own.m
             for s in rig
         }
         bound = self._entropy_of(rig, m)
         for sensor in moved[:-1]:
             if bound >= below:
                 break
-            self._measured[sensor.name] = self._kernel(sensor).measure(sensor, False)
-            m[sensor.name] = self._measured[sensor.name].m
+            m[sensor.name] = self._sensors.measure_again(sensor)
             bound = self._entropy_of(rig, m)
         return bound
 
     def score(self, rig: Rig, draft: bool = False) -> Score:
         """Everything a sampled score tells."""
         with self._is_free:
-            self._measure(rig, draft)
+            self._sensors.measure(rig, draft)
             entropies, seen = self._entropies(rig, [s.name for s in rig])
             entropy, coverage = self._whole(entropies, seen)
             return Score(
@@ -105,30 +104,8 @@ class SampledScorer:
                 self._zones(entropies, seen),
                 {s.name: self._sensor(s, rig, entropy) for s in rig},
                 len(self._sample.index),
-                draft=any(known.draft for known in self._measured.values()),
+                draft=any(known.draft for known in self._sensors.last.values()),
             )
-
-    def _kernel(self, sensor: Sensor) -> SampleKernel:
-        """Return what measures sensors of its kind."""
-        kind = kind_of(sensor)
-        if kind.name not in self._kernels:
-            voxels = Voxels(self._space, self._sample.index, self._sample.centers)
-            enough = self._fusion.enough(kind.name)
-            self._kernels[kind.name] = kind.on_sample(voxels, self._vehicle, enough)
-        return self._kernels[kind.name]
-
-    def _measure(self, rig: Rig, draft: bool) -> None:
-        """Measure what has moved, or is known as a draft only and now asked for in earnest."""
-        self._measured = {
-            s.name: self._known(s, draft) or self._kernel(s).measure(s, draft) for s in rig
-        }
-        for kernel in self._kernels.values():
-            kernel.forget_all_but(rig.sensors)
-
-    def _known(self, sensor: Sensor, draft: bool) -> Measured | None:
-        known = self._measured.get(sensor.name)
-        fits = known and (draft or not known.draft) and known.sensor.model is sensor.model
-        return known if known and fits and known.sensor.pose == sensor.pose else None
 
     def _entropy_of(self, rig: Rig, measured: Mapping[str, NDArray]) -> float:
         names = [s.name for s in rig]
@@ -136,8 +113,7 @@ class SampledScorer:
 
     def _entropies(self, rig: Rig, members: Collection[str]) -> tuple[Floats, NDArray[np.bool_]]:
         """Entropy of every sampled voxel and whether it is seen, by some of the rig's sensors."""
-        measured = {name: known.m for name, known in self._measured.items()}
-        return self._fusion.entropies(fused_early(rig, measured, members))
+        return self._fusion.entropies(fused_early(rig, self._sensors.m, members))
 
     def _whole(self, entropies: Floats, seen: NDArray[np.bool_]) -> tuple[float, float]:
         """Mean entropy and coverage."""
@@ -168,7 +144,7 @@ class SampledScorer:
         alone, coverage = self._whole(*self._entropies(rig, [sensor.name]))
         others = [s.name for s in rig if s.name != sensor.name]
         failed = self._whole(*self._entropies(rig, others))[0] if others else H_BLIND
-        stopped = self._kernel(sensor).stopped(self._measured[sensor.name])
+        stopped = self._sensors.stopped(sensor)
         return sensor_score(alone, coverage, rounded(failed - entropy), stopped)
 
     def _standard_error(self, entropies: Floats) -> float:

@@ -9,6 +9,7 @@ from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import Housing, PerceptionSpace, Pose, Rig, Sensor, Vehicle, cuts_body
 from .scoring import Evaluator, GroundMap, PartScore, Score, SensorScore
 from .search import Schedule, SearchSpace, Step, optimize
+from .sight import BlindGround, GroundSight, Reach, Sight
 from .study import (
     Job,
     OptimizeJob,
@@ -31,12 +32,14 @@ from .version import __version__
 __all__ = [
     "ApCurve",
     "BeamField",
+    "BlindGround",
     "BoxReport",
     "Boxes",
     "Camera",
     "Evaluator",
     "Focus",
     "GroundMap",
+    "GroundSight",
     "Housing",
     "InputError",
     "Job",
@@ -51,6 +54,7 @@ __all__ = [
     "Pose",
     "Prior",
     "Progress",
+    "Reach",
     "Rig",
     "Schedule",
     "Score",
@@ -59,6 +63,7 @@ __all__ = [
     "SearchSpace",
     "Sensor",
     "SensorScore",
+    "Sight",
     "Step",
     "Study",
     "Vehicle",

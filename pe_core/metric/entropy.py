@@ -73,6 +73,12 @@ def entropy_of(precision: ArrayLike) -> Floats:
     return GAUSSIAN_2D - np.log(np.asarray(precision, dtype=float))
 
 
+def ap_of_entropy(entropies: ArrayLike) -> Floats:
+    """AP = 1 / (1 + sigma) of what has that entropy: eqs. 8 and 5 backwards."""
+    sigma = np.exp((np.asarray(entropies, dtype=float) - GAUSSIAN_2D) / 2.0)
+    return np.asarray(1.0 / (1.0 + sigma))
+
+
 def perception_entropy(entropies: ArrayLike, weights: ArrayLike) -> float:
     """PE = sum p H / sum p, eq. 9 [nats]. Lower is better."""
     w = np.asarray(weights, dtype=float)

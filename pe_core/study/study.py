@@ -21,6 +21,7 @@ from ..scoring.evaluator import Evaluator
 from ..scoring.sampling import samples_or_grid
 from ..search import AXES, PAPER_FREE, Schedule, SearchSpace
 from ..search.search_space import checked_axes, checked_bounds
+from ..sight import Sight
 from ..text.fixed import FixedDict
 from ..text.values import A_NAME, A_PATH, Whole
 
@@ -111,6 +112,10 @@ class Study:
             model=self.model,
             workers=workers,
         )
+
+    def sight(self) -> Sight:
+        """Return what tells the places that rigs of this study see."""
+        return Sight(self.space, self.prior, self.vehicle, model=self.model)
 
     def search_space(self) -> SearchSpace:
         """Return free axes and bounds, in radians."""

@@ -22,17 +22,18 @@ ALLOWED = {
     "kinds": {"errors", "text", "metric", "scene"},
     "formats": {"errors", "text", "metric", "scene", "prior", "kinds"},
     "scoring": {"errors", "text", "metric", "scene", "prior", "kinds"},
+    "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
     "search": {"errors", "text", "scene", "scoring"},
     "catalog": {"errors", "text", "scene", "kinds"},
     "study": {
         *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
-        *("formats", "scoring", "search", "catalog"),
+        *("formats", "scoring", "sight", "search", "catalog"),
     },
     "public": {
         *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
-        *("search", "catalog", "study"),
+        *("sight", "search", "catalog", "study"),
     },
-    "app": {"errors", "version", "text", "kinds", "catalog", "study"},
+    "app": {"errors", "version", "text", "kinds", "catalog", "sight", "study"},
     "__main__": {"app"},
 }
 """Rooms of the engine, lowest first, and those they may look into: all of them further up here."""

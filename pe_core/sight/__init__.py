@@ -1,0 +1,8 @@
+"""What a rig sees, place by place: the ground map, blind ground round the vehicle, reach."""
+
+from .blind import BlindGround, BlindSpot
+from .ground import GroundSight
+from .reach import Reach
+from .sight import Sight, expected_ap
+
+__all__ = ["BlindGround", "BlindSpot", "GroundSight", "Reach", "Sight", "expected_ap"]

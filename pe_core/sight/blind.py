@@ -1,0 +1,182 @@
+"""Blind ground: where round the vehicle nothing is seen, as outlines and as distances by side.
+
+Beams of a LiDAR leave gaps that no object fits into. So ground is blind where a disc of the
+diameter `GAP_M` finds room in which nothing is seen (the morphological opening of the unseen
+ground, or the closing of the seen): a narrower gap is none. The ground under the vehicle counts as
+unseen for that, so that a strip along the body is not lost, but is no blind ground; beyond the edge
+of what is looked at it goes on as at the edge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..scene.frozen import frozen
+from ..scene.vehicle import Vehicle
+from .cells import Cells, Rectangle
+from .outline import outlines
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+GAP_M = 0.3
+"""Gaps narrower than this are no blind ground: less than a small child is wide."""
+NO_BODY_M = 1.0
+"""Half the side of the square that stands for the body where there is no vehicle."""
+DECIMALS = 6
+"""Distances are rounded to the micrometre."""
+SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
+"""By side: the axis that leads there, and which way."""
+
+
+@dataclass(frozen=True, slots=True)
+class BlindSpot:
+    """A place that is not seen: `point` (2,) and its distance from the vehicle's body, in m."""
+
+    point: tuple[float, float]
+    distance: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BlindGround:
+    """Ground round the vehicle that no sensor sees.
+
+    Attributes
+    ----------
+    outlines : tuple of (N, 2) float
+        Closed lines round it, the blind ground on their left; the last point is the first [m].
+    area : float
+        [m2]
+    height : float
+        Where it was looked [m].
+    within : float
+        How far from the body's rectangle it was looked [m].
+    nearest : dict of BlindSpot or None
+        By side (front, rear, left, right): the nearest blind place in the strip that the body's
+        rectangle sweeps to that side; None where there is none.
+    seen_from : dict of float or None
+        By side: the distance from the body from which on that strip has no blind place any more, as
+        far as was looked [m]; None where there is one at the edge.
+    draft : bool
+        Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+    """
+
+    outlines: tuple[Floats, ...]
+    area: float
+    height: float
+    within: float
+    nearest: Mapping[str, BlindSpot | None]
+    seen_from: Mapping[str, float | None]
+    draft: bool = False
+
+
+def body_rectangle(vehicle: Vehicle | None) -> Rectangle:
+    """((x, x), (y, y)) of the vehicle seen from above [m]."""
+    if vehicle is None:
+        return (-NO_BODY_M, NO_BODY_M), (-NO_BODY_M, NO_BODY_M)
+    (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.bounds)
+    return (x0, x1), (y0, y1)
+
+
+def blind_ground(
+    cells: Cells, blind: Flags, body: Rectangle, height: float, within: float, draft: bool
+) -> BlindGround:
+    """Put together what is told of blind cells (NX, NY) round a body's rectangle."""
+    strips = {side: _Strip.of(cells, blind, body, side) for side in SIDES}
+    return BlindGround(
+        tuple(map(frozen, outlines(blind.astype(float), 0.5, cells.x, cells.y))),
+        float(np.count_nonzero(blind)) * cells.step**2,
+        height,
+        within,
+        MappingProxyType({side: strip.nearest() for side, strip in strips.items()}),
+        MappingProxyType({side: strip.seen_from() for side, strip in strips.items()}),
+        draft,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Strip:
+    """The strip that a body's rectangle sweeps to a side: its blind cells from the body outwards.
+
+    `blind` (N, W) rows away from the body, and where each row begins, (N,) [m] from the body.
+    """
+
+    blind: Flags
+    distance: Floats
+    across: Floats
+    edge: float
+    step: float
+    axis: int
+    sign: int
+
+    @classmethod
+    def of(cls, cells: Cells, blind: Flags, body: Rectangle, side: str) -> _Strip:
+        axis, sign = SIDES[side]
+        along, across = (cells.x, cells.y)[axis], (cells.x, cells.y)[1 - axis]
+        edge = body[axis][1] if sign > 0 else body[axis][0]
+        low, high = body[1 - axis]
+        rows = np.flatnonzero(sign * (along - edge) > 0.0)[::sign]
+        columns = np.flatnonzero((across >= low) & (across <= high))
+        turned = blind if axis == 0 else blind.T
+        distance = np.maximum(sign * (along[rows] - edge) - cells.step / 2.0, 0.0)
+        distance = np.round(distance, DECIMALS)
+        return cls(
+            turned[np.ix_(rows, columns)], distance, across[columns], edge, cells.step, axis, sign
+        )
+
+    def nearest(self) -> BlindSpot | None:
+        """The nearest blind place, in the middle of the strip if there are several."""
+        rows = np.flatnonzero(self.blind.any(axis=1))
+        if not len(rows):
+            return None
+        there = self.across[self.blind[rows[0]]]
+        middle = (self.across[0] + self.across[-1]) / 2.0
+        beside = float(there[np.argmin(np.abs(there - middle))])
+        distance = float(self.distance[rows[0]])
+        along = self.edge + self.sign * distance
+        return BlindSpot((along, beside) if self.axis == 0 else (beside, along), distance)
+
+    def seen_from(self) -> float | None:
+        """How far from the body the last blind place ends; None at the edge."""
+        rows = np.flatnonzero(self.blind.any(axis=1))
+        if not self.blind.size or (len(rows) and rows[-1] == len(self.blind) - 1):
+            return None
+        return float(self.distance[rows[-1] + 1]) if len(rows) else 0.0
+
+
+def blind_cells(seen: Flags, vehicle: Flags, step: float) -> Flags:
+    """Which cells (NX, NY) are blind, by those that are seen and those that are the vehicle's."""
+    return opened(~seen | vehicle, GAP_M / 2.0 / step) & ~vehicle
+
+
+def opened(flags: Flags, radius: float) -> Flags:
+    """Union of the discs of that radius, in cells, that fit into a region and beyond its edges."""
+    disc = _disc(radius)
+    reach = int(np.abs(disc).max())
+    padded = np.pad(flags, 2 * reach, mode="edge")
+    kept = _spread(~_spread(~padded, disc), disc)
+    inner = slice(2 * reach, kept.shape[0] - 2 * reach), slice(2 * reach, kept.shape[1] - 2 * reach)
+    return kept[inner]
+
+
+def _disc(radius: float) -> NDArray[np.int64]:
+    """(N, 2) steps from a cell to those whose middle is not farther away."""
+    reach = int(radius)
+    steps = np.indices((2 * reach + 1, 2 * reach + 1)).reshape(2, -1).T - reach
+    return steps[(steps**2).sum(axis=1) <= radius**2]
+
+
+def _spread(flags: Flags, steps: NDArray[np.int64]) -> Flags:
+    """Set what is a step away from anything set."""
+    found = np.zeros_like(flags)
+    nx, ny = flags.shape
+    for i, j in steps.tolist():
+        to = slice(max(i, 0), nx + min(i, 0)), slice(max(j, 0), ny + min(j, 0))
+        of = slice(max(-i, 0), nx + min(-i, 0)), slice(max(-j, 0), ny + min(-j, 0))
+        found[to] |= flags[of]
+    return found

@@ -1,0 +1,141 @@
+"""Reach: how far away objects of a class are still found.
+
+What is expected of a class at a place is the mean of AP (eqs. 4 to 7) over the class's height
+profile in the prior. Along each bearing it is worked out in rings of `RING_M`, as the mean of
+voxels spread over the ring's piece and the height, and then smoothed over `SMOOTHED_M`: a running
+mean, so that the rings of a LiDAR and the single voxels between far beams do not end the reach.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError, shown
+from ..prior.prior import ClassDensity
+from ..scene.space import PerceptionSpace
+from ..scoring.sampling import CENTERED
+from ..scoring.sobol import scrambled_sobol
+from ..text.values import Number, Whole
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+RING_M = 1.0
+SMOOTHED_M = 3.0
+"""The rings of three metres: about as long as the objects that are looked for."""
+VOXELS = 16
+"""Voxels of a ring's piece."""
+AP = Number(0.0, 1.0, above=True, below=True)
+BEARINGS = Whole(4, 720)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reach:
+    """How far away a class is still found, by bearing.
+
+    Attributes
+    ----------
+    class_name : str
+    ap : float
+        What AP is asked for.
+    bearings : (B,) float
+        From straight ahead, to the left [rad].
+    distance : (B,) float
+        From the origin: as far as the class's AP is expected to be at least `ap`, without a break
+        since it began to be [m]; 0 where it never is.
+    per_sensor : dict of (B,) float
+        The same for each sensor alone, by name.
+    limit : (B,) float
+        Where the space ends [m]: a reach that equals it is "at least".
+    draft : bool
+        Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+    """
+
+    class_name: str
+    ap: float
+    bearings: Floats
+    distance: Floats
+    per_sensor: Mapping[str, Floats]
+    limit: Floats
+    draft: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Spokes:
+    """Voxels along bearings: `index` (B * R * VOXELS, 3), `weights` (B, R, VOXELS).
+
+    A voxel in the vehicle or beyond the space weighs nothing. `limit` (B,) is where the space ends.
+    """
+
+    bearings: Floats
+    limit: Floats
+    index: Ints
+    weights: Floats
+
+    @classmethod
+    def of(
+        cls, space: PerceptionSpace, tops: Floats | None, density: ClassDensity, bearings: int
+    ) -> Spokes:
+        """Choose voxels for a class, round the origin."""
+        angles = np.array([2.0 * math.pi * b / bearings for b in range(bearings)])
+        limit = np.array([_edge(space, angle) for angle in angles.tolist()])
+        rings = max(1, math.ceil(limit.max() / RING_M))
+        u = scrambled_sobol(bearings * rings * VOXELS, CENTERED).reshape(bearings, rings, VOXELS, 3)
+        distance = (np.arange(rings)[:, None] + u[..., 0]) * RING_M
+        turn = (u[..., 1] - 0.5) * (2.0 * math.pi / bearings)
+        bearing = np.mod(angles[:, None, None] + turn + math.pi, 2.0 * math.pi) - math.pi
+        x, y = distance * np.cos(bearing), distance * np.sin(bearing)
+        k = np.searchsorted(np.cumsum(density.profile), u[..., 2], side="right")
+        k = np.minimum(k, space.shape[2] - 1)
+        places = np.stack([x, y, space.centers(2)[k]], axis=-1)
+        index = np.floor((places - space.origin) / space.interval).astype(np.int64)
+        inside = ((index >= 0) & (index < space.shape)).all(axis=-1)
+        index = np.clip(index, 0, np.array(space.shape) - 1)
+        if tops is not None:
+            i, j, k = np.moveaxis(index, -1, 0)
+            inside &= space.centers(2)[k] >= tops[i, j]
+        return cls(angles, limit, index.reshape(-1, 3), inside.astype(float))
+
+    def distance(self, ap: Floats, least: float) -> Floats:
+        """How far AP (V,) of the voxels is at least so much, (B,) [m]."""
+        sums = (ap.reshape(self.weights.shape) * self.weights).sum(axis=2)
+        mean = _running(sums) / np.maximum(_running(self.weights.sum(axis=2)), 1e-9)
+        ends = [_end_of_longest(row >= least) for row in mean]
+        return np.minimum(np.array(ends, dtype=float) * RING_M, self.limit)
+
+
+def density_of(densities: list[ClassDensity], name: str) -> ClassDensity:
+    """Return the class of that name; `InputError` where there is none."""
+    for density in densities:
+        if density.name == name:
+            return density
+    names = ", ".join(d.name for d in densities)
+    raise InputError("sight", "class_name", f"one of {names}", shown(name))
+
+
+def _edge(space: PerceptionSpace, bearing: float) -> float:
+    """How far the space reaches from the origin along a bearing [m]."""
+    ends = []
+    for component, (low, high) in ((math.cos(bearing), space.x), (math.sin(bearing), space.y)):
+        if abs(component) > 1e-12:
+            ends.append((high if component > 0.0 else low) / component)
+    return max(0.0, min(ends))
+
+
+def _running(values: Floats) -> Floats:
+    """Running sums (B, R) over SMOOTHED_M; shorter at the ends."""
+    half = int(SMOOTHED_M / RING_M) // 2
+    padded = np.pad(values, ((0, 0), (half, half)))
+    return np.sum([padded[:, k : k + values.shape[1]] for k in range(2 * half + 1)], axis=0)
+
+
+def _end_of_longest(flags: NDArray[np.bool_]) -> int:
+    """Where the longest run of set flags ends, the first of several; 0 where none is set."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    starts, ends = edges[::2], edges[1::2]
+    return int(ends[np.argmax(ends - starts)]) if len(ends) else 0

@@ -1,0 +1,281 @@
+"""Sight: one problem, made ready to tell what many rigs see."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Hashable, Mapping
+from functools import cached_property
+from threading import RLock
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinds import MeasuredByName, PerceptionModel, Voxels
+from ..metric.entropy import ap_of_entropy
+from ..metric.fusion import Fusion
+from ..prior.prior import ClassDensity, Prior
+from ..scene.frozen import frozen
+from ..scene.sensors import Rig
+from ..scene.space import PerceptionSpace
+from ..scene.vehicle import Vehicle
+from ..scoring.sampling import VoxelSample, draw
+from ..scoring.subsets import fused_early
+from .blind import BlindGround, blind_cells, blind_ground, body_rectangle
+from .cells import Cells, round_a
+from .ground import GroundSight, ground_sight
+from .places import Places, at_height, by_prior
+from .reach import AP, BEARINGS, Reach, Spokes, density_of
+
+Floats = NDArray[np.float64]
+
+ORIGIN = ((0.0, 0.0), (0.0, 0.0))
+SAMPLES = 65_536
+"""Voxels that the AP by class is a mean of."""
+LOOKS_KEPT = 8
+"""Sets of voxels that are kept with what was measured on them: those asked for last."""
+
+
+class _HasVoxels(Protocol):
+    """What is looked at: voxels of the space by number."""
+
+    @property
+    def index(self) -> NDArray[np.int64]:
+        """(V, 3)."""
+
+
+P = TypeVar("P", bound=_HasVoxels)
+
+
+class _Look(Generic[P]):
+    """What is looked at, and the sensors measured on its voxels."""
+
+    def __init__(
+        self, space: PerceptionSpace, places: P, vehicle: Vehicle | None, fusion: Fusion
+    ) -> None:
+        self.places = places
+        voxels = Voxels(space, places.index, space.center_of(places.index))
+        self._sensors = MeasuredByName(voxels, vehicle, fusion.enough)
+
+    def measured(self, rig: Rig, draft: bool) -> tuple[dict[str, NDArray], bool]:
+        """m of the rig's sensors by name, (V,) each; and whether any is a draft."""
+        self._sensors.measure(rig, draft)
+        return self._sensors.m, any(known.draft for known in self._sensors.last.values())
+
+
+class Sight:
+    """Tells what rigs see in one space, under one prior, on one vehicle.
+
+    A sensor that has not moved since it was last asked about the same places is not measured again.
+    One thread at a time: others wait.
+
+    Parameters
+    ----------
+    space : PerceptionSpace
+    prior : Prior
+    vehicle : Vehicle, optional
+        None: nothing hides anything.
+    model : PerceptionModel, optional
+        AP curves and fusion rule; the paper's by default.
+
+    Raises
+    ------
+    InputError
+        When the prior has no weight in the space.
+    """
+
+    def __init__(
+        self,
+        space: PerceptionSpace,
+        prior: Prior,
+        vehicle: Vehicle | None = None,
+        *,
+        model: PerceptionModel | None = None,
+    ) -> None:
+        self.space, self.prior, self.vehicle = space, prior, vehicle
+        self._fusion = Fusion(model or PerceptionModel())
+        self._densities: list[ClassDensity] = prior.densities(space)
+        self._looks: dict[Hashable, _Look[Any]] = {}  # the one asked for last comes last
+        self._is_free = RLock()
+
+    def ground(
+        self,
+        rig: Rig,
+        height: float | None = None,
+        step: float = 1.0,
+        draft: bool = False,
+        within: float | None = None,
+    ) -> GroundSight:
+        """Tell what the rig sees of every place on the ground.
+
+        Parameters
+        ----------
+        rig : Rig
+        height : float, optional
+            Where to look: the layer of voxels that holds this height [m]. None: averaged over
+            height by the prior, as a score does.
+        step : float
+            Side of a place [m].
+        draft : bool
+            While a sensor is being moved, as in `Evaluator.score`.
+        within : float, optional
+            Half the side of the square round the origin that is looked at [m]; None: all.
+
+        Raises
+        ------
+        InputError
+            When the height is not in the space, the step is not positive or has too many places, or
+            nothing lies within.
+        """
+        with self._is_free:
+            square = None if within is None else round_a(ORIGIN, within)
+            key = ("ground", height, step, within)
+            look = self._look(key, lambda: self._places(height, Cells.of(self.space, step, square)))
+            m, drafted = look.measured(rig, draft)
+            return ground_sight(look.places, rig, m, self._fusion, height, drafted)
+
+    def blind(
+        self,
+        rig: Rig,
+        height: float = 0.0,
+        within: float = 10.0,
+        step: float = 0.1,
+        draft: bool = False,
+    ) -> BlindGround:
+        """Tell where round the vehicle nothing is seen.
+
+        Parameters
+        ----------
+        rig : Rig
+        height : float
+            Where to look: the layer of voxels that holds this height [m].
+        within : float
+            How far from the rectangle of the vehicle's body to look [m].
+        step : float
+            Side of the squares that the ground is judged in [m].
+        draft : bool
+            As in `ground`.
+
+        Raises
+        ------
+        InputError
+            When the height is not in the space, the step is not positive or has too many places, or
+            nothing lies within.
+        """
+        with self._is_free:
+            body = body_rectangle(self.vehicle)
+            part = round_a(body, within)
+            key = ("blind", height, step, within)
+            look = self._look(key, lambda: self._places(height, Cells.of(self.space, step, part)))
+            m, drafted = look.measured(rig, draft)
+            places = look.places
+            seen = places.any(np.logical_or.reduce([of_one > 0 for of_one in m.values()]))
+            blind = blind_cells(seen, places.vehicle, step)
+            return blind_ground(places.cells, blind, body, height, within, drafted)
+
+    def reach(
+        self,
+        rig: Rig,
+        class_name: str,
+        *,
+        ap: float = 0.5,
+        bearings: int = 72,
+        draft: bool = False,
+    ) -> Reach:
+        """Tell how far away objects of a class are still found, all round.
+
+        Parameters
+        ----------
+        rig : Rig
+        class_name : str
+            A class of the prior.
+        ap : float
+            What AP is to be expected, 0 to 1.
+        bearings : int
+        draft : bool
+            As in `ground`.
+
+        Raises
+        ------
+        InputError
+            When the prior has no such class, or a number is out of its range.
+        """
+        least = AP.checked("sight", "ap", ap)
+        count = BEARINGS.checked("sight", "bearings", bearings)
+        density = density_of(self._densities, class_name)
+        with self._is_free:
+            look = self._look(
+                ("reach", class_name, count),
+                lambda: Spokes.of(self.space, self._tops, density, count),
+            )
+            m, drafted = look.measured(rig, draft)
+            spokes = look.places
+            alone = {
+                s.name: frozen(spokes.distance(self._ap(rig, m, [s.name]), least)) for s in rig
+            }
+            whole = frozen(spokes.distance(self._ap(rig, m, list(m)), least))
+            return Reach(class_name, least, spokes.bearings, whole, alone, spokes.limit, drafted)
+
+    def expected_ap(self, rig: Rig, *, draft: bool = False) -> dict[str, float]:
+        """Tell the AP that is expected of the fused rig, by class: the prior's mean over voxels.
+
+        On a sample of the prior, as a sampled score.
+
+        Parameters
+        ----------
+        rig : Rig
+        draft : bool
+            As in `ground`.
+
+        Returns
+        -------
+        dict of float
+            By class, 0.001 to 1; a class without mass is left out.
+        """
+        with self._is_free:
+            look = self._look("prior", self._drawn)
+            m, _ = look.measured(rig, draft)
+            ap = self._ap(rig, m, list(m))
+            likely = look.places.classes
+            masses = likely.sum(axis=0)
+            return {
+                name: float((ap * own).sum() / mass)
+                for name, own, mass in zip(look.places.names, likely.T, masses, strict=True)
+                if mass > 0.0
+            }
+
+    def _drawn(self) -> VoxelSample:
+        return draw(self._densities, self.space, SAMPLES, self._tops)
+
+    def _ap(self, rig: Rig, m: Mapping[str, NDArray], members: Collection[str]) -> Floats:
+        """AP of every voxel, of some sensors fused: eqs. 4 to 7, and 5 backwards."""
+        entropies, _ = self._fusion.entropies(fused_early(rig, m, members))
+        return ap_of_entropy(entropies)
+
+    def _places(self, height: float | None, cells: Cells) -> Places:
+        if height is None:
+            return by_prior(cells, self.space, self._tops, self._densities)
+        return at_height(cells, self.space, self._tops, height)
+
+    @cached_property
+    def _tops(self) -> Floats | None:
+        return None if self.vehicle is None else self.vehicle.top(self.space)
+
+    def _look(self, key: Hashable, places: Callable[[], P]) -> _Look[P]:
+        """Return what is kept of what is looked at, or make it."""
+        look = self._looks.pop(key, None)
+        self._looks[key] = look or _Look(self.space, places(), self.vehicle, self._fusion)
+        while len(self._looks) > LOOKS_KEPT:
+            del self._looks[next(iter(self._looks))]
+        return self._looks[key]
+
+
+def expected_ap(
+    space: PerceptionSpace,
+    prior: Prior,
+    rig: Rig,
+    vehicle: Vehicle | None = None,
+    *,
+    model: PerceptionModel | None = None,
+) -> dict[str, float]:
+    """Tell the AP that is expected of a rig by class: `Sight.expected_ap` asked once."""
+    return Sight(space, prior, vehicle, model=model).expected_ap(rig)

@@ -1,0 +1,195 @@
+"""The ground map: held to the definition of m, to the grid's own map, and to scenes by hand."""
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import kinds
+from pe_core.kinds.lidar.on_sample import LidarSample
+from pe_core.metric.entropy import H_BLIND, entropy_of, precision_of
+from pe_core.metric.fusion import late_fusion
+from pe_core.sight import Sight
+from tests.engine import shapes
+
+SPACE = shapes.small_space(0.5)
+CAR = shapes.box_car()
+
+
+def lidar(position=(-0.43, 0.11, 1.83), rotation=(0.0, 0.0, 0.0), name="roof", **options):
+    return shapes.lidar_on_roof(shapes.small_lidar(**options), position, rotation, name)
+
+
+def sight(vehicle=CAR, space=SPACE, prior=None):
+    return Sight(space, prior or pe.Prior.road(), vehicle)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.7, 1.5, 4.9])
+def test_places_as_wide_as_a_column_are_as_defined(height):
+    """A place of one voxel has the entropy of that voxel's m, fused by the equations."""
+    rig = pe.Rig([lidar(), lidar((1.9, 0.0, 1.2), (0, 5, 0), "bonnet"), shapes.camera()])
+    ground = sight().ground(rig, height, step=0.5)
+    z = 0.25 + 0.5 * int(height / 0.5)
+    rng = np.random.default_rng(1)
+    i, j = rng.integers(0, 80, 150), rng.integers(0, 40, 150)
+    kept = ~np.isnan(ground.entropy[i, j])
+    i, j = i[kept], j[kept]
+    centers = np.stack([ground.x[i], ground.y[j], np.full(len(i), z)], axis=1)
+    m = {s.name: kinds.measure(s, centers, 0.5, CAR) for s in rig}
+    lidars = precision_of(m["roof"] + m["bonnet"], kinds.PerceptionModel().lidar)
+    camera = precision_of(m["camera"], kinds.PerceptionModel().camera)
+    assert ground.entropy[i, j] == pytest.approx(entropy_of(late_fusion([lidars, camera])), abs=0.1)
+    seen = np.stack([m[s.name] > 0 for s in rig])
+    assert np.array_equal(ground.coverage[i, j], seen.any(axis=0))
+    assert np.array_equal(ground.sensors[i, j], seen.sum(axis=0))
+    by_kind = (seen[0] | seen[1]).astype(int) + seen[2]
+    assert np.array_equal(ground.kinds[i, j], by_kind)
+    assert len(set(ground.sensors[i, j])) > 1
+
+
+def test_a_place_under_the_vehicle_s_skin_is_the_vehicle_s():
+    ground = sight().ground(pe.Rig([lidar()]), 0.0, step=0.5)
+    inside = (np.abs(ground.x) < 2.3)[:, None] & (np.abs(ground.y) < 0.9)
+    assert np.array_equal(np.isnan(ground.entropy), inside)
+    assert np.array_equal(np.isnan(ground.coverage), inside)
+    assert np.array_equal(ground.sensors == -1, inside)
+    assert np.array_equal(ground.kinds == -1, inside)
+    above = sight().ground(pe.Rig([lidar()]), 2.0, step=0.5)
+    assert not np.isnan(above.entropy).any()
+
+
+def test_averaged_over_height_it_is_the_grid_s_own_map():
+    """Mass-weighted, the means of many small places are the exact score's; so is each square's."""
+    rig, prior = pe.Rig([lidar(), shapes.camera()]), pe.Prior.road()
+    score = pe.Evaluator(SPACE, prior, CAR).score(rig)
+    ground = sight(prior=prior).ground(rig, step=0.125)
+    exact = score.ground_map
+
+    def squares(values):
+        return values.reshape(80, 4, 40, 4).mean(axis=(1, 3))
+
+    entropy, coverage = squares(ground.entropy), squares(ground.coverage)
+    mass = exact.mass / exact.mass.sum()
+    assert (entropy * mass).sum() == pytest.approx(score.entropy, abs=0.03)
+    assert (coverage * mass).sum() == pytest.approx(score.coverage, abs=0.002)
+    assert entropy == pytest.approx(exact.entropy, abs=2.5)  # 64 voxels of two outcomes a square
+    assert np.mean(np.abs(entropy - exact.entropy)) < 0.25
+
+
+def test_a_wide_place_is_the_mean_of_what_is_in_it():
+    rig = pe.Rig([lidar(channels=64, azimuths=720)])
+    own = sight(space=shapes.small_space(0.25))
+    fine, coarse = own.ground(rig, 0.5, step=0.25), own.ground(rig, 0.5, step=2.0)
+    means = fine.entropy.reshape(20, 8, 10, 8).mean(axis=(1, 3))
+    outside = ~np.isnan(means)
+    assert outside.sum() > 180
+    assert coarse.entropy.shape == (20, 10)
+    assert np.mean(np.abs(coarse.entropy - means)[outside]) < 1.5
+    assert coarse.x[:2] == pytest.approx([-19.0, -17.0])
+
+
+@pytest.mark.parametrize("height", [None, 0.5])
+def test_mirrored_rigs_have_mirrored_maps(height):
+    own = sight()
+    left = own.ground(pe.Rig([lidar((0.3, 0.613, 1.62), (2, 4, 31))]), height)
+    right = own.ground(pe.Rig([lidar((0.3, -0.613, 1.62), (-2, 4, -31))]), height)
+    assert left.coverage == pytest.approx(right.coverage[:, ::-1], abs=1e-9, nan_ok=True)
+    assert np.array_equal(left.sensors, right.sensors[:, ::-1])
+    assert left.entropy == pytest.approx(right.entropy[:, ::-1], abs=1e-9, nan_ok=True)
+    assert np.nanmax(np.abs(left.coverage - left.coverage[:, ::-1])) > 0.5
+
+
+def test_nothing_is_seen_behind_a_wall():
+    """A wall from the ground to the sky at x = 5: the columns behind it are as blind as can be."""
+    wall = pe.Vehicle(shapes.box((5.0, -10.0, 0.0), (5.2, 10.0, 40.0)))
+    ground = sight(wall).ground(pe.Rig([lidar(channels=64)]), 1.0)
+    behind = ground.x > 6.0
+    assert (ground.entropy[behind] == H_BLIND).all()
+    assert (ground.coverage[behind] == 0.0).all() and (ground.sensors[behind] == 0).all()
+    assert (ground.coverage[(ground.x > 0.0) & (ground.x < 4.0)] > 0.0).any()
+
+
+def test_where_no_object_is_ever_met_there_is_a_map_all_the_same():
+    """Labelled boxes leave most of the ground without mass: it is looked at as elsewhere."""
+    row = {"x": 8.0, "y": 3.0, "z": 0.75, "length": 4.0, "width": 2.0, "height": 1.5, "yaw": 0.0}
+    boxes = pe.Boxes.of({"class": ["car"], **{name: [value] for name, value in row.items()}})
+    ground = sight(prior=pe.Prior.from_boxes(boxes)).ground(pe.Rig([lidar()]))
+    assert np.isfinite(ground.entropy).sum() > 760
+    assert 0.0 < np.nanmean(ground.coverage) < 1.0
+
+
+@pytest.fixture
+def measured(monkeypatch):
+    """Names of the LiDARs that are measured, in order."""
+    names, plain = [], LidarSample.measure
+
+    def recording(self, sensor, draft):
+        names.append(sensor.name)
+        return plain(self, sensor, draft)
+
+    monkeypatch.setattr(LidarSample, "measure", recording)
+    return names
+
+
+def test_a_sensor_that_stayed_is_not_measured_again(measured):
+    own = sight()
+    first, second = lidar(), lidar((1.9, 0.0, 1.2), name="bonnet")
+    one = own.ground(pe.Rig([first, second]), 0.5)
+    again = own.ground(pe.Rig([first, second]), 0.5)
+    assert measured == ["roof", "bonnet"]
+    assert np.array_equal(one.entropy, again.entropy, equal_nan=True)
+    moved = second.moved(pe.Pose((1.9, 0.1, 1.2)))
+    there = own.ground(pe.Rig([first, moved]), 0.5)
+    assert measured == ["roof", "bonnet", "bonnet"]
+    fresh = sight().ground(pe.Rig([first, moved]), 0.5)
+    assert np.array_equal(there.entropy, fresh.entropy, equal_nan=True)
+    assert not np.array_equal(there.entropy, one.entropy, equal_nan=True)
+
+
+def test_a_draft_says_so_and_the_next_does_not(measured):
+    own, rig = sight(shapes.box_car(2)), pe.Rig([lidar((0.3, 0.2, 1.6))])
+    draft = own.ground(rig, 0.5, draft=True)
+    assert draft.draft
+    exact = own.ground(rig, 0.5)
+    assert not exact.draft and measured == ["roof", "roof"]
+    assert np.nanmean(np.abs(draft.coverage - exact.coverage)) < 0.01
+
+
+def test_two_of_a_kind_find_the_same_bits():
+    rig = pe.Rig([lidar(), shapes.camera()])
+    one, two = sight().ground(rig), sight().ground(rig)
+    for name in ("x", "y", "entropy", "coverage", "sensors", "kinds"):
+        a, b = getattr(one, name), getattr(two, name)
+        assert a.tobytes() == b.tobytes() and not a.flags.writeable
+
+
+def test_within_looks_at_a_square_alone():
+    own, rig = sight(), pe.Rig([lidar()])
+    part, whole = own.ground(rig, 0.5, step=0.5, within=5.0), own.ground(rig, 0.5, step=0.5)
+    assert part.entropy.shape == (20, 20) and (part.x[0], part.x[-1]) == (-4.75, 4.75)
+    assert np.array_equal(part.entropy, whole.entropy[30:50, 10:30], equal_nan=True)
+
+
+def test_a_study_has_one():
+    study = pe.Study(pe.Rig([lidar()]), CAR, SPACE)
+    ground = study.sight().ground(study.rig)
+    fresh = sight().ground(study.rig)
+    assert np.array_equal(ground.entropy, fresh.entropy, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("asked", "line"),
+    [
+        ({"height": 5.0}, r"sight: height: expected a height in the space, z = \[0, 5\], found 5"),
+        ({"height": -0.1}, r"sight: height: expected a height in the space"),
+        ({"height": "low"}, r"sight: height: expected a finite number"),
+        ({"step": 0.0}, r"sight: step: expected a length above 0 m, found 0"),
+        ({"step": -1.0}, r"sight: step: expected a length above 0 m, found -1"),
+        ({"step": 1e-3}, r"sight: step: expected a step with at most 2,097,152 places"),
+        ({"within": 0.0}, r"sight: within: expected a length above 0 m"),
+        ({"within": 0.1}, r"sight: within: expected a part of the space"),
+    ],
+)
+def test_what_cannot_be_looked_at_is_told_in_a_line(asked, line):
+    with pytest.raises(pe.InputError, match=line) as told:
+        sight().ground(pe.Rig([lidar()]), **asked)
+    assert "\n" not in str(told.value)

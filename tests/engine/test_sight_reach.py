@@ -1,0 +1,130 @@
+"""Reach and expected AP: by hand, and held to the definition."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import kinds, sight
+from pe_core.metric.entropy import AP_MIN, ap_of_entropy, average_precision, entropy_of, sigma_of
+from tests.engine import shapes
+
+SPACE = pe.PerceptionSpace((-60, 60), (-20, 20), (1, 2), 0.5)
+UNIFORM = pe.Prior.uniform()
+
+
+def dense_lidar(max_range, position=(0.03, 0.01, 1.52)):
+    """Beams so close that nearly every voxel has one."""
+    model = pe.Lidar("dense", np.radians(np.linspace(-35, 35, 141)), 720, max_range)
+    return pe.Sensor("dense", model, pe.Pose(position))
+
+
+def test_a_lidar_reaches_as_far_as_its_beams():
+    reach = sight.Sight(SPACE, UNIFORM).reach(pe.Rig([dense_lidar(15.0)]), "any", bearings=36)
+    assert reach.distance == pytest.approx(np.full(36, 15.0), abs=1.0)
+    assert np.array_equal(reach.per_sensor["dense"], reach.distance)
+    assert reach.bearings[:2] == pytest.approx([0.0, math.radians(10.0)])
+
+
+def test_where_the_space_ends_a_reach_is_at_least():
+    reach = sight.Sight(SPACE, UNIFORM).reach(pe.Rig([dense_lidar(200.0)]), "any", bearings=4)
+    assert reach.limit == pytest.approx([60.0, 20.0, 60.0, 20.0])
+    assert np.array_equal(reach.distance, reach.limit)
+
+
+def test_a_camera_reaches_as_far_as_the_definition_has_it():
+    """Ahead, where the mean AP of voxels over the height falls below the value asked for."""
+    rig = pe.Rig([shapes.camera(60.0, (0.0, 0.0, 1.5))])
+    own = sight.Sight(SPACE, UNIFORM)
+    curve = kinds.PerceptionModel().camera
+    for ap in (0.5, 0.55, 0.6):
+        x = SPACE.centers(0)
+        x = x[x > 0.0]
+        centers = np.array([(w, 0.25, z) for w in x for z in (1.25, 1.75)])
+        m = kinds.measure(rig["camera"], centers, 0.5).reshape(-1, 2)
+        mean = average_precision(m, curve).mean(axis=1)
+        farthest = x[mean >= ap].max()
+        reach = own.reach(rig, "any", ap=ap, bearings=360)
+        assert reach.distance[0] == pytest.approx(farthest, abs=1.0)
+        assert 5.0 < farthest < 55.0
+        assert reach.distance[180] == 0.0  # behind it
+
+
+def test_the_blind_zone_near_by_does_not_end_a_reach():
+    """Channels from 4 to 2 degrees down see objects of the uniform layer from some metres on."""
+    elevations = np.radians(np.linspace(-4.0, 0.0, 200))
+    model = pe.Lidar("far", elevations, 1440, 30.0)
+    rig = pe.Rig([pe.Sensor("far", model, pe.Pose((0.0, 0.0, 2.6)))])
+    own = sight.Sight(SPACE, UNIFORM)
+    assert own.ground(rig, 1.5, step=0.5, within=3.0).coverage.max() == 0.0
+    assert own.reach(rig, "any", bearings=4).distance[0] == pytest.approx(30.0, abs=1.0)
+
+
+def test_a_rig_reaches_no_less_than_its_sensors():
+    front = shapes.lidar_on_roof(shapes.small_lidar(64, 720), (1.0, 0.0, 1.6), name="front")
+    rear = shapes.lidar_on_roof(shapes.small_lidar(64, 720), (-1.0, 0.0, 1.6), name="rear")
+    rig = pe.Rig([front, rear, shapes.camera()])
+    space = pe.PerceptionSpace(interval=0.25)
+    reach = sight.Sight(space, pe.Prior.road(), shapes.box_car()).reach(rig, "car")
+    assert list(reach.per_sensor) == ["front", "rear", "camera"]
+    assert (reach.distance >= np.max(list(reach.per_sensor.values()), axis=0)).all()
+    assert (reach.distance > np.max(list(reach.per_sensor.values()), axis=0)).any()
+    assert (reach.distance <= reach.limit).all()
+
+
+def test_what_is_asked_for_less_is_found_farther():
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(64, 720))])
+    own = sight.Sight(pe.PerceptionSpace(interval=0.5), pe.Prior.road())
+    near, far = (own.reach(rig, "pedestrian", ap=ap).distance for ap in (0.7, 0.3))
+    assert (near <= far).all() and near.sum() < far.sum()
+
+
+def test_two_of_a_kind_find_the_same_bits():
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
+    one, two = (
+        sight.Sight(shapes.small_space(), pe.Prior.road()).reach(rig, "car") for _ in range(2)
+    )
+    assert one.distance.tobytes() == two.distance.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("name", "asked", "line"),
+    [
+        ("tram", {}, "sight: class_name: expected one of car, pedestrian, cyclist, truck, cone"),
+        (None, {}, "sight: class_name: expected one of car"),
+        ("car", {"ap": 0.0}, "sight: ap: expected a number above 0 and below 1, found 0"),
+        ("car", {"ap": 1.5}, "sight: ap: expected a number above 0 and below 1, found 1.5"),
+        ("car", {"bearings": 3}, "sight: bearings: expected a whole number >= 4, found 3"),
+    ],
+)
+def test_what_cannot_be_asked_is_told_in_a_line(name, asked, line):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
+    with pytest.raises(pe.InputError, match=line):
+        sight.Sight(shapes.small_space(), pe.Prior.road()).reach(rig, name, **asked)
+
+
+def test_ap_of_an_entropy_undoes_the_equations():
+    ap = np.array([0.001, 0.2, 0.5, 0.999])
+    assert ap_of_entropy(entropy_of(sigma_of(ap) ** -2)) == pytest.approx(ap, rel=1e-12)
+
+
+def test_expected_ap_is_the_prior_s_mean():
+    """Against every voxel of a space, measured by the definition."""
+    space, prior = shapes.small_space(), pe.Prior.road()
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
+    index = np.indices(space.shape).reshape(3, -1).T
+    m = kinds.measure(rig["roof"], space.center_of(index), space.interval)
+    ap = average_precision(m, kinds.PerceptionModel().lidar).reshape(space.shape)
+    found = sight.expected_ap(space, prior, rig)
+    for density in prior.densities(space):
+        p = density.ground[:, :, None] * density.profile
+        assert found[density.name] == pytest.approx((p * ap).sum() / p.sum(), abs=0.005)
+    assert set(found) == set(prior.class_names)
+
+
+def test_a_rig_that_sees_nothing_expects_nothing():
+    up = pe.Lidar("up", np.radians([80.0, 85.0]), 36, 60.0)
+    rig = pe.Rig([pe.Sensor("up", up, pe.Pose((0.0, 0.0, 40.0)))])
+    found = sight.expected_ap(shapes.small_space(), pe.Prior.road(), rig)
+    assert list(found.values()) == pytest.approx([AP_MIN] * 5)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import body, commands, motion, operators, panels, properties, roster, stale, worker
+from . import body, commands, motion, operators, panels, properties, roster, stale, upkeep, worker
 from .overlay import handler as overlay
 
 CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
@@ -17,6 +17,7 @@ def register() -> None:
     properties.add_pointers()
     roster.register()
     body.register()
+    upkeep.register()
     motion.register()
     stale.register()
     overlay.register()
@@ -30,6 +31,7 @@ def unregister() -> None:
     overlay.unregister()
     stale.unregister()
     motion.unregister()
+    upkeep.unregister()
     body.unregister()
     roster.unregister()
     properties.remove_pointers()

@@ -24,9 +24,11 @@ def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
     settings.result_stderr = outcome.after.stderr
     settings.result_json = json.dumps(pe.result_dict(outcome, blender_version()))
     sensors = sensor_objects(scene)
+    settings.result_signature = signature(scene, sensors)
     for obj in sensors:
         _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
-    settings.result_signature = signature(scene, sensors)
+        obj.perception_entropy.result_of = obj.name
+        obj.perception_entropy.result_run = settings.result_signature
     settings.result_stale = False
     settings.has_result = True
 

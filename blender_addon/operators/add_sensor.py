@@ -5,12 +5,11 @@ from __future__ import annotations
 import bpy
 from bpy.props import StringProperty
 
+from .. import bridge
 from ..engine import catalog, kinds
 from ..properties import DEFAULT_MODEL, model_suggestions
 from .mounting import Mount, mount_of, sensible_place
 from .reports import REFUSALS, refuse
-
-COLLECTION = "Sensors"
 
 
 class PE_OT_add_sensor(bpy.types.Operator):
@@ -66,20 +65,30 @@ def new_sensor(context: bpy.types.Context, name: str, model: str, mount: Mount) 
     """Make a sensor in the scene's collection of sensors."""
     obj = bpy.data.objects.new(name, None)
     obj.empty_display_type, obj.empty_display_size = mount.display, mount.size_m
-    sensors_collection(context.scene).objects.link(obj)
-    if obj.name not in context.view_layer.objects:  # that collection is excluded from the view
-        context.scene.collection.objects.link(obj)
+    shown_collection(context).objects.link(obj)
     obj.perception_entropy.model = model
     obj.perception_entropy.is_sensor = True
     return obj
 
 
+def shown_collection(context: bpy.types.Context) -> bpy.types.Collection:
+    """Return the collection of sensors, or the scene's own where that one is out of the view."""
+    wanted = sensors_collection(context.scene)
+    waiting = [context.view_layer.layer_collection]
+    while waiting:
+        layer = waiting.pop()
+        if layer.collection == wanted and not layer.exclude:
+            return wanted
+        waiting += layer.children
+    return context.scene.collection
+
+
 def sensors_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
     """Return the scene's collection of sensors; make it if there is none."""
     for child in scene.collection.children_recursive:
-        if child.name == COLLECTION:
+        if child.name == bridge.SENSORS:
             return child
-    made = bpy.data.collections.new(COLLECTION)
+    made = bpy.data.collections.new(bridge.SENSORS)
     scene.collection.children.link(made)
     return made
 

@@ -12,33 +12,39 @@ from mathutils import Vector
 from .. import bridge
 from ..engine import catalog, kinds, pe
 from ..properties import DEFAULT_MODEL
+from .surface import nearest_spot, parts_of
 
 ROOF_DEPTH_M = 0.1
 """What lies this near to the vehicle's highest point is its roof."""
+FRONT_INSET_M = 0.05
+"""How far behind the roof's front edge a camera stands."""
+DOWN = (0.0, 0.0, -1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Mount:
     """How sensors of one kind are added.
 
-    `usual` is the model of the kind's button, None for the first of the catalogue. On a roof a
-    sensor stands `above_roof_m` over it, at its front edge or over its middle; without a vehicle at
-    `height_m`. `display` and `size_m` are its empty's.
+    `usual` is the model of the kind's button, None for the first of the catalogue. Its origin is
+    `stand_off_m` from the surface that it stands on: clear of the body. On a roof it stands at the
+    front edge or over the middle; without a vehicle at `height_m`. `outward` says whether it looks
+    away from the vehicle's centre. `display` and `size_m` are its empty's.
     """
 
     usual: str | None
-    above_roof_m: float
+    stand_off_m: float
     at_front: bool
     height_m: float
+    outward: bool
     display: str
     size_m: float
 
 
 MOUNTS = {
-    "lidar": Mount(DEFAULT_MODEL, 0.3, False, 1.8, "SPHERE", 0.12),
-    "camera": Mount("Camera 90 deg", 0.05, True, 1.5, "ARROWS", 0.25),
+    "lidar": Mount(DEFAULT_MODEL, 0.15, False, 1.8, False, "SPHERE", 0.12),
+    "camera": Mount("Camera 90 deg", 0.05, True, 1.5, True, "ARROWS", 0.25),
 }
-OTHER = Mount(None, 0.05, True, 1.5, "ARROWS", 0.25)
+OTHER = Mount(None, 0.05, True, 1.5, True, "ARROWS", 0.25)
 """Of a kind that has no row."""
 
 
@@ -67,24 +73,39 @@ def mount_of(kind: str) -> Mount:
 
 
 def sensible_place(context: bpy.types.Context, mount: Mount) -> Vector:
-    """Return the 3D cursor, or while that is at the origin a place on the vehicle's roof."""
+    """Return the 3D cursor, or while that is at the origin a place on the vehicle's roof.
+
+    A cursor in the vehicle's surface, or nearly, is where the sensor is to stand: its origin is
+    put clear of it.
+    """
     cursor = context.scene.cursor.location
     collection = context.scene.perception_entropy.vehicle
-    if cursor.length > 0.0:
-        return cursor.copy()
     if collection is None:
-        return Vector((0.0, 0.0, mount.height_m))
-    vehicle = bridge.vehicle_from_collection(collection, context.evaluated_depsgraph_get())
-    return Vector(on_roof(vehicle, mount))
+        return cursor.copy() if cursor.length > 0.0 else Vector((0.0, 0.0, mount.height_m))
+    depsgraph = context.evaluated_depsgraph_get()
+    if cursor.length > 0.0:
+        return clear_of(cursor, mount.stand_off_m, parts_of(collection, depsgraph), depsgraph)
+    return Vector(on_roof(bridge.vehicle_from_collection(collection, depsgraph), mount))
+
+
+def clear_of(
+    point: Vector, stand_off_m: float, parts: set[str], depsgraph: bpy.types.Depsgraph
+) -> Vector:
+    """Return a point, moved out of a surface that is nearer than a sensor's stand-off."""
+    spot = nearest_spot(depsgraph, parts, point, stand_off_m)
+    return point.copy() if spot is None else spot.point + spot.normal * stand_off_m
 
 
 def on_roof(vehicle: pe.Vehicle, mount: Mount) -> tuple[float, float, float]:
-    """Return a place above the middle of the roof, or above its front edge."""
+    """Return a place on the middle of the roof, or behind its front edge."""
     corners = vehicle.triangles.reshape(-1, 3)
     top = corners[:, 2].max()
     roof = corners[corners[:, 2] > top - ROOF_DEPTH_M]
     low, high = roof.min(axis=0), roof.max(axis=0)
-    middle = (low + high) / 2.0
-    place = (high[0] if mount.at_front else middle[0], middle[1], top + mount.above_roof_m)
-    x, y, z = np.round(place, 2).tolist()
+    x, y = (low[:2] + high[:2]) / 2.0
+    if mount.at_front:
+        x = max(x, high[0] - FRONT_INSET_M)
+    depth = float(vehicle.first_hit((x, y, top + 1.0), [DOWN]).distance[0])
+    surface = top + 1.0 - depth if np.isfinite(depth) else top  # there may be a hole
+    x, y, z = np.round((x, y, surface + mount.stand_off_m), 2).tolist()
     return x, y, z

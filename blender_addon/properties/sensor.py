@@ -63,6 +63,12 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
     )
 
     has_result: BoolProperty(name="Has Result", description="The last result knows this sensor")
+    result_of: StringProperty(
+        name="Result Of", description="Name of the sensor that the result is of: a copy brings it"
+    )
+    result_run: StringProperty(
+        name="Result Run", description="Signature of the scene's result that it came with"
+    )
     entropy: FloatProperty(
         name="Alone", description="Perception entropy if this were the only sensor [nats]"
     )

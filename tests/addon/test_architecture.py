@@ -24,6 +24,7 @@ ALLOWED = {
     "roster": {"bridge", "changes"},
     "body": {"bridge", "engine"},
     "motion": {"body", "changes", "roster"},
+    "upkeep": {"bridge", "changes"},
     "worker": set(),
     "stale": {"bridge", "changes", "roster"},
     "overlay": {"engine"},
@@ -35,7 +36,7 @@ ALLOWED = {
     "commands": {"bridge", "engine", "review"},
     "__init__": {
         *("body", "commands", "motion", "operators", "overlay.handler", "panels", "properties"),
-        *("roster", "stale", "worker"),
+        *("roster", "stale", "upkeep", "worker"),
     },
     "__main__": {"__init__", "commands", "engine"},
 }

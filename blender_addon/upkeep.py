@@ -1,0 +1,39 @@
+"""Keeps sensors as they are to be, whatever was done to them outside the add-on's own operators.
+
+A duplicated, copied or appended sensor is a new one: what it brought of another's result is not
+its own. Sensors of older files may be linked twice. It works when something is told to have moved,
+and after a file was opened: both are turns in which data may be written.
+"""
+
+from __future__ import annotations
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import bridge, changes
+
+
+@persistent
+def on_load(*_: object) -> None:
+    """Handler of load_post: mend what older versions wrote."""
+    for scene in bpy.data.scenes:
+        bridge.unlink_doubles(scene)
+    go_round()
+
+
+def go_round() -> None:
+    """Put the sensors of all scenes right."""
+    for scene in bpy.data.scenes:
+        bridge.drop_foreign_results(scene)
+
+
+def register() -> None:
+    """Start listening."""
+    changes.moved.connect(go_round)
+    bpy.app.handlers.load_post.append(on_load)
+
+
+def unregister() -> None:
+    """Stop listening."""
+    bpy.app.handlers.load_post.remove(on_load)
+    changes.moved.disconnect(go_round)

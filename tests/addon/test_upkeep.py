@@ -1,0 +1,101 @@
+"""Sensors that came by duplicating, copying, appending, renaming, or from older files."""
+
+import bpy
+import pytest
+
+from blender_addon import bridge, roster, upkeep
+from tests.addon import scenes
+
+
+@pytest.fixture
+def scored(car):
+    """Return the scene with its LiDAR scored."""
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    return car
+
+
+def results(scene):
+    """Return what each sensor holds of a result, by name; None where it holds none."""
+    own = {obj.name: obj.perception_entropy for obj in bridge.sensor_objects(scene)}
+    return {name: each.entropy if each.has_result else None for name, each in own.items()}
+
+
+@pytest.mark.parametrize("linked", [False, True])
+def test_a_duplicate_is_a_new_sensor_without_a_result(scored, linked):
+    before = results(scored)
+    bpy.ops.object.duplicate(linked=linked)
+    upkeep.go_round()
+    assert results(scored) == {**before, "roof.001": None}
+    assert [each.name for each in roster.sensors(scored)] == ["roof", "roof.001"]
+    assert before["roof"] is not None
+
+
+def test_a_duplicate_of_a_duplicate_is_no_owner_of_its_original_s_result(scored):
+    for _ in range(2):
+        bpy.ops.object.duplicate()
+        upkeep.go_round()
+    assert [name for name, entropy in results(scored).items() if entropy is not None] == ["roof"]
+
+
+def test_a_renamed_sensor_keeps_its_result_and_its_duplicate_gets_none(scored):
+    entropy = results(scored)["roof"]
+    scored.objects["roof"].name = "top"
+    upkeep.go_round()
+    assert results(scored) == {"top": entropy}
+    bpy.ops.object.duplicate()
+    upkeep.go_round()
+    assert results(scored) == {"top": entropy, "top.001": None}
+
+
+def test_an_appended_sensor_is_a_new_one(scored, tmp_path):
+    """Appended under a name that is free here, it brings its result under its own name."""
+    blend = str(tmp_path / "other.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=blend, copy=True)
+    scored.objects["roof"].name = "left"
+    upkeep.go_round()
+    scored.objects["left"].location.x = 0.3
+    bpy.ops.pe.score()
+    before = results(scored)
+    bpy.ops.wm.append(filename="roof", directory=f"{blend}/Object/")
+    upkeep.go_round()
+    assert results(scored) == {**before, "roof": None}
+    assert len(roster.sensors(scored)) == 2
+
+
+def test_a_score_gives_all_of_them_results(scored):
+    bpy.ops.object.duplicate()
+    upkeep.go_round()
+    bpy.ops.pe.score()
+    upkeep.go_round()
+    assert None not in results(scored).values() and len(results(scored)) == 2
+
+
+def collections_of(obj):
+    """Names of the collections that an object is in."""
+    return [each.name for each in obj.users_collection]
+
+
+def test_double_links_of_an_older_file_are_mended_when_it_is_opened(car, tmp_path):
+    car.collection.objects.link(car.objects["roof"])
+    blend = str(tmp_path / "older.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=blend)
+    bpy.ops.wm.open_mainfile(filepath=blend)
+    assert collections_of(bpy.data.objects["roof"]) == ["Sensors"]
+
+
+def test_where_the_collection_is_excluded_nothing_vanishes(car, tmp_path):
+    car.collection.objects.link(car.objects["roof"])
+    bpy.context.view_layer.layer_collection.children["Sensors"].exclude = True
+    blend = str(tmp_path / "older.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=blend)
+    bpy.ops.wm.open_mainfile(filepath=blend)
+    assert bpy.data.objects["roof"].visible_get()
+
+
+@pytest.mark.parametrize("name", ["sedan", "bus"])
+def test_shipped_files_link_sensors_once(name, tmp_path):
+    """As they are on disk: opened without the add-on, which would mend them."""
+    bpy.ops.wm.open_mainfile(filepath=str(scenes.ASSETS / f"{name}.blend"))
+    assert len(bpy.data.collections["Sensors"].objects) == {"sedan": 1, "bus": 2}[name]
+    for obj in bpy.data.collections["Sensors"].objects:
+        assert collections_of(obj) == ["Sensors"]

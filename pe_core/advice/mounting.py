@@ -17,7 +17,7 @@ from ..scene.sensors import Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle, closest_points
 from .advice import Advice
-from .body import Body
+from .bodywork import Bodywork
 from .figures import metres, percent
 
 Floats = NDArray[np.float64]
@@ -43,7 +43,7 @@ class Mounted:
     """A sensor, and what it sees of the vehicle's body."""
 
     sensor: Sensor
-    body: Body
+    body: Bodywork
     known: tuple[int, Mapping[str, int]] | None = None
     """Its beams and which parts stop how many, where a score has counted them."""
 

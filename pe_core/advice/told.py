@@ -10,7 +10,7 @@ from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..scoring.score import Score
 from .advice import Advice
-from .body import Body
+from .bodywork import Bodywork
 from .mounting import Mounted, odd_mounting, odd_place
 from .vehicle_shape import odd_vehicle
 
@@ -44,7 +44,7 @@ def warnings(
 def _told(
     rig: Rig, vehicle: Vehicle | None, space: PerceptionSpace, score: Score | None
 ) -> Iterator[Advice]:
-    body = None if vehicle is None else Body.of(vehicle)
+    body = None if vehicle is None else Bodywork.of(vehicle)
     if body is not None:
         yield from odd_vehicle(body)
     for sensor in rig:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from .advice import Advice
-from .body import ROOM_M, Body
+from .bodywork import ROOM_M, Bodywork
 from .figures import metres
 
 LONGEST_M, SHORTEST_M, SECOND_M = 30.0, 0.4, 10.0
@@ -22,14 +22,14 @@ SUNK_M, FLOATS_M = 0.15, 0.3
 """Tyres may sink a little, and a body without wheels hangs a little over the ground."""
 OFF_ORIGIN_M = 1.0
 EVEN, UNEVEN = 0.01, 5.0
-"""`Body.lopsided`: along the axis from side to side below the first, along the others so many times
+"""`Bodywork.lopsided`: along the axis from side to side below the first, along the others so many times
 as much as there, and twice the first at least."""
 FRONT = ("hood", "bonnet", "headl", "windshield", "windscreen", "grill", "front")
 REAR = ("tail", "trunk", "boot", "rear", "back")
 """What a part's name holds when it is at the front, and at the rear."""
 
 
-def odd_vehicle(body: Body) -> Iterator[Advice]:
+def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
     """Yield advice on a vehicle."""
     yield from map(_room, body.rooms)
     wrong_size = list(_size(body))
@@ -45,7 +45,7 @@ def _room(name: str) -> Advice:
     return Advice(None, "room", text, part=name)
 
 
-def _size(body: Body) -> Iterator[Advice]:
+def _size(body: Bodywork) -> Iterator[Advice]:
     longest, second, _ = sorted(body.size, reverse=True)
     if _fits(longest, second, 1.0):
         return
@@ -68,7 +68,7 @@ def _fits(longest: float, second: float, factor: float) -> bool:
     return SHORTEST_M <= factor * longest <= LONGEST_M and factor * second <= SECOND_M
 
 
-def _stands(body: Body) -> Iterator[Advice]:
+def _stands(body: Bodywork) -> Iterator[Advice]:
     """On its tail, or on its side."""
     x, y, z = body.size
     if z > LONGER * max(x, y):
@@ -79,7 +79,7 @@ def _stands(body: Body) -> Iterator[Advice]:
         yield Advice(None, "on_side", text)
 
 
-def _faces(body: Body) -> Iterator[Advice]:
+def _faces(body: Bodywork) -> Iterator[Advice]:
     """Forward is +x: told from the names of parts, else from the longest side."""
     x, y, z = body.size
     if z > LONGER * max(x, y):
@@ -100,7 +100,7 @@ def _faces(body: Body) -> Iterator[Advice]:
         yield Advice(None, "faces", text, fix="turn_vehicle", amount=(90.0,))
 
 
-def _front_by_names(body: Body) -> tuple[int, float] | None:
+def _front_by_names(body: Bodywork) -> tuple[int, float] | None:
     """Tell the axis (0 or 1) and the sign of where the parts of the front are."""
     centers = body.part_centers()
     front, rear = (
@@ -116,7 +116,7 @@ def _front_by_names(body: Body) -> tuple[int, float] | None:
     return axis, float(np.sign(way[axis]))
 
 
-def _across(body: Body) -> int | None:
+def _across(body: Bodywork) -> int | None:
     """Axis along which the body is its own mirror image, where it is so along one alone."""
     axis = int(np.argmin(body.lopsided))
     others = [v for k, v in enumerate(body.lopsided) if k != axis]
@@ -125,7 +125,7 @@ def _across(body: Body) -> int | None:
     return axis if clear else None
 
 
-def _height(body: Body) -> Iterator[Advice]:
+def _height(body: Bodywork) -> Iterator[Advice]:
     """Sunk into the ground, or above it."""
     bottom = float(body.low[2])
     if bottom < -SUNK_M:
@@ -137,7 +137,7 @@ def _height(body: Body) -> Iterator[Advice]:
     yield Advice(None, "height", text, fix="move_vehicle", amount=(0.0, 0.0, -bottom))
 
 
-def _off_origin(body: Body) -> Iterator[Advice]:
+def _off_origin(body: Bodywork) -> Iterator[Advice]:
     """The origin belongs on the ground under the vehicle's centre."""
     x, y, _ = ((body.low + body.high) / 2.0).tolist()
     away = float(np.hypot(x, y))
@@ -149,5 +149,5 @@ def _off_origin(body: Body) -> Iterator[Advice]:
         yield Advice(None, "off_origin", text, fix="move_vehicle", amount=(-x, -y, 0.0))
 
 
-CHECKS: tuple[Callable[[Body], Iterator[Advice]], ...] = (_stands, _faces, _height, _off_origin)
+CHECKS: tuple[Callable[[Bodywork], Iterator[Advice]], ...] = (_stands, _faces, _height, _off_origin)
 __all__ = ["ROOM_M", "odd_vehicle"]

@@ -20,7 +20,7 @@ BINS = 256
 
 
 @dataclass(frozen=True)
-class Body:
+class Bodywork:
     """A vehicle in figures.
 
     Attributes
@@ -35,7 +35,7 @@ class Body:
     rooms: tuple[str, ...]
 
     @classmethod
-    def of(cls, vehicle: Vehicle) -> Body:
+    def of(cls, vehicle: Vehicle) -> Bodywork:
         """Look a vehicle over."""
         return cls(vehicle, _rooms(vehicle))
 

@@ -22,8 +22,8 @@ SUNK_M, FLOATS_M = 0.15, 0.3
 """Tyres may sink a little, and a body without wheels hangs a little over the ground."""
 OFF_ORIGIN_M = 1.0
 EVEN, UNEVEN = 0.01, 5.0
-"""`Bodywork.lopsided`: along the axis from side to side below the first, along the others so many times
-as much as there, and twice the first at least."""
+"""`Bodywork.lopsided`: from side to side less than the first, along the other two axes more than
+one and a half times that, and so many times as much as from side to side."""
 FRONT = ("hood", "bonnet", "headl", "windshield", "windscreen", "grill", "front")
 REAR = ("tail", "trunk", "boot", "rear", "back")
 """What a part's name holds when it is at the front, and at the rear."""

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import bpy
 
-from . import body, commands, motion, operators, panels, properties, roster, stale, upkeep, worker
+from . import (
+    body,
+    commands,
+    motion,
+    operators,
+    panels,
+    properties,
+    roster,
+    stale,
+    unsaved,
+    upkeep,
+    worker,
+)
 from .overlay import handler as overlay
 
 CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
@@ -20,6 +32,7 @@ def register() -> None:
     upkeep.register()
     motion.register()
     stale.register()
+    unsaved.register()
     overlay.register()
     commands.register()
 
@@ -29,6 +42,7 @@ def unregister() -> None:
     worker.unregister()
     commands.unregister()
     overlay.unregister()
+    unsaved.unregister()
     stale.unregister()
     motion.unregister()
     upkeep.unregister()

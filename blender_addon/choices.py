@@ -62,3 +62,11 @@ REGIONS = {
 
 REGION_ITEMS = tuple((each.key, each.label, each.description) for each in REGIONS.values())
 """As Blender wants a menu."""
+
+
+def free_name(wanted: str, taken: set[str]) -> str:
+    """Return a name, with a number behind it where it is taken: "Idea", "Idea 2"."""
+    name, number = wanted, 2
+    while name in taken:
+        name, number = f"{wanted} {number}", number + 1
+    return name

@@ -111,6 +111,7 @@ def leave_scene(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) 
     if outcome.kind == "optimize":
         bridge.place_rig(scene, outcome.study.rig)
         bridge.store_outcome(scene, outcome)
+        bridge.keep_search(scene, outcome)
         studies.add_to_result(data, folder, {OPTIMIZED: save_copy})
     if render:
         from . import review  # only who wants a picture pays for it

@@ -1,7 +1,6 @@
 """The names of the engine that other programs use."""
 
-from . import advice, catalog
-from .advice import Advice
+from . import catalog
 from .errors import InputError
 from .formats import Mesh, read_boxes, read_mesh, write_boxes, write_mesh
 from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
@@ -31,7 +30,6 @@ from .study import (
 from .version import __version__
 
 __all__ = [
-    "Advice",
     "ApCurve",
     "BeamField",
     "BlindGround",
@@ -70,7 +68,6 @@ __all__ = [
     "Study",
     "Vehicle",
     "__version__",
-    "advice",
     "beam_field",
     "catalog",
     "cuts_body",

@@ -3,6 +3,7 @@
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .outcome import blender_version, store_outcome
 from .prior import prior_from_scene
+from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
 from .rig import (
     mounted_on_sensor,
     place_rig,
@@ -13,24 +14,63 @@ from .rig import (
     view_layer_of,
 )
 from .scene import signature, study_from_scene
+from .standing import sensors_collection, stand
+from .variants import (
+    active_variant,
+    add_variant,
+    check_variants,
+    choose_variant,
+    copy_score,
+    keep_score,
+    keep_search,
+    put_variant,
+    same_score,
+    same_variant,
+    study_of_variant,
+    take_scene_s_score,
+    variant_named,
+    write_score,
+)
 from .vehicle import vehicle_from_collection, visible_members
 
 __all__ = [
     "SENSORS",
+    "Record",
+    "active_variant",
+    "add_variant",
+    "alike",
     "blender_version",
+    "check_variants",
+    "choose_variant",
+    "copy_score",
     "drop_foreign_results",
+    "keep_score",
+    "keep_search",
     "mounted_on_sensor",
     "place_rig",
     "pose_of",
     "prior_from_scene",
+    "put_variant",
+    "records_of",
+    "records_of_scene",
     "rig_from_objects",
+    "rig_of",
+    "same_score",
+    "same_variant",
     "sensor_from_object",
     "sensor_objects",
+    "sensors_collection",
     "signature",
+    "stand",
     "store_outcome",
     "study_from_scene",
+    "study_of_variant",
+    "take_scene_s_score",
     "unlink_doubles",
+    "variant_named",
     "vehicle_from_collection",
     "view_layer_of",
     "visible_members",
+    "write_records",
+    "write_score",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import bpy
 import numpy as np
@@ -74,10 +74,19 @@ def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
     the same numbers.
     """
     ground_from_sensor = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=float)
+    held = held_pose(obj, ground_from_sensor)
+    return pose_of_matrix(ground_from_sensor) if held is None else held
+
+
+def held_pose(obj: bpy.types.Object, ground_from_sensor: np.ndarray) -> pe.Pose | None:
+    """Return the pose that was last written to a sensor, while it still stands there."""
     _check_rigid(ground_from_sensor)
-    written = _pose_from_numbers(obj.perception_entropy.placed)
-    if _stands_at(ground_from_sensor, written):
-        return written
+    written = pose_from_numbers(obj.perception_entropy.placed)
+    return written if _stands_at(ground_from_sensor, written) else None
+
+
+def pose_of_matrix(ground_from_sensor: np.ndarray) -> pe.Pose:
+    """Return a (4, 4) placement as a pose, rounded."""
     rpy = geometry.rpy_from_matrix(ground_from_sensor[:3, :3])
     values = (*ground_from_sensor[:3, 3].tolist(), *rpy)
     return search.pose_from_values(dict(zip(search.AXES, values, strict=True)))
@@ -91,21 +100,45 @@ def place_rig(scene: bpy.types.Scene, rig: pe.Rig) -> list[str]:
     InputError
         When a constraint, a driver or an animation holds a sensor where it is.
     """
-    pairs = [(scene.objects.get(sensor.name), sensor) for sensor in rig]
-    present = [(obj, sensor) for obj, sensor in pairs if _is_sensor(obj)]
+    return place_poses(scene, {sensor.name: sensor.pose for sensor in rig})
+
+
+def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[str]:
+    """Put sensors, by name, at poses; return the names of those that are gone.
+
+    Raises
+    ------
+    InputError
+        When a constraint, a driver or an animation holds a sensor where it is, or it is another
+        file's.
+    """
+    pairs = [(scene.objects.get(name), pose) for name, pose in poses.items()]
+    present = [(obj, pose) for obj, pose in pairs if _is_sensor(obj)]
     layer = view_layer_of(scene)
     # Parents first: a sensor may be mounted on another.
-    for obj, sensor in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):
+    for obj, pose in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):
+        _check_own(obj)
         layer.update()
-        _move(obj, sensor.pose)
-        obj.perception_entropy.placed = (*sensor.pose.position, *sensor.pose.rotation_deg)
+        _move(obj, pose)
+        obj.perception_entropy.placed = (*pose.position, *pose.rotation_deg)
     layer.update()
-    for obj, sensor in present:
-        if not _stands_at(np.array(obj.matrix_world, dtype=float), sensor.pose):
-            expected = "an object that can be placed"
+    for obj, pose in present:
+        seen = obj.visible_get(view_layer=layer)  # of others Blender does not work out the place
+        if seen and not _stands_at(np.array(obj.matrix_world, dtype=float), pose):
             found = "a constraint, driver or animation that holds it"
-            raise pe.InputError("scene", f"sensor {obj.name!r}: placement", expected, found)
-    return [sensor.name for obj, sensor in pairs if not _is_sensor(obj)]
+            raise _not_placed(obj, found)
+    return [name for name in poses if not _is_sensor(scene.objects.get(name))]
+
+
+def _check_own(obj: bpy.types.Object) -> None:
+    """Complain about a sensor that is linked: its place is its own file's."""
+    if obj.library is not None:
+        raise _not_placed(obj, f"linked from {obj.library.filepath}")
+
+
+def _not_placed(obj: bpy.types.Object, found: str) -> pe.InputError:
+    expected = "an object that can be placed"
+    return pe.InputError("scene", f"sensor {obj.name!r}: placement", expected, found)
 
 
 def mounted_on_sensor(obj: bpy.types.Object) -> bool:
@@ -153,7 +186,7 @@ def _stands_at(ground_from_sensor: np.ndarray, pose: pe.Pose) -> bool:
     return bool(rotation < HELD_ROTATION and position < HELD_POSITION_M)
 
 
-def _pose_from_numbers(numbers: tuple[float, ...]) -> pe.Pose:
+def pose_from_numbers(numbers: tuple[float, ...]) -> pe.Pose:
     """Pose from x, y, z [m], roll, pitch, yaw [deg] in single precision."""
     position, degrees = numbers[:3], numbers[3:]
     radians = (math.radians(angle) for angle in degrees)

@@ -3,7 +3,7 @@
 Panels take from here what there is to press and to choose from.
 """
 
-from . import add_sensor, export, focus, job, review, running, select
+from . import add_sensor, export, focus, job, review, running, select, variants
 from .mounting import Offer, offers
 from .select import listed_sensors
 
@@ -16,4 +16,5 @@ CLASSES = (
     *job.CLASSES,
     *export.CLASSES,
     *review.CLASSES,
+    *variants.CLASSES,
 )

@@ -73,7 +73,7 @@ def new_sensor(context: bpy.types.Context, name: str, model: str, mount: Mount) 
 
 def shown_collection(context: bpy.types.Context) -> bpy.types.Collection:
     """Return the collection of sensors, or the scene's own where that one is out of the view."""
-    wanted = sensors_collection(context.scene)
+    wanted = bridge.sensors_collection(context.scene)
     waiting = [context.view_layer.layer_collection]
     while waiting:
         layer = waiting.pop()
@@ -81,16 +81,6 @@ def shown_collection(context: bpy.types.Context) -> bpy.types.Collection:
             return wanted
         waiting += layer.children
     return context.scene.collection
-
-
-def sensors_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
-    """Return the scene's collection of sensors; make it if there is none."""
-    for child in scene.collection.children_recursive:
-        if child.name == bridge.SENSORS:
-            return child
-    made = bpy.data.collections.new(bridge.SENSORS)
-    scene.collection.children.link(made)
-    return made
 
 
 def select_only(context: bpy.types.Context, obj: bpy.types.Object) -> None:

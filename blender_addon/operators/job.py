@@ -104,6 +104,7 @@ class PE_OT_score(JobOperator, bpy.types.Operator):
     def write(self, scene: bpy.types.Scene, outcome: pe.Outcome) -> list[str]:
         """Keep the result."""
         bridge.store_outcome(scene, outcome)
+        bridge.keep_score(scene, outcome.study.rig, outcome.after)
         return []
 
     def message(self, outcome: pe.Outcome) -> str:
@@ -124,6 +125,7 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
         """Move the sensors and keep the result; return the names of those that are gone."""
         gone = bridge.place_rig(scene, outcome.study.rig)
         bridge.store_outcome(scene, outcome)
+        bridge.keep_search(scene, outcome)
         return gone
 
     def message(self, outcome: pe.Outcome) -> str:

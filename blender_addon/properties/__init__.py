@@ -12,10 +12,24 @@ from .callbacks import model_suggestions
 from .focus import DEFAULT_REGION, PE_FocusSettings
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, DEFAULT_MODEL, PE_ObjectSettings
+from .variants import PE_Variant, PE_VariantSensor
 
-__all__ = ["AXIS_LABELS", "CLASSES", "DEFAULT_MODEL", "DEFAULT_REGION", "model_suggestions"]
+__all__ = [
+    "AXIS_LABELS",
+    "CLASSES",
+    "DEFAULT_MODEL",
+    "DEFAULT_REGION",
+    "free_name",
+    "model_suggestions",
+]
 
-CLASSES = (PE_FocusSettings, PE_SceneSettings, PE_ObjectSettings)
+CLASSES = (
+    PE_FocusSettings,
+    PE_VariantSensor,
+    PE_Variant,
+    PE_SceneSettings,
+    PE_ObjectSettings,
+)
 
 
 def add_pointers() -> None:

@@ -17,6 +17,7 @@ from ..choices import PRIORS
 from ..engine import pe
 from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
+from .variants import PE_Variant
 
 DEFAULT_CANDIDATES = 150
 DEFAULT_BEAM_LIMIT = 5_000
@@ -131,4 +132,17 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
     )
     result_stale: BoolProperty(
         name="Stale", description="The scene has changed since the result was made"
+    )
+
+    variants: CollectionProperty(
+        type=PE_Variant, name="Variants", description="Ideas for this vehicle, to come back to"
+    )
+    variant_index: IntProperty(
+        name="Selected Variant", description="Row of the list that is selected", min=0
+    )
+    variant_key: IntProperty(
+        name="Active Variant", description="Key of the variant that stands in the scene; 0: none"
+    )
+    variant_changed: BoolProperty(
+        name="Changed", description="The scene differs from the variant that was put there"
     )

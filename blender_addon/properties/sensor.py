@@ -62,6 +62,11 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
         options={"HIDDEN"},
     )
 
+    parked_from: StringProperty(
+        name="Parked From",
+        description="Collections it was taken out of, as it belongs to another variant",
+    )
+
     has_result: BoolProperty(name="Has Result", description="The last result knows this sensor")
     result_of: StringProperty(
         name="Result Of", description="Name of the sensor that the result is of: a copy brings it"

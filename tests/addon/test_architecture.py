@@ -27,6 +27,7 @@ ALLOWED = {
     "upkeep": {"bridge", "changes"},
     "worker": set(),
     "stale": {"bridge", "changes", "roster"},
+    "unsaved": {"bridge", "changes"},
     "overlay": {"engine"},
     "overlay.cache": {"body", "bridge", "engine", "overlay", "roster"},
     "overlay.handler": {"changes", "overlay", "overlay.cache"},
@@ -36,7 +37,7 @@ ALLOWED = {
     "commands": {"bridge", "engine", "review"},
     "__init__": {
         *("body", "commands", "motion", "operators", "overlay.handler", "panels", "properties"),
-        *("roster", "stale", "upkeep", "worker"),
+        *("roster", "stale", "unsaved", "upkeep", "worker"),
     },
     "__main__": {"__init__", "commands", "engine"},
 }

@@ -25,18 +25,15 @@ ALLOWED = {
     "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
     "search": {"errors", "text", "scene", "scoring"},
     "catalog": {"errors", "text", "scene", "kinds"},
-    "advice": {
-        *("errors", "text", "metric", "scene", "prior", "kinds", "scoring", "sight", "catalog"),
-    },
     "study": {
         *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
-        *("formats", "scoring", "sight", "search", "catalog", "advice"),
+        *("formats", "scoring", "sight", "search", "catalog"),
     },
     "public": {
         *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
-        *("sight", "search", "catalog", "advice", "study"),
+        *("sight", "search", "catalog", "study"),
     },
-    "app": {"errors", "version", "text", "kinds", "catalog", "sight", "advice", "study"},
+    "app": {"errors", "version", "text", "kinds", "catalog", "sight", "study"},
     "__main__": {"app"},
 }
 """Rooms of the engine, lowest first, and those they may look into: all of them further up here."""

@@ -1,0 +1,175 @@
+"""Variants: keep the sensors as they are under a name, and put another idea in their place."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import IntProperty
+
+from .. import bridge, changes
+from ..choices import free_name
+from ..engine import pe
+from .reports import REFUSALS, refuse, tell
+
+UNSAVED = "Unsaved"
+
+
+class VariantOperator:
+    """What they share: a variant by its key, or the selected one; no work while a job runs."""
+
+    bl_options = {"REGISTER", "UNDO"}
+    least = 1
+
+    key: IntProperty(
+        name="Key", description="Which variant; 0: the selected one", options={"HIDDEN"}
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Variants are for Object Mode")
+            return False
+        if len(context.scene.perception_entropy.variants) < cls.least:
+            cls.poll_message_set("There is no variant yet")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        settings = context.scene.perception_entropy
+        rows = list(settings.variants)
+        wanted = [row for row in rows if row.key == self.key] or rows[settings.variant_index :][:1]
+        try:
+            self.act(context.scene, wanted[0] if wanted else None)
+        except REFUSALS as error:
+            return refuse(self, error)
+        changes.study.tell()
+        return {"FINISHED"}
+
+
+class PE_OT_save_variant(VariantOperator, bpy.types.Operator):
+    """Keep the sensors as they are now, as a new variant"""
+
+    bl_idname = "pe.save_variant"
+    bl_label = "Save Variant"
+    least = 0
+
+    def act(self, scene: bpy.types.Scene, _variant: object) -> None:
+        """Add the scene's sensors to the list."""
+        row = save_scene(scene, "Variant")
+        tell(self, "INFO", f"Saved {row.name}")
+
+
+class PE_OT_update_variant(VariantOperator, bpy.types.Operator):
+    """Have the variant that was put here hold the sensors as they are now"""
+
+    bl_idname = "pe.update_variant"
+    bl_label = "Update Variant"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if bridge.active_variant(context.scene) is None:
+            cls.poll_message_set("No variant was put here: save this as a new one")
+            return False
+        return super().poll(context)
+
+    def act(self, scene: bpy.types.Scene, _variant: object) -> None:
+        """Write the scene over the active variant; its score is of what it was."""
+        row = bridge.active_variant(scene)
+        records = bridge.records_of_scene(scene)
+        if not bridge.same_score(bridge.records_of(row), records):
+            row.has_result = False
+        bridge.write_records(row, records)
+        bridge.choose_variant(scene, row.key)
+        tell(self, "INFO", f"Updated {row.name}")
+
+
+class PE_OT_switch_variant(VariantOperator, bpy.types.Operator):
+    """Put this variant's sensors in place of those that stand here.
+
+    What stands here and is no variant yet is kept as one: nothing is lost"""
+
+    bl_idname = "pe.switch_variant"
+    bl_label = "Switch to Variant"
+
+    def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
+        """Keep what is here, then have the variant stand."""
+        key, before = variant.key, bridge.records_of_scene(scene)
+        kept = keep_unsaved(scene, before)
+        variant = next(row for row in scene.perception_entropy.variants if row.key == key)
+        switch(scene, variant, before)
+        aside = f"; what was here is kept as {kept}" if kept else ""
+        tell(self, "INFO", f"Switched to {variant.name}{aside}")
+
+
+class PE_OT_duplicate_variant(VariantOperator, bpy.types.Operator):
+    """Add a copy of the selected variant"""
+
+    bl_idname = "pe.duplicate_variant"
+    bl_label = "Duplicate Variant"
+
+    def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
+        """Copy sensors and score; what stands in the scene stays the active one."""
+        source, name = variant.key, variant.name
+        copy = bridge.add_variant(scene, _free(scene, name), bridge.records_of(variant))
+        settings = scene.perception_entropy
+        original = next(row for row in settings.variants if row.key == source)
+        bridge.copy_score(original, copy)
+        settings.variant_index = len(settings.variants) - 1
+        tell(self, "INFO", f"{name} is copied as {copy.name}")
+
+
+class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
+    """Delete the selected variant. The sensors that stand in the scene stay"""
+
+    bl_idname = "pe.delete_variant"
+    bl_label = "Delete Variant"
+
+    def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
+        """Take its row out of the list."""
+        settings, name = scene.perception_entropy, variant.name
+        index = [row.key for row in settings.variants].index(variant.key)
+        if variant.key == settings.variant_key:
+            settings.variant_key, settings.variant_changed = 0, False
+        settings.variants.remove(index)
+        settings.variant_index = max(0, min(index, len(settings.variants) - 1))
+        tell(self, "INFO", f"Deleted {name}")
+
+
+def save_scene(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
+    """Return the scene as a new variant, which is the active one from then on."""
+    row = bridge.add_variant(scene, _free(scene, name), bridge.records_of_scene(scene))
+    bridge.take_scene_s_score(scene, row)
+    bridge.choose_variant(scene, row.key)
+    return row
+
+
+def keep_unsaved(scene: bpy.types.Scene, records: tuple[bridge.Record, ...]) -> str:
+    """Keep what stands in the scene as a variant unless it is one; return that one's name."""
+    if not records or bridge.same_variant(scene, records) is not None:
+        return ""
+    return save_scene(scene, UNSAVED).name
+
+
+def switch(
+    scene: bpy.types.Scene,
+    variant: bpy.types.PropertyGroup,
+    before: tuple[bridge.Record, ...],
+) -> None:
+    """Have a variant stand; when that can't be, put everything back as it was."""
+    try:
+        bridge.put_variant(scene, variant)
+    except pe.InputError:
+        bridge.stand(scene, before)
+        raise
+
+
+def _free(scene: bpy.types.Scene, name: str) -> str:
+    return free_name(name, {row.name for row in scene.perception_entropy.variants})
+
+
+CLASSES = (
+    PE_OT_save_variant,
+    PE_OT_update_variant,
+    PE_OT_switch_variant,
+    PE_OT_duplicate_variant,
+    PE_OT_delete_variant,
+)

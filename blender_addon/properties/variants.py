@@ -1,0 +1,78 @@
+"""Variants: ideas for one vehicle, kept in the .blend beside the one that stands there."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    BoolVectorProperty,
+    CollectionProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    StringProperty,
+)
+
+from ..choices import free_name
+from ..engine import search
+
+LONGEST_NAME = 60
+
+
+def _keep_apart(variant: PE_Variant, _context: bpy.types.Context) -> None:
+    """Update callback of a variant's name: none is empty, and no two are alike."""
+    rows = variant.id_data.perception_entropy.variants
+    taken = {row.name for row in rows if row.key != variant.key}
+    name = free_name(variant.name.strip() or "Variant", taken)
+    if name != variant.name:
+        variant.name = name
+
+
+class PE_VariantSensor(bpy.types.PropertyGroup):
+    """A sensor as a variant holds it: what the score and the search know of it, and its look."""
+
+    name: StringProperty(name="Name", description="Name of the sensor's object")
+    model: StringProperty(name="Model", description="Name of the sensor in the catalogue")
+    fusion: StringProperty(name="Fusion", description="Its group, empty for the usual one")
+    pose: FloatVectorProperty(
+        name="Placement",
+        description="x, y, z [m], roll, pitch, yaw [deg]",
+        size=len(search.AXES),
+    )
+    free: BoolVectorProperty(
+        name="Free Axes", description="What the search may change", size=len(search.AXES)
+    )
+    visible: BoolProperty(name="Visible", description="It is seen, and so it counts", default=True)
+    display: StringProperty(name="Display", description="How its empty is drawn", default="ARROWS")
+    size: FloatProperty(name="Size", description="How large its empty is drawn", default=0.25)
+
+
+class PE_Variant(bpy.types.PropertyGroup):
+    """An idea: where all sensors stand, and what came of scoring it."""
+
+    name: StringProperty(
+        name="Name",
+        description="Name of the variant. Double-click to change it",
+        maxlen=LONGEST_NAME,
+        update=_keep_apart,
+    )
+    key: IntProperty(name="Key", description="Tells it from the others, whatever its name")
+    note: StringProperty(name="Note", description="What is to be remembered of it")
+    sensors: CollectionProperty(
+        type=PE_VariantSensor, name="Sensors", description="Where each sensor stands"
+    )
+
+    has_result: BoolProperty(name="Has Result", description="It has been scored")
+    entropy: FloatProperty(name="Entropy", description="Perception entropy in nats, for display")
+    coverage: FloatProperty(name="Coverage", description="Share of the prior that is seen, 0 to 1")
+    stderr: FloatProperty(name="Standard Error", description="Of the perception entropy")
+    voxels: IntProperty(name="Voxels", description="Voxels that were looked at", subtype="UNSIGNED")
+    score_json: StringProperty(
+        name="Score", description="The score in full: zones, classes, sensors"
+    )
+    signature: StringProperty(
+        name="Signature", description="Vehicle, prior and settings it was scored with"
+    )
+    stale: BoolProperty(
+        name="Stale", description="Vehicle, prior or settings have changed since it was scored"
+    )

@@ -1,0 +1,280 @@
+"""Variants: kept, put back exactly, nothing lost; their scores are those of the scene."""
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon import bridge, unsaved
+from blender_addon.bridge import parking
+from blender_addon.engine import pe
+from tests.addon import scenes
+
+
+@pytest.fixture
+def ideas(car):
+    """Return a scene with two sensors at awkward places, saved as "Variant"."""
+    scenes.add_sensor("eye", model="Camera 60 deg", location=(0.70001, -0.12345, 1.23457))
+    car.objects["eye"].rotation_euler = np.radians((1.2345, 67.8901, -123.4567))
+    car.objects["roof"].perception_entropy.free = (False, True) * 3
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    return car
+
+
+def variants(scene):
+    """Names of a scene's variants."""
+    return [row.name for row in scene.perception_entropy.variants]
+
+
+def rows(scene):
+    return {row.name: row for row in scene.perception_entropy.variants}
+
+
+def switch(scene, name):
+    return bpy.ops.pe.switch_variant(key=rows(scene)[name].key)
+
+
+def poses():
+    return {sensor.name: (sensor.pose, sensor.model) for sensor in scenes.study().rig}
+
+
+def remove(scene, name):
+    bpy.data.objects.remove(scene.objects[name])
+    bpy.context.view_layer.update()
+
+
+def test_switching_brings_every_sensor_back_to_the_bit(ideas):
+    before, start = poses(), bridge.records_of_scene(ideas)
+    bpy.ops.pe.save_variant()
+    second = ideas.objects["roof"]
+    second.location = (0.123456, 0.2, 1.9)
+    second.perception_entropy.model = "HDL-64E"
+    second.perception_entropy.free = (True,) * 6
+    bpy.context.view_layer.update()
+    bpy.ops.pe.update_variant()
+    moved = poses()
+    assert moved != before
+    for _ in range(3):
+        assert switch(ideas, "Variant") == {"FINISHED"}
+        assert poses() == before
+        assert bridge.alike(bridge.records_of_scene(ideas), start)
+        assert switch(ideas, "Variant 2") == {"FINISHED"}
+        assert poses() == moved
+    assert variants(ideas) == ["Variant", "Variant 2"], "nothing was unsaved"
+
+
+def test_what_was_not_saved_is_kept(ideas):
+    ideas.objects["roof"].location.z = 2.5
+    bpy.context.view_layer.update()
+    changed = poses()
+    switch(ideas, "Variant")
+    assert variants(ideas) == ["Variant", "Unsaved"]
+    assert poses() != changed
+    switch(ideas, "Unsaved")
+    assert poses() == changed
+    assert variants(ideas) == ["Variant", "Unsaved"]
+
+
+def test_two_unsaved_ones_have_two_names(ideas):
+    for z in (2.5, 2.6):
+        ideas.objects["roof"].location.z = z
+        bpy.context.view_layer.update()
+        switch(ideas, "Variant")
+    assert variants(ideas) == ["Variant", "Unsaved", "Unsaved 2"]
+
+
+def test_lacking_sensors_are_made_and_surplus_ones_set_aside(ideas):
+    both = poses()
+    remove(ideas, "eye")
+    scenes.add_sensor("third", model="HDL-64E", location=(1.0, 0.0, 2.0))
+    bpy.ops.pe.save_variant()
+    switch(ideas, "Variant")
+    assert poses() == both
+    assert [obj.name for obj in bridge.sensor_objects(ideas)] == ["eye", "roof"]
+    third = ideas.objects["third"]
+    assert not third.visible_get() and not third.perception_entropy.is_sensor
+    switch(ideas, "Variant 2")
+    assert set(poses()) == {"roof", "third"}
+    assert ideas.objects["third"] == third, "the very object, with all that it has"
+
+
+def test_what_hangs_on_a_sensor_goes_aside_and_comes_back_with_it(ideas):
+    housing = scenes.add_box(ideas.collection, "housing", (0.1, 0.1, 0.1))
+    housing.parent = ideas.objects["eye"]
+    own = scenes.add_collection(ideas.collection, "Own")
+    own.objects.link(housing)
+    eye = ideas.objects["eye"]
+    parking.park(ideas, eye)
+    bpy.context.view_layer.update()
+    assert not housing.visible_get()
+    parking.unpark(ideas, eye)
+    bpy.context.view_layer.update()
+    assert housing.visible_get()
+    assert {c.name for c in housing.users_collection} == {ideas.collection.name, "Own"}
+
+
+def test_hidden_sensors_stay_hidden_and_where_they_were(ideas, tmp_path):
+    """Blender does not work out the place of what is hidden, and a file does not hold it."""
+    ideas.objects["eye"].hide_set(True)
+    bpy.ops.pe.update_variant()
+    before = bridge.records_of_scene(ideas)
+    assert [record.visible for record in before] == [False, True]
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "hidden.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hidden.blend"))
+    scene = bpy.context.scene
+    assert bridge.alike(bridge.records_of_scene(scene), before)
+    remove(scene, "eye")
+    switch(scene, "Variant")
+    assert bridge.alike(bridge.records_of_scene(scene), before)
+    assert not scene.objects["eye"].visible_get()
+
+
+def test_undo_takes_a_switch_back_in_one_step(ideas):
+    ideas.objects["roof"].location.z = 2.5
+    scenes.add_sensor("third", location=(1.0, 0.0, 2.0))
+    bpy.ops.ed.undo_push(message="before")
+    before = poses()
+    key = rows(ideas)["Variant"].key
+    assert bpy.ops.pe.switch_variant("EXEC_DEFAULT", True, key=key) == {"FINISHED"}
+    assert poses() != before
+    bpy.ops.ed.undo()
+    assert poses() == before
+    assert variants(bpy.context.scene) == ["Variant"]
+
+
+def test_a_held_sensor_is_told_and_nothing_is_changed(ideas):
+    bpy.ops.pe.save_variant()
+    roof = ideas.objects["roof"]
+    roof.location.z = 2.5
+    scenes.add_sensor("third", location=(1.0, 0.0, 2.0))
+    roof.constraints.new("LIMIT_LOCATION").use_min_z = True
+    roof.constraints[0].min_z = 2.4
+    bpy.context.view_layer.update()
+    before = poses()
+    with pytest.raises(RuntimeError, match="sensor 'roof': placement: expected an object that can"):
+        switch(ideas, "Variant")
+    bpy.context.view_layer.update()
+    assert poses() == before
+
+
+def test_names_are_never_alike_and_never_empty(ideas):
+    bpy.ops.pe.duplicate_variant()
+    first, second = ideas.perception_entropy.variants
+    assert (first.name, second.name) == ("Variant", "Variant 2")
+    second.name = "Variant"
+    assert second.name == "Variant 2"
+    second.name = "  "
+    assert second.name == "Variant 2" or second.name.startswith("Variant")
+    first.name = "Roof only"
+    assert ideas.perception_entropy.variant_key == first.key
+
+
+def test_deleting_the_active_one_leaves_the_sensors(ideas):
+    before = poses()
+    bpy.ops.pe.delete_variant()
+    assert variants(ideas) == [] and poses() == before
+    assert not bpy.ops.pe.switch_variant.poll()
+    assert not bpy.ops.pe.update_variant.poll()
+
+
+def test_the_mark_tells_that_the_scene_is_another(ideas):
+    settings = ideas.perception_entropy
+    unsaved.check()
+    assert not settings.variant_changed
+    ideas.objects["roof"].location.x += 0.001
+    bpy.context.view_layer.update()
+    unsaved.check()
+    assert settings.variant_changed
+    ideas.objects["roof"].location.x -= 0.001
+    bpy.context.view_layer.update()
+    unsaved.check()
+    assert not settings.variant_changed
+    ideas.objects["roof"].scale = (2.0, 2.0, 2.0)  # no possible sensor
+    bpy.context.view_layer.update()
+    unsaved.check()
+    assert settings.variant_changed
+
+
+def test_a_score_goes_to_the_variant_that_stands(ideas):
+    assert not rows(ideas)["Variant"].has_result
+    bpy.ops.pe.duplicate_variant()
+    ideas.objects["roof"].location.z = 2.5
+    bpy.context.view_layer.update()
+    bpy.ops.pe.score()
+    assert not rows(ideas)["Variant"].has_result, "it was not this one that was scored"
+    switch(ideas, "Variant")
+    assert rows(ideas)["Unsaved"].has_result, "it was kept with the score that it had"
+    bpy.ops.pe.score()
+    first, second = rows(ideas)["Variant"], rows(ideas)["Variant 2"]
+    assert first.has_result and second.entropy == first.entropy
+    unsaved.check()
+    assert not first.stale
+    ideas.perception_entropy.prior = "uniform"
+    unsaved.check()
+    assert first.stale
+
+
+def test_a_variant_is_scored_as_if_it_stood_there(ideas):
+    """To the bit, and without being put into the scene."""
+    ideas.objects["eye"].hide_set(True)
+    bpy.ops.pe.update_variant()
+    expected = scenes.study()
+    ideas.objects["roof"].location.z = 2.5
+    bpy.context.view_layer.update()
+    study = bridge.study_of_variant(ideas, rows(ideas)["Variant"], scenes.depsgraph())
+    assert [s.pose for s in study.rig] == [s.pose for s in expected.rig]
+    assert study.search.free == expected.search.free
+    assert study.evaluator().score(study.rig) == expected.evaluator().score(expected.rig)
+
+
+def test_a_search_leaves_its_start_and_its_result(car):
+    bpy.ops.pe.optimize()
+    assert variants(car) == ["Before optimize", "Optimized, seed 0"]
+    settings = car.perception_entropy
+    before, after = settings.variants
+    assert settings.variant_key == after.key and not settings.variant_changed
+    assert after.entropy == pytest.approx(settings.result_entropy)
+    assert before.entropy == pytest.approx(settings.result_before)
+    found = poses()
+    switch(car, "Before optimize")
+    assert poses() != found
+    switch(car, "Optimized, seed 0")
+    assert poses() == found
+    assert len(variants(car)) == 2
+
+
+def test_the_start_of_a_search_is_no_second_variant(ideas):
+    bpy.ops.pe.optimize()
+    assert variants(ideas) == ["Variant", "Optimized, seed 0"]
+    assert rows(ideas)["Variant"].has_result
+
+
+def test_unknown_names_are_told(ideas):
+    with pytest.raises(pe.InputError, match="variant: expected one of Variant, found 'Roof'"):
+        bridge.variant_named(ideas, "Roof")
+
+
+def test_a_name_that_something_else_has(ideas):
+    """A mesh may be called as a sensor is: the sensor gets another name, in the variant too."""
+    remove(ideas, "eye")
+    scenes.add_box(ideas.collection, "eye", (0.1, 0.1, 0.1))
+    switch(ideas, "Variant")
+    assert set(poses()) == {"eye.001", "roof"}
+    unsaved.check()
+    assert not ideas.perception_entropy.variant_changed
+    assert [s.name for s in rows(ideas)["Variant"].sensors] == ["eye.001", "roof"]
+
+
+def test_two_scenes_have_variants_of_their_own(ideas):
+    first = bpy.context.scene
+    bpy.ops.scene.new(type="NEW")
+    second = bpy.context.scene
+    scenes.add_car(second)
+    for z in (1.9, 2.1):
+        scenes.add_sensor("roof of two", location=(0.0, 0.0, z))
+        bpy.ops.pe.save_variant()
+    switch(second, "Variant")
+    assert set(poses()) == {"roof of two"}
+    assert variants(first) == ["Variant"] and variants(second) == ["Variant", "Variant 2"]
+    assert len(bridge.sensor_objects(first)) == 2
+    bpy.context.window.scene = first
+    assert set(poses()) == {"eye", "roof"}

@@ -11,6 +11,7 @@ _PACKED = f"{__package__}.pe_core"
 _NAME = _PACKED if find_spec(_PACKED) else "pe_core"
 
 pe = import_module(_NAME)
+advice = import_module(f"{_NAME}.advice")
 app = import_module(f"{_NAME}.app")
 catalog = import_module(f"{_NAME}.catalog")
 geometry = import_module(f"{_NAME}.scene")

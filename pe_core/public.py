@@ -1,6 +1,7 @@
 """The names of the engine that other programs use."""
 
-from . import catalog
+from . import advice, catalog
+from .advice import Advice
 from .errors import InputError
 from .formats import Mesh, read_boxes, read_mesh, write_boxes, write_mesh
 from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
@@ -30,6 +31,7 @@ from .study import (
 from .version import __version__
 
 __all__ = [
+    "Advice",
     "ApCurve",
     "BeamField",
     "BlindGround",
@@ -68,6 +70,7 @@ __all__ = [
     "Study",
     "Vehicle",
     "__version__",
+    "advice",
     "beam_field",
     "catalog",
     "cuts_body",

@@ -41,14 +41,7 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     """Add the options of ``score`` and ``optimize`` to a parser."""
     parser.add_argument("-o", "--output", metavar="DIR", help="folder for the results")
     parser.add_argument("--json", action="store_true", help="print result.json on stdout")
-    parser.add_argument(
-        "--grid-samples",
-        type=count_up_to(MOST_VOXELS),
-        metavar="N",
-        help="voxels a score looks at (0: all)",
-    )
-    workers = count_up_to(MOST_WORKERS)
-    parser.add_argument("--workers", type=workers, metavar="N", help="threads (default: all)")
+    add_score_options(parser)
     if search:
         options = (
             ("--seed", LAST_SEED, "seed of the search"),
@@ -57,6 +50,14 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
         )
         for option, greatest, about in options:
             parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
+
+
+def add_score_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of whatever scores a study to a parser."""
+    voxels, workers = count_up_to(MOST_VOXELS), count_up_to(MOST_WORKERS)
+    about = "voxels a score looks at (0: all)"
+    parser.add_argument("--grid-samples", type=voxels, metavar="N", help=about)
+    parser.add_argument("--workers", type=workers, metavar="N", help="threads (default: all)")
 
 
 def count_up_to(greatest: int) -> Callable[[str], int]:

@@ -28,6 +28,7 @@ def summary(outcome: Outcome) -> str:
         )
     if outcome.stopped:
         lines.append("stopped early: this is the best placement found so far")
+    lines += (f"warning: {each.line}" for each in outcome.warnings)
     return "\n".join(lines)
 
 

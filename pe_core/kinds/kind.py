@@ -11,12 +11,18 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..metric.entropy import ApCurve
+from ..scene.geometry import dot
 from ..scene.sensors import Sensor, SensorModel
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .defined import DefinedGrid, DefinedSample
 from .kernels import Floats, GridKernel, SampleKernel, Voxels
+
+OUT_OF_VIEW, OUT_OF_RANGE, BETWEEN_BEAMS = "out of view", "out of range", "between beams"
+"""Why a sensor misses a place that nothing hides."""
 
 
 class Kind(ABC):
@@ -36,6 +42,8 @@ class Kind(ABC):
         Eq. 4 of its detector, unless a study has another.
     keys : frozenset of str
         Keys of a sensor's table, but for those that every kind has.
+    has_top : bool
+        Whether it matters which side of a sensor is up, as it does for a picture.
     """
 
     name: str
@@ -45,6 +53,7 @@ class Kind(ABC):
     model: type[SensorModel]
     curve: ApCurve
     keys: frozenset[str]
+    has_top: bool = False
 
     @abstractmethod
     def measure(
@@ -67,6 +76,27 @@ class Kind(ABC):
     def plot(self, model: Any) -> list[str]:
         """Lines of a small picture of a sensor in text; none by default."""
         return []
+
+    def rays(self, sensor: Sensor, most: int) -> Floats:
+        """Return a fair sample of where a sensor looks: at most so many (R, 3) unit directions.
+
+        Ground frame. None by default: it is then not told what the vehicle stops.
+        """
+        return np.empty((0, 3))
+
+    def rays_to(self, sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:
+        """Return the rays of a sensor that decide whether something hides a cube from it.
+
+        Directions (R, 3), ground frame, and how far (R,) each has to come [m]. By default the one
+        to the cube's centre.
+        """
+        offset = center - np.asarray(sensor.pose.position)
+        distance = float(np.sqrt(dot(offset, offset)))
+        return offset[None] / (distance or 1.0), np.array([distance])
+
+    def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
+        """Say why a sensor that nothing is in the way of does not measure a cube (3,) [m]."""
+        return OUT_OF_VIEW
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> GridKernel:
         """Return what measures sensors on all voxels of a space.

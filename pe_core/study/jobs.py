@@ -13,7 +13,9 @@ from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
+from ..advice import Advice, warnings
 from ..scene.sensors import Rig
 from ..scoring.evaluator import Evaluator
 from ..scoring.score import Score, ScoreStopped
@@ -63,6 +65,8 @@ class Outcome:
     stopped : bool
         Whether the search was cut short.
     seconds : float
+    warnings : tuple of Advice
+        What is odd about `study`.
     """
 
     kind: str
@@ -74,6 +78,7 @@ class Outcome:
     evaluations: int = 0
     stopped: bool = False
     seconds: float = 0.0
+    warnings: tuple[Advice, ...] = ()
 
 
 class Job:
@@ -115,14 +120,14 @@ class Job:
         itself, soon, and nobody waits for it.
         """
         yield waiting
-        future, done = Future[Score](), waiting.fraction
+        future, done = Future[Any](), waiting.fraction
 
         def watch(share: float) -> bool:
             nonlocal done
             done = max(waiting.fraction, share)
             return to_the_end or not self.stopped
 
-        threading.Thread(target=self._fill, args=(future, rig, watch), daemon=True).start()
+        _start(future, lambda: self._evaluator.score(rig, watch=watch))
         while to_the_end or not self.stopped:
             try:
                 return future.result(timeout=WAIT_S)
@@ -134,11 +139,35 @@ class Job:
             yield replace(waiting, fraction=done)
         return None
 
-    def _fill(self, future: Future[Score], rig: Rig, watch: Callable[[float], bool]) -> None:
+    def _warnings(
+        self, study: Study, score: Score, waiting: Progress
+    ) -> Generator[Progress, None, tuple[Advice, ...]]:
+        """Look a study over in a thread, yielding `waiting` until it is done."""
+        future = Future[Any]()
+        _start(
+            future,
+            lambda: warnings(study.rig, study.vehicle, study.space, study.prior, score),
+        )
+        while True:
+            try:
+                told: tuple[Advice, ...] = future.result(timeout=WAIT_S)
+                return told
+            except NotYet:
+                if future.done():
+                    raise
+            yield waiting
+
+
+def _start(future: Future[Any], work: Callable[[], Any]) -> None:
+    """Begin work in a thread that nobody has to wait for; what comes of it is the future's."""
+
+    def fill() -> None:
         try:
-            future.set_result(self._evaluator.score(rig, watch=watch))
+            future.set_result(work())
         except BaseException as error:  # whatever it is, the one who waits has to know
             future.set_exception(error)
+
+    threading.Thread(target=fill, daemon=True).start()
 
 
 class ScoreJob(Job):
@@ -148,7 +177,9 @@ class ScoreJob(Job):
         score = yield from self._score(self.study.rig, Progress("scoring", 0.0))
         if score is None:
             return
-        self.outcome = Outcome("score", self.study, self.study, score, score, seconds=self.seconds)
+        told = yield from self._warnings(self.study, score, Progress("scoring", 1.0, score.entropy))
+        both = (self.study, self.study, score, score)
+        self.outcome = Outcome("score", *both, seconds=self.seconds, warnings=told)
         yield Progress("done", 1.0, score.entropy)
 
 
@@ -182,6 +213,8 @@ class OptimizeJob(Job):
         yield from self._search()
         stopped = self.stopped
         after, best = yield from self._better_of(before)
+        looking = Progress("scoring the result", 1.0, after.entropy, self.evaluations)
+        told = yield from self._warnings(best, after, looking)
         self.outcome = Outcome(
             "optimize",
             self.study,
@@ -192,6 +225,7 @@ class OptimizeJob(Job):
             self.evaluations,
             stopped,
             self.seconds,
+            told,
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 

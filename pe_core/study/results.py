@@ -62,6 +62,7 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         },
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,
+        "warnings": [each.to_dict() for each in outcome.warnings],
         "history": [_history_dict(row) for row in outcome.history],
         "inputs": {
             "study": study_to_dict(outcome.start),

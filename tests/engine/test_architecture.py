@@ -25,15 +25,18 @@ ALLOWED = {
     "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
     "search": {"errors", "text", "scene", "scoring"},
     "catalog": {"errors", "text", "scene", "kinds"},
+    "advice": {
+        *("errors", "text", "metric", "scene", "prior", "kinds", "scoring", "sight", "catalog"),
+    },
     "study": {
         *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
-        *("formats", "scoring", "sight", "search", "catalog"),
+        *("formats", "scoring", "sight", "search", "catalog", "advice"),
     },
     "public": {
         *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
-        *("sight", "search", "catalog", "study"),
+        *("sight", "search", "catalog", "advice", "study"),
     },
-    "app": {"errors", "version", "text", "kinds", "catalog", "sight", "study"},
+    "app": {"errors", "version", "text", "kinds", "catalog", "sight", "advice", "study"},
     "__main__": {"app"},
 }
 """Rooms of the engine, lowest first, and those they may look into: all of them further up here."""

@@ -16,6 +16,7 @@ from . import table as tables
 from .definition import count_pixels
 from .kernels import CameraGrid, CameraSample
 from .model import Camera
+from .picture import picture_rays
 from .words import figures
 
 
@@ -26,6 +27,7 @@ class CameraKind(Kind):
     model = Camera
     curve = RTM3D
     keys = tables.KEYS
+    has_top = True
 
     def measure(
         self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
@@ -44,6 +46,10 @@ class CameraKind(Kind):
     def words(self, model: Camera) -> list[str]:
         """Picture, field of view, focal length."""
         return figures(model)
+
+    def rays(self, sensor: Sensor, most: int) -> Floats:
+        """Look through pixels that are spread over the picture."""
+        return picture_rays(sensor, most)
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> CameraGrid:
         """Fill columns of voxels between the sides of the picture."""

@@ -13,6 +13,7 @@ from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Voxels
 from ..kind import Kind
 from . import table as tables
+from .asked import beams_to, missed, some_beams
 from .definition import count_beams
 from .model import Lidar
 from .on_grid import LidarGrid
@@ -49,6 +50,18 @@ class LidarKind(Kind):
     def plot(self, model: Lidar) -> list[str]:
         """Where the channels are."""
         return channel_plot(model)
+
+    def rays(self, sensor: Sensor, most: int) -> Floats:
+        """Take every n-th beam."""
+        return some_beams(sensor, most)
+
+    def rays_to(self, sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:
+        """Take the beams that would pass through the cube, and where they enter it."""
+        return beams_to(sensor, center, side)
+
+    def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
+        """Out of range, out of view, or between two beams."""
+        return missed(sensor, center, side)
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> LidarGrid:
         """Sweep planes of the grid."""

@@ -1,0 +1,165 @@
+"""What is odd about a sensor's place on the vehicle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinds import kind_of
+from ..scene.geometry import dot
+from ..scene.raycast import Hits
+from ..scene.sensors import Sensor
+from ..scene.space import PerceptionSpace
+from ..scene.vehicle import Vehicle, closest_points
+from .advice import Advice
+from .bodywork import Bodywork
+from .figures import metres, percent
+
+Floats = NDArray[np.float64]
+
+CLEAR_M, CLEAR_ABOVE_M = 0.5, 0.75
+"""A sensor farther than this from the body is on no mount; above it there are racks and masts, and
+a search looks so far up."""
+LOOKS_AT_M = 0.3
+"""Half of what it sees stopped nearer than this: it looks at the body, and at nothing else."""
+MOST_STOPPED = 1.0 / 3.0
+"""More than a sensor at a corner loses (a quarter)."""
+MOST_RAYS = 4096
+AROUND, BELOW_DEG, ENCLOSED = 256, 10.0, 0.9
+"""A sensor is inside when the body is met in this share of so many directions, spread evenly over
+the sphere from 10 degrees below the horizon up. First hits alone are asked, so that neither holes,
+nor double skins, nor a missing underbody matter; a sensor under the body looks out sideways."""
+UPSIDE_DOWN = -0.2
+"""Height of a sensor's unit upward axis below which its picture is upside down."""
+
+
+@dataclass(frozen=True)
+class Mounted:
+    """A sensor, and what it sees of the vehicle's body."""
+
+    sensor: Sensor
+    body: Bodywork
+    known: tuple[int, Mapping[str, int]] | None = None
+    """Its beams and which parts stop how many, where a score has counted them."""
+
+    @cached_property
+    def hits(self) -> Hits:
+        """First hits of a sample of its rays, within its range."""
+        rays = kind_of(self.sensor).rays(self.sensor, MOST_RAYS)
+        return _first_hits(self.sensor, self.body.vehicle, rays)
+
+    @cached_property
+    def stopped_by(self) -> dict[str, float]:
+        """Share of its rays that each part stops, most first."""
+        rays, by_part = self.known or self._counted()
+        shares = {name: count / rays for name, count in by_part.items() if count}
+        return dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
+
+    def _counted(self) -> tuple[int, dict[str, int]]:
+        names = self.body.vehicle.part_names
+        reach = getattr(self.sensor.model, "max_range", math.inf)
+        faces = self.hits.face[self.hits.distance < reach]
+        counts = np.bincount(np.asarray(self.body.vehicle.parts)[faces], minlength=len(names))
+        return len(self.hits.face), dict(zip(names, counts.tolist(), strict=True))
+
+    @cached_property
+    def gap(self) -> float:
+        """Distance to the nearest point of the body [m]."""
+        return distance_to(self.body.itself, np.asarray(self.sensor.pose.position))
+
+    @property
+    def above(self) -> bool:
+        """Whether it stands over the vehicle."""
+        low, high = self.body.itself.bounds
+        x, y, z = self.sensor.pose.position
+        return bool(low[0] <= x <= high[0] and low[1] <= y <= high[1] and z > high[2])
+
+    @cached_property
+    def inside(self) -> bool:
+        """Whether the body is met nearly all round."""
+        hits = _first_hits(self.sensor, self.body.itself, _directions_around())
+        return float(np.mean(np.isfinite(hits.distance))) >= ENCLOSED
+
+
+def odd_mounting(mounted: Mounted) -> Iterator[Advice]:
+    """Yield advice on how a sensor is mounted on the vehicle."""
+    sensor = mounted.sensor
+    if mounted.inside:
+        yield Advice(sensor.name, "inside", "it is inside the body and sees next to nothing")
+        return
+    if mounted.gap > (CLEAR_ABOVE_M if mounted.above else CLEAR_M):
+        text = f"it is {metres(mounted.gap)} clear of the vehicle: what holds it?"
+        yield Advice(sensor.name, "clear", text)
+    yield from _in_the_way(mounted)
+
+
+def odd_place(sensor: Sensor, space: PerceptionSpace) -> Iterator[Advice]:
+    """Yield advice on where a sensor is, whatever vehicle it is on."""
+    x, y, z = sensor.pose.position
+    if z < 0.0:
+        yield Advice(sensor.name, "underground", f"it is {metres(-z)} under the ground")
+    bounds = (space.x, space.y, (min(0.0, space.z[0]), space.z[1]))
+    outside = (not low <= w <= high for w, (low, high) in zip((x, y, z), bounds, strict=True))
+    if z >= 0.0 and any(outside):
+        text = f"it is outside the perception space, at ({x:g}, {y:g}, {z:g}) m"
+        yield Advice(sensor.name, "outside", text)
+    up = float(sensor.pose.ground_from_sensor[2, 2])
+    kind = kind_of(sensor)
+    if kind.has_top and up < UPSIDE_DOWN:
+        text = f"the {kind.label.lower()} is upside down"
+        yield Advice(sensor.name, "upside_down", text, fix="roll_sensor", amount=(180.0,))
+
+
+def distance_to(vehicle: Vehicle, point: Floats) -> float:
+    """Distance from a point to the nearest of a vehicle's triangles [m]."""
+    low, high = vehicle.bounds
+    away = np.maximum(np.maximum(low - point, point - high), 0.0)
+    radius = CLEAR_M + float(np.sqrt(dot(away, away)))
+    while True:
+        near = vehicle.triangles_near(point, radius)
+        if len(near):
+            points = closest_points(point, near)
+            distance = float(np.sqrt(dot(points - point, points - point).min()))
+            if distance <= radius:
+                return distance
+        radius *= 2.0
+
+
+def _in_the_way(mounted: Mounted) -> Iterator[Advice]:
+    """Looking at the body from near, or much of its field stopped."""
+    name, unit = mounted.sensor.name, kind_of(mounted.sensor).unit
+    if not mounted.stopped_by:
+        return
+    part, most = next(iter(mounted.stopped_by.items()))
+    median = float(np.median(mounted.hits.distance)) if len(mounted.hits.face) else math.inf
+    if median <= LOOKS_AT_M:
+        text = f"it looks at {part} from {metres(median)}"
+        yield Advice(name, "looks_at", text, part=part)
+        return
+    share = sum(mounted.stopped_by.values())
+    if share < MOST_STOPPED:
+        return
+    text = f"{percent(share)} of its {unit} are stopped by {part}"
+    if share - most > 0.005:
+        text = f"{percent(share)} of its {unit} are stopped, {percent(most)} by {part}"
+    yield Advice(name, "stopped", text, part=part)
+
+
+def _first_hits(sensor: Sensor, vehicle: Vehicle, rays: Floats) -> Hits:
+    return vehicle.first_hit(sensor.pose.position, rays, sensor.model.sees_through_glass)
+
+
+def _directions_around() -> Floats:
+    """(R, 3) unit directions, evenly from a little below the horizon up: a Fibonacci spiral."""
+    low = -math.sin(math.radians(BELOW_DEG))
+    rows = []
+    for k in range(AROUND):
+        z = low + (1.0 - low) * (k + 0.5) / AROUND
+        flat, angle = math.sqrt(1.0 - z * z), k * math.pi * (3.0 - math.sqrt(5.0))
+        rows.append((flat * math.cos(angle), flat * math.sin(angle), z))
+    return np.array(rows)

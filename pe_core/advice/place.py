@@ -1,0 +1,245 @@
+"""Ask a place: which sensors see it, how well, and what hides it from the others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..kinds import PerceptionModel, kind_named, kind_of, measure
+from ..metric import average_precision
+from ..metric.entropy import GAUSSIAN_2D
+from ..metric.fusion import Fusion
+from ..prior.prior import Prior
+from ..scene.geometry import METRES
+from ..scene.sensors import Rig, Sensor
+from ..scene.space import PerceptionSpace
+from ..scene.vehicle import Vehicle
+from ..scoring.score import rounded
+from ..scoring.subsets import fused_early
+from ..text.values import listed, vector
+from .figures import plural, times
+
+Floats = NDArray[np.float64]
+
+SEES, HIDDEN = "sees", "hidden"
+"""Reasons of a sensor that measures a place, and of one that the vehicle keeps from it; the others
+are `kinds.kind.OUT_OF_VIEW` and its like."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorAtPlace:
+    """What one sensor makes of a place.
+
+    Attributes
+    ----------
+    name, kind : str
+    m : float
+        Beams or pixels, as `kinds.measure` defines them.
+    unhidden : float
+        The same if the vehicle hid nothing.
+    ap : float
+        Average precision of m by the curve of its kind (eq. 4).
+    hidden_by : str or None
+        Name of the part in the way of most of its rays, when it measures nothing because of that.
+    reason : {"sees", "hidden", "out of view", "out of range", "between beams"}
+        Other kinds than LiDAR and camera may say more.
+    """
+
+    name: str
+    kind: str
+    m: float
+    unhidden: float
+    ap: float
+    hidden_by: str | None
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class AskedPlace:
+    """A voxel that was asked about.
+
+    Attributes
+    ----------
+    center : (3,) float
+        Its centre [m].
+    entropy : float
+        H, eq. 8 [nats].
+    ap : float
+        Average precision of all sensors fused.
+    seen : bool
+    density : float
+        How likely an object is there, relative to the mean over the space; 0 in the vehicle.
+    in_vehicle : bool
+        Whether it is in the vehicle's own volume, which does not count.
+    sensors : tuple of SensorAtPlace
+        In the rig's order.
+    """
+
+    center: tuple[float, float, float]
+    entropy: float
+    ap: float
+    seen: bool
+    density: float
+    in_vehicle: bool
+    sensors: tuple[SensorAtPlace, ...]
+
+    @property
+    def text(self) -> tuple[str, ...]:
+        """The place in words: itself, what is to be expected there, then a line a sensor."""
+        if self.in_vehicle:
+            return (_headline(self),)
+        return (_headline(self), _expectation(self), *(_sensor_line(s) for s in self.sensors))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data, with its words."""
+        return {**asdict(self), "center": list(self.center), "text": list(self.text)}
+
+
+def ask_place(
+    rig: Rig,
+    space: PerceptionSpace,
+    prior: Prior,
+    vehicle: Vehicle | None,
+    point: Sequence[float],
+    model: PerceptionModel | None = None,
+) -> AskedPlace:
+    """Tell what a rig makes of the voxel that holds a point.
+
+    Parameters
+    ----------
+    rig : Rig
+    space : PerceptionSpace
+    prior : Prior
+    vehicle : Vehicle, optional
+    point : (2,) or (3,) float
+        x, y and perhaps z, ground frame [m]; without z (or with None) on the ground, z = 0.
+    model : PerceptionModel, optional
+        AP curves and fusion rule; the paper's by default.
+
+    Returns
+    -------
+    AskedPlace
+
+    Raises
+    ------
+    InputError
+        When the point is not two or three numbers, or not in the space.
+    """
+    model, side = model or PerceptionModel(), space.interval
+    index = _voxel(space, _checked(point))
+    center = space.center_of(np.array([index]))
+    sensors = tuple(_at_place(s, center, side, vehicle, model) for s in rig)
+    measured = {s.name: np.array([s.m]) for s in sensors}
+    entropies, seen = Fusion(model).entropies(fused_early(rig, measured, list(measured)))
+    inside = vehicle is not None and bool(center[0, 2] < _top(vehicle, space, center[0]))
+    x, y, z = (float(v) for v in center[0])
+    return AskedPlace(
+        center=(x, y, z),
+        entropy=rounded(entropies[0]),
+        ap=_ap_of(float(entropies[0])),
+        seen=bool(seen[0]),
+        density=0.0 if inside else _density(prior, space, index),
+        in_vehicle=inside,
+        sensors=sensors,
+    )
+
+
+def _ap_of(entropy: float) -> float:
+    """AP of which eqs. 5 and 8 make an entropy."""
+    sigma = math.exp((entropy - GAUSSIAN_2D) / 2.0)
+    return 1.0 / (1.0 + sigma)
+
+
+def _checked(point: Sequence[float]) -> tuple[float, float, float]:
+    values = listed(point, 3) or []
+    if len(values) == 2 or values[2:] == [None]:
+        values = [*values[:2], 0.0]
+    x, y, z = vector("place", "point", values, 3, METRES)
+    return x, y, z
+
+
+def _voxel(space: PerceptionSpace, point: tuple[float, float, float]) -> tuple[int, int, int]:
+    """Indices of the voxel that holds a point; the space's upper faces belong to its last ones."""
+    bounds = (space.x, space.y, space.z)
+    for axis, value, (low, high) in zip("xyz", point, bounds, strict=True):
+        if not low <= value <= high:
+            expected = f"{low:g} to {high:g} m, inside the space"
+            raise InputError("place", axis, expected, f"{value:g}")
+    steps = ((v - low) / space.interval for v, (low, _) in zip(point, bounds, strict=True))
+    i, j, k = (min(math.floor(s), n - 1) for s, n in zip(steps, space.shape, strict=True))
+    return i, j, k
+
+
+def _at_place(
+    sensor: Sensor, center: Floats, side: float, vehicle: Vehicle | None, model: PerceptionModel
+) -> SensorAtPlace:
+    unhidden = float(measure(sensor, center, side)[0])
+    m = float(measure(sensor, center, side, vehicle)[0]) if unhidden and vehicle else unhidden
+    part, reason = None, SEES
+    if not unhidden:
+        reason = kind_of(sensor).missed(sensor, center[0], side)
+    elif not m and vehicle is not None:
+        part, reason = _part_in_the_way(sensor, center[0], side, vehicle), HIDDEN
+    ap = float(average_precision(m, model.curve(sensor.kind)))
+    return SensorAtPlace(sensor.name, sensor.kind, m, unhidden, ap, part, reason)
+
+
+def _part_in_the_way(sensor: Sensor, center: Floats, side: float, vehicle: Vehicle) -> str | None:
+    """Name the part that stops most of a sensor's rays to a cube before they are there."""
+    directions, far = kind_of(sensor).rays_to(sensor, center, side)
+    glass = sensor.model.sees_through_glass
+    hits = vehicle.first_hit(sensor.pose.position, directions, glass)
+    stopped = hits.face[hits.distance < far]
+    if not len(stopped):
+        return None
+    counts = np.bincount(np.asarray(vehicle.parts)[stopped])
+    return str(vehicle.part_names[int(np.argmax(counts))])
+
+
+def _top(vehicle: Vehicle, space: PerceptionSpace, center: Floats) -> float:
+    """Height of the vehicle's top over one column of a space."""
+    half = space.interval / 2.0
+    x, y = ((w - half, w + half) for w in center[:2].tolist())
+    return float(vehicle.top(PerceptionSpace(x, y, space.z, space.interval))[0, 0])
+
+
+def _density(prior: Prior, space: PerceptionSpace, index: tuple[int, int, int]) -> float:
+    """Prior of a voxel, relative to the mean over the space."""
+    i, j, k = index
+    here = sum(float(d.ground[i, j] * d.profile[k]) for d in prior.densities(space))
+    return here * space.size
+
+
+def _headline(place: AskedPlace) -> str:
+    where = "({}) m".format(", ".join(f"{v:.2f}" for v in place.center))
+    if place.in_vehicle:
+        return f"{where}: inside the vehicle, which does not count"
+    if not place.seen:
+        return f"{where}: seen by no sensor; H {place.entropy:.2f} nats"
+    seeing = sum(s.m > 0.0 for s in place.sensors)
+    who = f"{seeing} of {plural(len(place.sensors), 'sensor')}"
+    return f"{where}: seen by {who}; together AP {place.ap:.2f}, H {place.entropy:.2f} nats"
+
+
+def _expectation(place: AskedPlace) -> str:
+    if not place.density:
+        return "nothing is expected here"
+    return f"objects are {times(place.density)} as likely here as on average"
+
+
+def _sensor_line(sensor: SensorAtPlace) -> str:
+    unit = kind_named(sensor.kind, sensor.name).unit
+    if sensor.reason == HIDDEN:
+        return f"{sensor.name}: hidden by {sensor.hidden_by or 'the vehicle'}"
+    if sensor.reason != SEES:
+        return f"{sensor.name}: {sensor.reason}"
+    count = plural(sensor.m, unit.removesuffix("s"))
+    lost = sensor.unhidden - sensor.m
+    hidden = f" ({lost:.0f} more stopped)" if lost > 0.0 else ""
+    return f"{sensor.name}: sees it with {count}{hidden}, AP {sensor.ap:.2f}"

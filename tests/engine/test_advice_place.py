@@ -1,0 +1,232 @@
+"""Ask a place: m as it is defined, what hides it, and why a sensor misses it."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import advice
+from pe_core.metric import average_precision, entropy_of, late_fusion, precision_of
+from tests.engine import shapes
+
+SPACE = pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), 0.5)
+WALL = pe.Vehicle(
+    np.concatenate([shapes.box((2, -1, 0), (2.2, 1, 2)), shapes.box((2.4, -3, 0), (2.6, 3, 4))]),
+    np.repeat([0, 1], 12),
+    ("fence", "wall"),
+)
+"""A fence, and a larger wall behind it."""
+
+
+def one_beam(position=(0.0, 0.0, 1.25), elevations=(0.0,), max_range=15.0, **options):
+    """A LiDAR of few channels, a beam a degree."""
+    model = pe.Lidar("beam", np.radians(elevations), 360, max_range, **options)
+    return pe.Sensor("beam", model, pe.Pose(position))
+
+
+def ask(sensors, point, vehicle=None, space=SPACE):
+    return advice.ask_place(pe.Rig(sensors), space, pe.Prior.uniform(), vehicle, point)
+
+
+def test_a_point_is_in_the_voxel_that_holds_it():
+    sensor = one_beam()
+    assert ask([sensor], (10.2, -3.1)).center == (10.25, -3.25, 0.25)
+    assert ask([sensor], (10.2, -3.1, None)).center == (10.25, -3.25, 0.25)
+    assert ask([sensor], (10.5, -3.0, 1.5)).center == (10.75, -2.75, 1.75)
+    assert ask([sensor], (20, 10, 5)).center == (19.75, 9.75, 4.75)
+
+
+@pytest.mark.parametrize(
+    ("point", "message"),
+    [
+        ((20.1, 0), "place: x: expected -20 to 20 m, inside the space, found 20.1"),
+        ((0, 0, -1), "place: z: expected 0 to 5 m, inside the space, found -1"),
+        ((1,), "place: point: expected three finite numbers"),
+        ((1, 2, 3, 4), "place: point: expected three finite numbers"),
+        (("a", 2), "place: point: expected three finite numbers"),
+        ((math.nan, 2), "place: point: expected three finite numbers"),
+    ],
+)
+def test_a_point_that_is_none_is_refused_in_a_line(point, message):
+    with pytest.raises(pe.InputError) as caught:
+        ask([one_beam()], point)
+    assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
+
+
+def test_one_beam_by_hand():
+    """A cube from y = -0.5 to 0 at x = 10 takes the beams at -1 and -2 degrees (y = -0.35).
+
+    That at -3 passes at -0.52; that at 0 runs along a face which belongs to the next cube.
+    """
+    place = ask([one_beam()], (10.1, -0.1, 1.25))
+    assert place.center == (10.25, -0.25, 1.25)
+    own = place.sensors[0]
+    assert (own.m, own.unhidden, own.reason, own.hidden_by) == (2.0, 2.0, "sees", None)
+    assert own.ap == pytest.approx(0.152 * math.log(2) + 0.659)
+    assert place.ap == pytest.approx(own.ap) and place.seen and not place.in_vehicle
+    assert place.entropy == pytest.approx(2 * math.log(1 / own.ap - 1) + 1 + math.log(2 * math.pi))
+    assert place.density == pytest.approx(1.0)
+    assert place.text == (
+        "(10.25, -0.25, 1.25) m: seen by 1 of 1 sensor; together AP 0.76, H 0.48 nats",
+        "objects are 1 times as likely here as on average",
+        "beam: sees it with 2 beams, AP 0.76",
+    )
+
+
+@pytest.mark.parametrize(
+    ("point", "reason"),
+    [
+        ((10, 0, 1.25), "sees"),
+        ((15.9, 0, 1.25), "out of range"),  # the cube begins at 15.5 m
+        ((15.2, 9.9, 1.25), "out of range"),
+        ((10, 0, 4.0), "out of view"),  # 15 degrees up
+        ((10, 0, 1.7), "between beams"),  # 2 degrees: between the channels at 0 and 6
+        ((-0.2, 0, 3.0), "out of view"),  # over the LiDAR
+    ],
+)
+def test_why_a_lidar_misses_a_place(point, reason):
+    own = ask([one_beam(elevations=(0.0, 6.0))], point).sensors[0]
+    assert (own.reason, own.hidden_by) == (reason, None)
+    assert (own.m > 0) == (reason == "sees")
+
+
+def test_behind_the_end_of_its_field_a_lidar_does_not_look():
+    sensor = one_beam(horizontal_fov=(math.radians(-30), math.radians(30)))
+    reasons = [
+        ask([sensor], p).sensors[0].reason for p in ((10, 0, 1.25), (5, 5, 1.25), (-5, 0, 1.25))
+    ]
+    assert reasons == ["sees", "out of view", "out of view"]
+
+
+def test_beams_of_a_raster_leave_gaps_too():
+    """A list of beams, 3 degrees apart: a place between them is not out of view."""
+    angles = np.radians(np.arange(-30, 31, 3))
+    beams = [(math.cos(a), math.sin(a), 0.0) for a in angles]
+    model = pe.Lidar.from_directions("raster", beams, 100.0)
+    sensor = pe.Sensor("raster", model, pe.Pose((0.25, 0.25, 0.25)))
+    space = pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), 0.1)
+    between = (15 * math.cos(math.radians(1.5)), 15 * math.sin(math.radians(1.5)) + 0.25, 0.25)
+    assert ask([sensor], between, space=space).sensors[0].reason == "between beams"
+    assert ask([sensor], (5, 9, 0.25), space=space).sensors[0].reason == "out of view"
+
+
+def test_the_nearest_part_hides():
+    """The fence is met first, the wall where the fence does not reach; cameras alike."""
+    lidar = one_beam(elevations=(0.0, 23.0))
+    camera = shapes.camera(90.0, position=(0.0, 0.0, 1.25))
+    low, high = (ask([lidar, camera], p, WALL) for p in ((10, 0, 1.25), (8, 0, 4.9)))
+    assert [(s.reason, s.hidden_by) for s in low.sensors] == [("hidden", "fence")] * 2
+    assert [(s.reason, s.hidden_by) for s in high.sensors] == [("hidden", "wall")] * 2
+    assert not low.seen and low.entropy == pytest.approx(16.651, abs=1e-3)
+    assert low.text[2:] == ("beam: hidden by fence", "camera: hidden by fence")
+
+
+def test_cameras_see_through_glass():
+    glass = pe.Vehicle(WALL.triangles, WALL.parts, WALL.part_names, glass=("fence", "wall"))
+    camera = shapes.camera(90.0, position=(0.0, 0.0, 1.25))
+    place = ask([one_beam(), camera], (10, 0, 1.25), glass)
+    assert [s.reason for s in place.sensors] == ["hidden", "sees"]
+
+
+def test_in_the_vehicle_nothing_counts():
+    place = ask([one_beam()], (0, 0, 0.2), shapes.box_car())
+    assert place.in_vehicle and place.density == 0.0
+    assert place.text == ("(0.25, 0.25, 0.25) m: inside the vehicle, which does not count",)
+    assert not ask([one_beam()], (0, 0, 1.6), shapes.box_car()).in_vehicle  # over the roof, 1.4 m
+
+
+def test_density_is_relative_to_the_mean():
+    """Twice as much ahead of x = 0: 4/3 there, 2/3 behind."""
+    prior = pe.Prior.uniform([pe.Focus(2.0, x=(0.0, math.inf))])
+    rig = pe.Rig([one_beam()])
+    ahead, behind = (advice.ask_place(rig, SPACE, prior, None, (x, 0)) for x in (5, -5))
+    assert ahead.density == pytest.approx(4 / 3) and behind.density == pytest.approx(2 / 3)
+
+
+def random_rig(rng):
+    """Two LiDARs and two cameras on and round the car, some of them tilted."""
+    sensors = []
+    for k in range(4):
+        position = rng.uniform((-2.5, -1.2, 0.3), (2.5, 1.2, 2.0))
+        rotation = (*rng.uniform(-20, 20, 2), rng.uniform(-180, 180))
+        if k < 2:
+            model = shapes.small_lidar(16, 720, max_range=18.0)
+            sensors.append(shapes.lidar_on_roof(model, position, rotation, f"lidar {k}"))
+        else:
+            sensors.append(shapes.camera(80.0, position, rotation, f"camera {k}"))
+    return pe.Rig(sensors)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_m_is_the_definition_s_and_ap_and_h_are_the_equations(seed):
+    rng, car, model = np.random.default_rng(seed), shapes.box_car(), pe.PerceptionModel()
+    rig = random_rig(rng)
+    for point in rng.uniform((-19, -9, 0), (19, 9, 4), (12, 3)):
+        place = advice.ask_place(rig, SPACE, pe.Prior.road(), car, point)
+        center, precisions = np.array([place.center]), {}
+        assert np.abs(center - point).max() <= SPACE.interval / 2 + 1e-9
+        for sensor, own in zip(rig, place.sensors, strict=True):
+            assert own.m == pe.measure(sensor, center, SPACE.interval, car)[0]
+            assert own.unhidden == pe.measure(sensor, center, SPACE.interval)[0]
+            assert own.ap == average_precision(own.m, model.curve(own.kind))
+            assert (own.reason == "sees") == (own.m > 0)
+            assert (own.reason == "hidden") == (own.m == 0 < own.unhidden)
+            precisions[sensor.group] = precisions.get(sensor.group, 0.0) + own.m
+        fused = late_fusion(
+            [precision_of(m, model.curve(rig.groups[g][0].kind)) for g, m in precisions.items()]
+        )
+        assert place.entropy == pytest.approx(float(entropy_of(fused)), abs=1e-8)
+        assert place.ap == pytest.approx(1 / (1 + float(fused) ** -0.5), abs=1e-8)
+
+
+def first_triangle(origin, direction, triangles):
+    """Index of the nearest triangle on a ray: Moeller and Trumbore, one by one."""
+    best, found = math.inf, None
+    for k, (a, b, c) in enumerate(triangles):
+        p = np.cross(direction, c - a)
+        det = np.dot(b - a, p)
+        if abs(det) < 1e-14:
+            continue
+        u = np.dot(origin - a, p) / det
+        q = np.cross(origin - a, b - a)
+        v, t = np.dot(direction, q) / det, np.dot(c - a, q) / det
+        if u >= 0 and v >= 0 and u + v <= 1 and 0 < t < best:
+            best, found = t, k
+    return best, found
+
+
+def test_what_hides_from_a_camera_is_what_brute_force_meets():
+    car, rng, tried = shapes.box_car(), np.random.default_rng(1), 0
+    for _ in range(150):
+        point, position = rng.uniform((-9, -9, 0), (9, 9, 1)), rng.uniform((-2, -1, 1.5), (2, 1, 2))
+        yaw = math.degrees(math.atan2(point[1] - position[1], point[0] - position[0]))
+        place = ask([shapes.camera(90.0, position, (0, 20, yaw))], point, car)
+        if place.sensors[0].reason == "hidden":
+            ray = np.array(place.center) - position
+            _, face = first_triangle(position, ray / np.linalg.norm(ray), car.triangles)
+            assert place.sensors[0].hidden_by == car.part_names[car.parts[face]]
+            tried += 1
+    assert tried > 20
+
+
+def test_what_hides_from_a_lidar_is_what_most_of_its_beams_meet():
+    car, rng, tried = shapes.box_car(), np.random.default_rng(2), 0
+    for _ in range(40):
+        point, position = rng.uniform((-6, -6, 0), (6, 6, 1)), rng.uniform((-2, -1, 1.5), (2, 1, 2))
+        sensor = shapes.lidar_on_roof(shapes.small_lidar(16, 180), position)
+        place = ask([sensor], point, car)
+        if place.sensors[0].reason == "hidden":
+            count = np.zeros(2)
+            for beam in sensor.model.directions:
+                if pe.measure(one_way(sensor, beam), [place.center], SPACE.interval)[0]:
+                    count[car.parts[first_triangle(position, beam, car.triangles)[1]]] += 1
+            assert place.sensors[0].hidden_by == car.part_names[int(np.argmax(count))]
+            tried += 1
+    assert tried > 3
+
+
+def one_way(sensor, beam):
+    """A LiDAR of one of a sensor's beams."""
+    model = pe.Lidar.from_directions("one", beam[None], sensor.model.max_range)
+    return pe.Sensor("one", model, sensor.pose)

@@ -1,0 +1,124 @@
+"""A score in words, figures as people read them, and scores side by side."""
+
+import pytest
+
+import pe_core as pe
+from pe_core import advice
+from pe_core.advice.figures import metres, percent, plural, times
+from tests.engine import shapes
+
+
+@pytest.mark.parametrize(
+    ("share", "text"),
+    [
+        *((0.0, "0%"), (1.0, "100%"), (0.854, "85%"), (0.0042, "0.4%"), (0.099, "9.9%")),
+        *((0.0995, "10%"), (0.997, "99.7%"), (0.9999, "over 99.9%"), (0.0001, "under 0.1%")),
+    ],
+)
+def test_percent(share, text):
+    assert percent(share) == text
+
+
+def test_metres_and_counts():
+    assert [metres(v) for v in (0.05, 0.994, 1.45, 9.99, 84.2)] == [
+        *("5 cm", "99 cm", "1.45 m", "9.99 m", "84 m")
+    ]
+    assert [plural(v, "pixel") for v in (1, 7, 1310.4, 4.34)] == [
+        *("1 pixel", "7 pixels", "1,310 pixels", "4.3 pixels")
+    ]
+    assert [times(v) for v in (12.3, 1.0, 0.312)] == ["12 times", "1 times", "0.31 times"]
+
+
+def part(entropy, coverage, share=0.5):
+    return pe.PartScore(entropy, coverage, share)
+
+
+def score(entropy=3.0, coverage=0.854, zones=None, classes=None, sensors=None):
+    return pe.Score(entropy, coverage, 0.0, classes or {}, zones or {}, sensors or {}, 1000)
+
+
+SENSORS = {
+    "roof": pe.SensorScore(4.0, 0.8, 0.42, 1000, 75, {"hood": 15, "roof": 60}),
+    "spare": pe.SensorScore(9.0, 0.1, 0.0, 0, 0, {}),
+}
+
+
+def test_a_score_in_words():
+    zones = {"front": part(1.234, 0.98), "rear": part(5.0, 0.62), "far": part(9.5, 0.4)}
+    assert advice.words(score(zones=zones, sensors=SENSORS)) == (
+        "85% of where objects are is seen",
+        "best ahead: 98% seen, 1.23 nats",
+        "worst beyond 40 m: 40% seen, 9.50 nats",
+        "roof: without it 0.42 nats worse; 7.5% of its beams stopped (roof 6.0%, hood 1.5%)",
+        "spare: without it no worse",
+    )
+
+
+def test_one_sensor_has_nothing_to_be_worse_without():
+    alone = {"roof": SENSORS["roof"]}
+    assert advice.words(score(sensors=alone))[-1].startswith("roof: the only sensor; 7.5% of")
+
+
+def test_small_gains_keep_their_digits():
+    own = pe.SensorScore(4.0, 0.8, 0.0012, 10, 0, {})
+    assert advice.sensor_words(own) == "without it 0.0012 nats worse"
+
+
+def test_side_by_side():
+    """Lower entropy and higher coverage are better; differences are from the first."""
+    first = score(3.0, 0.5, {"front": part(2.0, 0.75)}, {"car": part(4.0, 0.25)})
+    second = score(
+        2.5, 0.5, {"front": part(2.5, 0.5), "far": part(9.0, 0.5)}, {"car": part(4.0, 0.25)}
+    )
+    rows = {(r.group, r.name, r.measure): r for r in advice.compare({"a": first, "b": second})}
+    assert list(rows) == [
+        *(("rig", "", "entropy"), ("rig", "", "coverage")),
+        *(("zone", "front", "entropy"), ("zone", "front", "coverage")),
+        *(("zone", "far", "entropy"), ("zone", "far", "coverage")),
+        *(("class", "car", "entropy"), ("class", "car", "coverage")),
+    ]
+    entropy = rows["rig", "", "entropy"]
+    assert (entropy.values, entropy.differences) == ((3.0, 2.5), (0.0, -0.5))
+    assert entropy.best == (False, True)
+    assert rows["rig", "", "coverage"].best == (False, False)  # alike
+    assert rows["zone", "front", "entropy"].best == (True, False)
+    assert rows["zone", "front", "coverage"].best == (True, False)
+    far = rows["zone", "far", "entropy"]
+    assert (far.values, far.differences, far.best) == ((None, 9.0), (None, None), (False, False))
+
+
+def test_nothing_compared_is_an_empty_table_of_the_right_shape():
+    assert all(row.values == () for row in advice.compare({}))
+    assert advice.compare({"a": score()})[0].best == (False,)
+
+
+def test_warnings_are_in_the_result_and_below_the_summary():
+    from pe_core.app import summary
+
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
+    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), samples=1024)
+    job = pe.ScoreJob(study)
+    assert list(job)[-1].stage == "done"
+    told = job.outcome.warnings
+    assert [(each.subject, each.code) for each in told] == [("roof", "inside")]
+    assert pe.result_dict(job.outcome)["warnings"] == [
+        {
+            "subject": "roof",
+            "code": "inside",
+            "text": "it is inside the body and sees next to nothing",
+            "part": None,
+            "fix": None,
+            "amount": [],
+        }
+    ]
+    last = summary(job.outcome).splitlines()[-1]
+    assert last == "warning: roof: it is inside the body and sees next to nothing"
+
+
+def test_a_search_warns_of_the_placement_it_found():
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
+    search = pe.Search({"roof": ("z",)}, {"roof": {"z": (0.5, 1.6)}}, 0, 1024, pe.Schedule(20))
+    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
+    job = pe.OptimizeJob(study)
+    assert list(job) and job.outcome.study.rig["roof"].pose.position[2] > 0.95
+    assert job.outcome.warnings == ()

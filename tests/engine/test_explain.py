@@ -1,0 +1,117 @@
+"""The verbs explain and compare on the command line."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+import pe_core as pe
+from pe_core import advice
+from pe_core.app.cli import main
+from tests.engine import shapes
+
+
+def saved(folder, name, rig=None, **changes):
+    """A small study in a file of its own."""
+    rig = rig or pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    study = pe.Study(rig, shapes.box_car(), shapes.small_space())
+    pe.export_study(replace(study, **changes), folder / name)
+    return str(folder / name)
+
+
+@pytest.fixture
+def study(tmp_path):
+    return saved(tmp_path, "car.toml")
+
+
+def test_explain_tells_the_score_in_words_and_warns(tmp_path, capsys):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
+    path = saved(tmp_path, "car.toml", rig)
+    assert main(["explain", path]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("perception entropy ")
+    assert "0% of where objects are is seen" in lines
+    assert lines[-1] == "warning: roof: it is inside the body and sees next to nothing"
+
+
+def test_explain_as_json(study, capsys):
+    assert main(["explain", study, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    loaded = pe.load_study(study)
+    score = loaded.evaluator().score(loaded.rig)
+    assert data["score"] == score.to_dict() and data["warnings"] == []
+    assert data["words"] == list(advice.words(score, loaded.rig))
+
+
+def test_explain_one_place(study, capsys):
+    assert main(["explain", study, "--at", "8", "-2.2", "0.7"]) == 0
+    loaded = pe.load_study(study)
+    place = advice.ask_place(
+        loaded.rig, loaded.space, loaded.prior, loaded.vehicle, (8, -2.2, 0.7), loaded.model
+    )
+    out, err = capsys.readouterr()
+    assert (out.splitlines(), err) == (list(place.text), "")  # nothing is scored for it
+    assert main(["explain", study, "--at", "8", "-2.2", "0.7", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)["place"]
+    assert data == json.loads(json.dumps(place.to_dict())) and data["sensors"][0]["name"] == "roof"
+
+
+@pytest.mark.parametrize(
+    ("at", "message"),
+    [
+        (["99", "0"], "place: x: expected -20 to 20 m, inside the space, found 99"),
+        (["1"], "place: point: expected three finite numbers"),
+        (["1", "2", "3", "4"], "place: point: expected three finite numbers"),
+        (["nan", "0"], "place: point: expected three finite numbers"),
+    ],
+)
+def test_places_that_are_none_are_one_line(study, at, message, capsys):
+    assert main(["explain", study, "--at", *at]) == 1
+    out, err = capsys.readouterr()
+    assert out == "" and err.startswith(f"pe: {message}") and len(err.splitlines()) == 1
+
+
+def test_compare_puts_studies_side_by_side(study, tmp_path, capsys):
+    higher = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-0.4, 0, 2.4))])
+    other = saved(tmp_path, "higher.toml", higher)
+    assert main(["compare", study, other]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["car", "higher"]
+    values = [
+        pe.load_study(p).evaluator().score(pe.load_study(p).rig).entropy for p in (study, other)
+    ]
+    figures = lines[2].replace("*", "").split()
+    assert figures[:2] == ["all", f"{values[0]:.4f}"]
+    assert figures[2:] == [f"{values[1]:.4f}", f"({values[1] - values[0]:+.4f})"]
+    assert lines[2].count("*") == 1 and lines[2].endswith("*") == (values[1] < values[0])
+    assert main(["compare", study, other, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [s["entropy"] for s in data["scores"].values()] == values
+    assert data["rows"][0]["values"] == values
+
+
+def test_files_of_one_name_are_told_apart_by_their_folders(tmp_path, capsys):
+    for folder in "ab":
+        (tmp_path / folder).mkdir()
+        saved(tmp_path / folder, "study.toml")
+    paths = [str(tmp_path / folder / "study.toml") for folder in "ab"]
+    assert main(["compare", *paths, "--grid-samples", "1024"]) == 0
+    assert capsys.readouterr().out.splitlines()[0].split() == ["a/study", "b/study"]
+
+
+@pytest.mark.parametrize(
+    ("field", "changes"),
+    [
+        ("prior", {"prior": pe.Prior.uniform()}),
+        ("space", {"space": shapes.small_space(1.0)}),
+        ("AP curves and fusion", {"model": pe.PerceptionModel("literal")}),
+    ],
+)
+def test_what_does_not_compare_is_refused_in_a_line(study, tmp_path, field, changes, capsys):
+    other = saved(tmp_path, "other.toml", **changes)
+    assert main(["compare", study, other]) == 1
+    out, err = capsys.readouterr()
+    expected = (
+        f"pe: other: {field}: expected the same as in car, to be compared with it, found another"
+    )
+    assert (out, err.splitlines()) == ("", [expected])

@@ -1,7 +1,9 @@
 """In words a designer uses: a place asked about, warnings, a score in words, several compared."""
 
 from .advice import Advice
-from .phrases import sensor_words, words
+from .mounting import stopped_shares
+from .outlook import Outlook, class_of, outlook
+from .phrases import adds, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
 from .side_by_side import ComparedRow, compare
 from .told import warnings
@@ -10,10 +12,15 @@ __all__ = [
     "Advice",
     "AskedPlace",
     "ComparedRow",
+    "Outlook",
     "SensorAtPlace",
+    "adds",
     "ask_place",
+    "class_of",
     "compare",
-    "sensor_words",
+    "outlook",
+    "stopped_shares",
+    "stopped_words",
     "warnings",
     "words",
 ]

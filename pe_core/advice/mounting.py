@@ -10,12 +10,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import catalog
 from ..kinds import kind_of
 from ..scene.geometry import dot
+from ..scene.housing import cuts_body
 from ..scene.raycast import Hits
 from ..scene.sensors import Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle, closest_points
+from ..scoring.score import SensorScore
 from .advice import Advice
 from .bodywork import Bodywork
 from .figures import metres, percent
@@ -30,6 +33,7 @@ LOOKS_AT_M = 0.3
 MOST_STOPPED = 1.0 / 3.0
 """More than a sensor at a corner loses (a quarter)."""
 MOST_RAYS = 4096
+PARTS_NAMED = 3
 AROUND, BELOW_DEG, ENCLOSED = 256, 10.0, 0.9
 """A sensor is inside when the body is met in this share of so many directions, spread evenly over
 the sphere from 10 degrees below the horizon up. First hits alone are asked, so that neither holes,
@@ -38,34 +42,63 @@ UPSIDE_DOWN = -0.2
 """Height of a sensor's unit upward axis below which its picture is upside down."""
 
 
+def stopped_shares(
+    sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
+) -> dict[str, float]:
+    """Tell the share of a sensor's rays that each part of the vehicle stops, most first.
+
+    Parameters
+    ----------
+    sensor : Sensor or None
+        None: only what the score has counted is told.
+    own : SensorScore, optional
+        Its beams as they were counted; without, or where none were (cameras), an even sample of its
+        rays is cast.
+    vehicle : Vehicle, optional
+    """
+    if own is not None and own.beams:
+        return _shares(own.beams, own.stopped_by)
+    if sensor is None or vehicle is None:
+        return {}
+    return _cast_shares(sensor, vehicle, _rays_met(sensor, vehicle))
+
+
+def _cast_shares(sensor: Sensor, vehicle: Vehicle, hits: Hits) -> dict[str, float]:
+    reach = getattr(sensor.model, "max_range", math.inf)
+    faces = hits.face[hits.distance < reach]
+    counts = np.bincount(np.asarray(vehicle.parts)[faces], minlength=len(vehicle.part_names))
+    return _shares(len(hits.face), dict(zip(vehicle.part_names, counts.tolist(), strict=True)))
+
+
+def _shares(rays: int, by_part: Mapping[str, int]) -> dict[str, float]:
+    found = {name: count / rays for name, count in by_part.items() if count}
+    return dict(sorted(found.items(), key=lambda item: (-item[1], item[0])))
+
+
+def _rays_met(sensor: Sensor, vehicle: Vehicle) -> Hits:
+    """First hits of a sample of a sensor's rays."""
+    return _first_hits(sensor, vehicle, kind_of(sensor).rays(sensor, MOST_RAYS))
+
+
 @dataclass(frozen=True)
 class Mounted:
-    """A sensor, and what it sees of the vehicle's body."""
+    """A sensor, what it sees of the vehicle's body, and its score where there is one."""
 
     sensor: Sensor
     body: Bodywork
-    known: tuple[int, Mapping[str, int]] | None = None
-    """Its beams and which parts stop how many, where a score has counted them."""
+    own: SensorScore | None = None
 
     @cached_property
     def hits(self) -> Hits:
-        """First hits of a sample of its rays, within its range."""
-        rays = kind_of(self.sensor).rays(self.sensor, MOST_RAYS)
-        return _first_hits(self.sensor, self.body.vehicle, rays)
+        """First hits of a sample of its rays."""
+        return _rays_met(self.sensor, self.body.vehicle)
 
     @cached_property
     def stopped_by(self) -> dict[str, float]:
         """Share of its rays that each part stops, most first."""
-        rays, by_part = self.known or self._counted()
-        shares = {name: count / rays for name, count in by_part.items() if count}
-        return dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
-
-    def _counted(self) -> tuple[int, dict[str, int]]:
-        names = self.body.vehicle.part_names
-        reach = getattr(self.sensor.model, "max_range", math.inf)
-        faces = self.hits.face[self.hits.distance < reach]
-        counts = np.bincount(np.asarray(self.body.vehicle.parts)[faces], minlength=len(names))
-        return len(self.hits.face), dict(zip(names, counts.tolist(), strict=True))
+        if self.own is not None and self.own.beams:
+            return _shares(self.own.beams, self.own.stopped_by)
+        return _cast_shares(self.sensor, self.body.vehicle, self.hits)
 
     @cached_property
     def gap(self) -> float:
@@ -92,6 +125,7 @@ def odd_mounting(mounted: Mounted) -> Iterator[Advice]:
     if mounted.inside:
         yield Advice(sensor.name, "inside", "it is inside the body and sees next to nothing")
         return
+    yield from _housing(mounted)
     if mounted.gap > (CLEAR_ABOVE_M if mounted.above else CLEAR_M):
         text = f"it is {metres(mounted.gap)} clear of the vehicle: what holds it?"
         yield Advice(sensor.name, "clear", text)
@@ -128,6 +162,18 @@ def distance_to(vehicle: Vehicle, point: Floats) -> float:
             if distance <= radius:
                 return distance
         radius *= 2.0
+
+
+def _housing(mounted: Mounted) -> Iterator[Advice]:
+    """A housing of known size that cuts into the body."""
+    sensor = mounted.sensor
+    housing = catalog.housing(sensor.model.name)
+    parts = () if housing is None else cuts_body(sensor.pose, housing, mounted.body.itself)
+    if housing is not None and parts:
+        size = " x ".join(f"{100.0 * side:.0f}" for side in housing.size)
+        named = ", ".join(parts[:PARTS_NAMED]) + (", ..." if len(parts) > PARTS_NAMED else "")
+        text = f"its housing ({size} cm) cuts into {named}"
+        yield Advice(sensor.name, "housing", text, part=parts[0])
 
 
 def _in_the_way(mounted: Mounted) -> Iterator[Advice]:

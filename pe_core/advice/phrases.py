@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from ..kinds import kind_of
 from ..scene.sensors import Rig, Sensor
+from ..scene.vehicle import Vehicle
 from ..scoring.score import PartScore, Score, SensorScore
 from ..scoring.zones import FAR_M, NEAR_M
 from .figures import percent
+from .mounting import stopped_shares
+from .outlook import Outlook, outlook_words
 
 WHERE = {
     "front": "ahead",
@@ -21,59 +24,104 @@ WHERE = {
 }
 """Zones (`scoring.zones.ZONES`) in words."""
 PARTS_NAMED = 3
+LITTLE = 0.05
+"""Parts that stop less than this share of all that is stopped are not named."""
 WORTH_NATS = 0.00005
 """What a sensor adds below this is told as nothing: four digits are shown."""
 
 
-def words(score: Score, rig: Rig | None = None) -> tuple[str, ...]:
+def words(
+    score: Score,
+    rig: Rig | None = None,
+    vehicle: Vehicle | None = None,
+    seen: Outlook | None = None,
+) -> tuple[str, ...]:
     """Return a score in short lines: what is seen, where best and worst, what each sensor adds.
 
     Parameters
     ----------
     score : Score
-    rig : Rig, optional
-        The rig that was scored: what its sensors count is then called by its name.
+    rig, vehicle : Rig, Vehicle, optional
+        What was scored: the share of its picture that a camera loses is then told, too.
+    seen : Outlook, optional
+        Of the same rig: tells what is seen by several, expected AP, reach, blind ground, and where
+        each sensor sees most.
     """
-    return tuple(_lines(score, rig))
+    return tuple(_lines(score, rig, vehicle, seen))
 
 
-def _lines(score: Score, rig: Rig | None) -> Iterator[str]:
-    yield f"{percent(score.coverage)} of where objects are is seen"
+def _lines(
+    score: Score, rig: Rig | None, vehicle: Vehicle | None, seen: Outlook | None
+) -> Iterator[str]:
+    yield _coverage(score, seen)
     yield from _zones(score.per_zone)
+    if seen is not None:
+        yield from outlook_words(seen)
     alone = len(score.per_sensor) == 1
     for name, own in score.per_sensor.items():
         sensor = None if rig is None else rig[name]
-        yield f"{name}: {sensor_words(own, sensor, alone=alone)}"
+        told = [
+            "the only sensor" if alone else adds(own),
+            "" if seen is None else _most_and_least(seen.shares.zones[name]),
+            stopped_words(sensor, own, vehicle),
+        ]
+        yield f"{name}: {'; '.join(filter(None, told))}"
 
 
-def _zones(zones: dict[str, PartScore]) -> Iterator[str]:
+def _coverage(score: Score, seen: Outlook | None) -> str:
+    line = f"{percent(score.coverage)} of where objects are is seen"
+    if seen is None or len(seen.shares.by_number) < 3:
+        return line
+    return f"{line}; {percent(seen.shares.by_number[2])} by two or more sensors"
+
+
+def _zones(zones: Mapping[str, PartScore]) -> Iterator[str]:
     """Say where the rig sees best and worst."""
-    if len(zones) < 2:
-        return
     order = sorted(zones, key=lambda name: zones[name].entropy)
-    best, worst = order[0], order[-1]
-    if zones[best].entropy == zones[worst].entropy:
-        return
-    for mark, name in (("best", best), ("worst", worst)):
-        zone = zones[name]
-        seen = percent(zone.coverage)
-        yield f"{mark} {WHERE.get(name, name)}: {seen} seen, {zone.entropy:.2f} nats"
+    if order and zones[order[0]].entropy < zones[order[-1]].entropy:
+        best, worst = (
+            f"{WHERE.get(name, name)} ({zones[name].entropy:.2f} nats, "
+            f"{percent(zones[name].coverage)} seen)"
+            for name in (order[0], order[-1])
+        )
+        yield f"best {best}, worst {worst}"
 
 
-def sensor_words(own: SensorScore, sensor: Sensor | None = None, *, alone: bool = False) -> str:
-    """Return what a sensor adds, and what stops it, in a line; `alone` when it is the only one."""
-    lost = f"{own.lost:.2f}" if own.lost >= 0.005 else f"{own.lost:.4f}"
-    adds = f"without it {lost} nats worse" if own.lost >= WORTH_NATS else "without it no worse"
-    if alone:
-        adds = "the only sensor"
-    if not own.stopped:
-        return adds
+def adds(own: SensorScore) -> str:
+    """Say what a sensor adds to its rig."""
+    if own.lost < WORTH_NATS:
+        return "without it no worse"
+    return (
+        f"without it {own.lost:.2f} nats worse"
+        if own.lost >= 0.005
+        else (f"without it {own.lost:.4f} nats worse")
+    )
+
+
+def _most_and_least(zones: Mapping[str, float]) -> str:
+    """Say where a sensor sees most of where objects are, and least."""
+    order = sorted(zones, key=lambda zone: -zones[zone])
+    if not order or zones[order[0]] == zones[order[-1]]:
+        return ""
+    most, least = (f"{WHERE[z]} ({percent(zones[z])})" for z in (order[0], order[-1]))
+    return f"sees most {most}, least {least}"
+
+
+def stopped_words(
+    sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
+) -> str:
+    """Say what stops a sensor's beams or pixels: "7.5% of its beams stopped by roof"; or nothing.
+
+    Beams as a score has counted them, else a sample of where the sensor looks.
+    """
+    shares = stopped_shares(sensor, own, vehicle)
+    total = sum(shares.values())
+    if not total:
+        return ""
     unit = "beams" if sensor is None else kind_of(sensor).unit
-    return f"{adds}; {percent(own.stopped / own.beams)} of its {unit} stopped{_by(own)}"
-
-
-def _by(own: SensorScore) -> str:
-    """Name the parts that stop most."""
-    by_count = sorted(own.stopped_by.items(), key=lambda item: (-item[1], item[0]))
-    named = [f"{part} {percent(n / own.beams)}" for part, n in by_count[:PARTS_NAMED] if n]
-    return f" ({', '.join(named)}{', ...' if len(by_count) > PARTS_NAMED else ''})"
+    named = [part for part in shares if shares[part] >= LITTLE * total]
+    told = f"{percent(total)} of its {unit} stopped"
+    if len(named) == 1:
+        return f"{told} by {named[0]}"
+    by_part = ", ".join(f"{part} {percent(shares[part])}" for part in named[:PARTS_NAMED])
+    return f"{told}: {by_part}{', ...' if len(named) > PARTS_NAMED else ''}"

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..kinds import PerceptionModel, kind_named, kind_of, measure
 from ..metric import average_precision
-from ..metric.entropy import GAUSSIAN_2D
+from ..metric.entropy import ap_of_entropy
 from ..metric.fusion import Fusion
 from ..prior.prior import Prior
 from ..scene.geometry import METRES
@@ -142,18 +142,12 @@ def ask_place(
     return AskedPlace(
         center=(x, y, z),
         entropy=rounded(entropies[0]),
-        ap=_ap_of(float(entropies[0])),
+        ap=float(ap_of_entropy(entropies[0])),
         seen=bool(seen[0]),
         density=0.0 if inside else _density(prior, space, index),
         in_vehicle=inside,
         sensors=sensors,
     )
-
-
-def _ap_of(entropy: float) -> float:
-    """AP of which eqs. 5 and 8 make an entropy."""
-    sigma = math.exp((entropy - GAUSSIAN_2D) / 2.0)
-    return 1.0 / (1.0 + sigma)
 
 
 def _checked(point: Sequence[float]) -> tuple[float, float, float]:

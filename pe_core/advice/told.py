@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from ..prior.prior import Prior
-from ..scene.sensors import Rig, Sensor
+from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..scoring.score import Score
@@ -50,10 +50,5 @@ def _told(
     for sensor in rig:
         yield from odd_place(sensor, space)
         if body is not None:
-            yield from odd_mounting(Mounted(sensor, body, _counted(sensor, score)))
-
-
-def _counted(sensor: Sensor, score: Score | None) -> tuple[int, Mapping[str, int]] | None:
-    """Return a sensor's beams, and those that each part stops, where a score has counted them."""
-    own = None if score is None else score.per_sensor.get(sensor.name)
-    return (own.beams, own.stopped_by) if own is not None and own.beams else None
+            own = None if score is None else score.per_sensor.get(sensor.name)
+            yield from odd_mounting(Mounted(sensor, body, own))

@@ -17,6 +17,7 @@ from .command import add_score_options
 from .interrupts import Interrupted, stop_at_first
 from .side_by_side import comparison
 from .status import DONE, Answer
+from .summary import warned
 from .work import drive
 
 
@@ -24,6 +25,8 @@ def add_explain_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``explain`` to a parser."""
     about = "ask one place instead: x, y and perhaps z (else 0) in metres"
     parser.add_argument("--at", type=float, nargs="+", metavar=("X Y", "Z"), help=about)
+    about = "class whose reach is told (pedestrian)"
+    parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
     add_score_options(parser)
 
@@ -40,12 +43,17 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
         parts = (study.rig, study.space, study.prior, study.vehicle, args.at, study.model)
         place = advice.ask_place(*parts)
         return _answer({"place": place.to_dict()}, place.text, args.json)
+    name = advice.class_of(study.prior, args.class_name)
     outcome = _scored(study, args)
-    said = advice.words(outcome.after, study.rig)
-    told = [each.to_dict() for each in outcome.warnings]
-    data = {"score": outcome.after.to_dict(), "words": list(said), "warnings": told}
-    warned = [f"warning: {each.line}" for each in outcome.warnings]
-    return _answer(data, [_entropy(outcome), *said, *warned], args.json)
+    seen = advice.outlook(study.sight(), study.rig, name)
+    said = advice.words(outcome.after, study.rig, study.vehicle, seen)
+    data = {
+        "score": outcome.after.to_dict(),
+        **seen.to_dict(),
+        "words": list(said),
+        "warnings": [each.to_dict() for each in outcome.warnings],
+    }
+    return _answer(data, [_entropy(outcome), *said, *warned(outcome)], args.json)
 
 
 def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:

@@ -28,8 +28,12 @@ def summary(outcome: Outcome) -> str:
         )
     if outcome.stopped:
         lines.append("stopped early: this is the best placement found so far")
-    lines += (f"warning: {each.line}" for each in outcome.warnings)
-    return "\n".join(lines)
+    return "\n".join([*lines, *warned(outcome)])
+
+
+def warned(outcome: Outcome) -> list[str]:
+    """Return what is odd about an outcome's study, a line each."""
+    return [f"warning: {each.line}" for each in outcome.warnings]
 
 
 def _with_error(entropy: float, stderr: float) -> str:

@@ -25,6 +25,7 @@ from .cells import Cells, round_a
 from .ground import GroundSight, ground_sight
 from .places import Places, at_height, by_prior
 from .reach import AP, BEARINGS, Reach, Spokes, density_of
+from .shares import SeenShares, seen_shares
 
 Floats = NDArray[np.float64]
 
@@ -242,6 +243,16 @@ class Sight:
                 for name, own, mass in zip(look.places.names, likely.T, masses, strict=True)
                 if mass > 0.0
             }
+
+    def shares(self, rig: Rig, *, draft: bool = False) -> SeenShares:
+        """Tell how much of where objects are is seen: by how many sensors, by each of them where.
+
+        On a sample of the prior, as `expected_ap`; `draft` as in `ground`.
+        """
+        with self._is_free:
+            look = self._look("prior", self._drawn)
+            m, _ = look.measured(rig, draft)
+            return seen_shares(look.places, m)
 
     def _drawn(self) -> VoxelSample:
         return draw(self._densities, self.space, SAMPLES, self._tops)

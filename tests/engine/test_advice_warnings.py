@@ -130,6 +130,21 @@ def test_clear_of_the_vehicle():
     assert told(car, lidar_at(0, 30, 1))["s", "clear"].text.startswith("it is 29 m clear")
 
 
+def test_a_housing_that_cuts_into_the_body():
+    """A Pandar64 is 12 cm across and its beams leave it 5 cm above its base."""
+    car, name = shapes.box_car(), "Pandar64"  # its roof at 1.4
+
+    def at(x, z, name=name):
+        return pe.Sensor("s", pe.catalog.load(name), pe.Pose((x, 0.0, z)))
+
+    found = told(car, at(0.0, 1.41))["s", "housing"]
+    assert (found.text, found.part) == ("its housing (12 x 12 x 12 cm) cuts into cabin", "cabin")
+    assert ("s", "housing") not in told(car, at(0.0, 1.45))  # it stands on the roof
+    assert ("s", "housing") not in told(car, at(2.37, 0.6))  # beside the bumper, at 2.3
+    assert pe.catalog.housing("HDL-64E") is None
+    assert ("s", "housing") not in told(car, at(0.0, 1.41, "HDL-64E"))  # of no known size
+
+
 def test_upside_down_is_a_matter_for_pictures():
     car = shapes.box_car()
     found = told(car, camera_at(0, 0, 1.6, rotation=(180, 0, 0)))["s", "upside_down"]

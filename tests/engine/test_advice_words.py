@@ -47,11 +47,15 @@ def test_a_score_in_words():
     zones = {"front": part(1.234, 0.98), "rear": part(5.0, 0.62), "far": part(9.5, 0.4)}
     assert advice.words(score(zones=zones, sensors=SENSORS)) == (
         "85% of where objects are is seen",
-        "best ahead: 98% seen, 1.23 nats",
-        "worst beyond 40 m: 40% seen, 9.50 nats",
-        "roof: without it 0.42 nats worse; 7.5% of its beams stopped (roof 6.0%, hood 1.5%)",
+        "best ahead (1.23 nats, 98% seen), worst beyond 40 m (9.50 nats, 40% seen)",
+        "roof: without it 0.42 nats worse; 7.5% of its beams stopped: roof 6.0%, hood 1.5%",
         "spare: without it no worse",
     )
+
+
+def test_zones_that_are_alike_are_not_told():
+    alike = {"front": part(2.0, 0.5), "rear": part(2.0, 0.5)}
+    assert advice.words(score(zones=alike)) == ("85% of where objects are is seen",)
 
 
 def test_one_sensor_has_nothing_to_be_worse_without():
@@ -60,8 +64,39 @@ def test_one_sensor_has_nothing_to_be_worse_without():
 
 
 def test_small_gains_keep_their_digits():
-    own = pe.SensorScore(4.0, 0.8, 0.0012, 10, 0, {})
-    assert advice.sensor_words(own) == "without it 0.0012 nats worse"
+    assert (
+        advice.adds(pe.SensorScore(4.0, 0.8, 0.0012, 10, 0, {})) == "without it 0.0012 nats worse"
+    )
+    assert advice.adds(pe.SensorScore(4.0, 0.8, 0.00004, 10, 0, {})) == "without it no worse"
+
+
+@pytest.mark.parametrize(
+    ("by_part", "text"),
+    [
+        ({"roof": 250}, "25% of its beams stopped by roof"),
+        ({"roof": 245, "mirror": 5}, "25% of its beams stopped by roof"),  # 2 % of them: not named
+        (
+            {"a": 50, "b": 50, "c": 40, "d": 30},
+            "17% of its beams stopped: a 5.0%, b 5.0%, c 4.0%, ...",
+        ),
+        ({}, ""),
+    ],
+)
+def test_what_stops_a_sensor(by_part, text):
+    own = pe.SensorScore(4.0, 0.8, 0.1, 1000, sum(by_part.values()), by_part)
+    assert advice.stopped_words(None, own) == text
+
+
+def test_pixels_are_looked_for_where_no_score_counts_them():
+    """A level camera over the bonnet loses what is below its edge, which is 1.45 m ahead."""
+    sensor = shapes.camera(40.0, (0.85, 0.0, 0.95))
+    uncounted = pe.SensorScore(4.0, 0.8, 0.1, 0, 0, {})
+    shares = advice.stopped_shares(sensor, uncounted, shapes.box_car())
+    edge = sensor.model.focal_px * 0.05 / 1.45  # pixels below the middle where the bonnet ends
+    assert shares == {"body": pytest.approx((540 - edge) / 1080, abs=0.02)}
+    words = advice.stopped_words(sensor, uncounted, shapes.box_car())
+    assert words == f"{100 * shares['body']:.0f}% of its pixels stopped by body"
+    assert advice.stopped_words(sensor, uncounted) == ""
 
 
 def test_side_by_side():

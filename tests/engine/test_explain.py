@@ -40,7 +40,19 @@ def test_explain_as_json(study, capsys):
     loaded = pe.load_study(study)
     score = loaded.evaluator().score(loaded.rig)
     assert data["score"] == score.to_dict() and data["warnings"] == []
-    assert data["words"] == list(advice.words(score, loaded.rig))
+    seen = advice.outlook(loaded.sight(), loaded.rig)
+    assert data["words"] == list(advice.words(score, loaded.rig, loaded.vehicle, seen))
+    assert {name: data[name] for name in seen.to_dict()} == json.loads(json.dumps(seen.to_dict()))
+    assert data["reach"]["class"] == "pedestrian"
+
+
+def test_the_reach_of_another_class(study, capsys):
+    assert main(["explain", study, "--class", "truck"]) == 0
+    assert "\na truck is found (AP 0.5 or more) up to " in capsys.readouterr().out
+    assert main(["explain", study, "--class", "tram"]) == 1
+    out, err = capsys.readouterr()
+    expected = "expected one of car, pedestrian, cyclist, truck, cone, found 'tram'"
+    assert (out, err) == ("", f"pe: prior: class: {expected}\n")  # before anything is scored
 
 
 def test_explain_one_place(study, capsys):

@@ -184,6 +184,17 @@ def _write_figures(variant: Variant, figures: dict) -> None:
     variant.stale, variant.has_result = False, True
 
 
+def score_of(variant: Variant) -> pe.Score:
+    """Return a variant's score as it is kept: all but its sensors' part."""
+    figures = json.loads(variant.score_json)
+    by_class, by_zone = (
+        {name: pe.PartScore(**part) for name, part in figures[which].items()}
+        for which in ("per_class", "per_zone")
+    )
+    whole = (figures["entropy"], figures["coverage"], figures["stderr"])
+    return pe.Score(*whole, by_class, by_zone, {}, figures["voxels"])
+
+
 def check_variants(scene: bpy.types.Scene) -> None:
     """Set what the list shows: whether the scene is the active one, and whose score is stale."""
     settings, current = scene.perception_entropy, _surroundings(scene)

@@ -3,7 +3,7 @@
 Panels take from here what there is to press and to choose from.
 """
 
-from . import add_sensor, export, focus, job, review, running, select, variants
+from . import add_sensor, comparing, export, focus, job, review, running, select, variants
 from .mounting import Offer, offers
 from .select import listed_sensors
 
@@ -17,4 +17,5 @@ CLASSES = (
     *export.CLASSES,
     *review.CLASSES,
     *variants.CLASSES,
+    *comparing.CLASSES,
 )

@@ -76,6 +76,7 @@ def draw_state(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) ->
     update = row.row(align=True)
     update.enabled = settings.variant_changed
     update.operator("pe.update_variant", text="Update")
+    layout.operator("pe.compare_variants", icon="MOD_ARRAY")
 
 
 CLASSES = (

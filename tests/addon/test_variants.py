@@ -7,6 +7,7 @@ import pytest
 from blender_addon import bridge, unsaved
 from blender_addon.bridge import parking
 from blender_addon.engine import pe
+from blender_addon.operators import comparing
 from tests.addon import scenes
 
 
@@ -278,3 +279,49 @@ def test_two_scenes_have_variants_of_their_own(ideas):
     assert len(bridge.sensor_objects(first)) == 2
     bpy.context.window.scene = first
     assert set(poses()) == {"eye", "roof"}
+
+
+def test_comparing_scores_what_has_no_score_as_if_it_stood_there(ideas):
+    """One go for all; nothing in the scene moves, and figures are those of the scene's scores."""
+    start = poses()
+    ideas.objects["roof"].location.z = 2.5
+    bpy.context.view_layer.update()
+    bpy.ops.pe.save_variant()
+    higher = scenes.study()
+    assert bpy.ops.pe.compare_variants() == {"FINISHED"}
+    assert poses() != start
+    first, second = ideas.perception_entropy.variants
+    assert bridge.score_of(second).per_zone == higher.evaluator().score(higher.rig).per_zone
+    switch(ideas, "Variant")
+    bpy.ops.pe.score()
+    assert ideas.perception_entropy.result_entropy == first.entropy
+    names, table = comparing.compared(ideas)
+    assert names == ["Variant", "Variant 2"]
+    whole = next(row for row in table if row.group == "rig" and row.measure == "entropy")
+    assert whole.values == (bridge.score_of(first).entropy, bridge.score_of(second).entropy)
+    columns = comparing.columns_of(names, table)
+    assert [column[0][0] for column in columns] == ["", *names]
+    assert columns[1][2][0] == f"{whole.values[0]:.3f}"
+    assert f"({whole.differences[1]:+.3f})" in columns[2][2][0]
+    assert [columns[1][2][1], columns[2][2][1]] == list(whole.best)
+
+
+def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):
+    bpy.ops.pe.duplicate_variant()
+    studies = {k: (str(k), scenes.study()) for k in (1, 2)}
+    job = comparing.CompareJob(studies)
+    for step in job:
+        if step.stage == "scoring 2":
+            job.stop()
+    assert set(job.outcome) == {1}
+
+
+def test_a_variant_that_cannot_be_scored_is_told_and_the_others_are(ideas):
+    bpy.ops.pe.duplicate_variant()
+    ideas.perception_entropy.variants[0].sensors[0].model = "no such sensor"
+    bpy.ops.pe.compare_variants()
+    assert [row.has_result for row in ideas.perception_entropy.variants] == [False, True]
+    ideas.perception_entropy.variants[1].sensors[0].model = "no such sensor"
+    ideas.perception_entropy.variants[1].has_result = False
+    with pytest.raises(RuntimeError, match=r"variant .Variant.*a name such as"):
+        bpy.ops.pe.compare_variants()

@@ -1,0 +1,210 @@
+"""Compare variants: score those that have no score yet in one go, then show a table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import bpy
+
+from .. import bridge
+from ..engine import advice, pe
+from .job import JobOperator
+from .reports import tell
+
+LABEL_PX, COLUMN_PX = 190, 140
+MOST_COLUMNS = 8
+TITLES = {"entropy": "Entropy [nats], lower is better", "coverage": "Seen of where objects are"}
+WHOLE = "Everywhere"
+
+
+class CompareJob:
+    """Scores of several studies by a key, one after the other; steps and stops as jobs do."""
+
+    def __init__(self, studies: dict[int, tuple[str, pe.Study]]) -> None:
+        self.studies = studies
+        self.stopped = False
+        self.outcome: dict[int, pe.Score] | None = None
+
+    def stop(self) -> None:
+        """Keep what is complete."""
+        self.stopped = True
+
+    def __iter__(self) -> Iterator[pe.Progress]:
+        found: dict[int, pe.Score] = {}
+        for key, (name, study) in self.studies.items():
+            job = pe.ScoreJob(study)
+            for step in job:
+                if self.stopped:
+                    job.stop()
+                share = (len(found) + step.fraction) / len(self.studies)
+                yield replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
+            if job.outcome is None:
+                break
+            found[key] = job.outcome.after
+        self.outcome = found or None
+
+
+class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
+    """Put all variants side by side: entropy and coverage, by zone and by class.
+
+    Those without a score, or with one of before, are scored first"""
+
+    bl_idname = "pe.compare_variants"
+    bl_label = "Compare"
+    bl_options = {"REGISTER", "UNDO"}
+    asked_in_window = False
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not context.scene.perception_entropy.variants:
+            cls.poll_message_set("There is no variant yet")
+            return False
+        return super().poll(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if not unscored(context.scene):
+            return {"FINISHED"}
+        return super().execute(context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the table at once where all scores are there."""
+        self.asked_in_window = not bpy.app.background
+        if self.asked_in_window and not unscored(context.scene):
+            return show()
+        return super().invoke(context, event)
+
+    def _job(self, context: bpy.types.Context) -> CompareJob:
+        depsgraph, studies, refused = context.evaluated_depsgraph_get(), {}, []
+        for row in unscored(context.scene):
+            try:
+                study = bridge.study_of_variant(context.scene, row, depsgraph)
+                studies[row.key] = row.name, study
+            except pe.InputError as error:
+                refused.append(error)
+        if not studies:
+            raise refused[0]
+        for error in refused:
+            tell(self, "WARNING", str(error))
+        return CompareJob(studies)
+
+    def write(self, scene: bpy.types.Scene, outcome: dict[int, pe.Score]) -> list[str]:
+        """Give each variant that still is there its score."""
+        for row in scene.perception_entropy.variants:
+            if row.key in outcome:
+                bridge.write_score(scene, row, outcome[row.key])
+        if self.asked_in_window:
+            show()
+        return []
+
+    def message(self, outcome: dict[int, pe.Score]) -> str:
+        """Return the result in a line."""
+        return f"{len(outcome)} scored"
+
+
+class PE_OT_show_comparison(bpy.types.Operator):
+    """Show the scores of all variants side by side"""
+
+    bl_idname = "pe.show_comparison"
+    bl_label = "Variants Compared"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, _context: bpy.types.Context) -> set[str]:
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Work the table out, and open it under the mouse."""
+        self.names, self.rows = compared(context.scene)
+        width = LABEL_PX + COLUMN_PX * len(self.names)
+        return context.window_manager.invoke_popup(self, width=width)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw it, a column a variant; figures are from the scores that are stored."""
+        self.layout.label(text=self.bl_label, icon="MOD_ARRAY")
+        split = self.layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(self.names)))
+        names, *columns = columns_of(self.names, self.rows)
+        draw_column(split.column(align=True), names, "LEFT")
+        figures = split.row()
+        for column in columns:
+            draw_column(figures.column(align=True), column, "RIGHT")
+        text = f"A star marks the best; in brackets the difference to {self.names[0]}"
+        self.layout.label(text=text, translate=False)
+
+
+Cell = tuple[str, bool] | None
+"""Text of a cell and whether it is the best; None for a gap."""
+
+
+def draw_column(column: bpy.types.UILayout, cells: list[Cell], alignment: str) -> None:
+    """Draw a column of the table; a star's room is kept where there is none."""
+    other = "BLANK1" if alignment == "RIGHT" else "NONE"
+    for cell in cells:
+        if cell is None:
+            column.separator(factor=0.6)
+            continue
+        text, best = cell
+        row = column.row()
+        row.alignment = alignment
+        row.label(text=text, icon="SOLO_ON" if best else other, translate=False)
+
+
+def show() -> set[str]:
+    """Open the table."""
+    bpy.ops.pe.show_comparison("INVOKE_DEFAULT")
+    return {"FINISHED"}
+
+
+def unscored(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
+    """Variants without a score that stands."""
+    bridge.check_variants(scene)
+    rows = scene.perception_entropy.variants
+    return [row for row in rows if not row.has_result or row.stale]
+
+
+def compared(
+    scene: bpy.types.Scene,
+) -> tuple[list[str], tuple[advice.ComparedRow, ...]]:
+    """Return the names of the variants that are scored, the active one first, and the table."""
+    active = scene.perception_entropy.variant_key
+    rows = [row for row in scene.perception_entropy.variants if row.has_result]
+    rows = sorted(rows, key=lambda row: row.key != active)[:MOST_COLUMNS]
+    scores = {row.name: bridge.score_of(row) for row in rows}
+    return list(scores), advice.compare(scores)
+
+
+def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[list[Cell]]:
+    """Return the table by columns, the first one that of the rows' names."""
+    columns: list[list[Cell]] = [[("", False)], *[[(name, False)] for name in names]]
+    for measure, title in TITLES.items():
+        _add(columns, [(title, False)])
+        group = "rig"
+        for row in rows:
+            if row.measure != measure:
+                continue
+            if row.group != group:
+                _add(columns, [None] * len(columns))
+                group = row.group
+            label = f"    {row.name.capitalize() or WHOLE}"
+            _add(columns, [(label, False), *(_cell(row, k) for k in range(len(names)))])
+    return columns
+
+
+def _add(columns: list[list[Cell]], cells: list[Cell]) -> None:
+    """Put a row under the table; what is missing at its end is empty."""
+    for k, column in enumerate(columns):
+        column.append(cells[k] if k < len(cells) else ("", False))
+
+
+def _cell(row: advice.ComparedRow, k: int) -> Cell:
+    """Return a figure with its difference to the first one, where that can be seen."""
+    value, less = row.values[k], row.differences[k]
+    if value is None:
+        return "–", False
+    nats = row.measure == "entropy"
+    text = f"{value:.3f}" if nats else f"{value:.1%}"
+    change = "" if less is None else f"{less:+.3f}" if nats else f"{100.0 * less:+.1f}"
+    seen = bool(change.strip("+-0."))
+    return f"({change})  {text}" if seen else text, row.best[k]
+
+
+CLASSES = (PE_OT_compare_variants, PE_OT_show_comparison)

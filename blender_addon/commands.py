@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import os
 import signal
 import sys
@@ -53,17 +54,36 @@ def parser(prog: str) -> argparse.ArgumentParser:
     for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
         app.add_run_options(verb, search=job is pe.OptimizeJob)
         verb.add_argument("--no-render", action="store_true", help=f"no {REVIEW}")
+        add_variant_option(verb)
         verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
     export = verbs.add_parser("export", help="write the scene as a study with its mesh")
     export.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for them")
+    add_variant_option(export)
     export.set_defaults(function=export_study)
+    explain = verbs.add_parser("explain", help="the score in words, or one place of it")
+    app.add_explain_options(explain)
+    add_variant_option(explain)
+    explain.set_defaults(function=explain_study)
+    listing = verbs.add_parser("variants", help="list the variants in the file")
+    listing.add_argument("--json", action="store_true", help="print JSON")
+    listing.set_defaults(function=list_variants)
+    compare = verbs.add_parser("compare", help="score variants and put them side by side")
+    compare.add_argument("variants", nargs="*", metavar="NAME", help="of these (default: all)")
+    app.add_compare_options(compare)
+    compare.set_defaults(function=compare_variants)
     app.add_sensors_verb(verbs)
     return top
 
 
+def add_variant_option(verb: argparse.ArgumentParser) -> None:
+    """Add the option that puts a variant in place of what stands in the scene."""
+    about = "this variant in place of what stands in the scene"
+    verb.add_argument("--variant", metavar="NAME", help=about)
+
+
 def run_job(args: argparse.Namespace) -> app.Answer:
     """Score or optimize, and leave the results in the output folder."""
-    study, kind = app.with_options(opened_study(), args), args.kind
+    study, kind = app.with_options(opened_study(args.variant), args), args.kind
     output, names = args.output, [OPTIMIZED] * (kind == "optimize")
     if output is not None:
         names += [REVIEW] * (not args.no_render) + studies.result_names(study, kind)
@@ -84,14 +104,73 @@ def run_job(args: argparse.Namespace) -> app.Answer:
 
 def export_study(args: argparse.Namespace) -> app.Answer:
     """Write the scene as a study file, with the vehicle's mesh."""
-    study = opened_study()
+    study = opened_study(args.variant)
     path = pe.prepare_folder(args.output) / studies.STUDY
     pe.export_study(study, path)
     return str(path), app.DONE
 
 
-def opened_study() -> pe.Study:
-    """Return the study in the file that is open; errors name the file."""
+def explain_study(args: argparse.Namespace) -> app.Answer:
+    """Tell the scene's score in words, or ask a place."""
+    return app.explain(app.with_options(opened_study(args.variant), args), args)
+
+
+def list_variants(args: argparse.Namespace) -> app.Answer:
+    """List the variants with the scores that are kept with them."""
+    scene = opened_scene()
+    bridge.check_variants(scene)
+    data = [bridge.variant_dict(scene, row) for row in scene.perception_entropy.variants]
+    if args.json:
+        return json.dumps(data, indent=2), app.DONE
+    return "\n".join(map(_listed, data)) or "no variants", app.DONE
+
+
+def _listed(row: dict) -> str:
+    """One line of the list: which one stands in the scene, its name, its score."""
+    score = "not scored" if row["entropy"] is None else f"{row['entropy']:.4f} nats"
+    old = "  (scored before vehicle, prior or settings changed)" if row["stale"] else ""
+    return f"{'*' if row['active'] else ' '} {row['name']}  {score}{old}"
+
+
+def compare_variants(args: argparse.Namespace) -> app.Answer:
+    """Score variants where they are kept, and put them side by side."""
+    scene = opened_scene()
+    names = args.variants or [row.name for row in scene.perception_entropy.variants]
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    studies = {}
+    with from_file():
+        for name in names:
+            row = bridge.variant_named(scene, name)
+            study = bridge.study_of_variant(scene, row, depsgraph)
+            studies[name] = app.with_options(study, args)
+    if not studies:
+        raise pe.InputError(bpy.data.filepath, "variants", "at least one", "none")
+    return app.compare(studies, args)
+
+
+def opened_study(variant: str | None = None) -> pe.Study:
+    """Return the study in the file that is open, after putting a variant there.
+
+    Errors name the file.
+    """
+    scene = opened_scene()
+    with from_file():
+        if variant is not None:
+            bridge.put_variant(scene, bridge.variant_named(scene, variant))
+        return bridge.study_from_scene(scene, bpy.context.evaluated_depsgraph_get())
+
+
+@contextlib.contextmanager
+def from_file() -> Iterator[None]:
+    """Have errors of the scene name the file that is open."""
+    try:
+        yield
+    except pe.InputError as error:
+        raise error.at(bpy.data.filepath) if error.source == "scene" else error from None
+
+
+def opened_scene() -> bpy.types.Scene:
+    """Return the scene of the file that is open; complain when it has nothing of ours."""
     path, scene = bpy.data.filepath, bpy.context.scene
     if not path:
         expected = "an existing .blend file before --command"
@@ -99,10 +178,7 @@ def opened_study() -> pe.Study:
     if scene.perception_entropy.vehicle is None and not bridge.sensor_objects(scene):
         expected = "a vehicle collection and sensors, set in the tab Perception"
         raise pe.InputError(path, f"scene {scene.name!r}", expected, "neither")
-    try:
-        return bridge.study_from_scene(scene, bpy.context.evaluated_depsgraph_get())
-    except pe.InputError as error:
-        raise error.at(path) if error.source == "scene" else error from None
+    return scene
 
 
 def leave_scene(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) -> None:

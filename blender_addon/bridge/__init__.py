@@ -29,6 +29,7 @@ from .variants import (
     score_of,
     study_of_variant,
     take_scene_s_score,
+    variant_dict,
     variant_named,
     write_score,
 )
@@ -69,6 +70,7 @@ __all__ = [
     "study_of_variant",
     "take_scene_s_score",
     "unlink_doubles",
+    "variant_dict",
     "variant_named",
     "vehicle_from_collection",
     "view_layer_of",

@@ -184,6 +184,19 @@ def _write_figures(variant: Variant, figures: dict) -> None:
     variant.stale, variant.has_result = False, True
 
 
+def variant_dict(scene: bpy.types.Scene, variant: Variant) -> dict[str, object]:
+    """Return what there is to tell of a variant, as plain JSON data; None where not scored."""
+    figures = json.loads(variant.score_json) if variant.has_result else {}
+    return {
+        "name": variant.name,
+        "active": variant.key == scene.perception_entropy.variant_key,
+        "sensors": [record.name for record in records_of(variant) if record.visible],
+        **{key: figures.get(key) for key in ("entropy", "coverage", "stderr", "voxels")},
+        "stale": variant.stale,
+        "note": variant.note,
+    }
+
+
 def score_of(variant: Variant) -> pe.Score:
     """Return a variant's score as it is kept: all but its sensors' part."""
     figures = json.loads(variant.score_json)

@@ -1,0 +1,86 @@
+"""Variants without a window: listed, scored, exported, compared; the file is not changed."""
+
+import json
+
+import bpy
+import pytest
+
+from blender_addon.engine import pe
+from tests.addon import scenes
+from tests.addon.test_commands import complaints, run
+
+FEW = ("--grid-samples", "4096")
+
+
+@pytest.fixture
+def blend(car, tmp_path):
+    """Return a file with the variants "Low", scored, and "High", of which "High" stands."""
+    settings = car.perception_entropy
+    for name, z in (("Low", 1.75), ("High", 2.25)):
+        car.objects["roof"].location.z = z
+        bpy.context.view_layer.update()
+        bpy.ops.pe.save_variant()
+        settings.variants[-1].name = name
+        if name == "Low":
+            bpy.ops.pe.score()
+    path = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+def test_variants_are_listed(blend):
+    answer = run("blender_addon", blend, "variants")
+    assert answer.returncode == 0, answer.stderr
+    entropy = bpy.context.scene.perception_entropy.variants["Low"].entropy
+    assert answer.stdout.splitlines() == [f"  Low  {entropy:.4f} nats", "* High  not scored"]
+    listed = json.loads(run("blender_addon", blend, "variants", "--json").stdout)
+    assert [row["name"] for row in listed] == ["Low", "High"]
+    assert [row["active"] for row in listed] == [False, True]
+    assert listed[0]["sensors"] == ["roof"] and listed[1]["entropy"] is None
+
+
+def test_a_variant_is_scored_and_exported_as_the_window_would(blend, tmp_path):
+    before = blend.read_bytes()
+    wanted = ("--variant", "Low")
+    answer = run("blender_addon", blend, "score", *FEW, *wanted, "--json")
+    assert answer.returncode == 0, answer.stderr
+    row = bpy.context.scene.perception_entropy.variants["Low"]
+    assert json.loads(answer.stdout)["after"] == {
+        **json.loads(row.score_json),
+        "per_sensor": json.loads(answer.stdout)["after"]["per_sensor"],
+    }
+    assert run("blender_addon", blend, "export", *wanted, "-o", tmp_path / "out").returncode == 0
+    study = pe.load_study(tmp_path / "out" / "study.toml")
+    bpy.ops.pe.switch_variant(key=row.key)
+    assert [s.pose for s in study.rig] == [s.pose for s in scenes.study().rig]
+    assert blend.read_bytes() == before
+
+
+def test_variants_are_compared(blend):
+    answer = run("blender_addon", blend, "compare", *FEW, "--json")
+    assert answer.returncode == 0, answer.stderr
+    data = json.loads(answer.stdout)
+    assert list(data["scores"]) == ["Low", "High"]
+    stored = bpy.context.scene.perception_entropy.variants["Low"].entropy
+    assert data["scores"]["Low"]["entropy"] == pytest.approx(stored, abs=1e-6)
+    assert run("blender_addon", blend, "compare", "High", *FEW).returncode == 0
+
+
+def test_an_unknown_variant_is_told(blend):
+    for verb in ("score", "export", "explain"):
+        folder = ("-o", blend.parent / "x") if verb == "export" else ()
+        answer = run("blender_addon", blend, verb, *folder, "--variant", "Middle")
+        assert answer.returncode == 1
+        expected = f"pe: {blend}: variant: expected one of Low, High, found 'Middle'"
+        assert complaints(answer) == [expected]
+
+
+def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blend, tmp_path):
+    fast = (*FEW, "--samples", "4096", "--candidates", "2")
+    out = tmp_path / "out"
+    answer = run("blender_addon", blend, "optimize", *fast, "--no-render", "-o", out)
+    assert answer.returncode == 0, answer.stderr
+    bpy.ops.wm.open_mainfile(filepath=str(out / "optimized.blend"))
+    rows = bpy.context.scene.perception_entropy.variants
+    assert [row.name for row in rows] == ["Low", "High", "Optimized, seed 0"]
+    assert rows["High"].has_result and rows[-1].entropy < rows["High"].entropy

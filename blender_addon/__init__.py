@@ -7,6 +7,7 @@ import bpy
 from . import (
     body,
     commands,
+    library,
     motion,
     operators,
     panels,
@@ -17,9 +18,10 @@ from . import (
     upkeep,
     worker,
 )
+from .housing import fitting
 from .overlay import handler as overlay
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
+CLASSES = (*library.CLASSES, *properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
 
 def register() -> None:
@@ -34,13 +36,17 @@ def register() -> None:
     stale.register()
     unsaved.register()
     overlay.register()
+    fitting.register()
     commands.register()
+    library.register()
 
 
 def unregister() -> None:
     """Called by Blender when the add-on is switched off: everything above, backwards."""
     worker.unregister()
+    library.unregister()
     commands.unregister()
+    fitting.unregister()
     overlay.unregister()
     unsaved.unregister()
     stale.unregister()

@@ -132,7 +132,8 @@ def check_contents(archive: Path) -> None:
         names = set(packed.namelist())
     presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("catalog/*.toml")}
     always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py"}
-    for wanted in sorted(always | presets):
+    assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}
+    for wanted in sorted(always | presets | assets):
         if wanted not in names:
             raise BuildError(f"{wanted} did not get into the archive")
     for name in names:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import StringProperty
+from bpy.props import BoolProperty, StringProperty
 
 from .. import bridge
 from ..engine import catalog, kinds
+from ..housing import known_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
 from .mounting import Mount, mount_of, sensible_place
 from .reports import REFUSALS, refuse
@@ -26,6 +27,11 @@ class PE_OT_add_sensor(bpy.types.Operator):
         search=model_suggestions,
         search_options=set(),
     )
+    housing: BoolProperty(
+        name="Housing",
+        description="Show the sensor's own body in its true size, where a data sheet gives it",
+        default=True,
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -42,7 +48,8 @@ class PE_OT_add_sensor(bpy.types.Operator):
             location = sensible_place(context, mount)
         except REFUSALS as error:
             return refuse(self, error)
-        obj = new_sensor(context, kind.label, self.model, mount)
+        body = known_housing(self.model) if self.housing else None
+        obj = new_sensor(context, kind.label, self.model, mount, body)
         obj.location = location
         select_only(context, obj)
         return {"FINISHED"}
@@ -53,18 +60,28 @@ def choose_vehicle(scene: bpy.types.Scene) -> None:
     settings = scene.perception_entropy
     if settings.vehicle is None:
         solid = [
-            child
-            for child in scene.collection.children
-            if any(obj.type == "MESH" for obj in child.all_objects)
+            child for child in scene.collection.children if any(map(is_part, child.all_objects))
         ]
         if len(solid) == 1:
             settings.vehicle = solid[0]
 
 
-def new_sensor(context: bpy.types.Context, name: str, model: str, mount: Mount) -> bpy.types.Object:
-    """Make a sensor in the scene's collection of sensors."""
-    obj = bpy.data.objects.new(name, None)
-    obj.empty_display_type, obj.empty_display_size = mount.display, mount.size_m
+def is_part(obj: bpy.types.Object) -> bool:
+    """Whether an object is something that a vehicle may be made of."""
+    return obj.type == "MESH" and not bridge.mounted_on_sensor(obj)
+
+
+def new_sensor(
+    context: bpy.types.Context,
+    name: str,
+    model: str,
+    mount: Mount,
+    body: bpy.types.Mesh | None = None,
+) -> bpy.types.Object:
+    """Make a sensor in the scene's collection of sensors: an empty, unless it has a body."""
+    obj = bpy.data.objects.new(name, body)
+    if body is None:
+        obj.empty_display_type, obj.empty_display_size = mount.display, mount.size_m
     shown_collection(context).objects.link(obj)
     obj.perception_entropy.model = model
     obj.perception_entropy.is_sensor = True

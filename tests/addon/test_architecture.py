@@ -28,16 +28,20 @@ ALLOWED = {
     "worker": set(),
     "stale": {"bridge", "changes", "roster"},
     "unsaved": {"bridge", "changes"},
+    "housing": {"changes", "engine", "roster"},
+    "library": set(),
     "overlay": {"engine"},
     "overlay.cache": {"body", "bridge", "engine", "overlay", "roster"},
     "overlay.handler": {"changes", "overlay", "overlay.cache"},
     "review": {"bridge", "engine", "overlay"},
-    "operators": {"bridge", "changes", "choices", "engine", "properties", "review", "roster"},
+    "operators": {
+        *("bridge", "changes", "choices", "engine", "housing", "properties", "review", "roster"),
+    },
     "panels": {"choices", "operators", "properties"},
     "commands": {"bridge", "engine", "review"},
     "__init__": {
-        *("body", "commands", "motion", "operators", "overlay.handler", "panels", "properties"),
-        *("roster", "stale", "unsaved", "upkeep", "worker"),
+        *("body", "commands", "housing", "library", "motion", "operators", "overlay.handler"),
+        *("panels", "properties", "roster", "stale", "unsaved", "upkeep", "worker"),
     },
     "__main__": {"__init__", "commands", "engine"},
 }

@@ -131,7 +131,7 @@ def test_a_change_is_told_to_those_who_listen(car, heard):
 def test_picture_and_check_follow_a_change(car):
     assert {f.__name__ for f in changes.picture.listeners} == {"tag_redraw"}
     assert {f.__name__ for f in changes.study.listeners} == {
-        *("tag_redraw", "check_soon", "forget", "note"),
+        *("tag_redraw", "check_soon", "fit_all", "forget", "note"),
     }
 
 

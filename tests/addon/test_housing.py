@@ -1,0 +1,129 @@
+"""Sensors with a body: true to size, closed, and never in the way of their own beams."""
+
+import bpy
+import numpy as np
+import pytest
+
+import pe_core as pe
+from blender_addon.housing import KEY, housing_mesh, shapes
+from blender_addon.housing.meshes import MATERIALS, surface_for
+from tests.addon import scenes
+
+MODELS = ["Pandar64", "Velodyne HDL-32E", "Hesai QT128C2X", "Hesai AT128E2X", "Camera 60 deg"]
+BOX = pe.Housing("box", (0.06, 0.12, 0.05), (0.01, 0.02, 0.03), "a test")
+
+
+def triangles_of(surface):
+    """(F, 3, 3) triangles of a surface, faces cut from their first corner."""
+    rows = [(f[0], f[k], f[k + 1]) for f in surface.faces for k in range(1, len(f) - 1)]
+    return surface.points[np.array(rows)]
+
+
+@pytest.mark.parametrize("name", [n for n in pe.catalog.names() if pe.catalog.housing(n)])
+def test_it_is_as_large_as_the_catalogue_says_about_the_optical_centre(name):
+    housing = pe.catalog.housing(name)
+    points = surface_for(name).points
+    low, high = points.min(axis=0), points.max(axis=0)
+    assert high - low == pytest.approx(housing.size, abs=1e-9)
+    assert low[2] == pytest.approx(-housing.optical_center[2], abs=1e-9)
+    assert low[:2] + high[:2] == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_a_box_has_its_size_and_place_too():
+    for has_lens in (False, True):
+        points = shapes.surface_of(BOX, has_lens).points
+        assert np.ptp(points, axis=0) == pytest.approx(BOX.size, abs=1e-9)
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
+        assert middle == pytest.approx(BOX.center, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_its_surface_is_closed_and_looks_outwards(name):
+    surface = surface_for(name)
+    triangles = triangles_of(surface)
+    assert scenes.open_edges(triangles) == 0
+    assert scenes.volume(triangles) > 0.5 * np.prod(np.ptp(surface.points, axis=0)) / 2.0
+    assert len(surface.faces) == len(surface.made_of)
+    assert set(surface.made_of) == set(range(len(MATERIALS)))
+
+
+def test_a_window_is_where_the_beams_come_out():
+    """A level beam leaves the can through its glass, a camera looks out of its lens."""
+    for name in ("Pandar64", "Velodyne VLP-16 Puck", "Velodyne HDL-32E"):
+        surface = surface_for(name)
+        glass = [
+            f for f, m in zip(surface.faces, surface.made_of, strict=True) if m == shapes.GLASS
+        ]
+        heights = surface.points[np.unique(np.concatenate(glass)), 2]
+        assert heights.min() < 0.0 < heights.max(), name
+    ahead = surface_for("Camera 60 deg").points[:, 0]
+    assert ahead.max() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_adding_a_sensor_gives_it_its_body_where_a_size_is_known(car):
+    roof = car.objects["roof"]
+    assert roof.type == "MESH" and roof.data[KEY] == "Pandar64"
+    assert tuple(roof.dimensions) == pytest.approx((0.118, 0.118, 0.116), abs=1e-6)
+    camera = scenes.add_sensor("camera", "Camera 60 deg")
+    assert camera.type == "EMPTY"
+    bpy.ops.pe.add_sensor(model="Pandar64", housing=False)
+    assert bpy.context.object.type == "EMPTY"
+
+
+def test_sensors_of_a_model_share_their_mesh_and_materials(car):
+    first, second = car.objects["roof"], scenes.add_sensor("second")
+    assert first.data == second.data
+    assert len([m for m in bpy.data.materials if m.name.startswith("PE ")]) == len(MATERIALS)
+    scenes.add_sensor("puck", "Velodyne VLP-16 Puck")
+    assert len([m for m in bpy.data.materials if m.name.startswith("PE ")]) == len(MATERIALS)
+
+
+def test_a_body_changes_no_score(car):
+    """The sensor sees the same with it and without, inside the vehicle's own collection too."""
+    roof = car.objects["roof"]
+    with_body = scenes.study()
+    car.perception_entropy.vehicle.objects.link(roof)
+    among_parts = scenes.study()
+    roof.data = housing_mesh("Velodyne HDL-32E")
+    other_body = scenes.study()
+    bpy.ops.object.delete()
+    bpy.ops.pe.add_sensor(model="Pandar64", housing=False)
+    bare = bpy.context.object
+    bare.name, bare.location = "roof", (-0.43, 0.0, 1.8)
+    bpy.context.view_layer.update()
+    entropies = {
+        study.evaluator().score(study.rig).entropy
+        for study in (with_body, among_parts, other_body, scenes.study())
+    }
+    assert len(entropies) == 1
+
+
+def test_a_body_is_no_vehicle(scene):
+    """The first collection with meshes is taken for the vehicle: not that of the sensors."""
+    scenes.add_sensor("one")
+    assert scene.perception_entropy.vehicle is None
+    car = scenes.add_collection(scene.collection, "Car")
+    scenes.add_box(car, "body")
+    scenes.add_sensor("two")
+    assert scene.perception_entropy.vehicle == car
+
+
+def test_another_model_is_another_body(car):
+    roof = car.objects["roof"]
+    other = scenes.add_sensor("other")
+    roof.perception_entropy.model = "Velodyne VLP-16 Puck"
+    assert roof.data[KEY] == "Velodyne VLP-16 Puck"
+    assert other.data[KEY] == "Pandar64"
+    roof.perception_entropy.model = "no such sensor"
+    assert roof.data[KEY] == "Velodyne VLP-16 Puck"
+    roof.perception_entropy.model = "Camera 60 deg"
+    assert roof.data[KEY] == "Camera 60 deg"
+
+
+def test_a_mesh_of_the_user_s_own_is_left_alone(car):
+    """A sensor may be any object: only our housings are exchanged."""
+    own = scenes.add_box(car.collection, "own housing", (0.05, 0.05, 0.05))
+    own.perception_entropy.is_sensor = True
+    mesh = own.data
+    own.perception_entropy.model = "Velodyne VLP-16 Puck"
+    assert own.data == mesh

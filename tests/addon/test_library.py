@@ -1,0 +1,167 @@
+"""The sensors for the asset browser: each a ready sensor; the library comes and goes with us."""
+
+import re
+
+import bpy
+import numpy as np
+import pytest
+
+import blender_addon
+import pe_core as pe
+from blender_addon import bridge, library, roster
+from blender_addon.housing import KEY
+from tests.addon import scenes
+
+BLEND = library.FOLDER / "sensors.blend"
+CATALOGS = library.FOLDER / "blender_assets.cats.txt"
+MOST_BYTES = 600_000
+KINDS = ("lidar", "camera")
+
+
+def appended(*names):
+    """Append assets as Blender does it, into the open scene; return them."""
+    with bpy.data.libraries.load(str(BLEND), assets_only=True) as (_, wanted):
+        wanted.objects = list(names)
+    for obj in wanted.objects:
+        bpy.context.scene.collection.objects.link(obj)
+    bpy.context.view_layer.update()
+    return wanted.objects
+
+
+@pytest.fixture
+def assets(addon):
+    """Return all assets of the file, linked to no scene."""
+    with bpy.data.libraries.load(str(BLEND), assets_only=True) as (there, wanted):
+        wanted.objects = list(there.objects)
+    return wanted.objects
+
+
+def test_there_is_an_asset_for_every_lidar_and_camera_of_the_catalogue(assets):
+    models = [name for kind in KINDS for name in pe.catalog.names(kind)]
+    assert sorted(each.perception_entropy.model for each in assets) == sorted(models)
+
+
+def test_each_is_a_sensor_with_its_body_a_place_in_the_catalogue_tags_and_a_picture(assets):
+    catalogs = dict(re.findall(r"^([0-9a-f-]{36}):([^:]+):", CATALOGS.read_text(), re.MULTILINE))
+    for obj in assets:
+        settings, data = obj.perception_entropy, obj.asset_data
+        assert settings.is_sensor and not settings.has_result, obj.name
+        assert obj.data[KEY] == settings.model
+        assert tuple(obj.location) == (0.0, 0.0, 0.0) and tuple(obj.scale) == (1.0, 1.0, 1.0)
+        kind = pe.catalog.load(settings.model).kind
+        assert catalogs[data.catalog_id].split("/")[0].lower() == kind
+        words = {tag.name for tag in data.tags}
+        known = pe.catalog.housing(settings.model) is not None
+        assert {"sensor", "true size" if known else "typical size"} <= words
+        assert data.description and data.license
+        assert not is_blank(obj.preview), obj.name
+
+
+def is_blank(preview):
+    """Whether a preview shows nothing."""
+    if preview is None or not preview.image_size[0]:
+        return True
+    pixels = np.empty(preview.image_size[0] * preview.image_size[1] * 4, np.float32)
+    preview.image_pixels_float.foreach_get(pixels)
+    return np.ptp(pixels) < 0.5
+
+
+def test_true_sizes_are_true(assets):
+    for obj in assets:
+        housing = pe.catalog.housing(obj.perception_entropy.model)
+        if housing is not None:
+            corners = np.array([corner[:] for corner in obj.bound_box])
+            assert np.ptp(corners, axis=0) == pytest.approx(housing.size, abs=1e-6), obj.name
+
+
+def test_the_file_is_small_and_nothing_else_is_in_it(assets):
+    assert BLEND.stat().st_size < MOST_BYTES
+    with bpy.data.libraries.load(str(BLEND)) as (there, _):
+        assert len(there.objects) == len(assets)
+        assert not there.cameras and not there.images and not there.texts
+        assert len(there.scenes) == 1
+
+
+def test_an_appended_asset_is_a_sensor_at_once(car):
+    before = len(roster.sensors(car))
+    (puck,) = appended("Velodyne VLP-16 Puck")
+    puck.location = (0.4, 0.0, 1.9)
+    bpy.context.view_layer.update()
+    roster.forget()
+    assert len(roster.sensors(car)) == before + 1
+    study = scenes.study()
+    assert study.rig[puck.name].model is pe.catalog.load("Velodyne VLP-16 Puck")
+    assert study.rig[puck.name].pose.position == (0.4, 0.0, 1.9)
+    assert {part for part in study.vehicle.part_names} == {"body", "cabin"}
+
+
+def test_two_of_a_kind_are_two_sensors(car):
+    first, second = (appended("Hesai QT128C2X")[0] for _ in range(2))
+    assert first != second and first.name != second.name
+    names = {each.name for each in bridge.sensor_objects(car)}
+    assert {first.name, second.name} <= names
+
+
+def libraries():
+    """Names and paths of Blender's asset libraries."""
+    return [(each.name, each.path) for each in bpy.context.preferences.filepaths.asset_libraries]
+
+
+@pytest.fixture
+def enabled():
+    """Register as Blender does it for an extension: with an entry in its preferences."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    before = libraries()
+    entry = bpy.context.preferences.addons.new()
+    entry.module = blender_addon.__name__
+    blender_addon.register()
+    try:
+        yield before, entry
+    finally:
+        blender_addon.unregister()
+        bpy.context.preferences.addons.remove(entry)
+    assert libraries() == before
+
+
+def test_the_library_comes_and_goes_with_the_extension(enabled):
+    before, entry = enabled
+    assert entry.preferences.show_library
+    (ours,) = [each for each in libraries() if each not in before]
+    assert ours == (library.NAME, str(library.FOLDER))
+    found = bpy.context.preferences.filepaths.asset_libraries[-1]
+    assert found.import_method == "APPEND"
+    blender_addon.unregister()
+    assert libraries() == before
+    blender_addon.register()
+    assert libraries() == [*before, ours]
+
+
+def test_it_is_taken_away_and_brought_back_in_the_preferences(enabled):
+    before, entry = enabled
+    shown = libraries()
+    entry.preferences.show_library = False
+    assert libraries() == before
+    entry.preferences.show_library = False
+    entry.preferences.show_library = True
+    assert libraries() == shown
+    entry.preferences.show_library = True
+    assert libraries() == shown
+
+
+def test_a_library_that_was_saved_with_the_preferences_is_not_shown_twice(enabled):
+    shown = libraries()
+    library.register()
+    assert libraries() == shown
+
+
+def test_a_library_of_that_name_that_is_not_ours_is_left_alone(enabled, tmp_path):
+    others = bpy.context.preferences.filepaths.asset_libraries
+    foreign = others.new(name=library.NAME, directory=str(tmp_path))
+    library.hide()
+    assert [path for _, path in libraries() if path == str(tmp_path)]
+    others.remove(foreign)
+
+
+def test_a_script_that_registers_us_gets_no_library(addon):
+    """Tests and commands work on the user's machine, but not on his preferences."""
+    assert str(library.FOLDER) not in [path for _, path in libraries()]

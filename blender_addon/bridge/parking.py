@@ -24,7 +24,7 @@ def park(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
         aside.objects.link(each)
         for collection in own:
             collection.objects.unlink(each)
-    obj.perception_entropy.is_sensor = False
+    obj.perception_entropy.is_sensor, obj.perception_entropy.is_parked = False, True
 
 
 def unpark(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
@@ -37,14 +37,14 @@ def unpark(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
             collection.objects.link(each)
         aside.objects.unlink(each)
         each.perception_entropy.parked_from = ""
-    obj.perception_entropy.is_sensor = True
+    obj.perception_entropy.is_sensor, obj.perception_entropy.is_parked = True, False
 
 
 def parked(scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:
     """Sensors of the scene that were set aside, by name."""
     aside = _find(scene)
-    empties = () if aside is None else (o for o in aside.objects if o.type == "EMPTY")
-    return {each.name: each for each in empties}
+    objects = () if aside is None else aside.objects
+    return {each.name: each for each in objects if each.perception_entropy.is_parked}
 
 
 def _hanging_on(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:

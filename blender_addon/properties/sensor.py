@@ -62,6 +62,11 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
         options={"HIDDEN"},
     )
 
+    is_parked: BoolProperty(
+        name="Is Parked",
+        description="A sensor that is set aside, as it belongs to another variant",
+        options={"HIDDEN"},
+    )
     parked_from: StringProperty(
         name="Parked From",
         description="Collections it was taken out of, as it belongs to another variant",

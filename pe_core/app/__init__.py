@@ -1,7 +1,7 @@
 """The command ``pe``, and what all command lines share."""
 
 from .command import Parser, add_run_options, add_sensors_verb, count_up_to, run, with_options
-from .explain import add_compare_options, add_explain_options, compare, explain
+from .explaining import add_compare_options, add_explain_options, compare, explain
 from .interrupts import leave
 from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
 from .summary import summary

@@ -11,9 +11,13 @@ from ..errors import InputError
 from ..study import STUDY, OptimizeJob, ScoreJob, load_study, prepare_folder, result_names
 from ..version import __version__
 from .command import Parser, add_run_options, add_sensors_verb, run, with_options
-from .explain import add_compare_options, add_explain_options, named_by_file
-from .explain import compare as compare_studies
-from .explain import explain as explain_study
+from .explaining import (
+    add_compare_options,
+    add_explain_options,
+    compare,
+    explain,
+    named_by_file,
+)
 from .status import Answer
 from .terminal import open_missing_streams, tell
 from .work import carry_out
@@ -51,15 +55,15 @@ def parser() -> argparse.ArgumentParser:
         verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
         add_run_options(verb, search=job is OptimizeJob)
         verb.set_defaults(function=_run_job, job=job)
-    explain = verbs.add_parser("explain", help="a study's score in words, or one place of it")
-    explain.add_argument("study", metavar="STUDY", help="study file (TOML)")
-    add_explain_options(explain)
-    explain.usage = f"{explain.prog} STUDY [--at X Y [Z]] [options]"
-    explain.set_defaults(function=_explain)
-    compare = verbs.add_parser("compare", help="score several studies and put them side by side")
-    compare.add_argument("studies", nargs="+", metavar="STUDY", help="study file (TOML)")
-    add_compare_options(compare)
-    compare.set_defaults(function=_compare)
+    verb = verbs.add_parser("explain", help="a study's score in words, or one place of it")
+    verb.usage = f"{verb.prog} STUDY [--at X Y [Z]] [options]"
+    verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
+    add_explain_options(verb)
+    verb.set_defaults(function=_explain)
+    verb = verbs.add_parser("compare", help="score several studies and put them side by side")
+    verb.add_argument("studies", nargs="+", metavar="STUDY", help="study file (TOML)")
+    add_compare_options(verb)
+    verb.set_defaults(function=_compare)
     add_sensors_verb(verbs)
     for other in entry_points(group=VERBS):
         other.load()(verbs)
@@ -80,13 +84,13 @@ def _run_job(args: argparse.Namespace) -> Answer:
 
 
 def _explain(args: argparse.Namespace) -> Answer:
-    return explain_study(with_options(load_study(args.study), args), args)
+    return explain(with_options(load_study(args.study), args), args)
 
 
 def _compare(args: argparse.Namespace) -> Answer:
     files = named_by_file(args.studies)
     studies = {name: with_options(load_study(path), args) for name, path in files.items()}
-    return compare_studies(studies, args)
+    return compare(studies, args)
 
 
 def _refuse_to_replace(study: Path, output: Path) -> None:

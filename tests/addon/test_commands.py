@@ -48,6 +48,29 @@ def blend(car, tmp_path) -> Path:
     return path
 
 
+def test_explain_says_what_it_says_without_blender(blend, tmp_path):
+    assert run("blender_addon", blend, "export", "-o", tmp_path / "study").returncode == 0
+    study = tmp_path / "study" / "study.toml"
+    for asked in (
+        ("--grid-samples", "4096"),
+        ("--at", "8", "2"),
+        ("--at", "8", "2", "1", "--json"),
+    ):
+        inside, outside = (
+            run("blender_addon", blend, "explain", *asked),
+            run("pe_core", "explain", study, *asked),
+        )
+        assert inside.stdout == outside.stdout and inside.stdout, inside.stderr
+        assert inside.returncode == outside.returncode == 0
+
+
+def test_places_that_are_none_are_one_line(blend):
+    answer = run("blender_addon", blend, "explain", "--at", "99", "0")
+    assert (answer.returncode, answer.stdout) == (1, "")
+    expected = ["pe: place: x: expected -80 to 80 m, inside the space, found 99"]
+    assert complaints(answer) == expected
+
+
 def test_optimize_and_export_agree_with_the_engine(blend, tmp_path):
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     before = blend.read_bytes()

@@ -1,7 +1,7 @@
 """The only place that turns Blender's data into the engine's and back."""
 
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
-from .outcome import blender_version, store_outcome
+from .outcome import blender_version, store_outcome, store_warnings
 from .prior import prior_from_scene
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
 from .rig import (
@@ -66,6 +66,7 @@ __all__ = [
     "signature",
     "stand",
     "store_outcome",
+    "store_warnings",
     "study_from_scene",
     "study_of_variant",
     "take_scene_s_score",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
 import bpy
 
@@ -23,6 +24,7 @@ def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
     settings.result_coverage = outcome.after.coverage
     settings.result_stderr = outcome.after.stderr
     settings.result_json = json.dumps(pe.result_dict(outcome, blender_version()))
+    store_warnings(settings, outcome.warnings)
     sensors = sensor_objects(scene)
     settings.result_signature = signature(scene, sensors)
     for obj in sensors:
@@ -31,6 +33,17 @@ def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
         obj.perception_entropy.result_run = settings.result_signature
     settings.result_stale = False
     settings.has_result = True
+
+
+def store_warnings(settings: bpy.types.PropertyGroup, told: Sequence[pe.Advice]) -> None:
+    """Keep what is odd about a scene's sensors and vehicle in its settings, for the panel."""
+    settings.result_warnings.clear()
+    for each in told:
+        row = settings.result_warnings.add()
+        row.subject, row.code, row.text = each.subject or "", each.code, each.text
+        row.part, row.fix = each.part or "", each.fix or ""
+        row.amounts = len(each.amount)
+        row.amount = (*each.amount, 0.0, 0.0, 0.0)[:3]
 
 
 def blender_version() -> dict[str, str]:

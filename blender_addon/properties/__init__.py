@@ -13,6 +13,7 @@ from .focus import DEFAULT_REGION, PE_FocusSettings
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, DEFAULT_MODEL, PE_ObjectSettings
 from .variants import PE_Variant, PE_VariantSensor
+from .warnings import PE_Warning
 
 __all__ = [
     "AXIS_LABELS",
@@ -27,6 +28,7 @@ CLASSES = (
     PE_FocusSettings,
     PE_VariantSensor,
     PE_Variant,
+    PE_Warning,
     PE_SceneSettings,
     PE_ObjectSettings,
 )

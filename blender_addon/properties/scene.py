@@ -18,6 +18,7 @@ from ..engine import pe
 from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
 from .variants import PE_Variant
+from .warnings import PE_Warning
 
 DEFAULT_CANDIDATES = 150
 DEFAULT_BEAM_LIMIT = 5_000
@@ -132,6 +133,10 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
     )
     result_stale: BoolProperty(
         name="Stale", description="The scene has changed since the result was made"
+    )
+
+    result_warnings: CollectionProperty(
+        type=PE_Warning, name="Warnings", description="What the last score found odd"
     )
 
     variants: CollectionProperty(

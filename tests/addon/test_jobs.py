@@ -57,6 +57,29 @@ def test_result_is_shown(car):
     assert car.objects["front"].perception_entropy.beams == 0
 
 
+def test_warnings_are_stored_as_the_result_has_them(car):
+    """A sensor in the body, and the vehicle turned; what is mended is gone with the next score."""
+    settings, roof = car.perception_entropy, car.objects["roof"]
+    before = roof.location.copy()
+    roof.location = (1.5, 0.0, 0.1)
+    body = car.objects["body"]
+    body.location.z -= 0.5
+    bpy.ops.pe.score()
+    told = stored(car)["warnings"]
+    rows = settings.result_warnings
+    assert [(each["subject"], each["code"]) for each in told] == [
+        *((None, "height"), ("roof", "inside"))
+    ]
+    assert [(row.subject, row.code, row.text) for row in rows] == [
+        (each["subject"] or "", each["code"], each["text"]) for each in told
+    ]
+    assert rows[0].fix == "move_vehicle" and rows[0].amounts == 3
+    assert list(rows[0].amount) == pytest.approx(told[0]["amount"])
+    roof.location, body.location.z = before, body.location.z + 0.5
+    bpy.ops.pe.score()
+    assert not rows and stored(car)["warnings"] == []
+
+
 def test_optimize_is_the_engines_and_stays_so(car):
     """Placements written to the scene and read again are those that were scored."""
     expected = finished(pe.OptimizeJob(scenes.study()))

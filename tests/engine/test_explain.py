@@ -1,7 +1,9 @@
 """The verbs explain and compare on the command line."""
 
 import json
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -127,3 +129,20 @@ def test_what_does_not_compare_is_refused_in_a_line(study, tmp_path, field, chan
         f"pe: other: {field}: expected the same as in car, to be compared with it, found another"
     )
     assert (out, err.splitlines()) == ("", [expected])
+
+
+PAGE = (Path(pe.__file__).parent.parent / "docs" / "explain.md").read_text("utf-8")
+
+
+def test_the_page_s_place_is_what_is_told(monkeypatch, capsys):
+    monkeypatch.chdir(Path(pe.__file__).parent.parent)
+    assert main(["explain", "blend_assets/experiments/4_cameras.toml", "--at", "-8", "6"]) == 0
+    assert capsys.readouterr().out in PAGE
+
+
+def test_the_page_names_every_warning():
+    rows = set(re.findall(r"`(\w+)`", "\n".join(re.findall(r"^\| (`.*?) \|", PAGE, re.M))))
+    room = Path(advice.__file__).parent
+    text = "".join((room / name).read_text() for name in ("mounting.py", "vehicle_shape.py"))
+    told = set(re.findall(r"Advice\(\s*[\w.]+, \"(\w+)\"", text))
+    assert told == rows and len(told) == 15

@@ -8,7 +8,7 @@ from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measur
 from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import Housing, PerceptionSpace, Pose, Rig, Sensor, Vehicle, cuts_body
-from .scoring import Evaluator, GroundMap, PartScore, Score, SensorScore
+from .scoring import Evaluator, Glance, GroundMap, PartScore, Score, SensorScore
 from .search import Schedule, SearchSpace, Step, optimize
 from .sight import BlindGround, GroundSight, Reach, Sight
 from .study import (
@@ -40,6 +40,7 @@ __all__ = [
     "Camera",
     "Evaluator",
     "Focus",
+    "Glance",
     "GroundMap",
     "GroundSight",
     "Housing",

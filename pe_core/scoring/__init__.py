@@ -3,10 +3,11 @@
 from .evaluator import Evaluator
 from .sampled import Judgement
 from .sampling import VoxelSample, draw
-from .score import GroundMap, PartScore, Score, ScoreStopped, SensorScore
+from .score import Glance, GroundMap, PartScore, Score, ScoreStopped, SensorScore
 
 __all__ = [
     "Evaluator",
+    "Glance",
     "GroundMap",
     "Judgement",
     "PartScore",

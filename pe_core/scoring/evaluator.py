@@ -13,7 +13,7 @@ from ..text.values import Number, Whole, vector
 from .gridded import GridScorer
 from .sampled import Judgement, SampledScorer
 from .sampling import CENTERED, samples_or_grid
-from .score import Score, Watch
+from .score import Glance, Score, Watch
 
 WORKERS = Whole(0, 1024, "threads")
 SHIFT = Number(0.0, 1.0, below=True)
@@ -108,6 +108,24 @@ class Evaluator:
         if draft:
             return self._drafting().entropy(rig, draft=True)
         return self._scorer.entropy(rig)
+
+    def glance(self, rig: Rig, *, draft: bool = False) -> Glance:
+        """Score a rig as a whole, not sensor by sensor: what is shown while one is moved.
+
+        Parameters
+        ----------
+        rig : Rig
+        draft : bool
+            As in `score`.
+
+        Raises
+        ------
+        InputError
+            When the score is one of the grid.
+        """
+        if not isinstance(self._scorer, SampledScorer):
+            raise InputError("evaluator", "glance", "a sampled score", "a grid score")
+        return self._scorer.glance(rig, draft)
 
     def judge(self, rig: Rig, below: float) -> Judgement:
         """Tell whether a rig's entropy is below a value: what a search asks of its candidates.

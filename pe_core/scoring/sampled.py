@@ -17,7 +17,7 @@ from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
-from .score import PartScore, Score, SensorScore, rounded, sensor_score
+from .score import Glance, PartScore, Score, SensorScore, rounded, sensor_score
 from .subsets import fused_early
 from .weights import outside_masses
 from .zones import zone_masks
@@ -51,6 +51,8 @@ class SampledScorer:
         tops = None if vehicle is None else vehicle.top(space)
         self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
         outside_masses(densities, space, tops)  # complains when nothing is left to weigh
+        x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
+        self._zones = {name: mask for name, mask in zone_masks(x, y).items() if mask.any()}
         voxels = Voxels(space, self._sample.index, self._sample.centers)
         self._sensors = MeasuredByName(voxels, vehicle, fusion.enough)
         self._is_free = RLock()
@@ -90,21 +92,35 @@ class SampledScorer:
             bound = self._entropy_of(rig, m)
         return bound
 
-    def score(self, rig: Rig, draft: bool = False) -> Score:
-        """Everything a sampled score tells."""
+    def glance(self, rig: Rig, draft: bool = False) -> Glance:
+        """Everything a sampled score tells of the whole rig."""
         with self._is_free:
             self._sensors.measure(rig, draft)
             entropies, seen = self._entropies(rig, [s.name for s in rig])
             entropy, coverage = self._whole(entropies, seen)
-            return Score(
+            return Glance(
                 entropy,
                 coverage,
                 self._standard_error(entropies),
                 self._classes(entropies, seen),
-                self._zones(entropies, seen),
-                {s.name: self._sensor(s, rig, entropy) for s in rig},
+                self._by_zone(entropies, seen),
                 len(self._sample.index),
-                draft=any(known.draft for known in self._sensors.last.values()),
+                any(known.draft for known in self._sensors.last.values()),
+            )
+
+    def score(self, rig: Rig, draft: bool = False) -> Score:
+        """Everything a sampled score tells."""
+        with self._is_free:
+            whole = self.glance(rig, draft)
+            return Score(
+                whole.entropy,
+                whole.coverage,
+                whole.stderr,
+                whole.per_class,
+                whole.per_zone,
+                {s.name: self._sensor(s, rig, whole.entropy) for s in rig},
+                whole.voxels,
+                draft=whole.draft,
             )
 
     def _entropy_of(self, rig: Rig, measured: Mapping[str, NDArray]) -> float:
@@ -129,15 +145,13 @@ class SampledScorer:
                 found[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
         return found
 
-    def _zones(self, entropies: Floats, seen: NDArray[np.bool_]) -> dict[str, PartScore]:
+    def _by_zone(self, entropies: Floats, seen: NDArray[np.bool_]) -> dict[str, PartScore]:
         """Zones by the samples in them."""
-        x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
         return {
             name: PartScore(
                 *self._whole(entropies[mask], seen[mask]), rounded(float(np.mean(mask)))
             )
-            for name, mask in zone_masks(x, y).items()
-            if mask.any()
+            for name, mask in self._zones.items()
         }
 
     def _sensor(self, sensor: Sensor, rig: Rig, entropy: float) -> SensorScore:

@@ -75,6 +75,22 @@ class GroundMap:
 
 
 @dataclass(frozen=True, slots=True)
+class Glance:
+    """What a sampled score tells of the whole rig: nothing of its sensors one by one.
+
+    Fields are those of `Score`, and the same numbers to the bit.
+    """
+
+    entropy: float
+    coverage: float
+    stderr: float
+    per_class: dict[str, PartScore]
+    per_zone: dict[str, PartScore]
+    voxels: int
+    draft: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Score:
     """Score of a rig.
 

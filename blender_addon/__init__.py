@@ -43,6 +43,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Called by Blender when the add-on is switched off: everything above, backwards."""
+    operators.running.unregister()
     worker.unregister()
     library.unregister()
     commands.unregister()

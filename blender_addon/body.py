@@ -7,6 +7,7 @@ What is told of a change comes from Blender's own updates, moved vertices includ
 from __future__ import annotations
 
 import contextlib
+import hashlib
 from collections.abc import Hashable
 from typing import NamedTuple
 
@@ -28,24 +29,26 @@ NOTHING = Body(None, None)
 
 
 class BodyCache:
-    """Remembers one vehicle by plain values; never a Blender object."""
+    """Remembers vehicles by plain values; never a Blender object."""
 
     def __init__(self) -> None:
         self._version = 0
-        self._body = NOTHING
+        self._bodies: dict[str, Body] = {}
+        self._shapes: dict[Hashable, str] = {}
 
     @property
     def version(self) -> int:
-        """Rises whenever the vehicle may have changed."""
+        """Rises whenever a vehicle may have changed."""
         return self._version
 
     def changed(self) -> None:
-        """Note that the vehicle's objects are not what they were."""
+        """Note that a vehicle's objects are not what they were."""
         self._version += 1
 
     def clear(self) -> None:
         """Forget everything, as another file is about to be shown."""
-        self._body = NOTHING
+        self._bodies.clear()
+        self._shapes.clear()
         self._version += 1
 
     def read(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Body:
@@ -54,18 +57,40 @@ class BodyCache:
         members = () if collection is None else members_of(collection, depsgraph)
         of = "" if collection is None else collection.name_full
         key = (scene.name, of, self._version, members)
-        if key != self._body.key:
+        known = self._bodies.get(scene.name, NOTHING)
+        if key != known.key:
             vehicle = None
             if members:
                 # A score says what is wrong with a vehicle; here it is as if there were none.
                 with contextlib.suppress(pe.InputError):
                     vehicle = bridge.vehicle_from_collection(collection, depsgraph)
-            self._body = Body(vehicle, key)
-        return self._body
+            self._bodies = {name: b for name, b in self._bodies.items() if name in bpy.data.scenes}
+            known = self._bodies[scene.name] = Body(vehicle, key)
+        return known
+
+    def shape(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
+        """Return a text that is another one for a vehicle that is not the same to the bit."""
+        body = self.read(scene, depsgraph)
+        if body.vehicle is None:
+            return ""
+        if body.key not in self._shapes:
+            current = {each.key for each in self._bodies.values()}
+            self._shapes = {key: text for key, text in self._shapes.items() if key in current}
+            self._shapes[body.key] = shape_of(body.vehicle)
+        return self._shapes[body.key]
+
+
+def shape_of(vehicle: pe.Vehicle) -> str:
+    """Return a digest of a vehicle: its triangles, its parts and their names."""
+    digest = hashlib.blake2b(digest_size=16)
+    digest.update(vehicle.triangles)
+    digest.update(vehicle.parts)
+    digest.update(repr((vehicle.part_names, vehicle.glass)).encode())
+    return digest.hexdigest()
 
 
 shared = BodyCache()
-"""The vehicle of the scene that is looked at."""
+"""The vehicles of the scenes that are looked at."""
 
 
 def members_of(

@@ -18,7 +18,7 @@ from typing import TextIO
 
 import bpy
 
-from . import bridge
+from . import bridge, stale
 from .engine import app, pe, studies
 
 OPTIMIZED, REVIEW = studies.OPTIMIZED, studies.REVIEW
@@ -118,7 +118,7 @@ def explain_study(args: argparse.Namespace) -> app.Answer:
 def list_variants(args: argparse.Namespace) -> app.Answer:
     """List the variants with the scores that are kept with them."""
     scene = opened_scene()
-    bridge.check_variants(scene)
+    bridge.check_variants(scene, stale.fingerprint(scene))
     data = [bridge.variant_dict(scene, row) for row in scene.perception_entropy.variants]
     if args.json:
         return json.dumps(data, indent=2), app.DONE
@@ -186,8 +186,9 @@ def leave_scene(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) 
     scene = bpy.context.scene
     if outcome.kind == "optimize":
         bridge.place_rig(scene, outcome.study.rig)
-        bridge.store_outcome(scene, outcome)
-        bridge.keep_search(scene, outcome)
+        taken = stale.fingerprint(scene)
+        bridge.store_outcome(scene, outcome, taken.text)
+        bridge.keep_search(scene, outcome, taken.surroundings)
         studies.add_to_result(data, folder, {OPTIMIZED: save_copy})
     if render:
         from . import review  # only who wants a picture pays for it

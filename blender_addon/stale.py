@@ -1,70 +1,43 @@
-"""Tells when a stored result no longer is that of the scene.
-
-Blender calls the handler at every change; it only asks for a check soon after, because data must
-not be written inside a handler.
-"""
+"""Tells when a stored result no longer is that of the scene: whenever what has moved rests."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
-from bpy.app.handlers import persistent
 
-from . import bridge, changes, roster
-
-CHECK_AFTER_S = 0.25
+from . import body, bridge, changes, roster
 
 
-@persistent
-def on_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Handler of depsgraph_update_post."""
-    if scene.perception_entropy.has_result and depsgraph.id_type_updated("OBJECT"):
-        check_soon()
-
-
-@persistent
-def on_undo(_scene: bpy.types.Scene) -> None:
-    """Handler of undo_post and redo_post: they bring the flag back as it once was."""
-    check_soon()
-
-
-def check_soon() -> None:
-    """Check a moment from now; several wishes become one check."""
-    # Without a window nobody looks, and a timer left behind makes Blender crash at its exit.
-    if not bpy.app.background and not bpy.app.timers.is_registered(check):
-        bpy.app.timers.register(check, first_interval=CHECK_AFTER_S)
+def fingerprint(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph | None = None,
+    sensors: Sequence[bpy.types.Object] | None = None,
+) -> bridge.Fingerprint:
+    """Return what a score of the scene, as it is now, would depend on."""
+    depsgraph = depsgraph or bridge.view_layer_of(scene).depsgraph
+    # A scene that was not shown yet has not been evaluated: there is no vehicle to be read.
+    shape = "" if depsgraph is None else body.shared.shape(scene, depsgraph)
+    found = roster.sensors(scene) if sensors is None else sensors
+    return bridge.fingerprint(scene, shape, found)
 
 
 def check() -> None:
     """Set `result_stale` of every scene."""
     for scene in bpy.data.scenes:
         settings = scene.perception_entropy
-        if not settings.has_result:
+        if not settings.has_result or bridge.view_layer_of(scene).depsgraph is None:
             continue
-        stale = bridge.signature(scene, roster.sensors(scene)) != settings.result_signature
+        stale = fingerprint(scene).text != settings.result_signature
         if stale != settings.result_stale:
             settings.result_stale = stale
 
 
-def _handlers() -> tuple[tuple[list, object], ...]:
-    lists = bpy.app.handlers
-    return (
-        (lists.depsgraph_update_post, on_change),
-        (lists.undo_post, on_undo),
-        (lists.redo_post, on_undo),
-    )
-
-
 def register() -> None:
     """Start listening."""
-    for handlers, function in _handlers():
-        handlers.append(function)
-    changes.study.connect(check_soon)
+    changes.rested.connect(check)
 
 
 def unregister() -> None:
-    """Stop listening, also to the check that may be due."""
-    changes.study.disconnect(check_soon)
-    for handlers, function in reversed(_handlers()):
-        handlers.remove(function)
-    if bpy.app.timers.is_registered(check):
-        bpy.app.timers.unregister(check)
+    """Stop listening."""
+    changes.rested.disconnect(check)

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import bpy
 
-from . import bridge, changes
+from . import bridge, changes, stale
 
 
 def check() -> None:
     """Look at every scene that has variants."""
     for scene in bpy.data.scenes:
-        if scene.perception_entropy.variants:
-            bridge.check_variants(scene)
+        if scene.perception_entropy.variants and bridge.view_layer_of(scene).depsgraph is not None:
+            bridge.check_variants(scene, stale.fingerprint(scene))
 
 
 def register() -> None:

@@ -1,7 +1,9 @@
 """The only place that turns Blender's data into the engine's and back."""
 
+from .fingerprint import Fingerprint, fingerprint, signature
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .outcome import blender_version, store_outcome, store_warnings
+from .placeable import check_placeable
 from .prior import prior_from_scene
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
 from .rig import (
@@ -13,7 +15,7 @@ from .rig import (
     sensor_objects,
     view_layer_of,
 )
-from .scene import signature, study_from_scene
+from .scene import study_from_scene
 from .standing import sensors_collection, stand
 from .variants import (
     active_variant,
@@ -37,15 +39,18 @@ from .vehicle import vehicle_from_collection, visible_members
 
 __all__ = [
     "SENSORS",
+    "Fingerprint",
     "Record",
     "active_variant",
     "add_variant",
     "alike",
     "blender_version",
+    "check_placeable",
     "check_variants",
     "choose_variant",
     "copy_score",
     "drop_foreign_results",
+    "fingerprint",
     "keep_score",
     "keep_search",
     "mounted_on_sensor",

@@ -9,14 +9,22 @@ import bpy
 
 from ..engine import pe
 from .rig import sensor_objects
-from .scene import signature
 
 PARTS_NAMED = 3
 """How many parts of the vehicle the panel names as stopping beams."""
 
 
-def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
-    """Keep a result in the scene: figures for display, and result.json in full."""
+def store_outcome(
+    scene: bpy.types.Scene,
+    outcome: pe.Outcome,
+    signature: str,
+    sensors: Sequence[bpy.types.Object] | None = None,
+) -> None:
+    """Keep a result in the scene: figures for display, and result.json in full.
+
+    `signature` is that of what was scored, taken when it was read: the scene may have changed.
+    `sensors` are the scene's, when they have been looked for already.
+    """
     settings = scene.perception_entropy
     settings.result_kind = outcome.kind
     settings.result_entropy = outcome.after.entropy
@@ -25,12 +33,11 @@ def store_outcome(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
     settings.result_stderr = outcome.after.stderr
     settings.result_json = json.dumps(pe.result_dict(outcome, blender_version()))
     store_warnings(settings, outcome.warnings)
-    sensors = sensor_objects(scene)
-    settings.result_signature = signature(scene, sensors)
-    for obj in sensors:
+    settings.result_signature = signature
+    for obj in sensor_objects(scene) if sensors is None else sensors:
         _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
         obj.perception_entropy.result_of = obj.name
-        obj.perception_entropy.result_run = settings.result_signature
+        obj.perception_entropy.result_run = signature
     settings.result_stale = False
     settings.has_result = True
 

@@ -92,15 +92,19 @@ def pose_of_matrix(ground_from_sensor: np.ndarray) -> pe.Pose:
     return search.pose_from_values(dict(zip(search.AXES, values, strict=True)))
 
 
-def place_rig(scene: bpy.types.Scene, rig: pe.Rig) -> list[str]:
+def place_rig(scene: bpy.types.Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[str]:
     """Put the sensors where a rig has them; return the names of those that are gone.
+
+    Those that stand as they did at the `start` are left alone, wherever they are by now.
 
     Raises
     ------
     InputError
         When a constraint, a driver or an animation holds a sensor where it is.
     """
-    return place_poses(scene, {sensor.name: sensor.pose for sensor in rig})
+    moved = [s for s in rig if start is None or start[s.name].pose != s.pose]
+    left = [s.name for s in rig if s not in moved and not _is_sensor(scene.objects.get(s.name))]
+    return place_poses(scene, {sensor.name: sensor.pose for sensor in moved}) + left
 
 
 def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[str]:
@@ -186,7 +190,7 @@ def _stands_at(ground_from_sensor: np.ndarray, pose: pe.Pose) -> bool:
     return bool(rotation < HELD_ROTATION and position < HELD_POSITION_M)
 
 
-def pose_from_numbers(numbers: tuple[float, ...]) -> pe.Pose:
+def pose_from_numbers(numbers: Sequence[float]) -> pe.Pose:
     """Pose from x, y, z [m], roll, pitch, yaw [deg] in single precision."""
     position, degrees = numbers[:3], numbers[3:]
     radians = (math.radians(angle) for angle in degrees)

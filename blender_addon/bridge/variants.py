@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,6 +10,7 @@ import bpy
 
 from ..choices import free_name
 from ..engine import pe
+from .fingerprint import Fingerprint
 from .records import (
     Record,
     alike,
@@ -20,7 +20,7 @@ from .records import (
     rig_of,
     write_records,
 )
-from .scene import signature, study_of_rig, surroundings
+from .scene import study_of_rig
 from .standing import stand
 
 Variant = bpy.types.PropertyGroup
@@ -110,11 +110,11 @@ def same_score(some: Sequence[Record], others: Sequence[Record]) -> bool:
     return [record.scored for record in some] == [record.scored for record in others]
 
 
-def keep_score(scene: bpy.types.Scene, rig: pe.Rig, score: pe.Score) -> None:
-    """Give a score to every variant of just these sensors."""
+def keep_score(scene: bpy.types.Scene, rig: pe.Rig, score: pe.Score, surroundings: str) -> None:
+    """Give a score to every variant of just these sensors; `surroundings` as they were scored."""
     for row in scene.perception_entropy.variants:
         if _is_rig(row, rig):
-            write_score(scene, row, score)
+            write_score(row, score, surroundings)
 
 
 def _is_rig(variant: Variant, rig: pe.Rig) -> bool:
@@ -131,15 +131,15 @@ def _told_apart(sensor: pe.Sensor) -> tuple[object, ...]:
     return sensor.name, id(sensor.model), sensor.fusion, sensor.pose
 
 
-def keep_search(scene: bpy.types.Scene, outcome: pe.Outcome) -> None:
+def keep_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) -> None:
     """Keep where a search began and what it found as variants; the second one stands here."""
     now = records_of_scene(scene)
     began, found = _moved(now, outcome.start.rig), _moved(now, outcome.study.rig)
     before = _kept(scene, "Before optimize", began).key
     name = f"Optimized, seed {outcome.start.search.seed}"
     after = _kept(scene, name, found).key
-    keep_score(scene, outcome.start.rig, outcome.before)
-    keep_score(scene, outcome.study.rig, outcome.after)
+    keep_score(scene, outcome.start.rig, outcome.before, surroundings)
+    keep_score(scene, outcome.study.rig, outcome.after, surroundings)
     choose_variant(scene, after if after != before else before)
 
 
@@ -156,18 +156,18 @@ def _moved(records: Sequence[Record], rig: pe.Rig) -> tuple[Record, ...]:
     return tuple(replace(each, pose=poses.get(each.name, each.pose)) for each in records)
 
 
-def write_score(scene: bpy.types.Scene, variant: Variant, score: pe.Score) -> None:
+def write_score(variant: Variant, score: pe.Score, surroundings: str) -> None:
     """Keep a score with a variant."""
     _write_figures(variant, score.to_dict())
-    variant.signature = _surroundings(scene)
+    variant.signature = surroundings
 
 
-def take_scene_s_score(scene: bpy.types.Scene, variant: Variant) -> None:
+def take_scene_s_score(scene: bpy.types.Scene, variant: Variant, now: Fingerprint) -> None:
     """Give a variant the scene's own result, if the scene stands as it was scored."""
     settings = scene.perception_entropy
-    if settings.has_result and signature(scene) == settings.result_signature:
+    if settings.has_result and now.text == settings.result_signature:
         _write_figures(variant, json.loads(settings.result_json)["after"])
-        variant.signature = _surroundings(scene)
+        variant.signature = now.surroundings
 
 
 def copy_score(source: Variant, to: Variant) -> None:
@@ -208,9 +208,9 @@ def score_of(variant: Variant) -> pe.Score:
     return pe.Score(*whole, by_class, by_zone, {}, figures["voxels"])
 
 
-def check_variants(scene: bpy.types.Scene) -> None:
+def check_variants(scene: bpy.types.Scene, now: Fingerprint) -> None:
     """Set what the list shows: whether the scene is the active one, and whose score is stale."""
-    settings, current = scene.perception_entropy, _surroundings(scene)
+    settings, current = scene.perception_entropy, now.surroundings
     active = active_variant(scene)
     changed = active is not None and not _stands(scene, active)
     if changed != settings.variant_changed:
@@ -227,7 +227,3 @@ def _stands(scene: bpy.types.Scene, variant: Variant) -> bool:
         return alike(records_of_scene(scene), records_of(variant))
     except pe.InputError:
         return False
-
-
-def _surroundings(scene: bpy.types.Scene) -> str:
-    return hashlib.sha256(repr(surroundings(scene)).encode()).hexdigest()

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import bpy
 
-from .. import bridge
+from .. import bridge, stale
 from ..engine import advice, pe
-from .job import JobOperator
+from .job import JobOperator, Task
 from .reports import tell
 
 LABEL_PX, COLUMN_PX = 190, 140
@@ -23,12 +23,16 @@ class CompareJob:
 
     def __init__(self, studies: dict[int, tuple[str, pe.Study]]) -> None:
         self.studies = studies
-        self.stopped = False
+        self.stopped = self.dropped = False
         self.outcome: dict[int, pe.Score] | None = None
 
     def stop(self) -> None:
         """Keep what is complete."""
         self.stopped = True
+
+    def drop(self) -> None:
+        """Keep nothing."""
+        self.stopped = self.dropped = True
 
     def __iter__(self) -> Iterator[pe.Progress]:
         found: dict[int, pe.Score] = {}
@@ -42,7 +46,7 @@ class CompareJob:
             if job.outcome is None:
                 break
             found[key] = job.outcome.after
-        self.outcome = found or None
+        self.outcome = None if self.dropped else found or None
 
 
 class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
@@ -74,7 +78,7 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
             return show()
         return super().invoke(context, event)
 
-    def _job(self, context: bpy.types.Context) -> CompareJob:
+    def _task(self, context: bpy.types.Context) -> Task:
         depsgraph, studies, refused = context.evaluated_depsgraph_get(), {}, []
         for row in unscored(context.scene):
             try:
@@ -86,13 +90,15 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
             raise refused[0]
         for error in refused:
             tell(self, "WARNING", str(error))
-        return CompareJob(studies)
+        return Task(CompareJob(studies), stale.fingerprint(context.scene, depsgraph))
 
-    def write(self, scene: bpy.types.Scene, outcome: dict[int, pe.Score]) -> list[str]:
+    def write(
+        self, scene: bpy.types.Scene, outcome: dict[int, pe.Score], taken: bridge.Fingerprint
+    ) -> list[str]:
         """Give each variant that still is there its score."""
         for row in scene.perception_entropy.variants:
             if row.key in outcome:
-                bridge.write_score(scene, row, outcome[row.key])
+                bridge.write_score(row, outcome[row.key], taken.surroundings)
         if self.asked_in_window:
             show()
         return []
@@ -156,7 +162,7 @@ def show() -> set[str]:
 
 def unscored(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
     """Variants without a score that stands."""
-    bridge.check_variants(scene)
+    bridge.check_variants(scene, stale.fingerprint(scene))
     rows = scene.perception_entropy.variants
     return [row for row in rows if not row.has_result or row.stale]
 

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import bpy
 
-from .. import bridge
+from .. import body, bridge, roster, stale
 from ..engine import pe
 from . import running
+from .known import known_score, remember
 from .reports import REFUSALS, refuse, tell
 
 
-class JobOperator:
-    """What score and optimize share; a subclass names the job and says what to report."""
+class Task(NamedTuple):
+    """A job, and what its scene was when it was read."""
 
-    job_class: type[pe.Job]
+    job: pe.Job
+    taken: bridge.Fingerprint
+
+
+class JobOperator:
+    """What score and optimize share; a subclass makes the job and says what to report."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -28,10 +36,10 @@ class JobOperator:
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Run to the end, as scripts and Blender without a window do."""
         try:
-            job = self._job(context)
-            for _ in job:
+            task = self._task(context)
+            for _ in task.job:
                 pass
-            return self._apply(context.scene, job.outcome)
+            return self._apply(context.scene, task)
         except REFUSALS as error:
             return refuse(self, error)
 
@@ -40,26 +48,31 @@ class JobOperator:
         if bpy.app.background:
             return self.execute(context)
         try:
-            running.begin(context, self._job(context))
+            task = self._task(context)
         except REFUSALS as error:
             return refuse(self, error)
+        running.begin(context, task.job)
+        self.taken = task.taken
         context.window_manager.modal_handler_add(self)
         running.current.show(context)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Give the job a turn; Esc asks it to stop."""
-        if event.type == "ESC" and event.value == "PRESS":
-            running.current.stop()
-            running.current.show(context)
+        """Give the job a turn; Esc asks it to stop, and once more to leave all as it was."""
+        job, more = running.current, False
+        if job is None:  # it was ended from outside
+            return {"CANCELLED"}
+        if event.type == "ESC" and event.value == "PRESS" and not event.is_repeat:
+            job.stop()
+            job.show(context)
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        job, more = running.current, False
         try:
             more = job.step()
             if not more:
-                return self._apply(bpy.data.scenes.get(job.scene_name), job.job.outcome)
+                scene = bpy.data.scenes.get(job.scene_name)
+                return self._apply(scene, Task(job.job, self.taken))
             job.show_soon(context)
             return {"PASS_THROUGH"}
         except REFUSALS as error:
@@ -72,20 +85,27 @@ class JobOperator:
         """Called by Blender when the window or the file goes: nothing is kept."""
         running.end(context)
 
-    def _job(self, context: bpy.types.Context) -> pe.Job:
-        return self.job_class(
-            bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-        )
+    def _task(self, context: bpy.types.Context) -> Task:
+        """Read the scene, and what tells it from others, at one time."""
+        scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+        vehicle = body.shared.read(scene, depsgraph).vehicle
+        sensors = bridge.sensor_objects(scene)
+        study = bridge.study_from_scene(scene, depsgraph, vehicle, sensors)
+        taken = stale.fingerprint(scene, depsgraph, sensors)
+        return Task(self.job_of(scene, study, taken), taken)
 
-    def _apply(self, scene: bpy.types.Scene | None, outcome: pe.Outcome | None) -> set[str]:
+    def _apply(self, scene: bpy.types.Scene | None, task: Task) -> set[str]:
         """Write placements and result to the scene; undo takes both back in one step."""
+        outcome = task.job.outcome
         if outcome is None:
-            tell(self, "INFO", "Stopped before a score was complete: nothing was changed")
+            when = "Left as it was" if task.job.dropped else "Stopped before a score was complete"
+            tell(self, "INFO", f"{when}: nothing was changed")
             return {"CANCELLED"}
         if scene is None:
             tell(self, "WARNING", "The scene is gone; its result was dropped")
             return {"CANCELLED"}
-        gone = self.write(scene, outcome)
+        gone = self.write(scene, outcome, task.taken)
+        stale.check()  # it may have changed while it was worked on
         if gone:
             tell(self, "WARNING", f"No longer there, so not placed: {', '.join(gone)}")
         else:
@@ -99,12 +119,19 @@ class PE_OT_score(JobOperator, bpy.types.Operator):
     bl_idname = "pe.score"
     bl_label = "Score"
     bl_options = {"REGISTER", "UNDO"}
-    job_class = pe.ScoreJob
 
-    def write(self, scene: bpy.types.Scene, outcome: pe.Outcome) -> list[str]:
+    def job_of(
+        self, _scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint
+    ) -> pe.Job:
+        """Score it, whatever is known: who presses the button wants it done."""
+        return pe.ScoreJob(study)
+
+    def write(
+        self, scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
+    ) -> list[str]:
         """Keep the result."""
-        bridge.store_outcome(scene, outcome)
-        bridge.keep_score(scene, outcome.study.rig, outcome.after)
+        keep(scene, outcome, taken.text)
+        bridge.keep_score(scene, outcome.study.rig, outcome.after, taken.surroundings)
         return []
 
     def message(self, outcome: pe.Outcome) -> str:
@@ -119,13 +146,23 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
     bl_idname = "pe.optimize"
     bl_label = "Optimize"
     bl_options = {"REGISTER", "UNDO"}
-    job_class = pe.OptimizeJob
 
-    def write(self, scene: bpy.types.Scene, outcome: pe.Outcome) -> list[str]:
+    def job_of(self, scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> pe.Job:
+        """Search, unless that is of no use; the start's score is not made again if it is known."""
+        bridge.check_placeable(scene, study)
+        return pe.OptimizeJob(study, before=known_score(scene, study, taken))
+
+    def write(
+        self, scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
+    ) -> list[str]:
         """Move the sensors and keep the result; return the names of those that are gone."""
-        gone = bridge.place_rig(scene, outcome.study.rig)
-        bridge.store_outcome(scene, outcome)
-        bridge.keep_search(scene, outcome)
+        settings = scene.perception_entropy
+        goes_on = settings.has_result and settings.result_signature == taken.text
+        first = settings.result_before if goes_on else outcome.before.entropy
+        gone = bridge.place_rig(scene, outcome.study.rig, outcome.start.rig)
+        keep(scene, outcome, taken.with_rig(outcome.study.rig).text)
+        settings.result_before = first  # of searches in a row: where the first began
+        bridge.keep_search(scene, outcome, taken.surroundings)
         return gone
 
     def message(self, outcome: pe.Outcome) -> str:
@@ -133,6 +170,12 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
         before, after = outcome.before.entropy, outcome.after.entropy
         best = "best so far, stopped early" if outcome.stopped else f"{outcome.evaluations} tried"
         return f"Perception entropy {before:.4f} to {after:.4f} nats ({best})"
+
+
+def keep(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
+    """Keep a result in the scene, and its arrays for this session."""
+    bridge.store_outcome(scene, outcome, signature, roster.sensors(scene))
+    remember(scene, outcome, signature)
 
 
 class PE_OT_cancel(bpy.types.Operator):

@@ -45,17 +45,24 @@ class Running:
         return False
 
     def stop(self) -> None:
-        """Ask the job to wind down; the best so far is kept."""
+        """Ask the job to wind down and keep the best so far; asked again, to keep nothing."""
+        if self.job.stopped:
+            self.job.drop()
         self.job.stop()
 
     @property
     def text(self) -> str:
         """What is being done, how far it is, and the best so far."""
-        if self.job.stopped:
+        if self.job.dropped:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
         entropy = self.progress.entropy
         return stage if entropy is None else f"{stage}  {entropy:.4f}"
+
+    @property
+    def on_escape(self) -> str:
+        """What Esc does now."""
+        return "Leave All as It Was" if self.job.stopped else "Stop"
 
     def show_soon(self, context: bpy.types.Context) -> None:
         """Draw the progress again if it is some time since that was done."""
@@ -99,11 +106,18 @@ def end(context: bpy.types.Context) -> None:
         ended.end(context)
 
 
+def unregister() -> None:
+    """Leave no job running and nothing that shows one: its operator is about to go."""
+    if current is not None:
+        current.job.drop()
+    end(bpy.context)
+
+
 def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
     """Draw the progress in the status bar, in place of Blender's own hints."""
     if current is not None:
         row = header.layout.row()
-        row.label(text="Stop", icon="EVENT_ESC")
+        row.label(text=current.on_escape, icon="EVENT_ESC")
         bar = row.row()
         bar.ui_units_x = STATUS_BAR_WIDTH
         bar.progress(text=current.text, factor=current.progress.fraction)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import IntProperty
 
-from .. import bridge, changes
+from .. import bridge, changes, stale
 from ..choices import free_name
 from ..engine import pe
 from .reports import REFUSALS, refuse, tell
@@ -137,7 +137,7 @@ class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
 def save_scene(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
     """Return the scene as a new variant, which is the active one from then on."""
     row = bridge.add_variant(scene, _free(scene, name), bridge.records_of_scene(scene))
-    bridge.take_scene_s_score(scene, row)
+    bridge.take_scene_s_score(scene, row, stale.fingerprint(scene))
     bridge.choose_variant(scene, row.key)
     return row
 

@@ -13,7 +13,7 @@ from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TypeVar
 
 from ..advice import Advice, warnings
 from ..scene.sensors import Rig
@@ -21,6 +21,8 @@ from ..scoring.evaluator import Evaluator
 from ..scoring.score import Score, ScoreStopped
 from ..search.optimize import Step, optimize
 from .study import Study
+
+T = TypeVar("T")
 
 WAIT_S = 0.03
 """How long a job waits for its thread before it yields: a frame of a responsive window."""
@@ -87,7 +89,7 @@ class Job:
     def __init__(self, study: Study, workers: int | None = None) -> None:
         self.study, self.workers = study, workers
         self.outcome: Outcome | None = None
-        self.stopped = False
+        self.stopped = self.dropped = False
         self._started = time.monotonic()
 
     def __iter__(self) -> Iterator[Progress]:
@@ -100,6 +102,10 @@ class Job:
         and `outcome` stays None.
         """
         self.stopped = True
+
+    def drop(self) -> None:
+        """End at once and keep nothing: `outcome` stays None."""
+        self.stopped = self.dropped = True
 
     @property
     def seconds(self) -> float:
@@ -116,58 +122,59 @@ class Job:
     ) -> Generator[Progress, None, Score | None]:
         """Score in a thread, yielding `waiting` until it is done.
 
-        None when the job is stopped meanwhile, unless it is `to_the_end`: the thread then ends by
-        itself, soon, and nobody waits for it.
+        None when the job is stopped meanwhile, unless it is `to_the_end`, or dropped: the thread
+        then ends by itself, soon, and nobody waits for it.
         """
-        yield waiting
-        future, done = Future[Any](), waiting.fraction
+        done = waiting.fraction
 
         def watch(share: float) -> bool:
             nonlocal done
             done = max(waiting.fraction, share)
-            return to_the_end or not self.stopped
+            return self._goes_on(to_the_end)
 
-        _start(future, lambda: self._evaluator.score(rig, watch=watch))
-        while to_the_end or not self.stopped:
+        def work() -> Score | None:
             try:
-                return future.result(timeout=WAIT_S)
+                return self._evaluator.score(rig, watch=watch)
             except ScoreStopped:
                 return None
+
+        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), to_the_end))
+
+    def _beside(
+        self, work: Callable[[], T], waiting: Callable[[], Progress], to_the_end: bool = False
+    ) -> Generator[Progress, None, T | None]:
+        """Work in a thread, yielding how far it is; None when nobody waits for it any more."""
+        future = Future[T]()
+        yield waiting()
+        threading.Thread(target=_fill, args=(future, work), daemon=True).start()
+        while self._goes_on(to_the_end):
+            try:
+                return future.result(timeout=WAIT_S)
             except NotYet:
                 if future.done():
                     raise
-            yield replace(waiting, fraction=done)
+            yield waiting()
         return None
+
+    def _goes_on(self, to_the_end: bool) -> bool:
+        return not self.dropped and (to_the_end or not self.stopped)
 
     def _warnings(
         self, study: Study, score: Score, waiting: Progress
-    ) -> Generator[Progress, None, tuple[Advice, ...]]:
+    ) -> Generator[Progress, None, tuple[Advice, ...] | None]:
         """Look a study over in a thread, yielding `waiting` until it is done."""
-        future = Future[Any]()
-        _start(
-            future,
-            lambda: warnings(study.rig, study.vehicle, study.space, study.prior, score),
-        )
-        while True:
-            try:
-                told: tuple[Advice, ...] = future.result(timeout=WAIT_S)
-                return told
-            except NotYet:
-                if future.done():
-                    raise
-            yield waiting
+
+        def work() -> tuple[Advice, ...]:
+            return warnings(study.rig, study.vehicle, study.space, study.prior, score)
+
+        return (yield from self._beside(work, lambda: waiting, to_the_end=True))
 
 
-def _start(future: Future[Any], work: Callable[[], Any]) -> None:
-    """Begin work in a thread that nobody has to wait for; what comes of it is the future's."""
-
-    def fill() -> None:
-        try:
-            future.set_result(work())
-        except BaseException as error:  # whatever it is, the one who waits has to know
-            future.set_exception(error)
-
-    threading.Thread(target=fill, daemon=True).start()
+def _fill(future: Future[T], work: Callable[[], T]) -> None:
+    try:
+        future.set_result(work())
+    except BaseException as error:  # whatever it is, the one who waits has to know
+        future.set_exception(error)
 
 
 class ScoreJob(Job):
@@ -178,16 +185,24 @@ class ScoreJob(Job):
         if score is None:
             return
         told = yield from self._warnings(self.study, score, Progress("scoring", 1.0, score.entropy))
+        if told is None:
+            return
         both = (self.study, self.study, score, score)
         self.outcome = Outcome("score", *both, seconds=self.seconds, warnings=told)
         yield Progress("done", 1.0, score.entropy)
 
 
 class OptimizeJob(Job):
-    """Scores a study's rig, searches for a better placement, and scores that."""
+    """Scores a study's rig, searches for a better placement, and scores that.
 
-    def __init__(self, study: Study, workers: int | None = None) -> None:
+    `before` is the score of the study's rig where that is known already; it is not made again.
+    """
+
+    def __init__(
+        self, study: Study, workers: int | None = None, before: Score | None = None
+    ) -> None:
         super().__init__(study, workers)
+        self.before = before
         self.history: list[HistoryRow] = []
         self.evaluations = 0
 
@@ -205,9 +220,12 @@ class OptimizeJob(Job):
         return self.study.evaluator(samples, self.workers)
 
     def __iter__(self) -> Iterator[Progress]:
-        yield Progress("preparing", 0.0)
-        self._check()
-        before = yield from self._score(self.study.rig, Progress("scoring the start", 0.0))
+        preparing = Progress("preparing", 0.0)
+        if (yield from self._beside(self._checked, lambda: preparing)) is None:
+            return
+        before = self.before
+        if before is None:
+            before = yield from self._score(self.study.rig, Progress("scoring the start", 0.0))
         if before is None:
             return
         yield from self._search()
@@ -215,6 +233,8 @@ class OptimizeJob(Job):
         after, best = yield from self._better_of(before)
         looking = Progress("scoring the result", 1.0, after.entropy, self.evaluations)
         told = yield from self._warnings(best, after, looking)
+        if told is None:
+            return
         self.outcome = Outcome(
             "optimize",
             self.study,
@@ -229,11 +249,13 @@ class OptimizeJob(Job):
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 
-    def _check(self) -> None:
-        """Raise `InputError` for a search that cannot be made, before any work is done."""
+    def _checked(self) -> Evaluator:
+        """What judges candidates; `InputError` for a search that cannot be made, before it begins.
+
+        It is made here, beside whoever waits: that takes long for a large vehicle.
+        """
         self.study.search_space()
-        if self.study.search.samples != self.study.samples:
-            _ = self._search_evaluator  # complains of too few samples
+        return self._search_evaluator
 
     def _better_of(self, before: Score) -> Generator[Progress, None, tuple[Score, Study]]:
         """Score what was found; the start's score and study where that is no better."""

@@ -8,6 +8,7 @@ import pytest
 
 from blender_addon import bridge, stale
 from blender_addon.engine import pe, text
+from blender_addon.live import latest
 from blender_addon.operators import job, running
 from tests.addon import scenes
 
@@ -101,6 +102,7 @@ def test_exported_study_scores_the_same(car, tmp_path):
 
 
 def test_fixed_sensor_stays(car):
+    scenes.add_sensor("front", model="Camera 60 deg")
     sensor = car.objects["roof"]
     sensor.perception_entropy.free = (False,) * 6
     before = scenes.study().rig["roof"].pose
@@ -125,7 +127,7 @@ def test_stopped_search_keeps_the_best(car):
             job.stop()
     assert job.outcome.stopped
     bridge.place_rig(car, job.outcome.study.rig)
-    bridge.store_outcome(car, job.outcome)
+    bridge.store_outcome(car, job.outcome, "any")
     assert job.outcome.after.entropy <= job.outcome.before.entropy
     assert scenes.study().rig["roof"].pose == job.outcome.study.rig["roof"].pose
 
@@ -133,7 +135,8 @@ def test_stopped_search_keeps_the_best(car):
 def test_stopped_before_a_score_is_complete_changes_nothing(car):
     told = []
     operator = SimpleNamespace(report=lambda *words: told.append(words))
-    assert job.PE_OT_optimize._apply(operator, car, None) == {"CANCELLED"}
+    idle = job.Task(pe.OptimizeJob(scenes.study()), None)
+    assert job.PE_OT_optimize._apply(operator, car, idle) == {"CANCELLED"}
     assert told == [({"INFO"}, "Stopped before a score was complete: nothing was changed")]
     assert not car.perception_entropy.has_result
 
@@ -150,7 +153,7 @@ def test_sensor_deleted_meanwhile(car):
     outcome = finished(pe.OptimizeJob(scenes.study()))
     bpy.data.objects.remove(car.objects["roof"])
     assert bridge.place_rig(car, outcome.study.rig) == ["roof"]
-    bridge.store_outcome(car, outcome)
+    bridge.store_outcome(car, outcome, "any")
 
 
 def test_one_job_at_a_time(car, monkeypatch):
@@ -174,11 +177,156 @@ def test_result_goes_stale_and_comes_back(car):
     changes += ((sensor.perception_entropy, "model", "HDL-64E"),)
     changes += ((car.objects["body"], "location", (0.0, 0.0, 1.0)),)
     changes += ((car.objects["body"], "hide_render", True),)
+    changes += ((car.objects["body"].data.vertices[0], "co", (-3.0, 0.0, 0.0)),)
     for owner, name, value in changes:
         before = getattr(owner, name)
-        before = before.copy() if name == "location" else before
+        before = before.copy() if name in ("location", "co") else before
         for new, expected in ((value, True), (before, False)):
             setattr(owner, name, new)
+            car.objects["body"].data.update()
             bpy.context.view_layer.update()
             stale.check()
             assert settings.result_stale == expected, (name, new)
+
+
+class Window:
+    """What a modal operator is given, as far as a job that is stepped by hand needs it."""
+
+    def __init__(self, scene):
+        self.scene = scene
+
+    def evaluated_depsgraph_get(self):
+        return bpy.context.evaluated_depsgraph_get()
+
+
+def finished_after(car, operator, change):
+    """Read the scene and begin; change it meanwhile; end, and write what was found."""
+    act = operator(SimpleNamespace(report=lambda *_: None))
+    task = act._task(Window(car))
+    steps = iter(task.job)
+    next(steps)
+    change()
+    bpy.context.view_layer.update()
+    for _ in steps:
+        pass
+    return act._apply(car, task)
+
+
+def acting(operator):
+    """An operator's own functions without Blender's part of it."""
+    names = ("_task", "_apply", "job_of", "write", "message")
+    return lambda own: type("Act", (), {n: vars_of(operator, n) for n in names} | vars(own))()
+
+
+def vars_of(operator, name):
+    found = next(vars(each)[name] for each in operator.__mro__ if name in vars(each))
+    return found
+
+
+CHANGES = {
+    "sensor moved": lambda car: setattr(car.objects["roof"], "location", (0.0, 0.3, 2.0)),
+    "sensor deleted": lambda car: bpy.data.objects.remove(car.objects["other"]),
+    "points moved": lambda car: (
+        setattr(car.objects["body"].data.vertices[0], "co", (-3.0, 0.0, 0.0)),
+        car.objects["body"].data.update(),
+    ),
+    "prior": lambda car: setattr(car.perception_entropy, "prior", "uniform"),
+    "frame": lambda car: car.frame_set(20),
+}
+
+
+@pytest.mark.parametrize("operator", [job.PE_OT_score, job.PE_OT_optimize])
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_change_while_a_job_runs_leaves_its_result_stale(car, operator, change):
+    moving = scenes.add_sensor("other", model="Pandar40", location=(1.9, 0.0, 1.0))
+    moving.perception_entropy.free = (False,) * 6
+    moving.keyframe_insert("location", frame=1)
+    moving.location.x += 0.5
+    moving.keyframe_insert("location", frame=20)
+    car.frame_set(1)
+    done = finished_after(car, acting(operator), lambda: CHANGES[change](car))
+    assert done == {"FINISHED"}
+    # What the search has placed stands where it put it, wherever it was meanwhile.
+    placed_over = operator is job.PE_OT_optimize and change == "sensor moved"
+    assert car.perception_entropy.result_stale != placed_over
+
+
+@pytest.mark.parametrize("operator", [job.PE_OT_score, job.PE_OT_optimize])
+def test_without_a_change_a_job_s_result_stands(car, operator):
+    assert finished_after(car, acting(operator), lambda: None) == {"FINISHED"}
+    assert not car.perception_entropy.result_stale
+
+
+def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeypatch):
+    bpy.ops.pe.score()
+    known = latest.scored(car.name).score
+    made = []
+    monkeypatch.setattr(job.pe, "OptimizeJob", lambda study, before: made.append(before))
+    act = acting(job.PE_OT_optimize)(SimpleNamespace())
+    act._task(Window(car))
+    assert made == [known]
+    car.objects["roof"].location.z += 0.1
+    bpy.context.view_layer.update()
+    act._task(Window(car))
+    assert made == [known, None]
+
+
+def test_a_search_from_a_known_score_finds_the_same(car):
+    study = scenes.study()
+    plain = finished(pe.OptimizeJob(study))
+    known = finished(pe.OptimizeJob(study, before=plain.before))
+    assert data_of(known) == data_of(plain)
+
+
+def test_before_is_where_the_first_of_several_searches_began(car):
+    bpy.ops.pe.score()
+    first = car.perception_entropy.result_entropy
+    for _ in range(2):
+        bpy.ops.pe.optimize()
+        assert car.perception_entropy.result_before == first
+        car.perception_entropy.seed += 1
+
+
+def test_nothing_free_is_told_before_the_work(car):
+    car.objects["roof"].perception_entropy.free = (False,) * 6
+    with pytest.raises(RuntimeError, match="Yaw ticked of at least one sensor"):
+        bpy.ops.pe.optimize()
+    assert not car.perception_entropy.has_result
+
+
+def animate(sensor):
+    sensor.keyframe_insert("location", frame=1)
+
+
+def drive(sensor):
+    sensor.driver_add("rotation_euler", 1)
+
+
+def constrain(sensor):
+    sensor.constraints.new("COPY_LOCATION")
+
+
+@pytest.mark.parametrize("hold", [animate, drive, constrain])
+def test_a_sensor_that_something_holds_is_told_before_the_work(car, hold, monkeypatch):
+    sensor = car.objects["roof"]
+    hold(sensor)
+    monkeypatch.setattr(job.pe, "OptimizeJob", lambda *_, **__: pytest.fail("begun"))
+    with pytest.raises(RuntimeError, match="sensor 'roof': placement: expected an object that can"):
+        bpy.ops.pe.optimize()
+    sensor.perception_entropy.free = (False,) * 6
+    scenes.add_sensor("free")
+    monkeypatch.undo()
+    assert bpy.ops.pe.score() == {"FINISHED"}
+
+
+def test_a_second_stop_leaves_all_as_it_was(car):
+    before = scenes.study().rig["roof"].pose
+    act = acting(job.PE_OT_optimize)(SimpleNamespace(report=lambda *_: None))
+    task = act._task(Window(car))
+    shown = SimpleNamespace(job=task.job)
+    for progress in task.job:
+        if progress.evaluations >= 8:
+            running.Running.stop(shown)
+            running.Running.stop(shown)
+    assert act._apply(car, task) == {"CANCELLED"}
+    assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result

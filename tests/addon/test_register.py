@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 import blender_addon
-from blender_addon import changes, commands, motion, roster, stale
+from blender_addon import changes, commands, motion, roster
 from blender_addon.operators import running
 from blender_addon.overlay import handler
 
@@ -14,7 +14,7 @@ ROUNDS = 100
 
 
 SIGNALS = (changes.study, changes.picture, changes.moved, changes.rested)
-TIMERS = (stale.check, motion.tell_moved, motion.tell_rested)
+TIMERS = (motion.tell_moved, motion.tell_rested)
 
 
 def traces() -> dict[str, list[str]]:
@@ -131,8 +131,9 @@ def test_a_change_is_told_to_those_who_listen(car, heard):
 def test_picture_and_check_follow_a_change(car):
     assert {f.__name__ for f in changes.picture.listeners} == {"tag_redraw"}
     assert {f.__name__ for f in changes.study.listeners} == {
-        *("tag_redraw", "check_soon", "fit_all", "forget", "note"),
+        *("tag_redraw", "fit_all", "forget", "note"),
     }
+    assert {f.__name__ for f in changes.rested.listeners} == {"check"}
 
 
 def test_all_that_is_documented_is_there(addon):

@@ -1,0 +1,93 @@
+"""What is known now, scene by scene, for whoever shows it: plain data, gone with the file.
+
+`Scored` is the last finished score in full, its ground map included. `Reading` is what the live
+score says of the scene as it is, or was a moment ago.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..engine import pe, scoring
+
+Parts = dict[str, pe.PartScore]
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A study, its score, and the signature of the scene that it was read from."""
+
+    signature: str
+    study: pe.Study
+    score: pe.Score
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a live score says.
+
+    Attributes
+    ----------
+    glance : Glance
+        The whole rig's entropy and coverage, by class and by zone; a draft while it moves.
+    before : Glance or None
+        The same before the drag began, or the one that is under way; None for the first.
+    signature : str
+        Of the scene when it was read; "" while it moves.
+    score : Score or None
+        Sensor by sensor as well, once all rests.
+    """
+
+    glance: scoring.Glance
+    before: scoring.Glance | None = None
+    signature: str = ""
+    score: pe.Score | None = None
+
+
+_scored: dict[str, Scored] = {}
+_readings: dict[str, Reading] = {}
+_problems: dict[str, str] = {}
+"""By the scene's name."""
+
+
+def scored(scene_name: str) -> Scored | None:
+    """Return the last finished score of a scene in this session, None when there was none."""
+    return _scored.get(scene_name)
+
+
+def note_scored(scene_name: str, found: Scored) -> None:
+    """Keep a finished score; the ground map of the one before is let go."""
+    _scored[scene_name] = found
+
+
+def reading(scene_name: str) -> Reading | None:
+    """Return what the live score says of a scene, None when it says nothing yet."""
+    return _readings.get(scene_name)
+
+
+def note_reading(scene_name: str, found: Reading) -> None:
+    """Keep what the live score says; what was wrong before no longer is."""
+    _readings[scene_name] = found
+    _problems.pop(scene_name, None)
+
+
+def problem(scene_name: str) -> str:
+    """Return why a scene cannot be scored live, in one line; "" when it can."""
+    return _problems.get(scene_name, "")
+
+
+def note_problem(scene_name: str, line: str) -> None:
+    """Keep why a scene cannot be scored live."""
+    _problems[scene_name] = line
+
+
+def forget_reading(scene_name: str) -> None:
+    """Drop what the live score said of a scene: it no longer is asked."""
+    _readings.pop(scene_name, None)
+    _problems.pop(scene_name, None)
+
+
+def forget() -> None:
+    """Drop everything: another file is about to be shown, or nothing any more."""
+    for each in (_scored, _readings, _problems):
+        each.clear()

@@ -28,6 +28,8 @@ Floats = NDArray[np.float64]
 CLEAR_M, CLEAR_ABOVE_M = 0.5, 0.75
 """A sensor farther than this from the body is on no mount; above it there are racks and masts, and
 a search looks so far up."""
+NEAR_M = 0.05
+"""How near the nearest triangle is looked for first."""
 LOOKS_AT_M = 0.3
 """Half of what it sees stopped nearer than this: it looks at the body, and at nothing else."""
 MOST_STOPPED = 1.0 / 3.0
@@ -153,9 +155,9 @@ def distance_to(vehicle: Vehicle, point: Floats) -> float:
     """Distance from a point to the nearest of a vehicle's triangles [m]."""
     low, high = vehicle.bounds
     away = np.maximum(np.maximum(low - point, point - high), 0.0)
-    radius = CLEAR_M + float(np.sqrt(dot(away, away)))
+    radius = NEAR_M + float(np.sqrt(dot(away, away)))
     while True:
-        near = vehicle.triangles_near(point, radius)
+        near = vehicle.triangles[vehicle.faces_near(point, radius)]
         if len(near):
             points = closest_points(point, near)
             distance = float(np.sqrt(dot(points - point, points - point).min()))

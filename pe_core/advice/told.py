@@ -44,7 +44,7 @@ def warnings(
 def _told(
     rig: Rig, vehicle: Vehicle | None, space: PerceptionSpace, score: Score | None
 ) -> Iterator[Advice]:
-    body = None if vehicle is None else Bodywork.of(vehicle)
+    body = None if vehicle is None else Bodywork(vehicle)
     if body is not None:
         yield from odd_vehicle(body)
     for sensor in rig:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from .advice import Advice
-from .bodywork import ROOM_M, Bodywork
+from .bodywork import Bodywork
 from .figures import metres
 
 LONGEST_M, SHORTEST_M, SECOND_M = 30.0, 0.4, 10.0
@@ -51,6 +51,9 @@ def _size(body: Bodywork) -> Iterator[Advice]:
         return
     x, y, z = body.size
     found = f"{metres(x)} long, {metres(y)} wide and {metres(z)} high is no vehicle"
+    if not longest:
+        yield Advice(None, "size", "all of it is one point")
+        return
     units = UNITS if longest > SHORTEST_M else LARGER_UNITS
     fitting = {n: f for n, f in units.items() if _fits(longest, second, f)}
     if fitting:
@@ -59,7 +62,7 @@ def _size(body: Bodywork) -> Iterator[Advice]:
         long, wide, high = (metres(factor * w) for w in (x, y, z))
         would = f"if these are {unit}, scale by {factor:g}: {long} x {wide} x {high}"
     else:
-        factor = float(f"{CAR_M / longest:.2g}") if longest else 1.0
+        factor = float(f"{CAR_M / longest:.2g}")
         would = f"scaled by {factor:g} it would be as long as a car"
     yield Advice(None, "size", f"{found}; {would}", fix="scale_vehicle", amount=(factor,))
 
@@ -149,5 +152,6 @@ def _off_origin(body: Bodywork) -> Iterator[Advice]:
         yield Advice(None, "off_origin", text, fix="move_vehicle", amount=(-x, -y, 0.0))
 
 
-CHECKS: tuple[Callable[[Bodywork], Iterator[Advice]], ...] = (_stands, _faces, _height, _off_origin)
-__all__ = ["ROOM_M", "odd_vehicle"]
+CHECKS: tuple[Callable[[Bodywork], Iterator[Advice]], ...] = (
+    *(_stands, _faces, _height, _off_origin),
+)

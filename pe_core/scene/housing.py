@@ -100,8 +100,7 @@ def _triangles_near(
     rotation = pose.ground_from_sensor
     middle = np.array(pose.position) + rotate(rotation, housing.center)
     reach = float(np.sqrt(dot(np.array(housing.size), np.array(housing.size)))) / 2.0
-    low, high = vehicle.triangles.min(axis=1), vehicle.triangles.max(axis=1)
-    faces = np.flatnonzero(((low <= middle + reach) & (high >= middle - reach)).all(axis=1))
+    faces = vehicle.faces_near(middle, reach)
     return rotate(rotation.T, vehicle.triangles[faces] - middle), faces
 
 

@@ -21,6 +21,8 @@ BRANCH = 8
 """Triangles in a box, and boxes in the next larger one."""
 MORTON_BITS = 20
 """Bits of a coordinate in the order of the triangles: three of them fit 64."""
+LEAST_EXTENT_M = 1e-300
+"""A single triangle's centre has no extent; what is divided by this still is a number."""
 
 
 class TriangleTree:
@@ -87,7 +89,7 @@ def _in_space(triangles: Floats) -> Ints:
     if not len(triangles):
         return key.astype(np.int64)
     for axis, w in enumerate(centers):
-        extent = max(float(np.max(np.ptp(centers, axis=1))), np.finfo(float).tiny)
+        extent = max(float(np.max(np.ptp(centers, axis=1))), LEAST_EXTENT_M)
         cells = ((w - w.min()) * ((2**MORTON_BITS - 1) / extent)).astype(np.uint64)
         key |= _spread(cells) << np.uint64(axis)
     return np.argsort(key, kind="stable")

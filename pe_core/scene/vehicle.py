@@ -125,11 +125,9 @@ class Vehicle:
             np.asarray(directions, dtype=float)
         )
 
-    def triangles_near(self, point: ArrayLike, distance: float) -> Floats:
-        """(N, 3, 3) triangles that may come as near as `distance` [m] to a point; none other do."""
-        at = np.asarray(point, dtype=float)
-        found: Floats = self.triangles[self._tree.near(at, distance)]
-        return found
+    def faces_near(self, point: ArrayLike, distance: float) -> NDArray[np.int64]:
+        """(N,) the triangles, ascending, that may come as near as `distance` [m] to a point."""
+        return self._tree.near(np.asarray(point, dtype=float), distance)
 
     def top(self, space: PerceptionSpace) -> Floats:
         """(nx, ny) height of the highest surface at each column's centre [m], -inf beside it."""

@@ -181,3 +181,10 @@ def test_boxes_near_a_point_miss_no_triangle():
         near = np.flatnonzero(dot(gap, gap) <= 0.3**2)
         assert set(near) <= set(tree.near(point, 0.3).tolist())
         assert len(tree.near(point, 0.3)) < 200
+
+
+def test_a_vehicle_of_one_triangle_is_hit():
+    """Its centre has no extent; the tree of its boxes is made all the same."""
+    vehicle = pe.Vehicle(np.array([[(1.0, -1.0, -1.0), (1.0, 1.0, -1.0), (1.0, 0.0, 2.0)]]))
+    hits = vehicle.first_hit((0.0, 0.0, 0.0), np.array([(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]))
+    assert hits.distance.tolist() == [1.0, np.inf] and hits.face.tolist() == [0, -1]

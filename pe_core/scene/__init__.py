@@ -4,6 +4,7 @@ vehicle's body."""
 from .geometry import Pose, rotate, rotation_matrix, rpy_from_matrix
 from .housing import Housing, cuts_body
 from .sensors import Rig, Sensor
+from .simplify import simplified
 from .space import PerceptionSpace
 from .vehicle import Vehicle
 
@@ -18,4 +19,5 @@ __all__ = [
     "rotate",
     "rotation_matrix",
     "rpy_from_matrix",
+    "simplified",
 ]

@@ -1,10 +1,14 @@
 """Blind ground: where round the vehicle nothing is seen, as outlines and as distances by side.
 
+It is asked of something that stands on the ground and is so tall: blind is where none of it is
+seen, so what is taller has less of it. 0 is what lies flat.
+
 Beams of a LiDAR leave gaps that no object fits into. So ground is blind where a disc of the
 diameter `GAP_M` finds room in which nothing is seen (the morphological opening of the unseen
 ground, or the closing of the seen): a narrower gap is none. The ground under the vehicle counts as
 unseen for that, so that a strip along the body is not lost, but is no blind ground; beyond the edge
-of what is looked at it goes on as at the edge.
+of what is looked at it goes on as at the edge. Specks smaller than `LEAST_M2` are none either: a
+ring's gap about as wide as the disc would be drawn as a row of dots.
 """
 
 from __future__ import annotations
@@ -20,12 +24,14 @@ from ..scene.frozen import frozen
 from ..scene.vehicle import Vehicle
 from .cells import Cells, Rectangle
 from .outline import outlines
+from .regions import opened, without_specks
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 GAP_M = 0.3
 """Gaps narrower than this are no blind ground: less than a small child is wide."""
+LEAST_M2 = 0.25
 NO_BODY_M = 1.0
 """Half the side of the square that stands for the body where there is no vehicle."""
 DECIMALS = 6
@@ -44,7 +50,7 @@ class BlindSpot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlindGround:
-    """Ground round the vehicle that no sensor sees.
+    """Ground round the vehicle where no sensor sees anything of what stands there.
 
     Attributes
     ----------
@@ -53,12 +59,16 @@ class BlindGround:
     area : float
         [m2]
     height : float
-        Where it was looked [m].
+        How tall it is [m].
     within : float
         How far from the body's rectangle it was looked [m].
     nearest : dict of BlindSpot or None
         By side (front, rear, left, right): the nearest blind place in the strip that the body's
         rectangle sweeps to that side; None where there is none.
+    zone : dict of float or None
+        By side: how far the blind ground that begins at the body reaches in that strip, to where
+        the whole width is seen for the first time [m]; 0 where it is at the body, None where it
+        never is.
     seen_from : dict of float or None
         By side: the distance from the body from which on that strip has no blind place any more, as
         far as was looked [m]; None where there is one at the edge.
@@ -71,6 +81,7 @@ class BlindGround:
     height: float
     within: float
     nearest: Mapping[str, BlindSpot | None]
+    zone: Mapping[str, float | None]
     seen_from: Mapping[str, float | None]
     draft: bool = False
 
@@ -94,6 +105,7 @@ def blind_ground(
         height,
         within,
         MappingProxyType({side: strip.nearest() for side, strip in strips.items()}),
+        MappingProxyType({side: strip.zone() for side, strip in strips.items()}),
         MappingProxyType({side: strip.seen_from() for side, strip in strips.items()}),
         draft,
     )
@@ -141,6 +153,11 @@ class _Strip:
         along = self.edge + self.sign * distance
         return BlindSpot((along, beside) if self.axis == 0 else (beside, along), distance)
 
+    def zone(self) -> float | None:
+        """How far from the body the first row without a blind place is."""
+        rows = np.flatnonzero(~self.blind.any(axis=1))
+        return float(self.distance[rows[0]]) if len(rows) else None
+
     def seen_from(self) -> float | None:
         """How far from the body the last blind place ends; None at the edge."""
         rows = np.flatnonzero(self.blind.any(axis=1))
@@ -151,32 +168,5 @@ class _Strip:
 
 def blind_cells(seen: Flags, vehicle: Flags, step: float) -> Flags:
     """Which cells (NX, NY) are blind, by those that are seen and those that are the vehicle's."""
-    return opened(~seen | vehicle, GAP_M / 2.0 / step) & ~vehicle
-
-
-def opened(flags: Flags, radius: float) -> Flags:
-    """Union of the discs of that radius, in cells, that fit into a region and beyond its edges."""
-    disc = _disc(radius)
-    reach = int(np.abs(disc).max())
-    padded = np.pad(flags, 2 * reach, mode="edge")
-    kept = _spread(~_spread(~padded, disc), disc)
-    inner = slice(2 * reach, kept.shape[0] - 2 * reach), slice(2 * reach, kept.shape[1] - 2 * reach)
-    return kept[inner]
-
-
-def _disc(radius: float) -> NDArray[np.int64]:
-    """(N, 2) steps from a cell to those whose middle is not farther away."""
-    reach = int(radius)
-    steps = np.indices((2 * reach + 1, 2 * reach + 1)).reshape(2, -1).T - reach
-    return steps[(steps**2).sum(axis=1) <= radius**2]
-
-
-def _spread(flags: Flags, steps: NDArray[np.int64]) -> Flags:
-    """Set what is a step away from anything set."""
-    found = np.zeros_like(flags)
-    nx, ny = flags.shape
-    for i, j in steps.tolist():
-        to = slice(max(i, 0), nx + min(i, 0)), slice(max(j, 0), ny + min(j, 0))
-        of = slice(max(-i, 0), nx + min(-i, 0)), slice(max(-j, 0), ny + min(-j, 0))
-        found[to] |= flags[of]
-    return found
+    blind = opened(~seen | vehicle, GAP_M / 2.0 / step) & ~vehicle
+    return without_specks(blind, LEAST_M2 / step**2)

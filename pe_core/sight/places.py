@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,39 +15,64 @@ from ..scene.numbering import blocks
 from ..scene.space import PerceptionSpace
 from ..text.values import FINITE
 from .cells import ROUNDING, Cells
+from .regions import closed, gauss, without_specks
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 AT_ONCE = 1 << 17
+SPREAD_M = 0.7
+"""Standard deviation of the Gauss curve: less than the objects are large."""
+CLOSED = 1.5
+GRAIN_M2 = 12.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Places:
     """Voxels by cell: `index` (cells * K, 3), and what each weighs in its cell's mean, (cells, K).
 
     A voxel in the vehicle's own volume weighs nothing; a cell of nothing else is the vehicle's.
+    With a `spread` [m], a mean takes the cells about as far away with it, by a Gauss curve, and
+    what any voxel there has is set: see `by_prior`.
     """
 
     cells: Cells
     index: Ints
     weights: Floats
+    spread: float = 0.0
 
     def mean(self, values: NDArray) -> Floats:
         """Means (NX, NY) of values of voxels; NaN where the vehicle is."""
-        total = self.weights.sum(axis=1)
-        sums = (values.reshape(self.weights.shape) * self.weights).sum(axis=1)
-        return (sums / np.where(total > 0.0, total, np.nan)).reshape(self.cells.shape)
+        sums = self._spread_out((values.reshape(self.weights.shape) * self.weights).sum(axis=1))
+        return sums / self._total
 
     def any(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether a flag is set for any of a cell's voxels outside the vehicle, (NX, NY)."""
         found = flags.reshape(self.weights.shape) & (self.weights > 0.0)
-        return found.any(axis=1).reshape(self.cells.shape)
+        cells = found.any(axis=1).reshape(self.cells.shape)
+        return self._without_grain(cells) if self.spread else cells
 
-    @property
+    def _without_grain(self, cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Fill what is too small to be told from chance, and drop what is."""
+        filled = closed(cells, CLOSED * self.spread / self.cells.step)
+        least = GRAIN_M2 / self.cells.step**2
+        return without_specks(~without_specks(~filled, least), least)
+
+    @cached_property
+    def _total(self) -> Floats:
+        """What cells weigh; NaN for the vehicle's."""
+        total = self._spread_out(self.weights.sum(axis=1))
+        return np.where(self.vehicle, np.nan, total)
+
+    @cached_property
     def vehicle(self) -> NDArray[np.bool_]:
         """(NX, NY) cells that are the vehicle's own volume."""
         return ~(self.weights > 0.0).any(axis=1).reshape(self.cells.shape)
+
+    def _spread_out(self, sums: Floats) -> Floats:
+        """Take neighbouring cells with each."""
+        cells: Floats = sums.reshape(self.cells.shape)
+        return gauss(cells, self.spread / self.cells.step) if self.spread else cells
 
 
 def at_height(cells: Cells, space: PerceptionSpace, tops: Floats | None, height: float) -> Places:
@@ -67,6 +93,27 @@ def at_height(cells: Cells, space: PerceptionSpace, tops: Floats | None, height:
     return Places(cells, index, weights)
 
 
+def standing(cells: Cells, space: PerceptionSpace, tops: Floats | None, height: float) -> Places:
+    """Choose voxels of what stands on the ground and is that tall [m].
+
+    The lowest layer and the one that holds the height always, some between them; columns of the
+    vehicle weigh nothing, however high it is there.
+
+    Raises
+    ------
+    InputError
+        When the space does not reach there.
+    """
+    layers = layer_at(space, height) + 1
+    x, y, share = cells.points(space.interval, over_height=layers > 1)
+    i, j = _columns(space, x, y)
+    k = np.floor(share * layers).astype(np.int64)
+    k[share * x.shape[1] < 1.0] = 0  # a run of the sequence has one in the lowest of its parts
+    k[(1.0 - share) * x.shape[1] <= 1.0] = layers - 1
+    weights = np.ones(x.shape) if tops is None else np.where(np.isfinite(tops[i, j]), 0.0, 1.0)
+    return Places(cells, np.stack([i, j, k], axis=-1).reshape(-1, 3), weights)
+
+
 def layer_at(space: PerceptionSpace, height: float) -> int:
     """Return the number of the layer of voxels that holds a height."""
     height = FINITE.checked("sight", "height", height)
@@ -85,6 +132,11 @@ def by_prior(
     A voxel's height is drawn from the mix of the classes' profiles in its column, and its weight is
     the prior's mass there: a cell's mean is the prior's. Where no object is ever met the mix is
     that of the whole space, and columns weigh alike.
+
+    Far away the beams of a LiDAR stand farther apart than voxels: whether one meets the voxel that
+    is looked at, or the next, is chance, and would be drawn as grain. So means are spread over
+    `SPREAD_M`, and a sensor sees a cell unless that lies in a disc of radius `CLOSED` times that in
+    which it sees nothing; pieces smaller than `GRAIN_M2` are as what is round them.
     """
     x, y, share = cells.points(space.interval, over_height=True)
     i, j = _columns(space, x, y)
@@ -99,7 +151,8 @@ def by_prior(
     weights = mass.reshape(i.shape)
     nobody = ~(weights > 0.0).any(axis=1)
     weights[nobody] = first[nobody] < space.shape[2]
-    return Places(cells, np.stack([i.reshape(-1), j.reshape(-1), k], axis=-1), weights)
+    index = np.stack([i.reshape(-1), j.reshape(-1), k], axis=-1)
+    return Places(cells, index, weights, SPREAD_M)
 
 
 class _Columns:

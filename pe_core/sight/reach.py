@@ -2,8 +2,9 @@
 
 What is expected of a class at a place is the mean of AP (eqs. 4 to 7) over the class's height
 profile in the prior. Along each bearing it is worked out in rings of `RING_M`, as the mean of
-voxels spread over the ring's piece and the height, and then smoothed over `SMOOTHED_M`: a running
-mean, so that the rings of a LiDAR and the single voxels between far beams do not end the reach.
+voxels spread over the ring's piece and the height, and then smoothed: a running mean over
+`SMOOTHED_M`, and over the bearings beside it with half its weight each. So neither the rings of a
+LiDAR nor the single voxels that its far beams meet end the reach.
 """
 
 from __future__ import annotations
@@ -26,10 +27,14 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 RING_M = 1.0
-SMOOTHED_M = 3.0
-"""The rings of three metres: about as long as the objects that are looked for."""
+SMOOTHED_M = 5.0
+"""About as long as a car."""
+BESIDE_RAD = math.radians(10.0)
+"""Bearings farther apart than this are not smoothed over."""
 VOXELS = 16
 """Voxels of a ring's piece."""
+FEW = 0.25
+"""Where less than this share of them is in the space and outside the vehicle, nothing is found."""
 AP = Number(0.0, 1.0, above=True, below=True)
 BEARINGS = Whole(4, 720)
 
@@ -103,10 +108,21 @@ class Spokes:
 
     def distance(self, ap: Floats, least: float) -> Floats:
         """How far AP (V,) of the voxels is at least so much, (B,) [m]."""
-        sums = (ap.reshape(self.weights.shape) * self.weights).sum(axis=2)
-        mean = _running(sums) / np.maximum(_running(self.weights.sum(axis=2)), 1e-9)
-        ends = [_end_of_longest(row >= least) for row in mean]
-        return np.minimum(np.array(ends, dtype=float) * RING_M, self.limit)
+        sums = self._smoothed((ap.reshape(self.weights.shape) * self.weights).sum(axis=2))
+        mass = self._smoothed(self.weights.sum(axis=2))
+        mean = sums / np.where(mass >= FEW * mass.max(), mass, np.inf)
+        ends = [_end_of_longest(row, least) for row in mean]
+        return np.minimum(np.array(ends) * RING_M, self.limit)
+
+    def _smoothed(self, values: Floats) -> Floats:
+        """Sums (B, R) over rings and bearings beside each; fewer rings at the ends."""
+        half = int(SMOOTHED_M / RING_M) // 2
+        padded = np.pad(values, ((0, 0), (half, half)))
+        near = [padded[:, k : k + values.shape[1]] for k in range(2 * half + 1)]
+        total: Floats = np.sum(near, axis=0)
+        if 2.0 * math.pi / len(total) > BESIDE_RAD * (1.0 + 1e-9):
+            return total
+        return 2.0 * total + np.roll(total, 1, axis=0) + np.roll(total, -1, axis=0)
 
 
 def density_of(densities: list[ClassDensity], name: str) -> ClassDensity:
@@ -127,15 +143,17 @@ def _edge(space: PerceptionSpace, bearing: float) -> float:
     return max(0.0, min(ends))
 
 
-def _running(values: Floats) -> Floats:
-    """Running sums (B, R) over SMOOTHED_M; shorter at the ends."""
-    half = int(SMOOTHED_M / RING_M) // 2
-    padded = np.pad(values, ((0, 0), (half, half)))
-    return np.sum([padded[:, k : k + values.shape[1]] for k in range(2 * half + 1)], axis=0)
+def _end_of_longest(values: Floats, least: float) -> float:
+    """Where the longest run of values that are large enough ends, the first of several; else 0.
 
-
-def _end_of_longest(flags: NDArray[np.bool_]) -> int:
-    """Where the longest run of set flags ends, the first of several; 0 where none is set."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    In rings from the first one's inner edge; between two rings' middles as a straight line has it.
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], values >= least, [False]])))
+    if not len(edges):
+        return 0.0
     starts, ends = edges[::2], edges[1::2]
-    return int(ends[np.argmax(ends - starts)]) if len(ends) else 0
+    end = int(ends[np.argmax(ends - starts)])
+    if end == len(values):
+        return float(end)
+    above, below = float(values[end - 1]), float(values[end])
+    return end - 0.5 + (above - least) / (above - below)

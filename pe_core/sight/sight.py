@@ -23,7 +23,7 @@ from ..scoring.subsets import fused_early
 from .blind import BlindGround, blind_cells, blind_ground, body_rectangle
 from .cells import Cells, round_a
 from .ground import GroundSight, ground_sight
-from .places import Places, at_height, by_prior
+from .places import Places, at_height, by_prior, standing
 from .reach import AP, BEARINGS, Reach, Spokes, density_of
 from .shares import SeenShares, seen_shares
 
@@ -142,13 +142,13 @@ class Sight:
         step: float = 0.1,
         draft: bool = False,
     ) -> BlindGround:
-        """Tell where round the vehicle nothing is seen.
+        """Tell where round the vehicle nothing is seen of what stands on the ground.
 
         Parameters
         ----------
         rig : Rig
         height : float
-            Where to look: the layer of voxels that holds this height [m].
+            How tall that is [m]; 0: flat on the ground.
         within : float
             How far from the rectangle of the vehicle's body to look [m].
         step : float
@@ -166,7 +166,10 @@ class Sight:
             body = body_rectangle(self.vehicle)
             part = round_a(body, within)
             key = ("blind", height, step, within)
-            look = self._look(key, lambda: self._places(height, Cells.of(self.space, step, part)))
+            look = self._look(
+                key,
+                lambda: standing(Cells.of(self.space, step, part), self.space, self._tops, height),
+            )
             m, drafted = look.measured(rig, draft)
             places = look.places
             seen = places.any(np.logical_or.reduce([of_one > 0 for of_one in m.values()]))

@@ -12,7 +12,14 @@ import pe_core as pe
 ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
 ENGINE = (ROOT / "docs" / "engine.md").read_text("utf-8")
-PAGES = ["README.md", "docs/engine.md", "docs/metric.md", "docs/study.md", "docs/blender.md"]
+PAGES = [
+    "README.md",
+    "docs/engine.md",
+    "docs/metric.md",
+    "docs/seeing.md",
+    "docs/study.md",
+    "docs/blender.md",
+]
 
 
 @pytest.fixture(scope="module")

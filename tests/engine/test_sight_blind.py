@@ -7,7 +7,6 @@ import pytest
 
 import pe_core as pe
 from pe_core.sight import Sight
-from pe_core.sight.blind import opened
 from tests.engine import shapes
 from tests.engine.test_sight_outline import signed_area
 
@@ -36,13 +35,26 @@ def test_under_a_lidar_is_a_circle():
     for side in ("front", "rear", "left", "right"):  # from a square of 2 m that stands for a body
         assert blind.nearest[side].distance == 0.0
         assert blind.seen_from[side] == pytest.approx(0.9, abs=0.11)
+        assert blind.zone[side] == blind.seen_from[side]
 
 
-def test_at_a_height_the_circle_is_smaller():
-    """The layer that holds 1.5 m ends at 1.6 m: entered at 0.4 m, so 0.34 m."""
-    blind = Sight(SPACE, pe.Prior.road()).blind(pe.Rig([cone_lidar()]), height=1.5)
-    assert blind.height == 1.5
-    assert blind.area == pytest.approx(math.pi * 0.34**2, rel=0.15)
+def test_of_what_is_tall_less_is_blind():
+    """The top of what is 1 m tall, the layer up to 1.1 m, is entered at 0.9 m: so 0.84 m."""
+    own, rig = Sight(SPACE, pe.Prior.road()), pe.Rig([cone_lidar()])
+    blind = own.blind(rig, height=1.0)
+    assert blind.height == 1.0
+    assert blind.area == pytest.approx(math.pi * 0.84**2, rel=0.05)
+    areas = [own.blind(rig, height=h).area for h in (0.0, 0.5, 1.0, 1.8)]
+    assert areas == sorted(areas, reverse=True) and areas[0] > areas[-1]
+
+
+def test_what_is_seen_at_its_foot_alone_is_seen():
+    """Beams from 20 to 45 degrees down pass under 1.5 m from 1.4 m on; all round it stays seen."""
+    elevations = np.radians(np.arange(-45.0, -20.0, 0.25))
+    model = pe.Lidar("low", elevations, 720, 60.0)
+    rig = pe.Rig([pe.Sensor("low", model, pe.Pose((0.013, 0.017, 2.0)))])
+    blind = Sight(SPACE, pe.Prior.road()).blind(rig, height=1.5, within=3.0)
+    assert blind.area < 1.0 and set(blind.zone.values()) == {0.0}
 
 
 def test_a_camera_s_shadow_before_a_bonnet():
@@ -69,7 +81,7 @@ def test_the_vehicle_s_own_footprint_is_not_blind():
     blind = Sight(SPACE, pe.Prior.road(), BOX).blind(rig, within=1.0)
     assert blind.area == 0.0 and blind.outlines == ()
     assert set(blind.nearest.values()) == {None}
-    assert set(blind.seen_from.values()) == {0.0}
+    assert set(blind.seen_from.values()) == set(blind.zone.values()) == {0.0}
 
 
 def test_a_gap_between_rings_is_none_until_an_object_fits_in():
@@ -83,24 +95,7 @@ def test_a_gap_between_rings_is_none_until_an_object_fits_in():
         rig = pe.Rig([pe.Sensor("gap", model, pe.Pose((0.013, 0.017, 2.0)))])
         blind = Sight(SPACE, pe.Prior.road()).blind(rig, within=6.0)
         assert (blind.seen_from["front"] > 1.5) == is_blind
-
-
-def test_opening_keeps_what_a_disc_fits_into():
-    flags = np.zeros((12, 12), bool)
-    flags[2:5, 2:10] = True  # three cells wide
-    flags[7:9, 2:10] = True  # two
-    flags[3, 10] = True  # a spur of one
-    kept = opened(flags, 1.5)
-    expected = np.zeros_like(flags)
-    expected[2:5, 2:10] = True
-    assert np.array_equal(kept, expected)
-
-
-def test_beyond_the_edge_it_goes_on():
-    flags = np.zeros((8, 8), bool)
-    flags[:, :1] = True
-    assert np.array_equal(opened(flags, 1.5), flags)
-    assert np.array_equal(opened(flags.T, 1.5), flags.T)
+        assert blind.zone["front"] < 0.5  # the gap is beyond what is blind at the body
 
 
 def test_mirrored_rigs_have_mirrored_blind_ground():

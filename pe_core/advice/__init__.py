@@ -3,7 +3,7 @@
 from .advice import Advice
 from .mounting import stopped_shares
 from .outlook import Outlook, class_of, outlook
-from .phrases import adds, stopped_words, words
+from .phrases import sensor_words, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
 from .side_by_side import ComparedRow, compare
 from .told import warnings
@@ -14,11 +14,11 @@ __all__ = [
     "ComparedRow",
     "Outlook",
     "SensorAtPlace",
-    "adds",
     "ask_place",
     "class_of",
     "compare",
     "outlook",
+    "sensor_words",
     "stopped_shares",
     "stopped_words",
     "warnings",

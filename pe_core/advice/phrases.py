@@ -57,15 +57,39 @@ def _lines(
     yield from _zones(score.per_zone)
     if seen is not None:
         yield from outlook_words(seen)
-    alone = len(score.per_sensor) == 1
     for name, own in score.per_sensor.items():
         sensor = None if rig is None else rig[name]
-        told = [
-            "the only sensor" if alone else adds(own),
-            "" if seen is None else _most_and_least(seen.shares.zones[name]),
-            stopped_words(sensor, own, vehicle),
-        ]
-        yield f"{name}: {'; '.join(filter(None, told))}"
+        zones = None if seen is None else seen.shares.zones[name]
+        alone = len(score.per_sensor) == 1
+        yield f"{name}: {'; '.join(sensor_words(own, sensor, vehicle, zones, alone=alone))}"
+
+
+def sensor_words(
+    own: SensorScore,
+    sensor: Sensor | None = None,
+    vehicle: Vehicle | None = None,
+    zones: Mapping[str, float] | None = None,
+    *,
+    alone: bool = False,
+) -> tuple[str, ...]:
+    """Return what a sensor adds, where it sees most and least, and what stops it: a phrase each.
+
+    Parameters
+    ----------
+    own : SensorScore
+    sensor, vehicle : Sensor, Vehicle, optional
+        As in `words`.
+    zones : mapping of float, optional
+        The share of each zone that it sees (`sight.SeenShares`).
+    alone : bool
+        Whether it is the rig's only sensor.
+    """
+    told = (
+        "the only sensor" if alone else _adds(own),
+        "" if zones is None else _most_and_least(zones),
+        stopped_words(sensor, own, vehicle),
+    )
+    return tuple(filter(None, told))
 
 
 def _coverage(score: Score, seen: Outlook | None) -> str:
@@ -87,7 +111,7 @@ def _zones(zones: Mapping[str, PartScore]) -> Iterator[str]:
         yield f"best {best}, worst {worst}"
 
 
-def adds(own: SensorScore) -> str:
+def _adds(own: SensorScore) -> str:
     """Say what a sensor adds to its rig."""
     if own.lost < WORTH_NATS:
         return "without it no worse"

@@ -224,7 +224,8 @@ def _headline(place: AskedPlace) -> str:
 def _expectation(place: AskedPlace) -> str:
     if not place.density:
         return "nothing is expected here"
-    return f"objects are {times(place.density)} as likely here as on average"
+    how = times(place.density)
+    return f"objects are {'' if how == times(1.0) else how + ' '}as likely here as on average"
 
 
 def _sensor_line(sensor: SensorAtPlace) -> str:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .advice import Advice
 from .bodywork import Bodywork
 from .figures import metres
+
+Floats = NDArray[np.float64]
 
 LONGEST_M, SHORTEST_M, SECOND_M = 30.0, 0.4, 10.0
 """No vehicle's longest side is beyond these, nor its second longest beyond the last."""
@@ -26,7 +30,12 @@ EVEN, UNEVEN = 0.01, 5.0
 one and a half times that, and so many times as much as from side to side."""
 FRONT = ("hood", "bonnet", "headl", "windshield", "windscreen", "grill", "front")
 REAR = ("tail", "trunk", "boot", "rear", "back")
-"""What a part's name holds when it is at the front, and at the rear."""
+WHEELS, NO_WHEELS = ("wheel", "tire", "tyre"), ("steering", "spare", "arch", "well")
+"""What a word in a part's name begins with when it is at the front, at the rear; when it is a
+wheel, and when it only sounds like one."""
+WORD = re.compile("[A-Z]*[a-z]+|[A-Z]+")
+FLOOR_M = 6.0
+"""What is wider than any vehicle and lower than this may be a vehicle on a floor."""
 
 
 def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
@@ -64,6 +73,8 @@ def _size(body: Bodywork) -> Iterator[Advice]:
     else:
         factor = float(f"{CAR_M / longest:.2g}")
         would = f"scaled by {factor:g} it would be as long as a car"
+    if min(x, y) > SECOND_M and z < FLOOR_M:
+        would = f"is a floor part of its mesh? Or, {would}"
     yield Advice(None, "size", f"{found}; {would}", fix="scale_vehicle", amount=(factor,))
 
 
@@ -103,13 +114,17 @@ def _faces(body: Bodywork) -> Iterator[Advice]:
         yield Advice(None, "faces", text, fix="turn_vehicle", amount=(90.0,))
 
 
+def _on_its_roof(body: Bodywork) -> Iterator[Advice]:
+    """Wheels, by their names, above the middle."""
+    wheels = _named(body, WHEELS, NO_WHEELS)
+    middle = float(body.low[2] + body.high[2]) / 2.0
+    if wheels and float(np.mean(wheels, axis=0)[2]) > middle + 0.1 * body.size[2]:
+        yield Advice(None, "on_roof", "its wheels are on top: does it lie on its roof?")
+
+
 def _front_by_names(body: Bodywork) -> tuple[int, float] | None:
     """Tell the axis (0 or 1) and the sign of where the parts of the front are."""
-    centers = body.part_centers()
-    front, rear = (
-        [c for name, c in centers.items() if any(w in name.lower() for w in words)]
-        for words in (FRONT, REAR)
-    )
+    front, rear = _named(body, FRONT, REAR), _named(body, REAR, FRONT)
     if not front or not rear:
         return None
     way = np.mean(front, axis=0) - np.mean(rear, axis=0)
@@ -117,6 +132,16 @@ def _front_by_names(body: Bodywork) -> tuple[int, float] | None:
     if abs(way[axis]) < 0.25 * body.size[axis]:
         return None
     return axis, float(np.sign(way[axis]))
+
+
+def _named(body: Bodywork, begin: tuple[str, ...], but: tuple[str, ...]) -> list[Floats]:
+    """Return the middles of parts whose names have a word that begins so, and none as in `but`."""
+    found = []
+    for name, center in body.part_centers().items():
+        words = [word.lower() for word in WORD.findall(name)]
+        if any(w.startswith(begin) for w in words) and not any(w.startswith(but) for w in words):
+            found.append(center)
+    return found
 
 
 def _across(body: Bodywork) -> int | None:
@@ -153,5 +178,5 @@ def _off_origin(body: Bodywork) -> Iterator[Advice]:
 
 
 CHECKS: tuple[Callable[[Bodywork], Iterator[Advice]], ...] = (
-    *(_stands, _faces, _height, _off_origin),
+    *(_stands, _on_its_roof, _faces, _height, _off_origin),
 )

@@ -10,7 +10,7 @@ from typing import Any
 
 from .. import advice
 from ..errors import InputError
-from ..study import Outcome, ScoreJob, Study
+from ..study import Outcome, ScoreJob, Study, vehicle_digest
 from ..text import dump_json
 from ..text.json_text import finite
 from .command import add_score_options
@@ -61,11 +61,16 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     _refuse_different(studies)
     scores = {name: _scored(study, args).after for name, study in studies.items()}
     rows = advice.compare(scores)
+    alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
     data = {
         "scores": {name: score.to_dict() for name, score in scores.items()},
         "rows": [row.to_dict() for row in rows],
+        "same_vehicle": alike,
     }
-    return _answer(data, comparison(list(scores), rows), args.json)
+    notes = [] if alike else ["their vehicles differ"]
+    if error := max(score.stderr for score in scores.values()):
+        notes.append(f"on samples: entropies have a standard error of up to {error:.4f} nats")
+    return _answer(data, [*comparison(list(scores), rows), *notes], args.json)
 
 
 def named_by_file(paths: list[str]) -> dict[str, str]:

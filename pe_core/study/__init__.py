@@ -13,7 +13,7 @@ from .results import (
     study_writers,
     write_outcome,
 )
-from .study import Search, Study
+from .study import Search, Study, vehicle_digest
 from .study_file import load_study, save_study, study_from_dict, study_to_dict
 
 __all__ = [
@@ -44,5 +44,6 @@ __all__ = [
     "study_from_dict",
     "study_to_dict",
     "study_writers",
+    "vehicle_digest",
     "write_outcome",
 ]

@@ -69,7 +69,7 @@ def test_one_beam_by_hand():
     assert place.density == pytest.approx(1.0)
     assert place.text == (
         "(10.25, -0.25, 1.25) m: seen by 1 of 1 sensor; together AP 0.76, H 0.48 nats",
-        "objects are 1 times as likely here as on average",
+        "objects are as likely here as on average",
         "beam: sees it with 2 beams, AP 0.76",
     )
 

@@ -244,6 +244,32 @@ def test_on_its_tail_or_on_its_side(sedan, bus):
     assert (None, "on_side") not in told(shapes.box_car())
 
 
+def test_on_its_roof(sedan, bus):
+    for vehicle in (sedan, bus):
+        over = told(
+            moved(vehicle, [(1, 0, 0), (0, -1, 0), (0, 0, -1)], (0, 0, vehicle.bounds[1][2]))
+        )
+        assert next(iter(over)) == (None, "on_roof")
+    wheel = pe.Vehicle(
+        np.concatenate([shapes.box_car().triangles, shapes.box((0, 0, 1), (0.1, 0.4, 1.3))]),
+        np.repeat([0, 1], [24, 12]),
+        ("body", "steering_wheel"),
+    )
+    assert (None, "on_roof") not in told(wheel)
+
+
+def test_names_are_taken_by_their_words(sedan):
+    """`detail` is no tail, and what is at both ends tells nothing."""
+    names = ("body", "FrontDetail", "rear_windshield", "TailLights")
+    boxes = [shapes.box((x - 0.1, -0.5, 0), (x + 0.1, 0.5, 1)) for x in (0, 2, 1, -2)]
+    triangles, parts = np.concatenate(boxes), np.repeat([0, 1, 2, 3], 12)
+    assert (None, "faces") not in told(pe.Vehicle(triangles, parts, names))
+    turned = pe.Vehicle(triangles * (-1, -1, 1), parts, names)
+    assert told(turned)[None, "faces"].amount == (180.0,)
+    detail = pe.Vehicle(triangles * (-1, -1, 1), parts, ("body", "front", "x", "detail"))
+    assert (None, "faces") not in told(detail)
+
+
 def test_sunk_or_floating(sedan):
     sunk = told(moved(sedan, shift=(0, 0, -0.5)))[None, "height"]
     assert sunk.text == "it stands 50 cm deep in the ground, z = 0"
@@ -279,6 +305,8 @@ def test_sizes_that_are_no_vehicle():
         "44 m long, 84 m wide and 36 m high is no vehicle; if these are inches, scale by 0.0254: "
         "1.12 m x 2.13 m x 91 cm"
     )
+    floor = np.concatenate([shapes.box_car().triangles, shapes.box((-9, -9, -0.1), (9, 9, 0))])
+    assert "is a floor part of its mesh? Or, " in told(pe.Vehicle(floor))[None, "size"].text
     tiny = pe.Vehicle(shapes.box((-0.0235, -0.01, 0), (0.0235, 0.01, 0.015)))
     assert told(tiny)[None, "size"].amount == (100.0,)
     for fine in ((0.9, 0.5, 0.8), (18.75, 2.5, 3.2), (15.1, 9.5, 7.7)):

@@ -64,10 +64,20 @@ def test_one_sensor_has_nothing_to_be_worse_without():
 
 
 def test_small_gains_keep_their_digits():
-    assert (
-        advice.adds(pe.SensorScore(4.0, 0.8, 0.0012, 10, 0, {})) == "without it 0.0012 nats worse"
+    small, none = (pe.SensorScore(4.0, 0.8, lost, 10, 0, {}) for lost in (0.0012, 0.00004))
+    assert advice.sensor_words(small) == ("without it 0.0012 nats worse",)
+    assert advice.sensor_words(none) == ("without it no worse",)
+
+
+def test_a_sensor_in_phrases():
+    zones = {"front": 0.61, "rear": 0.02, "far": 0.3}
+    assert advice.sensor_words(SENSORS["roof"], zones=zones) == (
+        "without it 0.42 nats worse",
+        "sees most ahead (61%), least behind (2.0%)",
+        "7.5% of its beams stopped: roof 6.0%, hood 1.5%",
     )
-    assert advice.adds(pe.SensorScore(4.0, 0.8, 0.00004, 10, 0, {})) == "without it no worse"
+    blind = dict.fromkeys(zones, 0.0)
+    assert advice.sensor_words(SENSORS["spare"], zones=blind, alone=True) == ("the only sensor",)
 
 
 @pytest.mark.parametrize(

@@ -113,6 +113,14 @@ def test_files_of_one_name_are_told_apart_by_their_folders(tmp_path, capsys):
     assert capsys.readouterr().out.splitlines()[0].split() == ["a/study", "b/study"]
 
 
+def test_other_vehicles_and_samples_are_said(study, tmp_path, capsys):
+    other = saved(tmp_path, "bare.toml", vehicle=None)
+    assert main(["compare", study, other, "--grid-samples", "2048"]) == 0
+    *_, vehicles, error = capsys.readouterr().out.splitlines()
+    assert vehicles == "their vehicles differ"
+    assert error.startswith("on samples: entropies have a standard error of up to 0.")
+
+
 @pytest.mark.parametrize(
     ("field", "changes"),
     [
@@ -145,4 +153,4 @@ def test_the_page_names_every_warning():
     room = Path(advice.__file__).parent
     text = "".join((room / name).read_text() for name in ("mounting.py", "vehicle_shape.py"))
     told = set(re.findall(r"Advice\(\s*[\w.]+, \"(\w+)\"", text))
-    assert told == rows and len(told) == 15
+    assert told == rows and len(told) == 16

@@ -15,7 +15,7 @@ from ..kinds import PerceptionModel, kind_named, kind_of, measure
 from ..metric import average_precision
 from ..metric.entropy import ap_of_entropy
 from ..metric.fusion import Fusion
-from ..prior.prior import Prior
+from ..prior.prior import ClassDensity, Prior
 from ..scene.geometry import METRES
 from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
@@ -108,6 +108,8 @@ def ask_place(
     vehicle: Vehicle | None,
     point: Sequence[float],
     model: PerceptionModel | None = None,
+    *,
+    densities: Sequence[ClassDensity] | None = None,
 ) -> AskedPlace:
     """Tell what a rig makes of the voxel that holds a point.
 
@@ -121,6 +123,8 @@ def ask_place(
         x, y and perhaps z, ground frame [m]; without z (or with None) on the ground, z = 0.
     model : PerceptionModel, optional
         AP curves and fusion rule; the paper's by default.
+    densities : sequence of ClassDensity, optional
+        ``prior.densities(space)`` where it is known already: it takes longer than all else.
 
     Returns
     -------
@@ -144,7 +148,7 @@ def ask_place(
         entropy=rounded(entropies[0]),
         ap=float(ap_of_entropy(entropies[0])),
         seen=bool(seen[0]),
-        density=0.0 if inside else _density(prior, space, index),
+        density=0.0 if inside else _density(densities or prior.densities(space), space, index),
         in_vehicle=inside,
         sensors=sensors,
     )
@@ -203,10 +207,12 @@ def _top(vehicle: Vehicle, space: PerceptionSpace, center: Floats) -> float:
     return float(vehicle.top(PerceptionSpace(x, y, space.z, space.interval))[0, 0])
 
 
-def _density(prior: Prior, space: PerceptionSpace, index: tuple[int, int, int]) -> float:
+def _density(
+    densities: Sequence[ClassDensity], space: PerceptionSpace, index: tuple[int, int, int]
+) -> float:
     """Prior of a voxel, relative to the mean over the space."""
     i, j, k = index
-    here = sum(float(d.ground[i, j] * d.profile[k]) for d in prior.densities(space))
+    here = sum(float(d.ground[i, j] * d.profile[k]) for d in densities)
     return here * space.size
 
 

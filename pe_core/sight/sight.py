@@ -257,6 +257,11 @@ class Sight:
             m, _ = look.measured(rig, draft)
             return seen_shares(look.places, m)
 
+    @property
+    def densities(self) -> tuple[ClassDensity, ...]:
+        """The prior on the space, class by class."""
+        return tuple(self._densities)
+
     def _drawn(self) -> VoxelSample:
         return draw(self._densities, self.space, SAMPLES, self._tops)
 

@@ -113,7 +113,7 @@ def _reach_to(reach: Reach, side: str) -> str:
     distance, limit = float(reach.distance[k]), float(reach.limit[k])
     if distance <= 0.0:
         return ""
-    return f"{'at least ' if distance >= limit else ''}{distance:.0f} m"
+    return f"{distance:.0f} m{' and more' if distance >= limit else ''}"
 
 
 def _one(class_name: str) -> str:

@@ -38,6 +38,8 @@ def words(
 ) -> tuple[str, ...]:
     """Return a score in short lines: what is seen, where best and worst, what each sensor adds.
 
+    Lines that go on about a sensor begin with two spaces.
+
     Parameters
     ----------
     score : Score
@@ -61,7 +63,9 @@ def _lines(
         sensor = None if rig is None else rig[name]
         zones = None if seen is None else seen.shares.zones[name]
         alone = len(score.per_sensor) == 1
-        yield f"{name}: {'; '.join(sensor_words(own, sensor, vehicle, zones, alone=alone))}"
+        first, *more = sensor_words(own, sensor, vehicle, zones, alone=alone)
+        yield f"{name}: {first}"
+        yield from (f"  {each}" for each in more)
 
 
 def sensor_words(

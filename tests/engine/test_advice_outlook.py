@@ -47,7 +47,7 @@ def said(reach, blind):
 def test_what_is_said():
     assert said(reach({0: 43.2, 180: 80.0, 270: 12.0, 45: 99.0}), ROUND) == [
         "expected AP: car 0.61, cone 0.20",
-        "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, at least 80 m behind, "
+        "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, 80 m and more behind, "
         "nowhere left, 12 m right",
         "blind ground, from the body: to 4.2 m ahead, from 0.5 m to beyond 10 m behind, none left, "
         "to 2.0 m right",

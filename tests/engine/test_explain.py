@@ -142,10 +142,12 @@ def test_what_does_not_compare_is_refused_in_a_line(study, tmp_path, field, chan
 PAGE = (Path(pe.__file__).parent.parent / "docs" / "explain.md").read_text("utf-8")
 
 
-def test_the_page_s_place_is_what_is_told(monkeypatch, capsys):
+@pytest.mark.parametrize("asked", [("--grid-samples", "65536"), ("--at", "-8", "6")])
+def test_the_page_s_examples_are_what_is_told(asked, monkeypatch, capsys):
     monkeypatch.chdir(Path(pe.__file__).parent.parent)
-    assert main(["explain", "blend_assets/experiments/4_cameras.toml", "--at", "-8", "6"]) == 0
-    assert capsys.readouterr().out in PAGE
+    command = ["explain", "blend_assets/experiments/4_cameras.toml", *asked]
+    assert main(command) == 0
+    assert f"$ pe {' '.join(command)}\n{capsys.readouterr().out}```" in PAGE
 
 
 def test_the_page_names_every_warning():

@@ -65,7 +65,7 @@ def make_assets() -> set[str]:
 
 def make_sensor(entry: pe.catalog.Entry) -> bpy.types.Object:
     """Make one asset: an object that is a sensor of this model."""
-    obj = bpy.data.objects.new(entry.name, housing_mesh(entry.name))
+    obj = bpy.data.objects.new(short_name(entry), housing_mesh(entry.name))
     obj.perception_entropy.model = entry.name
     obj.perception_entropy.is_sensor = True
     obj.asset_mark()
@@ -76,6 +76,13 @@ def make_sensor(entry: pe.catalog.Entry) -> bpy.types.Object:
     for tag in tags(entry):
         data.tags.new(tag, skip_if_exists=True)
     return obj
+
+
+def short_name(entry: pe.catalog.Entry) -> str:
+    """Its name without the maker's, unless that is another one's: below it stands the maker."""
+    maker = path_of(entry).split("/")[1]
+    short = entry.name.removeprefix(f"{maker} ")
+    return short if short[0].isupper() and short not in pe.catalog.names() else entry.name
 
 
 def path_of(entry: pe.catalog.Entry) -> str:

@@ -20,7 +20,7 @@ WIDTH_M = {"lidar": 0.27, "camera": 0.115}
 """Width of the picture, by kind: LiDARs beside each other, and cameras, are to scale."""
 AIM = np.array([0.12, 0.0, 0.0])
 """Middle of the picture, from the optical centre, in widths: what is ahead has room."""
-FAN = np.array([0.16, 0.74, 0.78])
+FAN = np.array([0.25, 0.90, 0.94])
 LINE_PX = 0.55
 REACH = 0.62
 """How far rays are drawn, in widths."""
@@ -89,7 +89,7 @@ def fan(start: Array, ends: Array) -> Array:
     """Rays (R, 2) from a point, in widths of the picture, as fine lines that fade away."""
     x, y = _grid()
     cover = np.zeros_like(x)
-    strength = min(1.0, 16.0 / max(len(ends), 1)) ** 0.45
+    strength = min(1.0, 24.0 / max(len(ends), 1)) ** 0.45
     for end in ends:
         size = max(float(np.hypot(*end)), 1e-9)
         along = ((x - start[0]) * end[0] + (y - start[1]) * end[1]) / size
@@ -112,11 +112,10 @@ def wedge(start: Array, ends: Array) -> Array:
 
 
 def over(top: Array, under: Array) -> Array:
-    """One picture over another, both with straight alpha."""
+    """One picture over another, both with straight alpha; as previews are: colour times alpha."""
     a, b = top[..., 3:], under[..., 3:]
-    alpha = a + b * (1.0 - a)
     colour = top[..., :3] * a + under[..., :3] * b * (1.0 - a)
-    return np.concatenate([colour / np.where(alpha == 0.0, 1.0, alpha), alpha], axis=-1)
+    return np.concatenate([colour, a + b * (1.0 - a)], axis=-1)
 
 
 def _grid() -> tuple[Array, Array]:

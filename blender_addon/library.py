@@ -52,10 +52,15 @@ def _is_ours(library: bpy.types.UserAssetLibrary) -> bool:
     return bool(path) and Path(path).resolve() == FOLDER
 
 
-def register() -> None:
-    """Show the library if it is wanted. Registered by a script, not as an extension: it is not."""
+def is_wanted() -> bool:
+    """Whether to show it: as the preferences say; without any, where somebody looks at a window."""
     addon = bpy.context.preferences.addons.get(__package__)
-    if addon is not None and addon.preferences.show_library:
+    return not bpy.app.background if addon is None else addon.preferences.show_library
+
+
+def register() -> None:
+    """Show the library if it is wanted."""
+    if is_wanted():
         show()
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.blender.runner import Blender, Installed, output_of
+from tests.blender.stage import Stage
 from tests.blender.window import TOOLS, Window
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -71,11 +72,22 @@ def screenshots() -> Path:
 @pytest.fixture
 def window(installed, sedan, tmp_path):
     """Return Blender in a real window on a screen of its own, showing the sedan."""
+    yield from opened(Window, installed, sedan, tmp_path)
+
+
+@pytest.fixture
+def stage(installed, sedan, tmp_path):
+    """Return such a window that can be told in Python what to show."""
+    yield from opened(Stage, installed, sedan, tmp_path)
+
+
+def opened(kind, installed, blend, folder):
+    """Open a window, hand it over, and close it whatever happened."""
     if missing := [tool for tool in TOOLS if shutil.which(tool) is None]:
         unavailable(f"a window needs {', '.join(missing)}")
-    shown = Window(tmp_path)
+    shown = kind(folder)
     try:
-        shown.open(installed, sedan)
+        shown.open(installed, blend)
         yield shown
     finally:
         shown.close()

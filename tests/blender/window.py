@@ -38,6 +38,8 @@ PATIENCE_S = (0.25, 1.0)
 class Window:
     """One screen with one Blender on it; call `close` whatever happened."""
 
+    startup = STARTUP
+
     def __init__(self, folder: Path):
         self.folder = folder
         self.log = folder / "window.log"
@@ -50,7 +52,14 @@ class Window:
         blender = installed.blender
         command = [blender.command, *installed.START, "--window-geometry", "0", "0"]
         command += [str(WIDTH), str(HEIGHT), str(blend)]
-        command += ["--python-exit-code", "3", "--python", str(STARTUP), "--", str(self.folder)]
+        command += [
+            "--python-exit-code",
+            "3",
+            "--python",
+            str(self.startup),
+            "--",
+            str(self.folder),
+        ]
         self._processes.append(process.start(command, self.log, {**blender.env, **self._env}))
         self.wait_for(lambda: (self.folder / "ready.json").exists(), READY_TIMEOUT_S, "its window")
 

@@ -1,0 +1,95 @@
+"""A real window that does what it is told in Python as well: for layouts that no click can make."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+import time
+from pathlib import Path
+
+from tests.blender import window as windowed
+
+INSIDE = Path(__file__).resolve().parent / "inside_stage.py"
+DONE_TIMEOUT_S = 120
+DRAWN_S = 1.5
+"""Panels slide to their places, and shaders are compiled."""
+LIBRARY = "Perception Entropy"
+STEPS = 14
+"""Moves of the mouse in a drag."""
+
+
+class Stage(windowed.Window):
+    """A window that does what Python says, beside what its mouse and keyboard do."""
+
+    startup = INSIDE
+
+    def do(self, code: str) -> dict:
+        """Run Python inside Blender; return what it keeps in `kept`."""
+        done, asked = self.folder / "done.json", self.folder / "do.py"
+        done.unlink(missing_ok=True)
+        partial = asked.with_suffix(".partial")
+        partial.write_text(textwrap.dedent(code))
+        partial.replace(asked)
+        self.wait_for(done.exists, DONE_TIMEOUT_S, f"an answer to {code[:60]!r}")
+        answer = json.loads(done.read_text())
+        if answer["problem"]:
+            raise AssertionError(answer["problem"])
+        return answer["kept"]
+
+    def wait_until(self, expression: str, timeout_s: float = DONE_TIMEOUT_S) -> None:
+        """Wait until an expression holds inside Blender."""
+        self.wait_for(
+            lambda: self.do(f"kept['holds'] = bool({expression})")["holds"], timeout_s, expression
+        )
+
+    def rest(self, seconds: float = DRAWN_S) -> None:
+        """Let Blender draw."""
+        time.sleep(seconds)
+
+    def photograph(self, path: Path) -> None:
+        """Keep a picture of the screen as it is, the mouse where it is."""
+        self._tool("import", "-window", "root", str(path))
+
+    def mouse(self, *arguments: object) -> None:
+        """Work the mouse and the keyboard with xdotool."""
+        self._xdotool(*map(str, arguments))
+
+    def drag(self, start: tuple[int, int], end: tuple[int, int], held_s: float = 0.6) -> None:
+        """Drag with the left button from one place to another."""
+        (x, y), (u, v) = start, end
+        self._move(x, y)
+        self.mouse("mousedown", 1)
+        self.rest(0.3)
+        for step in range(1, STEPS + 1):
+            share = step / STEPS
+            self.mouse("mousemove", round(x + (u - x) * share), round(y + (v - y) * share))
+            self.rest(0.1)
+        self.rest(held_s)
+        self.mouse("mouseup", 1)
+
+    def show_assets(self, catalog_id: str) -> None:
+        """A 3D view above an asset browser that shows one catalogue of our library."""
+        self.do('window.workspace = bpy.data.workspaces["Shading"]')
+        self.rest()
+        self.do("""
+            below = next(a for a in window.screen.areas if a.type == "NODE_EDITOR")
+            below.ui_type = "ASSETS"
+        """)
+        self.rest()
+        self.do(f"""
+            below = next(a for a in window.screen.areas if a.ui_type == "ASSETS")
+            below.spaces.active.params.asset_library_reference = {LIBRARY!r}
+            below.spaces.active.params.catalog_id = {catalog_id!r}
+            area.spaces.active.shading.type = "SOLID"
+        """)
+        self.rest()
+
+    def place_of(self, point: tuple[float, float, float]) -> tuple[int, int]:
+        """Where a point of the scene is on the screen, from its top left."""
+        kept = self.do(f"""
+            from bpy_extras.view3d_utils import location_3d_to_region_2d
+            from mathutils import Vector
+            x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, Vector({point}))
+            kept["place"] = [round(region.x + x), round(window.height - region.y - y)]
+        """)
+        return tuple(kept["place"])

@@ -24,6 +24,7 @@ from ..scene.frozen import frozen
 from ..scene.vehicle import Vehicle
 from .cells import Cells, Rectangle
 from .outline import outlines
+from .places import Places
 from .regions import opened, without_specks
 
 Floats = NDArray[np.float64]
@@ -166,7 +167,9 @@ class _Strip:
         return float(self.distance[rows[-1] + 1]) if len(rows) else 0.0
 
 
-def blind_cells(seen: Flags, vehicle: Flags, step: float) -> Flags:
-    """Which cells (NX, NY) are blind, by those that are seen and those that are the vehicle's."""
-    blind = opened(~seen | vehicle, GAP_M / 2.0 / step) & ~vehicle
+def blind_cells(places: Places, m: Mapping[str, NDArray]) -> Flags:
+    """Which cells (NX, NY) are blind, by what sensors measure on their voxels."""
+    seen = places.any(np.logical_or.reduce([of_one > 0 for of_one in m.values()]))
+    step = places.cells.step
+    blind = opened(~seen | places.vehicle, GAP_M / 2.0 / step) & ~places.vehicle
     return without_specks(blind, LEAST_M2 / step**2)

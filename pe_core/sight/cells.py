@@ -69,6 +69,11 @@ class Cells:
         return cls(low[0], low[1], high[0], high[1], step)
 
     @property
+    def key(self) -> tuple[float, ...]:
+        """Tells them from others of the same space."""
+        return self.step, self.x0[0], self.x1[-1], self.y0[0], self.y1[-1]
+
+    @property
     def shape(self) -> tuple[int, int]:
         """Number of cells along x and y."""
         return len(self.x0), len(self.y0)

@@ -75,15 +75,8 @@ class Places:
         return gauss(cells, self.spread / self.cells.step) if self.spread else cells
 
 
-def at_height(cells: Cells, space: PerceptionSpace, tops: Floats | None, height: float) -> Places:
-    """Choose voxels of the layer that holds a height [m].
-
-    Raises
-    ------
-    InputError
-        When the space does not reach there.
-    """
-    layer = layer_at(space, height)
+def in_layer(cells: Cells, space: PerceptionSpace, tops: Floats | None, layer: int) -> Places:
+    """Choose voxels of one layer, numbered from the lowest."""
     x, y, _ = cells.points(space.interval, over_height=False)
     i, j = _columns(space, x, y)
     weights = np.ones(x.shape)
@@ -93,18 +86,13 @@ def at_height(cells: Cells, space: PerceptionSpace, tops: Floats | None, height:
     return Places(cells, index, weights)
 
 
-def standing(cells: Cells, space: PerceptionSpace, tops: Floats | None, height: float) -> Places:
-    """Choose voxels of what stands on the ground and is that tall [m].
+def standing(cells: Cells, space: PerceptionSpace, tops: Floats | None, layer: int) -> Places:
+    """Choose voxels of what stands on the ground and reaches up into a layer.
 
-    The lowest layer and the one that holds the height always, some between them; columns of the
-    vehicle weigh nothing, however high it is there.
-
-    Raises
-    ------
-    InputError
-        When the space does not reach there.
+    The lowest and the highest layer always, some between them; columns of the vehicle weigh
+    nothing, however high it is there.
     """
-    layers = layer_at(space, height) + 1
+    layers = layer + 1
     x, y, share = cells.points(space.interval, over_height=layers > 1)
     i, j = _columns(space, x, y)
     k = np.floor(share * layers).astype(np.int64)
@@ -115,7 +103,13 @@ def standing(cells: Cells, space: PerceptionSpace, tops: Floats | None, height: 
 
 
 def layer_at(space: PerceptionSpace, height: float) -> int:
-    """Return the number of the layer of voxels that holds a height."""
+    """Return the number of the layer of voxels that holds a height [m].
+
+    Raises
+    ------
+    InputError
+        When the space does not reach there.
+    """
     height = FINITE.checked("sight", "height", height)
     layer = math.floor((height - space.z[0]) / space.interval + ROUNDING)
     if not 0 <= layer < space.shape[2]:

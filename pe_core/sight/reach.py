@@ -30,11 +30,13 @@ RING_M = 1.0
 SMOOTHED_M = 5.0
 """About as long as a car."""
 BESIDE_RAD = math.radians(10.0)
-"""Bearings farther apart than this are not smoothed over."""
+"""Bearings farther apart than this are not smoothed over, and no sector is wider."""
 VOXELS = 16
 """Voxels of a ring's piece."""
 FEW = 0.25
 """Where less than this share of them is in the space and outside the vehicle, nothing is found."""
+DECIMALS = 6
+"""Reaches are rounded to the micrometre."""
 AP = Number(0.0, 1.0, above=True, below=True)
 BEARINGS = Whole(4, 720)
 
@@ -92,9 +94,9 @@ class Spokes:
         rings = max(1, math.ceil(limit.max() / RING_M))
         u = scrambled_sobol(bearings * rings * VOXELS, CENTERED).reshape(bearings, rings, VOXELS, 3)
         distance = (np.arange(rings)[:, None] + u[..., 0]) * RING_M
-        turn = (u[..., 1] - 0.5) * (2.0 * math.pi / bearings)
-        bearing = np.mod(angles[:, None, None] + turn + math.pi, 2.0 * math.pi) - math.pi
-        x, y = distance * np.cos(bearing), distance * np.sin(bearing)
+        half = math.tan(min(math.pi / bearings, BESIDE_RAD / 2.0))
+        aside = (2.0 * u[..., 1] - 1.0) * half
+        x, y = _turned(angles, aside, distance)
         k = np.searchsorted(np.cumsum(density.profile), u[..., 2], side="right")
         k = np.minimum(k, space.shape[2] - 1)
         places = np.stack([x, y, space.centers(2)[k]], axis=-1)
@@ -112,7 +114,7 @@ class Spokes:
         mass = self._smoothed(self.weights.sum(axis=2))
         mean = sums / np.where(mass >= FEW * mass.max(), mass, np.inf)
         ends = [_end_of_longest(row, least) for row in mean]
-        return np.minimum(np.array(ends) * RING_M, self.limit)
+        return np.minimum(np.round(np.array(ends) * RING_M, DECIMALS), self.limit)
 
     def _smoothed(self, values: Floats) -> Floats:
         """Sums (B, R) over rings and bearings beside each; fewer rings at the ends."""
@@ -132,6 +134,13 @@ def density_of(densities: list[ClassDensity], name: str) -> ClassDensity:
             return density
     names = ", ".join(d.name for d in densities)
     raise InputError("sight", "class_name", f"one of {names}", shown(name))
+
+
+def _turned(angles: Floats, aside: Floats, distance: Floats) -> tuple[Floats, Floats]:
+    """Points (x, y) at a distance, beside bearings (B,) by an angle of that tangent, (B, R, n)."""
+    ahead = distance / np.sqrt(1.0 + aside * aside)
+    c, s = (np.array([f(a) for a in angles.tolist()])[:, None, None] for f in (math.cos, math.sin))
+    return ahead * (c - s * aside), ahead * (s + c * aside)
 
 
 def _edge(space: PerceptionSpace, bearing: float) -> float:

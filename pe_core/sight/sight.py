@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Hashable, Mapping
+from collections.abc import Collection, Mapping
 from functools import cached_property
 from threading import RLock
-from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinds import MeasuredByName, PerceptionModel, Voxels
+from ..kinds import PerceptionModel
 from ..metric.entropy import ap_of_entropy
 from ..metric.fusion import Fusion
 from ..prior.prior import ClassDensity, Prior
@@ -19,11 +18,13 @@ from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..scoring.sampling import VoxelSample, draw
+from ..scoring.score import rounded
 from ..scoring.subsets import fused_early
 from .blind import BlindGround, blind_cells, blind_ground, body_rectangle
 from .cells import Cells, round_a
 from .ground import GroundSight, ground_sight
-from .places import Places, at_height, by_prior, standing
+from .look import Looks
+from .places import Places, by_prior, in_layer, layer_at, standing
 from .reach import AP, BEARINGS, Reach, Spokes, density_of
 from .shares import SeenShares, seen_shares
 
@@ -32,35 +33,6 @@ Floats = NDArray[np.float64]
 ORIGIN = ((0.0, 0.0), (0.0, 0.0))
 SAMPLES = 65_536
 """Voxels that the AP by class is a mean of."""
-LOOKS_KEPT = 8
-"""Sets of voxels that are kept with what was measured on them: those asked for last."""
-
-
-class _HasVoxels(Protocol):
-    """What is looked at: voxels of the space by number."""
-
-    @property
-    def index(self) -> NDArray[np.int64]:
-        """(V, 3)."""
-
-
-P = TypeVar("P", bound=_HasVoxels)
-
-
-class _Look(Generic[P]):
-    """What is looked at, and the sensors measured on its voxels."""
-
-    def __init__(
-        self, space: PerceptionSpace, places: P, vehicle: Vehicle | None, fusion: Fusion
-    ) -> None:
-        self.places = places
-        voxels = Voxels(space, places.index, space.center_of(places.index))
-        self._sensors = MeasuredByName(voxels, vehicle, fusion.enough)
-
-    def measured(self, rig: Rig, draft: bool) -> tuple[dict[str, NDArray], bool]:
-        """m of the rig's sensors by name, (V,) each; and whether any is a draft."""
-        self._sensors.measure(rig, draft)
-        return self._sensors.m, any(known.draft for known in self._sensors.last.values())
 
 
 class Sight:
@@ -95,7 +67,7 @@ class Sight:
         self.space, self.prior, self.vehicle = space, prior, vehicle
         self._fusion = Fusion(model or PerceptionModel())
         self._densities: list[ClassDensity] = prior.densities(space)
-        self._looks: dict[Hashable, _Look[Any]] = {}  # the one asked for last comes last
+        self._looks = Looks(space, vehicle, self._fusion)
         self._is_free = RLock()
 
     def ground(
@@ -127,10 +99,11 @@ class Sight:
             When the height is not in the space, the step is not positive or has too many places, or
             nothing lies within.
         """
+        part = None if within is None else round_a(ORIGIN, within)
+        cells = Cells.of(self.space, step, part)
+        layer = None if height is None else layer_at(self.space, height)
         with self._is_free:
-            square = None if within is None else round_a(ORIGIN, within)
-            key = ("ground", height, step, within)
-            look = self._look(key, lambda: self._places(height, Cells.of(self.space, step, square)))
+            look = self._looks.at(("ground", layer, cells.key), lambda: self._places(layer, cells))
             m, drafted = look.measured(rig, draft)
             return ground_sight(look.places, rig, m, self._fusion, height, drafted)
 
@@ -162,19 +135,17 @@ class Sight:
             When the height is not in the space, the step is not positive or has too many places, or
             nothing lies within.
         """
+        body = body_rectangle(self.vehicle)
+        cells = Cells.of(self.space, step, round_a(body, within))
+        layer = layer_at(self.space, height)
         with self._is_free:
-            body = body_rectangle(self.vehicle)
-            part = round_a(body, within)
-            key = ("blind", height, step, within)
-            look = self._look(
-                key,
-                lambda: standing(Cells.of(self.space, step, part), self.space, self._tops, height),
+            look = self._looks.at(
+                ("blind", layer, cells.key),
+                lambda: standing(cells, self.space, self._tops, layer),
             )
             m, drafted = look.measured(rig, draft)
-            places = look.places
-            seen = places.any(np.logical_or.reduce([of_one > 0 for of_one in m.values()]))
-            blind = blind_cells(seen, places.vehicle, step)
-            return blind_ground(places.cells, blind, body, height, within, drafted)
+            blind = blind_cells(look.places, m)
+            return blind_ground(cells, blind, body, float(height), float(within), drafted)
 
     def reach(
         self,
@@ -207,7 +178,7 @@ class Sight:
         count = BEARINGS.checked("sight", "bearings", bearings)
         density = density_of(self._densities, class_name)
         with self._is_free:
-            look = self._look(
+            look = self._looks.at(
                 ("reach", class_name, count),
                 lambda: Spokes.of(self.space, self._tops, density, count),
             )
@@ -236,13 +207,13 @@ class Sight:
             By class, 0.001 to 1; a class without mass is left out.
         """
         with self._is_free:
-            look = self._look("prior", self._drawn)
+            look = self._looks.at("prior", self._drawn)
             m, _ = look.measured(rig, draft)
             ap = self._ap(rig, m, list(m))
             likely = look.places.classes
             masses = likely.sum(axis=0)
             return {
-                name: float((ap * own).sum() / mass)
+                name: rounded(float((ap * own).sum() / mass))
                 for name, own, mass in zip(look.places.names, likely.T, masses, strict=True)
                 if mass > 0.0
             }
@@ -253,7 +224,7 @@ class Sight:
         On a sample of the prior, as `expected_ap`; `draft` as in `ground`.
         """
         with self._is_free:
-            look = self._look("prior", self._drawn)
+            look = self._looks.at("prior", self._drawn)
             m, _ = look.measured(rig, draft)
             return seen_shares(look.places, m)
 
@@ -270,22 +241,14 @@ class Sight:
         entropies, _ = self._fusion.entropies(fused_early(rig, m, members))
         return ap_of_entropy(entropies)
 
-    def _places(self, height: float | None, cells: Cells) -> Places:
-        if height is None:
+    def _places(self, layer: int | None, cells: Cells) -> Places:
+        if layer is None:
             return by_prior(cells, self.space, self._tops, self._densities)
-        return at_height(cells, self.space, self._tops, height)
+        return in_layer(cells, self.space, self._tops, layer)
 
     @cached_property
     def _tops(self) -> Floats | None:
         return None if self.vehicle is None else self.vehicle.top(self.space)
-
-    def _look(self, key: Hashable, places: Callable[[], P]) -> _Look[P]:
-        """Return what is kept of what is looked at, or make it."""
-        look = self._looks.pop(key, None)
-        self._looks[key] = look or _Look(self.space, places(), self.vehicle, self._fusion)
-        while len(self._looks) > LOOKS_KEPT:
-            del self._looks[next(iter(self._looks))]
-        return self._looks[key]
 
 
 def expected_ap(

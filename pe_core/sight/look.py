@@ -1,0 +1,69 @@
+"""Sets of voxels that are looked at again and again, with the sensors measured on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinds import MeasuredByName, Voxels
+from ..metric.fusion import Fusion
+from ..scene.sensors import Rig
+from ..scene.space import PerceptionSpace
+from ..scene.vehicle import Vehicle
+
+VOXELS_KEPT = 4_000_000
+"""Of all sets together, at most: some 100 bytes each."""
+
+
+class HasVoxels(Protocol):
+    """What is looked at: voxels of the space by number."""
+
+    @property
+    def index(self) -> NDArray[np.int64]:
+        """(V, 3)."""
+
+
+P = TypeVar("P", bound=HasVoxels)
+
+
+class Look(Generic[P]):
+    """What is looked at, and the sensors measured on its voxels."""
+
+    def __init__(
+        self, places: P, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion
+    ) -> None:
+        self.places = places
+        voxels = Voxels(space, places.index, space.center_of(places.index))
+        self._sensors = MeasuredByName(voxels, vehicle, fusion.enough)
+
+    @property
+    def size(self) -> int:
+        """Number of voxels."""
+        return len(self.places.index)
+
+    def measured(self, rig: Rig, draft: bool) -> tuple[dict[str, NDArray], bool]:
+        """m of the rig's sensors by name, (V,) each; and whether any is a draft."""
+        self._sensors.measure(rig, draft)
+        return self._sensors.m, any(known.draft for known in self._sensors.last.values())
+
+
+class Looks:
+    """Looks by what is asked for; of those asked for last, as many as there is room for."""
+
+    def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion) -> None:
+        self._of = space, vehicle, fusion
+        self._looks: dict[Hashable, Look[Any]] = {}  # the one asked for last comes last
+
+    def at(self, key: Hashable, places: Callable[[], P]) -> Look[P]:
+        """Return what is kept by that key, or make it."""
+        look = self._looks.pop(key, None) or Look(places(), *self._of)
+        self._looks[key] = look
+        room = VOXELS_KEPT
+        for other in reversed(tuple(self._looks)):
+            room -= self._looks[other].size
+            if room < 0 and other != key:
+                del self._looks[other]
+        return look

@@ -51,6 +51,20 @@ def two_lidars_two_cameras(study: pe.Study) -> pe.Study:
     return replace(study, rig=pe.Rig(sensors))
 
 
+def four_on_car() -> pe.Study:
+    """A Pandar64 on the roof, a Pandar40 and two cameras."""
+    study = plain_study(car())
+    others = list(two_lidars_two_cameras(study).rig)[1:]
+    return replace(study, rig=pe.Rig([*study.rig, *others]))
+
+
+def moved_a_little(rig: pe.Rig, along: float) -> pe.Rig:
+    """Move the first sensor forward by so many metres, without turning it."""
+    first, *others = rig
+    x, y, z = first.pose.position
+    return pe.Rig([first.moved(pe.Pose((x + along, y, z), first.pose.rpy)), *others])
+
+
 def rays_of(vehicle: pe.Vehicle) -> tuple[pe.Vehicle, np.ndarray, tuple[float, float, float]]:
     """A full Pandar64 frame from the roof."""
     return vehicle, pe.catalog.load("Pandar64").directions, ROOF_LIDAR

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import resource
-import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,21 +21,10 @@ from .problems import (
     two_lidars,
     two_lidars_two_cameras,
 )
+from .sight_rows import blind_ground, fine_map, live_map, reach, simplify
+from .timing import Timing, Work, best, best_in_turn, peak_mb
 
-REPEATS = 5
-Work = Callable[[], object]
 Position = tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class Timing:
-    """One line of the table: what was done, our seconds and memory; the yardstick, its seconds."""
-
-    work: str
-    ours_s: float
-    peak_mb: float
-    yardstick: str
-    yardstick_s: float | None
 
 
 def grid_free() -> Timing:
@@ -54,12 +40,12 @@ def grid_on_car() -> Timing:
 def _against_literal(vehicle: pe.Vehicle | None, label: str) -> Timing:
     study = plain_study(vehicle)
     evaluator = study.evaluator(0)
-    ours, entropy = _best(lambda: evaluator.entropy(study.rig))
-    peak = _peak_mb()
+    ours, entropy = best(lambda: evaluator.entropy(study.rig))
+    peak = peak_mb()
     theirs = literal.run(study)
     if theirs and abs(theirs[0] - entropy) > 1e-3:
         raise SystemExit(f"the yardstick says {theirs[0]}, we say {entropy}")
-    again, _ = _best(lambda: evaluator.entropy(study.rig))
+    again, _ = best(lambda: evaluator.entropy(study.rig))
     seconds = theirs and min(theirs[1], literal.run(study)[1])
     work = f"grid score, Pandar64, {label}"
     return Timing(work, min(ours, again), peak, "literal C++, 2 threads", seconds)
@@ -78,22 +64,20 @@ def grid_two_lidars_two_cameras() -> Timing:
 def _against_one(several: Callable[[pe.Study], pe.Study], label: str) -> Timing:
     study = plain_study(car())
     evaluator, rig = study.evaluator(0), several(study).rig
-    ours, theirs = _best_in_turn(
+    ours, theirs = best_in_turn(
         lambda: evaluator.entropy(rig), lambda: evaluator.entropy(study.rig)
     )
     work = f"grid score, {label}, vehicle"
-    return Timing(work, ours, _peak_mb(), "one Pandar64, vehicle", theirs)
+    return Timing(work, ours, peak_mb(), "one Pandar64, vehicle", theirs)
 
 
 def full_score() -> Timing:
     """All a grid score tells of four sensors (9 rigs' worth), against all it tells of one."""
     study = plain_study(car())
     evaluator, rig = study.evaluator(0), two_lidars_two_cameras(study).rig
-    ours, theirs = _best_in_turn(
-        lambda: evaluator.score(rig), lambda: evaluator.score(study.rig), 2
-    )
+    ours, theirs = best_in_turn(lambda: evaluator.score(rig), lambda: evaluator.score(study.rig), 2)
     work = "the same with each sensor alone and failing, zones, map"
-    return Timing(work, ours, _peak_mb(), "the same of one Pandar64", theirs)
+    return Timing(work, ours, peak_mb(), "the same of one Pandar64", theirs)
 
 
 def samples_free() -> Timing:
@@ -113,9 +97,9 @@ def samples_on_car_draft() -> Timing:
 
 def _after_a_move(vehicle: pe.Vehicle | None, label: str, draft: bool = False) -> Timing:
     study = plain_study(vehicle)
-    ours, _ = _best(_moving(study, study.evaluator(262_144), draft), 8)
-    peak = _peak_mb()
-    grid, _ = _best(lambda: study.evaluator(0).entropy(study.rig), 1)
+    ours, _ = best(_moving(study, study.evaluator(262_144), draft), 8)
+    peak = peak_mb()
+    grid, _ = best(lambda: study.evaluator(0).entropy(study.rig), 1)
     work = f"262,144 samples after a move, {label}"
     return Timing(work, ours, peak, "grid score, first", grid)
 
@@ -135,10 +119,10 @@ def _moving(study: pe.Study, evaluator: pe.Evaluator, draft: bool) -> Work:
 def rays() -> Timing:
     """First hits of a frame, against brute force over all triangles (on a part of the rays)."""
     vehicle, directions, position = rays_of(car())
-    ours, _ = _best(lambda: vehicle.first_hit(position, directions))
-    peak = _peak_mb()
+    ours, _ = best(lambda: vehicle.first_hit(position, directions))
+    peak = peak_mb()
     some = directions[:: len(directions) // 500]
-    brute, _ = _best(lambda: raw_cast(vehicle.triangles, position, some), 1)
+    brute, _ = best(lambda: raw_cast(vehicle.triangles, position, some), 1)
     rate = len(directions) / ours / 1e6
     work = f"first hit of {len(directions):,} rays ({rate:.1f} million a second)"
     seconds = brute * len(directions) / len(some)
@@ -194,9 +178,9 @@ def _with_embree(
 ) -> Timing:
     yardstick = "embree, one thread, the same rays"
     if embree is None:
-        return Timing(work, _best(ours)[0], _peak_mb(), yardstick, None)
-    mine, theirs = _best_in_turn(ours, lambda: embree.first_hit(position, directions))
-    return Timing(work, mine, _peak_mb(), yardstick, theirs)
+        return Timing(work, best(ours)[0], peak_mb(), yardstick, None)
+    mine, theirs = best_in_turn(ours, lambda: embree.first_hit(position, directions))
+    return Timing(work, mine, peak_mb(), yardstick, theirs)
 
 
 ROWS: dict[str, Callable[[], Timing]] = {
@@ -216,28 +200,10 @@ ROWS: dict[str, Callable[[], Timing]] = {
         rays_from_afar,
         rays_at_many_triangles,
         rays_of_a_camera,
+        live_map,
+        fine_map,
+        blind_ground,
+        reach,
+        simplify,
     )
 }
-
-
-def _peak_mb() -> float:
-    """The most memory this process has had so far."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-
-
-def _best(work: Work, repeats: int = REPEATS) -> tuple[float, object]:
-    """Shortest time of some, and the result."""
-    timed = [_timed(work) for _ in range(repeats)]
-    return min(seconds for seconds, _ in timed), timed[0][1]
-
-
-def _best_in_turn(work: Work, yardstick: Work, repeats: int = REPEATS) -> tuple[float, float]:
-    """Shortest times of two, run in turn."""
-    times = [(_timed(yardstick)[0], _timed(work)[0]) for _ in range(repeats)]
-    return min(ours for _, ours in times), min(theirs for theirs, _ in times)
-
-
-def _timed(work: Work) -> tuple[float, object]:
-    start = time.perf_counter()
-    result = work()
-    return time.perf_counter() - start, result

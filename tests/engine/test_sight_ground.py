@@ -8,13 +8,21 @@ from pe_core import kinds
 from pe_core.kinds.lidar.on_sample import LidarSample
 from pe_core.metric.entropy import H_BLIND, entropy_of, precision_of
 from pe_core.metric.fusion import late_fusion
-from pe_core.sight import Sight
+from pe_core.sight import Sight, look
 from pe_core.sight.places import SPREAD_M
 from pe_core.sight.regions import gauss
-from tests.engine import shapes
+from tests.engine import shapes, toy_kind
 
 SPACE = shapes.small_space(0.5)
 CAR = shapes.box_car()
+
+
+@pytest.fixture
+def ring_kind():
+    """The kind of tests, for a test."""
+    kinds.register(toy_kind.RingKind())
+    yield
+    kinds.unregister("ultrasonic")
 
 
 def lidar(position=(-0.43, 0.11, 1.83), rotation=(0.0, 0.0, 0.0), name="roof", **options):
@@ -180,9 +188,41 @@ def test_a_study_has_one():
     assert np.array_equal(ground.entropy, fresh.entropy, equal_nan=True)
 
 
+def test_what_is_kept_has_a_bound(measured, monkeypatch):
+    """Of maps asked for in turn the last are kept, as many as there is room for."""
+    monkeypatch.setattr(look, "VOXELS_KEPT", 2 * 80 * 40)
+    own, rig = sight(), pe.Rig([lidar()])
+    for height in (0.0, 1.0, 2.0, 1.0, 2.0):
+        own.ground(rig, height, step=0.5)
+    assert measured == ["roof"] * 3
+    own.ground(rig, 0.0, step=0.5)
+    assert measured == ["roof"] * 4
+    monkeypatch.setattr(look, "VOXELS_KEPT", 1)
+    own.ground(rig, 0.0, step=0.5)  # larger than all the room: kept while it is the last
+    assert measured == ["roof"] * 4
+
+
+def test_heights_in_one_layer_are_one_map(measured):
+    own, rig = sight(), pe.Rig([lidar()])
+    low, high = own.ground(rig, 0.5), own.ground(rig, 0.9)
+    assert measured == ["roof"] and (low.height, high.height) == (0.5, 0.9)
+    assert np.array_equal(low.entropy, high.entropy, equal_nan=True)
+
+
+def test_a_kind_of_one_s_own_is_seen(ring_kind):
+    """Its ring of 6 m, all round: m is defined by the distance alone."""
+    ring = pe.Sensor("ring", toy_kind.Ring("ring", 6.0), pe.Pose((0.0, 0.0, 0.25)))
+    ground = sight(None).ground(pe.Rig([ring, shapes.camera()]), 0.0, step=0.5)
+    near = np.hypot(ground.x[:, None], ground.y) <= 6.0
+    assert np.array_equal(ground.kinds == 2, near & (ground.sensors == 2))
+    assert (ground.sensors[near] >= 1).all() and (ground.coverage[near] == 1.0).all()
+    assert (ground.sensors[~near & (ground.x < 0.0)[:, None]] == 0).all()
+
+
 @pytest.mark.parametrize(
     ("asked", "line"),
     [
+        ({"height": [1.0]}, r"sight: height: expected a finite number"),
         ({"height": 5.0}, r"sight: height: expected a height in the space, z = \[0, 5\], found 5"),
         ({"height": -0.1}, r"sight: height: expected a height in the space"),
         ({"height": "low"}, r"sight: height: expected a finite number"),

@@ -91,12 +91,20 @@ def test_why_a_lidar_misses_a_place(point, reason):
     assert (own.m > 0) == (reason == "sees")
 
 
-def test_behind_the_end_of_its_field_a_lidar_does_not_look():
-    sensor = one_beam(horizontal_fov=(math.radians(-30), math.radians(30)))
-    reasons = [
-        ask([sensor], p).sensors[0].reason for p in ((10, 0, 1.25), (5, 5, 1.25), (-5, 0, 1.25))
-    ]
-    assert reasons == ["sees", "out of view", "out of view"]
+@pytest.mark.parametrize(
+    ("point", "reason"),
+    [
+        ((10, 0, 1.25), "sees"),
+        ((5, 5, 1.25), "out of view"),
+        ((-5, 0, 1.25), "out of view"),
+        ((12.6, 8.3, 1.25), "out of view"),  # 32.9 degrees, and 1.6 to its corners
+        ((12.6, -8.3, 1.25), "out of view"),
+        ((12.6, 7.8, 1.25), "sees"),  # 31.3 degrees: its corner reaches in
+    ],
+)
+def test_beside_its_field_a_lidar_does_not_look(point, reason):
+    sensor = one_beam(horizontal_fov=(math.radians(-30), math.radians(30)), max_range=20.0)
+    assert ask([sensor], point).sensors[0].reason == reason
 
 
 def test_beams_of_a_raster_leave_gaps_too():

@@ -115,7 +115,7 @@ def test_under_the_ground():
 def test_outside_the_space():
     found = told(None, lidar_at(0, 0, 5.5))
     assert found["s", "outside"].text == "it is outside the perception space, at (0, 0, 5.5) m"
-    assert ("s", "outside") in told(None, lidar_at(81, 0, 1))
+    assert ("s", "outside") in told(None, lidar_at(81, 0, 0.5))
     assert told(None, lidar_at(80, 0, 5)) == {}
 
 
@@ -127,6 +127,7 @@ def test_clear_of_the_vehicle():
     assert found["s", "clear"].text == "it is 60 cm clear of the vehicle: what holds it?"
     assert told(car, lidar_at(0, 0, 2.1)) == {}
     assert told(car, lidar_at(0, 0, 2.2))["s", "clear"].text.startswith("it is 80 cm clear")
+    assert ("s", "clear") in told(car, lidar_at(0, 1.3, 1.5))  # higher than the roof, beside it
     assert told(car, lidar_at(0, 30, 1))["s", "clear"].text.startswith("it is 29 m clear")
 
 
@@ -250,6 +251,11 @@ def test_on_its_roof(sedan, bus):
             moved(vehicle, [(1, 0, 0), (0, -1, 0), (0, 0, -1)], (0, 0, vehicle.bounds[1][2]))
         )
         assert next(iter(over)) == (None, "on_roof")
+    large = np.concatenate(
+        [shapes.box((-2, -1, 0), (2, 1, 2)), shapes.box((0, -1, 0), (1, 1, 1.8))]
+    )
+    monster = pe.Vehicle(large, np.repeat([0, 1], 12), ("body", "wheels"))
+    assert (None, "on_roof") not in told(monster)
     wheel = pe.Vehicle(
         np.concatenate([shapes.box_car().triangles, shapes.box((0, 0, 1), (0.1, 0.4, 1.3))]),
         np.repeat([0, 1], [24, 12]),
@@ -307,6 +313,11 @@ def test_sizes_that_are_no_vehicle():
     )
     floor = np.concatenate([shapes.box_car().triangles, shapes.box((-9, -9, -0.1), (9, 9, 0))])
     assert "is a floor part of its mesh? Or, " in told(pe.Vehicle(floor))[None, "size"].text
+    toy = pe.Vehicle(shapes.box((-0.175, -0.1, 0), (0.175, 0.1, 0.1)))
+    assert told(toy)[None, "size"].text.endswith("scaled by 13 it would be as long as a car")
+    assert told(toy)[None, "size"].amount == (13.0,)
+    point = pe.Vehicle(np.zeros((1, 3, 3)))
+    assert told(point)[None, "size"].text == "all of it is one point"
     tiny = pe.Vehicle(shapes.box((-0.0235, -0.01, 0), (0.0235, 0.01, 0.015)))
     assert told(tiny)[None, "size"].amount == (100.0,)
     for fine in ((0.9, 0.5, 0.8), (18.75, 2.5, 3.2), (15.1, 9.5, 7.7)):
@@ -314,6 +325,11 @@ def test_sizes_that_are_no_vehicle():
             shapes.box((-fine[0] / 2, -fine[1] / 2, 0), (fine[0] / 2, fine[1] / 2, fine[2]))
         )
         assert (None, "size") not in told(box), fine
+
+
+def test_a_flat_plate_does_no_harm():
+    plate = pe.Vehicle(np.array([[(-2.0, -1.0, 0.5), (2.0, -1.0, 0.5), (2.0, 1.0, 0.5)]]))
+    assert list(told(plate, lidar_at(1.0, 0.0, 0.9))) == [(None, "height")]
 
 
 def in_room(vehicle, *rooms):

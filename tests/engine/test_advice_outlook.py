@@ -112,6 +112,9 @@ def test_shares_by_number_and_by_sensor_by_hand():
     assert shares.by_number[2] == pytest.approx(one["front"] / 2, abs=1e-3)
     behind_too = shares.zones["behind"]["rear"] / 2
     assert shares.by_number[1] == pytest.approx(one["front"] / 2 + behind_too, abs=1e-3)
+    aside = shapes.camera(90.0, (0.0, 0.0, 1.5), (0, 0, 90), "aside")
+    left = pe.Study(pe.Rig([aside]), None, space, prior).sight().shares(pe.Rig([aside])).zones
+    assert left["aside"]["left"] > 0.1 and left["aside"]["right"] == 0.0
     score = pe.Evaluator(space, prior).score(pe.Rig([ahead]))
     assert one["front"] == pytest.approx(score.per_zone["front"].coverage, abs=0.01)
     assert math.isclose(one["left"], score.per_zone["left"].coverage, abs_tol=0.01)

@@ -245,6 +245,17 @@ def test_on_its_tail_or_on_its_side(sedan, bus):
     assert (None, "on_side") not in told(shapes.box_car())
 
 
+def test_a_sixth_more_is_longer():
+    """A side is longer than another from 1.15 times its length on."""
+
+    def box(x, y, z):
+        return pe.Vehicle(shapes.box((-x / 2, -y / 2, 0), (x / 2, y / 2, z)))
+
+    assert (None, "on_tail") in told(box(2, 2, 2.4))
+    assert (None, "on_tail") not in told(box(2, 2, 2.2))
+    assert (None, "faces") in told(box(2, 2.4, 1)) and (None, "faces") not in told(box(2, 2.2, 1))
+
+
 def test_on_its_roof(sedan, bus):
     for vehicle in (sedan, bus):
         over = told(

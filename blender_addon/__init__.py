@@ -8,6 +8,7 @@ from . import (
     body,
     commands,
     library,
+    live,
     motion,
     operators,
     panels,
@@ -35,6 +36,7 @@ def register() -> None:
     motion.register()
     stale.register()
     unsaved.register()
+    live.register()
     overlay.register()
     fitting.register()
     commands.register()
@@ -49,6 +51,7 @@ def unregister() -> None:
     commands.unregister()
     fitting.unregister()
     overlay.unregister()
+    live.unregister()
     unsaved.unregister()
     stale.unregister()
     motion.unregister()

@@ -47,3 +47,6 @@ moved = Signal()
 """A sensor or the vehicle is moving: told a moment after, from a timer, as long as that lasts."""
 rested = Signal()
 """What was moved rests: told once, a moment after the last move."""
+
+live = Signal()
+"""The live score was switched on or off."""

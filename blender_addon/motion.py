@@ -19,8 +19,14 @@ REST_S = 0.25
 """How long nothing has to move until it rests."""
 
 _rests_at = 0.0
+_count = 0
 _known: dict[str, Hashable] = {}
 """What counted in each scene when it was looked at last, by the scene's name: plain values."""
+
+
+def count() -> int:
+    """How often something was noted to have moved; rises at once, before it is told."""
+    return _count
 
 
 @persistent
@@ -37,7 +43,8 @@ def note_changes(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None
 @persistent
 def note(*_: object) -> None:
     """Tell soon that something has moved, and when it rests."""
-    global _rests_at
+    global _rests_at, _count
+    _count += 1
     if bpy.app.background:  # a timer left behind makes Blender crash at its exit
         return
     _rests_at = time.monotonic() + REST_S

@@ -1,4 +1,4 @@
-"""Work beside the window: one thread, the latest wish of each topic, answers in Blender's own turn.
+"""Work beside the window: a thread, the latest wish of each topic, answers in Blender's own turn.
 
 Whoever draws or shows asks for work by topic. A wish that has not begun when the next one of its
 topic comes is forgotten: nothing queues up behind the mouse. Answers are handed over by a timer,
@@ -124,8 +124,12 @@ def _answer(work: Work, deliver: Deliver, fail: Fail) -> Callable[[], None]:
 
 desk = Worker()
 """The one that all parts of the add-on share: so that they take turns, and one thread ends."""
+hand = Worker()
+"""For what follows the hand, and is done in a few hundredths of a second: it is not kept waiting by
+what takes longer."""
 
 
 def unregister() -> None:
     """Leave nothing running."""
+    hand.stop()
     desk.stop()

@@ -4,7 +4,7 @@ from .fingerprint import Fingerprint, fingerprint, signature
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .outcome import blender_version, store_outcome, store_warnings
 from .placeable import check_placeable
-from .prior import prior_from_scene
+from .prior import prior_from_scene, prior_key
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
 from .rig import (
     mounted_on_sensor,
@@ -15,7 +15,7 @@ from .rig import (
     sensor_objects,
     view_layer_of,
 )
-from .scene import study_from_scene
+from .scene import check_scene, study_from_scene
 from .standing import sensors_collection, stand
 from .variants import (
     active_variant,
@@ -46,6 +46,7 @@ __all__ = [
     "alike",
     "blender_version",
     "check_placeable",
+    "check_scene",
     "check_variants",
     "choose_variant",
     "copy_score",
@@ -57,6 +58,7 @@ __all__ = [
     "place_rig",
     "pose_of",
     "prior_from_scene",
+    "prior_key",
     "put_variant",
     "records_of",
     "records_of_scene",

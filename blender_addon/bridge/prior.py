@@ -38,6 +38,11 @@ def prior_signature(scene: bpy.types.Scene) -> list[object]:
     return [settings.prior, *boxes, *rows]
 
 
+def prior_key(scene: bpy.types.Scene) -> str:
+    """Return a text that is another one for another prior, as long as files are what they were."""
+    return repr(prior_signature(scene))
+
+
 def _prior_from_boxes(path: str) -> pe.Prior:
     if not path:
         raise pe.InputError("scene", "boxes", "a file of labelled boxes", "none chosen")

@@ -28,8 +28,7 @@ def study_from_scene(
         One line that says what in the scene is wrong, what was expected and what was found.
     """
     objects = sensor_objects(scene) if sensors is None else sensors
-    _check_metres(scene)  # said before what is wrong with a sensor
-    _vehicle_chosen(scene)
+    check_scene(scene)  # said before what is wrong with a sensor
     free = {obj.name: free_axes(obj) for obj in objects}
     return study_of_rig(scene, depsgraph, rig_from_objects(objects, depsgraph), free, vehicle)
 
@@ -58,6 +57,18 @@ def study_of_rig(
         samples=settings.score_samples,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
     )
+
+
+def check_scene(scene: bpy.types.Scene) -> None:
+    """Complain about a scene that no study can be read from.
+
+    Raises
+    ------
+    InputError
+        When a unit is not a metre, or no vehicle is chosen.
+    """
+    _check_metres(scene)
+    _vehicle_chosen(scene)
 
 
 def _vehicle_chosen(scene: bpy.types.Scene) -> bpy.types.Collection:

@@ -1,1 +1,23 @@
-"""The score that follows the hand."""
+"""The score that follows the hand.
+
+`latest` is what is known now, `session` asks for it, `words` puts it into words, `readout` draws
+those in the corner of the 3D view.
+"""
+
+from __future__ import annotations
+
+from . import latest, readout, session
+
+__all__ = ["latest", "register", "unregister"]
+
+
+def register() -> None:
+    """Start following and drawing."""
+    session.register()
+    readout.register()
+
+
+def unregister() -> None:
+    """Stop both; the worker has ended before."""
+    readout.unregister()
+    session.unregister()

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..engine import pe, scoring
-
-Parts = dict[str, pe.PartScore]
+from ..engine import pe
 
 
 @dataclass(frozen=True)
@@ -24,7 +22,7 @@ class Scored:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a live score says.
+    """What the live score says.
 
     Attributes
     ----------
@@ -32,21 +30,21 @@ class Reading:
         The whole rig's entropy and coverage, by class and by zone; a draft while it moves.
     before : Glance or None
         The same before the drag began, or the one that is under way; None for the first.
-    signature : str
-        Of the scene when it was read; "" while it moves.
-    score : Score or None
-        Sensor by sensor as well, once all rests.
+    rested : bool
+        Whether it was read of a scene at rest: exactly, and to the bit as any front end would.
+    rig : Rig
+        What was scored.
     """
 
-    glance: scoring.Glance
-    before: scoring.Glance | None = None
-    signature: str = ""
-    score: pe.Score | None = None
+    glance: pe.Glance
+    before: pe.Glance | None
+    rested: bool
+    rig: pe.Rig
 
 
 _scored: dict[str, Scored] = {}
 _readings: dict[str, Reading] = {}
-_problems: dict[str, str] = {}
+_notes: dict[str, str] = {}
 """By the scene's name."""
 
 
@@ -66,28 +64,28 @@ def reading(scene_name: str) -> Reading | None:
 
 
 def note_reading(scene_name: str, found: Reading) -> None:
-    """Keep what the live score says; what was wrong before no longer is."""
+    """Keep what the live score says; what was in its way no longer is."""
     _readings[scene_name] = found
-    _problems.pop(scene_name, None)
+    _notes.pop(scene_name, None)
 
 
-def problem(scene_name: str) -> str:
-    """Return why a scene cannot be scored live, in one line; "" when it can."""
-    return _problems.get(scene_name, "")
+def note(scene_name: str) -> str:
+    """Return why the reading is not that of the scene as it is; "" when it is, or soon will be."""
+    return _notes.get(scene_name, "")
 
 
-def note_problem(scene_name: str, line: str) -> None:
-    """Keep why a scene cannot be scored live."""
-    _problems[scene_name] = line
+def set_note(scene_name: str, line: str) -> None:
+    """Keep why there is no newer reading, in one line."""
+    _notes[scene_name] = line
 
 
 def forget_reading(scene_name: str) -> None:
     """Drop what the live score said of a scene: it no longer is asked."""
     _readings.pop(scene_name, None)
-    _problems.pop(scene_name, None)
+    _notes.pop(scene_name, None)
 
 
 def forget() -> None:
     """Drop everything: another file is about to be shown, or nothing any more."""
-    for each in (_scored, _readings, _problems):
+    for each in (_scored, _readings, _notes):
         each.clear()

@@ -27,6 +27,7 @@ class PE_PT_main(Tab, bpy.types.Panel):
         row = self.layout.row()
         row.scale_y = 1.5
         row.operator("pe.score", icon="VIEWZOOM")
+        row.prop(settings.live, "on", toggle=True, icon="REC")
         if settings.has_result:
             draw_result(self.layout, settings)
         row = self.layout.row()

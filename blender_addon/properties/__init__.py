@@ -10,6 +10,7 @@ from bpy.props import PointerProperty
 
 from .callbacks import model_suggestions
 from .focus import DEFAULT_REGION, PE_FocusSettings
+from .live import PE_LiveSettings
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, DEFAULT_MODEL, PE_ObjectSettings
 from .variants import PE_Variant, PE_VariantSensor
@@ -26,6 +27,7 @@ __all__ = [
 
 CLASSES = (
     PE_FocusSettings,
+    PE_LiveSettings,
     PE_VariantSensor,
     PE_Variant,
     PE_Warning,

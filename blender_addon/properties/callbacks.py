@@ -18,6 +18,12 @@ def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> 
     changes.study.tell()
 
 
+def switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Update callback of the switch of the live score."""
+    changes.live.tell()
+    changes.picture.tell()
+
+
 def model_suggestions(
     _settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
 ) -> list[tuple[str, str]]:

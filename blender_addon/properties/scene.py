@@ -17,6 +17,7 @@ from ..choices import PRIORS
 from ..engine import pe
 from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
+from .live import PE_LiveSettings
 from .variants import PE_Variant
 from .warnings import PE_Warning
 
@@ -84,6 +85,10 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
         description="The same seed finds the same placement",
         default=0,
         min=0,
+    )
+
+    live: PointerProperty(
+        type=PE_LiveSettings, name="Live", description="The score that follows the hand"
     )
 
     show_overlay: BoolProperty(

@@ -30,7 +30,7 @@ ALLOWED = {
     "unsaved": {"bridge", "changes", "stale"},
     "housing": {"changes", "engine", "roster"},
     "library": set(),
-    "live": {"engine"},
+    "live": {"body", "bridge", "changes", "engine", "motion", "roster", "worker"},
     "overlay": {"engine"},
     "overlay.cache": {"body", "bridge", "engine", "overlay", "roster"},
     "overlay.handler": {"changes", "overlay", "overlay.cache"},
@@ -42,8 +42,9 @@ ALLOWED = {
     "panels": {"choices", "operators", "properties"},
     "commands": {"bridge", "engine", "review", "stale"},
     "__init__": {
-        *("body", "commands", "housing", "library", "motion", "operators", "overlay.handler"),
-        *("panels", "properties", "roster", "stale", "unsaved", "upkeep", "worker"),
+        *("body", "commands", "housing", "library", "live", "motion", "operators"),
+        *("overlay.handler", "panels", "properties", "roster", "stale", "unsaved", "upkeep"),
+        "worker",
     },
     "__main__": {"__init__", "commands", "engine"},
 }

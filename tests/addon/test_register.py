@@ -13,7 +13,7 @@ from blender_addon.overlay import handler
 ROUNDS = 100
 
 
-SIGNALS = (changes.study, changes.picture, changes.moved, changes.rested)
+SIGNALS = (changes.study, changes.picture, changes.moved, changes.rested, changes.live)
 TIMERS = (motion.tell_moved, motion.tell_rested)
 
 
@@ -133,7 +133,7 @@ def test_picture_and_check_follow_a_change(car):
     assert {f.__name__ for f in changes.study.listeners} == {
         *("tag_redraw", "fit_all", "forget", "note"),
     }
-    assert {f.__name__ for f in changes.rested.listeners} == {"check"}
+    assert {f.__name__ for f in changes.rested.listeners} == {"check", "rest"}
 
 
 def test_all_that_is_documented_is_there(addon):

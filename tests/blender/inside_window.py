@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import bpy
+from bl_ext.user_default.perception_entropy.live import latest
 from bl_ext.user_default.perception_entropy.operators import running
 from mathutils import Euler
 
@@ -90,10 +91,30 @@ def report_state():
         "has_result": found.has_result,
         "entropy": found.result_entropy,
         "coverage": found.result_coverage,
+        "stale": found.result_stale,
+        "live": live_reading(scene),
     }
     write("state.json", state)
     report_copied()
     return REPORT_S
+
+
+def live_reading(scene):
+    """What the live score says of the scene."""
+    reading = latest.reading(scene.name)
+    said = {"on": scene.perception_entropy.live.on, "note": latest.note(scene.name)}
+    if reading is None:
+        return said
+    glance = reading.glance
+    before = None if reading.before is None else reading.before.entropy
+    return {
+        **said,
+        "entropy": glance.entropy,
+        "coverage": glance.coverage,
+        "draft": glance.draft,
+        "rested": reading.rested,
+        "before": before,
+    }
 
 
 def better_found(job):

@@ -1,0 +1,161 @@
+"""Live: while something moves a draft of the score follows, once it rests an exact one.
+
+A wish is read inside Blender's own update, which costs a fraction of a millisecond, and scored
+beside the window at once, while Blender draws; the newest wish is the only one that waits. What
+was found is shown by the drawing that is under way, or by the next one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+from bpy.app.handlers import persistent
+
+from .. import body, bridge, changes, motion, worker
+from ..engine import pe
+from . import latest
+from .asking import Evaluators, Wish, priors, read
+
+VEHICLE_MOVES = "The vehicle changes: measured again when it rests"
+
+
+class Seen(NamedTuple):
+    """How often things had moved, the vehicle's version, and what the prior depends on."""
+
+    moves: int
+    version: int
+    prior: Hashable
+
+
+_evaluators = Evaluators()
+_before: dict[str, pe.Glance] = {}
+"""By the scene's name: what the score was before the drag that is under way, or the last one."""
+_seen: dict[str, Seen] = {}
+"""By the scene's name: what there was when it was read."""
+_generation = 0
+"""Rises when nothing that is under way may be shown any more."""
+
+
+@persistent
+def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """After an update: ask for a draft where a sensor has moved."""
+    if bpy.app.background or not scene.perception_entropy.live.on:
+        return
+    seen = _seen.get(scene.name)
+    if seen is None or seen.moves == motion.count():
+        return
+    if seen.version != body.shared.version:
+        latest.set_note(scene.name, VEHICLE_MOVES)
+        return
+    _begin_drag(scene.name)
+    ask(scene, depsgraph, draft=True)
+
+
+def rest() -> None:
+    """All rests: ask for the exact score of every scene that is shown."""
+    for scene in shown_scenes():
+        depsgraph = bridge.view_layer_of(scene).depsgraph
+        if depsgraph is not None:
+            ask(scene, depsgraph, draft=False)
+
+
+def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) -> None:
+    """Read a scene, and have it scored beside the window."""
+    name = scene.name
+    try:
+        wish = read(scene, depsgraph, draft=draft)
+    except pe.InputError as error:
+        say(name, str(error))
+        return
+    seen, known = Seen(motion.count(), body.shared.version, wish.prior_key), _seen.get(name)
+    if known is not None and known.prior != seen.prior:
+        _before.pop(name, None)  # entropies under two priors are no change
+    _seen[name] = seen
+    job, shown = partial(work, name, wish, _generation), lambda _: changes.picture.tell()
+    worker.hand.ask(name, job, shown, partial(failed, name))
+
+
+def work(name: str, wish: Wish, generation: int) -> None:
+    """In the thread: score, and put what was found where the next drawing looks."""
+    glance, before = _evaluators.glance(name, wish), _before.get(name)
+    if generation == _generation:
+        latest.note_reading(name, latest.Reading(glance, before, not wish.draft, wish.rig))
+
+
+def failed(name: str, error: Exception) -> None:
+    """Say what was wrong; a mistake of ours is Blender's to tell as well."""
+    say(name, str(error) if isinstance(error, pe.InputError) else f"Not scored: {error!r}")
+    if not isinstance(error, (pe.InputError, MemoryError)):
+        raise error
+
+
+def say(name: str, line: str) -> None:
+    """Show why there is no newer reading."""
+    drop(name)
+    latest.set_note(name, line)
+    changes.picture.tell()
+
+
+def drop(name: str) -> None:
+    """Have nothing shown any more of what was asked of a scene."""
+    global _generation
+    _generation += 1
+    worker.hand.drop(name)
+
+
+def switched() -> None:
+    """The switch was used: begin where it is on, forget where it is off."""
+    for scene in bpy.data.scenes:
+        if not scene.perception_entropy.live.on:
+            drop(scene.name)
+            latest.forget_reading(scene.name)
+            _seen.pop(scene.name, None)
+            _before.pop(scene.name, None)
+    if not bpy.app.background:
+        rest()
+
+
+def shown_scenes() -> list[bpy.types.Scene]:
+    """Scenes that some window shows and that are live."""
+    windows = (w for manager in bpy.data.window_managers for w in manager.windows)
+    shown = {window.scene.name: window.scene for window in windows}
+    return [scene for scene in shown.values() if scene.perception_entropy.live.on]
+
+
+@persistent
+def forget(*_: object) -> None:
+    """Before another file comes: nothing of this one is kept or delivered."""
+    for name in {*_seen, *_before}:
+        drop(name)
+    _seen.clear()
+    _before.clear()
+    priors.clear()
+    latest.forget()
+
+
+def _begin_drag(name: str) -> None:
+    """Note what the score was, when this is the first move since all rested."""
+    reading = latest.reading(name)
+    if reading is not None and reading.rested:
+        _before[name] = reading.glance
+
+
+def register() -> None:
+    """Start listening; what moves is noted before it is followed."""
+    bpy.app.handlers.depsgraph_update_post.append(follow)
+    bpy.app.handlers.load_pre.append(forget)
+    changes.rested.connect(rest)
+    changes.live.connect(switched)
+
+
+def unregister() -> None:
+    """Stop listening and forget everything; the thread has ended."""
+    changes.live.disconnect(switched)
+    changes.rested.disconnect(rest)
+    bpy.app.handlers.load_pre.remove(forget)
+    bpy.app.handlers.depsgraph_update_post.remove(follow)
+    forget()
+    _evaluators.clear()

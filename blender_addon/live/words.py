@@ -1,0 +1,79 @@
+"""A live reading in words: what a designer reads at a glance. Plain text, no Blender."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..engine import pe
+from .latest import Reading
+
+LEAST_CHANGE = 0.0005
+"""Entropies nearer than this read the same in four places [nats]."""
+LEAST_ZONE_CHANGE = 0.005
+"""A zone is worth a word from here on [nats]."""
+WHERE = {
+    "front": "ahead",
+    "rear": "behind",
+    "left": "on the left",
+    "right": "on the right",
+    "near": "within 10 m",
+    "mid": "10 to 40 m away",
+    "far": "beyond 40 m",
+}
+BETTER, SAME, WORSE = -1, 0, 1
+
+
+class Words(NamedTuple):
+    """What the read-out says: a headline, how it changed, and lines below."""
+
+    headline: str
+    error: str
+    change: str
+    sense: int
+    lines: tuple[str, ...]
+
+
+def words_of(reading: Reading) -> Words:
+    """Put a reading into words."""
+    now, before = reading.glance, reading.before
+    change, sense = change_of(now.entropy, before.entropy) if before else ("", SAME)
+    seen = f"{now.coverage:.1%} of where objects are is seen{points(now, before)}"
+    lines = (seen, *zone_lines(now, before))
+    state = "at rest" if reading.rested else "draft while it moves"
+    return Words(
+        f"{now.entropy:.3f} nats",
+        f"± {now.stderr:.3f}  {state}",
+        change,
+        sense,
+        lines,
+    )
+
+
+def change_of(now: float, before: float) -> tuple[str, int]:
+    """How an entropy changed, and which way; lower is better."""
+    by = now - before
+    if abs(by) < LEAST_CHANGE:
+        return "no change", SAME
+    return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
+
+
+def points(now: pe.Glance | pe.PartScore, before: pe.Glance | pe.PartScore | None) -> str:
+    """How a share changed, in points of a hundred; nothing where that is none."""
+    by = 0.0 if before is None else round(100.0 * (now.coverage - before.coverage), 1)
+    return f" ({by:+.1f})".replace("-", "\N{MINUS SIGN}") if by else ""
+
+
+def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:
+    """Where it got better most, and where worse: at most a line each."""
+    if before is None:
+        return []
+    common = [name for name in now.per_zone if name in before.per_zone]
+    by = {name: now.per_zone[name].entropy - before.per_zone[name].entropy for name in common}
+    found = []
+    for word, sign in (("Better", -1.0), ("Worse", 1.0)):
+        name = max(common, key=lambda each: sign * by[each], default=None)
+        if name is not None and sign * by[name] >= LEAST_ZONE_CHANGE:
+            part = now.per_zone[name]
+            seen = f"{part.coverage:.0%} seen{points(part, before.per_zone[name])}"
+            found.append(f"{word} {WHERE.get(name, name)}: {seen}")
+    return found

@@ -1,0 +1,272 @@
+"""The live score: drafts while the hand moves, exact once it rests, and nothing left behind."""
+
+import threading
+from dataclasses import replace
+
+import bpy
+import pytest
+
+import blender_addon
+from blender_addon import bridge, changes, motion, worker
+from blender_addon.engine import pe
+from blender_addon.live import asking, latest, readout, session
+from tests.addon import scenes
+
+SAMPLES = 4096
+
+
+class Window:
+    """Blender's own as motion and session see it, with a window and no clock."""
+
+    data, types = bpy.data, bpy.types
+
+    class app:
+        background, handlers = False, bpy.app.handlers
+
+        class timers:
+            is_registered = staticmethod(lambda _: True)
+            unregister = staticmethod(lambda _: None)
+
+
+@pytest.fixture
+def live(monkeypatch, car):
+    """The car with a second sensor, in a window, the live score switched on."""
+    scenes.add_sensor("front", model="Camera 60 deg", location=(1.9, 0.0, 1.2))
+    monkeypatch.setattr(asking, "SAMPLES", SAMPLES)
+    for module in (motion, session):
+        monkeypatch.setattr(module, "bpy", Window)
+    drag(car.objects["roof"])  # from here on it is known what there is
+    car.perception_entropy.live.on = True
+    return car
+
+
+def drag(obj, by=0.05):
+    obj.location.x += by
+    bpy.context.view_layer.update()
+
+
+def rest():
+    changes.rested.tell()
+
+
+def reading(scene):
+    return latest.reading(scene.name)
+
+
+def exact():
+    """The score of the scene's study on as many voxels, by an evaluator of its own."""
+    study = replace(scenes.study(), samples=SAMPLES)
+    return study.evaluator().score(study.rig)
+
+
+def told(glance):
+    return {name: getattr(glance, name) for name in ("entropy", "coverage", "stderr", "per_zone")}
+
+
+def test_it_begins_with_an_exact_score(live):
+    assert told(reading(live).glance) == told(exact())
+    assert reading(live).rested and not reading(live).glance.draft
+    assert reading(live).before is None
+
+
+def test_a_draft_follows_and_the_rest_is_exact_to_the_bit(live):
+    start = reading(live).glance
+    for _ in range(3):
+        drag(live.objects["roof"])
+        assert reading(live).glance.draft and not reading(live).rested
+        assert reading(live).rig["roof"].pose == scenes.study().rig["roof"].pose
+        assert reading(live).before == start
+    rest()
+    assert told(reading(live).glance) == told(exact()) != told(start)
+    assert reading(live).rested and reading(live).before == start
+
+
+def test_the_next_drag_is_compared_with_where_it_began(live):
+    drag(live.objects["roof"])
+    rest()
+    second = reading(live).glance
+    drag(live.objects["roof"])
+    assert reading(live).before == second
+    drag(live.objects["roof"])
+    assert reading(live).before == second
+
+
+def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):
+    measured = []
+    kernel = type(kernels(live)["camera"])
+    monkeypatch.setattr(kernel, "measure", lambda *_: measured.append("camera"))
+    monkeypatch.setattr(bridge, "vehicle_from_collection", lambda *_: pytest.fail("read again"))
+    before = session._evaluators._kept[live.name][1]
+    drag(live.objects["roof"])
+    rest()
+    assert not measured and session._evaluators._kept[live.name][1] is before
+
+
+def kernels(scene):
+    """What measures each kind, inside the evaluator that is kept."""
+    return session._evaluators._kept[scene.name][1]._scorer._sensors._kernels
+
+
+def test_what_is_no_sensor_asks_for_nothing(live, monkeypatch):
+    monkeypatch.setattr(worker.hand, "ask", lambda *_: pytest.fail("asked"))
+    lamp = bpy.data.objects.new("lamp", None)
+    live.collection.objects.link(lamp)
+    drag(lamp)
+    live.frame_current = 1
+    bpy.context.view_layer.update()
+
+
+def test_a_vehicle_that_moves_is_read_once_it_rests(live, monkeypatch):
+    before = reading(live)
+    with monkeypatch.context() as while_it_moves:
+        read = "vehicle_from_collection"
+        while_it_moves.setattr(bridge, read, lambda *_: pytest.fail("read while it moves"))
+        drag(live.objects["cabin"])
+        assert latest.note(live.name) == session.VEHICLE_MOVES
+    rest()
+    assert latest.note(live.name) == "" and reading(live).glance != before.glance
+    assert told(reading(live).glance) == told(exact())
+
+
+def test_points_that_move_count(live):
+    before = reading(live).glance
+    live.objects["cabin"].data.vertices[6].co.z += 1.0
+    live.objects["cabin"].data.update()
+    bpy.context.view_layer.update()
+    assert latest.note(live.name) == session.VEHICLE_MOVES
+    rest()
+    assert told(reading(live).glance) == told(exact()) != told(before)
+
+
+def test_what_is_wrong_is_said_in_a_line_until_it_is_mended(live):
+    roof = live.objects["roof"]
+    roof.scale = (2.0, 2.0, 2.0)
+    bpy.context.view_layer.update()
+    assert latest.note(live.name).startswith("scene: sensor 'roof': scale: expected 1")
+    rest()
+    assert "\n" not in latest.note(live.name)
+    roof.scale = (1.0, 1.0, 1.0)
+    bpy.context.view_layer.update()
+    rest()
+    assert latest.note(live.name) == "" and told(reading(live).glance) == told(exact())
+
+
+def test_another_prior_is_no_change_of_the_sensors(live):
+    drag(live.objects["roof"])
+    rest()
+    live.perception_entropy.prior = "uniform"
+    rest()
+    assert reading(live).before is None and told(reading(live).glance) == told(exact())
+
+
+def test_a_sensor_deleted_in_the_middle_of_a_drag(live):
+    drag(live.objects["roof"])
+    bpy.data.objects.remove(live.objects["roof"])
+    bpy.context.view_layer.update()
+    rest()
+    assert next(iter(reading(live).rig.sensors)).name == "front"
+    assert told(reading(live).glance) == told(exact())
+    bpy.data.objects.remove(live.objects["front"])
+    bpy.context.view_layer.update()
+    rest()
+    assert "at least one visible sensor" in latest.note(live.name)
+
+
+def test_the_vehicle_deleted_in_the_middle_of_a_drag(live):
+    drag(live.objects["roof"])
+    bpy.data.collections.remove(bpy.data.collections["Car"])
+    bpy.context.view_layer.update()
+    drag(live.objects["roof"])
+    rest()
+    assert "vehicle collection: expected a collection" in latest.note(live.name)
+
+
+def test_undo_in_the_middle_of_a_drag(live):
+    for message in ("before", "after"):
+        drag(live.objects["roof"])
+        bpy.ops.ed.undo_push(message=message)
+    bpy.ops.ed.undo()
+    rest()
+    scene = bpy.context.scene
+    assert told(reading(scene).glance) == told(exact())
+
+
+def test_another_file_in_the_middle_of_a_drag(live):
+    drag(live.objects["roof"])
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert reading(bpy.context.scene) is None and not session._seen and not session._before
+    rest()
+    assert reading(bpy.context.scene) is None
+
+
+def test_switched_off_it_forgets_and_follows_no_more(live, monkeypatch):
+    live.perception_entropy.live.on = False
+    assert reading(live) is None and not session._seen
+    monkeypatch.setattr(worker.hand, "ask", lambda *_: pytest.fail("asked"))
+    drag(live.objects["roof"])
+    rest()
+    assert reading(live) is None
+
+
+def test_of_two_scenes_each_has_its_own(live):
+    other = bpy.data.scenes.new("other")
+    other.perception_entropy.live.on = True
+    assert reading(other) is None, "no window shows it"
+    bpy.context.window.scene = other
+    rest()
+    assert "vehicle collection" in latest.note("other") and latest.note(live.name) == ""
+    live.name = "renamed"
+    bpy.context.window.scene = live
+    rest()
+    assert told(reading(live).glance) == told(exact())
+
+
+def test_the_extension_disabled_in_the_middle_of_a_drag(live):
+    before = threading.active_count()
+    drag(live.objects["roof"])
+    blender_addon.unregister()
+    try:
+        assert not latest._readings and not latest._notes and not latest._scored
+        assert not session._evaluators._kept and not session._seen and not readout._handles
+        assert session.follow not in bpy.app.handlers.depsgraph_update_post
+        assert session.rest not in changes.rested.listeners
+        assert threading.active_count() <= before
+    finally:
+        blender_addon.register()
+
+
+def test_what_is_dropped_while_it_is_worked_out_is_never_shown(live):
+    wish = asking.read(live, bpy.context.evaluated_depsgraph_get(), draft=False)
+    latest.forget_reading(live.name)
+    asked_at = session._generation
+    session.drop(live.name)
+    session.work(live.name, wish, asked_at)
+    assert reading(live) is None
+    session.work(live.name, wish, session._generation)
+    assert reading(live) is not None
+
+
+def test_a_mistake_of_ours_is_shown_and_told(live, monkeypatch):
+    def broken(*_):
+        raise ValueError("odd")
+
+    monkeypatch.setattr(session, "work", broken)
+    with pytest.raises(ValueError, match="odd"):
+        rest()
+    assert latest.note(live.name) == "Not scored: ValueError('odd')"
+
+
+def test_without_a_window_nothing_follows(car):
+    car.perception_entropy.live.on = True
+    drag(car.objects["roof"])
+    assert reading(car) is None
+
+
+def test_the_score_s_ground_map_is_kept_in_memory_for_the_views(car):
+    bpy.ops.pe.score()
+    found = latest.scored(car.name)
+    assert found.signature == car.perception_entropy.result_signature
+    assert found.score.entropy == pytest.approx(car.perception_entropy.result_entropy, abs=1e-6)
+    assert isinstance(found.study, pe.Study)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert latest.scored(bpy.context.scene.name) is None

@@ -1,0 +1,82 @@
+"""What the live read-out says, word by word."""
+
+import pytest
+
+from blender_addon.engine import pe
+from blender_addon.live import latest, readout, words
+
+
+def glance(entropy=3.0, coverage=0.85, zones=()):
+    per_zone = {name: pe.PartScore(h, c, 0.5) for name, h, c in zones}
+    return pe.Glance(entropy, coverage, 0.0224, {}, per_zone, 32768)
+
+
+def said(now, before=None, rested=True):
+    return words.words_of(latest.Reading(now, before, rested, None))
+
+
+def test_the_first_reading_has_nothing_to_compare_with():
+    found = said(glance())
+    assert found.headline == "3.000 nats" and found.error == "± 0.022  at rest"
+    assert (found.change, found.sense) == ("", words.SAME)
+    assert found.lines == ("85.0% of where objects are is seen",)
+
+
+def test_a_draft_says_so():
+    assert said(glance(), rested=False).error == "± 0.022  draft while it moves"
+
+
+@pytest.mark.parametrize(
+    ("before", "change", "sense"),
+    [
+        (3.1, "0.100 better", words.BETTER),
+        (2.95, "0.050 worse", words.WORSE),
+        (3.0004, "no change", words.SAME),
+    ],
+)
+def test_lower_is_better(before, change, sense):
+    found = said(glance(), glance(before))
+    assert (found.change, found.sense) == (change, sense)
+
+
+def test_coverage_changes_in_points():
+    assert said(glance(), glance(coverage=0.838)).lines[0].endswith("is seen (+1.2)")
+    assert said(glance(), glance(coverage=0.862)).lines[0].endswith("is seen (\N{MINUS SIGN}1.2)")
+    assert said(glance(), glance(coverage=0.8502)).lines[0].endswith("is seen")
+
+
+def test_the_zones_that_changed_most_are_named():
+    before = glance(zones=[("front", 3.0, 0.9), ("left", 2.0, 0.8), ("far", 5.0, 0.7)])
+    now = glance(zones=[("front", 2.8, 0.94), ("left", 2.3, 0.72), ("far", 4.99, 0.7)])
+    assert said(now, before).lines[1:] == (
+        "Better ahead: 94% seen (+4.0)",
+        "Worse on the left: 72% seen (\N{MINUS SIGN}8.0)",
+    )
+    assert said(before, before).lines[1:] == ()
+
+
+def test_a_zone_that_came_or_went_is_no_change():
+    assert (
+        said(glance(zones=[("front", 1.0, 0.9)]), glance(zones=[("rear", 9.0, 0.1)])).lines[1:]
+        == ()
+    )
+
+
+def test_the_read_out_says_what_is_in_the_way_below_what_was():
+    reading = latest.Reading(glance(), None, True, None)
+    line = "scene: sensor 'roof': scale: expected 1 in each direction, found 2, 2, 2"
+    found = readout.lines_of(reading, line)
+    rows = [text for each in found for text, color in each.words if color == readout.ALERT]
+    assert " ".join(rows) == line and all(len(row) <= readout.MOST_COLUMNS for row in rows)
+    assert found[0].words[0][0] == "3.000 nats"
+    assert readout.lines_of(None, "")[0].words[0][0] == "Live: scoring ..."
+
+
+def test_better_and_worse_differ_by_arrow_and_colour():
+    lines = [
+        readout.lines_of(latest.Reading(glance(), glance(h), True, None), "")[0].words[1]
+        for h in (3.1, 2.9)
+    ]
+    (better, blue), (worse, orange) = lines
+    assert better.startswith("\N{DOWNWARDS ARROW}") and worse.startswith("\N{UPWARDS ARROW}")
+    assert blue[2] > blue[0] and orange[0] > orange[2]

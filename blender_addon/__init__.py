@@ -5,8 +5,10 @@ from __future__ import annotations
 import bpy
 
 from . import (
+    asking,
     body,
     commands,
+    explaining,
     library,
     live,
     motion,
@@ -37,6 +39,8 @@ def register() -> None:
     stale.register()
     unsaved.register()
     live.register()
+    explaining.register()
+    asking.register()
     overlay.register()
     fitting.register()
     commands.register()
@@ -52,6 +56,8 @@ def unregister() -> None:
     fitting.unregister()
     overlay.unregister()
     live.unregister()
+    asking.unregister()
+    explaining.unregister()
     unsaved.unregister()
     stale.unregister()
     motion.unregister()

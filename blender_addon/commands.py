@@ -93,8 +93,10 @@ def run_job(args: argparse.Namespace) -> app.Answer:
         with quiet_blender():
             leave_scene(outcome, data, folder, render=not args.no_render)
 
+    job = args.job(study, args.workers)
+    job.notes = bridge.missing_pieces(bpy.context.scene)
     return app.carry_out(
-        args.job(study, args.workers),
+        job,
         output,
         as_json=args.json,
         host=bridge.blender_version(),

@@ -2,7 +2,8 @@
 
 from .fingerprint import Fingerprint, fingerprint, signature
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
-from .outcome import blender_version, store_outcome, store_warnings
+from .oddities import missing_pieces, scene_advice
+from .outcome import blender_version, store_outcome, store_warnings, store_words
 from .placeable import check_placeable
 from .prior import prior_from_scene, prior_key
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
@@ -10,6 +11,7 @@ from .rig import (
     mounted_on_sensor,
     place_rig,
     pose_of,
+    possible_sensors,
     rig_from_objects,
     sensor_from_object,
     sensor_objects,
@@ -54,9 +56,11 @@ __all__ = [
     "fingerprint",
     "keep_score",
     "keep_search",
+    "missing_pieces",
     "mounted_on_sensor",
     "place_rig",
     "pose_of",
+    "possible_sensors",
     "prior_from_scene",
     "prior_key",
     "put_variant",
@@ -66,6 +70,7 @@ __all__ = [
     "rig_of",
     "same_score",
     "same_variant",
+    "scene_advice",
     "score_of",
     "sensor_from_object",
     "sensor_objects",
@@ -74,6 +79,7 @@ __all__ = [
     "stand",
     "store_outcome",
     "store_warnings",
+    "store_words",
     "study_from_scene",
     "study_of_variant",
     "take_scene_s_score",

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import bpy
 
-from ..engine import pe
+from ..engine import advice, pe
+from .oddities import DRIVER, MISSING
 from .rig import sensor_objects
 
 PARTS_NAMED = 3
 """How many parts of the vehicle the panel names as stopping beams."""
+LEAST_SHARE = 5e-4
+"""A part that stops less of what a sensor sees is not named: it would read 0.0%."""
+MARKING = (MISSING, DRIVER)
+"""Warnings that mark a result: what was scored is not what was meant."""
 
 
 def store_outcome(
@@ -33,13 +38,47 @@ def store_outcome(
     settings.result_stderr = outcome.after.stderr
     settings.result_json = json.dumps(pe.result_dict(outcome, blender_version()))
     store_warnings(settings, outcome.warnings)
+    settings.result_missing = "\n".join(w.text for w in outcome.warnings if w.code in MARKING)
     settings.result_signature = signature
     for obj in sensor_objects(scene) if sensors is None else sensors:
         _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
         obj.perception_entropy.result_of = obj.name
         obj.perception_entropy.result_run = signature
+    store_words(scene, outcome.study, outcome.after)
     settings.result_stale = False
     settings.has_result = True
+
+
+def store_words(
+    scene: bpy.types.Scene,
+    study: pe.Study,
+    score: pe.Score,
+    seen: advice.Outlook | None = None,
+) -> None:
+    """Keep a result in words: the rig's with the scene, each sensor's with its object."""
+    lines = advice.words(score, study.rig, study.vehicle, seen)
+    of_rig = lines[: len(lines) - len(score.per_sensor)]
+    scene.perception_entropy.result_words = "\n".join(of_rig)
+    for name, own in score.per_sensor.items():
+        obj = scene.objects.get(name)
+        if obj is not None and obj.perception_entropy.is_sensor:
+            zones = None if seen is None else seen.shares.zones[name]
+            alone = len(score.per_sensor) == 1
+            sensor = study.rig[name]
+            stopped = advice.stopped_words(sensor, own, study.vehicle)
+            told = advice.sensor_words(own, sensor, study.vehicle, zones, alone=alone)
+            shares = [t.partition(": ")[0] if t == stopped else t for t in told]  # parts: below
+            obj.perception_entropy.words = "\n".join(shares)
+            _store_parts(obj.perception_entropy, advice.stopped_shares(sensor, own, study.vehicle))
+
+
+def _store_parts(settings: bpy.types.PropertyGroup, shares: Mapping[str, float]) -> None:
+    """Keep which parts of the vehicle are in a sensor's way, most first."""
+    settings.stopped_parts.clear()
+    for name, share in sorted(shares.items(), key=lambda item: -item[1])[:PARTS_NAMED]:
+        if share >= LEAST_SHARE:
+            row = settings.stopped_parts.add()
+            row.name, row.share = name, share
 
 
 def store_warnings(settings: bpy.types.PropertyGroup, told: Sequence[pe.Advice]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping, Sequence
 
@@ -59,6 +60,18 @@ def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) ->
     except pe.InputError as error:
         field = f"sensor {obj.name!r}: {error.field}"
         raise pe.InputError("scene", field, error.expected, error.found) from None
+
+
+def possible_sensors(
+    objects: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph
+) -> list[pe.Sensor]:
+    """Return the visible ones of a scene's sensors, without those that a score would refuse."""
+    found = []
+    for obj in objects:
+        if obj.visible_get(view_layer=depsgraph.view_layer):
+            with contextlib.suppress(pe.InputError):
+                found.append(sensor_from_object(obj, depsgraph))
+    return found
 
 
 def free_axes(obj: bpy.types.Object) -> tuple[str, ...]:

@@ -3,11 +3,25 @@
 Panels take from here what there is to press and to choose from.
 """
 
-from . import add_sensor, comparing, export, focus, job, review, running, select, variants
+from . import (
+    add_sensor,
+    ask_place,
+    comparing,
+    export,
+    focus,
+    job,
+    mending,
+    review,
+    running,
+    select,
+    variants,
+)
+from .ask_place import answer
+from .mending import LABELS as FIX_LABELS
 from .mounting import Offer, offers
 from .select import listed_sensors
 
-__all__ = ["CLASSES", "Offer", "listed_sensors", "offers", "running"]
+__all__ = ["CLASSES", "FIX_LABELS", "Offer", "answer", "listed_sensors", "offers", "running"]
 
 CLASSES = (
     *add_sensor.CLASSES,
@@ -18,4 +32,6 @@ CLASSES = (
     *review.CLASSES,
     *variants.CLASSES,
     *comparing.CLASSES,
+    *mending.CLASSES,
+    *ask_place.CLASSES,
 )

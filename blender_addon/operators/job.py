@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import body, bridge, roster, stale
+from .. import body, bridge, explaining, roster, stale
 from ..engine import pe
 from . import running
 from .known import known_score, remember
@@ -120,11 +120,9 @@ class PE_OT_score(JobOperator, bpy.types.Operator):
     bl_label = "Score"
     bl_options = {"REGISTER", "UNDO"}
 
-    def job_of(
-        self, _scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint
-    ) -> pe.Job:
+    def job_of(self, scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> pe.Job:
         """Score it, whatever is known: who presses the button wants it done."""
-        return pe.ScoreJob(study)
+        return noted(pe.ScoreJob(study), scene)
 
     def write(
         self, scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
@@ -150,7 +148,7 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
     def job_of(self, scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> pe.Job:
         """Search, unless that is of no use; the start's score is not made again if it is known."""
         bridge.check_placeable(scene, study)
-        return pe.OptimizeJob(study, before=known_score(scene, study, taken))
+        return noted(pe.OptimizeJob(study, before=known_score(scene, study, taken)), scene)
 
     def write(
         self, scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
@@ -172,10 +170,17 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
         return f"Perception entropy {before:.4f} to {after:.4f} nats ({best})"
 
 
+def noted(job: pe.Job, scene: bpy.types.Scene) -> pe.Job:
+    """Return a job that tells of what the scene lacks, beside its own warnings."""
+    job.notes = bridge.missing_pieces(scene)
+    return job
+
+
 def keep(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
     """Keep a result in the scene, and its arrays for this session."""
     bridge.store_outcome(scene, outcome, signature, roster.sensors(scene))
     remember(scene, outcome, signature)
+    explaining.look_round(scene, outcome, signature)
 
 
 class PE_OT_cancel(bpy.types.Operator):

@@ -57,7 +57,10 @@ class Running:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
         entropy = self.progress.entropy
-        return stage if entropy is None else f"{stage}  {entropy:.4f}"
+        if entropy is None:
+            return stage
+        sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
+        return f"{stage}, best {entropy:.3f}{' on a sample' if sampled else ''}"
 
     @property
     def on_escape(self) -> str:

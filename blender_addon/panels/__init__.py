@@ -1,11 +1,12 @@
 """The sidebar tab: draws what is stored, computes nothing. Panels stand in the order of CLASSES."""
 
-from . import export, focus, main, overlay, part, search, sensor, variants
+from . import explain, export, focus, main, overlay, part, search, sensor, variants
 
 CLASSES = (
     *main.CLASSES,
     *sensor.CLASSES,
     *part.CLASSES,
+    *explain.CLASSES,
     *variants.CLASSES,
     *search.CLASSES,
     *focus.CLASSES,

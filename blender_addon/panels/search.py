@@ -19,8 +19,17 @@ class PE_PT_search(Tab, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
         boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
-        figures = ("candidates", "seed", "search_samples", "score_samples")
-        draw_properties(self.layout, settings, ("prior", *boxes, *figures))
+        draw_properties(self.layout, settings, ("prior", *boxes, "candidates", "seed"))
+        for name in ("search_samples", "score_samples"):
+            draw_voxels(self.layout, settings, name)
+
+
+def draw_voxels(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str) -> None:
+    """Draw a number of voxels, and beside it that 0 means all of them."""
+    row = layout.row(align=True)
+    row.prop(settings, name)
+    if not getattr(settings, name):
+        row.label(text="All")
 
 
 CLASSES = (PE_PT_search,)

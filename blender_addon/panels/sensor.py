@@ -1,4 +1,4 @@
-"""Settings of the sensor that is selected, and what the last result says of it."""
+"""Settings of the sensor that is selected."""
 
 from __future__ import annotations
 
@@ -30,18 +30,6 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         row = layout.row(align=True)
         for index, label in enumerate(AXIS_LABELS):
             row.prop(settings, "free", index=index, text=label, toggle=True)
-        if settings.has_result:
-            draw_sensor_result(layout, settings)
-
-
-def draw_sensor_result(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw what the last result says of one sensor."""
-    column = layout.box().column(align=True)
-    column.label(text=f"Alone  {settings.entropy:.4f} nats, covers {settings.coverage:.1%}")
-    if settings.stopped:
-        share = settings.stopped / settings.beams
-        column.label(text=f"The vehicle stops {share:.1%} of its beams:")
-        column.label(text=settings.stopped_text, icon="BLANK1")
 
 
 CLASSES = (PE_PT_sensor,)

@@ -14,7 +14,7 @@ from .live import PE_LiveSettings
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, DEFAULT_MODEL, PE_ObjectSettings
 from .variants import PE_Variant, PE_VariantSensor
-from .warnings import PE_Warning
+from .warnings import PE_StoppingPart, PE_Warning
 
 __all__ = [
     "AXIS_LABELS",
@@ -31,6 +31,7 @@ CLASSES = (
     PE_VariantSensor,
     PE_Variant,
     PE_Warning,
+    PE_StoppingPart,
     PE_SceneSettings,
     PE_ObjectSettings,
 )

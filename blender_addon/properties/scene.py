@@ -140,6 +140,12 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
         name="Stale", description="The scene has changed since the result was made"
     )
 
+    result_words: StringProperty(
+        name="In Words", description="The last result in words, a line each"
+    )
+    result_missing: StringProperty(
+        name="Missing", description="What was missing when it was scored, a line each"
+    )
     result_warnings: CollectionProperty(
         type=PE_Warning, name="Warnings", description="What the last score found odd"
     )

@@ -6,6 +6,7 @@ import bpy
 from bpy.props import (
     BoolProperty,
     BoolVectorProperty,
+    CollectionProperty,
     FloatProperty,
     FloatVectorProperty,
     IntProperty,
@@ -14,6 +15,7 @@ from bpy.props import (
 
 from ..engine import search
 from .callbacks import changed, model_suggestions, redraw
+from .warnings import PE_StoppingPart
 
 DEFAULT_MODEL = "Pandar64"
 AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
@@ -89,6 +91,13 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
     stopped: IntProperty(name="Stopped", description="Beams that the vehicle itself stops")
     stopped_text: StringProperty(
         name="Stopped By", description="Which parts of the vehicle stop how many beams"
+    )
+
+    words: StringProperty(
+        name="In Words", description="What the last result says of this sensor, a line each"
+    )
+    stopped_parts: CollectionProperty(
+        type=PE_StoppingPart, name="Stopped By", description="Parts of the vehicle in its way"
     )
 
     see_through: BoolProperty(

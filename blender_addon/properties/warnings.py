@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import FloatVectorProperty, IntProperty, StringProperty
+from bpy.props import FloatProperty, FloatVectorProperty, IntProperty, StringProperty
 
 
 class PE_Warning(bpy.types.PropertyGroup):
@@ -18,3 +18,11 @@ class PE_Warning(bpy.types.PropertyGroup):
         name="Amount", description="How much of the fix: degrees, a factor, metres", size=3
     )
     amounts: IntProperty(name="Amounts", description="How many of these numbers count", max=3)
+
+
+class PE_StoppingPart(bpy.types.PropertyGroup):
+    """A part of the vehicle that is in a sensor's way; its name is the part's."""
+
+    share: FloatProperty(
+        name="Share", description="Share of what the sensor sees that this part stops, 0 to 1"
+    )

@@ -90,6 +90,8 @@ class Job:
         self.study, self.workers = study, workers
         self.outcome: Outcome | None = None
         self.stopped = self.dropped = False
+        self.notes: tuple[Advice, ...] = ()
+        """What whoever made the study has to tell of it: it comes before the warnings."""
         self._started = time.monotonic()
 
     def __iter__(self) -> Iterator[Progress]:
@@ -165,7 +167,8 @@ class Job:
         """Look a study over in a thread, yielding `waiting` until it is done."""
 
         def work() -> tuple[Advice, ...]:
-            return warnings(study.rig, study.vehicle, study.space, study.prior, score)
+            told = warnings(study.rig, study.vehicle, study.space, study.prior, score)
+            return (*self.notes, *told)
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
 

@@ -261,7 +261,9 @@ def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeyp
     bpy.ops.pe.score()
     known = latest.scored(car.name).score
     made = []
-    monkeypatch.setattr(job.pe, "OptimizeJob", lambda study, before: made.append(before))
+    monkeypatch.setattr(
+        job.pe, "OptimizeJob", lambda study, before: made.append(before) or SimpleNamespace()
+    )
     act = acting(job.PE_OT_optimize)(SimpleNamespace())
     act._task(Window(car))
     assert made == [known]

@@ -133,7 +133,9 @@ def test_picture_and_check_follow_a_change(car):
     assert {f.__name__ for f in changes.study.listeners} == {
         *("tag_redraw", "fit_all", "forget", "note"),
     }
-    assert {f.__name__ for f in changes.rested.listeners} == {"check", "rest"}
+    assert {f.__name__ for f in changes.rested.listeners} == {
+        *("check", "rest", "look_soon", "ask_again"),
+    }
 
 
 def test_all_that_is_documented_is_there(addon):

@@ -79,12 +79,11 @@ def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
 def test_the_panel_shows_what_was_stored(ring_kind, ring):
     bpy.ops.pe.score()
     layout, own = Layout(), ring.perception_entropy
-    panels.main.draw_sensors(layout, bpy.context)
-    assert layout.texts("operator") == ["bumper", "roof"]
-    assert layout.texts("label")[:2] == [PRESET, f"{own.entropy:.2f}"]
-    layout = Layout()
-    panels.sensor.draw_sensor_result(layout, own)
-    assert layout.texts("label") == [f"Alone  {own.entropy:.4f} nats, covers {own.coverage:.1%}"]
+    panels.sensors.draw_sensors(layout, bpy.context)
+    assert list(filter(None, layout.texts("operator"))) == ["bumper", "roof"]
+    shown = layout.texts("label")
+    assert shown[shown.index(PRESET) + 1] == f"{own.entropy:.2f}"
+    assert own.words.startswith("without it ")
 
 
 def test_the_search_moves_it(ring_kind, ring):

@@ -1,0 +1,83 @@
+"""What is odd, and what a score means in words: looked into beside the window.
+
+Warnings are looked for a while after things have come to rest, so that they are in nobody's way
+who goes on moving. How far a rig sees is worked out after a score.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from . import body, bridge, changes, roster
+from .engine import advice, pe, sight
+from .worker import desk
+
+PATIENCE_S = 1.0
+"""How long things have to rest until they are looked over."""
+WARNINGS, WORDS = "warnings", "words"
+"""Topics of the work."""
+
+
+def look_soon() -> None:
+    """Look for what is odd a while from now, if nothing moves until then."""
+    if not bpy.app.background and not bpy.app.timers.is_registered(look):
+        bpy.app.timers.register(look, first_interval=PATIENCE_S)
+
+
+def not_yet() -> None:
+    """Something moves: wait on."""
+    if bpy.app.timers.is_registered(look):
+        bpy.app.timers.unregister(look)
+
+
+def look() -> None:
+    """Look for what is odd in the scene that is open; tell it in its settings."""
+    scene = bpy.context.scene
+    if not bridge.sensor_objects(scene) and scene.perception_entropy.vehicle is None:
+        return
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    own, name = bridge.scene_advice(scene), scene.name
+    vehicle = body.shared.read(scene, depsgraph).vehicle
+    sensors = bridge.possible_sensors(roster.sensors(scene), depsgraph)
+
+    def work() -> tuple[pe.Advice, ...]:
+        return advice.warnings(sensors, vehicle, pe.PerceptionSpace(), pe.Prior.uniform())
+
+    def deliver(found: tuple[pe.Advice, ...]) -> None:
+        if name in bpy.data.scenes:
+            bridge.store_warnings(bpy.data.scenes[name].perception_entropy, (*own, *found))
+            changes.picture.tell()
+
+    desk.ask(WARNINGS, work, deliver, lambda _: None)
+
+
+def look_round(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
+    """Tell in words, soon, how far the rig of a result sees; without a window nobody reads it."""
+    if bpy.app.background:
+        return
+    study, score, name = outcome.study, outcome.after, scene.name
+
+    def work() -> advice.Outlook:
+        looking = sight.Sight(study.space, study.prior, study.vehicle, model=study.model)
+        return advice.outlook(looking, study.rig)
+
+    def deliver(seen: advice.Outlook) -> None:
+        scene = bpy.data.scenes.get(name)
+        if scene is not None and scene.perception_entropy.result_signature == signature:
+            bridge.store_words(scene, study, score, seen)
+            changes.picture.tell()
+
+    desk.ask(WORDS, work, deliver, lambda _: None)
+
+
+def register() -> None:
+    """Start listening."""
+    changes.moved.connect(not_yet)
+    changes.rested.connect(look_soon)
+
+
+def unregister() -> None:
+    """Stop listening, also to the look that may be due."""
+    changes.rested.disconnect(look_soon)
+    changes.moved.disconnect(not_yet)
+    not_yet()

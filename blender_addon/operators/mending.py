@@ -1,0 +1,167 @@
+"""Mend what a warning tells of, where it is known how: turn, move or scale the vehicle, ..."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import bpy
+from bpy.props import EnumProperty, FloatVectorProperty, StringProperty
+from mathutils import Matrix, Vector
+
+from .. import bridge, changes
+from ..engine import pe
+from .reports import REFUSALS, refuse, tell
+
+Amount = tuple[float, float, float]
+NEAR_M = 0.5
+"""A sensor this near to the vehicle's box goes with it when that is turned or moved."""
+
+LABELS = {
+    "turn_vehicle": "Turn the Vehicle",
+    "scale_vehicle": "Scale the Vehicle",
+    "move_vehicle": "Move the Vehicle",
+    "roll_sensor": "Turn It Upright",
+    "apply_scale": "Apply Its Scale",
+    "metric_units": "Set Units to Metres",
+}
+"""What the button of a fix says."""
+
+
+class PE_OT_mend(bpy.types.Operator):
+    """Mend what this warning tells of. Sensors on the vehicle go with it"""
+
+    bl_idname = "pe.mend"
+    bl_label = "Mend"
+    bl_options = {"REGISTER", "UNDO"}
+
+    fix: EnumProperty(
+        items=[(key, label, label) for key, label in LABELS.items()],
+        name="Fix",
+        description="What is done",
+    )
+    subject: StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle")
+    amount: FloatVectorProperty(name="Amount", description="How much of it", size=3)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("This is mended in Object Mode")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            FIXES[self.fix](context, self.subject, tuple(self.amount))
+        except REFUSALS as error:
+            return refuse(self, error)
+        context.view_layer.update()
+        context.scene.perception_entropy.result_warnings.clear()  # they are looked for anew
+        changes.study.tell()
+        tell(self, "INFO", f"{LABELS[self.fix]}: done")
+        return {"FINISHED"}
+
+
+def turn_vehicle(context: bpy.types.Context, _subject: str, amount: Amount) -> None:
+    """Turn it about the vertical through the origin, counter-clockwise [deg]."""
+    _transform(context, Matrix.Rotation(math.radians(amount[0]), 4, "Z"))
+
+
+def move_vehicle(context: bpy.types.Context, _subject: str, amount: Amount) -> None:
+    """Move it [m]."""
+    _transform(context, Matrix.Translation(amount))
+
+
+def scale_vehicle(context: bpy.types.Context, _subject: str, amount: Amount) -> None:
+    """Scale it about the origin; sensors are as large as they are."""
+    _transform(context, Matrix.Scale(amount[0], 4))
+
+
+def roll_sensor(context: bpy.types.Context, subject: str, amount: Amount) -> None:
+    """Turn a sensor about where it looks [deg]."""
+    obj = _sensor(context, subject)
+    obj.matrix_world = obj.matrix_world @ Matrix.Rotation(math.radians(amount[0]), 4, "X")
+
+
+def apply_scale(context: bpy.types.Context, subject: str, _amount: Amount) -> None:
+    """Give a sensor the scale 1, wherever its own comes from."""
+    obj = _sensor(context, subject)
+    place, rotation, _ = obj.matrix_world.decompose()
+    obj.matrix_world = Matrix.LocRotScale(place, rotation, Vector((1.0, 1.0, 1.0)))
+    context.view_layer.update()
+
+
+def metric_units(context: bpy.types.Context, _subject: str, _amount: Amount) -> None:
+    """Have one unit be one metre; nothing is moved or scaled."""
+    units = context.scene.unit_settings
+    units.system, units.scale_length, units.length_unit = "METRIC", 1.0, "METERS"
+
+
+FIXES: dict[str, Callable[[bpy.types.Context, str, Amount], None]] = {
+    "turn_vehicle": turn_vehicle,
+    "scale_vehicle": scale_vehicle,
+    "move_vehicle": move_vehicle,
+    "roll_sensor": roll_sensor,
+    "apply_scale": apply_scale,
+    "metric_units": metric_units,
+}
+
+
+def _transform(context: bpy.types.Context, change: Matrix) -> None:
+    """Carry the vehicle's outermost objects, and the sensors on it, somewhere else."""
+    vehicle = context.scene.perception_entropy.vehicle
+    if vehicle is None:
+        raise pe.InputError("scene", "vehicle collection", "a collection", "none chosen")
+    members = list(vehicle.all_objects)
+    outermost = [obj for obj in members if obj.parent not in members]
+    for obj in outermost:
+        if obj.library is not None:
+            expected, found = "an object of this file", f"linked from {obj.library.filepath}"
+            raise pe.InputError("scene", f"vehicle object {obj.name!r}", expected, found)
+    carried = [obj for obj in _sensors_on(context, members) if not _follows(obj, outermost)]
+    for obj in outermost:
+        obj.matrix_world = change @ obj.matrix_world
+    for obj in carried:
+        place, rotation, _ = (change @ obj.matrix_world).decompose()
+        obj.matrix_world = Matrix.LocRotScale(place, rotation, obj.matrix_world.to_scale())
+
+
+def _sensors_on(
+    context: bpy.types.Context, members: list[bpy.types.Object]
+) -> list[bpy.types.Object]:
+    """Sensors within a metre of the box round the vehicle."""
+    corners = [
+        obj.matrix_world @ Vector(corner)
+        for obj in members
+        if obj.type == "MESH"
+        for corner in obj.bound_box
+    ]
+    if not corners:
+        return []
+    low = [min(c[k] for c in corners) - NEAR_M for k in range(3)]
+    high = [max(c[k] for c in corners) + NEAR_M for k in range(3)]
+
+    def near(place: Vector) -> bool:
+        return all(low[k] <= place[k] <= high[k] for k in range(3))
+
+    sensors = bridge.sensor_objects(context.scene)
+    return [obj for obj in sensors if near(obj.matrix_world.translation)]
+
+
+def _follows(obj: bpy.types.Object, carried: list[bpy.types.Object]) -> bool:
+    """Whether an object is carried along by a parent, or is one that is."""
+    while obj is not None:
+        if obj in carried:
+            return True
+        obj = obj.parent
+    return False
+
+
+def _sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
+    for obj in bridge.sensor_objects(context.scene):
+        if obj.name == name:
+            return obj
+    raise pe.InputError("scene", "sensor", "one of the scene", repr(name))
+
+
+CLASSES = (PE_OT_mend,)

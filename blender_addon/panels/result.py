@@ -1,0 +1,56 @@
+"""Score and Optimize, always in the same place, and below them what the last one found."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..operators import running
+from .layout import columns
+from .words import draw_sentence, draw_warning
+
+
+def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw what sets to work; while something does, how far it is, in the same place."""
+    row = layout.row(align=True)
+    row.scale_y = 1.5
+    if running.current is None:
+        row.operator("pe.score", icon="VIEWZOOM")
+        row.prop(settings.live, "on", toggle=True, icon="REC")
+        row.operator("pe.optimize", icon="ORIENTATION_GIMBAL")
+        return
+    row.progress(text=running.current.text, factor=running.current.progress.fraction)
+    row.operator("pe.cancel", text="", icon="CANCEL")
+
+
+def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the last result: figures with their names and units, and whether they still stand."""
+    settings = context.scene.perception_entropy
+    column = layout.box().column(align=True)
+    column.active = not settings.result_stale
+    error = f" ± {settings.result_stderr:.4f}" if settings.result_stderr else ""
+    draw_figure(column, "Entropy", f"{settings.result_entropy:.4f}{error} nats")
+    if settings.result_kind == "optimize":
+        gain = settings.result_entropy - settings.result_before
+        draw_figure(column, "Before", f"{settings.result_before:.4f}  ({gain:+.4f})")
+    draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
+    state = layout.column(align=True)
+    for line in settings.result_missing.splitlines():
+        draw_sentence(state, context, f"Scored without it: {line}", icon="ERROR")
+    if settings.result_stale:
+        state.label(text="Changed since this was scored", icon="FILE_REFRESH")
+
+
+def draw_figure(layout: bpy.types.UILayout, name: str, value: str) -> None:
+    """Draw a figure with its name."""
+    left, right = columns(layout, 0.34)
+    left.label(text=name)
+    right.label(text=value, translate=False)
+
+
+def draw_vehicle_warnings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what is odd about the vehicle, under its field."""
+    told = [w for w in context.scene.perception_entropy.result_warnings if not w.subject]
+    if told:
+        box = layout.box().column(align=True)
+        for warning in told:
+            draw_warning(box, context, warning)

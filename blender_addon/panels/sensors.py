@@ -1,0 +1,80 @@
+"""The list of sensors: which count, whose beams are drawn, model, and entropy alone."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..operators import listed_sensors
+from .words import draw_warning
+
+LEAST_SHARE, MOST_SHARE = 0.4, 0.7
+"""How much of a row a name may take."""
+MODEL_WORTH = 0.55
+"""How much of the room that a model needs it gets beside names: those tell sensors apart."""
+FIGURE_SHARE = 0.2
+
+
+def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw a row for each sensor under a header, and its warnings below it."""
+    objects = listed_sensors(context.scene)
+    box = layout.box().column(align=True)
+    if not objects:
+        box.label(text="No sensors yet", icon="INFO")
+        return
+    share = name_share(objects)
+    draw_header(box, share)
+    warnings = list(context.scene.perception_entropy.result_warnings)
+    for obj in objects:
+        draw_sensor(box, context, obj, share)
+        for warning in warnings:
+            if warning.subject == obj.name:
+                draw_warning(box, context, warning)
+
+
+def name_share(objects: list[bpy.types.Object]) -> float:
+    """Return how much of a row the names take: as much as they need beside the models."""
+    names = max(len(obj.name) for obj in objects) + 2
+    models = max(len(obj.perception_entropy.model) for obj in objects) + 2
+    return min(MOST_SHARE, max(LEAST_SHARE, names / (names + MODEL_WORTH * models)))
+
+
+def draw_header(layout: bpy.types.UILayout, share: float) -> None:
+    """Draw what the columns are."""
+    row = layout.row(align=True)
+    row.active = False
+    row.scale_y = 0.8
+    row.label(text="", icon="BLANK1")
+    row.label(text="", icon="BLANK1")
+    name, model, figure = cells(row, share)
+    name.label(text="Sensor")
+    model.label(text="Model")
+    figure.label(text="Alone")
+
+
+def draw_sensor(
+    layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object, share: float
+) -> None:
+    """Draw a sensor's row: the eye is the Outliner's, the rays are its beams' in the view."""
+    settings, counts = obj.perception_entropy, obj.visible_get()
+    row = layout.row(align=True)
+    eye = "HIDE_OFF" if counts else "HIDE_ON"
+    row.operator("pe.toggle_sensor", text="", icon=eye, emboss=False).name = obj.name
+    rays = "LIGHT_SUN" if settings.show else "DOT"
+    row.prop(settings, "show", text="", icon=rays, emboss=False)
+    name, model, figure = cells(row, share)
+    for cell in (name, model, figure):
+        cell.active = counts  # what is hidden is not scored
+    active = obj == context.active_object
+    name.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
+    model.label(text=settings.model, translate=False)
+    figure.label(text=f"{settings.entropy:.2f}" if settings.has_result else "–", translate=False)
+
+
+def cells(layout: bpy.types.UILayout, share: float) -> tuple[bpy.types.UILayout, ...]:
+    """Return the cells of a row: name, model, and a figure at its right."""
+    left = layout.split(factor=1.0 - FIGURE_SHARE, align=True)
+    both = left.split(factor=share, align=True)
+    name, model = both.row(align=True), both.row(align=True)
+    figure = left.row(align=True)
+    figure.alignment = "RIGHT"
+    return name, model, figure

@@ -1,0 +1,240 @@
+"""Words and warnings in the panel, the place that is asked about, and what mends what is odd."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon import asking, bridge, explaining, panels
+from blender_addon.engine import advice, pe
+from tests.addon import scenes
+from tests.addon.layouts import Layout
+
+
+def told(scene):
+    """What is odd, by whose it is: (subject, code)."""
+    explaining.look()
+    return [(row.subject, row.code) for row in scene.perception_entropy.result_warnings]
+
+
+def mend(scene, code):
+    """Press the button of a warning."""
+    explaining.look()
+    rows = scene.perception_entropy.result_warnings
+    row = next(each for each in rows if each.code == code)
+    done = bpy.ops.pe.mend(fix=row.fix, subject=row.subject, amount=row.amount)
+    bpy.context.view_layer.update()
+    return done
+
+
+def bounds(scene):
+    return bridge.vehicle_from_collection(
+        scene.perception_entropy.vehicle, scenes.depsgraph()
+    ).bounds
+
+
+def carry(scene, change):
+    """Do something to every part of the vehicle."""
+    for obj in scene.perception_entropy.vehicle.all_objects:
+        change(obj)
+    bpy.context.view_layer.update()
+
+
+def test_nothing_is_odd_about_a_car_with_a_lidar_on_its_roof(car):
+    assert told(car) == []
+
+
+def test_a_sunk_vehicle_is_lifted_with_the_sensor_on_it(car):
+    car.objects["roof"].location.z = 1.3
+
+    def sink(obj):
+        obj.location.z -= 0.5
+
+    carry(car, sink)
+    assert ("", "height") in told(car)
+    assert mend(car, "height") == {"FINISHED"}
+    assert bounds(car)[0][2] == pytest.approx(0.0, abs=1e-5)  # the lowest box's underside
+    assert car.objects["roof"].location.z == pytest.approx(1.6, abs=1e-5)
+    assert ("", "height") not in told(car)
+
+
+def test_a_vehicle_that_lies_along_y_is_turned_with_the_sensor_on_it(car):
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+
+    def left(obj):
+        obj.location = turn @ np.array(obj.location)
+        obj.rotation_euler.z = math.pi / 2
+
+    carry(car, left)
+    assert ("", "faces") in told(car)
+    before = np.array(car.objects["roof"].location)
+    mend(car, "faces")
+    low, high = bounds(car)
+    assert high[0] - low[0] == pytest.approx(4.0, abs=1e-4)
+    np.testing.assert_allclose(car.objects["roof"].location, turn @ before, atol=1e-5)
+    assert ("", "faces") not in told(car)
+
+
+def test_a_scaled_sensor_is_told_and_mended(car):
+    roof = car.objects["roof"]
+    place = roof.location.copy()
+    roof.scale = (2.0, 2.0, 2.0)
+    bpy.context.view_layer.update()
+    assert ("roof", "refused") in told(car)
+    mend(car, "refused")
+    assert told(car) == [] and scenes.study().rig["roof"].pose.position == pytest.approx(place)
+
+
+def test_units_are_told_and_mended(car):
+    car.unit_settings.system = "IMPERIAL"
+    assert ("", "units") in told(car)
+    mend(car, "units")
+    assert ("", "units") not in told(car)
+    assert scenes.study()
+
+
+def test_a_camera_upside_down_is_turned(car):
+    eye = scenes.add_sensor("eye", model="Camera 60 deg", location=(0.7, 0.0, 1.55))
+    eye.rotation_euler.x = math.pi
+    bpy.context.view_layer.update()
+    assert ("eye", "upside_down") in told(car)
+    mend(car, "upside_down")
+    assert ("eye", "upside_down") not in told(car)
+
+
+def test_words_are_the_engines(car):
+    bpy.ops.pe.score()
+    study = scenes.study()
+    score = study.evaluator().score(study.rig)
+    lines = advice.words(score, study.rig, study.vehicle)
+    assert car.perception_entropy.result_words.splitlines() == list(lines[:-1])
+    own = car.objects["roof"].perception_entropy
+    assert own.words.splitlines()[0] == "the only sensor"
+    shares = advice.stopped_shares(study.rig["roof"], score.per_sensor["roof"], study.vehicle)
+    assert {row.name: row.share for row in own.stopped_parts} == pytest.approx(shares)
+    assert own.stopped_parts, "a score without a part in the way proves nothing here"
+
+
+def test_a_part_is_selected_by_its_name(car):
+    assert bpy.ops.pe.select_part(name="cabin") == {"FINISHED"}
+    assert bpy.context.object.name == "cabin"
+    assert [obj.name for obj in bpy.context.selected_objects] == ["cabin"]
+    car.objects["cabin"].hide_set(True)
+    assert bpy.ops.pe.select_part(name="cabin") == {"CANCELLED"}
+
+
+def test_the_eye_takes_a_sensor_out_of_the_score(car):
+    scenes.add_sensor("eye", model="Camera 60 deg", location=(0.7, 0.0, 1.55))
+    bpy.ops.pe.toggle_sensor(name="eye")
+    assert [s.name for s in scenes.study().rig] == ["roof"]
+    bpy.ops.pe.toggle_sensor(name="eye")
+    assert [s.name for s in scenes.study().rig] == ["eye", "roof"]
+
+
+def test_a_place_is_asked_as_the_engine_does(car):
+    assert bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0)) == {"FINISHED"}
+    study = scenes.study()
+    expected = advice.ask_place(study.rig, study.space, study.prior, study.vehicle, (6.0, 3.0, 0.0))
+    found = asking.answer(car)
+    assert found.lines == expected.text and found.place.sensors == expected.sensors
+    car.objects["roof"].location.z = 2.4
+    bpy.context.view_layer.update()
+    asking.ask_again()
+    assert asking.answer(car).lines != expected.text
+    bpy.ops.pe.dismiss_place()
+    assert asking.answer(car) is None
+
+
+def test_a_place_outside_the_space_is_told_in_one_line(car):
+    bpy.ops.pe.ask_place(point=(600.0, 3.0, 0.0))
+    (line,) = asking.answer(car).lines
+    assert "inside the space" in line
+
+
+def test_another_file_brings_no_answer_of_this_one(car):
+    bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert asking.answer(bpy.context.scene) is None
+
+
+def lost_roof(tmp_path):
+    """Open a car whose cabin is another file's, and that file is gone."""
+    cabin = bpy.data.objects["cabin"]
+    library = tmp_path / "library.blend"
+    bpy.data.libraries.write(str(library), {cabin})
+    car = bpy.data.collections["Car"]
+    bpy.data.objects.remove(cabin)
+    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+        wanted.objects = ["cabin"]
+    car.objects.link(bpy.data.objects["cabin"])
+    path = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), relative_remap=False)
+    whole = scenes.study().evaluator().score(scenes.study().rig).entropy
+    library.unlink()
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    return path, whole
+
+
+def test_a_lost_library_is_told_by_name_and_marks_the_result(car, tmp_path):
+    _, whole = lost_roof(tmp_path)
+    scene = bpy.context.scene
+    assert ("", "missing") in told(scene)
+    bpy.ops.pe.score()
+    settings = scene.perception_entropy
+    assert "cabin is missing" in settings.result_missing
+    assert "library.blend" in settings.result_missing
+    assert settings.result_entropy != pytest.approx(whole, abs=1e-6), "nothing was missing"
+    assert '"code": "missing"' in settings.result_json
+
+
+def test_a_lost_library_is_told_without_a_window(car, tmp_path):
+    from tests.addon.test_commands import run
+
+    path, _ = lost_roof(tmp_path)
+    answer = run("blender_addon", path, "score", "--grid-samples", "4096")
+    assert answer.returncode == 0
+    assert "cabin is missing" in answer.stdout + answer.stderr
+
+
+def test_a_driver_that_failed_is_told_by_name(car):
+    curve = car.objects["roof"].driver_add("location", 0)
+    curve.driver.expression = "no_such_thing + 1"
+    scenes.depsgraph().update()
+    assert ("roof", "driver") in told(car)
+    bpy.ops.pe.score()
+    assert "driver of its location did not run" in car.perception_entropy.result_missing
+
+
+class Window:
+    """What panels ask of the window that they are drawn in."""
+
+    def __init__(self, scene, obj):
+        self.scene, self.active_object = scene, obj
+        self.region = type("Region", (), {"width": 300})
+        self.preferences = bpy.context.preferences
+
+
+def test_panels_show_words_warnings_and_the_place(car):
+    car.objects["roof"].location.z = 3.0
+    bpy.context.view_layer.update()
+    bpy.ops.pe.score()
+    bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
+    window, layout = Window(car, car.objects["roof"]), Layout()
+    panels.sensors.draw_sensors(layout, window)
+    assert "clear of the vehicle" in " ".join(layout.texts("label"))
+    explain = type("Explain", (), {"layout": (shown := Layout())})
+    panels.explain.PE_PT_explain.draw(explain, window)
+    text = " ".join(shown.texts("label"))
+    assert "of where objects are is seen" in text.replace("  ", " ")
+    assert "The only sensor" in text and "roof" in text
+    assert "Ask" not in text and "pe.ask_place" in shown.texts("operator")
+
+
+def test_sensors_that_no_score_would_take_are_no_reason_to_tell_nothing(car):
+    scenes.add_sensor("odd", location=(0.0, 0.0, 2.0)).scale = (3.0, 3.0, 3.0)
+    bpy.context.view_layer.update()
+    found = told(car)
+    assert ("odd", "refused") in found
+    with pytest.raises(pe.InputError):
+        scenes.study()

@@ -1,24 +1,26 @@
-"""Draws beams and frustums in the 3D view: the one owner of draw handle, batches and shaders."""
+"""Draws what the store holds in the 3D view: the one owner of draw handles, batches and shaders.
+
+Nothing is read, cast or worked out here: a redraw takes what is ready.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 import bpy
 import gpu
 from bpy.app.handlers import persistent
-from gpu_extras.batch import batch_for_shader
 
-from .. import changes
-from .cache import OverlayCache
-from .geometry import OverlayGeometry, Primitives
+from . import batches, updating, writing
+from .batches import Batches
+from .layers import LAYERS, WHOLE_RIG, Layer
+from .lifting import lifted
+from .store import shown
 
-LINE_WIDTH_PX = 1.2
 VIEW = bpy.types.SpaceView3D
 
-Batches = tuple[OverlayGeometry, gpu.types.GPUBatch | None, gpu.types.GPUBatch | None]
-
-_cache = OverlayCache()
-_batches: dict[str, Batches] = {}
-_shaders: dict[str, gpu.types.GPUShader] = {}
+_batches: dict[tuple[str, str, str], Batches] = {}
+"""By scene, layer and sensor."""
 _handles: list[object] = []
 
 
@@ -26,82 +28,115 @@ def register() -> None:
     """Start drawing; Blender draws every view once an add-on has been registered."""
     if not _handles:
         _handles.append(VIEW.draw_handler_add(draw, (), "WINDOW", "POST_VIEW"))
-        for handlers, function in _handlers():
-            handlers.append(function)
-        for signal in (changes.study, changes.picture):
-            signal.connect(tag_redraw)
+        _handles.append(VIEW.draw_handler_add(write, (), "WINDOW", "POST_PIXEL"))
+        bpy.app.handlers.load_post.append(forget)
+        updating.register()
 
 
 def unregister() -> None:
     """Stop drawing, and leave nothing behind."""
+    if _handles:
+        updating.unregister()
+        bpy.app.handlers.load_post.remove(forget)
     while _handles:
-        for signal in (changes.study, changes.picture):
-            signal.disconnect(tag_redraw)
         VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
-        for handlers, function in reversed(_handlers()):
-            handlers.remove(function)
     forget()
-    _shaders.clear()
-    tag_redraw()
-
-
-def tag_redraw() -> None:
-    """Have every 3D view drawn anew."""
-    for manager in bpy.data.window_managers:
-        for window in manager.windows:
-            for area in window.screen.areas:
-                if area.type == "VIEW_3D":
-                    area.tag_redraw()
+    batches.forget_shaders()
 
 
 @persistent
 def forget(*_: object) -> None:
     """Drop everything that belongs to the file that was open."""
-    _cache.clear()
     _batches.clear()
 
 
-def _handlers() -> tuple[tuple[list, object], ...]:
-    return ((bpy.app.handlers.load_post, forget),)
-
-
 def draw() -> None:
-    """Draw into the current 3D view; Blender calls this at each redraw."""
+    """Draw areas and lines into the current 3D view; Blender calls this at each redraw."""
     context = bpy.context
-    if not (context.scene.perception_entropy.show_overlay and _wanted(context.space_data)):
+    if not _wanted(context):
         return
-    shown = _cache.update(context.scene, context.evaluated_depsgraph_get())
-    _update_batches(shown)
-    names = [name for name in shown if _visible(context, name)]
-    draw_batches([_batches[name] for name in names], context.region)
-
-
-def draw_batches(batches: list[Batches], region: bpy.types.Region) -> None:
-    """Draw faces, then lines, hidden behind what is nearer; the GPU's state is put back."""
-    blend, depth_test = gpu.state.blend_get(), gpu.state.depth_test_get()
-    depth_mask = gpu.state.depth_mask_get()
+    scene = context.scene.name
+    wanted = [(layer, ready(scene, layer, names)) for layer, names in _visible(context)]
+    _drop_what_is_gone(scene)
+    before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("LESS_EQUAL")
     gpu.state.depth_mask_set(False)
     try:
-        for _, _, faces in batches:
-            if faces is not None:
-                faces.draw(_shader("SMOOTH_COLOR"))
-        for _, lines, _ in batches:
-            if lines is not None:
-                lines.draw(_line_shader(region))
+        for layer, several in wanted:
+            with lifted(context.region_data, layer.on_ground):
+                _draw_layer(layer, several, context.region)
     finally:
-        gpu.state.depth_mask_set(depth_mask)
-        gpu.state.depth_test_set(depth_test)
-        gpu.state.blend_set(blend)
+        gpu.state.depth_mask_set(before[2])
+        gpu.state.depth_test_set(before[1])
+        gpu.state.blend_set(before[0])
 
 
-def _wanted(space: bpy.types.Space | None) -> bool:
+def write() -> None:
+    """Write labels and legends over the current 3D view."""
+    context = bpy.context
+    if not _wanted(context):
+        return
+    scene = context.scene.name
+    items = [shown.items(scene, layer.name)[name] for layer, ns in _visible(context) for name in ns]
+    writing.write_labels(context, [label for item in items for label in item.shape.labels])
+    if context.scene.perception_entropy.view.show_legend:
+        legends = dict.fromkeys(i.shape.legend for i in items if i.shape.legend is not None)
+        writing.write_legends(context, list(legends))
+
+
+def ready(scene: str, layer: Layer, names: list[str]) -> list[Batches]:
+    """Return what to draw of a layer; upload what is new."""
+    found = []
+    for name in names:
+        shape = shown.items(scene, layer.name)[name].shape
+        known = _batches.get((scene, layer.name, name))
+        if known is None or known.shape is not shape:
+            known = _batches[scene, layer.name, name] = Batches.of(shape)
+        found.append(known)
+    return found
+
+
+def _draw_layer(layer: Layer, several: list[Batches], region: bpy.types.Region) -> None:
+    for each in several:
+        each.draw_areas()
+    for each in several:
+        each.draw_lines(region, layer.line_px, edged=layer.edged)
+
+
+def _drop_what_is_gone(scene: str) -> None:
+    gone = [key for key in _batches if key[0] == scene and key[2] not in shown.items(*key[:2])]
+    for key in gone:
+        del _batches[key]
+
+
+def _wanted(context: bpy.types.Context) -> bool:
     """Whether the view shows overlays at all."""
+    if not context.scene.perception_entropy.show_overlay:
+        return False
+    space = context.space_data
     return space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
 
 
-def _visible(context: bpy.types.Context, name: str) -> bool:
+def _visible(context: bpy.types.Context) -> Iterator[tuple[Layer, list[str]]]:
+    """Yield layers and the names of what the view shows of each."""
+    scene, through = context.scene.name, _looked_through(context)
+    known = {WHOLE_RIG: _rig_visible(context)}
+    for layer in LAYERS:
+        names = list(shown.items(scene, layer.name))
+        for name in names:
+            if name not in known:
+                known[name] = name != through and _sensor_visible(context, name)
+        yield layer, [name for name in names if known[name]]
+
+
+def _rig_visible(context: bpy.types.Context) -> bool:
+    """Whether the view shows what is the whole rig's: no part of a local view."""
+    space = context.space_data
+    return not (space and space.type == "VIEW_3D" and space.local_view)
+
+
+def _sensor_visible(context: bpy.types.Context, name: str) -> bool:
     """Whether the view shows that sensor: not hidden, and in local view when there is one."""
     sensor = context.scene.objects.get(name)
     if sensor is None:
@@ -110,37 +145,12 @@ def _visible(context: bpy.types.Context, name: str) -> bool:
     return sensor.visible_in_viewport_get(space) if space else sensor.visible_get()
 
 
-def _update_batches(shown: dict[str, OverlayGeometry]) -> None:
-    """Upload what is new, drop what is gone."""
-    for name in set(_batches) - set(shown):
-        del _batches[name]
-    for name, geometry in shown.items():
-        if name not in _batches or _batches[name][0] is not geometry:
-            lines = _batch(_shader("POLYLINE_SMOOTH_COLOR"), "LINES", geometry.lines)
-            faces = _batch(_shader("SMOOTH_COLOR"), "TRIS", geometry.faces)
-            _batches[name] = geometry, lines, faces
-
-
-def _batch(
-    shader: gpu.types.GPUShader, kind: str, primitives: Primitives
-) -> gpu.types.GPUBatch | None:
-    if not len(primitives.points):
+def _looked_through(context: bpy.types.Context) -> str | None:
+    """Name of the sensor whose eye the view is: its own picture would only be in the way."""
+    look, space = context.region_data, context.space_data
+    if look is None or space is None or look.view_perspective != "CAMERA":
         return None
-    arrays = {"pos": primitives.points, "color": primitives.colors}
-    return batch_for_shader(shader, kind, arrays)
-
-
-def _shader(name: str) -> gpu.types.GPUShader:
-    """Return a built-in shader; made when first drawn, as there is no GPU in background."""
-    if name not in _shaders:
-        _shaders[name] = gpu.shader.from_builtin(name)
-    return _shaders[name]
-
-
-def _line_shader(region: bpy.types.Region) -> gpu.types.GPUShader:
-    shader = _shader("POLYLINE_SMOOTH_COLOR")
-    shader.bind()
-    shader.uniform_float("viewportSize", (region.width, region.height))
-    width = LINE_WIDTH_PX * bpy.context.preferences.system.pixel_size
-    shader.uniform_float("lineWidth", width)
-    return shader
+    eye = space.camera
+    while eye is not None and not eye.perception_entropy.is_sensor:
+        eye = eye.parent
+    return None if eye is None else eye.name

@@ -13,18 +13,17 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from . import geometry
-from .beams import Beams, shown_beams
+from . import frustums, rays
+from .beams import Beams, Choice, shown_beams
+from .casts import cast
 from .colors import VIEWPORT, Palette, Rgba
-from .geometry import OverlayGeometry, Primitives
+from .primitives import Primitives
 
 if TYPE_CHECKING:
     from ..engine import pe
 
 Floats = NDArray[np.float64]
 
-FRUSTUM_SHARE = 0.25
-"""How long frustums, and the radius of rings, are beside the beams."""
 VIEW_SHARE = 0.62
 """How much of a beam has to be in the picture: its end is faint."""
 
@@ -60,7 +59,9 @@ class BeamSketch:
 
     def lines(self, length_m: float, palette: Palette) -> Primitives:
         """Free beams, then those that the vehicle stops."""
-        return geometry.beam_lines(self.sensor, self.beams, length_m, palette)
+        colors = np.where(self.beams.stopped[:, None], palette.stopped, palette.free)
+        free = rays.free_lines(self.sensor, self.beams, length_m, colors)
+        return Primitives.joined([free, rays.stopped_lines(self.sensor, self.beams, colors)])
 
     def faces(self, _length_m: float, _palette: Palette) -> Primitives:
         """None."""
@@ -68,9 +69,10 @@ class BeamSketch:
 
     def points(self, length_m: float) -> Floats:
         """Most of each beam."""
-        ends = self.lines(length_m, VIEWPORT).points[1::2]
-        start = np.array(self.sensor.pose.position)
-        return start + VIEW_SHARE * (ends - start)
+        beams, start = self.beams, np.array(self.sensor.pose.position)
+        ends = np.minimum(beams.ends, length_m)
+        ends = np.minimum(ends, rays.ground_distance(self.sensor, beams.directions))
+        return start + VIEW_SHARE * beams.directions * ends[:, None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,15 +84,15 @@ class FrustumSketch:
 
     def lines(self, length_m: float, palette: Palette) -> Primitives:
         """Edges of the view."""
-        return geometry.frustum_lines(self.sensor, length_m, palette)
+        return frustums.frustum_lines(self.sensor, length_m, palette)
 
     def faces(self, length_m: float, palette: Palette) -> Primitives:
         """Sides of the view."""
-        return geometry.frustum_faces(self.sensor, length_m, palette)
+        return frustums.frustum_faces(self.sensor, length_m, palette)
 
     def points(self, length_m: float) -> Floats:
         """Its corners."""
-        return geometry.frustum_points(self.sensor, length_m)
+        return frustums.frustum_points(self.sensor, length_m)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +104,7 @@ class RingSketch:
 
     def lines(self, length_m: float, palette: Palette) -> Primitives:
         """A ring in the sensor's own level plane, and a tick ahead."""
-        return geometry.ring_lines(self.sensor, length_m, palette)
+        return frustums.ring_lines(self.sensor, length_m, palette)
 
     def faces(self, _length_m: float, _palette: Palette) -> Primitives:
         """None."""
@@ -131,22 +133,20 @@ class Look:
 class Drawing:
     """How sensors of one kind are drawn.
 
-    `sketch` takes a sensor, the vehicle or None, the most beams, and of how many channels they may
-    be (None for all). `share` is how long its lines are beside beams, `beams` whether sensors of
-    the kind share the budget of beams, `color` their colour in a palette.
+    `sketch` takes a sensor, the vehicle or None, and which beams are shown. `beams` tells whether
+    sensors of the kind share the budget of beams, `color` their colour in a palette; `footprint`
+    returns the outline of the ground that a sensor looks at, as far as some metres.
     """
 
-    sketch: Callable[[pe.Sensor, pe.Vehicle | None, int, int | None], Sketch]
+    sketch: Callable[[pe.Sensor, pe.Vehicle | None, Choice], Sketch]
     color: Callable[[Palette], Rgba]
     look: Look
-    share: float = FRUSTUM_SHARE
     beams: bool = False
+    footprint: Callable[[pe.Sensor, float], Floats] | None = None
 
 
-def _lidar(
-    sensor: pe.Sensor, vehicle: pe.Vehicle | None, budget: int, channels: int | None
-) -> BeamSketch:
-    return BeamSketch(sensor, shown_beams(sensor, vehicle, budget, channels))
+def _lidar(sensor: pe.Sensor, vehicle: pe.Vehicle | None, choice: Choice) -> BeamSketch:
+    return BeamSketch(sensor, shown_beams(cast(sensor, vehicle), choice))
 
 
 def _camera(sensor: pe.Sensor, *_: object) -> FrustumSketch:
@@ -161,11 +161,15 @@ DRAWINGS = {
     "lidar": Drawing(
         _lidar,
         lambda palette: palette.free,
-        Look("LiDAR beam", 5.5, 1.3, clear_m=0.22),
-        share=1.0,
+        Look("LiDAR beam", 5.5, 1.8, clear_m=0.22),
         beams=True,
     ),
-    "camera": Drawing(_camera, lambda palette: palette.camera, Look("camera view", 2.0, 1.8)),
+    "camera": Drawing(
+        _camera,
+        lambda palette: palette.camera,
+        Look("camera view", 2.0, 1.8),
+        footprint=frustums.footprint,
+    ),
 }
 OTHER = Drawing(_other, lambda palette: palette.other, Look(None, 2.0, 1.8))
 """Of a kind that has no row."""
@@ -180,16 +184,3 @@ def beam_budget(sensors: list[pe.Sensor], most: int) -> int:
     """Return how many beams each sensor that has some may show, at least one."""
     sharing = sum(drawing_of(sensor.kind).beams for sensor in sensors)
     return max(1, most // max(1, sharing))
-
-
-def sensor_geometry(
-    sensor: pe.Sensor,
-    vehicle: pe.Vehicle | None,
-    budget: int,
-    length_m: float,
-    palette: Palette = VIEWPORT,
-) -> OverlayGeometry:
-    """Everything drawn in the viewport for one sensor: at most `budget` beams, or a frustum."""
-    drawing = drawing_of(sensor.kind)
-    sketch, length_m = drawing.sketch(sensor, vehicle, budget, None), length_m * drawing.share
-    return OverlayGeometry(sketch.lines(length_m, palette), sketch.faces(length_m, palette))

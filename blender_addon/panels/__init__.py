@@ -13,3 +13,13 @@ CLASSES = (
     *overlay.CLASSES,
     *export.CLASSES,
 )
+
+
+def register() -> None:
+    """Add what stands in headers of Blender's own."""
+    overlay.register()
+
+
+def unregister() -> None:
+    """Take it out again."""
+    overlay.unregister()

@@ -14,6 +14,7 @@ from .live import PE_LiveSettings
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, DEFAULT_MODEL, PE_ObjectSettings
 from .variants import PE_Variant, PE_VariantSensor
+from .view import PE_ViewSettings
 from .warnings import PE_StoppingPart, PE_Warning
 
 __all__ = [
@@ -32,6 +33,7 @@ CLASSES = (
     PE_Variant,
     PE_Warning,
     PE_StoppingPart,
+    PE_ViewSettings,
     PE_SceneSettings,
     PE_ObjectSettings,
 )

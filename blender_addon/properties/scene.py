@@ -19,6 +19,7 @@ from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
 from .live import PE_LiveSettings
 from .variants import PE_Variant
+from .view import PE_ViewSettings
 from .warnings import PE_Warning
 
 DEFAULT_CANDIDATES = 150
@@ -92,8 +93,8 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
     )
 
     show_overlay: BoolProperty(
-        name="Show Beams",
-        description="Draw beams and frustums of the sensors in the 3D view",
+        name="Show Perception",
+        description="Show in the 3D view what the sensors see and miss",
         default=True,
         update=redraw,
     )
@@ -114,6 +115,10 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
         subtype="DISTANCE",
         unit="LENGTH",
         update=redraw,
+    )
+
+    view: PointerProperty(
+        type=PE_ViewSettings, name="View", description="What the 3D view shows of perception"
     )
 
     has_result: BoolProperty(name="Has Result", description="A score is stored")

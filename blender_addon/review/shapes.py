@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..overlay.colors import Rgba
-from ..overlay.geometry import Primitives
+from ..overlay.primitives import Primitives
 from .camera import View
 
 Floats = NDArray[np.float64]

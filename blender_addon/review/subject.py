@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import bridge
+from ..overlay.beams import Channels, Choice
 from ..overlay.colors import PAPER, Rgba
 from ..overlay.kinds import Look, Sketch, beam_budget, drawing_of
 from . import shapes
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-BEAMS, CHANNELS = 760, 12
-"""Beams drawn over all LiDARs, and of how many channels each: a pattern, not a wall."""
+BEAMS = 760
+"""Beams drawn over all LiDARs, of a few channels each: a pattern, not a wall."""
 RING_PX = 1.2
 RINGS_M = (5.0, 10.0)
 RING: Rgba = (0.55, 0.58, 0.62, 0.5)
@@ -46,9 +47,9 @@ class Subject:
     def of(cls, study: pe.Study, outcome: pe.Outcome) -> Subject:
         """Choose the beams to be shown."""
         rig, budget = study.rig, beam_budget(list(study.rig), BEAMS)
+        choice = Choice(budget, Channels.FEW)
         sketches = {
-            each.name: drawing_of(each.kind).sketch(each, study.vehicle, budget, CHANNELS)
-            for each in rig
+            each.name: drawing_of(each.kind).sketch(each, study.vehicle, choice) for each in rig
         }
         return cls(study, outcome.start.rig if outcome.kind == "optimize" else None, sketches)
 

@@ -6,6 +6,9 @@ import bpy
 import numpy as np
 
 from blender_addon import bridge
+from blender_addon.overlay import updating
+from blender_addon.overlay.primitives import Shape
+from blender_addon.overlay.store import shown
 
 ASSETS = Path(__file__).resolve().parents[2] / "blend_assets"
 
@@ -62,6 +65,13 @@ def add_sensor(name: str, model: str = "Pandar64", **settings) -> bpy.types.Obje
 def depsgraph() -> bpy.types.Depsgraph:
     """Return the evaluated scene, up to date."""
     return bpy.context.evaluated_depsgraph_get()
+
+
+def drawn(scene) -> dict[str, dict[str, Shape]]:
+    """Return what the 3D view shows of a scene: shapes by layer, then by sensor."""
+    updating.update()
+    layers = shown.layers(scene.name)
+    return {layer: {n: item.shape for n, item in items.items()} for layer, items in layers}
 
 
 def study():

@@ -12,7 +12,13 @@ from blender_addon import engine
 
 ROOT = Path(blender_addon.__file__).parent
 PACKAGE = "blender_addon"
-ARRAYS = {"overlay.beams", "overlay.colors", "overlay.geometry", "overlay.kinds"}
+ARRAYS = {
+    f"overlay.{name}"
+    for name in (
+        *("beams", "blind", "casts", "colors", "frustums", "ground", "heat", "kinds", "layers"),
+        *("primitives", "rays", "reach", "store", "tools", "wish"),
+    )
+}
 """Modules that need neither a scene nor a GPU."""
 
 ALLOWED = {
@@ -34,8 +40,11 @@ ALLOWED = {
     "library": set(),
     "live": {"body", "bridge", "changes", "engine", "motion", "roster", "worker"},
     "overlay": {"engine"},
-    "overlay.cache": {"body", "bridge", "engine", "overlay", "roster"},
-    "overlay.handler": {"changes", "overlay", "overlay.cache"},
+    "overlay.reading": {"body", "bridge", "engine", "overlay", "roster"},
+    "overlay.updating": {
+        *("changes", "engine", "overlay", "overlay.reading", "roster", "worker"),
+    },
+    "overlay.handler": {"overlay", "overlay.updating"},
     "review": {"bridge", "engine", "overlay"},
     "operators": {
         *("asking", "body", "bridge", "changes", "choices", "engine", "explaining", "housing"),

@@ -8,13 +8,13 @@ import pytest
 import blender_addon
 from blender_addon import changes, commands, motion, roster
 from blender_addon.operators import running
-from blender_addon.overlay import handler
+from blender_addon.overlay import batches, handler, updating
 
 ROUNDS = 100
 
 
 SIGNALS = (changes.study, changes.picture, changes.moved, changes.rested, changes.live)
-TIMERS = (motion.tell_moved, motion.tell_rested)
+TIMERS = (motion.tell_moved, motion.tell_rested, updating._turn)
 
 
 def traces() -> dict[str, list[str]]:
@@ -84,7 +84,7 @@ def test_a_hundred_rounds_leave_nothing_behind(view3d):
     assert not any(before.values())
     for _ in range(ROUNDS):
         blender_addon.register()
-        assert len(view3d.handles) == 1
+        assert len(view3d.handles) == 2
         for timer in TIMERS:  # a change just before it is switched off
             bpy.app.timers.register(timer)
         blender_addon.operators.listed_sensors(bpy.context.scene)
@@ -96,7 +96,7 @@ def test_a_hundred_rounds_leave_nothing_behind(view3d):
     assert all(kept[each] for each in ("classes", "handlers", "properties", "listeners", "timers"))
     assert running.current is None and not commands._registered and not roster._found
     assert not extended_menus()
-    assert not handler._handles and not handler._batches and not handler._shaders
+    assert not handler._handles and not handler._batches and not batches._shaders
 
 
 @pytest.fixture
@@ -129,12 +129,12 @@ def test_a_change_is_told_to_those_who_listen(car, heard):
 
 
 def test_picture_and_check_follow_a_change(car):
-    assert {f.__name__ for f in changes.picture.listeners} == {"tag_redraw"}
+    assert {f.__name__ for f in changes.picture.listeners} == {"soon"}
     assert {f.__name__ for f in changes.study.listeners} == {
-        *("tag_redraw", "fit_all", "forget", "note"),
+        *("soon", "fit_all", "forget", "note"),
     }
     assert {f.__name__ for f in changes.rested.listeners} == {
-        *("check", "rest", "look_soon", "ask_again"),
+        *("check", "rest", "look_soon", "ask_again", "on_rested"),
     }
 
 

@@ -96,9 +96,13 @@ def state_of(scene):
     return names, settings, users, places, camera, world, bpy.context.scene.name
 
 
-def near(pixels, color, tolerance=0.2):
-    """How many pixels have that sRGB colour."""
-    return int((np.abs(pixels - np.array(color[:3])).max(axis=-1) < tolerance).sum())
+def near(pixels, color, least=0.1):
+    """How many pixels have the hue of that sRGB colour: thin lines are mixed with grey."""
+    wanted = np.array(color[:3]) - np.mean(color[:3])
+    chroma = pixels - pixels.mean(axis=-1, keepdims=True)
+    along = chroma @ (wanted / np.linalg.norm(wanted))
+    aside = np.sqrt(np.maximum((chroma**2).sum(axis=-1) - along**2, 0.0))
+    return int(((along > least) & (aside < 0.4 * along)).sum())
 
 
 def test_picture(scene, outcome, tmp_path):

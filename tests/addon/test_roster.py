@@ -8,7 +8,7 @@ import pytest
 from blender_addon import roster, stale
 from blender_addon.bridge.rig import sensor_objects
 from blender_addon.operators import listed_sensors
-from blender_addon.overlay.cache import OverlayCache
+from blender_addon.overlay.reading import Reader
 from tests.addon import scenes
 
 OTHERS = 2000
@@ -47,7 +47,8 @@ def looks():
 def draw(scene, cache):
     """What a redraw of panel and 3D view asks for."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return [obj.name for obj in listed_sensors(scene)], list(cache.update(scene, depsgraph))
+    shown = cache.wish(scene, depsgraph).sensors
+    return [obj.name for obj in listed_sensors(scene)], [each.sensor.name for each in shown]
 
 
 def test_a_score_looks_once_before_the_work_and_once_after(crowd, looks):
@@ -55,7 +56,7 @@ def test_a_score_looks_once_before_the_work_and_once_after(crowd, looks):
 
 
 def test_redraws_without_a_change_look_once(crowd, looks):
-    cache = OverlayCache()
+    cache = Reader()
 
     def work():
         for _ in range(10):
@@ -69,7 +70,7 @@ def test_redraws_without_a_change_look_once(crowd, looks):
 
 
 def test_a_change_is_seen_at_the_next_redraw(car):
-    cache = OverlayCache()
+    cache = Reader()
     assert draw(car, cache)[0] == ["roof"]
     copy = car.objects["roof"].copy()
     copy.name = "copy"

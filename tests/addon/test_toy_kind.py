@@ -13,7 +13,6 @@ import blender_addon
 import pe_core as pe
 from blender_addon import bridge, panels, properties
 from blender_addon.operators import listed_sensors, offers
-from blender_addon.overlay.cache import OverlayCache
 from blender_addon.review import render_review
 from blender_addon.review.page import legend_of
 from pe_core import catalog, kinds
@@ -100,8 +99,9 @@ def test_the_search_moves_it(ring_kind, ring):
 def test_it_is_drawn_where_it_is_and_where_it_looks(ring_kind, ring):
     ring.rotation_euler.z = np.pi / 2  # to the left
     bpy.context.view_layer.update()
-    shown = OverlayCache().update(ring_kind, scenes.depsgraph())
-    lines, faces = shown["bumper"].lines, shown["bumper"].faces
+    ring_kind.perception_entropy.view.beams_of = "ALL"
+    shown = scenes.drawn(ring_kind)
+    lines, faces = shown["frustums"]["bumper"].lines, shown["frustums"]["bumper"].faces
     offsets = lines.points - np.array([2.1, 0.0, 0.5], np.float32)
     distance = np.linalg.norm(offsets, axis=1)
     radius = distance[0]
@@ -111,8 +111,7 @@ def test_it_is_drawn_where_it_is_and_where_it_looks(ring_kind, ring):
     assert offsets[-1][1] > 1.2 * radius and abs(offsets[-1][0]) < 1e-5
     np.testing.assert_allclose(offsets[:, 2], 0.0, atol=1e-6)
     assert not len(faces.points)
-    lidar = OverlayCache().update(ring_kind, scenes.depsgraph())["roof"].lines.points
-    assert len(lidar) > 1000, "the ring took its share of the beams"
+    assert list(shown["beams"]) == ["roof"], "the ring took its share of the beams"
 
 
 def test_the_review_shows_it(ring_kind, ring, tmp_path):
@@ -142,7 +141,7 @@ def test_without_the_kind_nothing_of_it_is_left(car):
     assert PRESET not in dict(properties.model_suggestions(None, None, ""))
     with pytest.raises(RuntimeError, match="sensor 'bumper': model: expected a name such as"):
         bpy.ops.pe.score()
-    assert list(OverlayCache().update(car, scenes.depsgraph())) == ["roof"]
+    assert list(scenes.drawn(car)["labels"]) == ["roof"]
     assert [obj.name for obj in listed_sensors(car)] == ["bumper", "roof"]
     with pytest.raises(RuntimeError, match="expected a name such as"):
         bpy.ops.pe.add_sensor(model=PRESET)

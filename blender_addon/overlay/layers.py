@@ -1,0 +1,231 @@
+"""What can be shown: a row a layer, in the order in which they are drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..engine import pe
+from . import blind, frustums, ground, heat, rays, reach
+from .beams import Channels, Choice, channels_of, shown_beams
+from .colors import VIEWPORT, VIRIDIS, Rgba, on_scale, sensor_color, with_alpha
+from .kinds import DRAWINGS, beam_budget, drawing_of
+from .primitives import Label, Legend, Primitives, Shape
+from .tools import Tools
+from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, SELECTED, Mounted, View, Wish
+
+WHOLE_RIG = ""
+"""Under this name stands what belongs to no single sensor."""
+COARSE_M, FINE_M = 1.0, 0.5
+"""Side of the ground map's places while something moves, and at rest."""
+BLIND_WITHIN_M = 10.0
+RING_ALPHA = 0.55
+GHOST = 0.35
+"""How strong stopped beams are where the body hides them: of many nothing else is seen."""
+FRUSTUM_M, NOT_SELECTED = 1.0, 0.6
+WITH_BEAMS = frozenset(name for name, drawing in DRAWINGS.items() if drawing.beams)
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """Something that can be switched on.
+
+    `shapes` works it out: (wish, tools, what is asked for) to shapes by sensor, or by `WHOLE_RIG`.
+    `keys` says what is asked for, and of each what it depends on: what has the same key as before
+    is not worked out again. `rough` tells whether it is coarser while something moves, `edged`
+    whether its lines have a dark edge: they lie on colours of all sorts.
+    """
+
+    name: str
+    label: str
+    keys: Callable[[Wish], dict[str, Hashable]]
+    shape: Callable[[Wish, Tools, str], Shape]
+    line_px: float = 1.2
+    rough: bool = False
+    on_ground: bool = False
+    edged: bool = False
+
+
+def _of_rig(*settings: str, prior: bool = True) -> Callable[[Wish], dict[str, Hashable]]:
+    """Keys of a layer that shows the whole rig, and depends on these settings."""
+
+    def keys(wish: Wish) -> dict[str, Hashable]:
+        if not wish.counted or (prior and wish.prior is None):
+            return {}
+        who = tuple(each.key for each in wish.counted)
+        chosen = tuple(getattr(wish.view, each) for each in settings)
+        return {WHOLE_RIG: (who, wish.body_key, wish.prior_key if prior else None, chosen)}
+
+    return keys
+
+
+def _rig(wish: Wish) -> pe.Rig:
+    return pe.Rig([each.sensor for each in wish.counted])
+
+
+def _ground(wish: Wish, tools: Tools, _name: str) -> Shape:
+    view = wish.view
+    step = COARSE_M if wish.moving else FINE_M
+    seen = tools.sight(wish).ground(_rig(wish), view.ground_height, step, draft=wish.moving)
+    return ground.ground_map(seen, view.ground_quantity, view.ground_opacity, faded=True)
+
+
+def _blind(wish: Wish, tools: Tools, _name: str) -> Shape:
+    step = 0.2 if wish.moving else 0.1
+    height = wish.view.blind_height
+    found = tools.sight(wish).blind(
+        _rig(wish), height, within=BLIND_WITHIN_M, step=step, draft=wish.moving
+    )
+    body = None if wish.vehicle is None else wish.vehicle.bounds
+    return blind.blind_ground(found, body, height)
+
+
+def _reach_keys(wish: Wish) -> dict[str, Hashable]:
+    keys = _of_rig("reach_class", "reach_of")(wish)
+    chosen = tuple(each.sensor.name for each in wish.counted if each.selected)
+    return {name: (key, chosen) for name, key in keys.items()}
+
+
+def _reach(wish: Wish, tools: Tools, _name: str) -> Shape:
+    view = wish.view
+    known = wish.prior.class_names
+    of = view.reach_class if view.reach_class in known else known[0]
+    found = tools.sight(wish).reach(
+        _rig(wish), of, ap=reach.AP, bearings=reach.BEARINGS, draft=wish.moving
+    )
+    whole = reach.reach_of_rig(found)
+    if view.reach_of == RIG:
+        return whole
+    everyone = view.reach_of == ALL
+    named = {e.sensor.name: e.number for e in wish.counted if everyone or e.selected}
+    alone = reach.reach_of_sensors(found, named)
+    legend = Legend(whole.legend.title, classes=whole.legend.classes + alone.legend.classes)
+    return Shape(Primitives.joined([alone.lines, whole.lines]), labels=whole.labels, legend=legend)
+
+
+def _beam_keys(wish: Wish) -> dict[str, Hashable]:
+    view, shown = wish.view, wish.of_beams(WITH_BEAMS)
+    budget = beam_budget([each.sensor for each in shown], view.beam_limit)
+    chosen = view.channels, view.channel, view.beam_colors, view.rings, view.beam_length, budget
+    return {each.sensor.name: (each.key, wish.body_key, chosen) for each in shown}
+
+
+def _beams(wish: Wish, tools: Tools, name: str) -> Shape:
+    view, shown = wish.view, wish.of_beams(WITH_BEAMS)
+    of = next(each for each in shown if each.sensor.name == name)
+    budget = beam_budget([each.sensor for each in shown], view.beam_limit)
+    choice = Choice(budget, Channels(view.channels), view.channel)
+    found = tools.cast(wish, of)
+    beams = shown_beams(found, choice)
+    colors = _beam_colors(of, view, beams.channel, beams.stopped)
+    around = None if wish.vehicle is None else wish.vehicle.bounds
+    parts = [rays.free_lines(of.sensor, beams, view.beam_length, colors, around)]
+    if view.rings:
+        rows = channels_of(of.sensor.model, choice)
+        whole = _beam_colors(of, view, rows, np.zeros(len(rows), bool))
+        whole[:, 3] = RING_ALPHA
+        parts.append(rays.ground_rings(found, rows, whole))
+    stopped = rays.stopped_lines(of.sensor, beams, colors)
+    ghosts = Primitives.of(stopped.points, stopped.colors * [1.0, 1.0, 1.0, GHOST])
+    lines = Primitives.joined([*parts, stopped])
+    return Shape(lines=lines, through=ghosts, legend=_beam_legend(view))
+
+
+def _beam_colors(
+    of: Mounted, view: View, channel: NDArray[np.int64], stopped: NDArray[np.bool_]
+) -> NDArray[np.float32]:
+    """(N, 4) colours of beams of these channels."""
+    free, hit = (np.float32(c) for c in (VIEWPORT.free, VIEWPORT.stopped))
+    colors = np.where(stopped[:, None], hit, free)
+    if view.beam_colors == BY_SENSOR:
+        colors[:, :3] = sensor_color(of.number)
+    if view.beam_colors == BY_CHANNEL:
+        rank = np.argsort(np.argsort(of.sensor.model.elevations, kind="stable"))
+        colors[:, :3] = on_scale(rank[channel] / max(len(rank) - 1, 1), VIRIDIS)
+    return colors
+
+
+def _beam_legend(view: View) -> Legend | None:
+    if view.beam_colors == BY_SENSOR:
+        return None  # the labels have the colours
+    if view.beam_colors == BY_CHANNEL:
+        row = on_scale(np.linspace(0.0, 1.0, ground.SWATCHES), VIRIDIS)
+        swatches = tuple((*map(float, color), 1.0) for color in row)
+        return Legend("Channel", swatches, ("lowest", "highest"))
+    solid = tuple(with_alpha(c, 1.0) for c in (VIEWPORT.free, VIEWPORT.stopped))
+    names = ("free", "stopped by the vehicle")
+    return Legend("Beams", classes=tuple(zip(solid, names, strict=True)))
+
+
+def _heat_keys(wish: Wish) -> dict[str, Hashable]:
+    who = tuple(each.key for each in wish.of_beams(WITH_BEAMS))
+    return {WHOLE_RIG: (who, wish.body_key)} if who and wish.vehicle is not None else {}
+
+
+def _heat(wish: Wish, tools: Tools, _name: str) -> Shape:
+    found = [tools.cast(wish, each) for each in wish.of_beams(WITH_BEAMS)]
+    return heat.heat(found, tools.body(wish).triangles)
+
+
+def _view_keys(wish: Wish) -> dict[str, Hashable]:
+    view = wish.view
+    shown = [e for e in wish.sensors if e.drawn and e.sensor.kind not in WITH_BEAMS]
+    return {e.sensor.name: (e.key, e.selected, view.footprints, view.view_range) for e in shown}
+
+
+def _views(wish: Wish, _tools: Tools, name: str) -> Shape:
+    of = next(each for each in wish.sensors if each.sensor.name == name)
+    drawing = drawing_of(of.sensor.kind)
+    sketch = drawing.sketch(of.sensor, None, Choice(1))
+    lines, faces = [sketch.lines(FRUSTUM_M, VIEWPORT)], [sketch.faces(FRUSTUM_M, VIEWPORT)]
+    if drawing.footprint is not None and wish.view.footprints:
+        outline = drawing.footprint(of.sensor, wish.view.view_range)
+        lines.append(frustums.footprint_lines(outline, VIEWPORT.camera))
+        faces.append(frustums.footprint_faces(outline, VIEWPORT.camera_face))
+    shown = Primitives.joined(lines)
+    shown.colors[:, 3] *= 1.0 if of.selected else NOT_SELECTED
+    return Shape(shown, Primitives.joined(faces))
+
+
+def _label_keys(wish: Wish) -> dict[str, Hashable]:
+    colored = wish.view.beam_colors, wish.view.reach_of
+    return {e.sensor.name: (e.key, e.selected, colored) for e in wish.sensors if e.drawn}
+
+
+def _label(wish: Wish, _tools: Tools, name: str) -> Shape:
+    of = next(each for each in wish.sensors if each.sensor.name == name)
+    by_sensor = wish.view.beam_colors == BY_SENSOR or wish.view.reach_of in (SELECTED, ALL)
+    color: Rgba = (*sensor_color(of.number), 1.0) if by_sensor else VIEWPORT.words
+    return Shape(labels=(Label(name, of.sensor.pose.position, color, strong=of.selected),))
+
+
+LAYERS = (
+    Layer(
+        "ground",
+        "Ground Map",
+        _of_rig("ground_quantity", "ground_height", "ground_opacity"),
+        _ground,
+        rough=True,
+        on_ground=True,
+    ),
+    Layer(
+        "blind",
+        "Blind Ground",
+        _of_rig("blind_height", prior=True),
+        _blind,
+        1.6,
+        rough=True,
+        on_ground=True,
+        edged=True,
+    ),
+    Layer("reach", "Reach", _reach_keys, _reach, 2.2, rough=True, on_ground=True, edged=True),
+    Layer("frustums", "Camera Views", _view_keys, _views),
+    Layer("beams", "Beams", _beam_keys, _beams, rough=True),
+    Layer("heat", "Stopped Where", _heat_keys, _heat, rough=True),
+    Layer("labels", "Names", _label_keys, _label),
+)
+assert all(a.name != b.name for a, b in pairwise(LAYERS))

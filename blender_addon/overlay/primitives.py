@@ -1,0 +1,108 @@
+"""What a picture is made of, as plain arrays: lines, triangles, a coloured sheet, words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .colors import Rgba
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Primitives:
+    """Lines (two points each) or triangles (three): `points` (P, 3) [m], `colors` (P, 4) sRGB."""
+
+    points: Floats32
+    colors: Floats32
+
+    @classmethod
+    def empty(cls) -> Primitives:
+        """Nothing, in arrays of the right shape."""
+        return cls(np.empty((0, 3), np.float32), np.empty((0, 4), np.float32))
+
+    @classmethod
+    def of(cls, points: ArrayLike, color: ArrayLike) -> Primitives:
+        """Points (..., 3) in one colour (4,), or in colours (..., 4)."""
+        flat = np.ascontiguousarray(points, np.float32).reshape(-1, 3)
+        colors = np.empty((len(flat), 4), np.float32)  # row by row, as the graphics card reads it
+        colors[:] = np.asarray(color, np.float32).reshape(-1, 4)
+        return cls(flat, colors)
+
+    @classmethod
+    def joined(cls, several: Sequence[Primitives]) -> Primitives:
+        """All of them, drawn in this order."""
+        if not several:
+            return cls.empty()
+        points = np.concatenate([each.points for each in several])
+        return cls(points, np.concatenate([each.colors for each in several]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sheet:
+    """A picture that lies on the ground: `image` (NY, NX, 4) sRGB with alpha, row 0 at low y.
+
+    Its corners are `low` and `high` (x, y) [m].
+    """
+
+    image: Floats32
+    low: tuple[float, float]
+    high: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A word or a figure at a place (x, y, z) [m]; `strong` ones are larger."""
+
+    text: str
+    place: tuple[float, float, float]
+    color: Rgba
+    strong: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Legend:
+    """What colours say: a title, and a scale or classes.
+
+    `scale` is a row of colours from the low end to the high one with `ticks` evenly below it;
+    `classes` are colours with a name each.
+    """
+
+    title: str
+    scale: tuple[Rgba, ...] = ()
+    ticks: tuple[str, ...] = ()
+    classes: tuple[tuple[Rgba, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shape:
+    """What is drawn of one sensor or a whole rig in one layer.
+
+    `lines` and `faces` are hidden by what is nearer, `through` are lines that nothing hides;
+    `thin` ones are drawn as thin as lines are, whatever the layer's width.
+    """
+
+    lines: Primitives = field(default_factory=Primitives.empty)
+    faces: Primitives = field(default_factory=Primitives.empty)
+    through: Primitives = field(default_factory=Primitives.empty)
+    thin: Primitives = field(default_factory=Primitives.empty)
+    sheet: Sheet | None = None
+    labels: tuple[Label, ...] = ()
+    legend: Legend | None = None
+
+
+def polyline(points: Floats) -> Floats:
+    """(2 (N - 1), 3) ends of the segments of a line through (N, 3) points."""
+    return np.stack([points[:-1], points[1:]], axis=1).reshape(-1, 3)
+
+
+def fan(points: Floats) -> Floats:
+    """(3 (N - 2), 3) triangles that fill a convex outline of (N, 3) points."""
+    count = max(len(points) - 2, 0)
+    first = np.broadcast_to(points[:1], (count, 3))
+    return np.stack([first, points[1 : count + 1], points[2 : count + 2]], axis=1).reshape(-1, 3)

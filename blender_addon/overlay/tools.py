@@ -1,0 +1,56 @@
+"""What layers work with and share: casts, a simpler body, what rigs see. One thread's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, TypeVar
+
+from ..engine import geometry, pe, sight
+from . import casts
+from .casts import Cast
+from .wish import Mounted, Wish
+
+T = TypeVar("T")
+
+KEPT = 24
+"""Things of each sort that are kept: those asked for last."""
+MOST_TRIANGLES = 50_000
+"""A body of more is simplified for what is drawn: a picture shows no more."""
+
+
+class Tools:
+    """Keeps what is dear to make, by plain keys; never used by two threads at once."""
+
+    def __init__(self) -> None:
+        self._kept: dict[str, dict[Hashable, Any]] = {}
+
+    def cast(self, wish: Wish, of: Mounted) -> Cast:
+        """Return where the beams of a LiDAR end; a few of them while something moves."""
+        most = casts.A_DRAFT if wish.moving else casts.MOST
+        key = of.key, wish.body_key, most
+        return self._keep("casts", key, lambda: casts.cast(of.sensor, self.body(wish), most))
+
+    def body(self, wish: Wish) -> pe.Vehicle | None:
+        """Return the vehicle, simplified where it has very many triangles."""
+        vehicle = wish.vehicle
+        if vehicle is None or len(vehicle.triangles) <= MOST_TRIANGLES:
+            return vehicle
+        return self._keep(
+            "body", wish.body_key, lambda: geometry.simplified(vehicle, MOST_TRIANGLES)[0]
+        )
+
+    def sight(self, wish: Wish) -> sight.Sight:
+        """Return what tells what rigs see."""
+        key = wish.body_key, wish.prior_key
+        return self._keep(
+            "sight", key, lambda: sight.Sight(pe.PerceptionSpace(), wish.prior, self.body(wish))
+        )
+
+    def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:
+        """Return what is kept under a key, or make it; the one asked for last goes last."""
+        kept = self._kept.setdefault(sort, {})
+        found = kept.pop(key, None)
+        kept[key] = make() if found is None else found
+        while len(kept) > (1 if sort != "casts" else KEPT):
+            del kept[next(iter(kept))]
+        return kept[key]

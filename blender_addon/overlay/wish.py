@@ -1,0 +1,88 @@
+"""What is to be shown, as plain values: what a thread may work from while the scene goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .beams import Channels
+from .ground import SENSORS
+
+if TYPE_CHECKING:
+    from ..engine import pe
+
+AVERAGE = "AVERAGE"
+SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
+BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """Settings of what is shown, by the names that the scene has them under."""
+
+    layers: frozenset[str] = frozenset()
+    ground_quantity: str = SENSORS
+    ground_height: float | None = None
+    ground_opacity: float = 0.5
+    blind_height: float = 0.0
+    reach_class: str = "pedestrian"
+    reach_of: str = RIG
+    beams_of: str = ALL
+    channels: str = Channels.FEW
+    channel: int = 1
+    beam_colors: str = BY_STATE
+    rings: bool = True
+    footprints: bool = True
+    view_range: float = 12.0
+    beam_limit: int = 2000
+    beam_length: float = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class Mounted:
+    """A sensor of the scene, and what the scene says of it.
+
+    `number` is its place among all of them; `drawn` whether its own picture is wanted, `counted`
+    whether it is scored.
+    """
+
+    sensor: pe.Sensor
+    number: int = 0
+    selected: bool = False
+    drawn: bool = True
+    counted: bool = True
+
+    @property
+    def key(self) -> Hashable:
+        """Tells it from itself moved, or made another one."""
+        sensor = self.sensor
+        return sensor.name, id(sensor.model), sensor.pose, sensor.group, self.number
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """A scene, as far as what is drawn depends on it.
+
+    `body_key` and `prior_key` tell vehicles and priors from others; `moving`: a rough picture now
+    is better than a fine one later.
+    """
+
+    sensors: tuple[Mounted, ...]
+    vehicle: pe.Vehicle | None
+    body_key: Hashable
+    prior: pe.Prior | None
+    prior_key: Hashable
+    view: View
+    moving: bool = False
+
+    @property
+    def counted(self) -> tuple[Mounted, ...]:
+        """Those that are scored."""
+        return tuple(each for each in self.sensors if each.counted)
+
+    def of_beams(self, kinds: frozenset[str]) -> tuple[Mounted, ...]:
+        """Return those of some kinds whose beams are wanted."""
+        everyone = self.view.beams_of == ALL
+        wanted = (each for each in self.sensors if each.drawn and each.sensor.kind in kinds)
+        return tuple(each for each in wanted if everyone or each.selected)

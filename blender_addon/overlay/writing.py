@@ -1,0 +1,143 @@
+"""Words over the 3D view: labels where things are, legends in a corner."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import blf
+import bpy
+import gpu
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from gpu_extras.batch import batch_for_shader
+
+from .batches import shader
+from .colors import Rgba
+from .primitives import Label, Legend
+
+FONT = 0
+SIZE, STRONG_SIZE = 11.0, 12.5
+RISE, PADDING = 10.0, 4.0
+MARGIN, GAP = 16.0, 12.0
+LEAST_WIDTH, BAR, ROW = 150.0, 10.0, 17.0
+INK: Rgba = (0.92, 0.92, 0.92, 1.0)
+FAINT_INK: Rgba = (0.72, 0.72, 0.72, 1.0)
+PLATE: Rgba = (0.10, 0.10, 0.10, 0.78)
+LABEL_PLATE: Rgba = (0.08, 0.08, 0.08, 0.55)
+
+
+def write_labels(context: bpy.types.Context, labels: Sequence[Label]) -> None:
+    """Write labels above their places; of those that overlap the later ones are left out."""
+    scale, taken = _scale(), []
+    for label in sorted(labels, key=lambda each: not each.strong):
+        place = location_3d_to_region_2d(context.region, context.region_data, label.place)
+        if place is None:
+            continue
+        blf.size(FONT, (STRONG_SIZE if label.strong else SIZE) * scale)
+        width, height = blf.dimensions(FONT, label.text)
+        x, y = place.x - width / 2.0, place.y + RISE * scale
+        pad = PADDING * scale
+        box = (x - pad, y - pad, x + width + pad, y + height + pad)
+        if any(_overlap(box, other) for other in taken):
+            continue
+        taken.append(box)
+        _fill(box, LABEL_PLATE)
+        _text(label.text, x, y, label.color)
+
+
+def write_legends(context: bpy.types.Context, legends: Sequence[Legend]) -> None:
+    """Write legends one above the other in the lower right corner, beside the sidebar."""
+    scale = _scale()
+    right = context.region.width - _sidebar_width(context) - MARGIN * scale
+    blf.size(FONT, SIZE * scale)
+    width = max((_width(legend, scale) for legend in legends), default=0.0)
+    bottom = MARGIN * scale
+    for legend in reversed(legends):
+        bottom = _legend(legend, (right - width, right), bottom, scale) + GAP * scale / 2.0
+
+
+def _width(legend: Legend, scale: float) -> float:
+    """How wide a legend has to be for its words."""
+    names = [blf.dimensions(FONT, name)[0] + 2.2 * BAR * scale for _, name in legend.classes]
+    widest = max([blf.dimensions(FONT, legend.title)[0], *names])
+    return max(LEAST_WIDTH * scale, widest + PADDING * 4.0 * scale)
+
+
+def _legend(legend: Legend, sides: tuple[float, float], bottom: float, scale: float) -> float:
+    """Write one legend between its sides, standing there; return its upper edge."""
+    rows = len(legend.classes) + (2 if legend.scale else 0)
+    top = bottom + (rows + 1) * ROW * scale + PADDING * 2.0 * scale
+    pad, (left, right) = PADDING * 2.0 * scale, sides
+    _fill((left, bottom, right, top), PLATE)
+    blf.size(FONT, SIZE * scale)
+    y = top - pad - (ROW - 5.0) * scale
+    _text(legend.title, left + pad, y, INK)
+    if legend.scale:
+        y -= ROW * scale
+        _bar(legend.scale, left + pad, y, right - pad, y + BAR * scale)
+        y -= ROW * scale
+        _ticks(legend.ticks, left + pad, right - pad, y + 3.0 * scale)
+    for color, name in legend.classes:
+        y -= ROW * scale
+        _fill((left + pad, y, left + pad + 1.4 * BAR * scale, y + BAR * scale), color)
+        _text(name, left + pad + 2.2 * BAR * scale, y + 1.0 * scale, INK)
+    return top
+
+
+def _bar(colors: Sequence[Rgba], left: float, bottom: float, right: float, top: float) -> None:
+    """A row of colours that run into each other."""
+    step = (right - left) / (len(colors) - 1)
+    places = [(left + step * i, y) for i in range(len(colors)) for y in (bottom, top)]
+    shades = [color for color in colors for _ in range(2)]
+    smooth = shader("SMOOTH_COLOR")
+    arrays = {"pos": [(x, y, 0.0) for x, y in places], "color": shades}
+    with _blended():
+        batch_for_shader(smooth, "TRI_STRIP", arrays).draw(smooth)
+
+
+def _ticks(ticks: Sequence[str], left: float, right: float, y: float) -> None:
+    """Words evenly below a bar, the outer ones within its ends."""
+    for number, tick in enumerate(ticks):
+        share = number / max(len(ticks) - 1, 1)
+        width = blf.dimensions(FONT, tick)[0]
+        _text(tick, left + share * (right - left - width), y, FAINT_INK)
+
+
+def _text(text: str, x: float, y: float, color: Rgba) -> None:
+    blf.color(FONT, *color)
+    blf.position(FONT, round(x), round(y), 0.0)
+    blf.draw(FONT, text)
+
+
+def _fill(box: tuple[float, float, float, float], color: Rgba) -> None:
+    left, bottom, right, top = box
+    plain = shader("UNIFORM_COLOR")
+    corners = ((left, bottom, 0.0), (right, bottom, 0.0), (right, top, 0.0), (left, top, 0.0))
+    plain.uniform_float("color", color)
+    with _blended():
+        batch_for_shader(plain, "TRI_FAN", {"pos": corners}).draw(plain)
+
+
+class _blended:
+    """Colours mixed with what is there, within."""
+
+    def __enter__(self) -> None:
+        self._before = gpu.state.blend_get()
+        gpu.state.blend_set("ALPHA")
+
+    def __exit__(self, *_: object) -> None:
+        gpu.state.blend_set(self._before)
+
+
+def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def _scale() -> float:
+    return bpy.context.preferences.system.ui_scale
+
+
+def _sidebar_width(context: bpy.types.Context) -> float:
+    """How much of the region's right is under the sidebar."""
+    if not context.preferences.system.use_region_overlap:
+        return 0.0
+    return max((r.width for r in context.area.regions if r.type == "UI" and r.width > 1), default=0)

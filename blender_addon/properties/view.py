@@ -1,0 +1,207 @@
+"""What the 3D view shows of perception: one switch a layer, and how each is shown.
+
+What was there before stays on the scene's own settings: `show_overlay`, `beam_limit` and
+`beam_length`, where scripts and older files have them.
+"""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from ..engine import pe
+from .callbacks import redraw
+
+DEFAULT_CLASS = "pedestrian"
+HEIGHTS = (
+    ("H0", "Ground", "The voxels that stand on the ground", 1),
+    ("H50", "0.5 m", "As high as a bumper or a cone", 2),
+    ("H100", "1 m", "As high as a bonnet", 3),
+    ("H150", "1.5 m", "As high as heads and roofs", 4),
+)
+TALL = (
+    ("H0", "Flat", "What lies flat on the ground: the gaps between a LiDAR's rings are blind", 1),
+    ("H50", "0.5 m", "A cone, a crouching child, a low wall", 2),
+    ("H100", "1 m", "A child", 3),
+    ("H150", "1.5 m", "A car, a grown person", 4),
+)
+AVERAGED = ("AVERAGE", "Average", "All heights, by how likely an object is there: as scored", 0)
+COLORS = (
+    ("STATE", "Free or Stopped", "Blue beams go free, orange ones end on the vehicle"),
+    ("SENSOR", "Sensor", "Each sensor has a colour of its own"),
+    ("CHANNEL", "Channel", "From the lowest channel, dark, to the highest, bright"),
+)
+
+
+def classes_of(
+    _view: bpy.types.PropertyGroup, context: bpy.types.Context, _typed: str
+) -> list[str]:
+    """Return the classes that the scene's prior knows; of boxes from a file, those of the road."""
+    highway = context.scene.perception_entropy.prior == "highway"
+    return list((pe.Prior.highway() if highway else pe.Prior.road()).class_names)
+
+
+class PE_ViewSettings(bpy.types.PropertyGroup):
+    """What is drawn in the 3D view."""
+
+    show_ground: BoolProperty(
+        name="Ground Map",
+        description="Colour the ground by how well it is seen",
+        default=True,
+        update=redraw,
+    )
+    ground_quantity: EnumProperty(
+        items=(
+            ("SENSORS", "Sensors", "How many sensors see a place: nobody, 1, 2, 3 or more"),
+            ("COVERAGE", "Coverage", "What share of a place some sensor sees"),
+            ("ENTROPY", "Entropy", "How uncertain a detector is there, in nats; lower is better"),
+        ),
+        name="Show",
+        description="What the colours of the ground tell",
+        default="ENTROPY",
+        update=redraw,
+    )
+    ground_height: EnumProperty(
+        items=(AVERAGED, *HEIGHTS),
+        name="Height",
+        description="How high above the ground to look",
+        update=redraw,
+    )
+    ground_opacity: FloatProperty(
+        name="Opacity",
+        description="How much of what lies below the map's colours hide",
+        default=0.4,
+        min=0.05,
+        max=1.0,
+        subtype="FACTOR",
+        update=redraw,
+    )
+
+    show_blind: BoolProperty(
+        name="Blind Ground",
+        description="Outline the ground round the vehicle that no sensor sees, and say how far it "
+        "goes to each side",
+        default=True,
+        update=redraw,
+    )
+    blind_height: EnumProperty(
+        items=TALL,
+        name="Height",
+        description="How tall it is, standing on the ground, that nobody sees any of",
+        default="H50",
+        update=redraw,
+    )
+
+    show_reach: BoolProperty(
+        name="Reach",
+        description="Draw how far away objects of a class are still found: average precision of "
+        "at least 0.5",
+        default=False,
+        update=redraw,
+    )
+    reach_class: StringProperty(
+        name="Class",
+        description="What is to be found",
+        default=DEFAULT_CLASS,
+        search=classes_of,
+        search_options=set(),
+        update=redraw,
+    )
+    reach_of: EnumProperty(
+        items=(
+            ("RIG", "Rig", "All sensors together"),
+            ("SELECTED", "Selected", "All together, and each selected sensor alone"),
+            ("ALL", "All", "All together, and each sensor alone"),
+        ),
+        name="Of",
+        description="Whose reach is drawn",
+        update=redraw,
+    )
+
+    show_frustums: BoolProperty(
+        name="Camera Views",
+        description="Draw what cameras look at: their frustum, true to lens and pitch",
+        default=True,
+        update=redraw,
+    )
+    footprints: BoolProperty(
+        name="On the Ground",
+        description="Draw the ground that a camera looks at, as far as the range or the horizon",
+        default=True,
+        update=redraw,
+    )
+    view_range: FloatProperty(
+        name="Range",
+        description="How far on the ground a camera's view is drawn",
+        default=12.0,
+        min=0.5,
+        soft_max=100.0,
+        subtype="DISTANCE",
+        unit="LENGTH",
+        update=redraw,
+    )
+
+    show_beams: BoolProperty(
+        name="Beams",
+        description="Draw a fair sample of LiDAR beams: as many of a hundred end on the vehicle as "
+        "of all",
+        default=True,
+        update=redraw,
+    )
+    beams_of: EnumProperty(
+        items=(
+            ("SELECTED", "Selected", "Beams of selected sensors"),
+            ("ALL", "All", "Beams of all sensors"),
+        ),
+        name="Of",
+        description="Whose beams are drawn",
+        update=redraw,
+    )
+    channels: EnumProperty(
+        items=(
+            ("FEW", "Few", "A few channels from the highest to the lowest"),
+            ("ONE", "One", "A single channel"),
+            ("EVERY", "Every nth", "Every nth channel"),
+            ("ALL", "All", "All channels"),
+        ),
+        name="Channels",
+        description="Of which channels beams are drawn",
+        update=redraw,
+    )
+    channel: IntProperty(
+        name="Channel", description="Counted from the lowest, 1", default=1, min=1, update=redraw
+    )
+    every: IntProperty(
+        name="Every", description="2: every second channel", default=4, min=1, update=redraw
+    )
+    beam_colors: EnumProperty(
+        items=COLORS,
+        name="Color By",
+        description="What the colours of beams tell",
+        update=redraw,
+    )
+    rings: BoolProperty(
+        name="On the Ground",
+        description="Draw the rings in which channels meet the ground",
+        default=True,
+        update=redraw,
+    )
+
+    show_heat: BoolProperty(
+        name="Stopped Where",
+        description="Colour the vehicle where it stops beams, by how many end there",
+        default=False,
+        update=redraw,
+    )
+    show_labels: BoolProperty(
+        name="Names",
+        description="Write the names of sensors beside them",
+        default=True,
+        update=redraw,
+    )
+    show_legend: BoolProperty(
+        name="Legend",
+        description="Say in the lower right corner what the colours mean",
+        default=True,
+        update=redraw,
+    )

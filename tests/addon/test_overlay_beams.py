@@ -1,0 +1,237 @@
+"""Beams shown are a fair sample; lines end where beams do and leave the vehicle readable."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import catalog
+from tests.addon.overlay_alone import box, car, lidar, load, mounted
+
+beams, casts, rays = load("beams", "casts", "rays")
+Channels, Choice = beams.Channels, beams.Choice
+
+LENGTH_M = 15.0
+
+
+@pytest.fixture
+def vehicle():
+    return car()
+
+
+def shown(sensor, vehicle, budget, channels=Channels.ALL, number=1):
+    return beams.shown_beams(casts.cast(sensor, vehicle), Choice(budget, channels, number))
+
+
+def elevations_of(found):
+    return {round(v, 6) for v in np.degrees(np.arcsin(found.directions[:, 2]))}
+
+
+@pytest.mark.parametrize("budget", [1, 4, 5, 50, 401, 3600, 10_000])
+@pytest.mark.parametrize("channels", list(Channels))
+def test_no_more_beams_than_the_budget(budget, channels, vehicle):
+    for body in (vehicle, None):
+        assert 0 < len(shown(mounted(), body, budget, channels).ends) <= budget
+
+
+def test_budget_above_all_beams_shows_each_once(vehicle):
+    found = shown(mounted(), vehicle, 10_000)
+    assert len(found.ends) == mounted().model.beam_count
+    assert len(np.unique(found.directions.round(9), axis=0)) == len(found.ends)
+
+
+def test_agrees_with_the_engine_beam_by_beam(vehicle):
+    sensor = mounted(position=(-0.3, 0.2, 1.8), rotation=(0, 5, 30))
+    found, field = casts.cast(sensor, vehicle), pe.beam_field(sensor, vehicle)
+    np.testing.assert_array_equal(found.stopped, field.stopped_by >= 0)
+    np.testing.assert_array_equal(found.ends, field.ends)
+    assert found.stopped.any()
+
+
+@pytest.mark.parametrize("channels", [Channels.FEW, Channels.EVERY, Channels.ALL])
+@pytest.mark.parametrize(("height", "low", "high"), [(1.9, 0.1, 0.2), (1.52, 0.5, 0.6)])
+def test_the_share_of_stopped_beams_is_the_true_one(channels, height, low, high, vehicle):
+    """A beam more or less: well above the roof's corner, and right on it."""
+    sensor = mounted(position=(1.9, 0.9, height), rotation=(0, 10, 30))
+    field = pe.beam_field(sensor, vehicle)
+    true = (field.stopped_by >= 0).mean()
+    assert low < true < high
+    found = shown(sensor, vehicle, 300, channels, 2)
+    assert found.share == pytest.approx(true)
+    assert abs(found.stopped.sum() - true * len(found.ends)) <= 1.0
+
+
+def test_few_stopped_beams_are_neither_lost_nor_a_fan():
+    """A post stops one beam in some hundreds: of 300 shown one or two are, never none."""
+    post = box((2.0, -0.02, 0.5), (2.04, 0.02, 2.5))
+    sensor = mounted(lidar(azimuths=7200))
+    true = (pe.beam_field(sensor, post).stopped_by >= 0).mean()
+    assert 0.0 < true < 0.005
+    for channels in (Channels.FEW, Channels.ALL):
+        assert 1 <= shown(sensor, post, 300, channels).stopped.sum() <= 2
+
+
+def test_one_channel_shows_its_own_share(vehicle):
+    """The lowest channel's, which the roof stops; not that of the whole sensor."""
+    sensor = mounted(position=(0.0, 0.0, 1.6))
+    lowest = shown(sensor, vehicle, 200, Channels.ONE, 1)
+    assert elevations_of(lowest) == {-40.0} and lowest.stopped.all() and lowest.share == 1.0
+    highest = shown(sensor, vehicle, 200, Channels.ONE, 5)
+    assert elevations_of(highest) == {10.0} and not highest.stopped.any()
+    assert elevations_of(shown(sensor, vehicle, 200, Channels.ONE, 99)) == {10.0}
+
+
+def test_every_nth_channel_is_counted_from_below():
+    assert elevations_of(shown(mounted(), None, 60, Channels.EVERY, 2)) == {-40.0, -10.0, 10.0}
+
+
+def test_few_channels_are_spread_over_the_angles_not_over_their_numbers():
+    """A Pandar64 has most of its channels near the horizon; the few reach from top to bottom."""
+    pandar = catalog.load("Pandar64")
+    found = np.degrees(pandar.elevations[beams.channels_of(pandar, Choice(5000, Channels.FEW))])
+    assert len(found) == beams.A_FEW
+    assert (found.min(), found.max()) == pytest.approx((-25.0, 15.0))
+    assert np.diff(np.sort(found)).max() < 12.0
+
+
+def test_few_are_few_whatever_the_budget():
+    found = shown(mounted(catalog.load("Pandar64")), None, 200_000, Channels.FEW)
+    assert len(found.ends) <= 300
+
+
+def test_a_rosette_shows_all_over_its_picture():
+    """Each beam of it is a channel: a few of those would show nothing."""
+    angles = np.linspace(0.0, 20.0, 3000)
+    away = np.column_stack([np.ones(3000), 0.2 * np.sin(angles), 0.2 * np.cos(7.0 * angles)])
+    rosette = pe.Lidar.from_directions("rosette", away, 50.0)
+    assert len(shown(mounted(rosette), None, 200, Channels.FEW).ends) == 200
+
+
+def test_azimuths_are_thinned_evenly():
+    np.testing.assert_array_equal(casts.around(lidar(), 8), np.arange(8) * 90)
+
+
+def test_edges_of_a_limited_field_of_view_show():
+    model = lidar(fov_deg=(-45, 45))
+    found = casts.around(model, 4)
+    assert found[0] == 0 and found[-1] == len(model.azimuth_steps) - 1
+
+
+def test_a_draft_casts_few_beams_of_every_channel(vehicle):
+    sensor = mounted(catalog.load("Pandar64"))
+    found = casts.cast(sensor, vehicle, casts.A_DRAFT)
+    assert len(found.rows) == 64 and 10_000 < len(found.ends) <= casts.A_DRAFT
+    fine = casts.cast(sensor, vehicle)
+    assert abs(found.stopped.mean() - fine.stopped.mean()) < 0.01
+
+
+def test_same_input_same_arrays(vehicle):
+    first, second = (shown(mounted(), vehicle, 500) for _ in range(2))
+    np.testing.assert_array_equal(first.directions, second.directions)
+    np.testing.assert_array_equal(first.ends, second.ends)
+
+
+def test_buried_lidar_shows_only_stopped_beams(vehicle):
+    found = shown(mounted(position=(0.0, 0.0, 0.9)), vehicle, 200)
+    assert found.stopped.all() and 0 < len(found.ends) <= 200
+
+
+COLOR = np.array([0.1, 0.2, 0.3, 0.5])
+
+
+def free_lines(sensor, found, vehicle=None):
+    around = None if vehicle is None else vehicle.bounds
+    lines = rays.free_lines(sensor, found, LENGTH_M, np.tile(COLOR, (len(found.ends), 1)), around)
+    return lines.points.reshape(-1, 4, 3), lines.colors.reshape(-1, 4, 4)
+
+
+def test_free_beams_end_at_the_ground_or_the_length(vehicle):
+    sensor = mounted()
+    points, _ = free_lines(sensor, shown(sensor, vehicle, 2000), vehicle)
+    np.testing.assert_allclose(points[:, 0] - [0.0, 0.0, 1.9], 0.0, atol=1e-6)
+    length = np.linalg.norm(points[:, 3] - points[:, 0], axis=1)
+    at_ground = np.abs(points[:, 3, 2]) < 1e-5
+    np.testing.assert_allclose(length[~at_ground], LENGTH_M, rtol=1e-6)
+    assert at_ground.any() and (length[at_ground] < LENGTH_M).all()
+    assert (points[:, 3, 2] > -1e-5).all()
+    # 1.9 m down at 10 degrees: 1.9 / sin(10 deg)
+    assert any(abs(length[at_ground] - 1.9 / math.sin(math.radians(10))) < 1e-4)
+
+
+def test_free_beams_end_at_a_short_range(vehicle):
+    sensor = mounted(lidar(elevations_deg=(10,), max_range=3.0))
+    points, _ = free_lines(sensor, shown(sensor, vehicle, 100), vehicle)
+    np.testing.assert_allclose(np.linalg.norm(points[:, 3] - points[:, 0], axis=1), 3.0, rtol=1e-6)
+
+
+def test_free_beams_are_faint_over_the_vehicle_and_fade_beyond(vehicle):
+    sensor = mounted(lidar(elevations_deg=(0,)))
+    points, found = free_lines(sensor, shown(sensor, vehicle, 8), vehicle)
+    ahead = points[0]  # out of the car's surroundings at its front and half a metre
+    assert ahead[1, 0] == pytest.approx(2.0 + rays.SURROUNDINGS_M)
+    np.testing.assert_array_equal(points[:, 1], points[:, 2])
+    alpha = found[..., 3]
+    assert (alpha[:, 0] < 0.2 * alpha[:, 1]).all(), "the car is hidden"
+    np.testing.assert_allclose(alpha[:, 3], 0.0, atol=1e-6)
+    np.testing.assert_allclose(found[..., :3], np.broadcast_to(np.float32(COLOR[:3]), (8, 4, 3)))
+
+
+def test_without_a_vehicle_beams_are_plain_from_the_start():
+    sensor = mounted()
+    points, _ = free_lines(sensor, shown(sensor, None, 50))
+    np.testing.assert_array_equal(points[:, 0], points[:, 1])
+
+
+def test_stopped_beams_end_on_the_vehicle(vehicle):
+    sensor = mounted(position=(0.0, 0.0, 2.4))
+    found = shown(sensor, vehicle, 2000)
+    lines = rays.stopped_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
+    ends = lines.points.reshape(-1, 2, 3)[:, 1]
+    assert len(ends) == found.stopped.sum() > 0
+    np.testing.assert_allclose(ends[:, 2], 1.5, atol=1e-6)  # from above, only its roof is hit
+    assert (np.abs(ends[:, 0]) <= 2.0).all() and (np.abs(ends[:, 1]) <= 1.0).all()
+
+
+def test_beams_that_are_stopped_at_once_still_show(vehicle):
+    sensor = mounted(position=(2.0, 0.0, 0.9))
+    found = shown(sensor, vehicle, 500)
+    assert found.ends[found.stopped].min() < 0.1
+    lines = rays.stopped_lines(sensor, found, np.tile(COLOR, (len(found.ends), 1)))
+    length = np.linalg.norm(np.diff(lines.points.reshape(-1, 2, 3), axis=1)[:, 0], axis=1)
+    assert length.min() >= rays.STUB_M - 1e-5
+
+
+def rings(sensor, vehicle, rows):
+    rows = np.array(rows)
+    lines = rays.ground_rings(casts.cast(sensor, vehicle), rows, np.tile(COLOR, (len(rows), 1)))
+    return lines.points.reshape(-1, 2, 3), lines.colors.reshape(-1, 2, 4)
+
+
+def test_rings_lie_where_channels_meet_the_ground():
+    points, colors = rings(mounted(), None, [2, 3])  # 10 and 25 degrees down from 1.9 m
+    assert np.abs(points[..., 2]).max() < 1e-5
+    radius = np.hypot(points[..., 0], points[..., 1])
+    for degrees in (10.0, 25.0):
+        far = 1.9 / math.tan(math.radians(degrees))
+        ring = np.abs(radius - far).max(axis=1) < 1e-4
+        assert ring.sum() == 360, "not closed"
+        expected = COLOR[3] * (1.0 - np.hypot(far, 1.9) / rays.RING_FAR_M)
+        np.testing.assert_allclose(colors[ring, :, 3], expected, rtol=1e-5)
+    assert len(points) == 720
+
+
+def test_rings_break_where_the_vehicle_stops_beams(vehicle):
+    points, _ = rings(mounted(position=(0.0, 0.0, 1.7)), vehicle, [2])
+    assert 0 < len(points) < 360
+    assert (np.linalg.norm(points[:, 1] - points[:, 0], axis=1) < 1.0).all()
+
+
+def test_channels_that_look_up_have_no_ring():
+    assert not len(rings(mounted(), None, [0, 1])[0])
+    assert not len(rings(mounted(position=(0.0, 0.0, -1.0)), None, [2])[0])
+
+
+def test_a_tilted_lidar_s_rings_stay_on_the_ground():
+    points, _ = rings(mounted(rotation=(0.0, 15.0, 20.0)), None, [1, 2, 3])
+    assert len(points) and np.abs(points[..., 2]).max() < 1e-4

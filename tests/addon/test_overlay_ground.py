@@ -1,0 +1,203 @@
+"""Ground map, blind ground, reach and heat as arrays: right places, figures and colours."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.sight import BlindGround, BlindSpot, GroundSight, Reach
+from tests.addon.overlay_alone import box, car, lidar, load, mounted
+
+blind, casts, colors, ground, heat, reach = load(
+    "blind", "casts", "colors", "ground", "heat", "reach"
+)
+
+
+def seen(entropy=None, sensors=None, step=1.0, shape=(30, 20)):
+    """A map of places; the vehicle is in the middle."""
+    nx, ny = shape
+    nothing = np.zeros(shape)
+    entropy = nothing if entropy is None else entropy
+    sensors = np.ones(shape, int) if sensors is None else sensors
+    x, y = ((np.arange(n) + 0.5 - n / 2) * step for n in (nx, ny))
+    return GroundSight(x, y, step, None, entropy, entropy, sensors, sensors)
+
+
+def test_a_scale_rises_evenly_in_lightness():
+    """Perceptually even: steps of CIE lightness are of one sign, none much larger than others."""
+    for scale in (colors.VIRIDIS, colors.CIVIDIS, colors.COUNTS):
+        rgb = np.array(scale)
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        lightness = 116.0 * np.cbrt(linear @ [0.2126, 0.7152, 0.0722]) - 16.0
+        steps = np.diff(lightness)
+        assert steps.min() > 0.0 and steps.max() < 2.5 * steps.mean()
+
+
+def test_a_scale_ends_in_its_outer_colours_and_clips():
+    found = colors.on_scale([-1.0, 0.0, 1.0, 2.0], colors.VIRIDIS)
+    np.testing.assert_allclose(found[:2], [colors.VIRIDIS[0]] * 2, atol=1e-6)
+    np.testing.assert_allclose(found[2:], [colors.VIRIDIS[-1]] * 2, atol=1e-6)
+
+
+def test_the_map_lies_where_it_was_looked_and_is_clear_in_the_vehicle():
+    entropy = np.full((30, 20), 16.651)
+    entropy[:15] = -10.976  # behind: as good as can be
+    entropy[14:16, 9:11] = np.nan
+    shape = ground.ground_map(seen(entropy), ground.ENTROPY, 0.5, faded=False)
+    sheet = shape.sheet
+    assert sheet.low == (-15.0, -10.0) and sheet.high == (15.0, 10.0)
+    assert sheet.image.shape == (20, 30, 4) and sheet.image.flags.c_contiguous
+    assert (sheet.image[9:11, 14:16, 3] == 0.0).all() and sheet.image[0, 0, 3] == 0.5
+    np.testing.assert_allclose(sheet.image[3, 2, :3], colors.VIRIDIS[-1], atol=1e-4)
+    np.testing.assert_allclose(sheet.image[3, 27, :3], colors.VIRIDIS[0], atol=1e-4)
+    assert "nats" in shape.legend.title and "16.7" in shape.legend.ticks[0]
+    assert shape.legend.scale[0][:3] == pytest.approx(colors.VIRIDIS[0], abs=1e-6)
+
+
+def test_counts_are_four_classes_and_the_vehicle_is_clear():
+    sensors = np.repeat([0, 1, 2, 3, 7, -1], 5)[:, None] * np.ones((30, 20), int)
+    shape = ground.ground_map(seen(sensors=sensors), ground.SENSORS, 1.0, faded=False)
+    row = shape.sheet.image[10]
+    for at, expected in ((2, 0), (7, 1), (12, 2), (17, 3), (22, 3)):
+        np.testing.assert_allclose(row[at, :3], colors.COUNTS[expected], atol=1e-6)
+    assert row[27, 3] == 0.0
+    assert [name for _, name in shape.legend.classes] == [*ground.COUNT_NAMES]
+
+
+def test_the_map_fades_towards_its_edges():
+    shape = ground.ground_map(seen(step=2.0), ground.COVERAGE, 0.6, faded=True)
+    alpha = shape.sheet.image[..., 3]
+    assert alpha[10, 15] == pytest.approx(0.6) and alpha[0].max() < 0.05 < alpha[4, 15]
+
+
+def square(low, high):
+    (x0, y0), (x1, y1) = low, high
+    return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], float)
+
+
+def test_hatching_fills_a_square_and_leaves_its_hole_out():
+    hole = square((-1, -1), (1, 1))[::-1]
+    lines = blind.hatch((square((-3, -3), (3, 3)), hole), 0.25).reshape(-1, 2, 2)
+    middle = lines.mean(axis=1)
+    assert (np.abs(middle).max(axis=1) <= 3.0).all()
+    assert not (np.abs(middle).max(axis=1) < 1.0).any(), "the hole is hatched"
+    # Lines that far apart, seen along the slant, cover as much as the area.
+    length = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum()
+    assert length * 0.25 / math.sqrt(2.0) == pytest.approx(36.0 - 4.0, rel=0.02)
+
+
+def found_blind(outlines, nearest=None, zone=None):
+    nowhere = dict.fromkeys(("front", "rear", "left", "right"))
+    spots = {side: BlindSpot(*spot) for side, spot in (nearest or {}).items()}
+    zones = {**dict.fromkeys(nowhere, 0.0), **(zone or {})}
+    return BlindGround(outlines, 5.0, 0.5, 10.0, {**nowhere, **spots}, zones, nowhere)
+
+
+def test_blind_ground_is_measured_by_side():
+    """At the body: how far it goes. Away from it: where it begins. None: no word."""
+    at_body, away = square((2.0, -1.0), (5.0, 1.0)), square((-1.0, 4.0), (1.0, 6.0))
+    nearest = {"front": ((2.0, 0.0), 0.0), "left": ((0.0, 4.0), 3.0)}
+    found = found_blind((at_body, away), nearest, {"front": 3.0})
+    shape = blind.blind_ground(found, car().bounds, 0.5)
+    assert {label.text for label in shape.labels} == {"blind to 3.0 m", "blind at 3.0 m"}
+    places = {label.text: label.place for label in shape.labels}
+    assert places["blind to 3.0 m"] == pytest.approx((5.0, 0.0, 0.0), abs=1e-6)
+    assert places["blind at 3.0 m"] == pytest.approx((0.0, 4.0, 0.0), abs=1e-6)
+    assert shape.legend.classes[0][1] == "5 m² within 10 m" and "0.5 m" in shape.legend.title
+    assert (shape.lines.points[:, 2] == 0.0).all() and len(shape.thin.points)
+
+
+def test_blind_ground_that_does_not_end_says_so_and_a_strip_is_not_measured():
+    endless, strip = square((2.0, -1.0), (12.0, 1.0)), square((-2.0, 1.0), (2.0, 1.2))
+    nearest = {"front": ((2.0, 0.0), 0.0), "left": ((0.0, 1.0), 0.0)}
+    found = found_blind((endless, strip), nearest, {"front": None, "left": 0.2})
+    shape = blind.blind_ground(found, car().bounds, 0.0)
+    assert [label.text for label in shape.labels] == ["blind beyond 10 m"]
+
+
+def test_nothing_blind_is_an_empty_shape():
+    shape = blind.blind_ground(found_blind(()), car().bounds, 0.0)
+    assert not len(shape.lines.points) and not shape.labels
+    assert not blind.blind_ground(found_blind(()), None, 0.0).labels
+
+
+def found_reach(distance, limit=80.0):
+    bearings = np.radians(np.arange(0, 360, 5.0))
+    full = np.broadcast_to(np.asarray(distance, float), bearings.shape)
+    edge = np.broadcast_to(np.asarray(limit, float), bearings.shape)
+    return Reach("pedestrian", 0.5, bearings, full, {"roof": full / 2.0}, edge)
+
+
+def test_reach_is_a_closed_line_with_metres():
+    shape = reach.reach_of_rig(found_reach(30.0))
+    points = shape.lines.points.reshape(-1, 2, 3)
+    assert len(points) == 72
+    np.testing.assert_allclose(np.hypot(points[..., 0], points[..., 1]), 30.0, rtol=1e-6)
+    np.testing.assert_array_equal(points[:, 1], np.roll(points[:, 0], -1, axis=0))
+    assert [label.text for label in shape.labels] == ["30 m"] * reach.FIGURES
+    assert shape.labels[0].place == pytest.approx((30.0, 0.0, 0.0))
+    assert "Pedestrian" in shape.legend.title and "AP" in shape.legend.title
+
+
+def test_reach_beyond_the_space_is_at_least_that_far_and_fainter():
+    limit = np.where(np.arange(72) < 36, 30.0, 80.0)
+    shape = reach.reach_of_rig(found_reach(np.minimum(limit, 40.0), limit))
+    assert {label.text for label in shape.labels} == {"≥ 30 m", "40 m", "38 m"}
+    alpha = shape.lines.colors.reshape(-1, 2, 4)[..., 3]
+    assert alpha[18].max() < 0.5 * alpha[50].min()
+
+
+def test_a_rig_that_finds_nothing_has_no_figures():
+    assert not reach.reach_of_rig(found_reach(0.0)).labels
+
+
+def test_sensors_have_their_own_line_and_colour():
+    shape = reach.reach_of_sensors(found_reach(30.0), {"roof": 2})
+    np.testing.assert_allclose(np.linalg.norm(shape.lines.points, axis=1), 15.0, rtol=1e-6)
+    assert shape.legend.classes[0][1] == "roof"
+    assert shape.legend.classes[0][0][:3] == colors.SENSORS[2]
+
+
+def test_another_rig_has_its_line_in_another_palette():
+    class Look:
+        def reach(self, rig, name, **_):
+            assert (rig, name) == ("rig", "car")
+            return found_reach(20.0)
+
+    palette = SimpleNamespace(reach=(1.0, 0.0, 0.0, 1.0), words=(1.0, 1.0, 1.0, 1.0))
+    shape = reach.rig_reach(Look(), "rig", "car", palette, "variant B")
+    assert (shape.lines.colors[:, :3] == [1.0, 0.0, 0.0]).all()
+    assert shape.legend.classes == ((palette.reach, "variant B"),)
+
+
+def test_heat_is_hits_per_area_on_the_surface():
+    """A plate 2 m below a LiDAR that looks straight down and about: known beams a dm2."""
+    plate = box((-3.0, -3.0, -0.5), (3.0, 3.0, 0.0))
+    angles = np.radians(np.arange(-90.0, -70.0, 0.25))
+    sensor = mounted(pe.Lidar("down", angles, 1440, 50.0), (0.0, 0.0, 2.0))
+    found = casts.cast(sensor, plate)
+    shape = heat.heat([found], plate.triangles)
+    points = shape.faces.points
+    np.testing.assert_allclose(points[:, 2], heat.LIFT_M, atol=1e-6)
+    radius = np.hypot(points[:, 0], points[:, 1]).max()
+    assert radius == pytest.approx(2.0 * math.tan(math.radians(20.0)), abs=0.1)
+    hits = found.stopped.sum()
+    assert len(points) / 6 == pytest.approx(math.pi * 0.73**2 / heat.TILE_M**2, rel=0.15)
+    upwards = np.tile([0.0, 0.0, 1.0], (hits, 1))
+    tiles = heat._Tiles.of(found.points[found.stopped], upwards, np.ones(hits))
+    ring = np.hypot(tiles.points[:, 0], tiles.points[:, 1])
+    at = (ring > 0.35) & (ring < 0.45)
+    # d beams / d area at radius r: beams a radian of elevation and azimuth, over the Jacobian.
+    r = 0.4
+    per_sr = (1440 / (2.0 * math.pi)) / math.radians(0.25)
+    expected = per_sr * 2.0 / (4.0 + r**2) / r / 100.0
+    assert np.median(tiles.density[at]) == pytest.approx(expected, rel=0.15)
+
+
+def test_nothing_stopped_is_no_heat():
+    far = box((50.0, 0.0, 0.0), (51.0, 1.0, 1.0))
+    shape = heat.heat([casts.cast(mounted(lidar(max_range=10.0)), far)], far.triangles)
+    assert not len(shape.faces.points) and shape.legend is None
+    assert not len(heat.heat([], far.triangles).faces.points)

@@ -1,0 +1,327 @@
+"""What is shown follows the scene: worked out once a change, and never while drawing."""
+
+import contextlib
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon import body, bridge, changes, worker
+from blender_addon.engine import pe, sight
+from blender_addon.overlay import casts, handler, layers, updating
+from blender_addon.overlay.store import shown
+from tests.addon import scenes
+
+ALL_LAYERS = {layer.name for layer in layers.LAYERS}
+
+
+@pytest.fixture
+def rig(car):
+    """The car with a LiDAR on its roof and a camera at its front, all layers on."""
+    scenes.add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
+    view = car.perception_entropy.view
+    for name in ALL_LAYERS:
+        setattr(view, f"show_{name}", True)
+    view.beams_of = "ALL"
+    return car
+
+
+@pytest.fixture
+def worked(monkeypatch):
+    """Return the layers and sensors that are worked out, as they come."""
+    done = []
+
+    def watched(layer):
+        def shape(wish, tools, name):
+            done.append((layer.name, name))
+            return layer.shape(wish, tools, name)
+
+        return layer.__class__(
+            layer.name, layer.label, layer.keys, shape, layer.line_px, layer.rough
+        )
+
+    monkeypatch.setattr(updating, "LAYERS", tuple(map(watched, layers.LAYERS)))
+    return done
+
+
+def test_every_layer_shows_something_of_a_rig(rig):
+    drawn = scenes.drawn(rig)
+    assert set(drawn) == ALL_LAYERS
+    assert set(drawn["labels"]) == {"roof", "eye"}
+    assert set(drawn["beams"]) == {"roof"} and set(drawn["frustums"]) == {"eye"}
+    for name in ("ground", "blind", "reach", "heat"):
+        assert set(drawn[name]) == {layers.WHOLE_RIG}
+    for shapes in drawn.values():
+        for shape in shapes.values():
+            parts = (shape.lines, shape.faces, shape.through, shape.thin)
+            assert shape.labels or shape.sheet or any(len(part.points) for part in parts)
+            assert all(p.points.flags.c_contiguous and p.colors.flags.c_contiguous for p in parts)
+
+
+def test_each_layer_has_a_switch_and_all_of_them_one(rig):
+    view = rig.perception_entropy.view
+    for name in ALL_LAYERS:
+        setattr(view, f"show_{name}", False)
+        assert set(scenes.drawn(rig)) == ALL_LAYERS - {name}
+        setattr(view, f"show_{name}", True)
+    rig.perception_entropy.show_overlay = False
+    assert not scenes.drawn(rig)
+    rig.perception_entropy.show_overlay = True
+    assert set(scenes.drawn(rig)) == ALL_LAYERS
+
+
+def test_nothing_is_worked_out_without_a_change(rig, worked):
+    scenes.drawn(rig)
+    assert len(worked) == 8
+    before = {layer: dict(shown.items(rig.name, layer)) for layer in ALL_LAYERS}
+    worked.clear()
+    scenes.drawn(rig)
+    updating.update(moving=True)
+    updating.update()
+    assert not worked
+    for layer, items in before.items():
+        assert all(shown.items(rig.name, layer)[name].shape is i.shape for name, i in items.items())
+
+
+def test_a_moved_sensor_is_worked_out_alone_and_the_vehicle_is_not_read(rig, worked, monkeypatch):
+    scenes.drawn(rig)
+    worked.clear()
+    monkeypatch.setattr(bridge, "vehicle_from_collection", lambda *_: pytest.fail("read again"))
+    rig.objects["eye"].location.z += 0.1
+    bpy.context.view_layer.update()
+    scenes.drawn(rig)
+    of_the_rig = {("ground", ""), ("blind", ""), ("reach", "")}
+    assert set(worked) == {("frustums", "eye"), ("labels", "eye"), *of_the_rig}
+
+
+def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
+    scenes.drawn(rig)
+    fine = shown.items(rig.name, "ground")[""].shape.sheet.image.shape
+    rig.objects["roof"].location.x += 0.1
+    bpy.context.view_layer.update()
+    updating.on_moved()
+    item = shown.items(rig.name, "ground")[""]
+    assert item.rough and item.shape.sheet.image.shape < fine
+    worked.clear()
+    updating.on_rested()
+    assert not shown.items(rig.name, "ground")[""].rough
+    assert shown.items(rig.name, "ground")[""].shape.sheet.image.shape == fine
+    assert {name for name, _ in worked} == {layer.name for layer in layers.LAYERS if layer.rough}
+
+
+def test_what_is_not_moved_stays_fine_while_another_moves(rig, worked):
+    scenes.drawn(rig)
+    worked.clear()
+    rig.objects["eye"].location.x += 0.1
+    bpy.context.view_layer.update()
+    updating.on_moved()
+    assert ("beams", "roof") not in worked and ("heat", "") not in worked
+    assert not shown.items(rig.name, "beams")["roof"].rough
+
+
+def test_a_heavy_vehicle_is_read_when_it_rests(rig, monkeypatch):
+    reader, depsgraph = updating.Reader(), scenes.depsgraph()
+    before = reader.wish(rig, depsgraph).body_key
+    monkeypatch.setattr(reader, "_took_s", 10.0)
+    body.shared.changed()
+    assert reader.wish(rig, depsgraph, moving=True).body_key == before
+    assert reader.wish(rig, depsgraph).body_key != before
+
+
+def test_settings_count(rig):
+    settings, view = rig.perception_entropy, rig.perception_entropy.view
+    view.channels, settings.beam_limit, view.rings = "ALL", 100, False
+    assert len(scenes.drawn(rig)["beams"]["roof"].lines.points) <= 100 * 4
+    rig.objects["roof"].perception_entropy.show = False
+    drawn = scenes.drawn(rig)
+    assert "beams" not in drawn and set(drawn["labels"]) == {"eye"}
+    assert "ground" in drawn, "it is scored all the same"
+    rig.objects["eye"].perception_entropy.model = "no such model"
+    assert "frustums" not in scenes.drawn(rig)
+
+
+@pytest.mark.parametrize("quantity", ["ENTROPY", "COVERAGE", "SENSORS"])
+@pytest.mark.parametrize("height", ["AVERAGE", "H0", "H50", "H100", "H150"])
+def test_the_map_is_that_of_the_engine(rig, quantity, height):
+    view = rig.perception_entropy.view
+    view.ground_quantity, view.ground_height, view.ground_opacity = quantity, height, 1.0
+    sheet = scenes.drawn(rig)["ground"][""].sheet
+    study = scenes.study()
+    metres = None if height == "AVERAGE" else int(height[1:]) / 100.0
+    look = sight.Sight(study.space, study.prior, study.vehicle)
+    found = look.ground(study.rig, metres, layers.FINE_M)
+    expected = layers.ground.ground_map(found, quantity, 1.0, faded=True).sheet
+    np.testing.assert_allclose(sheet.image, expected.image, atol=1e-6)
+
+
+def test_beams_of_the_selected_sensors_alone(rig):
+    view = rig.perception_entropy.view
+    scenes.add_sensor("second", "Pandar40", location=(0.0, 0.5, 1.8))
+    view.beams_of = "SELECTED"
+    for obj in rig.objects:
+        obj.select_set(obj.name == "second")
+    assert set(scenes.drawn(rig)["beams"]) == {"second"}
+    rig.objects["second"].select_set(False)
+    bpy.context.view_layer.objects.active = None
+    assert "beams" not in scenes.drawn(rig)
+
+
+def test_hidden_sensors_do_not_count_for_the_map(rig):
+    before = scenes.drawn(rig)["ground"][""]
+    rig.objects["roof"].hide_set(True)
+    after = scenes.drawn(rig)["ground"][""]
+    assert not np.array_equal(before.sheet.image, after.sheet.image)
+
+
+def test_without_a_vehicle_no_beam_is_stopped(rig):
+    assert len(scenes.drawn(rig)["beams"]["roof"].through.points)
+    rig.perception_entropy.vehicle = None
+    drawn = scenes.drawn(rig)
+    assert not len(drawn["beams"]["roof"].through.points) and "heat" not in drawn
+
+
+def test_a_prior_with_a_mistake_leaves_the_rest(rig):
+    rig.perception_entropy.prior = "boxes"  # no file is chosen
+    assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach"}
+
+
+def test_a_class_that_the_prior_does_not_know_is_replaced(rig):
+    rig.perception_entropy.view.reach_class = "zebra"
+    assert "Car" in scenes.drawn(rig)["reach"][""].legend.title
+
+
+def test_older_names_still_work(rig):
+    settings = rig.perception_entropy
+    for name, value in (("show_overlay", True), ("beam_limit", 123), ("beam_length", 5.0)):
+        setattr(settings, name, value)
+        assert getattr(settings, name) == value
+    view = updating.Reader().wish(rig, scenes.depsgraph()).view
+    assert (view.beam_limit, view.beam_length) == (123, 5.0)
+
+
+def test_changes_are_heard_and_another_file_forgets(rig):
+    assert {updating.on_moved} <= set(changes.moved.listeners)
+    assert {updating.on_rested} <= set(changes.rested.listeners)
+    scenes.drawn(rig)
+    assert len(shown) > 5
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert len(shown) == 0 and not updating._asked and not handler._batches
+
+
+def test_register_and_unregister_leave_nothing(rig):
+    lists = [getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers)]
+    lists = [each for each in lists if isinstance(each, list)]
+    handler.unregister()
+    counts = [len(each) for each in lists]
+    for _ in range(2):
+        handler.register()
+    for _ in range(2):
+        handler.unregister()
+    assert [len(each) for each in lists] == counts and len(shown) == 0
+    handler.register()  # as the add-on's own unregister expects
+
+
+class Gpu:
+    """Stands for the graphics card: notes what is uploaded and drawn."""
+
+    def __init__(self):
+        self.uploaded, self.drawn, self.written = 0, [], []
+        state = ("blend_get", "depth_test_get", "depth_mask_get")
+        asked = {name: lambda: "NONE" for name in state}
+        told = {name.replace("get", "set"): lambda _: None for name in state}
+        self.state = SimpleNamespace(**asked, **told)
+
+    def of(self, shape):
+        self.uploaded += 1
+        return SimpleNamespace(
+            shape=shape,
+            draw_areas=lambda: self.drawn.append(shape),
+            draw_lines=lambda *_, **__: None,
+        )
+
+    def write_labels(self, _context, labels):
+        self.written += [label.text for label in labels]
+
+    def write_legends(self, _context, legends):
+        self.written += [legend.title for legend in legends]
+
+
+@pytest.fixture
+def window(rig, monkeypatch):
+    """A 3D view without a graphics card: what a redraw asks for is noted."""
+    card = Gpu()
+    overlay = SimpleNamespace(show_overlays=True)
+    space = SimpleNamespace(type="VIEW_3D", overlay=overlay, local_view=None, camera=None)
+    look = SimpleNamespace(view_perspective="PERSP")
+    context = SimpleNamespace(scene=rig, space_data=space, region_data=look, region=None)
+    monkeypatch.setattr(handler, "bpy", SimpleNamespace(context=context, app=bpy.app))
+    monkeypatch.setattr(handler, "gpu", card)
+    monkeypatch.setattr(handler, "Batches", card)
+    monkeypatch.setattr(handler, "writing", card)
+    monkeypatch.setattr(handler, "lifted", lambda *_: contextlib.nullcontext())
+    visible = {"roof": True, "eye": True}
+    monkeypatch.setattr(handler, "_sensor_visible", lambda _context, name: visible[name])
+    return SimpleNamespace(card=card, space=space, look=look, visible=visible)
+
+
+def redraw():
+    handler.draw()
+    handler.write()
+
+
+def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypatch):
+    scenes.drawn(rig)
+    forbidden = "while drawing"
+    for owner, name in (
+        *((bridge, each) for each in ("sensor_from_object", "vehicle_from_collection", "pose_of")),
+        *((bridge, each) for each in ("prior_from_scene", "sensor_objects")),
+        *((pe.Vehicle, each) for each in ("first_hit", "seen_from")),
+        *((sight.Sight, each) for each in ("ground", "blind", "reach")),
+        (body.shared, "read"),
+        (casts, "cast"),
+        (worker.desk, "ask"),
+        (updating, "update"),
+    ):
+        monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail(forbidden))
+    rig.objects["roof"].location.x += 0.5  # even when the scene has moved on
+    redraw()
+    assert len(window.card.drawn) == 8 and "roof" in window.card.written
+
+
+def test_shapes_are_uploaded_once(window, rig):
+    scenes.drawn(rig)
+    for _ in range(3):
+        redraw()
+    assert window.card.uploaded == 8 and len(window.card.drawn) == 24
+    rig.objects["eye"].location.z += 0.1
+    bpy.context.view_layer.update()
+    scenes.drawn(rig)
+    redraw()
+    assert window.card.uploaded == 8 + 5  # its frustum and name, and the rig's map, blind, reach
+    rig.perception_entropy.view.show_ground = False
+    scenes.drawn(rig)
+    redraw()
+    assert len(handler._batches) == 7
+
+
+def test_overlays_off_hides_all(window, rig):
+    scenes.drawn(rig)
+    window.space.overlay.show_overlays = False
+    redraw()
+    assert not window.card.drawn and not window.card.written
+
+
+def test_hidden_sensors_local_view_and_the_eye_looked_through(window, rig):
+    scenes.drawn(rig)
+    window.visible["roof"] = False
+    redraw()
+    assert "roof" not in window.card.written and "eye" in window.card.written
+    window.card.drawn.clear()
+    window.space.local_view = object()
+    redraw()
+    assert len(window.card.drawn) == 2, "the rig's own layers belong to no local view"
+    window.look.view_perspective, window.space.camera = "CAMERA", rig.objects["eye"]
+    window.card.drawn.clear()
+    redraw()
+    assert not window.card.drawn

@@ -5,13 +5,16 @@ PYTHON_VENV := .venv/bin/python
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: demo test mutants bench lint extension clean help
+.PHONY: demo test properties mutants bench lint extension clean help
 
 demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, the better .blend
 	@tools/demo.sh $(ARGS)
 
 test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
 	@$(PYTHON_VENV) -m pytest $(or $(ARGS),tests)
+
+properties: .venv/dev.stamp  ## what must hold for any rig, on 1,000 random ones: four minutes
+	@PE_PROPERTY_RIGS=1000 $(PYTHON_VENV) -m pytest $(or $(ARGS),tests/engine/test_properties.py)
 
 mutants: .venv/dev.stamp  ## change the engine line by line: does a test fail? half an hour
 	@$(PYTHON_VENV) tools/mutants.py $(ARGS)

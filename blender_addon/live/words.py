@@ -42,7 +42,7 @@ def words_of(reading: Reading) -> Words:
     state = "at rest" if reading.rested else "draft while it moves"
     return Words(
         f"{now.entropy:.3f} nats",
-        f"± {now.stderr:.3f}  {state}",
+        f"± {max(now.stderr, 1e-3):.3f}  {state}",
         change,
         sense,
         lines,

@@ -27,7 +27,7 @@ def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     settings = context.scene.perception_entropy
     column = layout.box().column(align=True)
     column.active = not settings.result_stale
-    error = f" ± {settings.result_stderr:.4f}" if settings.result_stderr else ""
+    error = f" ± {max(settings.result_stderr, 1e-4):.4f}" if settings.result_stderr else ""
     draw_figure(column, "Entropy", f"{settings.result_entropy:.4f}{error} nats")
     if settings.result_kind == "optimize":
         gain = settings.result_entropy - settings.result_before

@@ -30,7 +30,7 @@ def caption_of(study: pe.Study, outcome: pe.Outcome) -> Caption:
     if outcome.kind == "optimize":
         entropy = f"{before.entropy:.3f} → {entropy}"
         coverage = f"{before.coverage:.1%} → {coverage}"
-    error = f", ± {after.stderr:.3f}" if after.stderr else ""
+    error = f", ± {max(after.stderr, 1e-3):.3f}" if after.stderr else ""
     detail = f"nats{error}; lower is better        coverage {coverage}"
     return Caption(f"Perception entropy  {entropy}", detail, _table(study, outcome))
 

@@ -17,7 +17,7 @@ from .command import add_score_options
 from .interrupts import Interrupted, stop_at_first
 from .side_by_side import comparison
 from .status import DONE, Answer
-from .summary import warned
+from .summary import warned, with_error
 from .work import drive
 
 
@@ -105,8 +105,7 @@ def _refuse_different(studies: Mapping[str, Study]) -> None:
 
 def _entropy(outcome: Outcome) -> str:
     score = outcome.after
-    error = f" +- {score.stderr:.4f}" if score.stderr else ""
-    return f"perception entropy {score.entropy:.4f}{error} nats; lower is better"
+    return f"perception entropy {with_error(score.entropy, score.stderr)}; lower is better"
 
 
 def _answer(data: dict[str, Any], lines: list[str] | tuple[str, ...], as_json: bool) -> Answer:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from ..study import Outcome
 
+LEAST_SHOWN = 1e-4
+"""In the last digit that is printed."""
+
 
 def summary(outcome: Outcome) -> str:
     """Return an outcome in a few lines, for people."""
     if outcome.kind == "score":
-        lines = [f"entropy   {_with_error(outcome.after.entropy, outcome.after.stderr)}"]
+        lines = [f"entropy   {with_error(outcome.after.entropy, outcome.after.stderr)}"]
         lines.append(f"coverage  {outcome.after.coverage:.1%}")
     else:
         before, after = outcome.before, outcome.after
@@ -36,5 +39,7 @@ def warned(outcome: Outcome) -> list[str]:
     return [f"warning: {each.line}" for each in outcome.warnings]
 
 
-def _with_error(entropy: float, stderr: float) -> str:
-    return f"{entropy:.4f} nats" if stderr == 0.0 else f"{entropy:.4f} +- {stderr:.4f} nats"
+def with_error(entropy: float, stderr: float) -> str:
+    """Return an entropy with its error: only a grid has none, that of a sample never shows as 0."""
+    error = f" +- {max(stderr, LEAST_SHOWN):.4f}" if stderr else ""
+    return f"{entropy:.4f}{error} nats"

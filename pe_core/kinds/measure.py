@@ -25,7 +25,7 @@ def measure(
     range and not stopped earlier by the vehicle. A cube owns its lower faces: a beam that runs
     exactly along a face belongs to the cube above it (`lidar.ties`).
     Camera: the area in pixels of the cube's image, clipped to the image; 0 when a corner lies
-    behind the camera or the vehicle hides the centre.
+    behind the camera or in its plane, or the vehicle hides the centre (`camera.ties`).
 
     Parameters
     ----------

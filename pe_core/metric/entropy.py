@@ -87,3 +87,5 @@ def perception_entropy(entropies: ArrayLike, weights: ArrayLike) -> float:
 
 H_BLIND = float(entropy_of(BLIND_PRECISION))
 """Entropy of a voxel nobody sees: 16.651."""
+H_BEST = float(entropy_of(sigma_of(AP_MAX) ** -2))
+"""Entropy of a voxel that one group sees as well as can be: -10.976."""

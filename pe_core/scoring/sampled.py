@@ -10,19 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinds import MeasuredByName, Voxels
-from ..metric.entropy import H_BLIND
+from ..metric.entropy import H_BEST, H_BLIND
 from ..metric.fusion import Fusion
 from ..prior.prior import ClassDensity
 from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
-from .score import Glance, PartScore, Score, SensorScore, rounded, sensor_score
+from .score import DECIMALS, Glance, PartScore, Score, SensorScore, rounded, sensor_score
 from .subsets import fused_early
 from .weights import outside_masses
 from .zones import zone_masks
 
 Floats = NDArray[np.float64]
+
+ALIKE = 10.0**-DECIMALS
+"""Entropies no farther apart than this do not differ [nats]."""
+RULE_OF_THREE = 3.0
+"""Of n draws that are all alike, fewer than 3 / n of the rest are not, 95 times in 100."""
 
 
 class Judgement(NamedTuple):
@@ -101,7 +106,7 @@ class SampledScorer:
             return Glance(
                 entropy,
                 coverage,
-                self._standard_error(entropies),
+                self._standard_error(entropies, len(rig.groups)),
                 self._classes(entropies, seen),
                 self._by_zone(entropies, seen),
                 len(self._sample.index),
@@ -161,8 +166,15 @@ class SampledScorer:
         stopped = self._sensors.stopped(sensor)
         return sensor_score(alone, coverage, rounded(failed - entropy), stopped)
 
-    def _standard_error(self, entropies: Floats) -> float:
-        """From the scatter of runs of the sequence: each is a lattice, so this errs high."""
+    def _standard_error(self, entropies: Floats, groups: int) -> float:
+        """From the scatter of runs of the sequence: each is a lattice, so this errs high.
+
+        Where no two voxels differ, half of what is left to doubt by the rule of three, if a voxel
+        that was not drawn may be anything from blind to seen by all groups as well as can be.
+        """
+        if np.ptp(entropies) <= ALIKE:
+            most = H_BLIND - H_BEST + np.log(groups)
+            return rounded(RULE_OF_THREE / 2.0 * most / len(entropies))
         run = self._sample.run
         sums, sizes = np.bincount(run, entropies, BLOCKS), np.bincount(run, minlength=BLOCKS)
         means = sums[sizes > 0] / sizes[sizes > 0]

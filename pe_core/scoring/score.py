@@ -101,7 +101,7 @@ class Score:
     coverage : float
         Prior mass with m > 0 for some sensor, 0 to 1.
     stderr : float
-        Standard error of `entropy`; 0 for a score of the whole grid.
+        Standard error of `entropy`; 0 for a score of the whole grid, and for no other.
     per_class : dict of PartScore
     per_zone : dict of PartScore
         Zones overlap: see `zones.ZONES`. A zone without prior mass is left out.

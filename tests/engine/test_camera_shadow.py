@@ -39,11 +39,9 @@ def turned():
     return np.delete(triangles, np.argmax(triangles[:, :, 2].min(axis=1)), axis=0)
 
 
-BELOW = "bonnet below the picture"
-"""There nothing is asked: voxels on the border that the vehicle hides stay visible (issue 14)."""
 CASES = {
     "bonnet": (lambda: shipped("sedan"), (0.6, 0.0, 1.3), (0, 4, 0), 60),
-    BELOW: (lambda: shipped("sedan"), (0.6, 0.0, 1.5), (0, 4, 0), 60),
+    "bonnet below the picture": (lambda: shipped("sedan"), (0.6, 0.0, 1.5), (0, 4, 0), 60),
     "roof of the sedan": (lambda: shipped("sedan"), (-0.4, 0.1, 1.5), (0, 10, 160), 100),
     "inside the sedan": (lambda: shipped("sedan"), (0.2, 0.3, 1.1), (0, 0, 90), 100),
     "roof of the bus": (lambda: shipped("bus"), (-1.0, 0.1, 2.65), (0, 5, 0), 60),
@@ -58,6 +56,12 @@ CASES = {
 }
 
 
+def aimed(offsets):
+    """What rays to voxels of SPACE aim at: by the tie rule, a little nearer along each axis."""
+    nearer = 0.2e-8 * np.sqrt([5.0, 11.0, 26.0])
+    return offsets - np.where(offsets > -1e-6, nearer, -nearer)
+
+
 def hidden_by_rays(triangles, offsets):
     distance = np.sqrt(dot(offsets, offsets))
     hits = fixed_bins.SeenTriangles(triangles).first_hit(offsets / distance[:, None])
@@ -69,7 +73,7 @@ ALWAYS, NEVER = -1, np.inf
 
 
 @pytest.mark.parametrize("many", [ALWAYS, NEVER])
-@pytest.mark.parametrize("case", [case for case in CASES if case != BELOW])
+@pytest.mark.parametrize("case", CASES)
 def test_hidden_voxels_are_those_whose_ray_is_stopped(case, many, monkeypatch):
     monkeypatch.setattr(grid, "MANY_RAYS", many)
     mesh, position, rotation, hfov = CASES[case]
@@ -79,9 +83,9 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, many, monkeypatch):
     area = whole_grid(sensor, SPACE, vehicle, 20).reshape(-1)
     seen = np.flatnonzero(free)
     index = np.stack(np.unravel_index(seen, SPACE.shape), axis=1)
-    offsets = SPACE.center_of(index) - np.asarray(position)
+    aims = aimed(SPACE.center_of(index) - np.asarray(position))
     origin = vehicle.seen_from(position).seen.origin
-    hidden = hidden_by_rays(vehicle.triangles - origin, offsets)
+    hidden = hidden_by_rays(vehicle.triangles - origin, aims)
     assert 3 < hidden.sum() < len(hidden)
     assert (area[seen[hidden]] == 0).all()
     assert area[seen[~hidden]].tobytes() == free[seen[~hidden]].tobytes()
@@ -114,7 +118,7 @@ def test_areas_are_the_same_to_the_bit_with_the_cover_and_without(case, monkeypa
         monkeypatch.setattr(grid, "MANY_RAYS", many)
         count["judged"] = 0
         areas.append(whole_grid(sensor, SPACE, vehicle, 20).tobytes())
-        assert (count["judged"] == 8) == (many == ALWAYS and case != BELOW)
+        assert (count["judged"] == 8) == (many == ALWAYS)
     assert areas[0] == areas[1]
 
 

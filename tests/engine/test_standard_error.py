@@ -49,11 +49,37 @@ def test_it_is_that_of_the_mean_of_sixteen_runs():
     assert score.stderr == pytest.approx(stdev(means) / 4.0, abs=1e-8)
 
 
-def test_it_is_zero_where_every_voxel_is_alike():
-    """A LiDAR that sees nothing: 16.651 everywhere, whatever the sample."""
-    blind = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(2, 4), (0.0, 0.0, 900.0))])
-    score = pe.Evaluator(SPACE, pe.Prior.road(), samples=2048).score(blind)
-    assert (score.entropy, score.stderr) == (16.651386624, 0.0)
+BLIND = shapes.lidar_on_roof(shapes.small_lidar(2, 4), (0.0, 0.0, 900.0))
+EVERYWHERE = pe.Lidar("all", np.radians(np.linspace(-89.0, 89.0, 90)), 180, 100.0)
+TINY = pe.PerceptionSpace((-0.8, 0.8), (-0.8, 0.8), (0, 1.6), 0.2)
+
+
+@pytest.mark.parametrize(
+    "rig, space, entropy",
+    [
+        (pe.Rig([BLIND]), SPACE, 16.651386624),
+        (pe.Rig([shapes.lidar_on_roof(EVERYWHERE, (0.05, 0.05, 0.85))]), TINY, -10.975632491),
+    ],
+    ids=["nothing seen", "all seen"],
+)
+def test_where_every_voxel_is_alike_it_is_half_of_what_the_rule_of_three_leaves(
+    rig, space, entropy
+):
+    """Up to 3 voxels in 2048 might be anything from 16.651 to -10.976, 95 times in 100."""
+    score = pe.Evaluator(space, pe.Prior.uniform(), samples=2048).score(rig)
+    assert score.entropy == entropy
+    assert score.stderr == pytest.approx(1.5 / 2048 * (16.651386624 + 10.975632491), abs=1e-9)
+
+
+def test_it_covers_what_a_sample_that_sees_nothing_has_missed():
+    """A camera that sees 9 of 32,000 voxels, of which no sample of 1024 need have any."""
+    camera = shapes.camera(3.0, (19.2, 0.1, 4.9), (0.0, -1.0, 0.0))
+    truth = pe.Evaluator(SPACE, pe.Prior.uniform()).score(pe.Rig([camera]))
+    assert 0.0 < truth.coverage < 1e-3
+    for shift in np.random.default_rng(3).random((20, 3)):
+        sample = pe.Evaluator(SPACE, pe.Prior.uniform(), samples=1024, shift=tuple(shift))
+        score = sample.score(pe.Rig([camera]))
+        assert abs(score.entropy - truth.entropy) <= 2.0 * score.stderr
 
 
 def test_it_falls_with_the_number_of_voxels():

@@ -11,8 +11,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...scene.geometry import Pose
+from ...scene.geometry import dot
 from .model import Camera
+from .ties import IN_FRONT
 
 Floats = NDArray[np.float64]
 SensorAxes = tuple[Floats, Floats, Floats]
@@ -24,24 +25,31 @@ ROUNDING_PX = 1e-6
 """Areas are sums of terms as large as the picture: less than this is nothing but their rounding."""
 
 
-def clipped_pixel_area(camera: Camera, pose: Pose, centers: Floats, side: float) -> Floats:
-    """(V,) pixels covered by cubes of side `side` [m] centred at (V, 3) ground-frame points.
+def clipped_pixel_area(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:
+    """(V,) pixels covered by cubes of side `side` [m].
 
-    0 where a corner of the cube lies behind the camera.
+    0 where a corner of the cube is not in front of the camera.
+
+    Parameters
+    ----------
+    camera : Camera
+    axes : (3, 3) float
+        Rotation from the camera's frame to the ground frame (`ties.axes_of`).
+    offsets : (V, 3) float
+        The cubes' centres from the camera, ground axes (`ties.offsets_of`) [m].
+    side : float
     """
-    depth, left, up = (w for w in _in_sensor_frame(pose, centers))
-    area = np.zeros(len(centers))
+    depth, left, up = in_sensor_frame(axes, offsets)
+    area = np.zeros(len(offsets))
     near = np.flatnonzero(in_view(camera, depth, left, up, side))
     if len(near):
-        area[near] = _area_in_view(camera, pose, centers[near], side)
+        area[near] = _area_in_view(camera, axes, offsets[near], side)
     return area
 
 
-def _in_sensor_frame(pose: Pose, centers: Floats) -> SensorAxes:
-    """Ground-frame points as the camera sees them."""
-    x, y, z = (centers[:, k] - pose.position[k] for k in range(3))
-    axes = pose.ground_from_sensor.T
-    depth, left, up = (a[0] * x + a[1] * y + a[2] * z for a in axes)
+def in_sensor_frame(axes: Floats, offsets: Floats) -> SensorAxes:
+    """Offsets (V, 3) along ground axes as the camera sees them."""
+    depth, left, up = (dot(offsets, axis) for axis in axes.T)
     return depth, left, up
 
 
@@ -61,21 +69,19 @@ def in_view(
     return (depth > 0.0) & (frustum_distance(camera, depth, left, up) > -radius)
 
 
-def _area_in_view(camera: Camera, pose: Pose, centers: Floats, side: float) -> Floats:
+def _area_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:
     half = side / 2.0
-    axes = pose.ground_from_sensor  # row k: how ground axis k shows in depth, left, up
-    reach = half * np.abs(axes[:, 0]).sum()
-    offsets = [centers[:, k] - pose.position[k] for k in range(3)]
-    depth, left, up = _in_sensor_frame(pose, centers)
-    area = np.zeros(len(centers))
-    for k in range(3):
-        toward = -np.sign(offsets[k]) * half  # the face on the camera's side
+    reach = half * np.abs(axes[:, 0]).sum() + IN_FRONT * side
+    depth, left, up = in_sensor_frame(axes, offsets)
+    area = np.zeros(len(offsets))
+    for k in range(3):  # row k of the axes: how ground axis k shows in depth, left, up
+        toward = -np.sign(offsets[:, k]) * half  # the face on the camera's side
         face = (depth + toward * axes[k, 0], left + toward * axes[k, 1], up + toward * axes[k, 2])
         i, j = (k + 1) % 3, (k + 2) % 3
         corners = [
             _project(camera, face, (a * half) * axes[i] + (b * half) * axes[j]) for a, b in QUAD
         ]
-        area += np.where(np.abs(offsets[k]) > half, _clipped_quad_area(corners, camera), 0.0)
+        area += np.where(np.abs(offsets[:, k]) > half, _clipped_quad_area(corners, camera), 0.0)
     return np.where((depth > reach) & (area > ROUNDING_PX), area, 0.0)
 
 

@@ -9,25 +9,26 @@ from numpy.typing import NDArray
 
 from ...scene.geometry import dot
 from ...scene.sensors import Sensor
-from ...scene.vehicle import Vehicle
+from ...scene.vehicle import SeenMesh, Vehicle
 from .area import clipped_pixel_area
 from .model import Camera
+from .ties import aims_at, axes_of, offsets_of
 
 Floats = NDArray[np.float64]
 
 
 def count_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
-    area = clipped_pixel_area(cast(Camera, sensor.model), sensor.pose, centers, side)
-    seen = np.flatnonzero(area)
-    if vehicle is not None and len(seen):
-        area[seen[hidden_by(vehicle, sensor, centers[seen])]] = 0.0
+    camera, position = cast(Camera, sensor.model), sensor.pose.position
+    offsets = offsets_of(centers, position, side)
+    area = clipped_pixel_area(camera, axes_of(sensor.pose), offsets, side)
+    in_view = np.flatnonzero(area)
+    if vehicle is not None and len(in_view):
+        seen = vehicle.seen_from(position, camera.sees_through_glass)
+        area[in_view[hidden(seen, aims_at(offsets[in_view], side))]] = 0.0
     return area
 
 
-def hidden_by(vehicle: Vehicle, sensor: Sensor, centers: Floats) -> NDArray[np.bool_]:
-    """Whether the vehicle stands between a camera and each of (V, 3) centres."""
-    offsets = centers - np.asarray(sensor.pose.position)
-    distance = np.sqrt(dot(offsets, offsets))
-    directions = offsets / distance[:, None]
-    hits = vehicle.first_hit(sensor.pose.position, directions, sensor.model.sees_through_glass)
-    return hits.distance < distance
+def hidden(seen: SeenMesh, aims: Floats) -> NDArray[np.bool_]:
+    """Whether the vehicle stands before what rays from the camera aim at, (V, 3) [m]."""
+    distance = np.sqrt(dot(aims, aims))
+    return seen.first_hit(aims / distance[:, None]).distance < distance

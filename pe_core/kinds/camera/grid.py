@@ -20,11 +20,13 @@ from ...scene.geometry import Pose, dot
 from ...scene.numbering import count_up
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import SeenMesh
-from .area import clipped_pixel_area
+from .area import clipped_pixel_area, in_sensor_frame
 from .cover_shadow import CoverShadow
+from .definition import hidden
 from .model import Camera
-from .points import NEAR_SIDES, hidden
+from .points import NEAR_SIDES
 from .shadow import BORDER, ShadowMap
+from .ties import MARGIN, NUDGE, aims_at, axes_of, offsets_of
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -32,8 +34,6 @@ Ints = NDArray[np.int64]
 HalfSpace = tuple[Floats, float]
 """A direction, and how far along it from the camera a voxel's centre has to be [m]."""
 
-MARGIN = 1e-6
-"""Voxels are taken this much larger, in sides, against rounding."""
 MANY_RAYS = 50_000
 """Rays in a run of planes from about which on a map of what the vehicle covers saves time."""
 ASKED = 16
@@ -78,12 +78,13 @@ class CameraPlanes:
     def __init__(
         self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: SeenMesh | None
     ) -> None:
-        self._camera, self._pose, self._space, self._seen = camera, pose, space, seen
-        self._axes = [space.centers(k) for k in range(3)]
-        self._offsets = [w - pose.position[k] for k, w in enumerate(self._axes)]
-        self._forward = pose.ground_from_sensor[:, 0]
+        self._camera, self._space, self._seen = camera, space, seen
+        side, self._axes = space.interval, axes_of(pose)
+        self._offsets = [offsets_of(space.centers(k), pose.position[k], side) for k in range(3)]
+        self._aims = [aims_at(w, side, NUDGE[k]) for k, w in enumerate(self._offsets)]
+        self._forward = self._axes[:, 0]
         wide, high = (n / 2.0 / camera.focal_px for n in (camera.width, camera.height))
-        self._sides = _sides(pose, (-wide, wide), (-high, high))
+        self._sides = _sides(self._axes, (-wide, wide), (-high, high))
         _, y, z = self._offsets
         self._depth = np.add.outer(self._forward[1] * y, self._forward[2] * z).astype(np.float32)
         self._away = np.add.outer(self._away_from(y), self._away_from(z)).astype(np.float32)
@@ -91,13 +92,13 @@ class CameraPlanes:
         self._keep_below, self._keep_from = -below, below - 1  # masks: all bits, or none
         self._shadow = self._cover = None
         if seen is not None:
-            self._shadow = ShadowMap(camera, pose, seen.seen.triangles)
-            self._cover = CoverShadow(self._offsets, seen, self._corners(wide, high))
+            self._shadow = ShadowMap(camera, self._axes, seen.seen.triangles)
+            self._cover = CoverShadow(self._aims, seen, self._corners(wide, high))
 
     def areas(self, planes: slice) -> SeenRows:
         """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""
         rows = self._rows_in_view(planes)
-        near = NEAR_SIDES * self._space.interval
+        near = (NEAR_SIDES + MARGIN) * self._space.interval
         touched = self._runs(planes, rows, [(self._forward, 0.0), *self._at_sides(-1.0)])
         plain = self._runs(planes, rows, [(self._forward, near), *self._at_sides(1.0)])
         plain = plain.within(touched)
@@ -107,17 +108,22 @@ class CameraPlanes:
         behind = ColumnRuns(plain.end, touched.end)
         edge = np.concatenate([before.listed(nz), behind.listed(nz)])
         self._settle_edges(area, edge, (planes.start, rows.start))
-        # where no triangle falls into the map, hidden voxels on the border stay visible (issue 14)
-        if self._shadow is not None and not self._shadow.empty:
-            sides = _sides(self._pose, *self._shadow.extent)
-            shaded = self._runs(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
-            shaded_or_edge = np.concatenate([edge, shaded.listed(nz)])
-            self._settle_hidden(area, shaded_or_edge, (planes.start, rows.start))
+        if self._shadow is not None:
+            asked = np.concatenate([edge, self._shaded(planes, rows, plain).listed(nz)])
+            self._settle_hidden(area, asked, (planes.start, rows.start))
         return SeenRows(rows, area)
+
+    def _shaded(self, planes: slice, rows: slice, plain: ColumnRuns) -> ColumnRuns:
+        """Those of the voxels inside the picture that lie where triangles fall into the map."""
+        assert self._shadow is not None
+        if self._shadow.empty:
+            return ColumnRuns(plain.end, plain.end)
+        sides = _sides(self._axes, *self._shadow.extent)
+        return self._runs(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
 
     def _corners(self, wide: float, high: float) -> Floats:
         """Directions (4, 3) to the corners of the shadow's map."""
-        forward, left, up = self._pose.ground_from_sensor.T
+        forward, left, up = self._axes.T
         ends = [(i * BORDER * wide, j * BORDER * high) for i in (-1.0, 1.0) for j in (-1.0, 1.0)]
         return np.array([forward + a * left + b * up for a, b in ends])
 
@@ -199,8 +205,8 @@ class CameraPlanes:
 
     def _settle_edges(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
         """Measure voxels on the picture's border, and near ones, exactly."""
-        centers = self._centers(index, area.shape, first)
-        exact = clipped_pixel_area(self._camera, self._pose, centers, self._space.interval)
+        offsets = _places(self._offsets, index, area.shape, first)
+        exact = clipped_pixel_area(self._camera, self._axes, offsets, self._space.interval)
         area.reshape(-1)[index] = exact
 
     def _settle_hidden(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
@@ -208,10 +214,10 @@ class CameraPlanes:
         assert self._seen is not None
         index = index[area.reshape(-1)[index] > 0.0]
         if len(index) > MANY_RAYS and self._many_perhaps(index, area.shape, first):
-            index, offsets = self._unsure(area, first)
+            index, aims = self._unsure(area, first)
         else:
-            index, offsets = self._perhaps(index, area.shape, first)
-        area.reshape(-1)[index[hidden(self._seen, offsets)]] = 0.0
+            index, aims = self._perhaps(index, area.shape, first)
+        area.reshape(-1)[index[hidden(self._seen, aims)]] = 0.0
 
     def _many_perhaps(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> bool:
         """Whether the vehicle may hide very many of some voxels, to judge by some of those."""
@@ -221,37 +227,36 @@ class CameraPlanes:
     def _perhaps(
         self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]
     ) -> tuple[Ints, Floats]:
-        """Those of some voxels that the vehicle may hide, and where they lie from the camera."""
+        """Those of some voxels that the vehicle may hide, and where the rays to them aim at."""
         assert self._shadow is not None
-        offsets = self._offsets_of(index, shape, first)
-        views = (dot(offsets, axis) for axis in self._pose.ground_from_sensor.T)
-        perhaps = np.flatnonzero(self._shadow.may_hide(*views))
-        return index[perhaps], offsets[perhaps]
+        aims = _places(self._aims, index, shape, first)
+        perhaps = np.flatnonzero(self._shadow.may_hide(*in_sensor_frame(self._axes, aims)))
+        return index[perhaps], aims[perhaps]
 
     def _unsure(self, area: Singles, first: tuple[int, int]) -> tuple[Ints, Floats]:
-        """Set what is surely hidden to 0; the seen voxels that are not sure, and where they lie."""
+        """Set what is surely hidden to 0; the seen voxels not sure, and where rays aim at."""
         assert self._cover is not None
         planes, rows = (slice(f, f + n) for f, n in zip(first, area.shape[:2], strict=True))
         shade = self._cover.judge(planes, rows)
         np.copyto(area, 0.0, where=shade.hidden)
         index = np.flatnonzero(shade.unsure)
         index = index[area.reshape(-1)[index] > 0.0]
-        return index, self._offsets_of(index, area.shape, first)
-
-    def _offsets_of(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> Floats:
-        return self._centers(index, shape, first) - np.asarray(self._pose.position)
-
-    def _centers(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> Floats:
-        """Centres (V, 3) of voxels numbered from a plane and a row on."""
-        column, k = np.divmod(index, shape[2])
-        i, j = np.divmod(column, shape[1])
-        x, y, z = self._axes
-        return np.stack([x[first[0] + i], y[first[1] + j], z[k]], axis=1)
+        return index, _places(self._aims, index, area.shape, first)
 
 
-def _sides(pose: Pose, wide: tuple[float, float], high: tuple[float, float]) -> list[Floats]:
+def _places(
+    axes: list[Floats], index: Ints, shape: tuple[int, ...], first: tuple[int, int]
+) -> Floats:
+    """Places (V, 3), told axis by axis, of voxels numbered from a plane and a row on."""
+    column, k = np.divmod(index, shape[2])
+    i, j = np.divmod(column, shape[1])
+    x, y, z = axes
+    return np.stack([x[first[0] + i], y[first[1] + j], z[k]], axis=1)
+
+
+def _sides(axes: Floats, wide: tuple[float, float], high: tuple[float, float]) -> list[Floats]:
     """Inward unit normals, ground axes, of the pyramid of these slopes to the left and up."""
-    forward, left, up = pose.ground_from_sensor.T
+    forward, left, up = axes.T
     normals = [
         sign * (axis - slope * forward)
         for axis, slopes in ((left, wide), (up, high))

@@ -13,16 +13,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...scene.geometry import Pose, dot
+from ...scene.geometry import Pose
 from ...scene.vehicle import SeenMesh
-from .area import clipped_pixel_area, frustum_distance, in_view
+from .area import clipped_pixel_area, frustum_distance, in_sensor_frame, in_view
+from .definition import hidden
 from .model import Camera
+from .ties import MARGIN, aims_at, axes_of, offsets_of
 
 Floats = NDArray[np.float64]
 
 NEAR_SIDES = 15.0
 """Depth in voxel sides below which the exact area is taken: the closed form is then 0.3 % off at
 most."""
+BALL = np.sqrt(3.0) / 2.0
+"""Radius of the ball around a cube, in sides."""
 
 
 def pixel_areas(
@@ -41,19 +45,25 @@ def pixel_areas(
     seen : SeenMesh, optional
         The vehicle from the camera's position.
     """
-    offsets = centers - np.asarray(pose.position)
-    depth, left, up = (dot(offsets, axis) for axis in pose.ground_from_sensor.T)
-    area = np.zeros(len(centers))
-    index = np.flatnonzero(in_view(camera, depth, left, up, side))
-    depth, left, up = depth[index], left[index], up[index]
-    plain = depth > NEAR_SIDES * side
-    plain &= frustum_distance(camera, depth, left, up) > side * np.sqrt(3.0) / 2.0
-    far, near = index[plain], index[~plain]
-    area[far] = _flat_area(camera, offsets[far], depth[plain], side)
-    area[near] = clipped_pixel_area(camera, pose, centers[near], side)
+    axes, area = axes_of(pose), np.zeros(len(centers))
+    roughly = in_sensor_frame(axes, centers - np.asarray(pose.position))
+    index = np.flatnonzero(in_view(camera, *roughly, side))
+    offsets = offsets_of(centers[index], pose.position, side)
+    found = _areas_in_view(camera, axes, offsets, side)
     if seen is not None:
-        visible = np.flatnonzero(area)
-        area[visible[hidden(seen, offsets[visible])]] = 0.0
+        visible = np.flatnonzero(found)
+        found[visible[hidden(seen, aims_at(offsets[visible], side))]] = 0.0
+    area[index] = found
+    return area
+
+
+def _areas_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:
+    depth, left, up = in_sensor_frame(axes, offsets)
+    plain = depth > (NEAR_SIDES + MARGIN) * side
+    plain &= frustum_distance(camera, depth, left, up) > (BALL + MARGIN) * side
+    area = np.empty(len(offsets))
+    area[plain] = _flat_area(camera, offsets[plain], depth[plain], side)
+    area[~plain] = clipped_pixel_area(camera, axes, offsets[~plain], side)
     return area
 
 
@@ -61,9 +71,3 @@ def _flat_area(camera: Camera, offsets: Floats, depth: Floats, side: float) -> F
     away = [np.maximum(np.abs(offsets[:, k]) - side / 2.0, 0.0) for k in range(3)]
     cube = (depth * depth - side * side / 2.0) * depth
     return (camera.focal_px * side) ** 2 * (away[0] + away[1] + away[2] + 1.5 * side) / cube
-
-
-def hidden(seen: SeenMesh, offsets: Floats) -> NDArray[np.bool_]:
-    """Whether the vehicle stands before points (V, 3) seen from the camera, ground axes [m]."""
-    distance = np.sqrt(dot(offsets, offsets))
-    return seen.first_hit(offsets / distance[:, None]).distance < distance

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...scene.bins import Raster, greatest_of, least_of, spans_of_triangles
-from ...scene.geometry import Pose, rotate
+from ...scene.geometry import rotate
 from ...scene.numbering import count_up
 from .model import Camera
 
@@ -29,15 +29,16 @@ class ShadowMap:
     Parameters
     ----------
     camera : Camera
-    pose : Pose
+    axes : (3, 3) float
+        Rotation from the camera's frame to the ground frame (`ties.axes_of`).
     triangles : (F, 3, 3) float
         Corners relative to the camera, ground axes [m].
     """
 
-    def __init__(self, camera: Camera, pose: Pose, triangles: Floats) -> None:
+    def __init__(self, camera: Camera, axes: Floats, triangles: Floats) -> None:
         self._wide = BORDER * camera.width / 2.0 / camera.focal_px
         self._high = BORDER * camera.height / 2.0 / camera.focal_px
-        corners = rotate(pose.ground_from_sensor.T, triangles).transpose(2, 1, 0)
+        corners = rotate(axes.T, triangles).transpose(2, 1, 0)
         depth, left, up = np.ascontiguousarray(corners)
         (i0, i1), (j0, j1) = _bins(depth, left / self._wide, up / self._high)
         high = j1 - j0 + 1

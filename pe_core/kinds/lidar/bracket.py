@@ -32,6 +32,8 @@ SLACK = np.float32(1e-4)
 away is known to half of it in single precision."""
 AT_ONCE = 1 << 15
 """Voxels worked on together: all their arrays fit the cache."""
+BALL = np.float32(0.867)
+"""Radius of a ball around a cube: how far one that the sensor's axis may touch reaches."""
 ON_AXIS = np.float32(1e-9)
 """Stands for the least distance from the sensor's axis of a cube that the axis may touch."""
 SLICE_WIDTHS = (1.0 - 1e-5, 0.97, 0.9)
@@ -127,7 +129,7 @@ def _bounds(seen: Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts,
     deep, wide, tall = seen.deep + SLACK, seen.wide + SLACK, seen.tall + SLACK
     beside = seen.flat > deep * np.float32(1.1)
     near = np.where(beside, seen.flat - deep, ON_AXIS)
-    far = np.sqrt((seen.flat + deep) ** 2 + wide * wide)
+    far = np.where(beside, np.sqrt((seen.flat + deep) ** 2 + wide * wide), seen.flat + BALL)
     reach = wide / near / seen.step * (1 + MARGIN) + np.abs(seen.middle) * MARGIN + MARGIN
     reach = np.minimum(reach, np.float32(count))
     first, last = np.ceil(seen.middle - reach), np.floor(seen.middle + reach)

@@ -189,10 +189,10 @@ class _Run:
         count = int(last[0]) + 1 if len(order) else 0
         active = np.searchsorted(-last, -np.arange(count), side="right")
         slopes = np.stack([paths.directions[order, a] / speed[order] for a in _others(axis)])
-        places = paths.origin[_others(axis), None] + slopes * ahead + 1.0
+        at = _fixed_places(paths.origin[_others(axis), None], slopes * ahead)
         planes = [first + sign * k for k in range(count)]
         late = arrival if arrival.any() else None
-        return cls(planes, active.tolist(), _fixed(places), _fixed(slopes), late)
+        return cls(planes, active.tolist(), at, _fixed(slopes), late)
 
     def portions(self, most: int) -> Iterator[_Run]:
         """Yield the run in portions of at most `most` beams."""
@@ -213,6 +213,19 @@ class _Run:
                 crossed = crossed[:, self.arrival[:n] <= step]
             yield plane, crossed
             at += self.step[:, :n]
+
+
+def _fixed_places(origin: Floats, along: Floats) -> Fixed:
+    """Origins (2, 1) moved along (2, B), in fixed point and one voxel up; rounded down.
+
+    The origin's whole part is added last, so that a beam which begins a nudge from a voxel's corner
+    (`ties`) crosses the first plane in the cell that the definition says.
+    """
+    whole = np.floor(origin)
+    places = np.clip((origin - whole) + along, -STEEPEST, STEEPEST)
+    fixed = np.floor(places * (1 << FRACTION_BITS)).astype(np.int64)
+    fixed += (whole.astype(np.int64) + 1) << FRACTION_BITS
+    return fixed.view(np.uint64)
 
 
 def _fixed(values: Floats) -> Fixed:

@@ -120,7 +120,7 @@ def windows_of(offsets: Floats, half: float, ground_from_sensor: Floats) -> Wind
     sideways = half * sum(np.abs(a[1] * c - a[0] * s) for a in axes)
     up = half * np.abs(axes[:, 2]).sum()
     near, far = flat - radial, np.sqrt((flat + radial) ** 2 + sideways**2)
-    beside = near > 0.0
+    beside = near > WINDOW_MARGIN  # not above, below or round the sensor
     room = np.where(beside, near, 1.0)
     high = np.arctan2(z + up, np.where(z + up > 0.0, room, far))
     low = np.arctan2(z - up, np.where(z - up > 0.0, far, room))

@@ -4,7 +4,9 @@ They are common: designers put sensors at round numbers, and azimuth 0 and eleva
 So that the definition and every kernel give such a beam to the same voxel, all of them place the
 sensor by this one rule: its coordinate in voxels is rounded to SNAP_DECIMALS, which makes round
 numbers round again, and then nudged by NUDGE, which is too small to matter and too large for a
-rounding to undo. The effect is that a voxel owns its lower faces.
+rounding to undo. The effect is that a voxel owns its lower faces. A sensor on a voxel's edge or
+corner is as near to its neighbours as the nudge is long, so there the nudge itself has to be exact:
+it is a whole number of NUDGE_UNIT, which a coordinate of some thousand voxels still holds.
 """
 
 from __future__ import annotations
@@ -17,8 +19,11 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 SNAP_DECIMALS = 9
-NUDGE = np.array([2e-8, 3e-8, 5e-8])
-"""In voxels: nanometres. Different along each axis, so that diagonals are decided as well."""
+NUDGE_UNIT = 2.0**-40
+"""In voxels; what fixed point resolves as well (`lidar.grid`)."""
+NUDGE = np.array([21990, 32985, 54976]) * NUDGE_UNIT
+"""2, 3 and 5 times 1e-8 voxels: nanometres. Different along each axis, so that diagonals are
+decided as well."""
 NO_SPEED = 1e-30
 """Stands for a direction component of exactly 0, so that dividing by it gives +-huge."""
 

@@ -1,0 +1,125 @@
+"""What must hold for any rig: on random ones, most of them at round places, where ties are."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.kinds import kind_of
+from pe_core.kinds.kernels import Voxels
+from tests.engine.random_rigs import RIGS, free_scene, round_scene
+
+ALL = 1 << 16
+"""Beams from which on a kernel need not count: more than any LiDAR of these has."""
+FLAT = 0.004
+"""How far the closed form of an area may be off, relative."""
+SINGLE = 1e-6
+"""Rounding of areas in single precision, relative."""
+STEPS = (-3.0, -1.0, -0.5, 0.0, 0.5, 1.0)
+
+each_rig = pytest.mark.parametrize("number", range(RIGS))
+
+
+def on_grid(scene):
+    """m of every sensor, (nx, ny, nz) each, as the grid's kernels have it."""
+    with ThreadPoolExecutor(1) as pool:
+        return [_on_grid(scene, sensor, pool) for sensor in scene.rig]
+
+
+def _on_grid(scene, sensor, pool):
+    kernel = kind_of(sensor).on_grid(scene.space, scene.vehicle, ALL)
+    (planes,) = kernel.planes([[kernel.ready(sensor)]], pool)
+    found = planes(slice(0, scene.space.shape[0]))
+    if sensor.kind == "lidar":
+        return found.astype(float)
+    m = np.zeros(scene.space.shape)
+    m[:, found.rows] = found.m
+    return m
+
+
+def every_voxel(space):
+    index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
+    return Voxels(space, index, space.center_of(index))
+
+
+def on_sample(scene):
+    """The same as the kernels of samples have it, asked for every voxel."""
+    voxels = every_voxel(scene.space)
+    kernels = [kind_of(s).on_sample(voxels, scene.vehicle, ALL) for s in scene.rig]
+    found = [k.measure(s, False).m for k, s in zip(kernels, scene.rig, strict=True)]
+    return [np.asarray(m, dtype=float).reshape(scene.space.shape) for m in found]
+
+
+def defined(scene):
+    """The same by the definition."""
+    centers, side = every_voxel(scene.space).centers, scene.space.interval
+    found = [pe.measure(s, centers, side, scene.vehicle) for s in scene.rig]
+    return [m.reshape(scene.space.shape) for m in found]
+
+
+def assert_alike(found, expected, tolerance):
+    """Beams are the same, the same voxels are in view, and areas are within a tolerance."""
+    lidar, *cameras = zip(found, expected, strict=True)
+    assert (lidar[0] == lidar[1]).all()
+    for areas, others in cameras:
+        assert ((areas > 0.0) == (others > 0.0)).all()
+        np.testing.assert_allclose(areas, others, rtol=tolerance)
+
+
+def outside(scene):
+    """Voxels above the vehicle's top. Rounding decides where a centre lies exactly on that."""
+    tops = -np.inf if scene.vehicle is None else scene.vehicle.top(scene.space)[..., None]
+    return scene.space.centers(2) >= tops
+
+
+def entropy(scene):
+    return pe.Evaluator(scene.space, pe.Prior.uniform(), scene.vehicle, workers=1).entropy(
+        scene.rig
+    )
+
+
+@each_rig
+def test_grid_and_sample_equal_the_definition(number):
+    scene = round_scene(number)
+    grid, by_definition = on_grid(scene), defined(scene)
+    assert_alike(grid, by_definition, FLAT)
+    assert_alike(on_sample(scene), by_definition, FLAT)
+
+
+@each_rig
+def test_grid_and_sample_agree_anywhere(number):
+    scene = free_scene(number)
+    assert_alike(on_grid(scene), on_sample(scene), FLAT)
+
+
+@each_rig
+def test_full_turns_change_nothing(number):
+    scene = round_scene(number)
+    turned = scene.turned(np.random.default_rng(number).permutation([1, -1, 2]))
+    assert_alike(on_grid(turned), on_grid(scene), SINGLE)
+    assert entropy(turned) == pytest.approx(entropy(scene), abs=1e-8)
+
+
+@each_rig
+def test_moving_everything_by_halves_of_voxels_changes_nothing(number):
+    scene = round_scene(number)
+    moved = scene.moved(np.random.default_rng(number).choice(STEPS, 3))
+    assert_alike(on_grid(moved), on_grid(scene), SINGLE)
+    if (outside(moved) == outside(scene)).all():
+        assert entropy(moved) == pytest.approx(entropy(scene), abs=1e-8)
+
+
+@each_rig
+def test_a_mirrored_rig_gives_the_mirrored_map(number):
+    scene = free_scene(number)
+    mirrored = scene.mirrored()
+    assert_alike([m[:, ::-1] for m in on_grid(mirrored)], on_grid(scene), SINGLE)
+    one, other = (
+        pe.Evaluator(s.space, pe.Prior.uniform(), s.vehicle, workers=1).score(s.rig)
+        for s in (scene, mirrored)
+    )
+    assert other.entropy == pytest.approx(one.entropy, abs=1e-6)
+    assert other.coverage == pytest.approx(one.coverage, abs=1e-9)
+    expected = one.ground_map.entropy[:, ::-1]
+    np.testing.assert_allclose(other.ground_map.entropy, expected, atol=1e-3)

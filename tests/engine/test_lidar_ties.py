@@ -76,11 +76,12 @@ def test_no_beam_that_grazes_a_corner_goes_astray(place):
     assert sum(expected) > 400
 
 
-@pytest.mark.parametrize("pitch", [0.0, 45.0])
-def test_voxels_right_under_and_over_a_lidar(pitch):
-    """Whose axis runs through their middle, and which beams enter all round it."""
+@pytest.mark.parametrize("height", [2.00831, 1.9], ids=["between centres", "on a centre"])
+@pytest.mark.parametrize("rotation", [(0.0, 0.0, 12.5), (0.0, 45.0, 0.0), (45.0, 0.0, 0.0)])
+def test_voxels_on_a_lidar_s_axis(rotation, height):
+    """Through whose middle it runs, and which beams enter all round it."""
     lidar = pe.Lidar("steep", np.radians([-70.0, -40.0, -25.0, 0.0, 30.0, 60.0]), 120, 50.0)
-    pose = pe.Pose.from_degrees((0.3, -0.3, 2.00831), (0.0, pitch, 12.5))
+    pose = pe.Pose.from_degrees((0.3, -0.3, height), rotation)
     sensor = pe.Sensor("s", lidar, pose)
     index = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
     index = index[np.abs(SPACE.center_of(index) - pose.position).max(axis=1) < 0.8]

@@ -31,4 +31,5 @@ def count_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle 
 def hidden(seen: SeenMesh, aims: Floats) -> NDArray[np.bool_]:
     """Whether the vehicle stands before what rays from the camera aim at, (V, 3) [m]."""
     distance = np.sqrt(dot(aims, aims))
-    return seen.first_hit(aims / distance[:, None]).distance < distance
+    hits = seen.first_hit(aims / distance[:, None])
+    return hits.distance < distance

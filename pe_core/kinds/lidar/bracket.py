@@ -115,6 +115,7 @@ class Silhouettes:
         flat = np.sqrt(x * x + y * y)
         safe = np.maximum(flat, np.float32(0.1))
         c, s = x / safe, y / safe
+        c[flat == 0.0] = 1.0  # on the axis any azimuth does, but there has to be one
         half = rotation * np.float32(0.5)
         radial = [half[k, 0] * c + half[k, 1] * s for k in range(3)]
         sideways = [half[k, 1] * c - half[k, 0] * s for k in range(3)]

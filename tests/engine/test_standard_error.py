@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.app.summary import summary, with_error
 from pe_core.metric import POINTPILLARS, entropy_of, precision_of
 from pe_core.scoring import draw
 from tests.engine import shapes
@@ -89,3 +90,14 @@ def test_it_falls_with_the_number_of_voxels():
         for n in (2048, 32_768)
     )
     assert many < few / 3.0
+
+
+def test_no_sample_is_printed_as_exact():
+    """Not where nothing is seen, and not where the error is less than the last digit."""
+    study = pe.Study(pe.Rig([BLIND]), space=SPACE, samples=2048)
+    job = pe.ScoreJob(study)
+    for _ in job:
+        pass
+    assert summary(job.outcome).startswith("entropy   16.6514 +- 0.0202 nats\n")
+    assert with_error(16.6514, 2e-6) == "16.6514 +- 0.0001 nats"
+    assert with_error(16.6514, 0.0) == "16.6514 nats"

@@ -74,12 +74,17 @@ def _scene(rng, pose):
     interval = float(rng.choice(INTERVALS))
     ends = [round(n * interval, 9) for n in HALF_SHAPE]
     space = pe.PerceptionSpace((-ends[0], ends[0]), (-ends[1], ends[1]), (0.0, ends[2]), interval)
-    sensors = [
-        pe.Sensor("lidar", _lidar(rng), pose(space)),
-        pe.Sensor("camera", _camera(rng), pose(space)),
-        pe.Sensor("other", _camera(rng), pose(space)),
-    ]
-    return Scene(space, _vehicle(rng, ends), pe.Rig(sensors))
+    lidar = pe.Sensor("lidar", _lidar(rng), pose(space))
+    cameras = [pe.Sensor(name, _camera(rng), pose(space)) for name in ("camera", "other")]
+    vehicle = _vehicle(rng, ends)
+    if vehicle is not None:
+        lidar = lidar.moved(_off_edges(lidar.pose))
+    return Scene(space, vehicle, pe.Rig([lidar, *cameras]))
+
+
+def _off_edges(pose):
+    """Turned by a little: rounding decides whether a beam exactly along a vehicle's edge ends."""
+    return pe.Pose.from_degrees(pose.position, pose.rotation_deg + np.array([0.0, 0.0, 0.3]))
 
 
 def _lidar(rng):

@@ -19,6 +19,8 @@ RIGS = int(os.environ.get("PE_PROPERTY_RIGS", "60"))
 INTERVALS = (0.1, 0.2, 0.25, 0.5)
 HALF_SHAPE = (12, 9, 7)
 """Of a space in voxels, but for its height, which is no more: areas are found in both ways."""
+NUDGE_Y = 3e-8
+"""Of LiDARs, to the left, in voxels."""
 ROUND_DEG = (0.0, 0.0, 30.0, 45.0, 90.0, -60.0, 135.0, 180.0, -90.0, 12.5)
 
 
@@ -52,10 +54,15 @@ class Scene:
         """Left and right exchanged."""
         flip = np.array([1.0, -1.0, 1.0])
         vehicle = self.vehicle and replace(self.vehicle, triangles=self.vehicle.triangles * flip)
-        poses = [pe.Pose(tuple(s.pose.position * flip), s.pose.rpy * -flip) for s in self.rig]
+        poses = [pe.Pose(self._across(s), s.pose.rpy * -flip) for s in self.rig]
         low, high = self.space.y
         space = replace(self.space, y=(-high, -low))
         return Scene(space, vehicle, self.rig.with_poses(poses))
+
+    def _across(self, sensor):
+        """Where the mirrored sensor is. A LiDAR's nudge is none: two of them are taken off."""
+        x, y, z = sensor.pose.position
+        return x, -y - (sensor.kind == "lidar") * 2.0 * NUDGE_Y * self.space.interval, z
 
 
 def round_scene(number):

@@ -130,7 +130,7 @@ def check_contents(archive: Path) -> None:
     """Make sure that the engine is in: Blender's tool leaves files out without a word."""
     with zipfile.ZipFile(archive) as packed:
         names = set(packed.namelist())
-    presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("catalog/*.toml")}
+    presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("catalog/**/*.toml")}
     always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py"}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}
     for wanted in sorted(always | presets | assets):

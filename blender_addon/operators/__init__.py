@@ -10,6 +10,7 @@ from . import (
     export,
     focus,
     job,
+    known_rigs,
     mending,
     review,
     running,
@@ -17,11 +18,21 @@ from . import (
     variants,
 )
 from .ask_place import answer
+from .known_rigs import rigs
 from .mending import LABELS as FIX_LABELS
 from .mounting import Offer, offers
 from .select import listed_sensors
 
-__all__ = ["CLASSES", "FIX_LABELS", "Offer", "answer", "listed_sensors", "offers", "running"]
+__all__ = [
+    "CLASSES",
+    "FIX_LABELS",
+    "Offer",
+    "answer",
+    "listed_sensors",
+    "offers",
+    "rigs",
+    "running",
+]
 
 CLASSES = (
     *add_sensor.CLASSES,
@@ -32,6 +43,7 @@ CLASSES = (
     *review.CLASSES,
     *variants.CLASSES,
     *comparing.CLASSES,
+    *known_rigs.CLASSES,
     *mending.CLASSES,
     *ask_place.CLASSES,
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..operators import rigs
 from .layout import Tab, columns
 
 
@@ -48,9 +49,33 @@ class PE_PT_variants(Tab, bpy.types.Panel):
         settings, layout = context.scene.perception_entropy, self.layout
         if not settings.variants:
             layout.operator("pe.save_variant", icon="ADD")
+            layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
             return
         draw_list(layout, settings)
         draw_state(layout, settings)
+        draw_note(layout, context)
+
+
+class PE_MT_known_rigs(bpy.types.Menu):
+    """Rigs of well-known vehicles"""
+
+    bl_idname = "PE_MT_known_rigs"
+    bl_label = "Add Known Rig"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        for key, title in rigs():
+            self.layout.operator("pe.add_rig", text=title, translate=False).key = key
+
+
+def selected(settings: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
+    """Return the row of the list that is selected; the last one when the list has become short."""
+    return settings.variants[min(settings.variant_index, len(settings.variants) - 1)]
+
+
+def draw_note(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the note of the selected variant, to be read in full and to be changed."""
+    row = selected(context.scene.perception_entropy)
+    layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
 
 
 def draw_list(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
@@ -68,7 +93,10 @@ def draw_list(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> 
 
 def draw_state(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw what can be done with what stands in the scene, always in the same place."""
-    stands = settings.variants[settings.variant_index].key == settings.variant_key
+    stands = (
+        settings.variants[min(settings.variant_index, len(settings.variants) - 1)].key
+        == settings.variant_key
+    )
     row = layout.row(align=True)
     there = row.row(align=True)
     there.enabled = settings.variant_changed or not stands
@@ -76,10 +104,13 @@ def draw_state(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) ->
     update = row.row(align=True)
     update.enabled = settings.variant_changed
     update.operator("pe.update_variant", text="Update")
-    layout.operator("pe.compare_variants", icon="MOD_ARRAY")
+    row = layout.row(align=True)
+    row.operator("pe.compare_variants", icon="MOD_ARRAY")
+    row.menu(PE_MT_known_rigs.bl_idname, icon="AUTO", text="Add Rig")
 
 
 CLASSES = (
+    PE_MT_known_rigs,
     PE_UL_variants,
     PE_PT_variants,
 )

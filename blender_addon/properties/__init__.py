@@ -12,7 +12,7 @@ from .callbacks import model_suggestions
 from .focus import DEFAULT_REGION, PE_FocusSettings
 from .live import PE_LiveSettings
 from .scene import PE_SceneSettings
-from .sensor import AXIS_LABELS, DEFAULT_MODEL, PE_ObjectSettings
+from .sensor import AXIS_LABELS, DEFAULT_MODEL, FREE_BY_DEFAULT, PE_ObjectSettings
 from .variants import PE_Variant, PE_VariantSensor
 from .view import PE_ViewSettings
 from .warnings import PE_StoppingPart, PE_Warning
@@ -22,7 +22,7 @@ __all__ = [
     "CLASSES",
     "DEFAULT_MODEL",
     "DEFAULT_REGION",
-    "free_name",
+    "FREE_BY_DEFAULT",
     "model_suggestions",
 ]
 

@@ -23,6 +23,10 @@ from ..scene.sensors import SensorModel
 from ..text.fixed import fixed
 from ..text.values import A_NAME, A_TEXT
 from .housings import read_housing
+from .rigs import KnownRig as KnownRig
+from .rigs import KnownSensor as KnownSensor
+from .rigs import known_rig as known_rig
+from .rigs import known_rigs as known_rigs
 
 PAPER_FILE = "paper.toml"
 """The paper's own sensors come first in lists."""

@@ -8,6 +8,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+VERSION = 1
+"""Of what is stored in a .blend file; `bridge.versions` brings older files up to it."""
+
 Range = tuple[float, float]
 """Low and high bound [m]."""
 Area = tuple[Range, Range]

@@ -7,6 +7,8 @@ and after a file was opened: both are turns in which data may be written.
 
 from __future__ import annotations
 
+import sys
+
 import bpy
 from bpy.app.handlers import persistent
 
@@ -18,7 +20,17 @@ def on_load(*_: object) -> None:
     """Handler of load_post: mend what older versions wrote."""
     for scene in bpy.data.scenes:
         bridge.unlink_doubles(scene)
+        bridge.bring_up_to_date(scene)
+        if newer := bridge.newer_version(scene):
+            print(f"perception_entropy: {newer}", file=sys.stderr)
     go_round()
+
+
+@persistent
+def on_save(*_: object) -> None:
+    """Handler of save_pre: scenes that are new, or were appended, are of this version."""
+    for scene in bpy.data.scenes:
+        bridge.bring_up_to_date(scene)
 
 
 def go_round() -> None:
@@ -31,9 +43,11 @@ def register() -> None:
     """Start listening."""
     changes.moved.connect(go_round)
     bpy.app.handlers.load_post.append(on_load)
+    bpy.app.handlers.save_pre.append(on_save)
 
 
 def unregister() -> None:
     """Stop listening."""
+    bpy.app.handlers.save_pre.remove(on_save)
     bpy.app.handlers.load_post.remove(on_load)
     changes.moved.disconnect(go_round)

@@ -38,6 +38,7 @@ from .variants import (
     write_score,
 )
 from .vehicle import vehicle_from_collection, visible_members
+from .versions import bring_up_to_date, newer_version
 
 __all__ = [
     "SENSORS",
@@ -47,6 +48,7 @@ __all__ = [
     "add_variant",
     "alike",
     "blender_version",
+    "bring_up_to_date",
     "check_placeable",
     "check_scene",
     "check_variants",
@@ -58,6 +60,7 @@ __all__ = [
     "keep_search",
     "missing_pieces",
     "mounted_on_sensor",
+    "newer_version",
     "place_rig",
     "pose_of",
     "possible_sensors",

@@ -22,6 +22,7 @@ from .records import (
 )
 from .scene import study_of_rig
 from .standing import stand
+from .versions import score_from_dict
 
 Variant = bpy.types.PropertyGroup
 
@@ -199,13 +200,7 @@ def variant_dict(scene: bpy.types.Scene, variant: Variant) -> dict[str, object]:
 
 def score_of(variant: Variant) -> pe.Score:
     """Return a variant's score as it is kept: all but its sensors' part."""
-    figures = json.loads(variant.score_json)
-    by_class, by_zone = (
-        {name: pe.PartScore(**part) for name, part in figures[which].items()}
-        for which in ("per_class", "per_zone")
-    )
-    whole = (figures["entropy"], figures["coverage"], figures["stderr"])
-    return pe.Score(*whole, by_class, by_zone, {}, figures["voxels"])
+    return score_from_dict(json.loads(variant.score_json))
 
 
 def check_variants(scene: bpy.types.Scene, now: Fingerprint) -> None:

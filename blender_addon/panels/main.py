@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import bpy
 
+from ..choices import VERSION
 from ..operators import offers
 from .layout import Tab
 from .result import draw_actions, draw_result, draw_vehicle_warnings
 from .sensors import draw_sensors
+from .words import draw_sentence
 
 KIND = "pe_kind"
 """What a button tells its menu, in Blender's context: the kind of sensor to list."""
@@ -21,6 +23,9 @@ class PE_PT_main(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
+        if settings.version > VERSION:
+            newer = "This file is of a newer version of the extension: what is new is not seen here"
+            draw_sentence(self.layout, context, newer, icon="ERROR")
         self.layout.prop(settings, "vehicle")
         draw_vehicle_warnings(self.layout, context)
         draw_add(self.layout)

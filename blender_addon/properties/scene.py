@@ -32,6 +32,11 @@ PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) 
 class PE_SceneSettings(bpy.types.PropertyGroup):
     """The study's settings, and the last result."""
 
+    version: IntProperty(
+        name="Version",
+        description="Of what is stored here; 0 is before there were versions, or not saved yet",
+        min=0,
+    )
     vehicle: PointerProperty(
         type=bpy.types.Collection,
         name="Vehicle",

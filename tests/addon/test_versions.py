@@ -1,0 +1,152 @@
+"""Files of older versions, of newer ones, and vehicles that are another file's."""
+
+import json
+from pathlib import Path
+
+import bpy
+import pytest
+
+from blender_addon import bridge, choices
+from blender_addon.bridge.versions import STEPS, Stored, migrated
+from tests.addon import scenes
+from tests.addon.test_commands import run
+
+OLD = Path(__file__).parent / "files" / "version_0.blend"
+"""Written by the add-on before there were versions: a car, two sensors, the result of a search."""
+
+
+@pytest.fixture
+def old(addon):
+    """Return the scene of the old file, as it is once it was opened."""
+    bpy.ops.wm.open_mainfile(filepath=str(OLD))
+    return bpy.context.scene
+
+
+def test_there_is_a_step_for_every_version():
+    assert sorted(STEPS) == list(range(choices.VERSION))
+    assert migrated(Stored()).version == choices.VERSION
+
+
+def test_newer_ones_stay_as_they_are():
+    newer = Stored(version=choices.VERSION + 1, has_result=True, result_json="?")
+    assert migrated(newer) is newer
+
+
+def test_a_damaged_result_says_so():
+    new = migrated(Stored(has_result=True, result_json="{"))
+    assert "earlier version" in new.result_words and new.result_stale
+
+
+def test_an_old_file_is_what_it_was_and_its_result_is_in_words(old):
+    settings = old.perception_entropy
+    assert settings.version == choices.VERSION
+    written = json.loads(settings.result_json)["entropy"]
+    assert settings.result_stale and settings.result_entropy == pytest.approx(written)
+    assert "of where objects are is seen" in settings.result_words
+    assert [obj.name for obj in bridge.sensor_objects(old)] == ["eye", "roof"]
+    assert len(old.objects["roof"].users_collection) == 1
+    assert settings.prior == "highway" and settings.focus[0].region == "far"
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    assert json.loads(settings.result_json)["entropy"] == written
+    assert not settings.result_stale
+
+
+def test_a_saved_file_has_its_version(car, tmp_path):
+    assert car.perception_entropy.version == 0
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "new.blend"))
+    assert car.perception_entropy.version == choices.VERSION
+
+
+def test_a_newer_file_is_told_in_one_line_and_keeps_its_version(car, tmp_path):
+    path = tmp_path / "newer.blend"
+    car.perception_entropy.version = choices.VERSION + 6
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    scene = bpy.context.scene
+    assert scene.perception_entropy.version == choices.VERSION + 6
+    assert "newer version" in bridge.newer_version(scene)
+    answer = run("blender_addon", path, "score", "--grid-samples", "4096")
+    assert answer.returncode == 0
+    told = [line for line in answer.stderr.splitlines() if "newer version" in line]
+    assert len(told) == 1 and answer.stdout
+
+
+def linked_car(tmp_path):
+    """Put the car into a library; return its study, and a new scene that links it."""
+    expected = scenes.study()
+    library = tmp_path / "library.blend"
+    bpy.data.libraries.write(str(library), {bpy.data.collections["Car"]})
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+        wanted.collections = ["Car"]
+    settings = bpy.context.scene.perception_entropy
+    settings.score_samples = settings.search_samples = 4096
+    settings.candidates = 2
+    return expected, bpy.context.scene, bpy.data.collections["Car"]
+
+
+def assert_same(study, expected):
+    assert (study.vehicle.triangles == expected.vehicle.triangles).all()
+    first, second = (s.evaluator().score(s.rig).entropy for s in (study, expected))
+    assert first == second
+
+
+def test_a_linked_vehicle_is_the_vehicle(car, tmp_path):
+    expected, scene, linked = linked_car(tmp_path)
+    scene.collection.children.link(linked)
+    scene.perception_entropy.vehicle = linked
+    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    assert_same(scenes.study(), expected)
+    bpy.ops.pe.score()
+    assert "cabin [library.blend]" in {
+        part.name for part in scene.objects["roof"].perception_entropy.stopped_parts
+    }
+
+
+def test_parts_of_a_linked_vehicle_are_selected_and_it_is_not_turned(car, tmp_path):
+    _, scene, linked = linked_car(tmp_path)
+    scene.collection.children.link(linked)
+    scene.perception_entropy.vehicle = linked
+    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    name = scenes.study().vehicle.part_names[0]
+    assert bpy.ops.pe.select_part(name=name) == {"FINISHED"}
+    with pytest.raises(RuntimeError, match="expected an object of this file, found linked from"):
+        bpy.ops.pe.mend(fix="turn_vehicle", amount=(90.0, 0.0, 0.0))
+
+
+def test_an_instanced_vehicle_is_the_vehicle(car, tmp_path):
+    expected, scene, linked = linked_car(tmp_path)
+    holder = scenes.add_collection(scene.collection, "Holder")
+    empty = bpy.data.objects.new("instance", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", linked
+    holder.objects.link(empty)
+    scene.perception_entropy.vehicle = holder
+    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    assert_same(scenes.study(), expected)
+
+
+def test_an_overridden_vehicle_is_the_vehicle_and_can_be_turned(car, tmp_path):
+    expected, scene, linked = linked_car(tmp_path)
+    scene.collection.children.link(linked)
+    own = linked.override_hierarchy_create(scene, bpy.context.view_layer)
+    scene.perception_entropy.vehicle = own
+    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    assert_same(scenes.study(), expected)
+    assert bpy.ops.pe.mend(fix="turn_vehicle", amount=(180.0, 0.0, 0.0)) == {"FINISHED"}
+    low, high = scenes.study().vehicle.bounds
+    assert (low[0], high[0]) == pytest.approx((-2.0, 2.0), abs=1e-5)
+    assert (scenes.study().vehicle.triangles != expected.vehicle.triangles).any()
+
+
+def test_variants_of_a_linked_sensor_are_told(car, tmp_path):
+    """A sensor of another file cannot be placed: a switch says so, and changes nothing."""
+    library = tmp_path / "sensors.blend"
+    bpy.data.libraries.write(str(library), {car.objects["roof"]})
+    bpy.data.objects.remove(car.objects["roof"])
+    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+        wanted.objects = ["roof"]
+    car.collection.objects.link(bpy.data.objects["roof"])
+    bpy.context.view_layer.update()
+    bpy.ops.pe.save_variant()
+    with pytest.raises(RuntimeError, match="expected an object that can be placed, found linked"):
+        bpy.ops.pe.switch_variant(key=car.perception_entropy.variants[0].key)

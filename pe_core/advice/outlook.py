@@ -20,6 +20,7 @@ BEARINGS = {"front": 0.0, "rear": math.pi, "left": math.pi / 2.0, "right": -math
 """Where they are, counter-clockwise from straight ahead [rad]."""
 ANY_CLASS = "any"
 """What the one class of a prior without classes is called."""
+CLASSES_NAMED = 8
 AT_THE_BODY_M = 0.2
 """Blind ground that begins nearer than this begins at the body."""
 
@@ -92,8 +93,9 @@ def class_of(prior: Prior, name: str | None) -> str:
 
 def outlook_words(found: Outlook) -> Iterator[str]:
     """Yield what an outlook tells, in short lines."""
-    each = ", ".join(f"{name} {ap:.2f}" for name, ap in found.expected_ap.items())
-    yield f"expected AP: {each}"
+    each = [f"{name} {ap:.2f}" for name, ap in found.expected_ap.items()]
+    more = ["..."] if len(each) > CLASSES_NAMED else []
+    yield f"expected AP: {', '.join(each[:CLASSES_NAMED] + more)}"
     yield _reach_words(found.reach)
     yield _blind_words(found.blind)
 

@@ -54,6 +54,13 @@ def test_what_is_said():
     ]
 
 
+def test_many_classes_are_not_all_named():
+    shares = SimpleNamespace(by_number=(1.0, 0.8), zones={})
+    aps = {f"c{k}": 0.5 for k in range(10)}
+    line = next(outlook_words(advice.Outlook(aps, shares, reach({}), ROUND)))
+    assert line == f"expected AP: {', '.join(f'c{k} 0.50' for k in range(8))}, ..."
+
+
 def test_what_is_found_nowhere_and_no_blind_ground():
     lines = said(reach({}, "any"), blind(front=None, rear=None, left=None, right=None))
     assert lines[1:] == [

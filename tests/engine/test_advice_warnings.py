@@ -235,6 +235,15 @@ def test_without_names_only_the_long_side_tells(sedan):
     assert (None, "faces") not in told(moved(unnamed(sedan), BACK))  # it cannot be told
 
 
+def test_a_body_as_wide_as_long_is_told_by_its_mirror_image(sedan):
+    """Left and right are alike, front and rear are not."""
+    short = pe.Vehicle(sedan.triangles * (0.44, 1.0, 1.0))
+    assert (None, "faces") not in told(short)
+    assert (None, "faces") in told(moved(short, LEFT)) and (None, "faces") in told(
+        moved(short, RIGHT)
+    )
+
+
 def test_on_its_tail_or_on_its_side(sedan, bus):
     for vehicle in (sedan, bus, unnamed(sedan)):
         on_tail = told(moved(vehicle, TAIL, shift=(0, 0, 3.1)))

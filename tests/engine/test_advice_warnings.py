@@ -333,6 +333,11 @@ def test_sizes_that_are_no_vehicle():
     )
     floor = np.concatenate([shapes.box_car().triangles, shapes.box((-9, -9, -0.1), (9, 9, 0))])
     assert "is a floor part of its mesh? Or, " in told(pe.Vehicle(floor))[None, "size"].text
+    coach = pe.Vehicle(shapes.box((-20, -4, 0), (20, 4, 10)))
+    assert (
+        "if these are feet, scale by 0.3048: 12 m x 2.44 m x 3.05 m"
+        in told(coach)[None, "size"].text
+    )
     toy = pe.Vehicle(shapes.box((-0.175, -0.1, 0), (0.175, 0.1, 0.1)))
     assert told(toy)[None, "size"].text.endswith("scaled by 13 it would be as long as a car")
     assert told(toy)[None, "size"].amount == (13.0,)

@@ -142,6 +142,8 @@ def test_a_housing_that_cuts_into_the_body():
     assert (found.text, found.part) == ("its housing (12 x 12 x 12 cm) cuts into cabin", "cabin")
     assert ("s", "housing") not in told(car, at(0.0, 1.45))  # it stands on the roof
     assert ("s", "housing") not in told(car, at(2.37, 0.6))  # beside the bumper, at 2.3
+    both = told(car, at(0.81, 0.92))["s", "housing"]  # in the corner of bonnet and cabin
+    assert both.text.endswith("cuts into body, cabin") and both.part == "body"
     assert pe.catalog.housing("HDL-64E") is None
     assert ("s", "housing") not in told(car, at(0.0, 1.41, "HDL-64E"))  # of no known size
 

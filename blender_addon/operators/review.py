@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
 import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
@@ -9,6 +12,22 @@ from bpy_extras.io_utils import ExportHelper
 from .. import bridge
 from ..engine import pe
 from .reports import REFUSALS, chosen_file, refuse, tell
+
+
+@contextmanager
+def waiting(context: bpy.types.Context) -> Iterator[Callable[[float], None]]:
+    """Show by the mouse that Blender is at work, and how far; it takes no input meanwhile."""
+    manager, window = context.window_manager, context.window
+    if bpy.app.background or window is None:
+        yield lambda _share: None
+        return
+    manager.progress_begin(0.0, 1.0)
+    window.cursor_modal_set("WAIT")
+    try:
+        yield manager.progress_update
+    finally:
+        window.cursor_modal_restore()
+        manager.progress_end()
 
 
 class PE_OT_render_review(ExportHelper, bpy.types.Operator):
@@ -25,11 +44,12 @@ class PE_OT_render_review(ExportHelper, bpy.types.Operator):
 
         try:
             path = chosen_file(self.filepath)
-            study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-            job = pe.ScoreJob(study)
-            for _ in job:
-                pass
-            review.render_review(context.scene, study, job.outcome, path)
+            with waiting(context) as show:
+                study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+                job = pe.ScoreJob(study)
+                for progress in job:
+                    show(progress.fraction)
+                review.render_review(context.scene, study, job.outcome, path)
         except REFUSALS as error:
             return refuse(self, error)
         tell(self, "INFO", f"Wrote {path}")

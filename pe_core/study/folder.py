@@ -99,6 +99,11 @@ class FileSet:
     def __init__(self, folder: Path, replaceable: Collection[str] = ()) -> None:
         self._folder, self._replaceable = folder, replaceable
         self._made: dict[str, tuple[Path, str]] = {}
+        self._unwanted: tuple[str, ...] = ()
+
+    def take_away(self, names: Collection[str]) -> None:
+        """Have files gone once the set is there: those that are ours and that nobody changed."""
+        self._unwanted = tuple(names)
 
     def add(self, name: str, write: Write | bytes) -> str:
         """Write a file beside its place; return its SHA-256."""
@@ -148,6 +153,8 @@ class FileSet:
         self._list(new)
         for name, (temporary, _) in new.items():
             os.replace(temporary, self._folder / name)
+        for name in set(self._unwanted) & set(our_files(self._folder)) - set(self._made):
+            _unlink(self._folder / name)
 
     def _list(self, new: Collection[str]) -> None:
         """List the files before they are there: if we are killed meanwhile, both are ours."""

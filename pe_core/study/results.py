@@ -10,7 +10,7 @@ import csv
 import io
 import json
 import platform
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -94,6 +94,9 @@ def write_outcome(
 ) -> dict[str, Any]:
     """Write result.json, history.csv (of a search) and the study; return result.json's data.
 
+    Files that an earlier run left in the folder, and that this one does not write, are taken away
+    if they are ours and nobody has changed them: they would tell of another result.
+
     Raises
     ------
     InputError
@@ -104,13 +107,22 @@ def write_outcome(
     writers = study_writers(outcome.study, STUDY)
     if outcome.kind == "optimize":
         writers[HISTORY] = history_csv(outcome.history).encode(errors="backslashreplace")
-    add_to_result(data, folder, writers)
+    add_to_result(data, folder, writers, unwanted=BESIDE_RESULT)
     return data
 
 
-def add_to_result(data: dict[str, Any], folder: Path, writers: Mapping[str, Write | bytes]) -> None:
-    """Write files of a run together with its result.json, in which their SHA-256 is noted."""
+def add_to_result(
+    data: dict[str, Any],
+    folder: Path,
+    writers: Mapping[str, Write | bytes],
+    unwanted: Collection[str] = (),
+) -> None:
+    """Write files of a run together with its result.json, in which their SHA-256 is noted.
+
+    Of the `unwanted` those are taken away that are ours and not among them.
+    """
     with FileSet(folder) as files:
+        files.take_away(unwanted)
         digests = {name: files.add(name, write) for name, write in writers.items()}
         run = {**data["run"], "files": {**data["run"].get("files", {}), **digests}}
         text = dump_json({**data, "run": run})

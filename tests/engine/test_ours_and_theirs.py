@@ -263,11 +263,22 @@ def test_runs_into_one_folder_at_once_know_each_others_files(tmp_path):
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
 
 
-def test_files_of_another_run_are_told(study, out, capsys):
+def test_what_another_run_left_is_taken_away(study, out, capsys):
     assert optimize(study, out) == 0
+    (out / "notes.txt").write_text("mine")
     assert main(["score", str(study), "-o", str(out)]) == 0
-    assert files_of_other_runs(out) == ["history.csv"]
-    assert f"pe: {out / 'history.csv'}: not of this run\n" in capsys.readouterr().err
+    assert set(contents(out)) == {*NAMES, LISTING, "notes.txt"} - {"history.csv"}
+    assert files_of_other_runs(out) == []
+    assert "not of this run" not in capsys.readouterr().err
+    assert optimize(study, out) == 0
+    assert "history.csv" in contents(out)
+
+
+def test_what_somebody_changed_of_another_run_stays(study, out):
+    assert optimize(study, out) == 0
+    (out / "history.csv").write_text("mine")
+    assert main(["score", str(study), "-o", str(out)]) == 0
+    assert (out / "history.csv").read_text() == "mine"
 
 
 def test_a_study_newer_than_the_result_is_told(study, out):

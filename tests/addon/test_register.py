@@ -1,14 +1,18 @@
 """Registering, unregistering, and what is left behind: nothing."""
 
+import threading
 from typing import ClassVar
 
 import bpy
 import pytest
 
 import blender_addon
-from blender_addon import changes, commands, motion, roster
+from blender_addon import bridge, changes, commands, motion, roster, worker
+from blender_addon.engine import pe
+from blender_addon.live import latest, readout
 from blender_addon.operators import running
 from blender_addon.overlay import batches, handler, updating
+from tests.addon.scenes import depsgraph
 
 ROUNDS = 100
 
@@ -76,6 +80,32 @@ def view3d(monkeypatch):
     """Return a stand-in for the 3D views: Blender does not tell what is drawn into its own."""
     monkeypatch.setattr(handler, "VIEW", View3D)
     return View3D
+
+
+@pytest.fixture
+def workers(monkeypatch):
+    """Return the workers, which take Blender to have a window, with its own timers."""
+    app = type("App", (), {"background": False, "timers": bpy.app.timers})
+    monkeypatch.setattr(worker, "bpy", type("Bpy", (), {"app": app}))
+    return worker.desk, worker.hand
+
+
+def test_a_hundred_rounds_leave_no_thread_timer_or_read_out_behind(monkeypatch, workers):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    monkeypatch.setattr(readout, "VIEW", View3D)
+    threads, drawn = threading.active_count(), len(View3D.handles)
+    for _ in range(ROUNDS):
+        blender_addon.register()
+        assert len(View3D.handles) == drawn + 1
+        for each in workers:  # asked a moment before it is switched off
+            each.ask("work", lambda: None, lambda _: None, lambda _: None)
+            assert bpy.app.timers.is_registered(each._timer)
+        latest.set_note("Scene", "a line")
+        assert threading.active_count() == threads + len(workers)
+        blender_addon.unregister()
+        assert threading.active_count() == threads and len(View3D.handles) == drawn
+        assert not any(bpy.app.timers.is_registered(each._timer) for each in workers)
+        assert not any(each.busy() for each in workers) and not latest.note("Scene")
 
 
 def test_a_hundred_rounds_leave_nothing_behind(view3d):
@@ -159,3 +189,26 @@ def test_every_class_and_property_is_described(addon):
         for prop in cls.bl_rna.properties:
             if cls.__name__.endswith("Settings") and prop.identifier not in ("rna_type", "name"):
                 assert prop.description and not prop.description.endswith("."), prop.identifier
+
+
+def test_a_job_ends_with_the_extension(car, monkeypatch):
+    """Nothing of it shows any more, and after enabling again a new one can begin."""
+    shown, work = [], pe.OptimizeJob(bridge.study_from_scene(car, depsgraph()))
+
+    class Shown(running.Running):
+        """A job without a window to show it in."""
+
+        def __init__(self, job):
+            self.job = job
+
+        def end(self, context):
+            shown.append(context)
+
+    monkeypatch.setattr(running, "current", Shown(work))
+    assert not bpy.ops.pe.score.poll()
+    blender_addon.unregister()
+    try:
+        assert running.current is None and work.dropped and len(shown) == 1
+    finally:
+        blender_addon.register()
+    assert bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()

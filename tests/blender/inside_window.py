@@ -80,6 +80,8 @@ def say_ready():
 def report_state():
     """Write what the scene holds, again and again."""
     scene = bpy.context.window_manager.windows[0].scene
+    if not hasattr(scene, "perception_entropy"):  # the extension is switched off
+        return REPORT_S
     found = scene.perception_entropy
     sensors = [each for each in scene.objects if each.perception_entropy.is_sensor]
     state = {

@@ -9,7 +9,7 @@ import json
 import os
 import subprocess
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -46,19 +46,20 @@ class Window:
         self._processes: list[subprocess.Popen] = []
         self._env: dict[str, str] = {}
 
-    def open(self, installed: Installed, blend: Path, *scripts: Path) -> None:
-        """Start the screen and Blender, and wait until its sidebar shows our tab.
-
-        Scripts are run inside before that; they see the folder as the last argument.
-        """
+    def open(self, installed: Installed, blend: Path) -> None:
+        """Start the screen and Blender, and wait until its sidebar shows our tab."""
         self._env = {"DISPLAY": self._start_screen(), "LIBGL_ALWAYS_SOFTWARE": "1"}
         blender = installed.blender
         command = [blender.command, *installed.START, "--window-geometry", "0", "0"]
         command += [str(WIDTH), str(HEIGHT), str(blend)]
-        command += ["--python-exit-code", "3"]
-        for script in (*scripts, self.startup):
-            command += ["--python", str(script)]
-        command += ["--", str(self.folder)]
+        command += [
+            "--python-exit-code",
+            "3",
+            "--python",
+            str(self.startup),
+            "--",
+            str(self.folder),
+        ]
         self._processes.append(process.start(command, self.log, {**blender.env, **self._env}))
         self.wait_for(lambda: (self.folder / "ready.json").exists(), READY_TIMEOUT_S, "its window")
 
@@ -87,12 +88,6 @@ class Window:
         """Press and release the left button at a place, counted from the top left."""
         self._move(x, y)
         self._xdotool("click", "1")
-
-    def drag(self, steps: Iterable[tuple[int, int]], pause_s: float = SETTLE_S) -> None:
-        """Move the mouse from place to place, as a hand does."""
-        for x, y in steps:
-            self._xdotool("mousemove", str(x), str(y))
-            time.sleep(pause_s)
 
     def point_at_view(self) -> None:
         """Move the mouse into the 3D view, where keys are the scene's."""

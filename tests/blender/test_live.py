@@ -1,0 +1,138 @@
+"""The live score in a real window: it follows a real mouse, and ends exact to the bit."""
+
+import json
+import re
+
+import pytest
+
+from tests.blender.runner import output_of
+
+EFFECT_TIMEOUT_S = 120
+SAMPLES = 32_768
+LIVE_COLUMN = 0.75
+"""Where in the row of *Score* the switch *Live* is."""
+MOVES = 12
+NAME = "bl_ext.user_default.perception_entropy"
+SETTLED = f"""
+import threading
+import bpy
+kept["handlers"] = [
+    f.__name__ for name in dir(bpy.app.handlers)
+    if isinstance(each := getattr(bpy.app.handlers, name), list)
+    for f in each if f.__module__.startswith({NAME!r})
+]
+kept["threads"] = threading.active_count()
+"""
+DISABLE = f"import addon_utils; addon_utils.disable({NAME!r})"
+ENABLE = f"import addon_utils; addon_utils.enable({NAME!r})"
+CALM = """
+window.scene.perception_entropy.show_overlay = False  # the picture is not what is tested
+for each in window.scene.objects:
+    each.select_set(each.name == "roof_lidar", view_layer=window.view_layer)
+window.view_layer.objects.active = window.scene.objects["roof_lidar"]
+"""
+
+
+@pytest.fixture
+def live(stage):
+    """A window on the sedan, the live score switched on by its button."""
+    stage.do(CALM)
+    _, y = stage.find_button("pe.score")
+    sidebar = json.loads((stage.folder / "ready.json").read_text())["sidebar"]
+    stage.click(round(sidebar["left"] + LIVE_COLUMN * sidebar["width"]), y)
+    stage.wait_for(lambda: stage.state["live"]["on"], EFFECT_TIMEOUT_S, "the switch")
+    wait_for_rest(stage)
+    return stage
+
+
+def wait_for_rest(stage, other_than=None):
+    """Wait for an exact reading."""
+
+    def rested():
+        said = stage.state["live"]
+        return said.get("rested") and said["entropy"] != other_than
+
+    stage.wait_for(rested, EFFECT_TIMEOUT_S, "an exact score")
+    return stage.state["live"]["entropy"]
+
+
+def grab_and_move(stage, moves=MOVES):
+    """Press G over the view and move the mouse; the sensor follows it until a click."""
+    stage.point_at_view()
+    stage.key("g")
+    for _ in range(moves):
+        stage.mouse("mousemove_relative", "--", 4, -3)
+        stage.rest(0.1)
+
+
+def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, installed, tmp_path):
+    start = wait_for_rest(live)
+    grab_and_move(live)
+    draft = live.wait_for(lambda: live.state["live"].get("draft"), EFFECT_TIMEOUT_S, "a draft")
+    assert live.state["live"]["before"] == start
+    draft = live.state["live"]["entropy"]
+    assert draft != start
+    live.photograph(screenshots / "window_live_drag.png")
+    live.mouse("click", 1)
+    end = wait_for_rest(live, other_than=start)
+    assert live.state["live"]["before"] == start and not live.state["live"]["draft"]
+    live.photograph(screenshots / "window_live_rest.png")
+
+    copy = tmp_path / "moved.blend"
+    live.do(f"bpy.ops.wm.save_as_mainfile(filepath={str(copy)!r}, copy=True)")
+    answer = installed.pe(copy, "score", "--grid-samples", SAMPLES, "--json", "--output", tmp_path)
+    assert answer.returncode == 0, output_of(answer)
+    found = json.loads((tmp_path / "result.json").read_text())
+    assert found["entropy"] == end, "a window and the command line differ"
+
+    live.point_at_view()
+    live.key("ctrl+z")
+    live.wait_for(lambda: wait_for_rest(live) == start, EFFECT_TIMEOUT_S, "the start's score")
+    assert "Traceback" not in live.log.read_text()
+
+
+def test_vertices_moved_in_edit_mode_count_and_make_a_result_stale(live):
+    live.press("pe.score")
+    live.wait_for(lambda: live.state["has_result"], 2 * EFFECT_TIMEOUT_S, "a score")
+    assert not live.state["stale"]
+    start = wait_for_rest(live)
+    live.do("""
+        roof = window.scene.objects["roof"]
+        for each in window.scene.objects:
+            each.select_set(each == roof, view_layer=window.view_layer)
+        window.view_layer.objects.active = roof
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+    """)
+    grab_and_move(live)
+    live.mouse("click", 1)
+    live.wait_for(lambda: live.state["stale"], EFFECT_TIMEOUT_S, "the mark of a change")
+    assert wait_for_rest(live, other_than=start) != start
+    assert "Traceback" not in live.log.read_text()
+
+
+def test_disabled_in_the_middle_of_a_drag_it_leaves_nothing_and_comes_back(live):
+    grab_and_move(live, moves=4)
+    live.do(DISABLE)
+    live.mouse("click", 1)
+    live.do(SETTLED)
+    gone = live.do("kept['done'] = True")
+    assert gone["handlers"] == [] and gone["threads"] == 1
+    live.do(ENABLE)
+    live.wait_until("window.scene.perception_entropy.live.on is not None")
+    assert "Traceback" not in live.log.read_text()
+
+
+def test_disabled_during_a_search_it_leaves_nothing_and_works_again(stage, screenshots):
+    stage.do(CALM)
+    places = stage.state["places"]
+    stage.press("pe.optimize")
+    stage.wait_for(lambda: stage.state["running"], EFFECT_TIMEOUT_S, "the search to start")
+    stage.do(DISABLE)
+    stage.do(ENABLE)
+    stage.wait_until("bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()")
+    stage.screenshot(screenshots / "window_disabled_and_enabled.png")
+    stage.press("pe.score")
+    stage.wait_until("window.scene.perception_entropy.has_result", timeout_s=2 * EFFECT_TIMEOUT_S)
+    assert stage.state["places"] == places, "the search that was ended has moved something"
+    assert not re.search("Traceback|Error:", stage.log.read_text())

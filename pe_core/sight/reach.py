@@ -31,7 +31,7 @@ SMOOTHED_M = 5.0
 """About as long as a car."""
 BESIDE_RAD = math.radians(10.0)
 """Bearings farther apart than this are not smoothed over, and no sector is wider."""
-VOXELS = 16
+VOXELS = 32
 """Voxels of a ring's piece."""
 FEW = 0.25
 """Where less than this share of them is in the space and outside the vehicle, nothing is found."""
@@ -74,15 +74,16 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Spokes:
-    """Voxels along bearings: `index` (B * R * VOXELS, 3), `weights` (B, R, VOXELS).
+    """Voxels along bearings: `index` (V, 3), and the `ring` (V,) each is in, of R a bearing.
 
-    A voxel in the vehicle or beyond the space weighs nothing. `limit` (B,) is where the space ends.
+    None is in the vehicle or beyond the space. `limit` (B,) is where the space ends.
     """
 
     bearings: Floats
     limit: Floats
     index: Ints
-    weights: Floats
+    ring: Ints
+    rings: int
 
     @classmethod
     def of(
@@ -102,16 +103,18 @@ class Spokes:
         places = np.stack([x, y, space.centers(2)[k]], axis=-1)
         index = np.floor((places - space.origin) / space.interval).astype(np.int64)
         inside = ((index >= 0) & (index < space.shape)).all(axis=-1)
-        index = np.clip(index, 0, np.array(space.shape) - 1)
         if tops is not None:
-            i, j, k = np.moveaxis(index, -1, 0)
+            i, j, k = np.moveaxis(np.where(inside[..., None], index, 0), -1, 0)
             inside &= space.centers(2)[k] >= tops[i, j]
-        return cls(angles, limit, index.reshape(-1, 3), inside.astype(float))
+        ring = np.flatnonzero(inside) // VOXELS
+        return cls(angles, limit, index[inside], ring, rings)
 
     def distance(self, ap: Floats, least: float) -> Floats:
         """How far AP (V,) of the voxels is at least so much, (B,) [m]."""
-        sums = self._smoothed((ap.reshape(self.weights.shape) * self.weights).sum(axis=2))
-        mass = self._smoothed(self.weights.sum(axis=2))
+        shape = len(self.bearings), self.rings
+        each = (ap, np.ones(len(ap)))
+        by_ring = [np.bincount(self.ring, w, math.prod(shape)).reshape(shape) for w in each]
+        sums, mass = (self._smoothed(np.asarray(w, dtype=float)) for w in by_ring)
         mean = sums / np.where(mass >= FEW * mass.max(), mass, np.inf)
         ends = [_end_of_longest(row, least) for row in mean]
         return np.minimum(np.round(np.array(ends) * RING_M, DECIMALS), self.limit)

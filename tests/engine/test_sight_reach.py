@@ -14,21 +14,22 @@ SPACE = pe.PerceptionSpace((-60, 60), (-20, 20), (1, 2), 0.5)
 UNIFORM = pe.Prior.uniform()
 
 
-def dense_lidar(max_range, position=(0.03, 0.01, 1.52)):
-    """Beams so close that nearly every voxel has one."""
-    model = pe.Lidar("dense", np.radians(np.linspace(-35, 35, 141)), 720, max_range)
+def dense_lidar(max_range, azimuths, position=(0.03, 0.01, 1.52)):
+    """Beams so close that nearly every voxel has one, up to where they are half a metre apart."""
+    channels = np.linspace(-35, 35, azimuths * 70 // 360 + 1)
+    model = pe.Lidar("dense", np.radians(channels), azimuths, max_range)
     return pe.Sensor("dense", model, pe.Pose(position))
 
 
 def test_a_lidar_reaches_as_far_as_its_beams():
-    reach = sight.Sight(SPACE, UNIFORM).reach(pe.Rig([dense_lidar(15.0)]), "any", bearings=36)
+    reach = sight.Sight(SPACE, UNIFORM).reach(pe.Rig([dense_lidar(15.0, 240)]), "any", bearings=36)
     assert reach.distance == pytest.approx(np.full(36, 15.0), abs=1.0)
     assert np.array_equal(reach.per_sensor["dense"], reach.distance)
     assert reach.bearings[:2] == pytest.approx([0.0, math.radians(10.0)])
 
 
 def test_where_the_space_ends_a_reach_is_at_least():
-    reach = sight.Sight(SPACE, UNIFORM).reach(pe.Rig([dense_lidar(200.0)]), "any", bearings=4)
+    reach = sight.Sight(SPACE, UNIFORM).reach(pe.Rig([dense_lidar(200.0, 720)]), "any", bearings=4)
     assert reach.limit == pytest.approx([60.0, 20.0, 60.0, 20.0])
     assert np.array_equal(reach.distance, reach.limit)
 
@@ -49,6 +50,33 @@ def test_a_camera_reaches_as_far_as_the_definition_has_it():
         assert reach.distance[0] == pytest.approx(farthest, abs=1.0)
         assert 5.0 < farthest < 55.0
         assert reach.distance[180] == 0.0  # behind it
+
+
+def test_a_reach_is_that_of_every_voxel_in_the_sector():
+    """All voxels within 7.5 degrees of a bearing, weighed as its sector and those beside it."""
+    space = pe.PerceptionSpace((-45, 45), (-15, 15), (0, 3), 0.25)
+    prior, car = pe.Prior.road(), shapes.box_car()
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(96, 900), (0.0, 0.0, 1.9))])
+    found = sight.Sight(space, prior, car).reach(rig, "pedestrian", ap=0.5)
+    density = prior.densities(space)[1]
+    x, y = space.centers(0)[:, None], space.centers(1)
+    for bearing in (0, 2, 36, 70):
+        angle = found.bearings[bearing]
+        aside = np.abs(np.remainder(np.arctan2(y, x) - angle + np.pi, 2.0 * np.pi) - np.pi)
+        steps = np.floor(np.degrees(aside) / 5.0 + 0.5)
+        columns = np.argwhere((steps <= 1) & (np.hypot(x, y) > 3.0))
+        weight = np.where(steps == 0, 2.0, 1.0)[tuple(columns.T)] / np.hypot(x, y)[tuple(columns.T)]
+        ap = np.zeros(len(columns))
+        for k in np.flatnonzero(density.profile > 1e-3):
+            index = np.column_stack([columns, np.full(len(columns), k)])
+            m = shapes.counted(rig["roof"], space, index, car)
+            ap += density.profile[k] * average_precision(m, kinds.PerceptionModel().lidar)
+        ring = np.hypot(x, y)[tuple(columns.T)].astype(int)
+        mean = np.convolve(np.bincount(ring, ap * weight), np.ones(5))
+        mean /= np.convolve(np.bincount(ring, weight), np.ones(5)) + 1e-9
+        last = np.flatnonzero(mean[2:-2] >= 0.5).max()
+        assert 20 < last < 44
+        assert found.distance[bearing] == pytest.approx(last + 1.0, abs=1.5)
 
 
 def test_the_blind_zone_near_by_does_not_end_a_reach():

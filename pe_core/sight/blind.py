@@ -33,6 +33,7 @@ Flags = NDArray[np.bool_]
 GAP_M = 0.3
 """Gaps narrower than this are no blind ground: less than a small child is wide."""
 LEAST_M2 = 0.25
+"""Nor is what is smaller than this."""
 NO_BODY_M = 1.0
 """Half the side of the square that stands for the body where there is no vehicle."""
 DECIMALS = 6
@@ -116,31 +117,32 @@ def blind_ground(
 class _Strip:
     """The strip that a body's rectangle sweeps to a side: its blind cells from the body outwards.
 
-    `blind` (N, W) rows away from the body, and where each row begins, (N,) [m] from the body.
+    `blind` (N, W) rows away from the body, the `distance` (N,) [m] at which each begins, and where
+    its cells lie `across` (W,) [m]; the body ends at `edge` [m] along the `axis`.
     """
 
     blind: Flags
     distance: Floats
     across: Floats
     edge: float
-    step: float
     axis: int
     sign: int
 
     @classmethod
     def of(cls, cells: Cells, blind: Flags, body: Rectangle, side: str) -> _Strip:
+        """Cut out the strip of a side, as wide as the body or one cell."""
         axis, sign = SIDES[side]
         along, across = (cells.x, cells.y)[axis], (cells.x, cells.y)[1 - axis]
         edge = body[axis][1] if sign > 0 else body[axis][0]
         low, high = body[1 - axis]
         rows = np.flatnonzero(sign * (along - edge) > 0.0)[::sign]
-        columns = np.flatnonzero((across >= low) & (across <= high))
+        middle = np.abs(across - (low + high) / 2.0)
+        columns = np.flatnonzero(middle <= max((high - low) / 2.0, float(middle.min())))
         turned = blind if axis == 0 else blind.T
         distance = np.maximum(sign * (along[rows] - edge) - cells.step / 2.0, 0.0)
         distance = np.round(distance, DECIMALS)
-        return cls(
-            turned[np.ix_(rows, columns)], distance, across[columns], edge, cells.step, axis, sign
-        )
+        strip = turned[np.ix_(rows, columns)]
+        return cls(strip, distance, across[columns], edge, axis, sign)
 
     def nearest(self) -> BlindSpot | None:
         """The nearest blind place, in the middle of the strip if there are several."""
@@ -162,7 +164,7 @@ class _Strip:
     def seen_from(self) -> float | None:
         """How far from the body the last blind place ends; None at the edge."""
         rows = np.flatnonzero(self.blind.any(axis=1))
-        if not self.blind.size or (len(rows) and rows[-1] == len(self.blind) - 1):
+        if not len(self.blind) or (len(rows) and rows[-1] == len(self.blind) - 1):
             return None
         return float(self.distance[rows[-1] + 1]) if len(rows) else 0.0
 

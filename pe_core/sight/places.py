@@ -24,7 +24,11 @@ AT_ONCE = 1 << 17
 SPREAD_M = 0.7
 """Standard deviation of the Gauss curve: less than the objects are large."""
 CLOSED = 1.5
+"""Radius of the disc in which a sensor sees nothing, in standard deviations of the Gauss curve."""
 GRAIN_M2 = 12.0
+"""Of what a sensor sees, pieces smaller than this are taken for chance."""
+NEXT_TO_NOTHING = 1e-9
+"""What a column without mass weighs, of the heaviest: it counts among its like alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,15 +93,16 @@ def in_layer(cells: Cells, space: PerceptionSpace, tops: Floats | None, layer: i
 def standing(cells: Cells, space: PerceptionSpace, tops: Floats | None, layer: int) -> Places:
     """Choose voxels of what stands on the ground and reaches up into a layer.
 
-    The lowest and the highest layer always, some between them; columns of the vehicle weigh
-    nothing, however high it is there.
+    From z = 0 up, or from the space's floor; the lowest and the highest layer always, some between
+    them. Columns of the vehicle weigh nothing, however high it is there.
     """
-    layers = layer + 1
+    foot = min(layer, max(0, math.floor(-space.z[0] / space.interval + ROUNDING)))
+    layers = layer + 1 - foot
     x, y, share = cells.points(space.interval, over_height=layers > 1)
     i, j = _columns(space, x, y)
-    k = np.floor(share * layers).astype(np.int64)
-    k[share * x.shape[1] < 1.0] = 0  # a run of the sequence has one in the lowest of its parts
-    k[(1.0 - share) * x.shape[1] <= 1.0] = layers - 1
+    k = foot + np.floor(share * layers).astype(np.int64)
+    k[share * x.shape[1] < 1.0] = foot  # a run of the sequence has one in the lowest of its parts
+    k[(1.0 - share) * x.shape[1] <= 1.0] = layer
     weights = np.ones(x.shape) if tops is None else np.where(np.isfinite(tops[i, j]), 0.0, 1.0)
     return Places(cells, np.stack([i, j, k], axis=-1).reshape(-1, 3), weights)
 
@@ -144,7 +149,7 @@ def by_prior(
         k[some], mass[some] = columns.drawn(at, beside, above, share.reshape(-1)[some])
     weights = mass.reshape(i.shape)
     nobody = ~(weights > 0.0).any(axis=1)
-    weights[nobody] = first[nobody] < space.shape[2]
+    weights[nobody] = (first[nobody] < space.shape[2]) * NEXT_TO_NOTHING * weights.max()
     index = np.stack([i.reshape(-1), j.reshape(-1), k], axis=-1)
     return Places(cells, index, weights, SPREAD_M)
 

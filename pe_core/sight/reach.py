@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError, shown
 from ..prior.prior import ClassDensity
+from ..scene.frozen import frozen
 from ..scene.space import PerceptionSpace
 from ..scoring.sampling import CENTERED
 from ..scoring.sobol import scrambled_sobol
@@ -107,7 +108,7 @@ class Spokes:
             i, j, k = np.moveaxis(np.where(inside[..., None], index, 0), -1, 0)
             inside &= space.centers(2)[k] >= tops[i, j]
         ring = np.flatnonzero(inside) // VOXELS
-        return cls(angles, limit, index[inside], ring, rings)
+        return cls(frozen(angles), frozen(limit), index[inside], ring, rings)
 
     def distance(self, ap: Floats, least: float) -> Floats:
         """How far AP (V,) of the voxels is at least so much, (B,) [m]."""

@@ -48,6 +48,15 @@ def test_of_what_is_tall_less_is_blind():
     assert areas == sorted(areas, reverse=True) and areas[0] > areas[-1]
 
 
+def test_what_stands_stands_on_the_ground():
+    """In a space that begins below the ground nothing is asked of what is under it."""
+    deep = pe.PerceptionSpace((-15, 15), (-15, 15), (-1, 2), 0.1)
+    rig = pe.Rig([cone_lidar()])
+    for height in (0.0, 1.0):
+        areas = [Sight(s, pe.Prior.road()).blind(rig, height).area for s in (SPACE, deep)]
+        assert areas[0] == pytest.approx(areas[1], rel=0.03) and areas[0] > 1.0
+
+
 def test_what_is_seen_at_its_foot_alone_is_seen():
     """Beams from 20 to 45 degrees down pass under 1.5 m from 1.4 m on; all round it stays seen."""
     elevations = np.radians(np.arange(-45.0, -20.0, 0.25))

@@ -129,6 +129,18 @@ def test_where_no_object_is_ever_met_there_is_a_map_all_the_same():
     assert 0.0 < np.nanmean(ground.coverage) < 1.0
 
 
+def test_where_objects_are_met_places_without_any_do_not_count():
+    """Means are spread over the prior's mass: in a row of one box, by the heights of that box."""
+    low = {"x": 8.25, "y": 3.25, "z": 0.25, "length": 0.5, "width": 0.5, "height": 0.5, "yaw": 0.0}
+    boxes = pe.Boxes.of({"class": ["car"], **{name: [value] for name, value in low.items()}})
+    ring = shapes.lidar_on_roof(shapes.small_lidar(40, 720), (8.25, 3.25, 4.75))
+    own = sight(None, prior=pe.Prior.from_boxes(boxes))
+    ground = own.ground(pe.Rig([ring]), step=0.5)
+    at = np.argmin(np.abs(ground.x - 8.25)), np.argmin(np.abs(ground.y - 3.25))
+    layer = own.ground(pe.Rig([ring]), 0.0, step=0.5)
+    assert ground.coverage[at] == pytest.approx(layer.coverage[at], abs=1e-6)
+
+
 @pytest.fixture
 def measured(monkeypatch):
     """Names of the LiDARs that are measured, in order."""

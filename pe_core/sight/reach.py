@@ -116,7 +116,8 @@ class Spokes:
         each = (ap, np.ones(len(ap)))
         by_ring = [np.bincount(self.ring, w, math.prod(shape)).reshape(shape) for w in each]
         sums, mass = (self._smoothed(np.asarray(w, dtype=float)) for w in by_ring)
-        mean = sums / np.where(mass >= FEW * mass.max(), mass, np.inf)
+        enough = (mass > 0.0) & (mass >= FEW * mass.max())
+        mean = sums / np.where(enough, mass, np.inf)
         ends = [_end_of_longest(row, least) for row in mean]
         return np.minimum(np.round(np.array(ends) * RING_M, DECIMALS), self.limit)
 

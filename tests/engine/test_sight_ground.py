@@ -191,6 +191,9 @@ def test_within_looks_at_a_square_alone():
     part, whole = own.ground(rig, 0.5, step=0.5, within=5.0), own.ground(rig, 0.5, step=0.5)
     assert part.entropy.shape == (20, 20) and (part.x[0], part.x[-1]) == (-4.75, 4.75)
     assert np.array_equal(part.entropy, whole.entropy[30:50, 10:30], equal_nan=True)
+    wide = own.ground(rig, 0.5, step=0.5, within=500.0)
+    assert np.array_equal(wide.x, whole.x) and np.array_equal(wide.y, whole.y)
+    assert np.array_equal(wide.entropy, whole.entropy, equal_nan=True)
 
 
 def test_a_study_has_one():

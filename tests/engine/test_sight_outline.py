@@ -52,6 +52,8 @@ def test_a_middle_that_is_inside_joins_two_corners():
     field = np.array([[-1.0, 3.0], [3.0, -1.0]])
     assert len(outlines(field, 0.0, np.arange(2.0), np.arange(2.0))) == 1
     assert len(outlines(-field, 0.0, np.arange(2.0), np.arange(2.0))) == 2
+    hardly = np.array([[-1.0, 1.1], [1.1, -1.0]])
+    assert len(outlines(hardly, 0.0, np.arange(2.0), np.arange(2.0))) == 1
 
 
 def test_nothing_has_no_outline():

@@ -52,6 +52,27 @@ def test_a_camera_reaches_as_far_as_the_definition_has_it():
         assert reach.distance[180] == 0.0  # behind it
 
 
+def test_bearings_far_apart_are_each_their_own():
+    """Beams within 21 degrees: 15 degrees aside is as good as ahead, and 30 sees nothing."""
+    fov = (-np.radians(21.0), np.radians(21.0))
+    channels = np.radians(np.linspace(-35, 35, 281))
+    model = pe.Lidar("ahead", channels, 1440, 10.0, horizontal_fov=fov)
+    rig = pe.Rig([pe.Sensor("ahead", model, pe.Pose((0.03, 0.01, 1.52)))])
+    reach = sight.Sight(SPACE, UNIFORM).reach(rig, "any", ap=0.8, bearings=24)
+    assert reach.distance[[0, 1, 23]] == pytest.approx([9.0] * 3, abs=1.0)
+    assert (reach.distance[2:23] == 0.0).all()
+
+
+def test_inside_a_vehicle_nothing_is_found():
+    hall = pe.Vehicle(shapes.box((-90.0, -90.0, -1.0), (90.0, 90.0, 9.0)))
+    reach = sight.Sight(SPACE, pe.Prior.uniform()).reach(pe.Rig([dense_lidar(9.0, 60)]), "any")
+    assert reach.distance.max() > 0.0
+    with pytest.raises(pe.InputError, match="prior: weights: expected some weight outside"):
+        pe.Evaluator(SPACE, UNIFORM, hall)
+    reach = sight.Sight(SPACE, UNIFORM, hall).reach(pe.Rig([dense_lidar(9.0, 60)]), "any")
+    assert not reach.distance.any()
+
+
 def test_a_reach_is_that_of_every_voxel_in_the_sector():
     """All voxels within 7.5 degrees of a bearing, weighed as its sector and those beside it."""
     space = pe.PerceptionSpace((-45, 45), (-15, 15), (0, 3), 0.25)

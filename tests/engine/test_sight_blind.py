@@ -80,6 +80,17 @@ def test_a_camera_s_shadow_before_a_bonnet():
     assert blind.nearest["rear"].point == pytest.approx((-2.0, 0.0), abs=0.06)
 
 
+def test_the_nearest_place_is_before_the_middle_of_the_body():
+    aside = pe.Vehicle(shapes.box((1.0, 0.2, 0.0), (3.0, 1.2, 1.0)))
+    up = pe.Lidar("up", np.radians([80.0, 85.0]), 36, 60.0)
+    rig = pe.Rig([pe.Sensor("up", up, pe.Pose((2.0, 0.7, 1.9)))])
+    blind = Sight(SPACE, pe.Prior.road(), aside).blind(rig)
+    points = {side: spot.point for side, spot in blind.nearest.items()}
+    assert points["front"] == pytest.approx((3.0, 0.7), abs=0.06)
+    assert points["left"] == pytest.approx((2.0, 1.2), abs=0.06)
+    assert set(blind.seen_from.values()) == set(blind.zone.values()) == {None}
+
+
 def test_the_vehicle_s_own_footprint_is_not_blind():
     """A ring of LiDARs round the box sees everything up to its skin."""
     places = ((2.3, 0.0), (-2.3, 0.0), (0.0, 0.8), (0.0, -0.8), (2.3, 0.8), (-2.3, -0.8))

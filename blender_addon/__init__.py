@@ -34,6 +34,7 @@ def register() -> None:
     properties.add_pointers()
     roster.register()
     body.register()
+    operators.register()
     upkeep.register()
     motion.register()
     stale.register()
@@ -50,7 +51,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Called by Blender when the add-on is switched off: everything above, backwards."""
-    operators.running.unregister()
+    operators.unregister()
     worker.unregister()
     library.unregister()
     commands.unregister()

@@ -56,14 +56,15 @@ class BodyCache:
         collection = scene.perception_entropy.vehicle
         members = () if collection is None else members_of(collection, depsgraph)
         of = "" if collection is None else collection.name_full
-        key = (scene.name, of, self._version, members)
+        clearance = bridge.clearance_of(scene)
+        key = (scene.name, of, self._version, members, clearance)
         known = self._bodies.get(scene.name, NOTHING)
         if key != known.key:
             vehicle = None
             if members:
                 # A score says what is wrong with a vehicle; here it is as if there were none.
                 with contextlib.suppress(pe.InputError):
-                    vehicle = bridge.vehicle_from_collection(collection, depsgraph)
+                    vehicle = bridge.vehicle_from_collection(collection, depsgraph, clearance)
             self._bodies = {name: b for name, b in self._bodies.items() if name in bpy.data.scenes}
             known = self._bodies[scene.name] = Body(vehicle, key)
         return known

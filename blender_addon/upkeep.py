@@ -1,8 +1,9 @@
 """Keeps sensors as they are to be, whatever was done to them outside the add-on's own operators.
 
 A duplicated, copied or appended sensor is a new one: what it brought of another's result is not
-its own. Sensors of older files may be linked twice. It works when something is told to have moved,
-and after a file was opened: both are turns in which data may be written.
+its own. A camera that is looked through goes with its sensor. Sensors of older files may be linked
+twice. It works when something is told to have moved, and after a file was opened: both are turns in
+which data may be written.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ def on_load(*_: object) -> None:
         bridge.bring_up_to_date(scene)
         if newer := bridge.newer_version(scene):
             print(f"perception_entropy: {newer}", file=sys.stderr)
+    bridge.sync_own_sensors()
     go_round()
 
 
@@ -35,12 +37,17 @@ def on_save(*_: object) -> None:
 
 def go_round() -> None:
     """Put the sensors of all scenes right."""
+    bridge.sync_own_sensors()  # undo may have brought others back
     for scene in bpy.data.scenes:
         bridge.drop_foreign_results(scene)
+        bridge.tend_views(scene)
+    if bpy.context.view_layer is not None:  # of another scene no places are known
+        bridge.note_refusals(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
 
 
 def register() -> None:
     """Start listening."""
+    changes.study.connect(bridge.sync_own_sensors)
     changes.moved.connect(go_round)
     bpy.app.handlers.load_post.append(on_load)
     bpy.app.handlers.save_pre.append(on_save)
@@ -51,3 +58,5 @@ def unregister() -> None:
     bpy.app.handlers.save_pre.remove(on_save)
     bpy.app.handlers.load_post.remove(on_load)
     changes.moved.disconnect(go_round)
+    changes.study.disconnect(bridge.sync_own_sensors)
+    bridge.forget_own_sensors()

@@ -1,24 +1,28 @@
 """The only place that turns Blender's data into the engine's and back."""
 
+from .advanced import clearance_of, perception_of, space_of
 from .fingerprint import Fingerprint, fingerprint, signature
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .oddities import missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
+from .own_sensors import forget_own_sensors, sync_own_sensors, table_of
 from .placeable import check_placeable
 from .prior import prior_from_scene, prior_key
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
+from .refusals import note_refusals
 from .rig import (
     mounted_on_sensor,
     place_rig,
     pose_of,
+    pose_of_matrix,
     possible_sensors,
     rig_from_objects,
     sensor_from_object,
     sensor_objects,
     view_layer_of,
 )
-from .scene import check_scene, study_from_scene
-from .standing import sensors_collection, stand
+from .scene import check_scene, study_from_scene, study_of_rig, vehicle_of_scene
+from .standing import sensors_collection, shown_collection, stand
 from .variants import (
     active_variant,
     add_variant,
@@ -39,6 +43,7 @@ from .variants import (
 )
 from .vehicle import vehicle_from_collection, visible_members
 from .versions import bring_up_to_date, newer_version
+from .view_camera import look_back, look_through, tend_views, view_camera
 
 __all__ = [
     "SENSORS",
@@ -53,16 +58,23 @@ __all__ = [
     "check_scene",
     "check_variants",
     "choose_variant",
+    "clearance_of",
     "copy_score",
     "drop_foreign_results",
     "fingerprint",
+    "forget_own_sensors",
     "keep_score",
     "keep_search",
+    "look_back",
+    "look_through",
     "missing_pieces",
     "mounted_on_sensor",
     "newer_version",
+    "note_refusals",
+    "perception_of",
     "place_rig",
     "pose_of",
+    "pose_of_matrix",
     "possible_sensors",
     "prior_from_scene",
     "prior_key",
@@ -78,18 +90,26 @@ __all__ = [
     "sensor_from_object",
     "sensor_objects",
     "sensors_collection",
+    "shown_collection",
     "signature",
+    "space_of",
     "stand",
     "store_outcome",
     "store_warnings",
     "store_words",
     "study_from_scene",
+    "study_of_rig",
     "study_of_variant",
+    "sync_own_sensors",
+    "table_of",
     "take_scene_s_score",
+    "tend_views",
     "unlink_doubles",
     "variant_dict",
     "variant_named",
     "vehicle_from_collection",
+    "vehicle_of_scene",
+    "view_camera",
     "view_layer_of",
     "visible_members",
     "write_records",

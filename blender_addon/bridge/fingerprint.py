@@ -10,6 +10,8 @@ import bpy
 import numpy as np
 
 from ..engine import pe
+from .advanced import advanced_signature
+from .own_sensors import own_sensors_signature
 from .prior import prior_signature
 from .rig import held_pose, pose_of_matrix, sensor_objects, view_layer_of
 
@@ -54,7 +56,9 @@ def fingerprint(
     settings, layer = scene.perception_entropy, view_layer_of(scene)
     objects = sensor_objects(scene) if sensors is None else sensors
     standing = {obj.name: _standing(obj, obj.visible_get(view_layer=layer)) for obj in objects}
-    return Fingerprint(standing, repr((prior_signature(scene), settings.score_samples, shape)))
+    more = [*advanced_signature(settings), *own_sensors_signature(scene)]
+    rest = (prior_signature(scene), settings.score_samples, shape, *([more] if more else []))
+    return Fingerprint(standing, repr(rest))
 
 
 def signature(

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import bpy
-import numpy as np
 
 from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, Area
 from ..engine import pe
+from .typed import as_typed
 
 MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.uniform}
 
@@ -33,7 +33,7 @@ def prior_from_scene(scene: bpy.types.Scene) -> pe.Prior:
 def prior_signature(scene: bpy.types.Scene) -> list[object]:
     """Return what the prior depends on; unlike the prior itself, also of a focus that is wrong."""
     settings = scene.perception_entropy
-    rows = [(_typed(row.factor), _areas(row), _classes(row)) for row in settings.focus]
+    rows = [(as_typed(row.factor), _areas(row), _classes(row)) for row in settings.focus]
     boxes = [settings.boxes] if settings.prior == FROM_BOXES else []
     return [settings.prior, *boxes, *rows]
 
@@ -63,14 +63,14 @@ def _checked(prior: pe.Prior, number: int, row: bpy.types.PropertyGroup) -> list
 
 def _focus_of(row: bpy.types.PropertyGroup) -> Iterator[pe.Focus]:
     for x, y in _areas(row):
-        yield pe.Focus(_typed(row.factor), x, y, _classes(row))
+        yield pe.Focus(as_typed(row.factor), x, y, _classes(row))
 
 
 def _areas(row: bpy.types.PropertyGroup) -> tuple[Area, ...]:
     """Return the areas that a row weighs."""
     if row.region != CUSTOM:
         return REGIONS[row.region].areas
-    (x_low, x_high), (y_low, y_high) = (map(_typed, v) for v in (row.x_range, row.y_range))
+    (x_low, x_high), (y_low, y_high) = (map(as_typed, v) for v in (row.x_range, row.y_range))
     return (((x_low, x_high), (y_low, y_high)),)
 
 
@@ -90,8 +90,3 @@ def _check_classes(prior: pe.Prior, row: bpy.types.PropertyGroup) -> None:
     for name in chosen or ():
         if name not in prior.class_names:
             raise pe.InputError("focus", "classes", f"some of {', '.join(prior.class_names)}", name)
-
-
-def _typed(value: float) -> float:
-    """Return the number that was typed: Blender keeps the nearest one in single precision."""
-    return float(str(np.float32(value)))

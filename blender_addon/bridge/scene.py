@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import bpy
 
 from ..engine import pe, studies
+from .advanced import Limits, all_limits, clearance_of, perception_of, space_of
 from .prior import prior_from_scene
 from .rig import free_axes, rig_from_objects, sensor_objects
 from .vehicle import vehicle_from_collection
@@ -51,9 +52,11 @@ def study_of_rig(
     _check_metres(scene)
     return pe.Study(
         rig,
-        vehicle or vehicle_from_collection(_vehicle_chosen(scene), depsgraph),
+        vehicle or vehicle_of_scene(scene, depsgraph),
+        space_of(settings),
         prior=prior_from_scene(scene),
-        search=_search(settings, free),
+        model=perception_of(settings),
+        search=_search(settings, free, all_limits(sensor_objects(scene))),
         samples=settings.score_samples,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
     )
@@ -71,6 +74,17 @@ def check_scene(scene: bpy.types.Scene) -> None:
     _vehicle_chosen(scene)
 
 
+def vehicle_of_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> pe.Vehicle:
+    """Return the vehicle that is chosen, read anew.
+
+    Raises
+    ------
+    InputError
+        When none is chosen, or it is none that can be scored.
+    """
+    return vehicle_from_collection(_vehicle_chosen(scene), depsgraph, clearance_of(scene))
+
+
 def _vehicle_chosen(scene: bpy.types.Scene) -> bpy.types.Collection:
     """The vehicle's collection; complain where none is chosen."""
     vehicle = scene.perception_entropy.vehicle
@@ -80,11 +94,13 @@ def _vehicle_chosen(scene: bpy.types.Scene) -> bpy.types.Collection:
     return vehicle
 
 
-def _search(settings: bpy.types.PropertyGroup, free: Mapping[str, tuple[str, ...]]) -> pe.Search:
+def _search(
+    settings: bpy.types.PropertyGroup,
+    free: Mapping[str, tuple[str, ...]],
+    limits: Mapping[str, Limits],
+) -> pe.Search:
     schedule = pe.Schedule(candidates=settings.candidates)
-    return pe.Search(
-        free=dict(free), seed=settings.seed, samples=settings.search_samples, schedule=schedule
-    )
+    return pe.Search(dict(free), dict(limits), settings.seed, settings.search_samples, schedule)
 
 
 def _check_metres(scene: bpy.types.Scene) -> None:

@@ -52,12 +52,21 @@ def sensors_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
     return made
 
 
+def shown_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
+    """Return the collection of sensors, or the scene's own where that one is out of the view."""
+    wanted = sensors_collection(scene)
+    waiting = [view_layer_of(scene).layer_collection]
+    while waiting:
+        layer = waiting.pop()
+        if layer.collection == wanted and not layer.exclude:
+            return wanted
+        waiting += layer.children
+    return scene.collection
+
+
 def _made(scene: bpy.types.Scene, record: Record) -> bpy.types.Object:
     obj = bpy.data.objects.new(record.name, None)
-    sensors_collection(scene).objects.link(obj)
-    if obj.name not in view_layer_of(scene).objects:  # that collection is out of the view
-        sensors_collection(scene).objects.unlink(obj)
-        scene.collection.objects.link(obj)
+    shown_collection(scene).objects.link(obj)
     obj.empty_display_type, obj.empty_display_size = record.display, record.size_m
     return obj
 

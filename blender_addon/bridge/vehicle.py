@@ -21,11 +21,14 @@ class Part(NamedTuple):
 
 
 def vehicle_from_collection(
-    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
+    collection: bpy.types.Collection,
+    depsgraph: bpy.types.Depsgraph,
+    clearance_m: float = pe.Vehicle.clearance,
 ) -> pe.Vehicle:
     """Return a collection's objects as they are drawn: modifiers, parents, instances and all.
 
-    What is hidden in the viewport or in renders does not count, nor what rides on a sensor.
+    What is hidden in the viewport or in renders does not count, nor what rides on a sensor. The
+    clearance is how proud of the skin a flush-mounted sensor counts.
 
     Raises
     ------
@@ -40,7 +43,7 @@ def vehicle_from_collection(
     labels = [np.full(len(part.triangles), names.index(part.name), np.int32) for part in parts]
     triangles = np.concatenate([part.triangles for part in parts])
     glass = list(dict.fromkeys(part.name for part in parts if part.glass))
-    return pe.Vehicle(triangles, np.concatenate(labels), names, glass)
+    return pe.Vehicle(triangles, np.concatenate(labels), names, glass, clearance_m)
 
 
 def visible_members(

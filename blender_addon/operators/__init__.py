@@ -5,22 +5,28 @@ Panels take from here what there is to press and to choose from.
 
 from . import (
     add_sensor,
+    apply_scale,
     ask_place,
     comparing,
     export,
     focus,
     job,
     known_rigs,
+    look,
     mending,
+    own_sensors,
+    place_sensor,
+    placing,
     review,
     running,
+    search_sensor,
     select,
     variants,
 )
 from .ask_place import answer
 from .known_rigs import rigs
 from .mending import LABELS as FIX_LABELS
-from .mounting import Offer, offers
+from .offered import Offer, brief, makers, models, offers
 from .select import listed_sensors
 
 __all__ = [
@@ -28,14 +34,24 @@ __all__ = [
     "FIX_LABELS",
     "Offer",
     "answer",
+    "brief",
     "listed_sensors",
+    "makers",
+    "models",
     "offers",
+    "register",
     "rigs",
     "running",
+    "unregister",
 ]
 
 CLASSES = (
     *add_sensor.CLASSES,
+    *place_sensor.CLASSES,
+    *search_sensor.CLASSES,
+    *own_sensors.CLASSES,
+    *apply_scale.CLASSES,
+    *look.CLASSES,
     *select.CLASSES,
     *focus.CLASSES,
     *job.CLASSES,
@@ -47,3 +63,15 @@ CLASSES = (
     *mending.CLASSES,
     *ask_place.CLASSES,
 )
+
+
+def register() -> None:
+    """Have Esc come back from looking through a sensor."""
+    look.register()
+
+
+def unregister() -> None:
+    """Let go of what runs, and of what waits for the mouse."""
+    running.unregister()
+    placing.end()
+    look.unregister()

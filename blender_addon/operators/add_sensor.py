@@ -10,6 +10,7 @@ from ..engine import catalog, kinds
 from ..housing import known_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
 from .mounting import Mount, mount_of, sensible_place
+from .offered import described
 from .reports import REFUSALS, refuse
 
 
@@ -32,6 +33,10 @@ class PE_OT_add_sensor(bpy.types.Operator):
         description="Show the sensor's own body in its true size, where a data sheet gives it",
         default=True,
     )
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, chosen: bpy.types.OperatorProperties) -> str:
+        return f"{cls.__doc__}\n\n{described(chosen.model)}"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -82,22 +87,10 @@ def new_sensor(
     obj = bpy.data.objects.new(name, body)
     if body is None:
         obj.empty_display_type, obj.empty_display_size = mount.display, mount.size_m
-    shown_collection(context).objects.link(obj)
+    bridge.shown_collection(context.scene).objects.link(obj)
     obj.perception_entropy.model = model
     obj.perception_entropy.is_sensor = True
     return obj
-
-
-def shown_collection(context: bpy.types.Context) -> bpy.types.Collection:
-    """Return the collection of sensors, or the scene's own where that one is out of the view."""
-    wanted = bridge.sensors_collection(context.scene)
-    waiting = [context.view_layer.layer_collection]
-    while waiting:
-        layer = waiting.pop()
-        if layer.collection == wanted and not layer.exclude:
-            return wanted
-        waiting += layer.children
-    return context.scene.collection
 
 
 def select_only(context: bpy.types.Context, obj: bpy.types.Object) -> None:

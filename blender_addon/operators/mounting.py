@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -10,7 +9,7 @@ import numpy as np
 from mathutils import Vector
 
 from .. import bridge
-from ..engine import catalog, kinds, pe
+from ..engine import pe
 from ..properties import DEFAULT_MODEL
 from .surface import nearest_spot, parts_of
 
@@ -46,25 +45,6 @@ MOUNTS = {
 }
 OTHER = Mount(None, 0.05, True, 1.5, True, "ARROWS", 0.25)
 """Of a kind that has no row."""
-
-
-@dataclass(frozen=True, slots=True)
-class Offer:
-    """A kind of sensor to choose from: its name, what people call it, and its models."""
-
-    kind: str
-    label: str
-    usual: str
-    models: tuple[str, ...]
-
-
-def offers() -> Iterator[Offer]:
-    """Yield the engine's kinds that have a model in the catalogue."""
-    for kind in kinds.KINDS.values():
-        models = tuple(catalog.names(kind.name))
-        if models:
-            usual = mount_of(kind.name).usual
-            yield Offer(kind.name, kind.label, usual or models[0], models)
 
 
 def mount_of(kind: str) -> Mount:

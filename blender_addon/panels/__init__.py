@@ -1,6 +1,6 @@
 """The sidebar tab: draws what is stored, computes nothing. Panels stand in the order of CLASSES."""
 
-from . import explain, export, focus, main, overlay, part, search, sensor, variants
+from . import advanced, explain, export, focus, main, overlay, part, search, sensor, variants
 
 CLASSES = (
     *main.CLASSES,
@@ -10,6 +10,7 @@ CLASSES = (
     *variants.CLASSES,
     *search.CLASSES,
     *focus.CLASSES,
+    *advanced.CLASSES,
     *overlay.CLASSES,
     *export.CLASSES,
 )

@@ -5,14 +5,14 @@ from __future__ import annotations
 import bpy
 
 from ..choices import VERSION
-from ..operators import offers
+from ..operators import brief, makers, models, offers
 from .layout import Tab
 from .result import draw_actions, draw_result, draw_vehicle_warnings
 from .sensors import draw_sensors
 from .words import draw_sentence
 
-KIND = "pe_kind"
-"""What a button tells its menu, in Blender's context: the kind of sensor to list."""
+KIND, MAKER = "pe_kind", "pe_maker"
+"""What a button tells its menu, in Blender's context: the kind and the maker of sensors to list."""
 
 
 class PE_PT_main(Tab, bpy.types.Panel):
@@ -36,29 +36,51 @@ class PE_PT_main(Tab, bpy.types.Panel):
 
 
 def draw_add(layout: bpy.types.UILayout) -> None:
-    """Draw for each kind a button for its usual sensor, and a menu of all of them."""
-    row = layout.row()
+    """Draw for each kind: its usual sensor on the roof, or by pointing, and a menu of all."""
+    column = layout.column(align=True)
     for offer in offers():
-        pair = row.row(align=True)
-        pair.operator("pe.add_sensor", text=f"Add {offer.label}", icon="ADD").model = offer.usual
-        pair.context_string_set(KIND, offer.kind)
-        pair.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
+        row = column.row(align=True)
+        row.operator("pe.add_sensor", text=f"Add {offer.label}", icon="ADD").model = offer.usual
+        place = row.operator("pe.place_sensor", text="Place", icon="RESTRICT_SELECT_OFF")
+        place.model = offer.usual
+        row.context_string_set(KIND, offer.kind)
+        row.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
 
 
 class PE_MT_add_sensor(bpy.types.Menu):
-    """All sensors of this kind in the catalogue"""
+    """Place another sensor of this kind by pointing: search the catalogue, or go by its maker"""
 
     bl_idname = "PE_MT_add_sensor"
-    bl_label = "Add Sensor"
+    bl_label = "Place Sensor"
 
     def draw(self, context: bpy.types.Context) -> None:
-        kind = getattr(context, KIND, None)  # of none in particular: all
-        for offer in offers():
-            for name in offer.models if kind in (None, offer.kind) else ():
-                self.layout.operator("pe.add_sensor", text=name, translate=False).model = name
+        layout, kind = self.layout, getattr(context, KIND, None)  # of none in particular: all
+        layout.operator_context = "INVOKE_DEFAULT"
+        search = layout.operator("pe.search_sensor", text="Search...", icon="VIEWZOOM")
+        search.kind = kind or ""
+        layout.separator()
+        for maker in makers(kind):
+            row = layout.row()
+            row.context_string_set(MAKER, maker)
+            row.menu(PE_MT_sensors_of_maker.bl_idname, text=maker, translate=False)
+
+
+class PE_MT_sensors_of_maker(bpy.types.Menu):
+    """Sensors of one maker in the catalogue"""
+
+    bl_idname = "PE_MT_sensors_of_maker"
+    bl_label = "Sensors"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.layout.operator_context = "INVOKE_DEFAULT"
+        kind, maker = getattr(context, KIND, None), getattr(context, MAKER, None)
+        for name in models(kind, maker):
+            text = f"{name}   {brief(name)}"
+            self.layout.operator("pe.place_sensor", text=text, translate=False).model = name
 
 
 CLASSES = (
+    PE_MT_sensors_of_maker,
     PE_MT_add_sensor,
     PE_PT_main,
 )

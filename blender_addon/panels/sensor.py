@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import textwrap
+
 import bpy
 
 from ..properties import AXIS_LABELS
 from .layout import Tab
+
+WRAP = 38
+"""Letters that fit into a line of the sidebar as it is when first opened."""
 
 
 class PE_PT_sensor(Tab, bpy.types.Panel):
@@ -25,11 +30,42 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         settings = obj.perception_entropy
         layout = self.layout
         layout.prop(settings, "model")
+        if settings.refusal:
+            draw_refusal(layout, obj)
         layout.prop(settings, "fusion")
+        layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
         layout.label(text=f"The search may change, for {obj.name}:")
         row = layout.row(align=True)
         for index, label in enumerate(AXIS_LABELS):
             row.prop(settings, "free", index=index, text=label, toggle=True)
+        draw_bounds(layout, settings)
+
+
+def draw_refusal(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
+    """Draw why a sensor is refused, and the button that mends it where there is one."""
+    box = layout.box().column(align=True)
+    words = textwrap.wrap(obj.perception_entropy.refusal, WRAP)
+    for number, line in enumerate(words):
+        box.label(text=line, icon="BLANK1" if number else "ERROR", translate=False)
+    if obj.perception_entropy.refused_field == "scale":
+        box.operator("pe.apply_scale", icon="CON_SIZELIKE").name = obj.name
+
+
+def draw_bounds(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw for each axis that the search may change where it may go; dimmed: as usual."""
+    column = layout.column(align=True)
+    for index, label in enumerate(AXIS_LABELS):
+        if not settings.free[index]:
+            continue
+        row = column.row(align=True)
+        bounded = settings.bounded[index]
+        text = label if bounded else f"Bound {label}"
+        row.operator("pe.bound_axis", text=text, depress=bounded).axis = index
+        if bounded:
+            pair = row.row(align=True)
+            pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]
+            pair.prop(settings, "bounds_low", index=index, text="")
+            pair.prop(settings, "bounds_high", index=index, text="")
 
 
 CLASSES = (PE_PT_sensor,)

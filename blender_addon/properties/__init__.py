@@ -8,6 +8,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import PointerProperty
 
+from .advanced import OWN_KINDS, PE_CurveSettings, PE_OwnSensorSettings
 from .callbacks import model_suggestions
 from .focus import DEFAULT_REGION, PE_FocusSettings
 from .live import PE_LiveSettings
@@ -23,10 +24,13 @@ __all__ = [
     "DEFAULT_MODEL",
     "DEFAULT_REGION",
     "FREE_BY_DEFAULT",
+    "OWN_KINDS",
     "model_suggestions",
 ]
 
 CLASSES = (
+    PE_CurveSettings,
+    PE_OwnSensorSettings,
     PE_FocusSettings,
     PE_LiveSettings,
     PE_VariantSensor,

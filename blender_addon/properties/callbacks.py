@@ -24,6 +24,26 @@ def switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) ->
     changes.picture.tell()
 
 
+def model_chosen(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Update callback of a sensor's model: a part of a name is taken for the only one it is in."""
+    if settings.model not in catalog.entries():
+        found = catalog.matching(settings.model)
+        if len(found) == 1:
+            settings.model = found[0]  # which calls this again
+            return
+    changed(settings, context)
+
+
+def models_of_a_kind(
+    settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
+) -> list[tuple[str, str]]:
+    """Return the models of the kind that a sensor is of, each in a few words."""
+    entry = catalog.entries().get(settings.model)
+    found = catalog.names(None if entry is None else entry.kind)
+    models = ((name, catalog.load(name)) for name in found)
+    return [(name, kinds.kind_of(model).brief(model)) for name, model in models]
+
+
 def model_suggestions(
     _settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
 ) -> list[tuple[str, str]]:

@@ -15,6 +15,7 @@ from bpy.props import (
 
 from ..choices import PRIORS
 from ..engine import pe
+from .advanced import AdvancedSceneSettings
 from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
 from .live import PE_LiveSettings
@@ -29,7 +30,7 @@ DEFAULT_BEAM_LENGTH_M = 8.0
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 
 
-class PE_SceneSettings(bpy.types.PropertyGroup):
+class PE_SceneSettings(AdvancedSceneSettings, bpy.types.PropertyGroup):
     """The study's settings, and the last result."""
 
     version: IntProperty(
@@ -124,6 +125,10 @@ class PE_SceneSettings(bpy.types.PropertyGroup):
 
     view: PointerProperty(
         type=PE_ViewSettings, name="View", description="What the 3D view shows of perception"
+    )
+    before_look: StringProperty(
+        name="Before Looking",
+        description="Camera and size of pictures before a sensor was looked through, as JSON",
     )
 
     has_result: BoolProperty(name="Has Result", description="A score is stored")

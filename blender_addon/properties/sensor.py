@@ -14,7 +14,8 @@ from bpy.props import (
 )
 
 from ..engine import search
-from .callbacks import changed, model_suggestions, redraw
+from .advanced import SearchBounds
+from .callbacks import changed, model_chosen, models_of_a_kind, redraw
 from .warnings import PE_StoppingPart
 
 DEFAULT_MODEL = "Pandar64"
@@ -23,7 +24,7 @@ AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
-class PE_ObjectSettings(bpy.types.PropertyGroup):
+class PE_ObjectSettings(SearchBounds, bpy.types.PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: BoolProperty(
@@ -35,9 +36,9 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
         name="Model",
         description="Name of the sensor in the catalogue",
         default=DEFAULT_MODEL,
-        search=model_suggestions,
-        search_options=set(),
-        update=changed,
+        search=models_of_a_kind,
+        search_options={"SUGGESTION"},  # what is typed is kept, and answered in words
+        update=model_chosen,
     )
     fusion: StringProperty(
         name="Fusion",
@@ -74,6 +75,13 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
         description="Collections it was taken out of, as it belongs to another variant",
     )
 
+    refusal: StringProperty(
+        name="Refusal", description="Why this sensor cannot be scored as it is; empty if it can"
+    )
+    refused_field: StringProperty(
+        name="Refused Field", description="What is wrong with it, such as its model or its scale"
+    )
+
     has_result: BoolProperty(name="Has Result", description="The last result knows this sensor")
     result_of: StringProperty(
         name="Result Of", description="Name of the sensor that the result is of: a copy brings it"
@@ -98,6 +106,9 @@ class PE_ObjectSettings(bpy.types.PropertyGroup):
     )
     stopped_parts: CollectionProperty(
         type=PE_StoppingPart, name="Stopped By", description="Parts of the vehicle in its way"
+    )
+    is_view: BoolProperty(
+        name="Is a View", description="This camera shows what the sensor sees that it rides on"
     )
 
     see_through: BoolProperty(

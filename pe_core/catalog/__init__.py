@@ -32,6 +32,8 @@ PAPER_FILE = "paper.toml"
 """The paper's own sensors come first in lists."""
 OWN = "own"
 """In place of a file's name, for presets that a program has added."""
+NOBODY_S = {PAPER_FILE: "Paper", "cameras.toml": "Cameras", OWN: "Own"}
+"""What files that are no maker's are called."""
 COMMON_KEYS = frozenset({"kind", "source", "note", "housing"})
 
 
@@ -53,6 +55,12 @@ class Entry:
         """Where the figures come from."""
         return str(self.table.get("source", ""))
 
+    @property
+    def maker(self) -> str:
+        """Whose it is, as lists are divided: a file of the catalogue is a maker's."""
+        named = self.file not in NOBODY_S
+        return self.name.split()[0] if named else NOBODY_S[self.file]
+
 
 _added: dict[str, Entry] = {}
 _loaded: dict[str, SensorModel] = {}
@@ -67,6 +75,17 @@ def entries() -> Mapping[str, Entry]:
 def names(kind: str | None = None) -> list[str]:
     """Names in the catalogue, of one kind or of all."""
     return [e.name for e in entries().values() if kind in (None, e.kind)]
+
+
+def matching(typed: str, kind: str | None = None) -> list[str]:
+    """Names, of one kind or of all, that are what was typed, or else contain it; case is one.
+
+    A single one is what was meant: ``"QT128"`` is in ``"Hesai QT128C2X"`` alone.
+    """
+    wanted = typed.strip().casefold()
+    found = [name for name in names(kind) if wanted in name.casefold()] if wanted else []
+    exact = [name for name in found if name.casefold() == wanted]
+    return exact or found
 
 
 def add(name: str, table: Mapping[str, Any]) -> None:

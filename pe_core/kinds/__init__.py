@@ -4,7 +4,7 @@ from .by_name import MeasuredByName
 from .camera import CAMERA, Camera
 from .kernels import GridKernel, Measured, SampleKernel, Stopped, Voxels
 from .kind import Kind
-from .lidar import LIDAR, BeamField, Lidar, beam_field
+from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
 from .measure import measure
 from .perception import BLIND_RULES, PerceptionModel
 from .table import KINDS, kind_named, kind_of, register, unregister
@@ -20,6 +20,7 @@ __all__ = [
     "Measured",
     "MeasuredByName",
     "PerceptionModel",
+    "RangePicture",
     "SampleKernel",
     "Stopped",
     "Voxels",
@@ -27,6 +28,7 @@ __all__ = [
     "kind_named",
     "kind_of",
     "measure",
+    "range_picture",
     "register",
     "unregister",
 ]

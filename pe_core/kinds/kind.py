@@ -73,6 +73,10 @@ class Kind(ABC):
     def words(self, model: Any) -> list[str]:
         """Figures of a sensor for people, a line each."""
 
+    def brief(self, model: Any) -> str:
+        """Figures of a sensor in a few words, for lists; the first of `words` by default."""
+        return next((" ".join(line.split()) for line in self.words(model)), "")
+
     def plot(self, model: Any) -> list[str]:
         """Lines of a small picture of a sensor in text; none by default."""
         return []

@@ -278,9 +278,10 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
 
 
 def _model_value(sensor: Sensor) -> str | dict[str, Any]:
-    """Return the catalogue's name, or the intrinsics of a sensor that is not in it."""
+    """Return the catalogue's name, or the intrinsics of a sensor that not everybody has."""
     model = sensor.model
-    if model.name in catalog.entries() and catalog.load(model.name) is model:
+    entry = catalog.entries().get(model.name)
+    if entry is not None and entry.file != catalog.OWN and catalog.load(model.name) is model:
         return model.name
     name = {} if model.name == sensor.name else {"name": model.name}
     return name | catalog.to_table(model)

@@ -48,7 +48,7 @@ ALLOWED = {
     "review": {"bridge", "engine", "overlay"},
     "operators": {
         *("asking", "body", "bridge", "changes", "choices", "engine", "explaining", "housing"),
-        *("live", "properties", "review", "roster", "stale"),
+        *("live", "overlay", "properties", "review", "roster", "stale", "worker"),
     },
     "panels": {"choices", "operators", "properties"},
     "commands": {"bridge", "engine", "review", "stale"},

@@ -12,8 +12,9 @@ from pathlib import Path
 
 import bpy
 from bl_ext.user_default.perception_entropy.live import latest
-from bl_ext.user_default.perception_entropy.operators import running
-from mathutils import Euler
+from bl_ext.user_default.perception_entropy.operators import placing, running
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from mathutils import Euler, Vector
 
 FOLDER = Path(sys.argv[-1])
 CATEGORY = "Perception"
@@ -96,7 +97,17 @@ def report_state():
         "stale": found.result_stale,
         "live": live_reading(scene),
     }
+    held = placing.current
+    state |= {
+        "placing": held is not None,
+        "held": pose_of(held.matrix) if held and held.matrix else None,
+        "draft": held.score if held else "",
+        "camera": scene.camera.name if scene.camera else None,
+        "perspective": view3d()[1].spaces.active.region_3d.view_perspective,
+        "own_results": [s.name for s in sensors if s.perception_entropy.has_result],
+    }
     write("state.json", state)
+    report_where()
     report_copied()
     return REPORT_S
 
@@ -117,6 +128,23 @@ def live_reading(scene):
         "rested": reading.rested,
         "before": before,
     }
+
+
+def pose_of(matrix):
+    """Return a placement as x, y, z and angles."""
+    return [*matrix.translation, *matrix.to_euler()]
+
+
+def report_where():
+    """Tell where a point of the scene is on the screen, once for each that is asked for."""
+    asked = FOLDER / "where.json"
+    if asked.exists():
+        window, area, _ = view3d()
+        region = next(region for region in area.regions if region.type == "WINDOW")
+        point = Vector(json.loads(asked.read_text()))
+        x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, point)
+        asked.unlink()
+        write("there.json", [round(region.x + x), round(window.height - (region.y + y))])
 
 
 def better_found(job):

@@ -10,7 +10,7 @@ import os
 import subprocess
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tests.blender import process
@@ -87,7 +87,24 @@ class Window:
     def click(self, x: int, y: int) -> None:
         """Press and release the left button at a place, counted from the top left."""
         self._move(x, y)
-        self._xdotool("click", "1")
+        self.press_button()
+
+    @contextmanager
+    def holding(self, key: str) -> Iterator[None]:
+        """Hold a key down: until its effect is seen, as a slow Blender asks for it late."""
+        self._xdotool("keydown", key)
+        try:
+            yield
+        finally:
+            self._xdotool("keyup", key)
+
+    def press_button(self, number: int = 1) -> None:
+        """Press and release a button of the mouse where it is: 1 left, 2 middle, 3 right."""
+        self._xdotool("click", str(number))
+
+    def hover(self, x: int, y: int) -> None:
+        """Move the mouse to a place, counted from the top left."""
+        self._move(x, y)
 
     def point_at_view(self) -> None:
         """Move the mouse into the 3D view, where keys are the scene's."""
@@ -97,17 +114,21 @@ class Window:
         """Press keys by their X names: ``Return``, ``ctrl+z``."""
         self._xdotool("key", *names)
 
-    def press(self, operator: str) -> None:
-        """Click the sidebar's button of an operator, by its name: ``pe.score``."""
-        self.click(*self.find_button(operator))
+    def press(self, operator: str, words: str = "") -> None:
+        """Click the sidebar's button of an operator, by its name: ``pe.score``.
 
-    def find_button(self, operator: str) -> tuple[int, int]:
+        Of several, the first whose call holds the `words`.
+        """
+        self.click(*self.find_button(operator, words))
+
+    def find_button(self, operator: str, words: str = "") -> tuple[int, int]:
         """Return a place inside the sidebar's button of an operator."""
         call = f"bpy.ops.{operator}("
         for patience_s in PATIENCE_S:
             for x, y in self._sidebar_places():
                 # Asked twice: the first answer may be a late one, to the place before.
-                if call in self._call_at(x, y, patience_s) and call in self._call_at(x, y, 1.0):
+                said = self._call_at(x, y, patience_s)
+                if call in said and words in said and call in self._call_at(x, y, 1.0):
                     return x, y
         self.screenshot(self.folder / "no_button.png")
         raise AssertionError(
@@ -115,9 +136,10 @@ class Window:
             f"{self._end_of_log()}"
         )
 
-    def screenshot(self, path: Path) -> None:
+    def screenshot(self, path: Path, aside: bool = True) -> None:
         """Keep a picture of the whole screen, the mouse out of the way and all panels at rest."""
-        self.point_at_view()
+        if aside:
+            self.point_at_view()
         time.sleep(REST_S)
         self._tool("import", "-window", "root", str(path))
 

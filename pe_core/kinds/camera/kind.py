@@ -17,7 +17,7 @@ from .definition import count_pixels
 from .kernels import CameraGrid, CameraSample
 from .model import Camera
 from .picture import picture_rays
-from .words import figures
+from .words import brief, figures
 
 
 class CameraKind(Kind):
@@ -50,6 +50,10 @@ class CameraKind(Kind):
     def rays(self, sensor: Sensor, most: int) -> Floats:
         """Look through pixels that are spread over the picture."""
         return picture_rays(sensor, most)
+
+    def brief(self, model: Camera) -> str:
+        """Picture and field of view."""
+        return brief(model)
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> CameraGrid:
         """Fill columns of voxels between the sides of the picture."""

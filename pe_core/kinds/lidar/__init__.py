@@ -3,5 +3,6 @@
 from .beams import BeamField, beam_field
 from .kind import LIDAR
 from .model import Lidar
+from .range_picture import RangePicture, range_picture
 
-__all__ = ["LIDAR", "BeamField", "Lidar", "beam_field"]
+__all__ = ["LIDAR", "BeamField", "Lidar", "RangePicture", "beam_field", "range_picture"]

@@ -18,7 +18,7 @@ from .definition import count_beams
 from .model import Lidar
 from .on_grid import LidarGrid
 from .on_sample import LidarSample
-from .words import channel_plot, figures
+from .words import brief, channel_plot, figures
 
 
 class LidarKind(Kind):
@@ -46,6 +46,10 @@ class LidarKind(Kind):
     def words(self, model: Lidar) -> list[str]:
         """Channels, azimuths, beams, range."""
         return figures(model)
+
+    def brief(self, model: Lidar) -> str:
+        """Channels, field of view, range."""
+        return brief(model)
 
     def plot(self, model: Lidar) -> list[str]:
         """Where the channels are."""

@@ -25,6 +25,14 @@ def figures(lidar: Lidar) -> list[str]:
     ]
 
 
+def brief(lidar: Lidar) -> str:
+    """Channels, field of view across and up, range."""
+    across = math.degrees(lidar.horizontal_fov[1] - lidar.horizontal_fov[0])
+    up = math.degrees(lidar.elevations.max() - lidar.elevations.min())
+    fov = f"{min(across, 360.0):.0f} x {up:.0f} deg"
+    return f"{len(lidar.elevations)} channels, {fov}, {lidar.max_range:g} m"
+
+
 def channel_plot(lidar: Lidar) -> list[str]:
     """One row an elevation interval, top first; a bar of one mark a channel."""
     degrees = np.degrees(lidar.elevations)

@@ -1,0 +1,182 @@
+"""Add a sensor by pointing: it stands on the surface under the mouse, a click places it there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import bpy
+from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, StringProperty
+from mathutils import Matrix, Vector
+
+from ..engine import catalog, kinds
+from ..housing import known_housing
+from ..properties import DEFAULT_MODEL, model_suggestions
+from . import placing
+from .add_sensor import choose_vehicle, new_sensor, select_only
+from .mounting import Mount, mount_of, sensible_place
+from .offered import described
+from .pointing import STEP_M, Stance, view_under
+from .reports import REFUSALS, refuse
+from .surface import Spot
+
+BY_KIND = -1.0
+STEPS = {
+    "LEFT_BRACKET": -STEP_M,
+    "WHEELDOWNMOUSE": -STEP_M,
+    "RIGHT_BRACKET": STEP_M,
+    "WHEELUPMOUSE": STEP_M,
+}
+"""Keys that bring a sensor nearer to the surface, or farther from it [m]."""
+NUMBERS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
+TYPED = {key: str(n) for n, key in enumerate(NUMBERS)} | {"PERIOD": ".", "COMMA": "."}
+TYPED["BACK_SPACE"] = ""
+"""Keys of a typed stand-off; those of the number pad turn the view."""
+VIEW = ("NUMPAD_", "MIDDLEMOUSE", "WHEEL", "TRACKPAD", "MOUSE", "NDOF", "TIMER", "WINDOW", "HOME")
+"""How events begin that turn, move and zoom the view, or are Blender's own: they pass."""
+
+
+class PE_OT_place_sensor(bpy.types.Operator):
+    """Place a sensor by pointing at the vehicle: click places it, Esc leaves"""
+
+    bl_idname = "pe.place_sensor"
+    bl_label = "Place Sensor"
+    bl_options = {"REGISTER", "UNDO"}
+
+    model: StringProperty(
+        name="Model",
+        description="Name of the sensor in the catalogue",
+        default=DEFAULT_MODEL,
+        search=model_suggestions,
+        search_options=set(),
+    )
+    location: FloatVectorProperty(
+        name="Location", description="Point of the surface that it stands on", subtype="XYZ"
+    )
+    normal: FloatVectorProperty(
+        name="Normal",
+        description="Normal of the surface there, outwards",
+        subtype="DIRECTION",
+        default=(0.0, 0.0, 1.0),
+    )
+    along_normal: BoolProperty(
+        name="Along the Normal", description="Stand along the surface's normal, not upright"
+    )
+    stand_off: FloatProperty(
+        name="Stand-off",
+        description="Distance of its origin from the surface; negative: as usual for its kind",
+        default=BY_KIND,
+        unit="LENGTH",
+    )
+
+    housing: BoolProperty(
+        name="Housing",
+        description="Show the sensor's own body in its true size, where a data sheet gives it",
+        default=True,
+    )
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, chosen: bpy.types.OperatorProperties) -> str:
+        return f"{cls.__doc__}\n\n{described(chosen.model)}"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Sensors are added in Object Mode")
+            return False
+        if placing.busy():
+            cls.poll_message_set("Something else waits for Esc: a search, or a sensor to place")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Place it at the location that is given."""
+        try:
+            kind = kinds.kind_of(catalog.load(self.model))
+        except REFUSALS as error:
+            return refuse(self, error)
+        choose_vehicle(context.scene)
+        spot = Spot(Vector(self.location), Vector(self.normal).normalized(), "")
+        mount = mount_of(kind.name)
+        middle = placing.middle_of(context.scene.perception_entropy.vehicle)
+        self._add(context, mount, kind.label, self._stance(mount).placed(spot, mount, middle))
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Hold it under the mouse."""
+        if bpy.app.background:
+            return self.execute(context)
+        try:
+            model = catalog.load(self.model)
+            choose_vehicle(context.scene)
+            placing.begin(context, model, self._stance(mount_of(model.kind)))
+        except REFUSALS as error:
+            return refuse(self, error)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Follow the mouse; what is not ours to take goes on to Blender."""
+        held = placing.current
+        if held is None:  # the add-on let go of it
+            return {"CANCELLED"}
+        if event.type == "ESC" and event.value == "PRESS":
+            placing.end()
+            return {"CANCELLED"}
+        if event.type == "MOUSEMOVE":
+            held.point(context, event)
+            return {"PASS_THROUGH"}
+        if view_under(context, event) is None or event.value != "PRESS":
+            return {"PASS_THROUGH"}
+        return self._pressed(context, event, held)
+
+    def cancel(self, _context: bpy.types.Context) -> None:
+        """Called by Blender when the window or the file goes: nothing is kept."""
+        placing.end()
+
+    def _pressed(
+        self, context: bpy.types.Context, event: bpy.types.Event, held: placing.Placing
+    ) -> set[str]:
+        """Take a key or a button that was pressed over a 3D view."""
+        if event.type == "RIGHTMOUSE":
+            placing.end()
+            return {"CANCELLED"}
+        if event.type == "LEFTMOUSE":
+            held.point(context, event)
+            return self._click(context, held, more=event.shift)
+        if event.type in {"RET", "NUMPAD_ENTER"}:
+            held.matrix = Matrix.Translation(sensible_place(context, held.mount))
+            return self._click(context, held, more=False)
+        if event.type == "N" and not (event.ctrl or event.alt):
+            held.stand(replace(held.stance, along_normal=not held.stance.along_normal))
+        elif event.type in STEPS and not (event.ctrl or event.shift or event.alt):
+            held.step(STEPS[event.type])
+        elif event.type in TYPED and not (event.ctrl or event.alt):
+            held.typed(TYPED[event.type])
+        elif event.type.startswith(VIEW):
+            return {"PASS_THROUGH"}
+        return {"RUNNING_MODAL"}
+
+    def _click(self, context: bpy.types.Context, held: placing.Placing, more: bool) -> set[str]:
+        """Place it where it is held; go on with the next one, or leave."""
+        if held.matrix is None:
+            return {"RUNNING_MODAL"}
+        self._add(context, held.mount, held.kind.label, held.matrix)
+        if more:
+            bpy.ops.ed.undo_push(message=self.bl_label)
+            held.more(context)
+            return {"RUNNING_MODAL"}
+        placing.end()
+        return {"FINISHED"}
+
+    def _add(self, context: bpy.types.Context, mount: Mount, name: str, placed: Matrix) -> None:
+        body = known_housing(self.model) if self.housing else None
+        obj = new_sensor(context, name, self.model, mount, body)
+        obj.location, obj.rotation_euler = placed.to_translation(), placed.to_euler()
+        select_only(context, obj)
+
+    def _stance(self, mount: Mount) -> Stance:
+        own = mount.stand_off_m if self.stand_off < 0.0 else self.stand_off
+        return Stance(own, self.along_normal)
+
+
+CLASSES = (PE_OT_place_sensor,)

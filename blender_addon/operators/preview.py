@@ -1,0 +1,103 @@
+"""What is seen of a sensor before it is placed: the one owner of its draw handles.
+
+What is drawn is handed in as arrays and lines of text; drawing reads no scene and casts nothing.
+"""
+
+from __future__ import annotations
+
+import blf
+import bpy
+import gpu
+from gpu_extras.batch import batch_for_shader
+
+from ..overlay.primitives import Primitives
+
+VIEW = bpy.types.SpaceView3D
+LINE_PX = 1.5
+TEXT_PX, TEXT_GAP = 12, 1.5
+TEXT_AT = (22, -8)
+"""Where text begins beside the mouse [px], and how high a line is in units of its letters."""
+TEXT_COLOR, SHADE = (1.0, 1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 0.9)
+
+
+class Preview:
+    """A sensor in the air: lines and faces in all 3D views, text in the one with the mouse."""
+
+    def __init__(self) -> None:
+        self._handles: list[object] = []
+        self._lines = self._faces = Primitives.empty()
+        self._text: tuple[str, ...] = ()
+        self._mouse, self._region = (0, 0), 0
+
+    def begin(self) -> None:
+        """Start drawing."""
+        if not self._handles:
+            for function, when in ((self._draw, "POST_VIEW"), (self._write, "POST_PIXEL")):
+                self._handles.append(VIEW.draw_handler_add(function, (), "WINDOW", when))
+
+    def end(self) -> None:
+        """Stop drawing; do nothing if it has ended."""
+        while self._handles:
+            VIEW.draw_handler_remove(self._handles.pop(), "WINDOW")
+
+    def at(self, region: bpy.types.Region, mouse: tuple[int, int]) -> None:
+        """Write beside the mouse, in that view."""
+        self._mouse, self._region = mouse, region.as_pointer()
+
+    def show(self, lines: Primitives, faces: Primitives) -> None:
+        """Draw these from now on."""
+        self._lines, self._faces = lines, faces
+
+    def write(self, *text: str) -> None:
+        """Write these lines from now on."""
+        self._text = text
+
+    def redraw(self) -> None:
+        """Have every 3D view drawn anew."""
+        for manager in bpy.data.window_managers:
+            for window in manager.windows:
+                for area in window.screen.areas:
+                    if area.type == "VIEW_3D":
+                        area.tag_redraw()
+
+    def _draw(self) -> None:
+        gpu.state.blend_set("ALPHA")
+        gpu.state.depth_test_set("LESS_EQUAL")
+        gpu.state.depth_mask_set(False)
+        try:
+            _draw_batch("SMOOTH_COLOR", "TRIS", self._faces)
+            _draw_batch("POLYLINE_SMOOTH_COLOR", "LINES", self._lines)
+        finally:
+            gpu.state.depth_mask_set(True)
+            gpu.state.depth_test_set("NONE")
+            gpu.state.blend_set("NONE")
+
+    def _write(self) -> None:
+        region = bpy.context.region
+        if region is None or region.as_pointer() != self._region:
+            return
+        scale = bpy.context.preferences.system.ui_scale
+        size = TEXT_PX * scale
+        blf.size(0, size)
+        blf.color(0, *TEXT_COLOR)
+        blf.enable(0, blf.SHADOW)
+        blf.shadow(0, 5, *SHADE)
+        for number, line in enumerate(self._text):
+            x = self._mouse[0] + TEXT_AT[0] * scale
+            blf.position(0, x, self._mouse[1] + TEXT_AT[1] * scale - number * size * TEXT_GAP, 0)
+            blf.draw(0, line)
+        blf.disable(0, blf.SHADOW)
+
+
+def _draw_batch(name: str, kind: str, primitives: Primitives) -> None:
+    if not len(primitives.points):
+        return
+    shader = gpu.shader.from_builtin(name)
+    if name.startswith("POLYLINE"):
+        region = bpy.context.region
+        shader.bind()
+        shader.uniform_float("viewportSize", (region.width, region.height))
+        width = LINE_PX * bpy.context.preferences.system.pixel_size
+        shader.uniform_float("lineWidth", width)
+    arrays = {"pos": primitives.points, "color": primitives.colors}
+    batch_for_shader(shader, kind, arrays).draw(shader)

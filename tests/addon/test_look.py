@@ -1,0 +1,163 @@
+"""Looking through a sensor: the right lens in the right place, and everything as before after."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+
+from blender_addon import bridge, upkeep
+from blender_addon.engine import catalog, kinds, pe
+from blender_addon.operators import range_image
+from tests.addon import scenes
+
+
+@pytest.fixture
+def eye(car):
+    """Return a camera on the car, turned and tilted."""
+    return scenes.add_sensor(
+        "eye", model="KITTI cam2", location=(0.7, 0.1, 1.6), rotation_euler=(0.1, 0.2, 0.7)
+    )
+
+
+def look(obj):
+    assert bpy.ops.pe.look_through(name=obj.name) == {"FINISHED"}
+    bpy.context.view_layer.update()
+    return bridge.view_camera(obj)
+
+
+def rendered_at(scene, point):
+    """Where a point of the scene falls in the rendered picture [px], counted from its top left."""
+    from bpy_extras.object_utils import world_to_camera_view
+
+    across, up, _ = world_to_camera_view(scene, scene.camera, Vector(point))
+    return across * scene.render.resolution_x, (1.0 - up) * scene.render.resolution_y
+
+
+@pytest.mark.parametrize("model", ["KITTI cam2", "Camera 120 deg", "Argoverse 2 ring front centre"])
+def test_blender_s_picture_is_the_sensor_s(car, eye, model):
+    """Points fall on the pixels where the pinhole of eq. 3 has them."""
+    eye.perception_entropy.model = model
+    look(eye)
+    sensor = bridge.sensor_from_object(eye, scenes.depsgraph())
+    camera, turned = sensor.model, sensor.pose.ground_from_sensor
+    assert (car.render.resolution_x, car.render.resolution_y) == (camera.width, camera.height)
+    for ahead, left, up in ((5.0, 0.0, 0.0), (5.0, 1.0, 0.4), (9.0, -2.0, -0.7)):
+        point = turned @ [ahead, left, up] + sensor.pose.position
+        u = camera.width / 2 - camera.focal_px * left / ahead
+        v = camera.height / 2 - camera.focal_px * up / ahead
+        assert rendered_at(car, point) == pytest.approx((u, v), abs=0.02)
+
+
+def test_a_lens_wider_than_blender_s_shortest(car, eye):
+    wide = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 175}
+    catalog.add("Wide", wide)
+    try:
+        eye.perception_entropy.model = "Wide"
+        assert look(eye).data.angle_x == pytest.approx(math.radians(175), abs=1e-4)
+    finally:
+        catalog.remove("Wide")
+
+
+def test_again_comes_back_to_what_was_before(car, eye):
+    own = bpy.data.objects.new("own", bpy.data.cameras.new("own"))
+    car.collection.objects.link(own)
+    car.camera, car.render.resolution_x, car.render.resolution_percentage = own, 777, 50
+    view = look(eye)
+    assert car.camera == view and car.render.resolution_percentage == 100
+    look(eye)
+    assert car.camera == own
+    assert (car.render.resolution_x, car.render.resolution_percentage) == (777, 50)
+
+
+def test_from_one_sensor_to_another_and_back(car, eye):
+    other = scenes.add_sensor("other", model="Camera 60 deg", location=(0.0, 0.0, 1.6))
+    before = car.render.resolution_x
+    look(eye)
+    look(other)
+    assert car.camera.parent == other
+    assert bpy.ops.pe.look_back() == {"FINISHED"}
+    assert car.camera is None and car.render.resolution_x == before
+    assert not bpy.ops.pe.look_back.poll()
+
+
+def test_it_is_no_part_of_the_vehicle_and_follows_the_sensor(car, eye):
+    bpy.data.collections["Car"].objects.link(eye)
+    before = scenes.study()
+    view = look(eye)
+    after = scenes.study()
+    assert np.array_equal(before.vehicle.triangles, after.vehicle.triangles)
+    assert [s.name for s in after.rig] == [s.name for s in before.rig]
+    eye.location.x += 1.0
+    bpy.context.view_layer.update()
+    assert (view.matrix_world.translation - eye.matrix_world.translation).length < 1e-6
+
+
+def test_it_goes_with_its_sensor(car, eye):
+    look(eye)
+    bpy.data.objects.remove(eye)
+    upkeep.go_round()
+    assert not [obj for obj in car.objects if obj.type == "CAMERA"]
+    assert not bpy.data.cameras and car.camera is None
+    assert car.perception_entropy.before_look == ""
+
+
+def test_it_has_the_lens_of_another_model_as_soon_as_that_is_chosen(car, eye):
+    view = look(eye)
+    eye.perception_entropy.model = "Camera 120 deg"
+    upkeep.go_round()
+    assert view.data.angle_x == pytest.approx(math.radians(120), abs=1e-5)
+    assert (car.render.resolution_x, car.render.resolution_y) == (1920, 1080)
+
+
+def test_a_duplicate_has_none_of_its_original_s(car, eye):
+    look(eye)
+    bpy.ops.object.select_all(action="DESELECT")
+    eye.select_set(True)
+    bpy.context.view_layer.objects.active = eye
+    bpy.ops.object.duplicate()
+    upkeep.go_round()
+    assert bridge.view_camera(bpy.context.object) is None and bridge.view_camera(eye) is not None
+
+
+def test_of_what_is_no_sensor_one_line_is_said(car):
+    with pytest.raises(RuntimeError, match="expected a sensor, found body"):
+        bpy.ops.pe.look_through(name="body")
+
+
+def test_a_lidar_s_picture_is_in_its_image(car):
+    """Pixel by pixel: near is light and far is dark, what the car stops is orange."""
+    assert bpy.ops.pe.look_through(name="roof") == {"FINISHED"}
+    image = bpy.data.images["roof range"]
+    width, height = image.size
+    assert (width, height) == (round(359.8 * 5), (40 * 5))
+    pixels = np.array(image.pixels[:]).reshape(height, width, 4)[::-1]
+    study = scenes.study()
+    picture = kinds.range_picture(study.rig["roof"], study.vehicle)
+    assert picture.stopped.any()
+    orange = (pixels[..., 0] > 0.7) & (pixels[..., 2] < 0.25) & (pixels[..., 1] < 0.65)
+    assert orange.mean() == pytest.approx(_share(picture), abs=0.05)
+    assert pixels[0, 0, :3] == pytest.approx(range_image.NOTHING, abs=0.01)  # 15 degrees up: sky
+
+
+def _share(picture):
+    """Share of the picture that the body stops, rows as high as the angle they stand for."""
+    edges = (picture.elevations[1:] + picture.elevations[:-1]) / 2
+    bounds = np.concatenate([picture.elevations[:1], edges, picture.elevations[-1:]])
+    return float(np.average(picture.stopped.mean(axis=1), weights=-np.diff(bounds)))
+
+
+def test_the_picture_takes_what_moved(car):
+    bpy.ops.pe.look_through(name="roof")
+    before = bpy.data.images["roof range"].pixels[:]
+    car.objects["roof"].location.z = 1.55
+    bpy.ops.pe.look_through(name="roof")
+    assert bpy.data.images["roof range"].pixels[:] != before
+    assert len([i for i in bpy.data.images if i.name.startswith("roof range")]) == 1
+
+
+def test_without_a_vehicle_there_is_the_ground(car):
+    car.perception_entropy.vehicle = None
+    assert bpy.ops.pe.look_through(name="roof") == {"FINISHED"}
+    assert isinstance(catalog.load("Pandar64"), pe.Lidar)

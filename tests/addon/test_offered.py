@@ -1,0 +1,68 @@
+"""What there is to add: by kind, by maker, in a few words; and a search that finds."""
+
+import bpy
+import pytest
+
+from blender_addon import operators
+from blender_addon.engine import catalog
+from blender_addon.operators import offered as offers
+from blender_addon.operators import search_sensor
+
+SCREEN_OF_ROWS = 30
+"""How many rows of a menu a small screen shows."""
+
+
+@pytest.mark.parametrize("kind", ["lidar", "camera", None])
+def test_every_sensor_is_offered_once_by_its_maker(kind):
+    found = [name for maker in offers.makers(kind) for name in offers.models(kind, maker)]
+    assert sorted(found) == sorted(catalog.names(kind)) and len(set(found)) == len(found)
+
+
+@pytest.mark.parametrize("kind", ["lidar", "camera"])
+def test_no_menu_is_longer_than_a_screen(kind):
+    makers = offers.makers(kind)
+    assert len(makers) < SCREEN_OF_ROWS
+    assert all(len(offers.models(kind, maker)) < SCREEN_OF_ROWS for maker in makers)
+
+
+def test_makers_are_called_by_their_names():
+    assert offers.makers("lidar") == ["Paper", "Hesai", "Ouster", "RoboSense", "Velodyne", "Waymo"]
+
+
+def test_a_sensor_in_a_few_words():
+    assert offers.brief("Hesai QT128C2X") == "128 channels, 360 x 105 deg, 50 m"
+    assert offers.brief("Camera 90 deg") == "1920 x 1080 px, 90 x 59 deg"
+    told = offers.described("Hesai AT128E2X")
+    assert "channels 128, -12.47 to 12.93 deg" in told and "range 210 m" in told
+    assert offers.described("nobody's") == ""
+
+
+def test_tooltips_tell_the_figures(addon):
+    for name in ("add_sensor", "place_sensor"):
+        cls = getattr(bpy.types, f"PE_OT_{name}")
+        chosen = type("Chosen", (), {"model": "Hesai QT128C2X"})
+        assert "range 50 m" in cls.description(bpy.context, chosen)
+
+
+def test_the_search_lists_a_kind_s_sensors_with_their_figures(addon):
+    items = search_sensor._items(type("Chosen", (), {"kind": "lidar"}), bpy.context)
+    assert [each[0] for each in items] == catalog.names("lidar")
+    (found,) = [each for each in items if "QT128" in each[1]]
+    assert found[0] == "Hesai QT128C2X" and "105 deg" in found[1]
+
+
+def test_what_was_typed_is_found():
+    assert catalog.matching("qt128") == ["Hesai QT128C2X"]
+    assert catalog.matching("pandar64", "lidar") == [
+        "Pandar64"
+    ]  # itself, not those that contain it
+    assert catalog.matching("QT128", "camera") == [] == catalog.matching("  ")
+    assert len(catalog.matching("OS0")) > 1
+
+
+def test_a_preset_of_one_s_own_is_offered_too():
+    catalog.add("Mine", {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60})
+    try:
+        assert operators.models("camera", "Own") == ["Mine"]
+    finally:
+        catalog.remove("Mine")

@@ -1,0 +1,155 @@
+"""Placing by pointing, as scripts do it: where a sensor stands, and how it is turned."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+
+from blender_addon import bridge
+from blender_addon.operators import pointing, surface
+from blender_addon.operators.drafts import Drafts
+from blender_addon.operators.mounting import mount_of
+from tests.addon import scenes
+
+
+@pytest.fixture
+def bare(scene):
+    """Return a scene with a car and no sensors."""
+    scenes.add_car(scene)
+    bpy.context.view_layer.update()
+    return scene
+
+
+def place(model, **chosen):
+    """Return the sensor that was placed."""
+    assert bpy.ops.pe.place_sensor(model=model, **chosen) == {"FINISHED"}
+    bpy.context.view_layer.update()
+    return bpy.context.object
+
+
+def axes(obj):
+    """Return where a sensor looks, and its up, each (3,)."""
+    turned = np.array(obj.matrix_world)[:3, :3]
+    return turned[:, 0], turned[:, 2]
+
+
+def test_a_lidar_stands_upright_and_looks_ahead_wherever_it_is(bare):
+    sensor = place("Pandar64", location=(0.0, 0.9, 0.5), normal=(0.0, 1.0, 0.0))
+    assert tuple(sensor.location) == pytest.approx((0.0, 1.05, 0.5), abs=1e-6)
+    ahead, up = axes(sensor)
+    assert ahead == pytest.approx([1, 0, 0], abs=1e-6) and up == pytest.approx([0, 0, 1], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("place_xy", "yaw"),
+    [((2.0, 0.0), 0), ((-2.0, 0.0), 180), ((0.0, 0.9), 90), ((-2.0, -2.0), -135)],
+)
+def test_an_upright_camera_looks_away_from_the_middle_of_the_vehicle(bare, place_xy, yaw):
+    ahead, up = axes(place("Camera 60 deg", location=(*place_xy, 0.5), normal=(0.0, 0.0, 1.0)))
+    expected = [math.cos(math.radians(yaw)), math.sin(math.radians(yaw)), 0.0]
+    assert ahead == pytest.approx(expected, abs=1e-6) and up == pytest.approx([0, 0, 1], abs=1e-6)
+
+
+NORMALS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0.6, 0.0, 0.8)]
+
+
+@pytest.mark.parametrize("normal", NORMALS)
+def test_along_the_normal_a_camera_looks_along_it(bare, normal):
+    sensor = place("Camera 60 deg", location=(1, 1, 1), normal=normal, along_normal=True)
+    ahead, up = axes(sensor)
+    assert ahead == pytest.approx(normal, abs=1e-6)
+    assert up[2] == pytest.approx(math.sqrt(1 - normal[2] ** 2), abs=1e-6)  # as upright as it can
+    assert np.linalg.det(np.array(sensor.matrix_world)[:3, :3]) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("normal", NORMALS)
+def test_along_the_normal_a_lidar_stands_on_it(bare, normal):
+    sensor = place("Pandar64", location=(1, 1, 1), normal=normal, along_normal=True)
+    ahead, up = axes(sensor)
+    assert up == pytest.approx(normal, abs=1e-6)
+    assert ahead[0] == pytest.approx(math.sqrt(1 - normal[0] ** 2), abs=1e-6)  # ahead as it can
+    assert np.linalg.det(np.array(sensor.matrix_world)[:3, :3]) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_stand_off_is_that_of_its_kind_unless_said(bare):
+    spot = {"location": (0.0, 0.0, 1.5), "normal": (0.0, 0.0, 2.0)}
+    assert place("Pandar64", **spot).location.z == pytest.approx(1.65)
+    assert place("Camera 60 deg", **spot).location.z == pytest.approx(1.55)
+    assert place("Pandar64", **spot, stand_off=0.02).location.z == pytest.approx(1.52)
+    for kind in ("lidar", "camera", "another"):
+        assert mount_of(kind).stand_off_m > 0.02  # clear of the body: beyond its clearance
+
+
+def test_a_stance_keeps_within_reason():
+    stance = pointing.Stance(0.15)
+    assert stance.changed(0.01).stand_off_m == 0.16
+    assert stance.changed(-1.0).stand_off_m == 0.0
+    assert stance.changed(9.0).stand_off_m == 2.0
+
+
+def test_it_is_one_undo_step(bare):
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.pe.place_sensor("EXEC_DEFAULT", True, location=(0.0, 0.0, 1.5))
+    assert [obj.name for obj in bridge.sensor_objects(bpy.context.scene)] == ["LiDAR"]
+    bpy.ops.ed.undo()
+    assert not bridge.sensor_objects(bpy.context.scene)
+
+
+def test_an_unknown_model_is_refused_and_changes_nothing(bare):
+    before = len(bare.objects)
+    with pytest.raises(RuntimeError, match="a name such as"):
+        bpy.ops.pe.place_sensor(model="Pandar66")
+    assert len(bare.objects) == before
+
+
+def spot_below(scene, x, y):
+    """Where a ray from high above meets the vehicle."""
+    depsgraph = scenes.depsgraph()
+    parts = surface.parts_of(scene.perception_entropy.vehicle, depsgraph)
+    start, down = Vector((x, y, 9.0)), Vector((0.0, 0.0, -1.0))
+    return surface.spot_on_ray(scene, depsgraph, parts, start, down)
+
+
+def test_the_mouse_finds_the_vehicle_through_all_else(bare):
+    """A tree above the car and the ground below it are no places for a sensor."""
+    scenes.add_box(bare.collection, "tree", (1.0, 1.0, 1.0), location=(0.0, 0.0, 5.0))
+    scenes.add_box(bare.collection, "ground", (50.0, 50.0, 0.1), location=(0.0, 0.0, -0.1))
+    spot = spot_below(bare, -0.3, 0.0)
+    assert (spot.part, round(spot.point.z, 5)) == ("cabin", 1.5)
+    assert tuple(spot.normal) == pytest.approx((0.0, 0.0, 1.0))
+    assert spot_below(bare, 10.0, 0.0) is None
+
+
+def test_a_sensor_s_housing_is_no_place_for_a_sensor(bare):
+    sensor = place("Pandar64", location=(-0.3, 0.0, 1.5))
+    housing = scenes.add_box(bpy.data.collections["Car"], "housing", (0.1, 0.1, 0.1))
+    housing.parent = sensor
+    bpy.context.view_layer.update()
+    assert spot_below(bare, -0.3, 0.0).part == "cabin"
+
+
+def test_its_draft_is_the_score_with_it_beside_that_without(bare):
+    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    scenes.add_sensor("front", model="Camera 60 deg", location=(0.65, 0.0, 1.55))
+    study, told = scenes.study(), []
+    drafts = Drafts(study, "front", told.append)
+    drafts.ask(study.rig["front"].pose)
+    evaluator = study.evaluator(samples=16_384)
+    before, after = (
+        evaluator.entropy(type(study.rig)([study.rig["roof"]])),
+        evaluator.score(study.rig),
+    )
+    gain = drafts.gain(study.rig["front"].pose)
+    assert (gain.before, gain.coverage) == (before, after.coverage)
+    assert gain.after == after.entropy < gain.before
+    change = f"({after.entropy - before:+.3f})"
+    assert change in told[0] and f"{after.coverage:.1%}" in told[0] and "nats" in told[0]
+
+
+def test_the_first_sensor_has_nothing_to_be_compared_with(bare):
+    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    study = scenes.study()
+    gain = Drafts(study, "roof", print).gain(study.rig["roof"].pose)
+    assert gain.before is None and " to " not in str(gain)

@@ -1,0 +1,97 @@
+"""A sensor that is refused says so where it is, and what mends it; a typed model is understood."""
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon import bridge, upkeep
+from blender_addon.engine import catalog
+from blender_addon.properties import callbacks
+from tests.addon import scenes
+
+
+@pytest.fixture
+def roof(car):
+    return bpy.data.objects["roof"]
+
+
+def refusal(obj):
+    bpy.context.view_layer.update()
+    upkeep.go_round()
+    return obj.perception_entropy.refusal
+
+
+def test_a_sensor_that_can_be_scored_is_not_refused(roof):
+    assert refusal(roof) == ""
+
+
+@pytest.mark.parametrize("scale", [(2.0, 2.0, 2.0), (1.0, -1.0, 1.0), (-0.5, 1.0, 3.0)])
+def test_scale_and_mirroring_are_mended_by_the_button(roof, scale):
+    roof.rotation_euler = (0.1, 0.2, 0.7)
+    bpy.context.view_layer.update()
+    before = np.array(roof.matrix_world)
+    roof.scale = scale
+    said = refusal(roof)
+    assert "Ctrl-A > Scale" in said and roof.perception_entropy.refused_field == "scale"
+    assert bpy.ops.pe.apply_scale(name="roof") == {"FINISHED"}
+    assert refusal(roof) == "" and tuple(roof.scale) == pytest.approx((1, 1, 1), abs=1e-6)
+    after = np.array(roof.matrix_world)
+    assert after[:3, 3] == pytest.approx(before[:3, 3], abs=1e-6)
+    looks = before[:3, 0] * np.sign(scale[0])  # mirrored along x it looks the other way
+    assert after[:3, 0] == pytest.approx(looks, abs=1e-6)
+    assert after[:3, 2] == pytest.approx(before[:3, 2], abs=1e-6)
+
+
+def test_under_a_scaled_parent(car, roof):
+    parent = bpy.data.objects.new("parent", None)
+    car.collection.objects.link(parent)
+    parent.scale = (2.0, 2.0, 2.0)
+    roof.parent = parent
+    assert "scale" in refusal(roof)
+    place = np.array(roof.matrix_world)[:3, 3]
+    bpy.ops.pe.apply_scale(name="roof")
+    assert refusal(roof) == ""
+    assert np.array(roof.matrix_world)[:3, 3] == pytest.approx(place, abs=1e-5)
+
+
+def test_only_sensors_are_mended(car):
+    car.objects["body"].scale = (2.0, 2.0, 2.0)
+    assert bpy.ops.pe.apply_scale(name="body") == {"CANCELLED"}
+    assert tuple(car.objects["body"].scale) == (2.0, 2.0, 2.0)
+
+
+def test_a_hidden_sensor_is_not_asked(roof):
+    roof.scale = (2.0, 2.0, 2.0)
+    roof.hide_viewport = True
+    assert refusal(roof) == ""
+
+
+def test_a_part_of_a_name_is_taken_for_the_only_one_it_is_in(roof):
+    roof.perception_entropy.model = "qt128"
+    assert roof.perception_entropy.model == "Hesai QT128C2X"
+
+
+@pytest.mark.parametrize("typed", ["Pandar6", "nobody's"])
+def test_an_unknown_model_is_one_clear_line_at_the_sensor(roof, typed):
+    roof.perception_entropy.model = typed
+    assert roof.perception_entropy.model == typed
+    said = refusal(roof)
+    assert "model: expected a name such as" in said and typed in said and "\n" not in said
+    roof.perception_entropy.model = "Pandar64"
+    assert refusal(roof) == ""
+
+
+@pytest.mark.parametrize(("model", "kind"), [("Pandar64", "lidar"), ("Camera 60 deg", "camera")])
+def test_the_field_lists_models_of_the_sensor_s_kind_alone(roof, model, kind):
+    roof.perception_entropy.model = model
+    listed = callbacks.models_of_a_kind(roof.perception_entropy, bpy.context, "")
+    assert [name for name, _ in listed] == catalog.names(kind)
+    assert all(told for _, told in listed)
+
+
+def test_refusals_are_not_the_study_s_business(roof):
+    """They are written at sensors; no score and no fingerprint depends on them."""
+    before = bridge.signature(bpy.context.scene)
+    roof.perception_entropy.refusal = "something"
+    assert bridge.signature(bpy.context.scene) == before
+    assert scenes.study().rig["roof"]

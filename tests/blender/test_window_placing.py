@@ -1,0 +1,144 @@
+"""Sensors placed with a real mouse: pointing at the car, clicking, going on, leaving."""
+
+import json
+import math
+
+import pytest
+
+EFFECT_TIMEOUT_S = 20
+ROOF, HOOD, GROUND = (-0.4, 0.0, 1.45), (1.5, 0.0, 0.9), (0.0, -6.0, 0.0)
+"""Places of the sedan, nearly, and one beside it [m]."""
+
+
+class Pointer:
+    """A mouse that is put onto places of the scene."""
+
+    def __init__(self, window):
+        self.window = window
+
+    def at(self, point):
+        """Return where a point of the scene is on the screen [px]."""
+        asked, answer = self.window.folder / "where.json", self.window.folder / "there.json"
+        answer.unlink(missing_ok=True)
+        partial = asked.with_suffix(".partial")
+        partial.write_text(json.dumps(point))
+        partial.replace(asked)
+        self.window.wait_for(answer.exists, EFFECT_TIMEOUT_S, "a place on the screen")
+        return tuple(json.loads(answer.read_text()))
+
+    def over(self, point):
+        """Move the mouse there."""
+        self.window.hover(*self.at(point))
+
+    def click(self, point):
+        """Click there."""
+        self.window.click(*self.at(point))
+
+
+@pytest.fixture
+def pointer(window):
+    return Pointer(window)
+
+
+def sensors(window):
+    return set(window.state["sensors"])
+
+
+def start(window, pointer):
+    """Press the button and hold a sensor over the roof, until it is there."""
+    window.press("pe.place_sensor")
+    window.wait_for(lambda: window.state["placing"], EFFECT_TIMEOUT_S, "a sensor to place")
+    pointer.over(ROOF)
+    held_at(window, lambda place: place is not None and place[2] > 1.4)
+
+
+def held_at(window, condition):
+    """Wait until the sensor that is held stands where it should."""
+    window.wait_for(lambda: condition(window.state["held"]), EFFECT_TIMEOUT_S, "the sensor there")
+
+
+def test_hover_shows_a_score_and_a_click_places_it_in_one_undo_step(window, pointer, screenshots):
+    before = sensors(window)
+    start(window, pointer)
+    window.wait_for(lambda: "nats" in window.state["draft"], EFFECT_TIMEOUT_S, "a draft")
+    window.screenshot(screenshots / "window_placing.png", aside=False)
+    upright = window.state["held"]
+    window.key("n")
+    held_at(window, lambda place: place != upright)
+    window.key("n")
+    held_at(window, lambda place: place == upright)
+    window.key("bracketright")
+    held_at(window, lambda place: place[2] == pytest.approx(upright[2] + 0.01, abs=2e-3))
+    assert sensors(window) == before, "a sensor before the click"
+
+    held = window.state["held"]
+    window.press_button()
+    window.wait_for(lambda: len(sensors(window)) == len(before) + 1, EFFECT_TIMEOUT_S, "a sensor")
+    (name,) = sensors(window) - before
+    window.wait_for(
+        lambda: math.dist(window.state["places"][name], held[:3]) < 0.01,
+        EFFECT_TIMEOUT_S,
+        "the sensor where it was held",
+    )
+    assert not window.state["placing"]
+
+    window.key("ctrl+z")
+    window.wait_for(lambda: sensors(window) == before, EFFECT_TIMEOUT_S, "one undo step")
+    assert "Traceback" not in window.log.read_text()
+
+
+def test_shift_goes_on_and_esc_leaves_with_nothing_more(window, pointer):
+    before = sensors(window)
+    start(window, pointer)
+    for number, place in enumerate((ROOF, HOOD), start=1):
+        with window.holding("shift"):
+            pointer.click(place)
+            window.wait_for(
+                lambda more=number: len(sensors(window)) == len(before) + more,
+                EFFECT_TIMEOUT_S,
+                "one more",
+            )
+        assert window.state["placing"], "Shift was to go on"
+    pointer.over(GROUND)
+    held_at(window, lambda place: place is None)
+    window.key("Escape")
+    window.wait_for(lambda: not window.state["placing"], EFFECT_TIMEOUT_S, "the end")
+    assert len(sensors(window)) == len(before) + 2
+
+    window.key("ctrl+z")
+    window.wait_for(lambda: len(sensors(window)) == len(before) + 1, EFFECT_TIMEOUT_S, "one step")
+    window.key("ctrl+z")
+    window.wait_for(lambda: sensors(window) == before, EFFECT_TIMEOUT_S, "the other step")
+    assert "Traceback" not in window.log.read_text()
+
+
+def test_a_duplicate_by_shift_d_is_a_sensor_without_a_result(window):
+    window.press("pe.score")
+    window.wait_for(lambda: window.state["has_result"], 180, "a score")
+    (original,) = sensors(window)
+    window.point_at_view()
+    window.key("shift+d")
+    window.wait_for(lambda: len(sensors(window)) == 2, EFFECT_TIMEOUT_S, "a second sensor")
+    window.key("Return")
+    assert f"{original}.001" in sensors(window)
+    window.wait_for(
+        lambda: window.state["own_results"] == [original], EFFECT_TIMEOUT_S, "one result alone"
+    )
+    assert "Traceback" not in window.log.read_text()
+
+
+def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
+    before = sensors(window)
+    window.press("pe.add_sensor", "Camera")
+    window.wait_for(lambda: sensors(window) != before, EFFECT_TIMEOUT_S, "a sensor")
+    (name,) = sensors(window) - before
+    perspective = window.state["perspective"]
+    window.press("pe.look_through")
+    window.wait_for(lambda: window.state["perspective"] == "CAMERA", EFFECT_TIMEOUT_S, "its view")
+    assert window.state["camera"] == f"{name} view"
+    window.screenshot(screenshots / "window_look_through.png")
+    window.point_at_view()
+    window.key("Escape")
+    window.wait_for(lambda: window.state["camera"] is None, EFFECT_TIMEOUT_S, "the way back")
+    assert window.state["perspective"] == perspective
+    assert "Traceback" not in window.log.read_text()

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..engine import pe
-from ..worker import desk
+from ..worker import hand
 
 TOPIC = "place"
 SAMPLES = 16_384
@@ -48,7 +48,7 @@ class Drafts:
 
     def ask(self, pose: pe.Pose) -> None:
         """Have the sensor scored there; the latest wish counts."""
-        desk.ask(TOPIC, lambda: self.gain(pose), self._show, self._fail)
+        hand.ask(TOPIC, lambda: self.gain(pose), self._show, self._fail)
 
     def gain(self, pose: pe.Pose) -> Gain:
         """Return what the sensor is worth there; the rest is measured the first time alone."""
@@ -63,7 +63,7 @@ class Drafts:
 
     def end(self) -> None:
         """Forget what was asked."""
-        desk.drop(TOPIC)
+        hand.drop(TOPIC)
 
     def _show(self, gain: Gain) -> None:
         self._tell(str(gain))

@@ -26,6 +26,9 @@ class Layout:
     def prop(self, _owner, name, **_):
         self.notes.append(("prop", name))
 
+    def separator(self):
+        pass
+
     def context_string_set(self, name, value):
         self.notes.append((name, value))
 

@@ -12,7 +12,7 @@ import pytest
 import blender_addon
 import pe_core as pe
 from blender_addon import bridge, panels, properties
-from blender_addon.operators import listed_sensors, offers
+from blender_addon.operators import listed_sensors, models, offers
 from blender_addon.review import render_review
 from blender_addon.review.page import legend_of
 from pe_core import catalog, kinds
@@ -40,20 +40,28 @@ def ring(ring_kind):
 
 
 def test_it_is_offered_beside_the_others(ring_kind):
-    assert [(o.label, o.usual, o.models) for o in offers()][2:] == [
-        ("Ultrasonic Ring", PRESET, (PRESET,))
+    assert [(o.label, o.usual, models(o.kind)) for o in offers()][2:] == [
+        ("Ultrasonic Ring", PRESET, [PRESET])
     ]
     assert (PRESET, "Ultrasonic Ring") in properties.model_suggestions(None, None, "")
     layout = Layout()
     panels.main.draw_add(layout)
-    assert layout.texts("operator") == ["Add LiDAR", "Add Camera", "Add Ultrasonic Ring"]
+    assert layout.texts("operator") == [
+        *("Add LiDAR", "Place", "Add Camera", "Place", "Add Ultrasonic Ring", "Place")
+    ]
 
 
 def test_its_menu_lists_its_presets(ring_kind):
     menu = panels.main.PE_MT_add_sensor
-    assert drawn(menu, **{panels.main.KIND: "ultrasonic"}).texts("operator") == [PRESET]
-    assert drawn(menu, **{panels.main.KIND: "camera"}).texts("operator") == catalog.names("camera")
-    assert set(drawn(menu).texts("operator")) == set(catalog.names())
+    of_maker, kind = panels.main.PE_MT_sensors_of_maker, {panels.main.KIND: "ultrasonic"}
+    layout = drawn(menu, **kind)
+    assert layout.texts("operator") == ["Search..."]
+    assert layout.texts(panels.main.MAKER) == ["Own"]
+    text = f"{PRESET}   range 12 m"
+    assert drawn(of_maker, **kind, **{panels.main.MAKER: "Own"}).texts("operator") == [text]
+    cameras = drawn(of_maker, **{panels.main.KIND: "camera"}).texts("operator")
+    assert [each.partition("   ")[0] for each in cameras] == catalog.names("camera")
+    assert len(drawn(of_maker).texts("operator")) == len(catalog.names())
 
 
 def test_the_operator_adds_it(ring_kind):
@@ -130,14 +138,14 @@ def test_the_review_shows_it(ring_kind, ring, tmp_path):
 
 
 def test_without_the_kind_nothing_of_it_is_left(car):
-    known = [(o.kind, o.models) for o in offers()]
+    known = [(o.kind, models(o.kind)) for o in offers()]
     kinds.register(RingKind())
     catalog.add(PRESET, {"kind": "ultrasonic", "range_m": 12.0})
     scenes.add_sensor("bumper", PRESET)
     assert len(list(offers())) == 3
     catalog.remove(PRESET)
     kinds.unregister("ultrasonic")
-    assert [(o.kind, o.models) for o in offers()] == known
+    assert [(o.kind, models(o.kind)) for o in offers()] == known
     assert PRESET not in dict(properties.model_suggestions(None, None, ""))
     with pytest.raises(RuntimeError, match="sensor 'bumper': model: expected a name such as"):
         bpy.ops.pe.score()
@@ -155,7 +163,7 @@ def test_a_preset_of_a_kind_that_is_gone_is_refused(car):
         scenes.add_sensor("bumper", PRESET)
         kinds.unregister("ultrasonic")
         assert PRESET not in dict(properties.model_suggestions(None, None, ""))
-        assert PRESET not in [m for offer in offers() for m in offer.models]
+        assert PRESET not in models(None)
         for operator in (bpy.ops.pe.score, bpy.ops.pe.optimize):
             with pytest.raises(RuntimeError, match="kind: expected one of lidar, camera") as said:
                 operator()

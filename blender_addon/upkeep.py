@@ -1,9 +1,10 @@
 """Keeps sensors as they are to be, whatever was done to them outside the add-on's own operators.
 
 A duplicated, copied or appended sensor is a new one: what it brought of another's result is not
-its own. A camera that is looked through goes with its sensor. Sensors of older files may be linked
-twice. It works when something is told to have moved, and after a file was opened: both are turns in
-which data may be written.
+its own. Sensors linked to their mirror images go with them, a camera that is looked through
+goes with its sensor. Sensors of older files may be linked twice. It works when something is told to
+have moved, after a file was opened and before one is saved: all are turns in which data may be
+written.
 """
 
 from __future__ import annotations
@@ -25,14 +26,19 @@ def on_load(*_: object) -> None:
         if newer := bridge.newer_version(scene):
             print(f"perception_entropy: {newer}", file=sys.stderr)
     bridge.sync_own_sensors()
+    bridge.forget_mirrors()
     go_round()
 
 
 @persistent
 def on_save(*_: object) -> None:
-    """Handler of save_pre: scenes that are new, or were appended, are of this version."""
+    """Handler of save_pre: scenes that are new, or were appended, are of this version.
+
+    What has just moved has its mirror image put right before it is written.
+    """
     for scene in bpy.data.scenes:
         bridge.bring_up_to_date(scene)
+    go_round()
 
 
 def go_round() -> None:
@@ -42,6 +48,8 @@ def go_round() -> None:
         bridge.drop_foreign_results(scene)
         bridge.tend_views(scene)
     if bpy.context.view_layer is not None:  # of another scene no places are known
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        bridge.follow_mirrors(bpy.context.scene, depsgraph)
         bridge.note_refusals(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
 
 
@@ -60,3 +68,4 @@ def unregister() -> None:
     changes.moved.disconnect(go_round)
     changes.study.disconnect(bridge.sync_own_sensors)
     bridge.forget_own_sensors()
+    bridge.forget_mirrors()

@@ -2,6 +2,16 @@
 
 from .advanced import clearance_of, perception_of, space_of
 from .fingerprint import Fingerprint, fingerprint, signature
+from .mirroring import (
+    follow_mirrors,
+    forget_mirrors,
+    in_the_middle,
+    link_mirror,
+    mirror_of,
+    mirrored_name,
+    mirrored_pose,
+    unlink_mirror,
+)
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .oddities import missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
@@ -12,6 +22,7 @@ from .records import Record, alike, records_of, records_of_scene, rig_of, write_
 from .refusals import note_refusals
 from .rig import (
     mounted_on_sensor,
+    place_poses,
     place_rig,
     pose_of,
     pose_of_matrix,
@@ -62,16 +73,24 @@ __all__ = [
     "copy_score",
     "drop_foreign_results",
     "fingerprint",
+    "follow_mirrors",
+    "forget_mirrors",
     "forget_own_sensors",
+    "in_the_middle",
     "keep_score",
     "keep_search",
+    "link_mirror",
     "look_back",
     "look_through",
+    "mirror_of",
+    "mirrored_name",
+    "mirrored_pose",
     "missing_pieces",
     "mounted_on_sensor",
     "newer_version",
     "note_refusals",
     "perception_of",
+    "place_poses",
     "place_rig",
     "pose_of",
     "pose_of_matrix",
@@ -105,6 +124,7 @@ __all__ = [
     "take_scene_s_score",
     "tend_views",
     "unlink_doubles",
+    "unlink_mirror",
     "variant_dict",
     "variant_named",
     "vehicle_from_collection",

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import bpy
 
 from ..engine import pe
+from .mirroring import mirror_of
 from .rig import free_axes
 
 PLACING = ("location", "rotation", "delta_location", "delta_rotation")
@@ -30,6 +31,11 @@ def check_placeable(scene: bpy.types.Scene, study: pe.Study) -> None:
         expected = "X, Y, Z, Roll, Pitch or Yaw ticked of at least one sensor (panel Sensor)"
         raise pe.InputError("scene", "what the search may change", expected, "nothing")
     for obj in free:
+        if (other := mirror_of(obj, scene)) is not None:
+            expected = "one that is not linked to its mirror image, as each is moved on its own"
+            raise pe.InputError(
+                "scene", f"sensor {obj.name!r}", expected, f"linked to {other.name}"
+            )
         for holder in _holders(obj):
             expected = "an object that can be placed"
             raise pe.InputError("scene", f"sensor {obj.name!r}: placement", expected, holder)

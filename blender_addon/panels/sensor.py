@@ -34,6 +34,7 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
             draw_refusal(layout, obj)
         layout.prop(settings, "fusion")
         layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
+        draw_mirror(layout, obj)
         layout.label(text=f"The search may change, for {obj.name}:")
         row = layout.row(align=True)
         for index, label in enumerate(AXIS_LABELS):
@@ -49,6 +50,19 @@ def draw_refusal(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
         box.label(text=line, icon="BLANK1" if number else "ERROR", translate=False)
     if obj.perception_entropy.refused_field == "scale":
         box.operator("pe.apply_scale", icon="CON_SIZELIKE").name = obj.name
+
+
+def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
+    """Draw the ways to the other side; of a linked sensor, to whom it is linked."""
+    row = layout.row(align=True)
+    other = obj.perception_entropy.mirror_of
+    if other:
+        row.label(text=f"Linked to {other}", icon="MOD_MIRROR", translate=False)
+        row.operator("pe.unlink_mirror", text="", icon="UNLINKED").name = obj.name
+        return
+    row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
+    linked = row.operator("pe.mirror_sensor", text="Mirror Linked", icon="LINKED")
+    linked.name, linked.linked = obj.name, True
 
 
 def draw_bounds(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:

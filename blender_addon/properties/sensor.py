@@ -75,6 +75,9 @@ class PE_ObjectSettings(SearchBounds, bpy.types.PropertyGroup):
         description="Collections it was taken out of, as it belongs to another variant",
     )
 
+    mirror_of: StringProperty(
+        name="Mirror Of", description="Name of the sensor that is linked as its mirror image"
+    )
     refusal: StringProperty(
         name="Refusal", description="Why this sensor cannot be scored as it is; empty if it can"
     )

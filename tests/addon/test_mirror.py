@@ -1,0 +1,171 @@
+"""Sensors mirrored to the other side: where they are, what they are called, and linked pairs."""
+
+import bpy
+import numpy as np
+import pytest
+
+import pe_core as pe
+from blender_addon import bridge, upkeep
+from tests.addon import scenes
+
+PLACE = {"location": (1.2, 0.7, 0.9), "rotation_euler": (0.1, 0.2, 0.7)}
+
+
+@pytest.fixture
+def left(car):
+    """Return a camera on the left, turned and tilted."""
+    return scenes.add_sensor("front_left", model="Camera 60 deg", **PLACE)
+
+
+def mirror(linked=False):
+    assert bpy.ops.pe.mirror_sensor(name="front_left", linked=linked) == {"FINISHED"}
+    bpy.context.view_layer.update()
+    upkeep.go_round()
+    return bpy.context.object
+
+
+def alike(one, other):
+    """Whether two sensors are mirror images, by their axes: an oracle without angles."""
+    plane = np.diag([1.0, -1.0, 1.0, 1.0])
+    image = plane @ np.array(one.matrix_world) @ plane
+    return np.abs(image - np.array(other.matrix_world)).max() < 2e-5
+
+
+def moved(obj, **settings):
+    """Move a sensor as a hand does, and let the add-on have its turn."""
+    for name, value in settings.items():
+        setattr(obj, name, value)
+    bpy.context.view_layer.update()
+    upkeep.go_round()
+    bpy.context.view_layer.update()
+
+
+def test_a_copy_on_the_other_side_looks_out_of_it(left):
+    right = mirror()
+    assert right.name == "front_right" and alike(left, right)
+    assert right.perception_entropy.model == "Camera 60 deg"
+    study = scenes.study()
+    assert {s.name for s in study.rig} == {"front_left", "front_right", "roof"}
+
+
+def test_a_rig_and_its_mirror_image_score_the_same_on_a_mirrored_vehicle(left):
+    """The car is its own mirror image, and so is the prior: on the whole grid nothing tells."""
+    right = mirror()
+    study = scenes.study()
+    space = pe.PerceptionSpace(x=(-10, 20), y=(-10, 10), z=(0, 3), interval=0.2)
+    evaluator = pe.Evaluator(space, study.prior, study.vehicle)
+    scores = [evaluator.entropy(pe.Rig([study.rig[o.name]])) for o in (left, right)]
+    assert scores[0] == pytest.approx(scores[1], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "other"),
+    [
+        ("front_left", "front_right"),
+        ("Rear Right", "Rear Left"),
+        ("cam.L", "cam.R"),
+        ("side_r.001", "side_l.001"),
+        ("LEFT", "RIGHT"),
+        ("LiDAR", "LiDAR mirrored"),
+        ("curl", "curl mirrored"),
+        ("leftover", "leftover mirrored"),
+    ],
+)
+def test_names_by_left_and_right(name, other):
+    assert bridge.mirrored_name(name) == other
+
+
+def test_a_sensor_in_the_middle_has_no_other_side(car):
+    with pytest.raises(RuntimeError, match="its own mirror image"):
+        bpy.ops.pe.mirror_sensor(name="roof")
+    car.objects["roof"].rotation_euler.z = 0.5
+    bpy.context.view_layer.update()
+    assert bpy.ops.pe.mirror_sensor(name="roof") == {"FINISHED"}  # it looks to the left
+
+
+def test_a_copy_that_is_not_linked_stays(left):
+    right = mirror()
+    before = np.array(right.matrix_world)
+    moved(left, location=(1.5, 0.9, 1.0))
+    assert np.array_equal(np.array(right.matrix_world), before)
+
+
+def test_a_linked_pair_moves_whichever_is_moved(left):
+    right = mirror(linked=True)
+    moved(left, location=(1.5, 0.9, 1.0))
+    assert alike(left, right) and right.location.y == pytest.approx(-0.9)
+    moved(right, location=(-1.0, -0.6, 1.2), rotation_euler=(0.0, 0.3, -2.0))
+    assert alike(left, right) and left.location.x == pytest.approx(-1.0)
+
+
+def test_both_moved_as_mirror_images_are_left_alone(left):
+    right = mirror(linked=True)
+    left.location.x = right.location.x = 1.9
+    moved(left)
+    assert alike(left, right) and left.location.x == pytest.approx(1.9)
+
+
+def test_redo_brings_both(left):
+    right = mirror(linked=True)
+    bpy.ops.ed.undo_push(message="before")
+    moved(left, location=(1.5, 0.9, 1.0))
+    bpy.ops.ed.undo_push(message="moved")
+    bpy.ops.ed.undo()
+    upkeep.go_round()
+    left, right = (bpy.data.objects[f"front_{side}"] for side in ("left", "right"))
+    assert alike(left, right) and left.location.x == pytest.approx(1.2)
+    bpy.ops.ed.redo()
+    upkeep.go_round()
+    left, right = (bpy.data.objects[f"front_{side}"] for side in ("left", "right"))
+    assert alike(left, right) and left.location.x == pytest.approx(1.5)
+
+
+def test_the_link_is_kept_in_the_file(left, tmp_path):
+    mirror(linked=True)
+    blend = str(tmp_path / "pair.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=blend)
+    bpy.ops.wm.open_mainfile(filepath=blend)
+    left, right = (bpy.data.objects[f"front_{side}"] for side in ("left", "right"))
+    moved(right, location=(0.5, -0.6, 1.2))
+    assert alike(left, right) and left.location.x == pytest.approx(0.5)
+
+
+def test_a_duplicate_is_linked_to_nobody(left):
+    right = mirror(linked=True)
+    bpy.ops.object.duplicate()
+    upkeep.go_round()
+    copy = bpy.context.object
+    assert copy.perception_entropy.mirror_of == ""
+    assert bridge.mirror_of(left, bpy.context.scene) == right
+
+
+@pytest.mark.parametrize("which", ["front_left", "front_right"])
+def test_a_renamed_one_stays_linked(left, which):
+    right = mirror(linked=True)
+    bpy.data.objects[which].name = "another"
+    upkeep.go_round()
+    moved(left, location=(1.5, 0.9, 1.0))
+    assert alike(left, right)
+
+
+def test_a_deleted_one_leaves_the_other_free(left):
+    bpy.data.objects.remove(mirror(linked=True))
+    upkeep.go_round()
+    assert left.perception_entropy.mirror_of == ""
+
+
+def test_unlinked_they_go_their_own_ways(left):
+    right = mirror(linked=True)
+    assert bpy.ops.pe.unlink_mirror(name="front_right") == {"FINISHED"}
+    moved(left, location=(1.5, 0.9, 1.0))
+    assert not alike(left, right)
+
+
+def test_a_search_says_in_one_line_that_it_moves_each_on_its_own(left):
+    mirror(linked=True)
+    with pytest.raises(RuntimeError, match=r"front_left.*linked.*front_right") as raised:
+        bpy.ops.pe.optimize()
+    assert len(str(raised.value).strip().splitlines()) == 1
+    for name in ("front_left", "front_right"):
+        bpy.data.objects[name].perception_entropy.free = [False] * 6
+    assert bpy.ops.pe.optimize() == {"FINISHED"}  # what is held does not matter

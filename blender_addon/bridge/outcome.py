@@ -45,6 +45,7 @@ def store_outcome(
         obj.perception_entropy.result_of = obj.name
         obj.perception_entropy.result_run = signature
     store_words(scene, outcome.study, outcome.after)
+    _store_breakdown(settings, outcome.after)
     settings.result_stale = False
     settings.has_result = True
 
@@ -70,6 +71,17 @@ def store_words(
             shares = [t.partition(": ")[0] if t == stopped else t for t in told]  # parts: below
             obj.perception_entropy.words = "\n".join(shares)
             _store_parts(obj.perception_entropy, advice.stopped_shares(sensor, own, study.vehicle))
+
+
+def _store_breakdown(settings: bpy.types.PropertyGroup, score: pe.Score) -> None:
+    """Keep entropy and coverage by zone and by class, for the panel's table."""
+    settings.result_parts.clear()
+    zones = {advice.WHERE.get(name, name): part for name, part in score.per_zone.items()}
+    for is_class, parts in ((False, zones), (True, score.per_class)):
+        for name, part in parts.items():
+            row = settings.result_parts.add()
+            row.name, row.is_class = name[:1].upper() + name[1:], is_class
+            row.entropy, row.coverage = part.entropy, part.coverage
 
 
 def _store_parts(settings: bpy.types.PropertyGroup, shares: Mapping[str, float]) -> None:

@@ -4,22 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..engine import pe
+from ..engine import advice, pe
 from .latest import Reading
 
 LEAST_CHANGE = 0.0005
 """Entropies nearer than this read the same in four places [nats]."""
 LEAST_ZONE_CHANGE = 0.005
 """A zone is worth a word from here on [nats]."""
-WHERE = {
-    "front": "ahead",
-    "rear": "behind",
-    "left": "on the left",
-    "right": "on the right",
-    "near": "within 10 m",
-    "mid": "10 to 40 m away",
-    "far": "beyond 40 m",
-}
 BETTER, SAME, WORSE = -1, 0, 1
 
 
@@ -75,5 +66,5 @@ def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:
         if name is not None and sign * by[name] >= LEAST_ZONE_CHANGE:
             part = now.per_zone[name]
             seen = f"{part.coverage:.0%} seen{points(part, before.per_zone[name])}"
-            found.append(f"{word} {WHERE.get(name, name)}: {seen}")
+            found.append(f"{word} {advice.WHERE.get(name, name)}: {seen}")
     return found

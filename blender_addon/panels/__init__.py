@@ -1,12 +1,25 @@
 """The sidebar tab: draws what is stored, computes nothing. Panels stand in the order of CLASSES."""
 
-from . import advanced, explain, export, focus, main, overlay, part, search, sensor, variants
+from . import (
+    advanced,
+    breakdown,
+    explain,
+    export,
+    focus,
+    main,
+    overlay,
+    part,
+    search,
+    sensor,
+    variants,
+)
 
 CLASSES = (
     *main.CLASSES,
     *sensor.CLASSES,
     *part.CLASSES,
     *explain.CLASSES,
+    *breakdown.CLASSES,
     *variants.CLASSES,
     *search.CLASSES,
     *focus.CLASSES,

@@ -9,6 +9,7 @@ import bpy
 from bpy.props import PointerProperty
 
 from .advanced import OWN_KINDS, PE_CurveSettings, PE_OwnSensorSettings
+from .breakdown import PE_ResultPart
 from .callbacks import model_suggestions
 from .focus import DEFAULT_REGION, PE_FocusSettings
 from .live import PE_LiveSettings
@@ -36,6 +37,7 @@ CLASSES = (
     PE_VariantSensor,
     PE_Variant,
     PE_Warning,
+    PE_ResultPart,
     PE_StoppingPart,
     PE_ViewSettings,
     PE_SceneSettings,

@@ -16,6 +16,7 @@ from bpy.props import (
 from ..choices import PRIORS
 from ..engine import pe
 from .advanced import AdvancedSceneSettings
+from .breakdown import PE_ResultPart
 from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
 from .live import PE_LiveSettings
@@ -150,6 +151,9 @@ class PE_SceneSettings(AdvancedSceneSettings, bpy.types.PropertyGroup):
     )
     result_signature: StringProperty(
         name="Signature", description="What was scored, to tell whether it still stands"
+    )
+    result_parts: CollectionProperty(
+        type=PE_ResultPart, name="Parts", description="The last result by zone and by class"
     )
     result_stale: BoolProperty(
         name="Stale", description="The scene has changed since the result was made"

@@ -3,12 +3,13 @@
 from .advice import Advice
 from .mounting import stopped_shares
 from .outlook import Outlook, class_of, outlook
-from .phrases import sensor_words, stopped_words, words
+from .phrases import WHERE, sensor_words, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
 from .side_by_side import ComparedRow, compare
 from .told import warnings
 
 __all__ = [
+    "WHERE",
     "Advice",
     "AskedPlace",
     "ComparedRow",

@@ -332,3 +332,15 @@ def test_a_second_stop_leaves_all_as_it_was(car):
             running.Running.stop(shown)
     assert act._apply(car, task) == {"CANCELLED"}
     assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result
+
+
+def test_zones_and_classes_are_kept_for_the_panel(car):
+    bpy.ops.pe.score()
+    after = stored(car)["after"]
+    rows = {row.name: row for row in car.perception_entropy.result_parts}
+    assert {n.lower() for n, row in rows.items() if row.is_class} == set(after["per_class"])
+    assert sum(not row.is_class for row in rows.values()) == len(after["per_zone"])
+    assert rows["Ahead"].coverage == pytest.approx(after["per_zone"]["front"]["coverage"])
+    assert rows["Car"].entropy == pytest.approx(after["per_class"]["car"]["entropy"])
+    bpy.ops.pe.score()
+    assert len(car.perception_entropy.result_parts) == len(rows)

@@ -9,7 +9,7 @@ from tests.blender.runner import output_of
 
 EFFECT_TIMEOUT_S = 120
 SAMPLES = 32_768
-LIVE_COLUMN = 0.75
+LIVE_COLUMN = 0.5
 """Where in the row of *Score* the switch *Live* is."""
 MOVES = 12
 NAME = "bl_ext.user_default.perception_entropy"

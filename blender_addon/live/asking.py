@@ -79,7 +79,7 @@ def read(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool)
     own = scene.perception_entropy
     space, model = bridge.space_of(own), bridge.perception_of(own)
     problem = Problem((settings, key, space, model), prior, vehicle, space, model)
-    return Wish(problem, rig, draft, settings)
+    return Wish(problem, rig, draft, (settings, space, model))
 
 
 class Evaluators:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from .. import bridge
+from .. import bridge, changes
 from ..engine import pe
 from ..live import latest
 
@@ -25,3 +25,4 @@ def known_score(
 def remember(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
     """Keep what a job found, for the views and for the next search."""
     latest.note_scored(scene.name, latest.Scored(signature, outcome.study, outcome.after))
+    changes.picture.tell()

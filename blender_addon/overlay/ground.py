@@ -12,7 +12,7 @@ from .colors import CIVIDIS, COUNTS, VIRIDIS, Rgba, Scale, on_scale
 from .primitives import Legend, Shape, Sheet
 
 if TYPE_CHECKING:
-    from ..engine import sight
+    from ..engine import pe, sight
 
 Floats = NDArray[np.float64]
 
@@ -21,6 +21,7 @@ BEST_NATS, UNSEEN_NATS = -10.976, 16.651
 """H of a place that is seen as well as can be, and of one that nobody sees: equations 4, 5, 8."""
 COUNT_NAMES = ("nobody", "1 sensor", "2 sensors", "3 or more")
 SWATCHES = 13
+AS_SCORED = "as scored"
 FADE_M = 8.0
 """Width of the margin in which the sheet fades out, where its edge is no edge of anything."""
 
@@ -46,6 +47,19 @@ class Quantity:
         return tuple((*map(float, color), 1.0) for color in row)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class AsScored:
+    """A score's ground map, with the names that a `GroundSight` has; nobody has counted sensors."""
+
+    x: Floats
+    y: Floats
+    step: float
+    entropy: Floats
+    coverage: Floats
+    sensors: NDArray[np.int64]
+    height: float | None = None
+
+
 QUANTITIES = {
     ENTROPY: Quantity(
         "Entropy, nats", VIRIDIS, UNSEEN_NATS, BEST_NATS, ("16.7 unseen", "−11 sure")
@@ -54,12 +68,19 @@ QUANTITIES = {
 }
 
 
-def ground_map(seen: sight.GroundSight, quantity: str, opacity: float, faded: bool) -> Shape:
+def ground_map(
+    seen: sight.GroundSight | AsScored,
+    quantity: str,
+    opacity: float,
+    *,
+    faded: bool = True,
+    where: str | None = None,
+) -> Shape:
     """Return a ground map and its legend; transparent where the vehicle is.
 
-    `faded`: towards the edges of what was looked at.
+    `faded`: towards the edges of what was looked at; `where` is what the legend says of heights.
     """
-    where = _where(seen.height)
+    where = where or _where(seen.height)
     if quantity == SENSORS:
         known = seen.sensors >= 0
         rgb = np.array(COUNTS, np.float32)[np.clip(seen.sensors, 0, 3)]
@@ -76,14 +97,26 @@ def ground_map(seen: sight.GroundSight, quantity: str, opacity: float, faded: bo
     return Shape(sheet=_sheet(seen, image.transpose(1, 0, 2)), legend=legend)
 
 
-def _sheet(seen: sight.GroundSight, image: NDArray[np.float32]) -> Sheet:
+def as_scored(found: pe.GroundMap, space: pe.PerceptionSpace, step: float) -> AsScored:
+    """Return the ground map of a score in squares of about `step` [m]."""
+    columns = max(1, round(step / space.interval))
+    coarse, side = found.coarser(columns), columns * space.interval
+    x, y = (
+        low + side * (np.arange(count) + 0.5)
+        for (low, _), count in zip((space.x, space.y), coarse.mass.shape, strict=True)
+    )
+    nobody = np.where(np.isfinite(coarse.entropy), 0, -1)
+    return AsScored(x, y, side, coarse.entropy, coarse.coverage, nobody)
+
+
+def _sheet(seen: sight.GroundSight | AsScored, image: NDArray[np.float32]) -> Sheet:
     half = seen.step / 2.0
     low = (float(seen.x[0]) - half, float(seen.y[0]) - half)
     high = (float(seen.x[-1]) + half, float(seen.y[-1]) + half)
     return Sheet(np.ascontiguousarray(image, np.float32), low, high)
 
 
-def _fading(seen: sight.GroundSight) -> Floats:
+def _fading(seen: sight.GroundSight | AsScored) -> Floats:
     """(NX, NY) 0 at the edges, 1 from `FADE_M` on."""
     x, y = (np.minimum(v - v[0], v[-1] - v) + seen.step / 2.0 for v in (seen.x, seen.y))
     edge = np.clip(np.minimum(x[:, None], y[None]) / FADE_M, 0.0, 1.0)

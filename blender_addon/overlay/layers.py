@@ -67,11 +67,28 @@ def _rig(wish: Wish) -> pe.Rig:
     return pe.Rig([each.sensor for each in wish.counted])
 
 
+def _ground_keys(wish: Wish) -> dict[str, Hashable]:
+    keys = _of_rig("ground_quantity", "ground_height", "ground_opacity")(wish)
+    return {name: (key, id(_as_scored(wish))) for name, key in keys.items()}
+
+
+def _as_scored(wish: Wish) -> pe.GroundMap | None:
+    """The score's own map, where that is what is to be shown."""
+    view = wish.view
+    averaged = view.ground_height is None and view.ground_quantity != ground.SENSORS
+    return wish.scored if averaged else None
+
+
 def _ground(wish: Wish, tools: Tools, _name: str) -> Shape:
     view = wish.view
+    if _as_scored(wish) is not None:
+        seen = ground.as_scored(wish.scored, pe.PerceptionSpace(), FINE_M)
+        return ground.ground_map(
+            seen, view.ground_quantity, view.ground_opacity, where=ground.AS_SCORED
+        )
     step = COARSE_M if wish.moving else FINE_M
     seen = tools.sight(wish).ground(_rig(wish), view.ground_height, step, draft=wish.moving)
-    return ground.ground_map(seen, view.ground_quantity, view.ground_opacity, faded=True)
+    return ground.ground_map(seen, view.ground_quantity, view.ground_opacity)
 
 
 def _blind(wish: Wish, tools: Tools, _name: str) -> Shape:
@@ -207,7 +224,7 @@ LAYERS = (
     Layer(
         "ground",
         "Ground Map",
-        _of_rig("ground_quantity", "ground_height", "ground_opacity"),
+        _ground_keys,
         _ground,
         rough=True,
         on_ground=True,

@@ -9,6 +9,7 @@ import bpy
 
 from .. import body, bridge, roster
 from ..engine import pe
+from ..live import latest
 from .layers import LAYERS
 from .wish import AVERAGE, Mounted, View, Wish
 
@@ -38,7 +39,8 @@ class Reader:
         key = bridge.prior_key(scene)
         if self._prior[0] != key:
             self._prior = key, _prior(scene)
-        return Wish(sensors, vehicle, body_key, self._prior[1], key, view_of(scene), moving)
+        view, scored = view_of(scene), _scored(scene, sensors)
+        return Wish(sensors, vehicle, body_key, self._prior[1], key, view, moving, scored)
 
     def _vehicle(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool
@@ -82,6 +84,16 @@ def _mounted(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[Mo
             drawn, counted = obj.perception_entropy.show, obj.visible_get(view_layer=layer)
             found.append(Mounted(sensor, number, selected, drawn, counted))
     return tuple(found)
+
+
+def _scored(scene: bpy.types.Scene, sensors: tuple[Mounted, ...]) -> pe.GroundMap | None:
+    """The last score's ground map, if the scene is not known to be another one since."""
+    found = latest.scored(scene.name)
+    if found is None or scene.perception_entropy.result_stale:
+        return None
+    now = {(e.sensor.name, e.sensor.model, e.sensor.pose) for e in sensors if e.counted}
+    then = {(each.name, each.model, each.pose) for each in found.study.rig}
+    return found.score.ground_map if now == then else None
 
 
 def _prior(scene: bpy.types.Scene) -> pe.Prior | None:

@@ -65,7 +65,8 @@ class Wish:
     """A scene, as far as what is drawn depends on it.
 
     `body_key` and `prior_key` tell vehicles and priors from others; `moving`: a rough picture now
-    is better than a fine one later.
+    is better than a fine one later. `scored` is the ground map of the last score, of all voxels, if
+    the scene still is as it was then.
     """
 
     sensors: tuple[Mounted, ...]
@@ -75,6 +76,7 @@ class Wish:
     prior_key: Hashable
     view: View
     moving: bool = False
+    scored: pe.GroundMap | None = None
 
     @property
     def counted(self) -> tuple[Mounted, ...]:

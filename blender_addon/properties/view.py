@@ -70,7 +70,7 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
     ground_opacity: FloatProperty(
         name="Opacity",
         description="How much of what lies below the map's colours hide",
-        default=0.4,
+        default=0.35,
         min=0.05,
         max=1.0,
         subtype="FACTOR",

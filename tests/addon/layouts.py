@@ -26,7 +26,10 @@ class Layout:
     def prop(self, _owner, name, **_):
         self.notes.append(("prop", name))
 
-    def separator(self):
+    def popover(self, panel, **_):
+        self.notes.append(("popover", panel))
+
+    def separator(self, **_):
         pass
 
     def context_string_set(self, name, value):

@@ -40,7 +40,7 @@ ALLOWED = {
     "library": set(),
     "live": {"body", "bridge", "changes", "engine", "motion", "roster", "worker"},
     "overlay": {"engine"},
-    "overlay.reading": {"body", "bridge", "engine", "overlay", "roster"},
+    "overlay.reading": {"body", "bridge", "engine", "live", "overlay", "roster"},
     "overlay.updating": {
         *("changes", "engine", "overlay", "overlay.reading", "roster", "worker"),
     },

@@ -9,6 +9,7 @@ import pytest
 
 from blender_addon import body, bridge, changes, worker
 from blender_addon.engine import pe, sight
+from blender_addon.live import latest
 from blender_addon.overlay import casts, handler, layers, updating
 from blender_addon.overlay.store import shown
 from tests.addon import scenes
@@ -153,6 +154,25 @@ def test_the_map_is_that_of_the_engine(rig, quantity, height):
     found = look.ground(study.rig, metres, layers.FINE_M)
     expected = layers.ground.ground_map(found, quantity, 1.0, faded=True).sheet
     np.testing.assert_allclose(sheet.image, expected.image, atol=1e-6)
+
+
+def test_after_a_score_its_own_map_is_shown_until_something_moves(rig):
+    rig.perception_entropy.score_samples = 0
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    shape = scenes.drawn(rig)["ground"][""]
+    score = latest.scored(rig.name).score
+    expected = score.ground_map.coarser(5).entropy
+    np.testing.assert_array_equal(shape.sheet.image[..., 3] == 0.0, np.isnan(expected).T)
+    lowest, highest = np.nanargmin(expected), np.nanargmax(expected)
+    rgb = shape.sheet.image[..., :3].transpose(1, 0, 2).reshape(-1, 3)
+    quantity = layers.ground.QUANTITIES["ENTROPY"]
+    for place in (lowest, highest):
+        value = expected.ravel()[place]
+        np.testing.assert_allclose(rgb[place], quantity.colors(value), atol=1e-6)
+    assert "as scored" in shape.legend.title
+    rig.objects["roof"].location.z += 0.1
+    bpy.context.view_layer.update()
+    assert "as scored" not in scenes.drawn(rig)["ground"][""].legend.title
 
 
 def test_beams_of_the_selected_sensors_alone(rig):

@@ -1,0 +1,60 @@
+"""The popover in the 3D view's header offers every layer, and computes nothing."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+
+from blender_addon.overlay import layers
+from blender_addon.panels import overlay
+from blender_addon.properties.view import classes_of
+from tests.addon.layouts import Layout, drawn
+
+
+def offered(scene) -> list[str]:
+    """Names of the settings that the popover shows."""
+    layout = drawn(overlay.PE_PT_view, scene=scene)
+    return [name for kind, name in layout.notes if kind == "prop"]
+
+
+def test_every_layer_has_its_switch(car):
+    shown = offered(car)
+    for layer in layers.LAYERS:
+        assert shown.count(f"show_{layer.name}") == 1, layer.name
+    assert "show_legend" in shown
+
+
+def test_every_setting_of_the_view_is_offered(car):
+    """In one state of the popover or another: none can be set by scripts alone."""
+    view = car.perception_entropy.view
+    shown = set()
+    for view.channels in ("FEW", "ONE", "EVERY", "ALL"):
+        shown |= set(offered(car))
+    of_group = {p.identifier for p in view.bl_rna.properties} - {"rna_type", "name"}
+    assert of_group <= shown
+    assert {"beam_length", "beam_limit"} <= shown
+
+
+@pytest.mark.parametrize(("channels", "number"), [("ONE", "channel"), ("EVERY", "every")])
+def test_the_number_of_a_channel_is_asked_for_where_it_means_something(car, channels, number):
+    car.perception_entropy.view.channels = channels
+    assert number in offered(car)
+    car.perception_entropy.view.channels = "ALL"
+    assert number not in offered(car)
+
+
+def test_the_header_has_a_switch_and_the_button_once(car):
+    functions = bpy.types.VIEW3D_HT_header.draw._draw_funcs
+    assert functions.count(overlay.draw_in_header) == 1
+    layout = Layout()
+    header = SimpleNamespace(layout=layout)
+    overlay.draw_in_header(header, SimpleNamespace(scene=car))
+    assert layout.notes == [("prop", "show_overlay"), ("popover", "PE_PT_view")]
+
+
+def test_classes_of_reach_are_those_of_the_prior(car):
+    view = car.perception_entropy.view
+    context = bpy.context
+    assert "pedestrian" in classes_of(view, context, "")
+    car.perception_entropy.prior = "highway"
+    assert "pedestrian" not in classes_of(view, context, "")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import bpy
 
 from ..operators import listed_sensors
-from .words import draw_warning
+from .words import draw_warning, letters
 
-LEAST_SHARE, MOST_SHARE = 0.4, 0.7
-"""How much of a row a name may take."""
-MODEL_WORTH = 0.55
-"""How much of the room that a model needs it gets beside names: those tell sensors apart."""
+LEAST_SHARE = 0.34
+"""How much of a row a name takes at least."""
+BESIDE_LETTERS = 6
+"""What switches and the figure take from a row, in letters."""
 FIGURE_SHARE = 0.2
 
 
@@ -21,7 +21,7 @@ def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     if not objects:
         box.label(text="No sensors yet", icon="INFO")
         return
-    share = name_share(objects)
+    share = name_share(objects, letters(context) - BESIDE_LETTERS)
     draw_header(box, share)
     warnings = list(context.scene.perception_entropy.result_warnings)
     for obj in objects:
@@ -31,11 +31,14 @@ def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
                 draw_warning(box, context, warning)
 
 
-def name_share(objects: list[bpy.types.Object]) -> float:
-    """Return how much of a row the names take: as much as they need beside the models."""
+def name_share(objects: list[bpy.types.Object], room: int) -> float:
+    """Return how much of a row the names take; all of it where models would leave them too little.
+
+    The model of the one that is selected is in its own panel, and a wider sidebar shows all.
+    """
     names = max(len(obj.name) for obj in objects) + 2
-    models = max(len(obj.perception_entropy.model) for obj in objects) + 2
-    return min(MOST_SHARE, max(LEAST_SHARE, names / (names + MODEL_WORTH * models)))
+    models = max(len(obj.perception_entropy.model) for obj in objects) + 1
+    return 1.0 if names + models > room else max(LEAST_SHARE, names / (names + models))
 
 
 def draw_header(layout: bpy.types.UILayout, share: float) -> None:
@@ -47,7 +50,8 @@ def draw_header(layout: bpy.types.UILayout, share: float) -> None:
     row.label(text="", icon="BLANK1")
     name, model, figure = cells(row, share)
     name.label(text="Sensor")
-    model.label(text="Model")
+    if model is not None:
+        model.label(text="Model")
     figure.label(text="Alone")
 
 
@@ -62,19 +66,24 @@ def draw_sensor(
     rays = "LIGHT_SUN" if settings.show else "DOT"
     row.prop(settings, "show", text="", icon=rays, emboss=False)
     name, model, figure = cells(row, share)
-    for cell in (name, model, figure):
-        cell.active = counts  # what is hidden is not scored
+    row.active = counts  # what is hidden is not scored
     active = obj == context.active_object
     name.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
-    model.label(text=settings.model, translate=False)
+    if model is not None:
+        model.label(text=settings.model, translate=False)
     figure.label(text=f"{settings.entropy:.2f}" if settings.has_result else "–", translate=False)
 
 
-def cells(layout: bpy.types.UILayout, share: float) -> tuple[bpy.types.UILayout, ...]:
-    """Return the cells of a row: name, model, and a figure at its right."""
+def cells(
+    layout: bpy.types.UILayout, share: float
+) -> tuple[bpy.types.UILayout, bpy.types.UILayout | None, bpy.types.UILayout]:
+    """Return the cells of a row: name, model (None where there is no room), figure at the right."""
     left = layout.split(factor=1.0 - FIGURE_SHARE, align=True)
-    both = left.split(factor=share, align=True)
-    name, model = both.row(align=True), both.row(align=True)
+    if share < 1.0:
+        both = left.split(factor=share, align=True)
+        name, model = both.row(align=True), both.row(align=True)
+    else:
+        name, model = left.row(align=True), None
     figure = left.row(align=True)
     figure.alignment = "RIGHT"
     return name, model, figure

@@ -2,6 +2,8 @@
 
 from types import SimpleNamespace
 
+import bpy
+
 
 class Layout:
     """Takes what a panel draws, in rows and columns alike, and notes it in order."""
@@ -46,3 +48,12 @@ def drawn(cls, **context) -> Layout:
     layout = Layout()
     cls.draw(SimpleNamespace(layout=layout), SimpleNamespace(**context))
     return layout
+
+
+class Window:
+    """What panels ask of the window that they are drawn in: wide enough for all columns."""
+
+    def __init__(self, scene, active_object=None):
+        self.scene, self.active_object = scene, active_object
+        self.region = SimpleNamespace(width=600)
+        self.preferences = bpy.context.preferences

@@ -9,7 +9,7 @@ import pytest
 from blender_addon import asking, bridge, explaining, panels
 from blender_addon.engine import advice, pe
 from tests.addon import scenes
-from tests.addon.layouts import Layout
+from tests.addon.layouts import Layout, Window
 
 
 def told(scene):
@@ -204,15 +204,6 @@ def test_a_driver_that_failed_is_told_by_name(car):
     assert ("roof", "driver") in told(car)
     bpy.ops.pe.score()
     assert "driver of its location did not run" in car.perception_entropy.result_missing
-
-
-class Window:
-    """What panels ask of the window that they are drawn in."""
-
-    def __init__(self, scene, obj):
-        self.scene, self.active_object = scene, obj
-        self.region = type("Region", (), {"width": 300})
-        self.preferences = bpy.context.preferences
 
 
 def test_panels_show_words_warnings_and_the_place(car):

@@ -17,7 +17,7 @@ from blender_addon.review import render_review
 from blender_addon.review.page import legend_of
 from pe_core import catalog, kinds
 from tests.addon import scenes
-from tests.addon.layouts import Layout, drawn
+from tests.addon.layouts import Layout, Window, drawn
 from tests.engine.toy_kind import Ring, RingKind
 
 PRESET = "Parking Ring"
@@ -86,7 +86,7 @@ def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
 def test_the_panel_shows_what_was_stored(ring_kind, ring):
     bpy.ops.pe.score()
     layout, own = Layout(), ring.perception_entropy
-    panels.sensors.draw_sensors(layout, bpy.context)
+    panels.sensors.draw_sensors(layout, Window(ring_kind))
     assert list(filter(None, layout.texts("operator"))) == ["bumper", "roof"]
     shown = layout.texts("label")
     assert shown[shown.index(PRESET) + 1] == f"{own.entropy:.2f}"

@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import bpy
+from bl_ext.user_default.perception_entropy import asking
 from bl_ext.user_default.perception_entropy.live import latest
 from bl_ext.user_default.perception_entropy.operators import placing, running
 from bpy_extras.view3d_utils import location_3d_to_region_2d
@@ -96,6 +97,9 @@ def report_state():
         "coverage": found.result_coverage,
         "stale": found.result_stale,
         "live": live_reading(scene),
+        "variants": [row.name for row in found.variants],
+        "variant_changed": found.variant_changed,
+        "answer": answer_of(scene),
     }
     held = placing.current
     state |= {
@@ -145,6 +149,10 @@ def report_where():
         x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, point)
         asked.unlink()
         write("there.json", [round(region.x + x), round(window.height - (region.y + y))])
+def answer_of(scene):
+    """Lines that are told of the place that was asked about."""
+    answer = asking.answer(scene)
+    return [] if answer is None else list(answer.lines)
 
 
 def better_found(job):

@@ -1,0 +1,54 @@
+"""Variants and a place asked about, in a real window: by clicks and keys alone."""
+
+from tests.blender.window import HEIGHT, WIDTH
+
+EFFECT_TIMEOUT_S = 30
+ANSWER_TIMEOUT_S = 90
+
+
+def test_save_move_and_come_back_by_clicks(window, screenshots):
+    start = window.state["places"]
+    window.press("pe.save_variant")
+    window.wait_for(lambda: window.state["variants"] == ["Variant"], EFFECT_TIMEOUT_S, "a variant")
+    assert not window.state["variant_changed"]
+
+    window.press("pe.select_sensor")
+    window.point_at_view()
+    window.key("g", "x", "1", "Return")
+    window.wait_for(lambda: window.state["places"] != start, EFFECT_TIMEOUT_S, "the move")
+    moved = window.state["places"]
+    window.wait_for(lambda: window.state["variant_changed"], EFFECT_TIMEOUT_S, "the mark")
+    window.screenshot(screenshots / "window_variant_changed.png")
+
+    window.press("pe.switch_variant")
+    window.wait_for(lambda: window.state["places"] == start, EFFECT_TIMEOUT_S, "the way back")
+    window.wait_for(
+        lambda: window.state["variants"] == ["Variant", "Unsaved"],
+        EFFECT_TIMEOUT_S,
+        "what was not saved to be kept",
+    )
+    window.screenshot(screenshots / "window_variants.png")
+
+    window.point_at_view()
+    window.key("ctrl+z")
+    window.wait_for(lambda: window.state["places"] == moved, EFFECT_TIMEOUT_S, "undo in one step")
+    assert window.state["variants"] == ["Variant"]
+    assert "Traceback" not in window.log.read_text()
+
+
+def test_ask_the_ground_by_a_click(window, screenshots):
+    window.press("pe.ask_place")
+    window.click(WIDTH // 4, HEIGHT - HEIGHT // 4)
+    window.wait_for(lambda: window.state["answer"], ANSWER_TIMEOUT_S, "an answer")
+    first = window.state["answer"]
+    assert "m: seen by" in first[0]
+    assert any(name in line for line in first for name in window.state["sensors"])
+    window.click(WIDTH // 2, HEIGHT - HEIGHT // 6)  # it goes on asking
+    window.wait_for(lambda: window.state["answer"] != first, ANSWER_TIMEOUT_S, "another answer")
+    window.screenshot(screenshots / "window_place.png")
+
+    window.point_at_view()
+    window.key("Escape")
+    second = window.state["answer"]
+    assert second != first
+    assert "Traceback" not in window.log.read_text()

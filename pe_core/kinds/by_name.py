@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
+from typing import Any
 
 from numpy.typing import NDArray
 
@@ -24,12 +25,19 @@ class MeasuredByName:
     vehicle : Vehicle or None
     enough : callable
         The whole number from which on the m of a kind is saturated, by the kind's name.
+    known : dict, optional
+        What kernels know besides voxels, by kind, for several of these on one vehicle.
     """
 
     def __init__(
-        self, voxels: Voxels, vehicle: Vehicle | None, enough: Callable[[str], int]
+        self,
+        voxels: Voxels,
+        vehicle: Vehicle | None,
+        enough: Callable[[str], int],
+        known: dict[str, Any] | None = None,
     ) -> None:
         self._voxels, self._vehicle, self._enough = voxels, vehicle, enough
+        self._known = {} if known is None else known
         self._kernels: dict[str, SampleKernel] = {}  # by kind: as many as there are
         self._measured: dict[str, Measured] = {}  # by sensor name: those of the last rig
 
@@ -75,5 +83,7 @@ class MeasuredByName:
         kind = kind_of(sensor)
         if kind.name not in self._kernels:
             enough = self._enough(kind.name)
-            self._kernels[kind.name] = kind.on_sample(self._voxels, self._vehicle, enough)
+            kernel = kind.on_sample(self._voxels, self._vehicle, enough)
+            kernel.share(self._known.setdefault(kind.name, kernel.known))
+            self._kernels[kind.name] = kernel
         return self._kernels[kind.name]

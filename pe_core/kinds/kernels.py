@@ -76,7 +76,13 @@ class GridKernel(ABC):
 
 
 class SampleKernel(ABC):
-    """Measures sensors of one kind on a fixed sample of voxels."""
+    """Measures sensors of one kind on a fixed sample of voxels.
+
+    `known` is what it has worked out of sensors and of the vehicle, whatever the voxels: kernels of
+    its kind for other voxels of the space may `share` it.
+    """
+
+    known: Any = None
 
     @abstractmethod
     def measure(self, sensor: Sensor, draft: bool) -> Measured:
@@ -89,6 +95,10 @@ class SampleKernel(ABC):
     def stopped(self, measured: Measured) -> Stopped:
         """Say what the vehicle stops of a sensor that was measured."""
         return Stopped()
+
+    def share(self, known: Any) -> None:
+        """Use what another kernel of this kind knows, from now on together."""
+        return
 
     def forget_all_but(self, sensors: Collection[Sensor]) -> None:
         """Keep nothing of other sensors than these."""

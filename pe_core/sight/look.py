@@ -32,12 +32,8 @@ P = TypeVar("P", bound=HasVoxels)
 class Look(Generic[P]):
     """What is looked at, and the sensors measured on its voxels."""
 
-    def __init__(
-        self, places: P, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion
-    ) -> None:
-        self.places = places
-        voxels = Voxels(space, places.index, space.center_of(places.index))
-        self._sensors = MeasuredByName(voxels, vehicle, fusion.enough)
+    def __init__(self, places: P, sensors: MeasuredByName) -> None:
+        self.places, self._sensors = places, sensors
 
     @property
     def size(self) -> int:
@@ -54,12 +50,13 @@ class Looks:
     """Looks by what is asked for; of those asked for last, as many as there is room for."""
 
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion) -> None:
-        self._of = space, vehicle, fusion
+        self._space, self._vehicle, self._fusion = space, vehicle, fusion
+        self._known: dict[str, Any] = {}  # by kind: beams are turned and cast once for all looks
         self._looks: dict[Hashable, Look[Any]] = {}  # the one asked for last comes last
 
     def at(self, key: Hashable, places: Callable[[], P]) -> Look[P]:
         """Return what is kept by that key, or make it."""
-        look = self._looks.pop(key, None) or Look(places(), *self._of)
+        look = self._looks.pop(key, None) or self._made(places())
         self._looks[key] = look
         room = VOXELS_KEPT
         for other in reversed(tuple(self._looks)):
@@ -67,3 +64,8 @@ class Looks:
             if room < 0 and other != key:
                 del self._looks[other]
         return look
+
+    def _made(self, places: P) -> Look[P]:
+        voxels = Voxels(self._space, places.index, self._space.center_of(places.index))
+        enough = self._fusion.enough
+        return Look(places, MeasuredByName(voxels, self._vehicle, enough, self._known))

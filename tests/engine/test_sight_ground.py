@@ -5,6 +5,8 @@ import pytest
 
 import pe_core as pe
 from pe_core import kinds
+from pe_core.kinds.lidar import known
+from pe_core.kinds.lidar.beams import beam_field
 from pe_core.kinds.lidar.on_sample import LidarSample
 from pe_core.metric.entropy import H_BLIND, entropy_of, precision_of
 from pe_core.metric.fusion import late_fusion
@@ -167,6 +169,23 @@ def test_a_sensor_that_stayed_is_not_measured_again(measured):
     fresh = sight().ground(pe.Rig([first, moved]), 0.5)
     assert np.array_equal(there.entropy, fresh.entropy, equal_nan=True)
     assert not np.array_equal(there.entropy, one.entropy, equal_nan=True)
+
+
+def test_beams_are_cast_once_for_all_that_is_looked_at(monkeypatch):
+    """Map, blind ground and reach measure voxels of their own, of beams that end where they end."""
+    cast, plain = [], beam_field
+    monkeypatch.setattr(known, "beam_field", lambda *a: cast.append(a[0].name) or plain(*a))
+    own, rig = sight(shapes.box_car(2)), pe.Rig([lidar((0.3, 0.2, 1.6))])
+    for ask in (own.ground, own.blind, lambda r: own.reach(r, "car"), own.expected_ap):
+        ask(rig)
+    assert cast == ["roof"]
+    moved = pe.Rig([lidar((0.3, 0.2, 1.7))])
+    assert own.ground(moved, draft=True).draft and own.blind(moved, draft=True).draft
+    assert cast == ["roof"]
+    exact = own.blind(moved)
+    assert not exact.draft and cast == ["roof"] * 2
+    assert not own.ground(moved, draft=True, step=2.0).draft  # it is known where beams end
+    assert exact.area == sight(shapes.box_car(2)).blind(moved).area
 
 
 def test_a_draft_says_so_and_the_next_does_not(measured):

@@ -1,4 +1,4 @@
-"""LiDARs on a sample of voxels; what turning and casting the beams gave is kept while it holds."""
+"""LiDARs on a sample of voxels."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from ...scene.sensors import Sensor
 from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Measured, SampleKernel, Stopped, Voxels
-from .beams import BeamEnds, TurnedBeams, beam_field, stopped_beams
+from .beams import TurnedBeams, beam_field, stopped_beams
+from .known import KnownBeams
 from .lattice import lattice_of
 from .model import Lidar
 from .points import PlacedLidar, VoxelPoints, count_through
@@ -24,23 +25,17 @@ class LidarSample(SampleKernel):
     def __init__(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> None:
         self._space, self._vehicle, self._enough = voxels.space, vehicle, enough
         self._points = VoxelPoints(voxels.index)
-        self._ends = BeamEnds(vehicle)
-        self._turned: dict[str, tuple[Sensor, TurnedBeams]] = {}
-        """By the sensor's name, with the sensor they hold for: as many as the last rig had."""
+        self.known = KnownBeams(vehicle)
 
     def measure(self, sensor: Sensor, draft: bool) -> Measured:
         """Count a LiDAR's beams; a draft has them stopped by a map of the vehicle's top."""
-        beams = self._turn(sensor)
-        if draft and self._ends.can_draft(sensor):
-            return Measured(
-                sensor, self._count(sensor, beams, self._ends.draft(sensor, beams)), True
-            )
-        field = beam_field(sensor, self._vehicle, beams.directions)
-        return Measured(sensor, self._count(sensor, beams, field.ends), found=field)
+        beams, ended = self.known.turned(sensor), self.known.ended(sensor, draft)
+        is_draft = ended.field is None
+        return Measured(sensor, self._count(sensor, beams, ended.ends), is_draft, ended.field)
 
     def unhidden(self, sensor: Sensor) -> NDArray:
         """Count a LiDAR's beams as if there were no vehicle."""
-        beams = self._turn(sensor)
+        beams = self.known.turned(sensor)
         max_range = cast(Lidar, sensor.model).max_range
         return self._count(sensor, beams, np.full(len(beams.directions), max_range))
 
@@ -51,17 +46,11 @@ class LidarSample(SampleKernel):
 
     def forget_all_but(self, sensors: Collection[Sensor]) -> None:
         """Keep the beams of these sensors alone."""
-        names = {sensor.name for sensor in sensors}
-        self._turned = {name: kept for name, kept in self._turned.items() if name in names}
+        self.known.forget_all_but(sensors)
 
-    def _turn(self, sensor: Sensor) -> TurnedBeams:
-        """Return a LiDAR's beams, kept until it turns."""
-        known = self._turned.get(sensor.name)
-        if known and known[0].model is sensor.model and known[0].pose.rpy == sensor.pose.rpy:
-            return known[1]
-        beams = TurnedBeams.of(sensor)
-        self._turned[sensor.name] = (sensor, beams)
-        return beams
+    def share(self, known: KnownBeams) -> None:
+        """Use beams that another sample of voxels knows as well."""
+        self.known = known
 
     def _count(self, sensor: Sensor, beams: TurnedBeams, ends: Floats) -> NDArray:
         side = self._space.interval

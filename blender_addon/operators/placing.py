@@ -31,6 +31,8 @@ from .surface import Spot, parts_of, spot_on_ray
 SHOWN = Choice(360, Channels.FEW)
 LENGTH_M, RING_M, ALOFT_M = 4.0, 0.12, 100.0
 STEM = (1.0, 1.0, 1.0, 0.8)
+IN_THE_AIR = replace(VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.0, 0.93, 0.55, 0.9))
+"""Lighter than sensors that are there."""
 POINT_AT = "Point at the vehicle"
 
 
@@ -186,9 +188,9 @@ def shape_of(name: str, model: Any) -> tuple[Primitives, Primitives]:
     """
     sensor = pe.Sensor(name, model, pe.Pose((0.0, 0.0, ALOFT_M)))
     sketch = drawing_of(sensor.kind).sketch(sensor, None, SHOWN)
-    lines = [sketch.lines(LENGTH_M, VIEWPORT), ring_lines(sensor, RING_M)]
+    lines = [sketch.lines(LENGTH_M, IN_THE_AIR), ring_lines(sensor, RING_M, IN_THE_AIR)]
     low = np.array([0.0, 0.0, ALOFT_M], np.float32)
-    both = Primitives.joined(lines), sketch.faces(LENGTH_M, VIEWPORT)
+    both = Primitives.joined(lines), sketch.faces(LENGTH_M, IN_THE_AIR)
     found = [Primitives(each.points - low, each.colors) for each in both]
     return found[0], found[1]
 

@@ -14,10 +14,10 @@ from ..overlay.primitives import Primitives
 
 VIEW = bpy.types.SpaceView3D
 LINE_PX = 1.5
-TEXT_PX, TEXT_GAP = 12, 1.5
-TEXT_AT = (22, -8)
-"""Where text begins beside the mouse [px], and how high a line is in units of its letters."""
-TEXT_COLOR, SHADE = (1.0, 1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 0.9)
+FONT, TEXT_PX, TEXT_GAP, PAD_PX = 0, 12, 1.5, 6
+TEXT_AT = (26, -12)
+"""Where text begins beside the mouse [px]."""
+TEXT_COLOR, PLATE = (0.95, 0.95, 0.95, 1.0), (0.08, 0.08, 0.08, 0.78)
 
 
 class Preview:
@@ -77,16 +77,30 @@ class Preview:
         if region is None or region.as_pointer() != self._region:
             return
         scale = bpy.context.preferences.system.ui_scale
-        size = TEXT_PX * scale
-        blf.size(0, size)
-        blf.color(0, *TEXT_COLOR)
-        blf.enable(0, blf.SHADOW)
-        blf.shadow(0, 5, *SHADE)
+        blf.size(FONT, TEXT_PX * scale)
+        row = TEXT_PX * scale * TEXT_GAP
+        left, top = (at + off * scale for at, off in zip(self._mouse, TEXT_AT, strict=True))
+        width = max((blf.dimensions(FONT, line)[0] for line in self._text), default=0.0)
+        pad = PAD_PX * scale
+        low = top - row * (len(self._text) - 1) - pad
+        _fill((left - pad, low), (left + width + pad, top + row))
+        blf.color(FONT, *TEXT_COLOR)
         for number, line in enumerate(self._text):
-            x = self._mouse[0] + TEXT_AT[0] * scale
-            blf.position(0, x, self._mouse[1] + TEXT_AT[1] * scale - number * size * TEXT_GAP, 0)
-            blf.draw(0, line)
-        blf.disable(0, blf.SHADOW)
+            blf.position(FONT, left, top - number * row, 0)
+            blf.draw(FONT, line)
+
+
+def _fill(low: tuple[float, float], high: tuple[float, float]) -> None:
+    """Draw the plate that words stand on."""
+    (x0, y0), (x1, y1) = low, high
+    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+    corners = {"pos": ((x0, y0), (x1, y0), (x1, y1), (x0, y1))}
+    plate = batch_for_shader(shader, "TRIS", corners, indices=((0, 1, 2), (0, 2, 3)))
+    gpu.state.blend_set("ALPHA")
+    shader.bind()
+    shader.uniform_float("color", PLATE)
+    plate.draw(shader)
+    gpu.state.blend_set("NONE")
 
 
 def _draw_batch(name: str, kind: str, primitives: Primitives) -> None:

@@ -39,7 +39,6 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         row = layout.row(align=True)
         for index, label in enumerate(AXIS_LABELS):
             row.prop(settings, "free", index=index, text=label, toggle=True)
-        draw_bounds(layout, settings)
 
 
 def draw_refusal(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
@@ -82,4 +81,16 @@ def draw_bounds(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
             pair.prop(settings, "bounds_high", index=index, text="")
 
 
-CLASSES = (PE_PT_sensor,)
+class PE_PT_bounds(Tab, bpy.types.Panel):
+    """How far the search may move this sensor; else: the vehicle's outline, and 0.75 m above it"""
+
+    bl_idname = "PE_PT_bounds"
+    bl_label = "Bounds"
+    bl_parent_id = "PE_PT_sensor"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        draw_bounds(self.layout, context.active_object.perception_entropy)
+
+
+CLASSES = (PE_PT_sensor, PE_PT_bounds)

@@ -1,0 +1,145 @@
+"""The sensor that is held under the mouse: its stand-off, its words, and that it lets go."""
+
+from types import SimpleNamespace
+from typing import ClassVar
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+
+from blender_addon import bridge, operators
+from blender_addon.engine import catalog, pe
+from blender_addon.operators import placing, pointing, preview
+from blender_addon.operators.surface import Spot
+from tests.addon import scenes
+
+
+class View3D:
+    """Stands for Blender's 3D views: counts what is drawn into them."""
+
+    handles: ClassVar[set] = set()
+
+    @classmethod
+    def draw_handler_add(cls, *_):
+        handle = object()
+        cls.handles.add(handle)
+        return handle
+
+    @classmethod
+    def draw_handler_remove(cls, handle, _region):
+        cls.handles.remove(handle)
+
+
+ROOF = Spot(Vector((-0.3, 0.0, 1.5)), Vector((0.0, 0.0, 1.0)), "cabin")
+
+
+@pytest.fixture
+def held(car, monkeypatch):
+    """Return a camera that is held, as it is when the button was pressed."""
+    monkeypatch.setattr(preview, "VIEW", View3D)
+    told = []
+    workspace = SimpleNamespace(name="none", status_text_set=told.append)
+    context = SimpleNamespace(
+        scene=car, workspace=workspace, evaluated_depsgraph_get=scenes.depsgraph
+    )
+    placing.begin(context, catalog.load("Camera 60 deg"), pointing.Stance(0.05))
+    yield placing.current
+    placing.end()
+    assert not View3D.handles
+
+
+def test_what_is_held_changes_nothing_in_the_scene(held, car):
+    before = [obj.name for obj in car.objects]
+    held._stand(ROOF)
+    assert held.matrix.translation.z == pytest.approx(1.55)
+    assert [obj.name for obj in car.objects] == before
+
+
+def test_its_score_is_told_beside_where_it_stands(held):
+    held._stand(ROOF)
+    model, where, score = held._preview._text
+    assert (model, where) == ("Camera 60 deg", "0.05 m from cabin, upright")
+    assert "nats" in score and "coverage" in score
+
+
+def test_beside_the_vehicle_it_is_nowhere(held):
+    held._stand(ROOF)
+    held._stand(None)
+    assert held.matrix is None
+    assert held._preview._text == ("Camera 60 deg", placing.POINT_AT)
+    assert not len(held._preview._lines.points)
+
+
+def test_a_stand_off_is_typed_stepped_and_taken_back(held):
+    held._stand(ROOF)
+    for letter in "0.25":
+        held.typed(letter)
+    assert held.told == "0.25 m" and held.matrix.translation.z == pytest.approx(1.75)
+    held.typed("")
+    assert held.told == "0.2 m" and held.matrix.translation.z == pytest.approx(1.7)
+    held.step(0.01)
+    assert held.stance.stand_off_m == 0.21
+    held.typed(".")  # no number yet
+    assert held.stance.stand_off_m == 0.21
+    for letter in "99":
+        held.typed(letter)
+    assert held.stance.stand_off_m == 0.99
+    held.typed("")
+    held.typed("")
+    held.typed("")
+    assert held.stance.stand_off_m == 0.05  # nothing typed: as usual for its kind
+
+
+def test_it_is_drawn_where_it_stands_and_as_it_is_turned(held):
+    held._stand(ROOF)
+    points = held._preview._lines.points
+    place = np.array(held.matrix.translation)
+    assert np.abs(points - place).max() < placing.LENGTH_M + 0.2
+    pinhole = np.abs(points - place).sum(axis=1) < 1e-5
+    assert pinhole.sum() >= 4  # the frustum's edges begin there
+    held.stand(pointing.Stance(0.05, along_normal=True))
+    assert held._preview._lines.points[:, 2].max() > place[2] + 3.0  # it looks up now
+
+
+def test_a_scene_without_a_score_says_why(car, monkeypatch):
+    monkeypatch.setattr(preview, "VIEW", View3D)
+    car.perception_entropy.vehicle = None
+    workspace = SimpleNamespace(name="none", status_text_set=print)
+    context = SimpleNamespace(
+        scene=car, workspace=workspace, evaluated_depsgraph_get=scenes.depsgraph
+    )
+    try:
+        placing.begin(context, catalog.load("Pandar64"), pointing.Stance(0.15))
+        placing.current._stand(ROOF)
+        assert "vehicle collection" in placing.current._preview._text[2]
+    finally:
+        placing.end()
+
+
+def test_it_lets_go_when_the_extension_is_disabled(held):
+    held._stand(ROOF)
+    assert len(View3D.handles) == 2 and placing.busy()
+    operators.unregister()
+    try:
+        assert placing.current is None and not View3D.handles and not placing.busy()
+    finally:
+        operators.register()
+
+
+def test_the_shape_is_worked_out_in_the_sensor_s_own_frame(car):
+    """The same, placed, as what would be drawn of a sensor that is there."""
+    pose = pe.Pose((0.5, 0.2, 50.0), (0.1, 0.2, 0.3))  # high: nothing ends on the ground
+    model = catalog.load("Pandar64")
+    shape = placing.shape_of("it", model)[0]
+    placed = placing.placed_at(shape, pose)
+    sensor = pe.Sensor("it", model, pose)
+    sketch = placing.drawing_of("lidar").sketch(sensor, None, placing.SHOWN)
+    expected = sketch.lines(placing.LENGTH_M, placing.IN_THE_AIR).points
+    assert placed.points[: len(expected)] == pytest.approx(expected, abs=1e-3)
+
+
+def test_nobody_has_its_name(car):
+    scenes.add_sensor("Camera", model="Camera 60 deg", location=(0.7, 0.0, 1.6))
+    assert placing.free_name("Camera", {"Camera"}) != "Camera"
+    assert len(bridge.sensor_objects(bpy.context.scene)) == 2

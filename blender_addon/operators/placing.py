@@ -28,8 +28,8 @@ from .pointing import MOST_M, Stance, ray_of, view_under
 from .preview import Preview
 from .surface import Spot, parts_of, spot_on_ray
 
-SHOWN = Choice(360, Channels.FEW)
-LENGTH_M, RING_M, ALOFT_M = 4.0, 0.12, 100.0
+SHOWN = Choice(96, Channels.FEW)
+LENGTH_M, RING_M, ALOFT_M = 2.0, 0.12, 100.0
 STEM = (1.0, 1.0, 1.0, 0.8)
 IN_THE_AIR = replace(VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.0, 0.93, 0.55, 0.9))
 """Lighter than sensors that are there."""

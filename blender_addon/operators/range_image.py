@@ -85,29 +85,30 @@ def image_of(sensor: str) -> bpy.types.Image:
 
 
 def show(context: bpy.types.Context, sensor: str) -> None:
-    """Show the image in an image editor: one that is there, or a part of the 3D view."""
+    """Show the image in an image editor: one that is there, a part of the 3D view, or a window."""
     window = context.window
     if window is None or bpy.app.background:
         return
     editors = [each for each in window.screen.areas if each.type == "IMAGE_EDITOR"]
-    area = editors[0] if editors else _split(context)
+    area = editors[0] if editors else _new_area(context)
     if area is not None:
+        area.type = "IMAGE_EDITOR"
         area.spaces.active.image = image_of(sensor)
 
 
-def _split(context: bpy.types.Context) -> bpy.types.Area | None:
-    """Make an image editor of the lower part of the 3D view."""
+def _new_area(context: bpy.types.Context) -> bpy.types.Area | None:
+    """Return the lower part of the 3D view, or, where that fills the window, another window."""
     window, screen = context.window, context.window.screen
     views = [each for each in screen.areas if each.type == "VIEW_3D"]
     if not views:
         return None
     before = set(screen.areas)
     with context.temp_override(window=window, area=max(views, key=lambda a: a.width * a.height)):
-        bpy.ops.screen.area_split(direction="HORIZONTAL", factor=SPLIT)
-    made = set(screen.areas) - before
-    for area in made:
-        area.type = "IMAGE_EDITOR"
-        return area
+        if bpy.ops.screen.area_split.poll():
+            bpy.ops.screen.area_split(direction="HORIZONTAL", factor=SPLIT)
+            return next(iter(set(screen.areas) - before), None)
+        if bpy.ops.wm.window_new() == {"FINISHED"}:
+            return context.window_manager.windows[-1].screen.areas[0]
     return None
 
 

@@ -108,6 +108,7 @@ def report_state():
         "draft": held.score if held else "",
         "camera": scene.camera.name if scene.camera else None,
         "perspective": view3d()[1].spaces.active.region_3d.view_perspective,
+        "pictures": pictures_shown(),
         "own_results": [s.name for s in sensors if s.perception_entropy.has_result],
     }
     write("state.json", state)
@@ -132,6 +133,14 @@ def live_reading(scene):
         "rested": reading.rested,
         "before": before,
     }
+
+
+def pictures_shown():
+    """Names of the images that image editors of any window show."""
+    windows = bpy.context.window_manager.windows
+    areas = [area for window in windows for area in window.screen.areas]
+    editors = [area.spaces.active for area in areas if area.type == "IMAGE_EDITOR"]
+    return [editor.image.name for editor in editors if editor.image and editor.image.packed_file]
 
 
 def pose_of(matrix):

@@ -142,3 +142,12 @@ def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
     window.wait_for(lambda: window.state["camera"] is None, EFFECT_TIMEOUT_S, "the way back")
     assert window.state["perspective"] == perspective
     assert "Traceback" not in window.log.read_text()
+
+
+def test_a_lidar_s_ranges_are_shown_as_a_picture(window, screenshots):
+    window.press("pe.look_through")  # the one that the file was saved with is active
+    window.wait_for(
+        lambda: window.state["pictures"] == ["roof_lidar range"], EFFECT_TIMEOUT_S, "its picture"
+    )
+    window.screenshot(screenshots / "window_ranges.png")
+    assert "Traceback" not in window.log.read_text()

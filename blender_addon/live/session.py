@@ -30,9 +30,14 @@ class Seen(NamedTuple):
     prior: Hashable
 
 
+MOVING = "TRANSFORM_OT_"
+"""How the names of Blender's operators begin that move things."""
+
 _evaluators = Evaluators()
 _before: dict[str, pe.Glance] = {}
 """By the scene's name: what the score was before the drag that is under way, or the last one."""
+_drags: dict[str, int] = {}
+"""By the scene's name: which of Blender's operators moved it last; 0 for none."""
 _seen: dict[str, Seen] = {}
 """By the scene's name: what there was when it was read."""
 _generation = 0
@@ -56,6 +61,8 @@ def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 def rest() -> None:
     """All rests: ask for the exact score of every scene that is shown."""
+    if not _moving_operator():
+        _drags.clear()
     for scene in shown_scenes():
         depsgraph = bridge.view_layer_of(scene).depsgraph
         if depsgraph is not None:
@@ -130,6 +137,7 @@ def forget(*_: object) -> None:
     """Before another file comes: nothing of this one is kept or delivered."""
     for name in {*_seen, *_before}:
         drop(name)
+    _drags.clear()
     _seen.clear()
     _before.clear()
     priors.clear()
@@ -137,10 +145,18 @@ def forget(*_: object) -> None:
 
 
 def _begin_drag(name: str) -> None:
-    """Note what the score was, when this is the first move since all rested."""
-    reading = latest.reading(name)
-    if reading is not None and reading.rested:
+    """Note what the score was, unless this is a drag in which the hand but rested for a moment."""
+    reading, operator = latest.reading(name), _moving_operator()
+    if reading is not None and reading.rested and not 0 != operator == _drags.get(name):
         _before[name] = reading.glance
+    _drags[name] = operator
+
+
+def _moving_operator() -> int:
+    """Which operator moves things with the mouse, by a number of its own; 0 when there is none."""
+    windows = (w for manager in bpy.data.window_managers for w in manager.windows)
+    running = (each for window in windows for each in window.modal_operators)
+    return next((o.as_pointer() for o in running if o.bl_idname.startswith(MOVING)), 0)
 
 
 def register() -> None:

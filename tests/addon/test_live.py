@@ -46,7 +46,7 @@ def drag(obj, by=0.05):
 
 
 def rest():
-    changes.rested.tell()
+    session.rest()
 
 
 def reading(scene):
@@ -89,6 +89,21 @@ def test_the_next_drag_is_compared_with_where_it_began(live):
     assert reading(live).before == second
     drag(live.objects["roof"])
     assert reading(live).before == second
+
+
+def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypatch):
+    start = reading(live).glance
+    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
+    for _ in range(2):
+        drag(live.objects["roof"])
+        rest()
+        assert reading(live).before == start
+    monkeypatch.setattr(session, "_moving_operator", lambda: 0)
+    rest()
+    second = reading(live).glance
+    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)  # an address may come again
+    drag(live.objects["roof"])
+    assert reading(live).before == second != start
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):

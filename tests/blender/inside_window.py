@@ -158,6 +158,8 @@ def report_where():
         x, y = location_3d_to_region_2d(region, area.spaces.active.region_3d, point)
         asked.unlink()
         write("there.json", [round(region.x + x), round(window.height - (region.y + y))])
+
+
 def answer_of(scene):
     """Lines that are told of the place that was asked about."""
     answer = asking.answer(scene)

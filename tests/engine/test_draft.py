@@ -69,6 +69,16 @@ def test_a_sensor_below_the_top_is_cast():
     assert score.to_dict() == evaluator().score(rig).to_dict()
 
 
+def test_a_vehicle_as_large_as_a_hall_is_cast():
+    """A map of it would take longer to draw than many casts."""
+    hall = pe.Vehicle(np.concatenate([CAR.triangles, shapes.box((-9, -9, 0), (9, 9, 0.1))]))
+    own = pe.Evaluator(SPACE, pe.Prior.road(), hall, samples=5000)
+    assert not own.score(rig_at((0.3, 0.2, 1.6)), draft=True).draft
+    wide = pe.Vehicle(np.concatenate([CAR.triangles, shapes.box((-9, -4, 0), (9, 4, 0.1))]))
+    own = pe.Evaluator(SPACE, pe.Prior.road(), wide, samples=5000)
+    assert own.score(rig_at((0.3, 0.2, 1.6)), draft=True).draft
+
+
 def test_without_a_vehicle_nothing_is_a_draft():
     own = pe.Evaluator(SPACE, pe.Prior.road(), samples=5000)
     assert not own.score(rig_at((0.0, 0.0, 1.8)), draft=True).draft

@@ -20,6 +20,9 @@ from .ties import without_zeros
 
 Floats = NDArray[np.float64]
 
+LARGEST_MAP_M2 = 200.0
+"""A map of a larger vehicle (a lorry has 50 m2) takes seconds to draw; casting is as fast then."""
+
 
 @dataclass(frozen=True)
 class BeamField:
@@ -93,6 +96,12 @@ class TurnedBeams:
         return Slants.of(self.directions)
 
 
+def _footprint(vehicle: Vehicle) -> float:
+    """Area of the rectangle that the vehicle takes up seen from above [m2]."""
+    (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.bounds)
+    return float((x1 - x0) * (y1 - y0))
+
+
 class BeamEnds:
     """Where the beams of LiDARs on a vehicle end, read from a map of its top: a draft.
 
@@ -106,10 +115,12 @@ class BeamEnds:
 
     @cached_property
     def _map(self) -> TopMap | None:
-        return None if self._vehicle is None else TopMap(self._vehicle.triangles)
+        if self._vehicle is None or _footprint(self._vehicle) > LARGEST_MAP_M2:
+            return None
+        return TopMap(self._vehicle.triangles)
 
     def can_draft(self, sensor: Sensor) -> bool:
-        """Whether there is a vehicle, and the sensor stands above its top surface."""
+        """Whether there is a vehicle, none as large as a hall, and the sensor is above its top."""
         if self._vehicle is None or self._map is None:
             return False
         return self._map.is_above(np.asarray(sensor.pose.position), self._vehicle.clearance)

@@ -84,6 +84,9 @@ def add_variant_option(verb: argparse.ArgumentParser) -> None:
 def run_job(args: argparse.Namespace) -> app.Answer:
     """Score or optimize, and leave the results in the output folder."""
     study, kind = app.with_options(opened_study(args.variant), args), args.kind
+    if kind == "optimize":
+        with from_file():
+            bridge.check_placeable(bpy.context.scene, study)
     output, names = args.output, [OPTIMIZED] * (kind == "optimize")
     if output is not None:
         names += [REVIEW] * (not args.no_render) + studies.result_names(study, kind)

@@ -71,6 +71,18 @@ def test_places_that_are_none_are_one_line(blend):
     assert complaints(answer) == expected
 
 
+def test_a_search_that_cannot_place_is_refused_before_it_begins(car, tmp_path):
+    car.objects["roof"].keyframe_insert("location", frame=1)
+    path = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    answer = run("blender_addon", path, "optimize", *FAST, "-o", tmp_path / "out")
+    assert answer.returncode == 1
+    (line,) = complaints(answer)
+    assert "sensor 'roof': placement: expected an object that can be placed" in line
+    assert str(path) in line and not (tmp_path / "out").exists()
+    assert run("blender_addon", path, "score", *FAST[:2], "--no-render").returncode == 0
+
+
 def test_optimize_and_export_agree_with_the_engine(blend, tmp_path):
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     before = blend.read_bytes()

@@ -57,7 +57,8 @@ class SampledScorer:
         self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
         outside_masses(densities, space, tops)  # complains when nothing is left to weigh
         x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
-        self._zones = {name: mask for name, mask in zone_masks(x, y).items() if mask.any()}
+        masks = {name: mask for name, mask in zone_masks(x, y).items() if mask.any()}
+        self._zones = {n: (np.flatnonzero(m), rounded(float(np.mean(m)))) for n, m in masks.items()}
         voxels = Voxels(space, self._sample.index, self._sample.centers)
         self._sensors = MeasuredByName(voxels, vehicle, fusion.enough)
         self._is_free = RLock()
@@ -153,10 +154,8 @@ class SampledScorer:
     def _by_zone(self, entropies: Floats, seen: NDArray[np.bool_]) -> dict[str, PartScore]:
         """Zones by the samples in them."""
         return {
-            name: PartScore(
-                *self._whole(entropies[mask], seen[mask]), rounded(float(np.mean(mask)))
-            )
-            for name, mask in self._zones.items()
+            name: PartScore(*self._whole(entropies.take(inside), seen.take(inside)), share)
+            for name, (inside, share) in self._zones.items()
         }
 
     def _sensor(self, sensor: Sensor, rig: Rig, entropy: float) -> SensorScore:

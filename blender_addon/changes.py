@@ -50,3 +50,5 @@ rested = Signal()
 
 live = Signal()
 """The live score was switched on or off."""
+reading = Signal()
+"""The live score says something new, of any scene."""

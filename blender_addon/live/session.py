@@ -81,7 +81,7 @@ def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) 
     if known is not None and known.prior != seen.prior:
         _before.pop(name, None)  # entropies under two priors are no change
     _seen[name] = seen
-    job, shown = partial(work, name, wish, _generation), lambda _: changes.picture.tell()
+    job, shown = partial(work, name, wish, _generation), lambda _: changes.reading.tell()
     worker.hand.ask(name, job, shown, partial(failed, name))
 
 
@@ -103,7 +103,7 @@ def say(name: str, line: str) -> None:
     """Show why there is no newer reading."""
     drop(name)
     latest.set_note(name, line)
-    changes.picture.tell()
+    changes.reading.tell()
 
 
 def drop(name: str) -> None:
@@ -123,6 +123,7 @@ def switched() -> None:
             _before.pop(scene.name, None)
     if not bpy.app.background:
         rest()
+    changes.reading.tell()
 
 
 def shown_scenes() -> list[bpy.types.Scene]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import body, bridge, explaining, roster, stale
+from .. import body, bridge, changes, explaining, roster, stale
 from ..engine import pe
 from . import running
 from .known import known_score, remember
@@ -181,6 +181,7 @@ def keep(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
     bridge.store_outcome(scene, outcome, signature, roster.sensors(scene))
     remember(scene, outcome, signature)
     explaining.look_round(scene, outcome, signature)
+    changes.picture.tell()  # there is a ground map of all voxels now
 
 
 class PE_OT_cancel(bpy.types.Operator):

@@ -21,7 +21,6 @@ def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> 
 def switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Update callback of the switch of the live score."""
     changes.live.tell()
-    changes.picture.tell()
 
 
 def model_chosen(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:

@@ -17,7 +17,14 @@ from tests.addon.scenes import depsgraph
 ROUNDS = 100
 
 
-SIGNALS = (changes.study, changes.picture, changes.moved, changes.rested, changes.live)
+SIGNALS = (
+    changes.study,
+    changes.picture,
+    changes.moved,
+    changes.rested,
+    changes.live,
+    changes.reading,
+)
 TIMERS = (motion.tell_moved, motion.tell_rested, updating._turn)
 
 

@@ -127,11 +127,26 @@ class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
         """Take its row out of the list."""
         settings, name = scene.perception_entropy, variant.name
         index = [row.key for row in settings.variants].index(variant.key)
+        if variant.key == settings.view.ghost_key:
+            settings.view.ghost_key = 0
         if variant.key == settings.variant_key:
             settings.variant_key, settings.variant_changed = 0, False
         settings.variants.remove(index)
         settings.variant_index = max(0, min(index, len(settings.variants) - 1))
         tell(self, "INFO", f"Deleted {name}")
+
+
+class PE_OT_ghost_variant(VariantOperator, bpy.types.Operator):
+    """Show this variant's sensors in the 3D view beside those that stand there, or no longer"""
+
+    bl_idname = "pe.ghost_variant"
+    bl_label = "Show Ghost"
+    bl_options = {"INTERNAL"}
+
+    def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
+        """Switch it: one variant at a time."""
+        view = scene.perception_entropy.view
+        view.ghost_key = 0 if view.ghost_key == variant.key else variant.key
 
 
 def save_scene(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
@@ -172,4 +187,5 @@ CLASSES = (
     PE_OT_switch_variant,
     PE_OT_duplicate_variant,
     PE_OT_delete_variant,
+    PE_OT_ghost_variant,
 )

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import pe
-from . import blind, frustums, ground, heat, rays, reach
+from . import asked, blind, frustums, ghosts, ground, heat, rays, reach
 from .beams import Channels, Choice, channels_of, shown_beams
 from .colors import VIEWPORT, VIRIDIS, Rgba, on_scale, sensor_color, with_alpha
 from .kinds import DRAWINGS, beam_budget, drawing_of
@@ -220,6 +220,39 @@ def _label(wish: Wish, _tools: Tools, name: str) -> Shape:
     return Shape(labels=(Label(name, of.sensor.pose.position, color, strong=of.selected),))
 
 
+def _ghost_keys(wish: Wish) -> dict[str, Hashable]:
+    if not wish.ghosts:
+        return {}
+    others = tuple((s.name, id(s.model), s.pose, s.group) for s in wish.ghosts)
+    here = tuple((each.sensor.name, each.sensor.pose) for each in wish.counted)
+    reach_too = "reach" in wish.view.layers and wish.prior is not None
+    reached = (wish.body_key, wish.prior_key, wish.view.reach_class) if reach_too else None
+    return {WHOLE_RIG: (others, here, wish.ghosts_name, reached)}
+
+
+def _ghosts(wish: Wish, tools: Tools, _name: str) -> Shape:
+    shape = ghosts.ghosts(wish.ghosts, [e.sensor for e in wish.counted], wish.ghosts_name)
+    if "reach" not in wish.view.layers or wish.prior is None:
+        return shape
+    rig, known = pe.Rig(wish.ghosts), wish.prior.class_names
+    of = wish.view.reach_class if wish.view.reach_class in known else known[0]
+    line = reach.rig_reach(tools.sight(wish), rig, of, ghosts.GHOSTS, wish.ghosts_name)
+    return replace(shape, lines=line.lines)
+
+
+def _place_keys(wish: Wish) -> dict[str, Hashable]:
+    place = wish.place
+    if place is None:
+        return {}
+    told = tuple((s.name, s.reason, s.m) for s in place.sensors)
+    here = tuple((each.sensor.name, each.sensor.pose) for each in wish.counted)
+    return {WHOLE_RIG: (place.center, place.ap, told, here)}
+
+
+def _place(wish: Wish, _tools: Tools, _name: str) -> Shape:
+    return asked.asked_place(wish.place, [each.sensor for each in wish.counted])
+
+
 LAYERS = (
     Layer(
         "ground",
@@ -243,6 +276,8 @@ LAYERS = (
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
     Layer("heat", "Stopped Where", _heat_keys, _heat, rough=True),
+    Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, 1.6, edged=True),
+    Layer("place", "Asked Place", _place_keys, _place, 1.8, edged=True),
     Layer("labels", "Names", _label_keys, _label),
 )
 assert all(a.name != b.name for a, b in pairwise(LAYERS))

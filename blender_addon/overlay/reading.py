@@ -7,7 +7,7 @@ import time
 
 import bpy
 
-from .. import body, bridge, roster
+from .. import asking, body, bridge, roster
 from ..engine import pe
 from ..live import latest
 from .layers import LAYERS
@@ -40,7 +40,14 @@ class Reader:
         if self._prior[0] != key:
             self._prior = key, _prior(scene)
         view, scored = view_of(scene), _scored(scene, sensors)
-        return Wish(sensors, vehicle, body_key, self._prior[1], key, view, moving, scored)
+        others, name = _ghosts(scene)
+        answer = asking.answer(scene)
+        return Wish(
+            *(sensors, vehicle, body_key, self._prior[1], key, view, moving, scored),
+            ghosts=others,
+            ghosts_name=name,
+            place=None if answer is None else answer.place,
+        )
 
     def _vehicle(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool
@@ -94,6 +101,16 @@ def _scored(scene: bpy.types.Scene, sensors: tuple[Mounted, ...]) -> pe.GroundMa
     now = {(e.sensor.name, e.sensor.model, e.sensor.pose) for e in sensors if e.counted}
     then = {(each.name, each.model, each.pose) for each in found.study.rig}
     return found.score.ground_map if now == then else None
+
+
+def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
+    """Sensors and name of the variant that is shown beside the scene's own."""
+    key = scene.perception_entropy.view.ghost_key
+    for row in scene.perception_entropy.variants if key else ():
+        if row.key == key:
+            with contextlib.suppress(pe.InputError):
+                return tuple(bridge.rig_of(bridge.records_of(row))), row.name
+    return (), ""
 
 
 def _prior(scene: bpy.types.Scene) -> pe.Prior | None:

@@ -10,7 +10,7 @@ from .beams import Channels
 from .ground import SENSORS
 
 if TYPE_CHECKING:
-    from ..engine import pe
+    from ..engine import advice, pe
 
 AVERAGE = "AVERAGE"
 SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
@@ -77,6 +77,9 @@ class Wish:
     view: View
     moving: bool = False
     scored: pe.GroundMap | None = None
+    ghosts: tuple[pe.Sensor, ...] = ()
+    ghosts_name: str = ""
+    place: advice.AskedPlace | None = None
 
     @property
     def counted(self) -> tuple[Mounted, ...]:

@@ -107,6 +107,8 @@ LAYERS: tuple[tuple[str, Choices | None], ...] = (
     ("frustums", _frustums),
     ("beams", _beams),
     ("heat", None),
+    ("ghosts", None),
+    ("place", None),
 )
 """Switches and what there is to choose, from the ground up."""
 

@@ -31,6 +31,11 @@ class PE_UL_variants(bpy.types.UIList):
             name.label(text="", icon="GREASEPENCIL")
         figures.alignment = "RIGHT"
         figures.active = not item.stale
+        if not active:
+            ghost = "GHOST_ENABLED" if item.key == settings.view.ghost_key else "GHOST_DISABLED"
+            row.operator("pe.ghost_variant", text="", icon=ghost, emboss=False).key = item.key
+        else:
+            row.label(text="", icon="BLANK1")
         figures.label(text=f"{item.entropy:.3f}" if item.has_result else "–", translate=False)
 
 

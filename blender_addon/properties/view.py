@@ -77,6 +77,22 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         update=redraw,
     )
 
+    show_ghosts: BoolProperty(
+        name="Other Variant",
+        description="Show the variant whose ghost is switched on in the list of variants",
+        default=True,
+        update=redraw,
+    )
+    ghost_key: IntProperty(
+        name="Ghost", description="Key of the variant that is shown; 0: none", update=redraw
+    )
+    show_place: BoolProperty(
+        name="Asked Place",
+        description="Mark the place that was asked about",
+        default=True,
+        update=redraw,
+    )
+
     show_blind: BoolProperty(
         name="Blind Ground",
         description="Outline the ground round the vehicle that no sensor sees, and say how far it "

@@ -15,7 +15,8 @@ PACKAGE = "blender_addon"
 ARRAYS = {
     f"overlay.{name}"
     for name in (
-        *("beams", "blind", "casts", "colors", "frustums", "ground", "heat", "kinds", "layers"),
+        *("asked", "beams", "blind", "casts", "colors", "frustums", "ghosts", "ground", "heat"),
+        *("kinds", "layers"),
         *("primitives", "rays", "reach", "store", "tools", "wish"),
     )
 }
@@ -40,7 +41,7 @@ ALLOWED = {
     "library": set(),
     "live": {"body", "bridge", "changes", "engine", "motion", "roster", "worker"},
     "overlay": {"engine"},
-    "overlay.reading": {"body", "bridge", "engine", "live", "overlay", "roster"},
+    "overlay.reading": {"asking", "body", "bridge", "engine", "live", "overlay", "roster"},
     "overlay.updating": {
         *("changes", "engine", "overlay", "overlay.reading", "roster", "worker"),
     },

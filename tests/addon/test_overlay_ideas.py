@@ -1,0 +1,102 @@
+"""Another variant beside the scene, and the place that was asked about, as arrays."""
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon.engine import advice, catalog, pe
+from blender_addon.overlay import layers
+from blender_addon.overlay.asked import HIDDEN, SEES, asked_place
+from blender_addon.overlay.ghosts import ghosts
+from tests.addon import scenes
+
+
+def sensor(name, x, model="Pandar64"):
+    return pe.Sensor(name, catalog.load(model), pe.Pose((x, 0.0, 1.8)))
+
+
+def segments(shape):
+    """Lines as (N, 2, 3) ends."""
+    return shape.through.points.reshape(-1, 2, 3)
+
+
+def joins(shape, start, end):
+    """Whether one of the lines goes from a point to another."""
+    ends = np.array([start, end], np.float32)
+    return bool((np.abs(segments(shape) - ends).max(axis=(1, 2)) < 1e-6).any())
+
+
+def test_a_moved_sensor_has_a_line_to_where_it_stands_now():
+    shape = ghosts([sensor("roof", 0.0)], [sensor("roof", 1.5)], "Low")
+    assert joins(shape, (0.0, 0.0, 1.8), (1.5, 0.0, 1.8))
+    assert [label.text for label in shape.labels] == ["roof"]
+    assert shape.legend.classes[0][1] == "Low"
+
+
+def test_what_stands_in_the_same_place_has_neither_line_nor_name():
+    shape = ghosts([sensor("roof", 0.0)], [sensor("roof", 0.0)])
+    assert not shape.labels and not joins(shape, (0.0, 0.0, 1.8), (0.0, 0.0, 1.8))
+    assert len(shape.through.points), "the ghost itself is drawn"
+
+
+def test_what_is_not_here_has_a_name_alone():
+    shape = ghosts([sensor("eye", 0.0, "Camera 60 deg")], [sensor("roof", 1.5)])
+    assert [label.text for label in shape.labels] == ["eye"]
+    assert not joins(shape, (0.0, 0.0, 1.8), (1.5, 0.0, 1.8))
+
+
+def test_nothing_of_no_variant():
+    shape = ghosts([], [sensor("roof", 1.5)])
+    assert not len(shape.through.points) and shape.legend is None
+
+
+def test_lines_tell_who_sees_the_place_and_from_whom_it_is_hidden():
+    def told(name, m, reason):
+        return advice.SensorAtPlace(name, "lidar", m, 5.0, 0.5, None, reason)
+
+    seen = (told("a", 3.0, "sees"), told("b", 0.0, "hidden"), told("c", 0.0, "out of view"))
+    place = advice.AskedPlace((5.0, 1.0, 0.05), 1.0, 0.5, True, 1.0, False, seen)
+    shape = asked_place(place, [sensor(name, float(k)) for k, name in enumerate("abc")])
+    for k, color in ((0, SEES), (1, HIDDEN)):
+        assert joins(shape, (float(k), 0.0, 1.8), place.center)
+        own = np.float32(color)
+        assert (np.abs(shape.through.colors - own).max(axis=1) < 1e-6).sum() == 2
+    assert not joins(shape, (2.0, 0.0, 1.8), place.center)
+    assert shape.labels[0].text == "seen by 1, AP 0.50"
+    low = segments(shape)[:12].reshape(-1, 3)  # the voxel's edges
+    np.testing.assert_allclose(low.min(axis=0), (4.95, 0.95, 0.0), atol=1e-6)
+    np.testing.assert_allclose(low.max(axis=0), (5.05, 1.05, 0.1), atol=1e-6)
+
+
+@pytest.fixture
+def two(car):
+    """The car with a variant to be shown beside it, and the view on."""
+    bpy.ops.pe.save_variant()
+    car.objects["roof"].location.z = 2.4
+    bpy.context.view_layer.update()
+    return car
+
+
+def test_the_scene_shows_the_variant_whose_ghost_is_on(two):
+    key = two.perception_entropy.variants[0].key
+    assert "ghosts" not in scenes.drawn(two)
+    bpy.ops.pe.ghost_variant(key=key)
+    shape = scenes.drawn(two)["ghosts"][layers.WHOLE_RIG]
+    assert joins(shape, (-0.43, 0.0, 1.8), (-0.43, 0.0, 2.4))
+    assert not len(shape.lines.points)
+    two.perception_entropy.view.show_reach = True
+    assert len(scenes.drawn(two)["ghosts"][layers.WHOLE_RIG].lines.points), "its reach as well"
+    bpy.ops.pe.ghost_variant(key=key)
+    assert "ghosts" not in scenes.drawn(two)
+    bpy.ops.pe.ghost_variant(key=key)
+    bpy.ops.pe.delete_variant(key=key)
+    assert "ghosts" not in scenes.drawn(two)
+
+
+def test_the_scene_marks_the_place_that_was_asked_about(two):
+    assert "place" not in scenes.drawn(two)
+    bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
+    shape = scenes.drawn(two)["place"][layers.WHOLE_RIG]
+    assert shape.labels and shape.labels[0].place[:2] == pytest.approx((6.05, 3.05))
+    bpy.ops.pe.dismiss_place()
+    assert "place" not in scenes.drawn(two)

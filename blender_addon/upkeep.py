@@ -14,7 +14,7 @@ import sys
 import bpy
 from bpy.app.handlers import persistent
 
-from . import bridge, changes
+from . import bridge, changes, roster
 
 
 @persistent
@@ -45,12 +45,15 @@ def go_round() -> None:
     """Put the sensors of all scenes right."""
     bridge.sync_own_sensors()  # undo may have brought others back
     for scene in bpy.data.scenes:
-        bridge.drop_foreign_results(scene)
-        bridge.tend_views(scene)
+        sensors = roster.sensors(scene)
+        bridge.drop_foreign_results(scene, sensors)
+        bridge.tend_views(scene, sensors)
     if bpy.context.view_layer is not None:  # of another scene no places are known
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        bridge.follow_mirrors(bpy.context.scene, depsgraph)
-        bridge.note_refusals(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
+        scene, depsgraph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
+        sensors = roster.sensors(scene)
+        if bridge.follow_mirrors(scene, depsgraph, sensors):
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+        bridge.note_refusals(sensors, depsgraph)
 
 
 def register() -> None:

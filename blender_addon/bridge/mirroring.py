@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 import math
 import re
+from collections.abc import Sequence
 
 import bpy
 
 from ..engine import pe
-from .rig import place_poses, pose_of, sensor_objects
+from .rig import place_poses, pose_of
 
 SIDES = (("left", "right"), ("l", "r"))
 MIDDLE_M, MIDDLE_RAD = 1e-4, 1e-5
@@ -64,13 +65,14 @@ def mirror_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object
     return other if other.perception_entropy.mirror_of == obj.name else None
 
 
-def follow_mirrors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> list[str]:
+def follow_mirrors(
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, sensors: Sequence[bpy.types.Object]
+) -> list[str]:
     """Put those of linked sensors right whose mirror image has moved; return their names.
 
     Where both have moved, and are no longer mirror images, the first by name leads. Links of
     duplicates, and of sensors that are gone, are taken away.
     """
-    sensors = sensor_objects(scene)
     _mend_links(scene, sensors)
     moved: dict[str, pe.Pose] = {}
     seen: dict[tuple[str, str], pe.Pose] = {}
@@ -114,7 +116,7 @@ def _mirror_images(
     return first, moved[names[1]]
 
 
-def _mend_links(scene: bpy.types.Scene, sensors: list[bpy.types.Object]) -> None:
+def _mend_links(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
     """Have links follow a rename; take away those that are not mutual."""
     for obj in sensors:
         wanted = obj.perception_entropy.mirror_of
@@ -134,7 +136,7 @@ def _mend_links(scene: bpy.types.Scene, sensors: list[bpy.types.Object]) -> None
 
 
 def _pointing_at(
-    obj: bpy.types.Object, sensors: list[bpy.types.Object]
+    obj: bpy.types.Object, sensors: Sequence[bpy.types.Object]
 ) -> tuple[bpy.types.Object, ...]:
     """The one other sensor that is linked to a sensor, if it is one alone."""
     found = [o for o in sensors if o.perception_entropy.mirror_of == obj.name and o != obj]

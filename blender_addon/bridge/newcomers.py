@@ -12,13 +12,15 @@ SENSORS = "Sensors"
 """The collection of a scene's sensors."""
 
 
-def drop_foreign_results(scene: bpy.types.Scene) -> list[str]:
+def drop_foreign_results(
+    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object] | None = None
+) -> list[str]:
     """Take away results that are another sensor's, or another file's; return whose were dropped.
 
     A duplicate brings its original's result, under the original's name. A sensor that was renamed
-    keeps its own: nobody else has that name.
+    keeps its own: nobody else has that name. `sensors` are the scene's, if they are known already.
     """
-    sensors = sensor_objects(scene)
+    sensors = sensor_objects(scene) if sensors is None else sensors
     holding = [each for each in sensors if each.perception_entropy.has_result]
     wrong = []
     for obj in holding:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
 
 from ..engine import pe
-from .rig import sensor_from_object, sensor_objects
+from .rig import sensor_from_object
 
 SCALE, MODEL = "scale", "model"
 MENDS = {SCALE: "Ctrl-A > Scale, or the button below, mends it"}
 
 
-def note_refusals(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> list[str]:
+def note_refusals(sensors: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> list[str]:
     """Write at each sensor why it is refused, or nothing; return whose that changed."""
     changed = []
-    for obj in sensor_objects(scene):
+    for obj in sensors:
         settings = obj.perception_entropy
         field, said = refusal_of(obj, depsgraph)
         if (settings.refused_field, settings.refusal) != (field, said):

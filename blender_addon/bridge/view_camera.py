@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 
 import bpy
 from mathutils import Matrix
 
 from ..engine import catalog, pe
-from .rig import sensor_objects
 
 FILM_MM = 36.0
 """Width of the picture in the camera; only its ratio to the focal length matters."""
@@ -80,14 +80,14 @@ def look_back(scene: bpy.types.Scene) -> None:
     scene.perception_entropy.before_look = ""
 
 
-def tend_views(scene: bpy.types.Scene) -> None:
+def tend_views(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
     """Have cameras fit their sensors' models, and go with the sensors that they were of."""
-    for obj in sensor_objects(scene):
+    for obj in sensors:
         view, model = view_camera(obj), _camera_of(obj)
         if view is not None and model is not None:
             _follow(scene, view, model)
-    views = [each for each in scene.objects if each.perception_entropy.is_view]
-    for view in views:
+    cameras = [each for each in scene.objects if each.type == "CAMERA"]
+    for view in (each for each in cameras if each.perception_entropy.is_view):
         if view.parent is None or _camera_of(view.parent) is None:
             _remove(scene, view)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from .offered import brief, described, models
+from .offered import described, models
 
 _shown: list[tuple[str, str, str, int]] = []
 """What the popup lists: Blender reads the texts after the function that made them is done."""
@@ -16,7 +16,7 @@ def _items(
 ) -> list[tuple[str, str, str, int]]:
     """Return the catalogue's sensors as Blender wants a menu; of the operator's kind alone."""
     names = models(operator.kind or None)
-    _shown[:] = [(n, f"{n}   {brief(n)}", described(n), i) for i, n in enumerate(names)]
+    _shown[:] = [(n, n, described(n), i) for i, n in enumerate(names)]
     return _shown
 
 

@@ -8,6 +8,7 @@ import pytest
 import pe_core as pe
 from blender_addon import bridge, upkeep
 from blender_addon.engine import catalog
+from blender_addon.live import asking
 from tests.addon import scenes
 
 
@@ -186,3 +187,15 @@ def test_a_removed_one_is_refused_in_one_line(full):
     bpy.ops.pe.remove_own_sensor()
     with pytest.raises(RuntimeError, match=r"bumper.*model"):
         bpy.ops.pe.score()
+
+
+def test_the_live_score_is_of_the_same_study(full):
+    """What follows the hand is of the scene's own space and curves, as the score is."""
+    study, wish = scenes.study(), asking.read(full, scenes.depsgraph(), draft=False)
+    problem = wish.problem
+    assert (problem.space, problem.model) == (study.space, study.model)
+    assert problem.vehicle.clearance == 0.05
+    own = study.evaluator(samples=asking.SAMPLES)
+    assert asking.Evaluators().glance("it", wish).entropy == own.entropy(study.rig)
+    full.perception_entropy.space_x = (-20.0, 30.0)
+    assert asking.read(full, scenes.depsgraph(), draft=False).problem.key != problem.key

@@ -31,7 +31,7 @@ ALLOWED = {
     "roster": {"bridge", "changes"},
     "body": {"bridge", "engine"},
     "motion": {"body", "changes", "roster"},
-    "upkeep": {"bridge", "changes"},
+    "upkeep": {"bridge", "changes", "roster"},
     "worker": set(),
     "stale": {"body", "bridge", "changes", "roster"},
     "unsaved": {"bridge", "changes", "stale"},

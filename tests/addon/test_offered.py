@@ -48,7 +48,7 @@ def test_the_search_lists_a_kind_s_sensors_with_their_figures(addon):
     items = search_sensor._items(type("Chosen", (), {"kind": "lidar"}), bpy.context)
     assert [each[0] for each in items] == catalog.names("lidar")
     (found,) = [each for each in items if "QT128" in each[1]]
-    assert found[0] == "Hesai QT128C2X" and "105 deg" in found[1]
+    assert found[0] == "Hesai QT128C2X" and "range 50 m" in found[2]
 
 
 def test_what_was_typed_is_found():

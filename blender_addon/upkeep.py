@@ -28,6 +28,7 @@ def on_load(*_: object) -> None:
     bridge.sync_own_sensors()
     bridge.forget_mirrors()
     go_round()
+    note_refusals()
 
 
 @persistent
@@ -49,17 +50,22 @@ def go_round() -> None:
         bridge.drop_foreign_results(scene, sensors)
         bridge.tend_views(scene, sensors)
     if bpy.context.view_layer is not None:  # of another scene no places are known
-        scene, depsgraph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
-        sensors = roster.sensors(scene)
-        if bridge.follow_mirrors(scene, depsgraph, sensors):
-            depsgraph = bpy.context.evaluated_depsgraph_get()
-        bridge.note_refusals(sensors, depsgraph)
+        scene = bpy.context.scene
+        bridge.follow_mirrors(scene, bpy.context.evaluated_depsgraph_get(), roster.sensors(scene))
+
+
+def note_refusals() -> None:
+    """Write at the sensors why they are refused, once they rest: meanwhile nobody reads it."""
+    if bpy.context.view_layer is not None:
+        sensors = roster.sensors(bpy.context.scene)
+        bridge.note_refusals(sensors, bpy.context.evaluated_depsgraph_get())
 
 
 def register() -> None:
     """Start listening."""
     changes.study.connect(bridge.sync_own_sensors)
     changes.moved.connect(go_round)
+    changes.rested.connect(note_refusals)
     bpy.app.handlers.load_post.append(on_load)
     bpy.app.handlers.save_pre.append(on_save)
 
@@ -68,6 +74,7 @@ def unregister() -> None:
     """Stop listening."""
     bpy.app.handlers.save_pre.remove(on_save)
     bpy.app.handlers.load_post.remove(on_load)
+    changes.rested.disconnect(note_refusals)
     changes.moved.disconnect(go_round)
     changes.study.disconnect(bridge.sync_own_sensors)
     bridge.forget_own_sensors()

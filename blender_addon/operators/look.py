@@ -53,7 +53,6 @@ class PE_OT_look_through(bpy.types.Operator):
         except REFUSALS as error:
             return refuse(self, error)
         range_image.ask(sensor, vehicle)
-        range_image.show(context, sensor.name)
         tell(self, "INFO", f"{sensor.name}: {range_image.LEGEND}")
         return {"FINISHED"}
 

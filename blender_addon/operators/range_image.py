@@ -42,7 +42,7 @@ def ask(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> None:
     desk.ask(
         TOPIC,
         lambda: painted(kinds.range_picture(sensor, vehicle), far),
-        lambda pixels: put(sensor.name, pixels),
+        lambda pixels: (put(sensor.name, pixels), show(sensor.name)),
         lambda error: print(f"perception entropy: no picture of {sensor.name}: {error}"),
     )
 
@@ -84,31 +84,35 @@ def image_of(sensor: str) -> bpy.types.Image:
     return found or bpy.data.images.new(name, 360 * PIXELS_PER_DEG, 40 * PIXELS_PER_DEG)
 
 
-def show(context: bpy.types.Context, sensor: str) -> None:
-    """Show the image in an image editor: one that is there, a part of the 3D view, or a window."""
-    window = context.window
-    if window is None or bpy.app.background:
+def show(sensor: str) -> None:
+    """Show the image in an image editor: one that is there, a part of the 3D view, or a window.
+
+    Not while an operator runs: its button belongs to the areas that change.
+    """
+    if bpy.app.background:
         return
-    editors = [each for each in window.screen.areas if each.type == "IMAGE_EDITOR"]
-    area = editors[0] if editors else _new_area(context)
+    windows = bpy.context.window_manager.windows
+    areas = [area for window in windows for area in window.screen.areas]
+    editors = [area for area in areas if area.type == "IMAGE_EDITOR"]
+    area = editors[0] if editors else _new_area(windows[0])
     if area is not None:
         area.type = "IMAGE_EDITOR"
         area.spaces.active.image = image_of(sensor)
 
 
-def _new_area(context: bpy.types.Context) -> bpy.types.Area | None:
+def _new_area(window: bpy.types.Window) -> bpy.types.Area | None:
     """Return the lower part of the 3D view, or, where that fills the window, another window."""
-    window, screen = context.window, context.window.screen
-    views = [each for each in screen.areas if each.type == "VIEW_3D"]
+    views = [each for each in window.screen.areas if each.type == "VIEW_3D"]
     if not views:
         return None
-    before = set(screen.areas)
-    with context.temp_override(window=window, area=max(views, key=lambda a: a.width * a.height)):
+    before = set(window.screen.areas)
+    largest = max(views, key=lambda area: area.width * area.height)
+    with bpy.context.temp_override(window=window, area=largest):
         if bpy.ops.screen.area_split.poll():
             bpy.ops.screen.area_split(direction="HORIZONTAL", factor=SPLIT)
-            return next(iter(set(screen.areas) - before), None)
+            return next(iter(set(window.screen.areas) - before), None)
         if bpy.ops.wm.window_new() == {"FINISHED"}:
-            return context.window_manager.windows[-1].screen.areas[0]
+            return bpy.context.window_manager.windows[-1].screen.areas[0]
     return None
 
 

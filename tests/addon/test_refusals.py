@@ -17,7 +17,7 @@ def roof(car):
 
 def refusal(obj):
     bpy.context.view_layer.update()
-    upkeep.go_round()
+    upkeep.note_refusals()
     return obj.perception_entropy.refusal
 
 

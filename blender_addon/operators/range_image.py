@@ -13,7 +13,8 @@ from ..worker import desk
 
 TOPIC = "ranges"
 LEGEND = "near is bright, far is dark by metres; orange: stopped by the vehicle; grey: nothing"
-PIXELS_PER_DEG = 5
+PIXELS_PER_DEG = 3
+"""So that a full circle fits into the editor that is made of the 3D view."""
 NEAREST_M = 0.5
 """All that is nearer has the brightest colour."""
 COLORS = (

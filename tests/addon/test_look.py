@@ -131,7 +131,7 @@ def test_a_lidar_s_picture_is_in_its_image(car):
     assert bpy.ops.pe.look_through(name="roof") == {"FINISHED"}
     image = bpy.data.images["roof range"]
     width, height = image.size
-    assert (width, height) == (round(359.8 * 5), (40 * 5))
+    assert (width, height) == (round(359.8 * 3), 40 * 3)
     pixels = np.array(image.pixels[:]).reshape(height, width, 4)[::-1]
     study = scenes.study()
     picture = kinds.range_picture(study.rig["roof"], study.vehicle)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import bpy
 import gpu
-import numpy as np
 from gpu_extras.batch import batch_for_shader
 
 from .primitives import Primitives, Shape, Sheet
@@ -19,14 +18,14 @@ _shaders: dict[str, gpu.types.GPUShader] = {}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Batches:
-    """What one shape became: triangles, lines, and a sheet with its picture."""
+    """What one shape became: triangles, lines, and a sheet."""
 
     shape: Shape
     lines: gpu.types.GPUBatch | None
     through: gpu.types.GPUBatch | None
     thin: gpu.types.GPUBatch | None
     faces: gpu.types.GPUBatch | None
-    sheet: tuple[gpu.types.GPUBatch, gpu.types.GPUTexture] | None
+    sheet: gpu.types.GPUBatch | None
 
     @classmethod
     def of(cls, shape: Shape) -> Batches:
@@ -40,15 +39,9 @@ class Batches:
 
     def draw_areas(self) -> None:
         """Draw sheet and triangles."""
-        if self.sheet is not None:
-            batch, texture = self.sheet
-            image = shader("IMAGE_COLOR")
-            image.bind()
-            image.uniform_sampler("image", texture)
-            image.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
-            batch.draw(image)
-        if self.faces is not None:
-            self.faces.draw(shader("SMOOTH_COLOR"))
+        for each in (self.sheet, self.faces):
+            if each is not None:
+                each.draw(shader("SMOOTH_COLOR"))
 
     def draw_lines(self, region: bpy.types.Region, width_px: float, *, edged: bool) -> None:
         """Draw the lines, that wide on the screen, perhaps with a dark edge."""
@@ -95,14 +88,8 @@ def _batch(of: gpu.types.GPUShader, kind: str, primitives: Primitives) -> gpu.ty
     return batch_for_shader(of, kind, arrays)
 
 
-def _sheet(sheet: Sheet) -> tuple[gpu.types.GPUBatch, gpu.types.GPUTexture]:
-    height, width = sheet.image.shape[:2]
-    values = np.ascontiguousarray(sheet.image, np.float32)
-    buffer = gpu.types.Buffer("FLOAT", values.size, values.ravel())
-    texture = gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)
-    (x0, y0), (x1, y1) = sheet.low, sheet.high
-    corners = {
-        "pos": ((x0, y0, 0.0), (x1, y0, 0.0), (x1, y1, 0.0), (x0, y1, 0.0)),
-        "texCoord": ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)),
-    }
-    return batch_for_shader(shader("IMAGE_COLOR"), "TRI_FAN", corners), texture
+def _sheet(sheet: Sheet) -> gpu.types.GPUBatch:
+    """Upload a sheet as triangles: a picture's colours are understood differently by versions."""
+    points, colors, triangles = sheet.mesh()
+    arrays = {"pos": points, "color": colors}
+    return batch_for_shader(shader("SMOOTH_COLOR"), "TRIS", arrays, indices=triangles)

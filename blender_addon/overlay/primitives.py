@@ -54,6 +54,23 @@ class Sheet:
     low: tuple[float, float]
     high: tuple[float, float]
 
+    def mesh(self) -> tuple[Floats32, Floats32, NDArray[np.int32]]:
+        """Points (P, 3) in the middles of its squares, their colours (P, 4), and triangles (T, 3)
+        between them; none where all is transparent."""
+        rows, columns = self.image.shape[:2]
+        x, y = (
+            low + (high - low) * (np.arange(count) + 0.5) / count
+            for low, high, count in zip(self.low, self.high, (columns, rows), strict=True)
+        )
+        points = np.zeros((rows, columns, 3), np.float32)
+        points[..., 0], points[..., 1] = x, y[:, None]
+        number = np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
+        a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+        corners = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+        seen = (self.image[..., 3].ravel()[corners] > 0.0).any(axis=1)
+        colors = np.ascontiguousarray(self.image, np.float32).reshape(-1, 4)
+        return points.reshape(-1, 3), colors, np.ascontiguousarray(corners[seen])
+
 
 @dataclass(frozen=True, slots=True)
 class Label:

@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 Box = tuple[Floats, Floats]
 """Lowest and highest corner, (3,) each [m]."""
 
-OVER_THE_CAR = 0.10
+OVER_THE_CAR = 0.06
 """How strong a free beam is over the vehicle, beside where it leaves its surroundings."""
 SURROUNDINGS_M = 0.5
 STUB_M = 0.7

@@ -18,6 +18,8 @@ FONT = 0
 SIZE, STRONG_SIZE = 11.0, 12.5
 RISE, PADDING = 10.0, 4.0
 MARGIN, GAP = 16.0, 12.0
+GIZMOS = 330.0
+"""Room for Blender's own gizmos, from the top."""
 LEAST_WIDTH, BAR, ROW = 150.0, 10.0, 17.0
 INK: Rgba = (0.92, 0.92, 0.92, 1.0)
 FAINT_INK: Rgba = (0.72, 0.72, 0.72, 1.0)
@@ -47,12 +49,30 @@ def write_labels(context: bpy.types.Context, labels: Sequence[Label]) -> None:
 def write_legends(context: bpy.types.Context, legends: Sequence[Legend]) -> None:
     """Write legends one above the other in the lower right corner, beside the sidebar."""
     scale = _scale()
+    if _is_a_side_view(context):
+        return
     right = context.region.width - _sidebar_width(context) - MARGIN * scale
     blf.size(FONT, SIZE * scale)
-    width = max((_width(legend, scale) for legend in legends), default=0.0)
+    fitting = _fitting(legends, context.region.height - GIZMOS * scale, scale)
+    width = max((_width(legend, scale) for legend in fitting), default=0.0)
     bottom = MARGIN * scale
-    for legend in reversed(legends):
+    for legend in reversed(fitting):
         bottom = _legend(legend, (right - width, right), bottom, scale) + GAP * scale / 2.0
+
+
+def _fitting(legends: Sequence[Legend], height: float, scale: float) -> list[Legend]:
+    """As many of the first legends as there is room for, one at least."""
+    found: list[Legend] = []
+    for legend in legends:
+        height -= _height(legend, scale) + GAP * scale / 2.0
+        if height >= 0.0 or not found:
+            found.append(legend)
+    return found
+
+
+def _height(legend: Legend, scale: float) -> float:
+    rows = len(legend.classes) + (2 if legend.scale else 0)
+    return (rows + 1) * ROW * scale + PADDING * 2.0 * scale
 
 
 def _width(legend: Legend, scale: float) -> float:
@@ -64,8 +84,7 @@ def _width(legend: Legend, scale: float) -> float:
 
 def _legend(legend: Legend, sides: tuple[float, float], bottom: float, scale: float) -> float:
     """Write one legend between its sides, standing there; return its upper edge."""
-    rows = len(legend.classes) + (2 if legend.scale else 0)
-    top = bottom + (rows + 1) * ROW * scale + PADDING * 2.0 * scale
+    top = bottom + _height(legend, scale)
     pad, (left, right) = PADDING * 2.0 * scale, sides
     _fill((left, bottom, right, top), PLATE)
     blf.size(FONT, SIZE * scale)
@@ -126,6 +145,12 @@ class _blended:
 
     def __exit__(self, *_: object) -> None:
         gpu.state.blend_set(self._before)
+
+
+def _is_a_side_view(context: bpy.types.Context) -> bool:
+    """Whether a view is one of four, and not the one that can be turned."""
+    space = context.space_data
+    return bool(len(space.region_quadviews)) and context.region_data != space.region_3d
 
 
 def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:

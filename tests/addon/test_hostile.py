@@ -8,6 +8,7 @@ import pytest
 
 from blender_addon.engine import pe
 from blender_addon.operators import reports
+from blender_addon.overlay import layers
 from tests.addon import scenes
 
 GREATEST, LEAST = 2**31 - 1, -(2**31)
@@ -33,8 +34,10 @@ MUST_BE_REFUSED = ("line break", "colour of a terminal", "turned text")
 
 
 @pytest.fixture
-def small(car):
+def small(car, monkeypatch):
     """Return the car, its LiDAR one of few beams, and few voxels to look at."""
+    monkeypatch.setattr(layers, "FINE_M", 8.0)
+    monkeypatch.setattr(layers, "BLIND_WITHIN_M", 1.0)
     car.objects["roof"].perception_entropy.model = "Velodyne VLP-16 Puck"
     settings = car.perception_entropy
     settings.score_samples, settings.search_samples, settings.candidates = 1024, 1024, 1

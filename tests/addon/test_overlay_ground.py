@@ -201,3 +201,16 @@ def test_nothing_stopped_is_no_heat():
     shape = heat.heat([casts.cast(mounted(lidar(max_range=10.0)), far)], far.triangles)
     assert not len(shape.faces.points) and shape.legend is None
     assert not len(heat.heat([], far.triangles).faces.points)
+
+
+def test_a_sheet_as_triangles_has_its_colours_in_the_middles_of_squares():
+    image = np.zeros((4, 6, 4), np.float32)
+    image[1, 2] = [0.1, 0.2, 0.3, 1.0]
+    points, shades, triangles = ground.Sheet(image, (-3.0, -2.0), (3.0, 2.0)).mesh()
+    at = np.flatnonzero(shades[:, 3])
+    np.testing.assert_allclose(points[at], [[-0.5, -0.5, 0.0]], atol=1e-6)
+    assert len(triangles) == 6, "those that touch it, and no more"
+    assert all(at[0] in triangle for triangle in triangles.tolist())
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    assert (np.cross(b - a, c - a)[:, 2] > 0.0).all()
+    assert all(each.flags.c_contiguous for each in (points, shades, triangles))

@@ -31,6 +31,7 @@ def check() -> None:
         stale = fingerprint(scene).text != settings.result_signature
         if stale != settings.result_stale:
             settings.result_stale = stale
+            changes.picture.tell()  # a panel is not drawn anew by what a timer sets
 
 
 def register() -> None:

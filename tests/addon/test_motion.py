@@ -165,3 +165,15 @@ def test_switched_off_in_the_middle_of_a_drag(car, timers, heard):
         assert heard == []
     finally:
         blender_addon.register()
+
+
+def test_a_result_is_marked_once_all_rests_and_unmarked_when_it_is_as_it_was(car, timers):
+    bpy.ops.pe.score()
+    timers.pass_by(10.0)
+    assert not car.perception_entropy.result_stale
+    for by, expected in ((0.5, True), (-0.5, False)):
+        car.objects["roof"].location.z += by
+        bpy.context.view_layer.update()
+        assert car.perception_entropy.result_stale != expected, "it is still moving"
+        timers.pass_by(10.0)
+        assert car.perception_entropy.result_stale == expected

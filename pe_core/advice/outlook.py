@@ -21,8 +21,9 @@ BEARINGS = {"front": 0.0, "rear": math.pi, "left": math.pi / 2.0, "right": -math
 ANY_CLASS = "any"
 """What the one class of a prior without classes is called."""
 CLASSES_NAMED = 8
-AT_THE_BODY_M = 0.2
-"""Blind ground that begins nearer than this begins at the body."""
+BLIND_TO_M = 0.5
+"""Blind ground is told for what is so tall, a kerb's post or a small child: flat ground is seen in
+rings only, far out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,7 @@ class Outlook:
     reach : Reach
         Of one class.
     blind : BlindGround
-        On the ground, z = 0 (or the space's floor, where that is higher).
+        To what is half a metre tall (or as tall as the space's lowest layer).
     """
 
     expected_ap: Mapping[str, float]
@@ -72,12 +73,12 @@ def outlook(sight: Sight, rig: Rig, class_name: str | None = None) -> Outlook:
         When the prior has no class of that name.
     """
     name = class_of(sight.prior, class_name)
-    floor = max(0.0, sight.space.z[0])
+    tall = max(BLIND_TO_M, sight.space.z[0])
     return Outlook(
         sight.expected_ap(rig),
         sight.shares(rig),
         sight.reach(rig, name),
-        sight.blind(rig, floor),
+        sight.blind(rig, tall),
     )
 
 
@@ -125,21 +126,19 @@ def _one(class_name: str) -> str:
 
 
 def _blind_words(blind: BlindGround) -> str:
-    if all(spot is None for spot in blind.nearest.values()):
-        return f"no blind ground within {blind.within:g} m of the body"
+    what = f"blind to what is {blind.height:g} m tall"
+    if all(end == 0.0 for end in blind.zone.values()):
+        return f"{what} nowhere at the body"
     ways = (f"{_blind_to(blind, side)} {words}" for side, words in SIDES.items())
-    return f"blind ground, from the body: {', '.join(ways)}"
+    return f"{what}, from the body: {', '.join(ways)}"
 
 
 def _blind_to(blind: BlindGround, side: str) -> str:
-    """Say where blind ground to a side begins, unless at the body, and ends."""
-    spot, end = blind.nearest[side], blind.seen_from[side]
-    if spot is None:
+    """Say how far the blind ground that begins at the body reaches to a side."""
+    end = blind.zone[side]
+    if end == 0.0:
         return "none"
-    last = f"beyond {blind.within:g} m" if end is None else f"{end:.1f} m"
-    if spot.distance >= AT_THE_BODY_M:
-        return f"from {spot.distance:.1f} m to {last}"
-    return last if end is None else f"to {last}"
+    return f"beyond {blind.within:g} m" if end is None else f"to {end:.1f} m"
 
 
 def _reach_dict(reach: Reach) -> dict[str, Any]:
@@ -163,5 +162,6 @@ def _blind_dict(blind: BlindGround) -> dict[str, Any]:
         "within_m": blind.within,
         "area_m2": blind.area,
         "nearest": spots,
+        "zone_m": dict(blind.zone),
         "seen_from_m": dict(blind.seen_from),
     }

@@ -25,17 +25,12 @@ def reach(by_degrees, name="pedestrian", limit=80.0):
     )
 
 
-def blind(**sides):
-    """Blind ground by side: None, or where it begins and ends."""
-    spots = {
-        s: None if v is None else SimpleNamespace(point=(1.0, 0.0), distance=v[0])
-        for s, v in sides.items()
-    }
-    ends = {s: 0.0 if v is None else v[1] for s, v in sides.items()}
-    return SimpleNamespace(nearest=spots, seen_from=ends, within=10.0, height=0.0, area=1.0)
+def blind(**zone):
+    """Blind ground that begins at the body: how far it reaches by side."""
+    return SimpleNamespace(zone=zone, within=10.0, height=0.5)
 
 
-ROUND = blind(front=(0.0, 4.24), rear=(0.5, None), left=None, right=(0.1, 2.0))
+ROUND = blind(front=4.24, rear=None, left=0.0, right=2.0)
 
 
 def said(reach, blind):
@@ -49,8 +44,8 @@ def test_what_is_said():
         "expected AP: car 0.61, cone 0.20",
         "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, 80 m and more behind, "
         "nowhere left, 12 m right",
-        "blind ground, from the body: to 4.2 m ahead, from 0.5 m to beyond 10 m behind, none left, "
-        "to 2.0 m right",
+        "blind to what is 0.5 m tall, from the body: to 4.2 m ahead, beyond 10 m behind, "
+        "none left, to 2.0 m right",
     ]
 
 
@@ -62,10 +57,10 @@ def test_many_classes_are_not_all_named():
 
 
 def test_what_is_found_nowhere_and_no_blind_ground():
-    lines = said(reach({}, "any"), blind(front=None, rear=None, left=None, right=None))
+    lines = said(reach({}, "any"), blind(front=0.0, rear=0.0, left=0.0, right=0.0))
     assert lines[1:] == [
         "an object is found (AP 0.5 or more) nowhere ahead, behind, left or right",
-        "no blind ground within 10 m of the body",
+        "blind to what is 0.5 m tall nowhere at the body",
     ]
 
 
@@ -81,7 +76,7 @@ def test_an_outlook_is_sight_s():
     assert found.reach.class_name == "pedestrian" and car.reach.class_name == "car"
     assert found.expected_ap == sight.expected_ap(study.rig)
     assert np.array_equal(car.reach.distance, sight.reach(study.rig, "car").distance)
-    assert found.blind.area == sight.blind(study.rig).area
+    assert found.blind.area == sight.blind(study.rig, 0.5).area
     data = found.to_dict()
     assert data["reach"]["bearings_deg"][:2] == [0.0, 5.0]
     assert data["seen_by_at_least"] == list(sight.shares(study.rig).by_number)

@@ -144,7 +144,7 @@ PAGE = (Path(pe.__file__).parent.parent / "docs" / "explain.md").read_text("utf-
 
 def without_sight(text):
     """A text without the figures that `Sight` samples: it may come to sample better."""
-    lines = re.sub(r"^(a \w+ is found|blind ground|expected AP).*", r"\1", text, flags=re.M)
+    lines = re.sub(r"^(a \w+ is found|blind to what is|expected AP).*", r"\1", text, flags=re.M)
     return re.sub(r"\d+% by two or more", "by two or more", lines)
 
 

@@ -28,7 +28,6 @@ def on_load(*_: object) -> None:
     bridge.sync_own_sensors()
     bridge.forget_mirrors()
     go_round()
-    note_refusals()
 
 
 @persistent
@@ -54,18 +53,10 @@ def go_round() -> None:
         bridge.follow_mirrors(scene, bpy.context.evaluated_depsgraph_get(), roster.sensors(scene))
 
 
-def note_refusals() -> None:
-    """Write at the sensors why they are refused, once they rest: meanwhile nobody reads it."""
-    if bpy.context.view_layer is not None:
-        sensors = roster.sensors(bpy.context.scene)
-        bridge.note_refusals(sensors, bpy.context.evaluated_depsgraph_get())
-
-
 def register() -> None:
     """Start listening."""
     changes.study.connect(bridge.sync_own_sensors)
     changes.moved.connect(go_round)
-    changes.rested.connect(note_refusals)
     bpy.app.handlers.load_post.append(on_load)
     bpy.app.handlers.save_pre.append(on_save)
 
@@ -74,7 +65,6 @@ def unregister() -> None:
     """Stop listening."""
     bpy.app.handlers.save_pre.remove(on_save)
     bpy.app.handlers.load_post.remove(on_load)
-    changes.rested.disconnect(note_refusals)
     changes.moved.disconnect(go_round)
     changes.study.disconnect(bridge.sync_own_sensors)
     bridge.forget_own_sensors()

@@ -19,7 +19,6 @@ from .own_sensors import forget_own_sensors, sync_own_sensors, table_of
 from .placeable import check_placeable
 from .prior import prior_from_scene, prior_key
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
-from .refusals import note_refusals
 from .rig import (
     mounted_on_sensor,
     place_poses,
@@ -88,7 +87,6 @@ __all__ = [
     "missing_pieces",
     "mounted_on_sensor",
     "newer_version",
-    "note_refusals",
     "perception_of",
     "place_poses",
     "place_rig",

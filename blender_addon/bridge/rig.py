@@ -187,13 +187,13 @@ def _check_rigid(matrix: np.ndarray) -> None:
     axes = matrix[:3, :3]
     lengths = np.sqrt((axes**2).sum(axis=0))
     if np.abs(lengths - 1.0).max() > SCALE_TOLERANCE:
-        expected = "1 in each direction (its drawn size is the empty's display size)"
+        expected = "1 in each direction: Ctrl-A > Scale (its drawn size is its display size)"
         found = ", ".join(f"{length:.4g}" for length in lengths)
         raise pe.InputError("object", "scale", expected, found)
     if np.abs(axes.T @ axes - np.eye(3)).max() > SCALE_TOLERANCE:
         raise pe.InputError("object", "rotation", "axes at right angles", "shear from its parent")
     if np.linalg.det(axes) < 0.0:
-        raise pe.InputError("object", "scale", "no mirroring", "a negative scale")
+        raise pe.InputError("object", "scale", "no mirroring: Ctrl-A > Scale", "a negative scale")
 
 
 def _stands_at(ground_from_sensor: np.ndarray, pose: pe.Pose) -> bool:

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import textwrap
-
 import bpy
 
 from ..properties import AXIS_LABELS
 from .layout import Tab
-
-WRAP = 38
-"""Letters that fit into a line of the sidebar as it is when first opened."""
 
 
 class PE_PT_sensor(Tab, bpy.types.Panel):
@@ -30,8 +25,6 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         settings = obj.perception_entropy
         layout = self.layout
         layout.prop(settings, "model")
-        if settings.refusal:
-            draw_refusal(layout, obj)
         layout.prop(settings, "fusion")
         layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
         draw_mirror(layout, obj)
@@ -39,16 +32,6 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         row = layout.row(align=True)
         for index, label in enumerate(AXIS_LABELS):
             row.prop(settings, "free", index=index, text=label, toggle=True)
-
-
-def draw_refusal(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
-    """Draw why a sensor is refused, and the button that mends it where there is one."""
-    box = layout.box().column(align=True)
-    words = textwrap.wrap(obj.perception_entropy.refusal, WRAP)
-    for number, line in enumerate(words):
-        box.label(text=line, icon="BLANK1" if number else "ERROR", translate=False)
-    if obj.perception_entropy.refused_field == "scale":
-        box.operator("pe.apply_scale", icon="CON_SIZELIKE").name = obj.name
 
 
 def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:

@@ -78,12 +78,6 @@ class PE_ObjectSettings(SearchBounds, bpy.types.PropertyGroup):
     mirror_of: StringProperty(
         name="Mirror Of", description="Name of the sensor that is linked as its mirror image"
     )
-    refusal: StringProperty(
-        name="Refusal", description="Why this sensor cannot be scored as it is; empty if it can"
-    )
-    refused_field: StringProperty(
-        name="Refused Field", description="What is wrong with it, such as its model or its scale"
-    )
 
     has_result: BoolProperty(name="Has Result", description="The last result knows this sensor")
     result_of: StringProperty(

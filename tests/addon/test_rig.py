@@ -161,14 +161,17 @@ def test_scaled_sensor(car, scale):
     found = ", ".join(f"{s:.4g}" for s in scale)
     refused(
         car,
-        "scene: sensor 'roof': scale: expected 1 in each direction (its drawn size is the "
-        f"empty's display size), found {found}",
+        "scene: sensor 'roof': scale: expected 1 in each direction: Ctrl-A > Scale "
+        f"(its drawn size is its display size), found {found}",
     )
 
 
 def test_mirrored_sensor(car):
     car.objects["roof"].scale = (-1.0, 1.0, 1.0)
-    refused(car, "scene: sensor 'roof': scale: expected no mirroring, found a negative scale")
+    line = (
+        "scene: sensor 'roof': scale: expected no mirroring: Ctrl-A > Scale, found a negative scale"
+    )
+    refused(car, line)
 
 
 def test_sheared_sensor(car):

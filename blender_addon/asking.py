@@ -36,7 +36,9 @@ def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Point) ->
     name = scene.name
     vehicle = body.shared.read(scene, depsgraph).vehicle
     sensors = bridge.possible_sensors(roster.sensors(scene), depsgraph)
+    settings = scene.perception_entropy
     try:
+        space, model = bridge.space_of(settings), bridge.perception_of(settings)
         prior = bridge.prior_from_scene(scene)
         rig = pe.Rig(sensors)
     except pe.InputError as error:
@@ -44,7 +46,7 @@ def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Point) ->
         return
 
     def work() -> advice.AskedPlace:
-        return advice.ask_place(rig, pe.PerceptionSpace(), prior, vehicle, point)
+        return advice.ask_place(rig, space, prior, vehicle, point, model)
 
     def deliver(found: advice.AskedPlace) -> None:
         note(name, Answer(point, found.text, found))

@@ -39,9 +39,13 @@ def look() -> None:
     own, name = bridge.scene_advice(scene), scene.name
     vehicle = body.shared.read(scene, depsgraph).vehicle
     sensors = bridge.possible_sensors(roster.sensors(scene), depsgraph)
+    try:
+        space = bridge.space_of(scene.perception_entropy)
+    except pe.InputError:  # a score says so
+        space = pe.PerceptionSpace()
 
     def work() -> tuple[pe.Advice, ...]:
-        return advice.warnings(sensors, vehicle, pe.PerceptionSpace(), pe.Prior.uniform())
+        return advice.warnings(sensors, vehicle, space, pe.Prior.uniform())
 
     def deliver(found: tuple[pe.Advice, ...]) -> None:
         if name in bpy.data.scenes:

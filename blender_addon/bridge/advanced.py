@@ -46,10 +46,18 @@ def clearance_of(scene: bpy.types.Scene) -> float:
 
 def limits_of(obj: bpy.types.Object) -> Limits:
     """Return the bounds of a sensor's axes that are its own."""
-    settings, found = obj.perception_entropy, {}
+    settings = obj.perception_entropy
+    return bounds_as_limits(settings.bounded, settings.bounds_low, settings.bounds_high)
+
+
+def bounds_as_limits(
+    bounded: Sequence[bool], low: Sequence[float], high: Sequence[float]
+) -> Limits:
+    """Return bounds by axis, of those that have some; angles come in degrees."""
+    found = {}
     for n, axis in enumerate(search.AXES):
-        if settings.bounded[n]:
-            bounds = pair_as_typed((settings.bounds_low[n], settings.bounds_high[n]))
+        if bounded[n]:
+            bounds = pair_as_typed((low[n], high[n]))
             angle = axis not in ("x", "y", "z")
             found[axis] = tuple(map(math.radians, bounds)) if angle else bounds
     return found

@@ -18,10 +18,15 @@ from .rig import (
     view_layer_of,
 )
 
+NO_BOUNDS, ZEROS = (False,) * len(search.AXES), (0.0,) * len(search.AXES)
+
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One sensor: what the score and the search know of it, whether it counts, and its look."""
+    """One sensor: what the score and the search know of it, whether it counts, and its look.
+
+    `bounded` says which axes have bounds of their own, `low` and `high` which [m or deg].
+    """
 
     name: str
     model: str
@@ -31,6 +36,9 @@ class Record:
     visible: bool = True
     display: str = "ARROWS"
     size_m: float = 0.25
+    bounded: tuple[bool, ...] = NO_BOUNDS
+    low: tuple[float, ...] = ZEROS
+    high: tuple[float, ...] = ZEROS
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -45,7 +53,8 @@ class Record:
     @property
     def told_apart(self) -> tuple[object, ...]:
         """What makes it another idea: all but its look."""
-        return (*self.scored, self.free)
+        bounds = zip(self.bounded, self.low, self.high, strict=True)
+        return (*self.scored, self.free, *((lo, hi) if own else None for own, lo, hi in bounds))
 
 
 def alike(some: Iterable[Record], others: Iterable[Record]) -> bool:
@@ -82,6 +91,9 @@ def _record_of(obj: bpy.types.Object, layer: bpy.types.ViewLayer) -> Record:
         visible,
         obj.empty_display_type,
         obj.empty_display_size,
+        tuple(own.bounded),
+        tuple(own.bounds_low),
+        tuple(own.bounds_high),
     )
 
 
@@ -112,6 +124,9 @@ def records_of(variant: bpy.types.PropertyGroup) -> tuple[Record, ...]:
             row.visible,
             row.display,
             row.size,
+            tuple(row.bounded),
+            tuple(row.bounds_low),
+            tuple(row.bounds_high),
         )
         for row in variant.sensors
     )
@@ -126,6 +141,7 @@ def write_records(variant: bpy.types.PropertyGroup, records: Sequence[Record]) -
         row.name, row.model, row.fusion = record.name, record.model, record.fusion
         row.pose, row.free, row.visible = record.numbers, record.free, record.visible
         row.display, row.size = record.display, record.size_m
+        row.bounded, row.bounds_low, row.bounds_high = record.bounded, record.low, record.high
 
 
 def rig_of(records: Sequence[Record]) -> pe.Rig:

@@ -40,8 +40,11 @@ def study_of_rig(
     rig: pe.Rig,
     free: Mapping[str, tuple[str, ...]],
     vehicle: pe.Vehicle | None = None,
+    limits: Mapping[str, Limits] | None = None,
 ) -> pe.Study:
     """Return the study of a scene's vehicle and settings with any rig, and what is free of it.
+
+    `limits` are bounds of its axes, by sensor; by default those of the scene's sensors.
 
     Raises
     ------
@@ -50,13 +53,14 @@ def study_of_rig(
     """
     settings = scene.perception_entropy
     _check_metres(scene)
+    bounds = all_limits(sensor_objects(scene)) if limits is None else limits
     return pe.Study(
         rig,
         vehicle or vehicle_of_scene(scene, depsgraph),
         space_of(settings),
         prior=prior_from_scene(scene),
         model=perception_of(settings),
-        search=_search(settings, free, all_limits(sensor_objects(scene))),
+        search=_search(settings, free, bounds),
         samples=settings.score_samples,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
     )

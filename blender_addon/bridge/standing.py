@@ -78,7 +78,8 @@ def _dress(obj: bpy.types.Object, record: Record) -> None:
         own.model = record.model
     if own.fusion != record.fusion:
         own.fusion = record.fusion
-    own.free = record.free
+    own.free, own.bounded = record.free, record.bounded
+    own.bounds_low, own.bounds_high = record.low, record.high
     if not own.is_sensor:
         own.is_sensor = True
 

@@ -10,6 +10,7 @@ import bpy
 
 from ..choices import free_name
 from ..engine import pe
+from .advanced import bounds_as_limits
 from .fingerprint import Fingerprint
 from .records import (
     Record,
@@ -99,8 +100,11 @@ def study_of_variant(scene: bpy.types.Scene, variant: Variant, depsgraph: object
         One line that says what is wrong with the scene, or with the variant.
     """
     records = records_of(variant)
+    limits = {r.name: bounds_as_limits(r.bounded, r.low, r.high) for r in records}
+    limits = {name: own for name, own in limits.items() if own}
     try:
-        return study_of_rig(scene, depsgraph, rig_of(records), free_axes_of(records))
+        free = free_axes_of(records)
+        return study_of_rig(scene, depsgraph, rig_of(records), free, limits=limits)
     except pe.InputError as error:
         named = f"variant {variant.name!r}"
         raise error.at(named) if error.source == "variant" else error from None

@@ -42,6 +42,15 @@ class PE_VariantSensor(bpy.types.PropertyGroup):
     free: BoolVectorProperty(
         name="Free Axes", description="What the search may change", size=len(search.AXES)
     )
+    bounded: BoolVectorProperty(
+        name="Bounded", description="Axes that have bounds of their own", size=len(search.AXES)
+    )
+    bounds_low: FloatVectorProperty(
+        name="Low Bounds", description="Of these axes [m or deg]", size=len(search.AXES)
+    )
+    bounds_high: FloatVectorProperty(
+        name="High Bounds", description="Of these axes [m or deg]", size=len(search.AXES)
+    )
     visible: BoolProperty(name="Visible", description="It is seen, and so it counts", default=True)
     display: StringProperty(name="Display", description="How its empty is drawn", default="ARROWS")
     size: FloatProperty(name="Size", description="How large its empty is drawn", default=0.25)

@@ -229,3 +229,9 @@ def test_sensors_that_no_score_would_take_are_no_reason_to_tell_nothing(car):
     assert ("odd", "refused") in found
     with pytest.raises(pe.InputError):
         scenes.study()
+
+
+def test_a_place_is_asked_in_the_scene_s_own_space(car):
+    car.perception_entropy.space_x = (-20.0, 20.0)
+    bpy.ops.pe.ask_place(point=(30.0, 0.0, 0.0))
+    assert "-20 to 20 m" in asking.answer(car).lines[0]

@@ -325,3 +325,19 @@ def test_a_variant_that_cannot_be_scored_is_told_and_the_others_are(ideas):
     ideas.perception_entropy.variants[1].has_result = False
     with pytest.raises(RuntimeError, match=r"variant .Variant.*a name such as"):
         bpy.ops.pe.compare_variants()
+
+
+def test_bounds_of_the_search_are_a_variant_s_own(ideas):
+    own = ideas.objects["roof"].perception_entropy
+    own.bounded[2], own.bounds_low[2], own.bounds_high[2] = True, 1.6, 2.1
+    unsaved.check()
+    assert ideas.perception_entropy.variant_changed
+    bpy.ops.pe.save_variant()
+    expected = scenes.study().search.limits
+    assert expected["roof"]["z"] == (1.6, 2.1)
+    switch(ideas, "Variant")
+    assert not own.bounded[2] and not scenes.study().search.limits
+    row = rows(ideas)["Variant 2"]
+    assert bridge.study_of_variant(ideas, row, scenes.depsgraph()).search.limits == expected
+    switch(ideas, "Variant 2")
+    assert scenes.study().search.limits == expected

@@ -185,7 +185,7 @@ def keep(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:
 
 
 class PE_OT_cancel(bpy.types.Operator):
-    """Stop the search; the best placement so far is kept"""
+    """Stop the search; the best placement so far is kept. Pressed again: all is left as it was"""
 
     bl_idname = "pe.cancel"
     bl_label = "Stop"

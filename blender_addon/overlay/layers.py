@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -22,6 +23,7 @@ WHOLE_RIG = ""
 """Under this name stands what belongs to no single sensor."""
 COARSE_M, FINE_M = 1.0, 0.5
 """Side of the ground map's places while something moves, and at rest."""
+MOST_PLACES = 60_000
 BLIND_WITHIN_M = 10.0
 RING_ALPHA = 0.55
 GHOST = 0.35
@@ -82,13 +84,20 @@ def _as_scored(wish: Wish) -> pe.GroundMap | None:
 def _ground(wish: Wish, tools: Tools, _name: str) -> Shape:
     view = wish.view
     if _as_scored(wish) is not None:
-        seen = ground.as_scored(wish.scored, pe.PerceptionSpace(), FINE_M)
+        seen = ground.as_scored(wish.scored, wish.space, FINE_M)
         return ground.ground_map(
             seen, view.ground_quantity, view.ground_opacity, where=ground.AS_SCORED
         )
-    step = COARSE_M if wish.moving else FINE_M
+    step = _step(wish.space, moving=wish.moving)
     seen = tools.sight(wish).ground(_rig(wish), view.ground_height, step, draft=wish.moving)
     return ground.ground_map(seen, view.ground_quantity, view.ground_opacity)
+
+
+def _step(space: pe.PerceptionSpace, *, moving: bool) -> float:
+    """Side of the ground map's places: larger ones in a space that is larger than usual."""
+    (x0, x1), (y0, y1) = space.x, space.y
+    least, most = (COARSE_M, MOST_PLACES // 4) if moving else (FINE_M, MOST_PLACES)
+    return max(least, math.sqrt((x1 - x0) * (y1 - y0) / most))
 
 
 def _blind(wish: Wish, tools: Tools, _name: str) -> Shape:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import time
+from collections.abc import Hashable
+from typing import NamedTuple
 
 import bpy
 
-from .. import asking, body, bridge, roster
+from .. import body, bridge, roster
 from ..engine import pe
 from ..live import latest
 from .layers import LAYERS
@@ -18,12 +20,21 @@ HEAVY_S = 0.05
 """A vehicle that took longer to read is not read again while it is being moved."""
 
 
+class Judged(NamedTuple):
+    """What a scene's rigs are judged by; `key` tells it from others."""
+
+    prior: pe.Prior | None
+    space: pe.PerceptionSpace | None
+    model: pe.PerceptionModel | None
+    key: Hashable
+
+
 class Reader:
     """Remembers what is dear to read, by plain keys; never a Blender object."""
 
     def __init__(self) -> None:
-        self._prior: tuple[object, pe.Prior | None] = (None, None)
-        self._body = body.NOTHING
+        self._judged: dict[str, Judged] = {}
+        self._bodies: dict[str, body.Body] = {}
         self._took_s = 0.0
 
     def clear(self) -> None:
@@ -36,29 +47,38 @@ class Reader:
         """Return what is to be shown of a scene."""
         sensors = _mounted(scene, depsgraph)
         vehicle, body_key = self._vehicle(scene, depsgraph, moving) if sensors else body.NOTHING
-        key = bridge.prior_key(scene)
-        if self._prior[0] != key:
-            self._prior = key, _prior(scene)
-        view, scored = view_of(scene), _scored(scene, sensors)
-        others, name = _ghosts(scene)
-        answer = asking.answer(scene)
+        judged = self._judged_by(scene)
+        view, scored = view_of(scene), _scored(scene, sensors, judged.space)
         return Wish(
-            *(sensors, vehicle, body_key, self._prior[1], key, view, moving, scored),
-            ghosts=others,
-            ghosts_name=name,
-            place=None if answer is None else answer.place,
-        )
+            sensors, vehicle, body_key, judged.prior, judged.key, view, moving, scored,
+            judged.space, judged.model,
+        )  # fmt: skip
+
+    def _judged_by(self, scene: bpy.types.Scene) -> Judged:
+        """Prior, space and AP curves; no prior where there is a mistake, which a score tells."""
+        settings = scene.perception_entropy
+        try:
+            space, model = bridge.space_of(settings), bridge.perception_of(settings)
+            key = bridge.prior_key(scene), space, model
+            known = self._judged.get(scene.name)
+            if known is None or known.key != key:
+                known = Judged(bridge.prior_from_scene(scene), space, model, key)
+        except pe.InputError as error:
+            known = Judged(None, None, None, str(error))
+        self._judged[scene.name] = known
+        return known
 
     def _vehicle(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool
     ) -> body.Body:
-        if not (moving and self._took_s > HEAVY_S):
-            start = time.perf_counter()
-            found = body.shared.read(scene, depsgraph)
-            if found.key != self._body.key:
-                self._took_s = time.perf_counter() - start
-            self._body = found
-        return self._body
+        known = self._bodies.get(scene.name)
+        if known is not None and moving and self._took_s > HEAVY_S:
+            return known
+        start = time.perf_counter()
+        found = self._bodies[scene.name] = body.shared.read(scene, depsgraph)
+        if known is None or found.key != known.key:
+            self._took_s = time.perf_counter() - start
+        return found
 
 
 def view_of(scene: bpy.types.Scene) -> View:
@@ -93,10 +113,12 @@ def _mounted(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[Mo
     return tuple(found)
 
 
-def _scored(scene: bpy.types.Scene, sensors: tuple[Mounted, ...]) -> pe.GroundMap | None:
+def _scored(
+    scene: bpy.types.Scene, sensors: tuple[Mounted, ...], space: pe.PerceptionSpace | None
+) -> pe.GroundMap | None:
     """The last score's ground map, if the scene is not known to be another one since."""
     found = latest.scored(scene.name)
-    if found is None or scene.perception_entropy.result_stale:
+    if found is None or scene.perception_entropy.result_stale or found.study.space != space:
         return None
     now = {(e.sensor.name, e.sensor.model, e.sensor.pose) for e in sensors if e.counted}
     then = {(each.name, each.model, each.pose) for each in found.study.rig}
@@ -111,13 +133,6 @@ def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
             with contextlib.suppress(pe.InputError):
                 return tuple(bridge.rig_of(bridge.records_of(row))), row.name
     return (), ""
-
-
-def _prior(scene: bpy.types.Scene) -> pe.Prior | None:
-    """The scene's prior; none where there is a mistake in it, which a score tells."""
-    with contextlib.suppress(pe.InputError):
-        return bridge.prior_from_scene(scene)
-    return None
 
 
 def _height(choice: str) -> float | None:

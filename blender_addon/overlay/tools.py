@@ -42,9 +42,10 @@ class Tools:
     def sight(self, wish: Wish) -> sight.Sight:
         """Return what tells what rigs see."""
         key = wish.body_key, wish.prior_key
-        return self._keep(
-            "sight", key, lambda: sight.Sight(pe.PerceptionSpace(), wish.prior, self.body(wish))
-        )
+        return self._keep("sight", key, lambda: self._sight(wish))
+
+    def _sight(self, wish: Wish) -> sight.Sight:
+        return sight.Sight(wish.space, wish.prior, self.body(wish), model=wish.model)
 
     def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is kept under a key, or make it; the one asked for last goes last."""

@@ -64,9 +64,9 @@ class Mounted:
 class Wish:
     """A scene, as far as what is drawn depends on it.
 
-    `body_key` and `prior_key` tell vehicles and priors from others; `moving`: a rough picture now
-    is better than a fine one later. `scored` is the ground map of the last score, of all voxels, if
-    the scene still is as it was then.
+    `body_key` tells vehicles from others, `prior_key` priors, spaces and AP curves; `moving`: a
+    rough picture now is better than a fine one later. `scored` is the ground map of the last score,
+    of all voxels, if the scene still is as it was then.
     """
 
     sensors: tuple[Mounted, ...]
@@ -77,6 +77,8 @@ class Wish:
     view: View
     moving: bool = False
     scored: pe.GroundMap | None = None
+    space: pe.PerceptionSpace | None = None
+    model: pe.PerceptionModel | None = None
     ghosts: tuple[pe.Sensor, ...] = ()
     ghosts_name: str = ""
     place: advice.AskedPlace | None = None

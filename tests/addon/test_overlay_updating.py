@@ -208,6 +208,16 @@ def test_a_prior_with_a_mistake_leaves_the_rest(rig):
     assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach"}
 
 
+def test_the_map_is_of_the_scene_s_own_space(rig):
+    rig.perception_entropy.space_x = (-20.0, 30.0)
+    sheet = scenes.drawn(rig)["ground"][""].sheet
+    assert (sheet.low, sheet.high) == ((-20.0, -40.0), (30.0, 40.0))
+    rig.perception_entropy.space_x = (-2000.0, 2000.0)
+    assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * layers.MOST_PLACES
+    rig.perception_entropy.space_x = (30.0, -20.0)  # a mistake: a score says which
+    assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach"}
+
+
 def test_a_class_that_the_prior_does_not_know_is_replaced(rig):
     rig.perception_entropy.view.reach_class = "zebra"
     assert "Car" in scenes.drawn(rig)["reach"][""].legend.title

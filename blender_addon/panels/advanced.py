@@ -14,6 +14,7 @@ SCALARS = {
     "camera": ("width", "height", "hfov"),
 }
 """Figures of an own sensor by its kind."""
+KIND_LABELS = {"lidar": "LiDAR", "camera": "Camera"}
 
 
 class PE_UL_own_sensors(bpy.types.UIList):
@@ -30,7 +31,7 @@ class PE_UL_own_sensors(bpy.types.UIList):
         _active_property: str,
     ) -> None:
         layout.prop(item, "name", text="", emboss=False, icon="ERROR" if item.problem else "NONE")
-        layout.label(text={"lidar": "LiDAR", "camera": "Camera"}[item.kind])
+        layout.label(text=KIND_LABELS[item.kind])
 
 
 class PE_PT_advanced(Tab, bpy.types.Panel):
@@ -79,7 +80,7 @@ def draw_curves(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
         layout.operator("pe.own_curves")
     for curve in settings.curves:
         row = layout.row(align=True)
-        row.prop(curve, "own", text=curve.name)
+        row.prop(curve, "own", text=KIND_LABELS.get(curve.name, curve.name))
         pair = row.row(align=True)
         pair.active = curve.own
         pair.prop(curve, "a")

@@ -65,7 +65,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
         update=changed,
     )
     elevations: FloatVectorProperty(
-        name="Elevation",
+        name="Elevation °",
         description="Lowest and highest channel in degrees above the horizon",
         size=2,
         default=(-25.0, 15.0),
@@ -74,7 +74,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
         update=changed,
     )
     azimuths: FloatVectorProperty(
-        name="Azimuth",
+        name="Azimuth °",
         description="From and to in degrees, positive is left",
         size=2,
         default=(-180.0, 180.0),
@@ -83,7 +83,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
         update=changed,
     )
     azimuth_step: FloatProperty(
-        name="Azimuth Step",
+        name="Azimuth Step °",
         description="Degrees from beam to beam of a channel",
         default=0.2,
         min=0.001,
@@ -106,7 +106,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
         name="Height", description="Pixels down", default=1080, min=1, update=changed
     )
     hfov: FloatProperty(
-        name="Field of View",
+        name="Field of View °",
         description="Horizontal field of view in degrees",
         default=90.0,
         min=0.001,

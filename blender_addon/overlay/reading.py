@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import body, bridge, roster
+from .. import asking, body, bridge, roster
 from ..engine import pe
 from ..live import latest
 from .layers import LAYERS
@@ -48,11 +48,17 @@ class Reader:
         sensors = _mounted(scene, depsgraph)
         vehicle, body_key = self._vehicle(scene, depsgraph, moving) if sensors else body.NOTHING
         judged = self._judged_by(scene)
-        view, scored = view_of(scene), _scored(scene, sensors, judged.space)
+        others, name = _ghosts(scene)
+        answer = asking.answer(scene)
         return Wish(
-            sensors, vehicle, body_key, judged.prior, judged.key, view, moving, scored,
-            judged.space, judged.model,
-        )  # fmt: skip
+            *(sensors, vehicle, body_key, judged.prior, judged.key, view_of(scene), moving),
+            scored=_scored(scene, sensors, judged.space),
+            space=judged.space,
+            model=judged.model,
+            ghosts=others,
+            ghosts_name=name,
+            place=None if answer is None else answer.place,
+        )
 
     def _judged_by(self, scene: bpy.types.Scene) -> Judged:
         """Prior, space and AP curves; no prior where there is a mistake, which a score tells."""

@@ -5,7 +5,7 @@ PYTHON_VENV := .venv/bin/python
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: demo test properties mutants bench lint extension clean help
+.PHONY: demo test properties mutants bench lint extension screenshots clean help
 
 demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, the better .blend
 	@tools/demo.sh $(ARGS)
@@ -31,6 +31,9 @@ lint: .venv/dev.stamp  ## style, format, types
 
 extension: .venv/run.stamp  ## build the Blender extension, dist/perception_entropy-VERSION.zip
 	@$(PYTHON_VENV) tools/build_extension.py
+
+screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide" for some, needs a Blender
+	@$(PYTHON_VENV) tools/screenshots.py $(ARGS)
 
 # run.stamp: what a user needs. dev.stamp: what a developer needs on top, in the same environment.
 .venv/run.stamp: pyproject.toml tools/make_venv.sh

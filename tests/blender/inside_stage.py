@@ -34,6 +34,8 @@ def obey():
         with bpy.context.temp_override(window=window, area=area, region=region):
             names = {"bpy": bpy, "window": window, "area": area, "region": region, "kept": KEPT}
             exec(compile(code, "do.py", "exec"), names)
+        for each in window.screen.areas:  # Blender does not draw what a script has changed
+            each.tag_redraw()
     except Exception:
         problem = traceback.format_exc()
     write("done.json", json.dumps({"problem": problem, "kept": KEPT}, default=str))

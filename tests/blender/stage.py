@@ -54,6 +54,10 @@ class Stage(windowed.Window):
         """Work the mouse and the keyboard with xdotool."""
         self._xdotool(*map(str, arguments))
 
+    def point_at(self, x: float, y: float) -> None:
+        """Move the mouse to a place on the screen."""
+        self._move(round(x), round(y))
+
     def drag(self, start: tuple[int, int], end: tuple[int, int], held_s: float = 0.6) -> None:
         """Drag with the left button from one place to another."""
         (x, y), (u, v) = start, end

@@ -110,3 +110,24 @@ def test_entries_of_the_catalogue_without_a_source_are_the_two_it_tells_of():
     assert all(e.source not in ("", "same") for e in pe.catalog.entries().values())
     no_product = [e.name for e in pe.catalog.entries().values() if "no product" in e.source]
     assert len(no_product) == 3
+
+
+GUIDE = (ROOT / "docs" / "guide.md").read_text("utf-8")
+IMAGES = ROOT / "docs" / "images"
+MOST_STILL_BYTES, MOST_FILM_BYTES = 400_000, 3_000_000
+
+
+def test_every_picture_of_the_guide_is_there_and_made_by_the_script():
+    wanted = re.findall(r"\(images/([\w.]+)\)", GUIDE)
+    assert len(wanted) > 8
+    scripts = "".join(path.read_text("utf-8") for path in (ROOT / "tools/shots").glob("*.py"))
+    for name in wanted:
+        assert (IMAGES / name).is_file(), name
+        assert f'"{Path(name).stem}"' in scripts, name
+
+
+def test_pictures_are_small():
+    for path in IMAGES.glob("*.png"):
+        assert path.stat().st_size < MOST_STILL_BYTES, path.name
+    for path in IMAGES.glob("*.webp"):
+        assert path.stat().st_size < MOST_FILM_BYTES, path.name

@@ -1,0 +1,11 @@
+"""The pictures of the documentation, made in a real window: `make screenshots`."""
+
+from .assets import ASSETS
+from .film import FILM
+from .guide import GUIDE
+from .reel import Reel
+
+REELS = {"guide": GUIDE, "assets": ASSETS, "film": FILM}
+"""By the name that `tools/screenshots.py` takes."""
+
+__all__ = ["REELS", "Reel"]

@@ -1,0 +1,70 @@
+"""Pictures made small: PNG for stills, an animated WebP for the film."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from PIL import Image
+
+Box = tuple[int, int, int, int]
+MOST_PIXELS = 1600
+"""Along the longer side."""
+LOST_BITS = (0, 1, 2, 3)
+MOST_PNG_BYTES = 400_000
+MOST_FILM_BYTES = 3_000_000
+
+
+def save_still(source: Path, target: Path, crop: Box | None = None) -> int:
+    """Write a screenshot as a PNG, as true as its size allows; return its size in bytes.
+
+    Of a large one the last bits of each colour are rounded away. A palette would be smaller, but it
+    drops colours that are rare, and those of a legend are.
+    """
+    image = Image.open(source).convert("RGB")
+    if crop:
+        image = image.crop(crop)
+    image.thumbnail((MOST_PIXELS, MOST_PIXELS), Image.Resampling.LANCZOS)
+    for lost in LOST_BITS:
+        rounded(image, lost).save(target, optimize=True)
+        if target.stat().st_size <= MOST_PNG_BYTES:
+            break
+    return checked(target, MOST_PNG_BYTES)
+
+
+def rounded(image: Image.Image, bits: int) -> Image.Image:
+    """Return a picture whose colours are rounded to multiples of a power of two."""
+    step = 1 << bits
+    return image.point([min(round(level / step) * step, 255) for level in range(256)] * 3)
+
+
+def save_film(
+    frames: Sequence[Path], target: Path, crop: Box, width: int, frame_ms: int, quality: int = 60
+) -> int:
+    """Write screenshots as an animation that runs for ever; return its size in bytes."""
+    height = round(width * (crop[3] - crop[1]) / (crop[2] - crop[0]))
+    images = [
+        Image.open(frame)
+        .convert("RGB")
+        .crop(crop)
+        .resize((width, height), Image.Resampling.LANCZOS)
+        for frame in frames
+    ]
+    images[0].save(
+        target,
+        save_all=True,
+        append_images=images[1:],
+        duration=frame_ms,
+        loop=0,
+        quality=quality,
+        method=4,
+    )
+    return checked(target, MOST_FILM_BYTES)
+
+
+def checked(path: Path, most: int) -> int:
+    """Return the size of a file; complain about one that is too large for a repository."""
+    size = path.stat().st_size
+    if size > most:
+        raise AssertionError(f"{path.name} has {size:,} bytes; {most:,} at most")
+    return size

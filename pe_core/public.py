@@ -9,7 +9,18 @@ from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import Housing, PerceptionSpace, Pose, Rig, Sensor, Vehicle, cuts_body
 from .scoring import Evaluator, Glance, GroundMap, PartScore, Score, SensorScore
-from .search import Schedule, SearchSpace, Step, optimize
+from .search import (
+    Constraints,
+    Mounting,
+    NoGo,
+    Schedule,
+    SearchSpace,
+    Slot,
+    Slots,
+    Step,
+    Surface,
+    optimize,
+)
 from .sight import BlindGround, GroundSight, Reach, Sight
 from .study import (
     Job,
@@ -38,6 +49,7 @@ __all__ = [
     "BoxReport",
     "Boxes",
     "Camera",
+    "Constraints",
     "Evaluator",
     "Focus",
     "Glance",
@@ -48,6 +60,8 @@ __all__ = [
     "Job",
     "Lidar",
     "Mesh",
+    "Mounting",
+    "NoGo",
     "ObjectClass",
     "OptimizeJob",
     "Outcome",
@@ -67,8 +81,11 @@ __all__ = [
     "Sensor",
     "SensorScore",
     "Sight",
+    "Slot",
+    "Slots",
     "Step",
     "Study",
+    "Surface",
     "Vehicle",
     "__version__",
     "advice",

@@ -14,6 +14,7 @@ from .. import catalog
 from ..kinds import kind_of
 from ..scene.geometry import dot
 from ..scene.housing import cuts_body
+from ..scene.outside import is_enclosed
 from ..scene.raycast import Hits
 from ..scene.sensors import Sensor
 from ..scene.space import PerceptionSpace
@@ -36,10 +37,6 @@ MOST_STOPPED = 1.0 / 3.0
 """More than a sensor at a corner loses (a quarter)."""
 MOST_RAYS = 4096
 PARTS_NAMED = 3
-AROUND, BELOW_DEG, ENCLOSED = 256, 10.0, 0.9
-"""A sensor is inside when the body is met in this share of so many directions, spread evenly over
-the sphere from 10 degrees below the horizon up. First hits alone are asked, so that neither holes,
-nor double skins, nor a missing underbody matter; a sensor under the body looks out sideways."""
 UPSIDE_DOWN = -0.2
 """Height of a sensor's unit upward axis below which its picture is upside down."""
 
@@ -117,8 +114,8 @@ class Mounted:
     @cached_property
     def inside(self) -> bool:
         """Whether the body is met nearly all round."""
-        hits = _first_hits(self.sensor, self.body.itself, _directions_around())
-        return float(np.mean(np.isfinite(hits.distance))) >= ENCLOSED
+        position = np.asarray(self.sensor.pose.position)
+        return is_enclosed(self.body.itself, position, self.sensor.model.sees_through_glass)
 
 
 def odd_mounting(mounted: Mounted) -> Iterator[Advice]:
@@ -200,14 +197,3 @@ def _in_the_way(mounted: Mounted) -> Iterator[Advice]:
 
 def _first_hits(sensor: Sensor, vehicle: Vehicle, rays: Floats) -> Hits:
     return vehicle.first_hit(sensor.pose.position, rays, sensor.model.sees_through_glass)
-
-
-def _directions_around() -> Floats:
-    """(R, 3) unit directions, evenly from a little below the horizon up: a Fibonacci spiral."""
-    low = -math.sin(math.radians(BELOW_DEG))
-    rows = []
-    for k in range(AROUND):
-        z = low + (1.0 - low) * (k + 0.5) / AROUND
-        flat, angle = math.sqrt(1.0 - z * z), k * math.pi * (3.0 - math.sqrt(5.0))
-        rows.append((flat * math.cos(angle), flat * math.sin(angle), z))
-    return np.array(rows)

@@ -83,6 +83,12 @@ class Vehicle:
         return frozen(corners.min(axis=0)), frozen(corners.max(axis=0))
 
     @cached_property
+    def triangle_bounds(self) -> tuple[Floats, Floats]:
+        """Lowest and highest corner of each triangle, each (3, F) [m]."""
+        corners = self.triangles.transpose(2, 1, 0)
+        return frozen(corners.min(axis=1)), frozen(corners.max(axis=1))
+
+    @cached_property
     def _opaque(self) -> NDArray[np.int64]:
         glass = [self.part_names.index(name) for name in self.glass]
         return np.flatnonzero(~np.isin(self.parts, glass))
@@ -124,6 +130,10 @@ class Vehicle:
         return self.seen_from(position, through_glass).first_hit(
             np.asarray(directions, dtype=float)
         )
+
+    def first_hit_from(self, point: Floats, directions: Floats) -> Hits:
+        """Return first hits as `first_hit` does, but from the point (3,) itself, skin or not."""
+        return SeenTriangles(self._tree, point).first_hit(directions)
 
     def faces_near(self, point: ArrayLike, distance: float) -> NDArray[np.int64]:
         """(N,) the triangles, ascending, that may come as near as `distance` [m] to a point."""

@@ -9,8 +9,16 @@ import numpy as np
 
 from ..scene.sensors import Rig
 from ..scoring.evaluator import Evaluator
+from .coding import Candidate, Coding
+from .feasible import first_allowed
 from .schedule import Schedule
-from .search_space import AXES, POSITION_AXES, SearchSpace, pose_from_values, pose_values
+from .search_space import SearchSpace
+from .unknown import METRE, RADIAN, SHARE
+
+SHARE_REACH = 0.5
+"""Half width of the first neighbourhood in a list: all of it, which is taken as a ring."""
+MOST_DRAWN = 100
+"""Placements drawn for one candidate; where none of them is allowed, none is scored."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +59,10 @@ def optimize(
     """Search for the placement of lowest perception entropy; yields a step a candidate.
 
     Round by round, candidates are drawn uniformly in the neighbourhood of the best placement found
-    before the round, each coordinate clipped to its bounds; the neighbourhood then shrinks. Stop
-    whenever you like: the last step holds the best so far.
+    before the round, each coordinate clipped to its bounds; the neighbourhood then shrinks. What
+    breaks a rule of the search space is drawn anew, and neither scored nor returned; a start that
+    does gives way to a placement near it. Stop whenever you like: the last step holds the best so
+    far.
 
     Parameters
     ----------
@@ -64,43 +74,46 @@ def optimize(
         The same seed gives the same steps.
     schedule : Schedule, optional
         The paper's by default: seven rounds of 1000 candidates.
+
+    Raises
+    ------
+    InputError
+        When the search space does not fit the rig, or no placement keeps to all of its rules.
     """
-    search_space.checked(rig)
-    schedule = schedule or Schedule()
-    rng = np.random.default_rng(seed)
-    best, entropy, count = rig, evaluator.entropy(rig), 1
-    yield Step(best, entropy, count, 0.0, 0, False)
-    if not any(search_space.bounds.values()):
+    coding, schedule = Coding(rig, search_space), schedule or Schedule()
+    rng, best = np.random.default_rng(seed), first_allowed(coding, seed)
+    entropy, count = evaluator.entropy(best.rig), 1
+    yield Step(best.rig, entropy, count, 0.0, 0, False)
+    if not coding.unknowns:
         return
-    total = len(schedule.scales) * schedule.candidates
+    total, done = len(schedule.scales) * schedule.candidates, 0
     for number, scale in enumerate(schedule.scales):
         center = best
         for _ in range(schedule.candidates):
-            candidate = _neighbour(center, search_space, schedule, scale, rng)
-            found = evaluator.judge(candidate, below=entropy)
-            improved = found.entropy < entropy
-            if improved:
-                best, entropy = candidate, found.entropy
-            count += 1
-            yield Step(best, entropy, count, (count - 1) / total, number, improved)
+            candidate = _neighbour(center, coding, schedule, scale, rng)
+            improved, done = False, done + 1
+            if candidate is not None:
+                found = evaluator.judge(candidate.rig, below=entropy)
+                improved = found.entropy < entropy
+                count += 1
+                if improved:
+                    best, entropy = candidate, found.entropy
+            yield Step(best.rig, entropy, count, done / total, number, improved)
 
 
 def _neighbour(
-    center: Rig,
-    search_space: SearchSpace,
+    center: Candidate,
+    coding: Coding,
     schedule: Schedule,
     scale: float,
     rng: np.random.Generator,
-) -> Rig:
-    poses = []
-    for sensor in center:
-        values = pose_values(sensor.pose)
-        axes = search_space.bounds.get(sensor.name, {})
-        for axis in AXES:
-            if axis in axes:
-                reach = schedule.reach_m if axis in POSITION_AXES else schedule.reach_rad
-                low, high = axes[axis]
-                moved = values[axis] + scale * reach * rng.uniform(-1.0, 1.0)
-                values[axis] = min(max(moved, low), high)
-        poses.append(pose_from_values(values) if axes else sensor.pose)
-    return center.with_poses(poses)
+) -> Candidate | None:
+    """Return a candidate that all rules allow; None when none is drawn."""
+    reach = {METRE: schedule.reach_m, RADIAN: schedule.reach_rad, SHARE: SHARE_REACH}
+    for _ in range(MOST_DRAWN):
+        known = zip(coding.unknowns, center.vector, strict=True)
+        vector = [u.brought(v + scale * reach[u.unit] * rng.uniform(-1.0, 1.0)) for u, v in known]
+        candidate = coding.candidate(vector)
+        if coding.allowed(candidate.rig):
+            return candidate
+    return None

@@ -8,28 +8,22 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..errors import InputError, shown
-from ..scene.geometry import FARTHEST_M, METRES, ROTATION, Pose
+from ..scene.geometry import FARTHEST_M, METRES, ROTATION
+from ..scene.housing import Housing
 from ..scene.sensors import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..text.fixed import FixedDict
 from ..text.values import listed, pair
+from .axes import AXES, HELD_M, HELD_RAD, POSITION_AXES, pose_values
+from .mounts import Mounting
 from .schedule import Schedule
 
-AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-POSITION_AXES = AXES[:3]
 PAPER_FREE = ("x", "y", "z", "pitch")
 """What the paper searches; roll and yaw are fixed "for symmetry of the placement"."""
-POSITION_DECIMALS = 5
-ANGLE_DECIMALS_DEG = 4
-"""Placements are rounded to 0.01 mm and 0.0001 deg: a file, or Blender's single precision, then
-holds exactly the placement that was scored."""
 HEADROOM_M = 0.75
 """How far above the vehicle's top a sensor may be put unless a study says otherwise."""
 LOWEST_M = 0.2
 """No sensor is put lower than this unless a study says otherwise."""
-HELD_M = 0.5 * 10.0**-POSITION_DECIMALS
-HELD_RAD = math.radians(0.5 * 10.0**-ANGLE_DECIMALS_DEG)
-"""A placement at a bound may be rounded to this far beyond it."""
 
 Bounds = tuple[float, float]
 
@@ -42,12 +36,23 @@ class SearchSpace:
     ----------
     bounds : mapping of sensor name to mapping of axis to (low, high)
         Axes are "x", "y", "z" [m] and "roll", "pitch", "yaw" [rad]; what is not named is fixed.
+        On a surface, angles are to the mount's frame, and x, y, z bound where it leads.
+    mounting : Mounting
+        Mounts, pairs, groups and constraints.
+    vehicle : Vehicle, optional
+        The body that mounts are parts of, and that housings are kept clear of.
+    housings : mapping of sensor name to Housing
+        Those that are known.
     """
 
     bounds: Mapping[str, Mapping[str, Bounds]] = field(default_factory=dict)
+    mounting: Mounting = field(default_factory=Mounting)
+    vehicle: Vehicle | None = None
+    housings: Mapping[str, Housing] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "bounds", FixedDict(self.bounds))
+        object.__setattr__(self, "housings", FixedDict(self.housings))
 
     @classmethod
     def on_vehicle(
@@ -56,6 +61,8 @@ class SearchSpace:
         vehicle: Vehicle | None,
         free: Mapping[str, tuple[str, ...]] | tuple[str, ...] = PAPER_FREE,
         limits: Mapping[str, Mapping[str, Bounds]] | None = None,
+        mounting: Mounting | None = None,
+        housings: Mapping[str, Housing] | None = None,
     ) -> SearchSpace:
         """Free axes of each sensor within the vehicle's outline and HEADROOM_M above it.
 
@@ -67,21 +74,29 @@ class SearchSpace:
         free : tuple of str, or mapping of sensor name to it
         limits : mapping, optional
             Bounds that replace the default ones, by sensor and axis.
+        mounting : Mounting, optional
+            A sensor on a surface moves in it, whatever is free of x, y, z; one in a slot, or that
+            follows another, has no bounds of its own.
+        housings : mapping of sensor name to Housing, optional
         """
-        limits = limits or {}
-        bounds = {}
+        limits, mounting, bounds = limits or {}, mounting or Mounting(), {}
         for sensor in rig:
             axes = free if isinstance(free, tuple) else free.get(sensor.name, PAPER_FREE)
             own = limits.get(sensor.name, {})
             default = default_bounds(sensor, vehicle)
-            bounds[sensor.name] = {a: own.get(a, default[a]) for a in axes}
-        return cls(bounds).checked(rig)
+            if own and (words := mounting.unbounded(sensor.name)):
+                raise InputError(f"sensor {sensor.name!r}", "bounds", f"none of {words}", "some")
+            bounded = _bounded(sensor.name, axes, own, mounting)
+            bounds[sensor.name] = {a: own.get(a, default[a]) for a in bounded}
+        return cls(bounds, mounting, vehicle, housings or {}).checked(rig)
 
     def checked(self, rig: Rig) -> SearchSpace:
         """Return itself, or raise `InputError` when a name, an axis or a start is not possible."""
         for name, axes in self.bounds.items():
             if name not in [s.name for s in rig]:
                 raise InputError("search space", "sensor", "a sensor of the rig", shown(name))
+            if self.mounting.mount_of(name) is not None:
+                continue  # its angles are to its mount, which looks at them itself
             start = pose_values(rig[name].pose)
             for axis, bounds in axes.items():
                 low, high = checked_bounds(name, axis, bounds)
@@ -111,18 +126,6 @@ def checked_bounds(source: str, axis: str, bounds: Any) -> Bounds:
     return pair(source, f"bounds of {axis}", bounds, rule, same=True)
 
 
-def pose_values(pose: Pose) -> dict[str, float]:
-    """Return a pose by axis: x, y, z [m], roll, pitch, yaw [rad]."""
-    return dict(zip(AXES, (*pose.position, *pose.rpy), strict=True))
-
-
-def pose_from_values(values: Mapping[str, float]) -> Pose:
-    """Pose from its axes, rounded as placements are."""
-    position = [round(values[a], POSITION_DECIMALS) + 0.0 for a in POSITION_AXES]
-    degrees = [round(math.degrees(values[a]), ANGLE_DECIMALS_DEG) + 0.0 for a in AXES[3:]]
-    return Pose.from_degrees(position, degrees)
-
-
 def default_bounds(sensor: Sensor, vehicle: Vehicle | None) -> dict[str, Bounds]:
     """How far a sensor may go when nobody says: always far enough to hold where it starts."""
     start = pose_values(sensor.pose)
@@ -137,6 +140,18 @@ def default_bounds(sensor: Sensor, vehicle: Vehicle | None) -> dict[str, Bounds]
     bounds |= {"roll": (-math.pi, math.pi), "yaw": (-math.pi, math.pi)}
     bounds["pitch"] = (-math.pi / 2, math.pi / 2)
     return {a: (min(lo, start[a]), max(hi, start[a])) for a, (lo, hi) in bounds.items()}
+
+
+def _bounded(
+    sensor: str, free: tuple[str, ...], own: Mapping[str, Bounds], mounting: Mounting
+) -> tuple[str, ...]:
+    """Return the coordinates of a sensor that have bounds: on a surface, places that are said."""
+    if mounting.unbounded(sensor):
+        return ()
+    if mounting.mount_of(sensor) is None:
+        return free
+    said = (axis for axis in POSITION_AXES if axis in own)
+    return (*said, *(axis for axis in free if axis not in POSITION_AXES))
 
 
 def _shown(axis: str, value: float) -> str:

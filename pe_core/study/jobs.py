@@ -19,7 +19,7 @@ from ..advice import Advice, warnings
 from ..scene.sensors import Rig
 from ..scoring.evaluator import Evaluator
 from ..scoring.score import Score, ScoreStopped
-from ..search.optimize import Step, optimize
+from ..search import Step, first_allowed, optimize
 from .study import Study
 
 T = TypeVar("T")
@@ -257,16 +257,17 @@ class OptimizeJob(Job):
 
         It is made here, beside whoever waits: that takes long for a large vehicle.
         """
-        self.study.search_space()
+        first_allowed(self.study.coding(), self.study.search.seed)
         return self._search_evaluator
 
     def _better_of(self, before: Score) -> Generator[Progress, None, tuple[Score, Study]]:
-        """Score what was found; the start's score and study where that is no better."""
+        """Score what was found; the start's score and study where it is allowed and no worse."""
         if self.best.rig is self.study.rig:
             return before, self.study
         waiting = Progress("scoring the result", 1.0, self.history[-1].entropy, self.evaluations)
         found = yield from self._score(self.best.rig, waiting, to_the_end=True)
-        if found is not None and found.entropy < before.entropy:
+        kept = self.history[0].rig is self.study.rig  # else the start broke a rule of the search
+        if found is not None and (found.entropy < before.entropy or not kept):
             return found, self.best
         return before, self.study  # the search's sample flattered a placement
 

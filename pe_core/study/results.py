@@ -20,12 +20,13 @@ import numpy as np
 from ..formats.boxes import write_boxes
 from ..formats.meshes import Mesh, write_mesh
 from ..scene.sensors import Rig
-from ..search.search_space import AXES
+from ..search import AXES
 from ..text.files import read_bytes
 from ..text.json_text import dump_json, finite
 from ..version import __version__
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
 from .jobs import HistoryRow, Outcome
+from .mounted import mounts_told
 from .names import BESIDE_RESULT, BOXES, HISTORY, MESH, RESULT, SCHEMA, STUDY
 from .study import Study, vehicle_digest
 from .study_file import study_bytes, study_to_dict
@@ -60,6 +61,7 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
             "before": placements(outcome.start.rig),
             "after": placements(outcome.study.rig),
         },
+        "mounts": mounts_told(outcome.study.rig, outcome.study.search.mounting),
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,
         "warnings": [each.to_dict() for each in outcome.warnings],

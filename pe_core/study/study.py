@@ -19,11 +19,20 @@ from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..scoring.evaluator import Evaluator
 from ..scoring.sampling import samples_or_grid
-from ..search import AXES, PAPER_FREE, Schedule, SearchSpace
-from ..search.search_space import checked_axes, checked_bounds
+from ..search import (
+    AXES,
+    PAPER_FREE,
+    Coding,
+    Mounting,
+    Schedule,
+    SearchSpace,
+    checked_axes,
+    checked_bounds,
+)
 from ..sight import Sight
 from ..text.fixed import FixedDict
 from ..text.values import A_NAME, A_PATH, Whole
+from .mounted import check_pairs, housings_of
 
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
@@ -44,6 +53,8 @@ class Search:
     samples : int
         Voxels a candidate is judged on; 0: all.
     schedule : Schedule
+    mounting : Mounting
+        Mounts, pairs, groups and constraints.
 
     Raises
     ------
@@ -56,6 +67,7 @@ class Search:
     seed: int = 0
     samples: int = DEFAULT_SEARCH_SAMPLES
     schedule: Schedule = field(default_factory=Schedule)
+    mounting: Mounting = field(default_factory=Mounting)
 
     def __post_init__(self) -> None:
         who = "optimize"
@@ -65,6 +77,8 @@ class Search:
         object.__setattr__(self, "samples", samples_or_grid(who, self.samples))
         if not isinstance(self.schedule, Schedule):
             raise InputError(who, "schedule", "a Schedule", type(self.schedule).__name__)
+        if not isinstance(self.mounting, Mounting):
+            raise InputError(who, "mounting", "a Mounting", type(self.mounting).__name__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,9 +132,15 @@ class Study:
         return Sight(self.space, self.prior, self.vehicle, model=self.model)
 
     def search_space(self) -> SearchSpace:
-        """Return free axes and bounds, in radians."""
-        free, limits = self.search.free, self.search.limits
-        return SearchSpace.on_vehicle(self.rig, self.vehicle, free, limits)
+        """Return free axes and bounds, in radians, with mounts and what is kept to."""
+        free, limits, mounting = self.search.free, self.search.limits, self.search.mounting
+        check_pairs(self.rig, mounting)
+        housings = housings_of(self.rig)
+        return SearchSpace.on_vehicle(self.rig, self.vehicle, free, limits, mounting, housings)
+
+    def coding(self) -> Coding:
+        """Return the unknowns of the search; `InputError` when it cannot be made."""
+        return Coding(self.rig, self.search_space())
 
     def with_rig(self, rig: Rig) -> Study:
         """Return the study with other placements."""
@@ -165,4 +185,6 @@ def _of_rig(search: Search, rig: Rig) -> Search:
     names = [sensor.name for sensor in rig]
     free = {name: search.free.get(name, PAPER_FREE) for name in names}
     limits = {name: own for name in names if (own := search.limits.get(name))}
-    return replace(search, free=free, limits=limits)
+    on = {name: search.mounting.on[name] for name in names if name in search.mounting.on}
+    mounting = replace(search.mounting, on=on)
+    return replace(search, free=free, limits=limits, mounting=mounting)

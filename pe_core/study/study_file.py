@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -18,16 +16,15 @@ from ..scene.geometry import Pose
 from ..scene.sensors import Rig, Sensor, SensorModel
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import DEFAULT_CLEARANCE_M, Vehicle
-from ..search import AXES, PAPER_FREE, Schedule
-from ..search.search_space import POSITION_AXES, checked_axes, checked_bounds
-from ..text.degrees import degrees_in_file
+from ..search import PAPER_FREE, checked_axes
 from ..text.files import decode_text, read_bytes, write_bytes
 from ..text.tables import Table
 from ..text.toml_reader import load_toml
 from ..text.toml_writer import dumps
 from ..text.values import A_NAME, A_PATH
 from .prior_file import prior_table, read_prior
-from .study import DEFAULT_SEARCH_SAMPLES, SEED, Search, Study
+from .search_file import in_file, read_limits, read_search, search_table
+from .study import Search, Study
 
 
 def load_study(path: str | Path) -> Study:
@@ -91,7 +88,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "fusion": {"blind": study.model.blind},
         "vehicle": _vehicle_table(study),
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
-        "optimize": _search_table(study.search),
+        "optimize": search_table(study.search),
     }
     plain: dict[str, Any] = _without_none(data)
     return plain
@@ -116,10 +113,12 @@ def _read_study(table: Table, folder: Path) -> Study:
         raise table.error("sensor", "at least one [[sensor]]", "none")
     default_free = _axes(search, "free", PAPER_FREE)
     mounted = [_read_sensor(s, folder) for s in sensors]
-    free, limits = {}, {}
+    free, limits, on = {}, {}, {}
     for sensor, own in zip(mounted, sensors, strict=True):
         free[sensor.name] = _axes(own, "free", default_free)
-        limits[sensor.name] = _read_limits(own.table("bounds"))
+        limits[sensor.name] = read_limits(own.table("bounds"))
+        if (mount := own.text("mount", None, rule=A_NAME)) is not None:
+            on[sensor.name] = mount
         own.finish()
     study = Study(
         Rig(mounted),
@@ -127,11 +126,11 @@ def _read_study(table: Table, folder: Path) -> Study:
         _read_space(table.table("space")),
         read_prior(table.table("prior"), folder),
         _read_model(table.table("ap"), table.table("fusion")),
-        _read_search(search, free, limits),
+        read_search(search, free, limits, on),
         table.whole("samples", 0),
         mesh,
     )
-    study.search_space()  # bounds that do not hold their start are bad input, not a late surprise
+    study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     return study
 
 
@@ -203,56 +202,6 @@ def _axes(table: Table, key: str, default: tuple[str, ...]) -> tuple[str, ...]:
     return checked_axes(table.source, table.field(key), table.texts(key, default))
 
 
-def _read_limits(table: Table) -> dict[str, tuple[float, float]]:
-    """Return the bounds of a sensor's axes; degrees become radians."""
-    limits = {}
-    for axis in AXES:
-        bounds = table.raw(axis, None)
-        if bounds is None:
-            continue
-        low, high = table.numbers(axis, 2)
-        if axis not in POSITION_AXES:
-            low, high = math.radians(low), math.radians(high)
-        try:
-            limits[axis] = checked_bounds(table.source, axis, (low, high))
-        except InputError as error:
-            raise table.error(axis, error.expected, shown(bounds)) from None
-    table.finish()
-    return limits
-
-
-def _read_search(
-    table: Table,
-    free: Mapping[str, tuple[str, ...]],
-    limits: Mapping[str, Mapping[str, tuple[float, float]]],
-) -> Search:
-    search = Search(
-        free,
-        limits,
-        table.whole("seed", 0, SEED),
-        table.whole("samples", DEFAULT_SEARCH_SAMPLES),
-        _read_schedule(table),
-    )
-    table.finish()
-    return search
-
-
-def _read_schedule(table: Table) -> Schedule:
-    """Return the schedule: each of its fields is a key, in degrees where it is in radians."""
-    values: dict[str, Any] = {}
-    for field in fields(Schedule):
-        key = field.name.replace("_rad", "_deg")
-        if key in table:
-            value = table.raw(key) if key == "candidates" else table.number(key)
-            values[field.name] = value if key == field.name else math.radians(value)
-        table.raw(key, None)  # a known name, whether present or not
-    try:
-        return Schedule(**values)
-    except InputError as error:
-        key = error.field.replace("_rad", "_deg")
-        raise table.error(key, error.expected, error.found) from None
-
-
 def _vehicle_table(study: Study) -> dict[str, Any] | None:
     if study.vehicle is None:
         return None
@@ -265,7 +214,7 @@ def _vehicle_table(study: Study) -> dict[str, Any] | None:
 
 def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
     own = search.limits.get(sensor.name, {})
-    limits = {axis: [_in_file(axis, v) for v in bounds] for axis, bounds in own.items()}
+    limits = {axis: [in_file(axis, v) for v in bounds] for axis, bounds in own.items()}
     return {
         "name": sensor.name,
         "model": _model_value(sensor),
@@ -274,6 +223,7 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
         "fusion": sensor.fusion,
         "free": list(search.free.get(sensor.name, PAPER_FREE)),
         "bounds": limits or None,
+        "mount": search.mounting.on.get(sensor.name),
     }
 
 
@@ -285,25 +235,6 @@ def _model_value(sensor: Sensor) -> str | dict[str, Any]:
         return model.name
     name = {} if model.name == sensor.name else {"name": model.name}
     return name | catalog.to_table(model)
-
-
-def _search_table(search: Search) -> dict[str, Any]:
-    return {
-        "seed": search.seed,
-        "samples": search.samples,
-        **{
-            field.name.replace("_rad", "_deg"): _in_file(
-                field.name, getattr(search.schedule, field.name)
-            )
-            for field in fields(Schedule)
-        },
-    }
-
-
-def _in_file(name: str, value: Any) -> Any:
-    """Return a value as the file holds it: angles in degrees."""
-    angle = name in AXES[3:] or name.endswith("_rad")
-    return degrees_in_file(value) if angle else value
 
 
 def _without_none(value: Any) -> Any:

@@ -122,7 +122,7 @@ STUDY = {
             "model": {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60},
             "position": [1.0, 0.0, 1.6],
         },
-        {"name": "known", "model": "Pandar40", "position": [0.0, 0.0, 1.9]},
+        {"name": "known", "model": "Pandar40", "position": [0.0, 0.0, 1.9], "mount": "rack"},
     ],
     "optimize": {
         "free": ["x"],
@@ -134,6 +134,23 @@ STUDY = {
         "floor_m": 0.01,
         "floor_deg": 0.3,
         "decay": 0.5,
+        "max_height": 3.0,
+        "max_width": 5.0,
+        "min_distance": 0.1,
+        "clear_housings": True,
+        "no_go": [{"name": "box", "x": [7, 8], "y": [-1, 1], "z": [0, 1]}],
+        "mount": [
+            {
+                "name": "rack",
+                "slot": [
+                    {"name": "1", "position": [0.0, 0.0, 1.9], "rotation": [0.0, 0.0, 0.0]},
+                    {"name": "2", "position": [0.5, 0.0, 1.9]},
+                ],
+            },
+            {"name": "skin", "parts": ["body"], "standoff": 0.1, "orientation": "normal"},
+        ],
+        "group": [{"sensors": ["nose", "eye"]}],
+        "pair": [],
     },
 }
 SPACE = shapes.small_space()

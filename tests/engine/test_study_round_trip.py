@@ -115,7 +115,7 @@ def rigs(draw):
 
 
 @st.composite
-def searches(draw, rig):
+def searches(draw, rig, vehicle):
     free, limits = {}, {}
     for sensor in rig:
         if draw(st.booleans()):
@@ -134,7 +134,40 @@ def searches(draw, rig):
         draw(st.floats(0.01, 0.95)),
     )
     samples = draw(st.sampled_from([0, 1024, 65_536]))
-    return pe.Search(free, limits, draw(st.integers(0, 2**63 - 1)), samples, schedule)
+    mounting = draw(mountings(rig, vehicle, limits))
+    return pe.Search(free, limits, draw(st.integers(0, 2**63 - 1)), samples, schedule, mounting)
+
+
+@st.composite
+def mountings(draw, rig, vehicle, limits):
+    """Mounts of all kinds, on which sensors start that can; ties; constraints that may not fit."""
+    named = st.lists(NAMES, min_size=2, max_size=2, unique=True)
+    names, parts = draw(named), ("body",) if vehicle is None else vehicle.part_names
+    first = next(iter(rig))
+    mounts, on = {}, {}
+    if draw(st.booleans()):
+        others = [pe.Slot(name, draw(POSES)) for name in names if name != first.name]
+        mounts[names[0]] = pe.Slots([pe.Slot(first.name, first.pose), *others])
+        if not limits.get(first.name):
+            on[first.name] = names[0]
+    if draw(st.booleans()):
+        some = draw(st.lists(st.sampled_from(parts), min_size=1, unique=True))
+        how = draw(st.sampled_from(["upright", "normal", "facing"]))
+        mounts[names[1]] = pe.Surface(some, draw(st.floats(0, 9)), how)
+    followers = [sensor.name for sensor in rig if sensor.name != first.name]
+    tied = draw(st.booleans()) and followers and not limits.get(followers[0])
+    groups = [(first.name, followers[0])] if tied else []
+    return pe.Mounting(mounts, on, (), groups, draw(constraints()))
+
+
+@st.composite
+def constraints(draw):
+    sizes = st.one_of(st.none(), SIZES)
+    sides = st.one_of(st.none(), pairs(METRES).filter(lambda p: p[0] < p[1]))
+    names = draw(st.lists(NAMES, max_size=2, unique=True))
+    areas = [pe.NoGo(name, draw(sides), draw(sides), (0.0, math.inf)) for name in names]
+    distance, clear = draw(st.floats(0, 9)), draw(st.booleans())
+    return pe.Constraints(draw(sizes), draw(sizes), distance, clear, areas)
 
 
 @st.composite
@@ -205,7 +238,7 @@ def studies(draw, folder):
         draw(spaces()),
         draw(priors(folder)),
         pe.PerceptionModel(draw(st.sampled_from(["floor", "literal"])), lidar=lidar, camera=camera),
-        draw(searches(rig)),
+        draw(searches(rig, vehicle)),
         draw(st.sampled_from([0, 1024, 10_007])),
         None if vehicle is None else "body.npz",
     )

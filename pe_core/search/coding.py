@@ -1,0 +1,123 @@
+"""A rig as a vector of unknowns: what searches change, and what it means.
+
+Nothing else knows how a vector becomes a rig: a search draws a vector, `candidate` makes it a
+placement, and `allowed` says whether that may be scored.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..scene.geometry import Pose
+from ..scene.sensors import Rig, Sensor
+from .mounts import Slots, Surface
+from .places import InBox, InSlots, OnSurface, Place
+from .rules import Rule, Trial, rules_of
+from .search_space import SearchSpace
+from .surface import Area
+from .ties import followers
+from .unknown import Unknown
+
+Vector = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A placement, and the vector that stands for it."""
+
+    rig: Rig
+    vector: Vector
+
+
+class Coding:
+    """The unknowns of a search, and what they mean.
+
+    Parameters
+    ----------
+    rig : Rig
+        Where the search starts.
+    space : SearchSpace
+
+    Attributes
+    ----------
+    unknowns : tuple of Unknown
+        In the rig's order of sensors; of sensors that follow others there are none.
+    start : Candidate
+        The rig as it is.
+    rules : tuple of Rule
+        What every placement keeps to.
+
+    Raises
+    ------
+    InputError
+        When a sensor, a part or a mount is none, a start is outside its bounds or its mount, or a
+        pair or a group is impossible.
+    """
+
+    unknowns: tuple[Unknown, ...]
+    start: Candidate
+    rules: tuple[Rule, ...]
+
+    def __init__(self, rig: Rig, space: SearchSpace) -> None:
+        self.space = space.checked(rig)
+        self._followers = followers(rig, space.mounting, space.vehicle)
+        follow = {tie.name for tie in self._followers}
+        self._places = _places(rig, space, follow)
+        self.unknowns = tuple(u for place in self._places.values() for u in place.unknowns)
+        vector = tuple(value for place in self._places.values() for value in place.start)
+        self.start = Candidate(rig, vector)
+        self.rules = rules_of(rig, space, self._moving(), self._places)
+
+    def candidate(self, vector: Sequence[float]) -> Candidate:
+        """Return the placement that a vector of (N,) unknowns stands for.
+
+        Its own vector is the given one after rounding, and after the way down to a surface.
+        """
+        poses, held, at = dict[str, Pose](), list[float](), 0
+        for name, place in self._places.items():
+            count = len(place.unknowns)
+            poses[name], own = place.placed(vector[at : at + count])
+            held += own
+            at += count
+        for tie in self._followers:
+            poses[tie.name] = tie.pose(poses[tie.leader])
+        rig = self.start.rig
+        return Candidate(rig.with_poses([poses[sensor.name] for sensor in rig]), tuple(held))
+
+    def allowed(self, rig: Rig) -> bool:
+        """Whether a placement keeps to all rules."""
+        trial = Trial(rig, self.space)
+        return not any(rule.broken(trial) for rule in self.rules)
+
+    def broken(self, rig: Rig) -> frozenset[str]:
+        """Return all rules that a placement breaks, in words."""
+        trial = Trial(rig, self.space)
+        return frozenset(rule.words for rule in self.rules if rule.broken(trial))
+
+    def _moving(self) -> set[str]:
+        """Names of the sensors that the search moves, those that follow included."""
+        moving = {name for name, place in self._places.items() if place.unknowns}
+        for tie in self._followers:
+            moving |= {tie.name} if tie.leader in moving else set()
+        return moving
+
+
+def _places(rig: Rig, space: SearchSpace, follow: set[str]) -> dict[str, Place]:
+    """Return what the unknowns of each sensor mean that follows no other."""
+    areas: dict[str, Area] = {}
+    return {s.name: _place(s, space, areas) for s in rig if s.name not in follow}
+
+
+def _place(sensor: Sensor, space: SearchSpace, areas: dict[str, Area]) -> Place:
+    mounting, name = space.mounting, sensor.name
+    mount, bounds = mounting.mount_of(name), space.bounds.get(name, {})
+    who = f"sensor {name!r}"
+    if isinstance(mount, Slots):
+        return InSlots(who, mount, sensor.pose)
+    if isinstance(mount, Surface):
+        key = mounting.on[name]
+        if key not in areas:
+            areas[key] = Area(f"mount {key!r}", mount, space.vehicle)
+        return OnSurface(who, mount, areas[key], sensor.pose, space.housings.get(name), bounds)
+    return InBox(sensor.pose, bounds)

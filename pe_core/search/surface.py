@@ -1,0 +1,97 @@
+"""Named parts of the body as a surface to move in."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError, shown
+from ..scene.geometry import cross, dot
+from ..scene.outside import open_side
+from ..scene.triangle_tree import TriangleTree
+from ..scene.vehicle import Vehicle, closest_points
+from .mounts import Surface
+
+Floats = NDArray[np.float64]
+
+SLACK = 1.0 + 1e-9
+"""What is found by a distance has to be found again with that distance, rounded as it is."""
+ASKED = 8
+"""Faces of which it is asked which side is open before it is taken for the others' side, too."""
+
+
+class Area:
+    """Faces of the vehicle's body that a mount names.
+
+    Raises
+    ------
+    InputError
+        When there is no vehicle, no such part, or the parts have no faces.
+    """
+
+    def __init__(self, who: str, mount: Surface, vehicle: Vehicle | None) -> None:
+        self.vehicle, self.triangles = _faces(who, mount, vehicle)
+        self._tree = TriangleTree(self.triangles)
+        self._corners = np.unique(self.triangles.reshape(-1, 3), axis=0)
+        self._outward: dict[int, Floats] = {}
+        self._side = self._side_of_all()
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lowest and highest corner, each (3,) [m]."""
+        return self._corners.min(axis=0), self._corners.max(axis=0)
+
+    def closest(self, point: Floats) -> tuple[Floats, int]:
+        """Return the point (3,) of the surface that is closest to a point, and its face."""
+        away = self._corners - point
+        reach = float(np.sqrt(dot(away, away).min())) * SLACK + 1e-12
+        near = self._tree.near(point, reach)
+        feet = closest_points(point, self.triangles[near])
+        best = int(np.argmin(dot(feet - point, feet - point)))
+        return feet[best], int(near[best])
+
+    def distance(self, point: Floats) -> float:
+        """Return how far a point (3,) is from the surface [m]."""
+        foot, _ = self.closest(point)
+        return float(np.sqrt(dot(foot - point, foot - point)))
+
+    def outward(self, face: int) -> Floats:
+        """Return the unit normal (3,) of a face on its open side."""
+        if face not in self._outward:
+            side = self._side or self._side_of(face)
+            self._outward[face] = side * self._normal(face)
+        return self._outward[face]
+
+    def _normal(self, face: int) -> Floats:
+        """Return the unit normal (3,) round which a face's corners turn counter-clockwise."""
+        corners = self.triangles[face]
+        normal = cross(corners[1] - corners[0], corners[2] - corners[0])
+        return normal / np.sqrt(dot(normal, normal))
+
+    def _side_of(self, face: int) -> float:
+        """Return 1.0 where a face's open side is that of its normal, else -1.0."""
+        middle = self.triangles[face].sum(axis=0) / 3.0
+        return open_side(self.vehicle, middle, self._normal(face))
+
+    def _side_of_all(self) -> float:
+        """Return the side of some faces where all agree, as they mostly do in a mesh; else 0.0."""
+        some = np.unique(np.linspace(0, len(self.triangles) - 1, ASKED).astype(int)).tolist()
+        sides = {self._side_of(face) for face in some}
+        return sides.pop() if len(sides) == 1 else 0.0
+
+
+def _faces(who: str, mount: Surface, vehicle: Vehicle | None) -> tuple[Vehicle, Floats]:
+    """Return the vehicle and the mount's triangles that have an area."""
+    names = () if vehicle is None else vehicle.part_names
+    for part in mount.parts:
+        if vehicle is None or part not in names:
+            known = f"one of {', '.join(names)}" if names else "a vehicle with such a part"
+            raise InputError(who, "parts", known, shown(part))
+    assert vehicle is not None  # a mount has at least one part
+    ours = np.isin(vehicle.parts, [names.index(part) for part in mount.parts])
+    triangles = vehicle.triangles[ours]
+    normals = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    triangles = triangles[dot(normals, normals) > 0.0]
+    if not len(triangles):
+        raise InputError(who, "parts", "parts with faces", f"none in {', '.join(mount.parts)}")
+    return vehicle, triangles

@@ -1,0 +1,91 @@
+"""What a search may do: its tables in the study file, and the bounds of its sensors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+from ..errors import InputError, shown
+from ..search import AXES, POSITION_AXES, Schedule, checked_bounds
+from ..text.degrees import degrees_in_file
+from ..text.tables import Table
+from .mounting_file import mounting_tables, read_mounting
+from .study import DEFAULT_SEARCH_SAMPLES, SEED, Search
+
+Bounds = tuple[float, float]
+
+
+def read_limits(table: Table) -> dict[str, Bounds]:
+    """Return the bounds of a sensor's axes; degrees become radians."""
+    limits = {}
+    for axis in AXES:
+        bounds = table.raw(axis, None)
+        if bounds is None:
+            continue
+        low, high = table.numbers(axis, 2)
+        if axis not in POSITION_AXES:
+            low, high = math.radians(low), math.radians(high)
+        try:
+            limits[axis] = checked_bounds(table.source, axis, (low, high))
+        except InputError as error:
+            raise table.error(axis, error.expected, shown(bounds)) from None
+    table.finish()
+    return limits
+
+
+def read_search(
+    table: Table,
+    free: Mapping[str, tuple[str, ...]],
+    limits: Mapping[str, Mapping[str, Bounds]],
+    on: Mapping[str, str],
+) -> Search:
+    """Return the search of `[optimize]`; what its sensors say of themselves is known already."""
+    search = Search(
+        free,
+        limits,
+        table.whole("seed", 0, SEED),
+        table.whole("samples", DEFAULT_SEARCH_SAMPLES),
+        _read_schedule(table),
+        read_mounting(table, on),
+    )
+    table.finish()
+    return search
+
+
+def _read_schedule(table: Table) -> Schedule:
+    """Return the schedule: each of its fields is a key, in degrees where it is in radians."""
+    values: dict[str, Any] = {}
+    for field in fields(Schedule):
+        key = field.name.replace("_rad", "_deg")
+        if key in table:
+            value = table.raw(key) if key == "candidates" else table.number(key)
+            values[field.name] = value if key == field.name else math.radians(value)
+        table.raw(key, None)  # a known name, whether present or not
+    try:
+        return Schedule(**values)
+    except InputError as error:
+        key = error.field.replace("_rad", "_deg")
+        raise table.error(key, error.expected, error.found) from None
+
+
+def search_table(search: Search) -> dict[str, Any]:
+    """Return the table `[optimize]` of a search."""
+    return {
+        "seed": search.seed,
+        "samples": search.samples,
+        **{
+            field.name.replace("_rad", "_deg"): in_file(
+                field.name, getattr(search.schedule, field.name)
+            )
+            for field in fields(Schedule)
+        },
+        **mounting_tables(search.mounting),
+    }
+
+
+def in_file(name: str, value: Any) -> Any:
+    """Return a value as the file holds it: angles in degrees."""
+    angle = name in AXES[3:] or name.endswith("_rad")
+    return degrees_in_file(value) if angle else value

@@ -1,0 +1,302 @@
+"""Mounts, ties and constraints in the study file, and one line for whatever is wrong with them."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.search import Coding
+from pe_core.study.study_file import study_from_dict, study_to_dict
+from tests.engine import mounting
+from tests.engine.mounting import CAN, ON_ROOF, TOP
+
+ROOT = Path(__file__).parents[2]
+AREA = {"name": "area", "parts": ["roof"], "standoff": 0.04}
+SLOT = {"name": "here", "position": [0.0, 0.0, 1.9], "rotation": [0.0, 0.0, 0.0]}
+RACK = {"name": "rack", "slot": [SLOT, SLOT | {"name": "there", "position": [0.5, 0.0, 1.9]}]}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder, car = tmp_path_factory.mktemp("mounts"), mounting.car()
+    pe.write_mesh(folder / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    return folder
+
+
+def sensor(name="roof", position=ON_ROOF, **more):
+    return {"name": name, "model": CAN, "position": list(position), **more}
+
+
+def read(folder, *sensors, **optimize):
+    data = {"vehicle": {"mesh": "car.npz"}, "sensor": list(sensors), "optimize": optimize}
+    return study_from_dict(data, "study.toml", folder)
+
+
+def line(folder, *sensors, **optimize):
+    """The one line that a study is refused with."""
+    with pytest.raises(pe.InputError) as error:
+        read(folder, *sensors, **optimize)
+    told = str(error.value)
+    assert "\n" not in told and told.startswith("study.toml: ")
+    return told.removeprefix("study.toml: ")
+
+
+def test_a_file_says_all_that_there_is(folder):
+    rack = [SLOT, SLOT | {"name": "there", "rotation": [0, 10, 0]}]
+    sensors = [
+        sensor(mount="area"),
+        sensor("left", (0.0, 0.5, 2.5)),
+        sensor("right", (0.0, -0.5, 2.5)),
+        sensor("on the rack", SLOT["position"], mount="rack"),
+        sensor("beside it", (0.0, 0.2, 1.9)),
+    ]
+    study = read(
+        folder,
+        *sensors,
+        max_height=2.6,
+        max_width=1.9,
+        min_distance=0.2,
+        clear_housings=True,
+        no_go=[{"name": "hatch", "x": [-0.2, 0.3], "y": [-math.inf, 0]}],
+        mount=[AREA | {"orientation": "normal"}, {"name": "rack", "slot": rack}],
+        pair=[{"sensors": ["left", "right"]}],
+        group=[{"sensors": ["on the rack", "beside it"]}],
+    )
+    found = study.search.mounting
+    assert found.mounts["area"] == pe.Surface(("roof",), 0.04, "normal")
+    assert [slot.name for slot in found.mounts["rack"].slots] == ["here", "there"]
+    assert found.mounts["rack"].slots[1].pose.rpy == (0.0, math.radians(10), 0.0)
+    assert found.on == {"roof": "area", "on the rack": "rack"}
+    assert found.pairs == (("left", "right"),)
+    assert found.groups == (("on the rack", "beside it"),)
+    hatch = pe.NoGo("hatch", (-0.2, 0.3), (-math.inf, 0.0))
+    assert found.constraints == pe.Constraints(2.6, 1.9, 0.2, True, [hatch])
+    again = study_from_dict(study_to_dict(study), "study.toml", folder)
+    assert again.search == study.search
+
+
+def test_a_study_that_says_nothing_of_mounts_has_none(folder):
+    assert read(folder, sensor()).search.mounting == pe.Mounting()
+
+
+def test_the_example_of_the_page_is_a_study(folder):
+    """What docs/study.md shows under its heading is read as it stands there."""
+    page = (ROOT / "docs" / "study.md").read_text("utf-8")
+    text = page.split("## Where a sensor may sit")[1].split("```toml\n")[1].split("```")[0]
+    (folder / "sedan.npz").write_bytes((ROOT / "blend_assets" / "sedan.npz").read_bytes())
+    (folder / "page.toml").write_text(text, "utf-8")
+    study = pe.load_study(folder / "page.toml")
+    assert len(study.search.mounting.mounts) == 2
+    coding = study.coding()
+    assert coding.allowed(study.rig), coding.broken(study.rig)
+
+
+LEFT, RIGHT = sensor("left", (0.0, 0.5, 2.5)), sensor("right", (0.0, -0.5, 2.5))
+CAMERA = {"name": "right", "model": "Camera 60 deg", "position": [0.0, -0.5, 2.5]}
+PAIR = {"pair": [{"sensors": ["left", "right"]}]}
+GROUP = {"group": [{"sensors": ["left", "right"]}]}
+ON = sensor(mount="area")
+
+BAD = {
+    "a start off the surface": (
+        [sensor(position=(-0.43, 0.0, TOP + 0.2), mount="area")],
+        {"mount": [AREA]},
+        "sensor 'roof': position: expected a start on its mount, such as [-0.43, 0, 1.478] "
+        "turned [0, 0, 0], found [-0.43, 0, 1.6] turned [0, 0, 0]",
+    ),
+    "a start below the surface": (
+        [sensor(position=(-0.43, 0.0, TOP - 0.04 + mounting.CENTER), mount="area")],
+        {"mount": [AREA]},
+        "sensor 'roof': position: expected a start on its mount, such as [-0.43, 0, 1.478]",
+    ),
+    "a start in no slot": (
+        [sensor(mount="rack")],
+        {"mount": [RACK]},
+        "sensor 'roof': position: expected a start in a slot: here, there, found [-0.43, 0, 1.478]",
+    ),
+    "a start outside the mount's bounds": (
+        [sensor(mount="area", bounds={"pitch": [5, 10]})],
+        {"mount": [AREA]},
+        "sensor 'roof': bounds of pitch: expected bounds around the start, 0 deg, found 5 deg",
+    ),
+    "an unknown part": (
+        [ON],
+        {"mount": [AREA | {"parts": ["rooof"]}]},
+        "mount 'area': parts: expected one of body, roof, front, left, found 'rooof'",
+    ),
+    "no part": (
+        [ON],
+        {"mount": [AREA | {"parts": []}]},
+        "optimize.mount[0].parts: expected names of the vehicle's parts, found ()",
+    ),
+    "an unknown mount": (
+        [sensor(mount="arena")],
+        {"mount": [AREA]},
+        "sensor 'roof': mount: expected one of area, found 'arena'",
+    ),
+    "no mount": ([ON], {}, "sensor 'roof': mount: expected a mount: the study has none, found"),
+    "mounts of one name": (
+        [sensor()],
+        {"mount": [AREA, AREA]},
+        "optimize.mount: expected each name once, found 'area' twice",
+    ),
+    "slots of one name": (
+        [sensor()],
+        {"mount": [{"name": "rack", "slot": [SLOT, SLOT]}]},
+        "optimize.mount[0].slot: expected names used once, found 'here'",
+    ),
+    "parts and slots": (
+        [sensor()],
+        {"mount": [AREA | RACK]},
+        "optimize.mount[0].parts, slot: expected parts of the vehicle, or a list of slots, found",
+    ),
+    "a mount of nothing": (
+        [sensor()],
+        {"mount": [{"name": "area"}]},
+        "optimize.mount[0].parts, slot: expected parts of the vehicle, or a list of slots, found",
+    ),
+    "NaN": (
+        [sensor()],
+        {"mount": [AREA | {"standoff": math.nan}]},
+        "optimize.mount[0].standoff: expected a number, found nan",
+    ),
+    "a negative stand-off": (
+        [sensor()],
+        {"mount": [AREA | {"standoff": -0.1}]},
+        "optimize.mount[0].standoff: expected a number from 0 to 10 m, found -0.1",
+    ),
+    "an unknown orientation": (
+        [sensor()],
+        {"mount": [AREA | {"orientation": "up"}]},
+        "optimize.mount[0].orientation: expected one of upright, normal, facing, found 'up'",
+    ),
+    "an unknown key": (
+        [sensor()],
+        {"mount": [AREA | {"stand_off": 0.1}]},
+        "optimize.mount[0].stand_off: expected one of",
+    ),
+    "crossed bounds": (
+        [sensor(bounds={"x": [1, -1]})],
+        {},
+        "sensor[0].bounds.x: expected two finite numbers within +-10000 m, low before high, "
+        "found [1, -1]",
+    ),
+    "a crossed no-go area": (
+        [sensor()],
+        {"no_go": [{"name": "hatch", "x": [1, -1]}]},
+        "optimize.no_go[0].x: expected two numbers, low before high, found [1.0, -1.0]",
+    ),
+    "a no-go area of NaN": (
+        [sensor()],
+        {"no_go": [{"name": "hatch", "x": [math.nan, 1]}]},
+        "optimize.no_go[0].x: expected a list of 2 numbers, found [nan, 1]",
+    ),
+    "a no-go area everywhere": (
+        [sensor()],
+        {"no_go": [{"name": "hatch"}]},
+        "optimize.no_go[0].x, y, z: expected at least one of them, found none",
+    ),
+    "a height of nothing": (
+        [sensor()],
+        {"max_height": 0},
+        "optimize.max_height: expected a length above 0 m, found 0",
+    ),
+    "a pair of different models": (
+        [LEFT, CAMERA],
+        PAIR,
+        f"optimize: pair of 'left' and 'right': expected sensors of one model, found {CAN} and "
+        "Camera 60 deg",
+    ),
+    "a pair across no plane": (
+        [LEFT, sensor("right", (0.0, -0.6, 2.5))],
+        PAIR,
+        "sensor 'right': position: expected the mirror image of 'left' across y = 0, "
+        "[0, -0.5, 2.5] turned [0, 0, 0], found [0, -0.6, 2.5] turned [0, 0, 0]",
+    ),
+    "a pair turned alike": (
+        [LEFT | {"rotation": [0, 0, 30]}, RIGHT | {"rotation": [0, 0, 30]}],
+        PAIR,
+        "sensor 'right': position: expected the mirror image of 'left' across y = 0, "
+        "[0, -0.5, 2.5] turned [0, 0, -30], found [0, -0.5, 2.5] turned [0, 0, 30]",
+    ),
+    "a pair of one": (
+        [LEFT],
+        {"pair": [{"sensors": ["left"]}]},
+        "optimize.pair: expected the names of two sensors, found ('left',)",
+    ),
+    "a pair with itself": (
+        [LEFT],
+        {"pair": [{"sensors": ["left", "left"]}]},
+        "optimize.pair: expected names used once, found 'left'",
+    ),
+    "a pair with nobody": (
+        [LEFT],
+        PAIR,
+        "optimize: pair: expected sensors of left, found 'right'",
+    ),
+    "a sensor that follows two": (
+        [LEFT, RIGHT],
+        PAIR | GROUP,
+        "optimize: pair, group: expected a sensor that follows one other, found 'right' follows",
+    ),
+    "a ring": (
+        [LEFT, RIGHT],
+        PAIR | {"group": [{"sensors": ["right", "left"]}]},
+        "optimize: pair, group: expected a sensor that leads, found a ring of sensors",
+    ),
+    "a follower with bounds": (
+        [LEFT, RIGHT | {"bounds": {"x": [-1, 1]}}],
+        PAIR,
+        "sensor 'right': bounds: expected none of a sensor that follows another, found some",
+    ),
+    "a follower on a mount": (
+        [LEFT, sensor("right", SLOT["position"], mount="rack")],
+        GROUP | {"mount": [RACK]},
+        "sensor 'right': mount: expected none of a sensor that follows another, found 'rack'",
+    ),
+    "bounds in a slot": (
+        [sensor("a", SLOT["position"], mount="rack", bounds={"x": [-1, 1]})],
+        {"mount": [RACK]},
+        "sensor 'a': bounds: expected none of a sensor on a list of slots, found some",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_is_wrong_is_one_line(folder, name):
+    sensors, optimize, told = BAD[name]
+    assert line(folder, *sensors, **optimize).startswith(told)
+
+
+def test_a_surface_needs_a_vehicle():
+    data = {"sensor": [ON], "optimize": {"mount": [AREA]}}
+    with pytest.raises(pe.InputError, match="expected a vehicle with such a part, found 'roof'"):
+        study_from_dict(data)
+
+
+def test_a_part_without_faces_is_no_surface():
+    car = mounting.car()
+    vehicle = pe.Vehicle(car.triangles, car.parts, (*car.part_names, "gone"))
+    mount = {"roof": pe.Surface(["gone"])}
+    with pytest.raises(pe.InputError, match="parts: expected parts with faces, found none in gone"):
+        Coding(*mounting.space(mounting.can(), mount=mount, vehicle=vehicle))
+
+
+def test_a_vehicle_with_no_symmetry_plane_has_no_pairs():
+    car = mounting.car()
+    moved = car.triangles + np.array([0.0, 0.3, 0.0])
+    vehicle = pe.Vehicle(moved, car.parts, car.part_names)
+    left, right = (mounting.can((0, y, 2.5), name) for name, y in (("left", 0.5), ("right", -0.5)))
+    rig, space = mounting.space(left, right, pairs=[("left", "right")], vehicle=vehicle)
+    with pytest.raises(pe.InputError, match=r"one from y = -0\.60 to 1\.20 m"):
+        next(pe.optimize(None, rig, space))
+
+
+def test_models_of_one_s_own_are_alike_by_their_figures(folder):
+    model = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60}
+    pair = [LEFT | {"model": model}, RIGHT | {"model": dict(model)}]
+    assert read(folder, *pair, **PAIR).search.mounting.pairs
+    pair[1]["model"] |= {"hfov_deg": 61}
+    assert "expected sensors of one model" in line(folder, *pair, **PAIR)

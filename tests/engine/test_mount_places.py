@@ -1,0 +1,182 @@
+"""Where a vector of unknowns puts a sensor: in its box, on a surface, in a slot."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.search import Coding
+from tests.engine import mounting, shapes
+from tests.engine.mounting import BASE, CAN, CENTER, ON_ROOF, TOP, can, roof
+
+RNG_SEED = 3
+LEVEL = ("x", "y", "z")
+
+
+def coded(*sensors, **options):
+    return Coding(*mounting.space(*sensors, **options))
+
+
+def drawn(coding, count=200):
+    """Placements drawn over all that the unknowns may be."""
+    rng = np.random.default_rng(RNG_SEED)
+    vectors = [[rng.uniform(u.low, u.high) for u in coding.unknowns] for _ in range(count)]
+    return [coding.candidate(vector).rig for vector in vectors]
+
+
+def test_a_box_s_unknowns_are_its_free_coordinates_in_the_order_of_axes():
+    coding = coded(can(), free=("pitch", "z"), limits={"roof": {"z": (1.0, 2.0)}})
+    assert [(u.low, u.high, u.unit) for u in coding.unknowns] == [
+        (1.0, 2.0, "m"),
+        (-math.pi / 2, math.pi / 2, "rad"),
+    ]
+    assert coding.start.vector == (ON_ROOF[2], 0.0)
+    pose = coding.candidate([1.234567, 0.1]).rig["roof"].pose
+    assert pose.position == (-0.43, 0.0, 1.23457)
+    assert coding.candidate([1.234567, 0.1]).vector[0] == 1.23457
+
+
+def test_a_sensor_on_the_roof_stands_on_it_at_its_stand_off_wherever_it_goes():
+    for rig in drawn(coded(can(), mount={"roof": roof()}, free=LEVEL)):
+        x, y, z = rig["roof"].pose.position
+        assert -1.5 - 1e-5 <= x <= 0.8 + 1e-5 and -0.7 - 1e-5 <= y <= 0.7 + 1e-5
+        assert z == pytest.approx(TOP + BASE + CENTER, abs=1e-5)
+
+
+def test_it_reaches_all_of_the_roof():
+    places = np.array(
+        [r["roof"].pose.position for r in drawn(coded(can(), mount={"roof": roof()}))]
+    )
+    assert places[:, 0].min() < -1.4 and places[:, 0].max() > 0.7
+    assert places[:, 1].min() < -0.6 and places[:, 1].max() > 0.6
+
+
+def test_without_a_housing_the_origin_stands_off():
+    camera = shapes.camera(position=(0.0, 0.0, TOP + 0.1), name="eye")
+    rigs = drawn(coded(camera, mount={"eye": roof(0.1)}), 5)
+    assert [r["eye"].pose.position[2] for r in rigs] == pytest.approx([TOP + 0.1] * 5, abs=1e-5)
+
+
+def ramp(slope_deg=30.0):
+    """A plate that rises to the front, and the pose of a can that stands on its middle."""
+    rise = math.tan(math.radians(slope_deg))
+    corners = [(-1.0, -1.0, 1.0 - rise), (1.0, -1.0, 1.0 + rise), (1.0, 1.0, 1.0 + rise)]
+    other = [corners[0], corners[2], (-1.0, 1.0, 1.0 - rise)]
+    floor = shapes.box((-2.0, -2.0, 0.0), (2.0, 2.0, 0.1))
+    triangles = np.concatenate([floor, np.array([corners, other])])
+    parts = np.array([0] * len(floor) + [1, 1], np.int32)
+    return pe.Vehicle(triangles, parts, ("floor", "ramp"))
+
+
+def test_orientation_upright_stays_so_and_normal_follows_the_surface():
+    slope = math.radians(30.0)
+    normal = np.array([-math.sin(slope), 0.0, math.cos(slope)])
+    foot = np.array([0.0, 0.0, 1.0])
+    upright = can(foot + 0.2 * normal + [0.0, 0.0, CENTER], "a")
+    tilted = can(foot + (0.2 + CENTER) * normal, "b", (0.0, -30.0, 0.0))
+    mounts = {
+        "a": pe.Surface(["ramp"], 0.2, "upright"),
+        "b": pe.Surface(["ramp"], 0.2, "normal"),
+    }
+    free = ("x", "y", "z", "yaw")
+    for rig in drawn(coded(upright, tilted, mount=mounts, free=free, vehicle=ramp()), 20):
+        up_a, up_b = (rig[name].pose.ground_from_sensor[:, 2] for name in "ab")
+        assert up_a == pytest.approx([0.0, 0.0, 1.0], abs=1e-6)
+        assert up_b == pytest.approx(normal, abs=1e-5)
+        base = np.array(rig["b"].pose.position) - CENTER * up_b
+        assert (base - foot) @ normal == pytest.approx(0.2, abs=1e-4)
+
+
+def test_facing_looks_along_the_normal():
+    """A camera in the car's front looks ahead, one in its left side to the left."""
+    ahead = shapes.camera(position=(2.32, 0.0, 0.6), name="ahead")
+    aside = shapes.camera(position=(0.0, 0.92, 0.6), rotation=(0.0, 0.0, 90.0), name="aside")
+    mounts = {
+        "ahead": pe.Surface(["front"], 0.02, "facing"),
+        "aside": pe.Surface(["left"], 0.02, "facing"),
+    }
+    coding = coded(ahead, aside, mount=mounts, free=("x", "y", "z"))
+    for rig in drawn(coding, 20):
+        assert rig["ahead"].pose.position[0] == pytest.approx(2.32, abs=1e-5)
+        assert rig["ahead"].pose.rotation_deg == (0.0, 0.0, 0.0)
+        assert rig["aside"].pose.position[1] == pytest.approx(0.92, abs=1e-5)
+        assert rig["aside"].pose.rotation_deg == (0.0, 0.0, 90.0)
+
+
+def test_a_surface_s_outside_does_not_depend_on_how_its_corners_turn():
+    car = mounting.car()
+    for vehicle in (car, pe.Vehicle(car.triangles[:, ::-1], car.parts, car.part_names)):
+        (rig,) = drawn(coded(can(), mount={"roof": roof()}, free=LEVEL, vehicle=vehicle), 1)
+        assert rig["roof"].pose.position[2] == pytest.approx(TOP + BASE + CENTER, abs=1e-5)
+
+
+SLOTS = pe.Slots(
+    [
+        pe.Slot("left", pe.Pose.from_degrees((0.0, 0.4, 1.6), (0.0, 5.0, 90.0))),
+        pe.Slot("middle", pe.Pose.from_degrees(ON_ROOF)),
+        pe.Slot("right", pe.Pose.from_degrees((0.0, -0.4, 1.6), (0.0, 5.0, -90.0))),
+    ]
+)
+
+
+def test_slots_are_taken_whole_and_no_other_place_is():
+    coding = coded(can(), mount={"roof": SLOTS})
+    poses = [slot.pose for slot in SLOTS.slots]
+    found = [rig["roof"].pose for rig in drawn(coding)]
+    assert all(pose in poses for pose in found)
+    assert all(found.count(pose) > 30 for pose in poses)
+
+
+def test_a_pair_is_its_own_mirror_image():
+    left = can((0.2, 0.5, ON_ROOF[2]), "left", (3.0, 10.0, 40.0))
+    right = can((0.2, -0.5, ON_ROOF[2]), "right", (-3.0, 10.0, -40.0))
+    coding = coded(left, right, pairs=[("left", "right")], free=("x", "y", "roll", "yaw"))
+    assert len(coding.unknowns) == 4
+    for rig in drawn(coding, 20):
+        (x, y, z), (roll, pitch, yaw) = rig["left"].pose.position, rig["left"].pose.rotation_deg
+        assert rig["right"].pose.position == (x, -y, z)
+        assert rig["right"].pose.rotation_deg == (-roll, pitch, -yaw)
+
+
+def test_a_group_keeps_its_relative_pose():
+    lead = can((0.0, 0.0, 1.6), "lead", (0.0, 0.0, 10.0))
+    other = can((0.3, 0.1, 1.7), "other", (0.0, 5.0, 50.0))
+
+    def between(rig):
+        lead, other = rig["lead"].pose, rig["other"].pose
+        back = lead.ground_from_sensor.T
+        away = np.array(other.position) - np.array(lead.position)
+        return np.concatenate([back @ away, (back @ other.ground_from_sensor).ravel()])
+
+    coding = coded(lead, other, groups=[("lead", "other")], free=("x", "z", "pitch", "yaw"))
+    assert len(coding.unknowns) == 4
+    places = set()
+    for rig in drawn(coding, 20):
+        assert between(rig) == pytest.approx(between(coding.start.rig), abs=1e-5)
+        places.add(rig["other"].pose.position)
+    assert len(places) == 20
+
+
+def test_a_pair_of_racks():
+    """Whoever follows may lead: the right rack is the left one's mirror image, sensor by sensor."""
+    sensors = [
+        can((x, side * y, 1.6), f"{name}_{which}")
+        for name, x, y in (("front", 0.3, 0.5), ("rear", -0.3, 0.4))
+        for which, side in (("left", 1), ("right", -1))
+    ]
+    pairs = [("front_left", "front_right"), ("rear_left", "rear_right")]
+    coding = coded(*sensors, pairs=pairs, groups=[("front_left", "rear_left")], free=("x", "yaw"))
+    assert len(coding.unknowns) == 2
+    (rig,) = drawn(coding, 1)
+    x, y, z = rig["rear_left"].pose.position
+    assert rig["rear_right"].pose.position == (x, -y, z)
+    assert x != -0.3
+
+
+def test_the_model_is_known_by_its_housing():
+    assert pe.catalog.housing(CAN).size == (
+        2 * mounting.RADIUS,
+        2 * mounting.RADIUS,
+        mounting.HEIGHT,
+    )

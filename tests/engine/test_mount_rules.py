@@ -1,0 +1,239 @@
+"""Each rule of a search: a placement that breaks it, one that just does not, and nothing else."""
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.scene.housing import Housing
+from pe_core.scene.outside import is_covered, is_enclosed
+from pe_core.scene.solids import meet, solid_box, solid_of
+from pe_core.search import Coding, first_allowed
+from pe_core.search.rules import Trial
+from tests.engine import mounting, shapes
+from tests.engine.mounting import BASE, CENTER, HEIGHT, ON_ROOF, RADIUS, TOP, can, roof
+
+AT = pe.Pose((0.0, 0.0, 0.0))
+FLYING = 2.5
+"""Above everything [m]."""
+
+
+def broken(*sensors, **options):
+    """The rules that sensors break where they are."""
+    coding = Coding(*mounting.space(*sensors, **options))
+    return sorted(coding.broken(coding.start.rig))
+
+
+def limited(*sensors, **limits):
+    return broken(*sensors, constraints=pe.Constraints(**limits))
+
+
+def test_greatest_height_is_of_the_housing_s_top():
+    top = 2.0 + HEIGHT - CENTER
+    low, high = top - 1e-4, top + 1e-4
+    assert limited(can((0, 0, 2.0)), max_height=high) == []
+    assert limited(can((0, 0, 2.0)), max_height=low) == ["max_height of 'roof'"]
+    eye = shapes.camera(position=(0, 0, 2.0), name="eye")  # of no known size
+    assert limited(eye, max_height=2.0) == []
+    assert limited(eye, max_height=1.9999) == ["max_height of 'eye'"]
+
+
+def test_greatest_width_is_of_the_housing_s_side_on_either_side():
+    for side in (1.0, -1.0):
+        sensor = can((0, side * 0.9, FLYING))
+        assert limited(sensor, max_width=2 * (0.9 + 1.03 * RADIUS)) == []
+        assert limited(sensor, max_width=2 * (0.9 + 0.97 * RADIUS)) == ["max_width of 'roof'"]
+
+
+def test_least_distance_is_between_any_two_sensors():
+    sensors = [can((x, 0, FLYING), f"s{x}") for x in (0, 3, 4)]
+    assert limited(*sensors, min_distance=1.0) == []
+    assert limited(*sensors, min_distance=1.001) == ["min_distance of 's3' and 's4'"]
+
+
+def test_a_no_go_box_takes_the_whole_housing_and_an_axis_that_is_not_said_has_no_ends():
+    area = [pe.NoGo("antenna", x=(0.5, 1.0), y=(-0.1, 0.1))]
+    told = ["no_go 'antenna' for 'roof'"]
+    assert limited(can((0.5 - 1.03 * RADIUS, 0, FLYING)), no_go=area) == []
+    assert limited(can((0.5 - 0.97 * RADIUS, 0, FLYING)), no_go=area) == told
+    assert limited(can((0.75, 0.0, 9.0)), no_go=area) == told
+    assert limited(can((0.75, 0.2, FLYING)), no_go=area) == []
+    eye = shapes.camera(position=(0.75, 0.0, FLYING), name="roof")
+    assert limited(eye, no_go=area) == told
+
+
+def test_a_housing_in_the_body_is_found_where_that_is_asked_for():
+    sunk = can((0.0, 0.0, TOP + CENTER - 0.01))
+    assert limited(sunk) == []
+    assert limited(sunk, clear_housings=True) == ["the body for 'roof'"]
+    assert limited(can((0.0, 0.0, TOP + CENTER + 0.001)), clear_housings=True) == []
+
+
+def test_a_sensor_wholly_inside_the_body_is_found_though_it_touches_nothing():
+    inside = can((0.0, 0.0, 1.1))
+    assert pe.cuts_body(inside.pose, pe.catalog.housing(inside.model.name), mounting.car()) == ()
+    assert limited(inside, clear_housings=True) == ["the body for 'roof'"]
+    eye = shapes.camera(position=(0.0, 0.0, 1.1), name="eye")
+    assert limited(eye, clear_housings=True) == ["the body for 'eye'"]
+
+
+def test_on_a_surface_the_housing_is_kept_clear_without_being_asked_for():
+    """A wall rises from the roof's front edge, in a can's way."""
+    wall = shapes.box((0.7, -0.7, TOP), (0.8, 0.7, TOP + 0.3))
+    car = mounting.car()
+    parts = np.concatenate([car.parts, np.full(len(wall), 4)]).astype(np.int32)
+    vehicle = pe.Vehicle(np.concatenate([car.triangles, wall]), parts, (*car.part_names, "wall"))
+    near = can((0.7 - 0.9 * RADIUS, 0.0, ON_ROOF[2]))
+    assert broken(near, mount={"roof": roof()}, vehicle=vehicle) == ["the body for 'roof'"]
+    far = can((0.7 - 1.1 * RADIUS, 0.0, ON_ROOF[2]))
+    assert broken(far, mount={"roof": roof()}, vehicle=vehicle) == []
+
+
+def test_housings_keep_out_of_each_other_where_that_is_asked_for():
+    for gap, told in ((1.03, []), (0.97, ["clear housings of 'a' and 'b'"])):
+        two = can((0, 0, FLYING), "a"), can((2 * gap * RADIUS, 0, FLYING), "b")
+        assert limited(*two) == []
+        assert limited(*two, clear_housings=True) == told
+
+
+def test_a_surface_that_is_hollow_keeps_its_stand_off_all_round():
+    """In the corner of an L, a sensor on its floor would be too near to its wall."""
+    floor, wall = (
+        shapes.box((-1.0, -1.0, 0.0), (1.0, 1.0, 0.1)),
+        shapes.box((0.9, -1.0, 0.1), (1.0, 1.0, 1.0)),
+    )
+    vehicle = pe.Vehicle(np.concatenate([floor, wall]))
+    eye = shapes.camera(position=(0.0, 0.0, 0.4), name="eye")
+    mount = {"eye": pe.Surface(["vehicle"], 0.3)}
+    coding = Coding(*mounting.space(eye, mount=mount, free=("x", "y", "z"), vehicle=vehicle))
+    near, far = (coding.candidate([x, 0.0, 0.1]).rig for x in (0.8, 0.5))
+    assert coding.broken(near) == {"standoff of 'eye'"}
+    assert coding.broken(far) == set()
+
+
+def test_no_two_sensors_share_a_slot():
+    slots = pe.Slots([pe.Slot("1", pe.Pose((0, 0, FLYING))), pe.Slot("2", pe.Pose((1, 0, FLYING)))])
+    two = can((0, 0, FLYING), "a"), can((1, 0, FLYING), "b")
+    rig = pe.Rig(two)
+    mounts = pe.Mounting({"rack": slots}, {"a": "rack", "b": "rack"})
+    study = pe.Study(rig, search=pe.Search(mounting=mounts))
+    coding = study.coding()
+    assert coding.broken(rig) == set()
+    assert coding.broken(coding.candidate([0.25, 0.25]).rig) == {"one slot for 'a' and 'b'"}
+
+
+def test_bounds_of_a_sensor_on_a_surface_hold_where_the_surface_leads():
+    coding = Coding(
+        *mounting.space(can(), mount={"roof": roof()}, limits={"roof": {"x": (-0.5, 0.0)}})
+    )
+    inside, outside = (coding.candidate([x, 0.0, TOP, 0.0]).rig for x in (-0.1, 0.1))
+    assert coding.broken(inside) == set()
+    assert coding.broken(outside) == {"bounds of x of 'roof'"}
+
+
+def test_what_does_not_move_is_nobody_s_fault():
+    """A fixed sensor in the body is as it is; only what comes between it and others counts."""
+    fixed, moving = can((0.0, 0.0, 1.1), "fixed"), can((0.0, 0.0, FLYING), "moving")
+    rig = pe.Rig([fixed, moving])
+    limits = pe.Mounting(constraints=pe.Constraints(0.5, 0.01, 2.0, True))
+    search = pe.Search({"fixed": (), "moving": ("x",)}, mounting=limits)
+    coding = pe.Study(rig, mounting.car(), search=search).coding()
+    assert coding.broken(rig) == {
+        "max_height of 'moving'",
+        "max_width of 'moving'",
+        "min_distance of 'fixed' and 'moving'",
+    }
+
+
+def test_mirror_images_keep_to_the_rules_themselves():
+    left, right = can((0.0, 0.5, FLYING), "left"), can((0.0, -0.5, FLYING), "right")
+    area = pe.Constraints(no_go=[pe.NoGo("filler", y=(-0.6, -0.4))])
+    assert broken(left, right, pairs=[("left", "right")], constraints=area) == [
+        "no_go 'filler' for 'right'"
+    ]
+
+
+# --- solids ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", ["box", "cylinder"])
+def test_solids_meet_when_points_of_one_are_in_the_other(shape):
+    """Against points sown densely in one solid and looked for in the other, at random poses."""
+    rng = np.random.default_rng(1)
+    housing = Housing(shape, (0.2, 0.2, 0.3), (0.0, 0.0, 0.1))
+    sown = rng.uniform(-1.0, 1.0, (20_000, 3))
+    if shape == "cylinder":
+        sown = sown[np.hypot(sown[:, 0], sown[:, 1]) <= 1.0]
+    own = housing.center + sown * np.array(housing.size) / 2.0
+    met = apart = 0
+    for _ in range(150):
+        a, b = (pe.Pose(rng.normal(0.0, 0.12, 3), rng.normal(0.0, 2.0, 3)) for _ in range(2))
+        ground = own @ a.ground_from_sensor.T + a.position
+        local = (ground - b.position) @ b.ground_from_sensor - housing.center
+        half = np.array(housing.size) / 2.0
+        within = (np.abs(local) < half).all(axis=1)
+        if shape == "cylinder":
+            within &= np.hypot(local[:, 0], local[:, 1]) < half[0]
+        found = meet(solid_of(a, housing), solid_of(b, housing))
+        assert found or not within.any()
+        met += within.any()
+        apart += not found
+    assert met > 30 and apart > 20
+
+
+def test_solids_that_touch_do_not_meet():
+    one = solid_box(np.zeros(3), np.ones(3))
+    for gap, told in ((0.0, False), (-1e-4, True), (1e-4, False)):
+        assert meet(one, solid_box(np.array([1.0 + gap, 0.0, 0.0]), np.full(3, 2.0))) is told
+    point = solid_of(pe.Pose((0.5, 0.5, 0.5)), None)
+    assert meet(one, point) and not meet(solid_box(np.ones(3), np.full(3, 2.0)), point)
+
+
+def test_under_the_open_sky_nothing_is_enclosed():
+    car = mounting.car()
+    assert is_covered(car, np.array([0.0, 0.0, 1.1])) and is_enclosed(car, np.array([0, 0, 1.1]))
+    assert not is_covered(car, np.array([0.0, 0.0, 1.5]))
+    assert not is_covered(car, np.array([9.0, 0.0, 0.0]))
+
+
+# --- none that fits -------------------------------------------------------------------------------
+
+
+def test_a_start_that_breaks_a_rule_gives_way_to_a_placement_near_it():
+    limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.6, -0.2))])
+    coding = Coding(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
+    assert not coding.allowed(coding.start.rig)
+    found = first_allowed(coding)
+    assert coding.allowed(found.rig)
+    assert abs(found.rig["roof"].pose.position[0] - ON_ROOF[0]) < 0.5
+    assert first_allowed(coding).vector == found.vector
+
+
+def test_rules_that_exclude_each_other_are_named_and_no_others():
+    """A high mount under a low ceiling; least distance and width are innocent."""
+    other = can((0.0, 0.0, FLYING), "other")
+    limits = pe.Constraints(max_height=TOP + BASE + HEIGHT - 0.01, max_width=3.0, min_distance=0.1)
+    options = {"mount": {"roof": roof()}, "constraints": limits, "free": ()}
+    with pytest.raises(pe.InputError) as error:
+        first_allowed(Coding(*mounting.space(can(), other, **options)))
+    assert str(error.value) == (
+        "optimize: max_height of 'roof' leaves no place: expected a placement that keeps to all "
+        "of them, found none in 2001 tried"
+    )
+
+
+def test_two_rules_that_leave_no_place_together():
+    areas = [pe.NoGo("front", x=(-0.5, 3.0)), pe.NoGo("rear", x=(-3.0, -0.4))]
+    limits = pe.Constraints(max_height=3.0, no_go=areas)
+    coding = Coding(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
+    told = "no_go 'front' for 'roof' and no_go 'rear' for 'roof' exclude each other"
+    with pytest.raises(pe.InputError, match=told):
+        first_allowed(coding)
+    for area in areas:  # either alone leaves some
+        alone = pe.Constraints(max_height=3.0, no_go=[area])
+        first_allowed(Coding(*mounting.space(can(), mount={"roof": roof()}, constraints=alone)))
+
+
+def test_a_room_is_worked_out_once():
+    rig, space = mounting.space(can())
+    trial = Trial(rig, space)
+    assert trial.solid("roof") is trial.solid("roof")

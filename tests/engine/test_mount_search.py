@@ -1,0 +1,175 @@
+"""Searches with mounts: what breaks a rule is nowhere, and a LiDAR stands on its roof."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.app.cli import main
+from pe_core.search import Coding, pose_values
+from tests.engine import mounting, shapes
+from tests.engine.mounting import ON_ROOF, can, roof
+from tests.engine.recording import Recorder, flat
+
+ROOT = Path(__file__).parents[2]
+BASE_M = 0.04
+SEDAN = """
+[vehicle]
+mesh = "sedan.npz"
+glass = ["rear_window", "windows_left", "windows_right", "windshield"]
+[[sensor]]
+name = "roof"
+model = "Pandar64"
+position = [-0.429, 0.0, 1.534]
+mount = "roof"
+[optimize]
+candidates = 3
+samples = 1024
+[[optimize.mount]]
+name = "roof"
+parts = ["roof"]
+standoff = 0.04
+"""
+
+
+def forward(rig):
+    """A landscape: the farther ahead, the better."""
+    return -sum(pose_values(sensor.pose)["x"] for sensor in rig)
+
+
+def searched(landscape, *sensors, candidates=30, seed=0, **options):
+    """Coding, recorder and steps of a search on the box car."""
+    rig, space = mounting.space(*sensors, **options)
+    recorder = Recorder(landscape)
+    steps = list(pe.optimize(recorder, rig, space, seed, pe.Schedule(candidates=candidates)))
+    return Coding(rig, space), recorder, steps
+
+
+def test_what_breaks_a_rule_is_never_scored_and_never_the_best():
+    """Ahead is better, and there a no-go box begins."""
+    limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.2, 3.0))])
+    options = {"mount": {"roof": roof()}, "constraints": limits}
+    coding, recorder, steps = searched(forward, can(), **options)
+    assert len(steps) == 211
+    assert not any(coding.broken(rig) for rig in recorder.rigs)
+    best = steps[-1].best["roof"].pose.position[0]
+    assert best == pytest.approx(-0.2 - mounting.RADIUS, abs=0.02)
+    _, without, steps = searched(forward, can(), mount={"roof": roof()})
+    assert steps[-1].best["roof"].pose.position[0] > 0.5
+    assert any(coding.broken(rig) for rig in without.rigs)
+
+
+def test_candidates_that_cannot_be_are_counted_in_the_search_s_length_not_as_scored():
+    """Where hardly anything is allowed, some candidates are not found; the search still ends."""
+    limits = pe.Constraints(no_go=[pe.NoGo("a", x=(-9, -0.484)), pe.NoGo("b", x=(-0.376, 9))])
+    tiny = {"mount": {"roof": roof()}, "constraints": limits, "free": ()}
+    coding, recorder, steps = searched(flat, can((-0.43, 0.0, ON_ROOF[2])), candidates=4, **tiny)
+    assert len(steps) == 29 and steps[-1].fraction == 1.0
+    assert steps[-1].evaluations == len(recorder.rigs) < 29
+    assert not any(coding.broken(rig) for rig in recorder.rigs)
+
+
+def test_a_mounted_search_is_the_seed_s():
+    def places(seed):
+        _, recorder, _ = searched(forward, can(), candidates=5, seed=seed, mount={"roof": roof()})
+        return [rig["roof"].pose for rig in recorder.rigs]
+
+    assert places(1) == places(1) != places(2)
+
+
+def test_slots_are_all_tried_and_the_best_is_found():
+    slots = [pe.Slot(str(x), pe.Pose((float(x), 0.0, 2.5))) for x in range(6)]
+    rack = {"roof": pe.Slots(slots)}
+    _, recorder, steps = searched(forward, can((2.0, 0.0, 2.5)), candidates=60, mount=rack)
+    assert {rig["roof"].pose.position[0] for rig in recorder.rigs} == set(map(float, range(6)))
+    assert steps[-1].best["roof"].pose.position[0] == 5.0
+
+
+def study(**limits):
+    """A small LiDAR in the air over the box car; up is free."""
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    search = pe.Search(
+        {"roof": ("z",)},
+        samples=1024,
+        schedule=pe.Schedule(candidates=3),
+        mounting=pe.Mounting(constraints=pe.Constraints(**limits)),
+    )
+    return pe.Study(rig, mounting.car(), shapes.small_space(), search=search, samples=1024)
+
+
+def outcome_of(study):
+    job = pe.OptimizeJob(study, 1)
+    assert list(job)
+    return job.outcome
+
+
+def test_a_start_that_breaks_a_rule_is_not_returned_though_it_is_the_best():
+    """Under a low ceiling the roof hides much: all that is allowed is worse than the start."""
+    free, under = outcome_of(study()), outcome_of(study(max_height=1.5))
+    assert free.after.entropy <= free.before.entropy < under.after.entropy
+    assert under.study.rig["roof"].pose.position[2] <= 1.5
+    assert all(row.rig["roof"].pose.position[2] <= 1.5 for row in under.history)
+
+
+def test_a_search_that_cannot_be_ends_before_it_begins():
+    with pytest.raises(pe.InputError, match="max_height of 'roof' leaves no place"):
+        outcome_of(study(max_height=0.1))
+
+
+@pytest.fixture(scope="module")
+def sedan(tmp_path_factory):
+    """The command's result for the sedan, and its vehicle."""
+    folder = tmp_path_factory.mktemp("sedan")
+    (folder / "sedan.npz").write_bytes((ROOT / "blend_assets" / "sedan.npz").read_bytes())
+    (folder / "study.toml").write_text(SEDAN, "utf-8")
+    out = folder / "out"
+    arguments = ["optimize", str(folder / "study.toml"), "-o", str(out), "--grid-samples", "1024"]
+    assert main([*arguments, "--workers", "1"]) == 0
+    return out, pe.load_study(out / "study.toml")
+
+
+def test_the_sedan_s_roof_lidar_stands_on_the_roof_on_a_base_of_40_mm(sedan):
+    """From its base, 40 mm along the roof's normal is the roof, and the housing cuts nothing."""
+    _, found = sedan
+    pose, housing = found.rig["roof"].pose, pe.catalog.housing("Pandar64")
+    assert pe.cuts_body(pose, housing, found.vehicle) == ()
+    assert pose.position != (-0.429, 0.0, 1.534)
+    base = np.array(pose.position) - pose.ground_from_sensor @ housing.optical_center
+    rays = np.random.default_rng(0).normal(size=(4000, 3))
+    rays[:, 2] = -np.abs(rays[:, 2]) - 1.0
+    rays /= np.linalg.norm(rays, axis=1)[:, None]
+    hits = found.vehicle.first_hit_from(base, rays)
+    nearest = int(np.argmin(hits.distance))
+    assert found.vehicle.part_names[found.vehicle.parts[hits.face[nearest]]] == "roof"
+    assert hits.distance[nearest] == pytest.approx(BASE_M, abs=2e-4)
+
+
+def test_result_json_says_the_mounts(sedan):
+    out, found = sedan
+    data = json.loads((out / "result.json").read_text("utf-8"))
+    surface = {"mount": "roof", "parts": ["roof"], "standoff": 0.04, "orientation": "upright"}
+    assert data["mounts"] == {"roof": surface}
+    assert data["inputs"]["study"]["optimize"]["mount"][0]["parts"] == ["roof"]
+    assert found.search.mounting.on == {"roof": "roof"}
+
+
+def test_result_json_says_the_slot():
+    slots = [pe.Slot(f"slot {x}", pe.Pose((float(x), 0.0, 2.0))) for x in range(3)]
+    rig = pe.Rig([study().rig["roof"].moved(slots[1].pose)])
+    rack = pe.Mounting({"rack": pe.Slots(slots)}, {"roof": "rack"})
+    search = pe.Search(samples=1024, schedule=pe.Schedule(candidates=2), mounting=rack)
+    space = shapes.small_space()
+    told = pe.result_dict(outcome_of(pe.Study(rig, space=space, samples=1024, search=search)))
+    x = told["placements"]["after"]["roof"]["position"][0]
+    assert told["mounts"] == {"roof": {"mount": "rack", "slot": f"slot {x:g}"}}
+
+
+def test_the_result_can_be_searched_again(sedan):
+    """What a search leaves lies on its mount: its study is the start of another."""
+    _, found = sedan
+    coding = found.coding()
+    assert coding.allowed(found.rig)
+    again = coding.candidate(coding.start.vector).rig["roof"].pose
+    assert again.position == pytest.approx(found.rig["roof"].pose.position, abs=2e-5)

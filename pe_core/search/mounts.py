@@ -16,7 +16,7 @@ ORIENTATIONS = ("upright", "normal", "facing")
 STANDOFF = Number(0.0, 10.0, unit="m")
 DISTANCE = Number(0.0, cap=1e4, unit="m")
 Range = tuple[float, float]
-NO_MOUNT = "a mount: the study has none"
+NO_MOUNT = "the name of an [[optimize.mount]]"
 
 
 @dataclass(frozen=True, slots=True)

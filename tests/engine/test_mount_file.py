@@ -136,7 +136,11 @@ BAD = {
         {"mount": [AREA]},
         "sensor 'roof': mount: expected one of area, found 'arena'",
     ),
-    "no mount": ([ON], {}, "sensor 'roof': mount: expected the name of an [[optimize.mount]], found"),
+    "no mount": (
+        [ON],
+        {},
+        "sensor 'roof': mount: expected the name of an [[optimize.mount]], found",
+    ),
     "mounts of one name": (
         [sensor()],
         {"mount": [AREA, AREA]},

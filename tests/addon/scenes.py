@@ -7,6 +7,7 @@ import numpy as np
 
 from blender_addon import bridge
 from blender_addon.overlay import updating
+from blender_addon.overlay.layers import LAYERS
 from blender_addon.overlay.primitives import Shape
 from blender_addon.overlay.store import shown
 
@@ -65,6 +66,16 @@ def add_sensor(name: str, model: str = "Pandar64", **settings) -> bpy.types.Obje
 def depsgraph() -> bpy.types.Depsgraph:
     """Return the evaluated scene, up to date."""
     return bpy.context.evaluated_depsgraph_get()
+
+
+def seen_rig(car) -> bpy.types.Scene:
+    """Return a car with a LiDAR, and now a camera at its front, all layers shown."""
+    add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
+    view = car.perception_entropy.view
+    for layer in LAYERS:
+        setattr(view, f"show_{layer.name}", True)
+    view.beams_of = "ALL"
+    return car
 
 
 def drawn(scene) -> dict[str, dict[str, Shape]]:

@@ -1,0 +1,123 @@
+"""A redraw takes what is ready: nothing is read, cast, worked out or uploaded twice."""
+
+import contextlib
+from types import SimpleNamespace
+
+import bpy
+import pytest
+
+from blender_addon import body, bridge, worker
+from blender_addon.engine import pe, sight
+from blender_addon.overlay import casts, handler, updating
+from tests.addon import scenes
+
+
+@pytest.fixture
+def rig(car):
+    """The car with a LiDAR on its roof and a camera at its front, all layers on."""
+    return scenes.seen_rig(car)
+
+
+class Gpu:
+    """Stands for the graphics card: notes what is uploaded and drawn."""
+
+    def __init__(self):
+        self.uploaded, self.drawn, self.written = 0, [], []
+        state = ("blend_get", "depth_test_get", "depth_mask_get")
+        asked = {name: lambda: "NONE" for name in state}
+        told = {name.replace("get", "set"): lambda _: None for name in state}
+        self.state = SimpleNamespace(**asked, **told)
+
+    def of(self, shape):
+        self.uploaded += 1
+        return SimpleNamespace(
+            shape=shape,
+            draw_areas=lambda: self.drawn.append(shape),
+            draw_lines=lambda *_, **__: None,
+        )
+
+    def write_labels(self, _context, labels):
+        self.written += [label.text for label in labels]
+
+    def write_legends(self, _context, legends):
+        self.written += [legend.title for legend in legends]
+
+
+@pytest.fixture
+def window(rig, monkeypatch):
+    """A 3D view without a graphics card: what a redraw asks for is noted."""
+    card = Gpu()
+    overlay = SimpleNamespace(show_overlays=True)
+    space = SimpleNamespace(type="VIEW_3D", overlay=overlay, local_view=None, camera=None)
+    look = SimpleNamespace(view_perspective="PERSP")
+    context = SimpleNamespace(scene=rig, space_data=space, region_data=look, region=None)
+    monkeypatch.setattr(handler, "bpy", SimpleNamespace(context=context, app=bpy.app))
+    monkeypatch.setattr(handler, "gpu", card)
+    monkeypatch.setattr(handler, "Batches", card)
+    monkeypatch.setattr(handler, "writing", card)
+    monkeypatch.setattr(handler, "lifted", lambda *_: contextlib.nullcontext())
+    visible = {"roof": True, "eye": True}
+    monkeypatch.setattr(handler, "_sensor_visible", lambda _context, name: visible[name])
+    return SimpleNamespace(card=card, space=space, look=look, visible=visible)
+
+
+def redraw():
+    handler.draw()
+    handler.write()
+
+
+def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypatch):
+    scenes.drawn(rig)
+    forbidden = "while drawing"
+    for owner, name in (
+        *((bridge, each) for each in ("sensor_from_object", "vehicle_from_collection", "pose_of")),
+        *((bridge, each) for each in ("prior_from_scene", "sensor_objects")),
+        *((pe.Vehicle, each) for each in ("first_hit", "seen_from")),
+        *((sight.Sight, each) for each in ("ground", "blind", "reach")),
+        (body.shared, "read"),
+        (casts, "cast"),
+        (worker.desk, "ask"),
+        (updating, "update"),
+    ):
+        monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail(forbidden))
+    rig.objects["roof"].location.x += 0.5  # even when the scene has moved on
+    redraw()
+    assert len(window.card.drawn) == 8 and "roof" in window.card.written
+
+
+def test_shapes_are_uploaded_once(window, rig):
+    scenes.drawn(rig)
+    for _ in range(3):
+        redraw()
+    assert window.card.uploaded == 8 and len(window.card.drawn) == 24
+    rig.objects["eye"].location.z += 0.1
+    bpy.context.view_layer.update()
+    scenes.drawn(rig)
+    redraw()
+    assert window.card.uploaded == 8 + 5  # its frustum and name, and the rig's map, blind, reach
+    rig.perception_entropy.view.show_ground = False
+    scenes.drawn(rig)
+    redraw()
+    assert len(handler._batches) == 7
+
+
+def test_overlays_off_hides_all(window, rig):
+    scenes.drawn(rig)
+    window.space.overlay.show_overlays = False
+    redraw()
+    assert not window.card.drawn and not window.card.written
+
+
+def test_hidden_sensors_local_view_and_the_eye_looked_through(window, rig):
+    scenes.drawn(rig)
+    window.visible["roof"] = False
+    redraw()
+    assert "roof" not in window.card.written and "eye" in window.card.written
+    window.card.drawn.clear()
+    window.space.local_view = object()
+    redraw()
+    assert len(window.card.drawn) == 2, "the rig's own layers belong to no local view"
+    window.look.view_perspective, window.space.camera = "CAMERA", rig.objects["eye"]
+    window.card.drawn.clear()
+    redraw()
+    assert not window.card.drawn

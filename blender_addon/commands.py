@@ -53,7 +53,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     optimize = verbs.add_parser("optimize", help="search for better places for the sensors")
     for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
         app.add_run_options(verb, search=job is pe.OptimizeJob)
-        verb.add_argument("--no-render", action="store_true", help=f"no {REVIEW}")
+        verb.add_argument("--no-render", action="store_false", dest="render", help=f"no {REVIEW}")
         add_variant_option(verb)
         verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
     export = verbs.add_parser("export", help="write the scene as a study with its mesh")
@@ -87,14 +87,13 @@ def run_job(args: argparse.Namespace) -> app.Answer:
     if kind == "optimize":
         with from_file():
             bridge.check_placeable(bpy.context.scene, study)
-    output, names = args.output, [OPTIMIZED] * (kind == "optimize")
+    output, ours = args.output, [OPTIMIZED] * (kind == "optimize") + [REVIEW] * args.render
     if output is not None:
-        names += [REVIEW] * (not args.no_render) + studies.result_names(study, kind)
-        output = pe.prepare_folder(output, names)
+        output = pe.prepare_folder(output, [*ours, *studies.result_names(study, kind)])
 
     def leave(outcome: pe.Outcome, data: dict, folder: Path) -> None:
         with quiet_blender():
-            leave_scene(outcome, data, folder, render=not args.no_render)
+            leave_scene(outcome, data, folder, render=args.render)
 
     job = args.job(study, args.workers)
     job.notes = bridge.missing_pieces(bpy.context.scene)
@@ -103,7 +102,7 @@ def run_job(args: argparse.Namespace) -> app.Answer:
         output,
         as_json=args.json,
         host=bridge.blender_version(),
-        more=leave,
+        more=app.More(ours, leave),
     )
 
 

@@ -6,7 +6,7 @@ from .interrupts import leave
 from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
 from .summary import summary
 from .terminal import open_missing_streams, printable, show, tell
-from .work import carry_out, drive
+from .work import More, carry_out, drive
 
 __all__ = [
     "BAD_INPUT",
@@ -14,6 +14,7 @@ __all__ = [
     "INTERRUPTED",
     "USAGE",
     "Answer",
+    "More",
     "Parser",
     "add_compare_options",
     "add_explain_options",

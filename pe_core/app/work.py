@@ -6,9 +6,9 @@ import signal
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, NamedTuple, TextIO
 
 from ..errors import InputError
 from ..study import (
@@ -35,8 +35,14 @@ SAVE_EVERY_S = 10.0
 ELSEWHERE = "perception-entropy-"
 """What a folder for results begins with that could not be written where they were wanted."""
 Data = dict[str, Any]
-More = Callable[[Outcome, Data, Path], None]
-"""Writes more files of a run (Blender's) to its folder, and notes them in its data."""
+
+
+class More(NamedTuple):
+    """More files of a run (Blender's): their names; what writes them to its folder, and notes them
+    in its data."""
+
+    names: Sequence[str]
+    write: Callable[[Outcome, Data, Path], None]
 
 
 def carry_out(
@@ -170,10 +176,10 @@ def keep(
     for place in (output, None):
         try:
             folder = place or _another_folder()
-            data = write_outcome(outcome, folder, host)
+            data = write_outcome(outcome, folder, host, more.names if more else ())
             kept.append(folder)
             if more is not None:
-                more(outcome, data, folder)
+                more.write(outcome, data, folder)
         except InputError as error:
             tell(str(error))
             continue

@@ -92,12 +92,16 @@ def placements(rig: Rig) -> dict[str, dict[str, list[float]]]:
 
 
 def write_outcome(
-    outcome: Outcome, folder: str | Path, host: dict[str, str] | None = None
+    outcome: Outcome,
+    folder: str | Path,
+    host: dict[str, str] | None = None,
+    later: Collection[str] = (),
 ) -> dict[str, Any]:
     """Write result.json, history.csv (of a search) and the study; return result.json's data.
 
     Files that an earlier run left in the folder, and that this one does not write, are taken away
-    if they are ours and nobody has changed them: they would tell of another result.
+    if they are ours and nobody has changed them: they would tell of another result. Those that are
+    yet to come, `later`, stay until they are replaced.
 
     Raises
     ------
@@ -109,7 +113,7 @@ def write_outcome(
     writers = study_writers(outcome.study, STUDY)
     if outcome.kind == "optimize":
         writers[HISTORY] = history_csv(outcome.history).encode(errors="backslashreplace")
-    add_to_result(data, folder, writers, unwanted=BESIDE_RESULT)
+    add_to_result(data, folder, writers, unwanted=set(BESIDE_RESULT) - set(later))
     return data
 
 

@@ -90,6 +90,6 @@ def _batch(of: gpu.types.GPUShader, kind: str, primitives: Primitives) -> gpu.ty
 
 def _sheet(sheet: Sheet) -> gpu.types.GPUBatch:
     """Upload a sheet as triangles: a picture's colours are understood differently by versions."""
-    points, colors, triangles = sheet.mesh()
+    points, colors, triangles = sheet.mesh
     arrays = {"pos": points, "color": colors}
     return batch_for_shader(shader("SMOOTH_COLOR"), "TRIS", arrays, indices=triangles)

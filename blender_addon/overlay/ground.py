@@ -113,7 +113,7 @@ def _sheet(seen: sight.GroundSight | AsScored, image: NDArray[np.float32]) -> Sh
     half = seen.step / 2.0
     low = (float(seen.x[0]) - half, float(seen.y[0]) - half)
     high = (float(seen.x[-1]) + half, float(seen.y[-1]) + half)
-    return Sheet(np.ascontiguousarray(image, np.float32), low, high)
+    return Sheet(np.ascontiguousarray(image, np.float32), low, high).prepared()
 
 
 def _fading(seen: sight.GroundSight | AsScored) -> Floats:

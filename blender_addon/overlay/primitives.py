@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,7 +44,7 @@ class Primitives:
         return cls(points, np.concatenate([each.colors for each in several]))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Sheet:
     """A picture that lies on the ground: `image` (NY, NX, 4) sRGB with alpha, row 0 at low y.
 
@@ -54,6 +55,12 @@ class Sheet:
     low: tuple[float, float]
     high: tuple[float, float]
 
+    def prepared(self) -> Sheet:
+        """Return the sheet with its mesh worked out: not first while it is drawn."""
+        _ = self.mesh
+        return self
+
+    @cached_property
     def mesh(self) -> tuple[Floats32, Floats32, NDArray[np.int32]]:
         """Points (P, 3) in the middles of its squares, their colours (P, 4), and triangles (T, 3)
         between them; none where all is transparent."""

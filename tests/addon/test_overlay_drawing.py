@@ -9,6 +9,7 @@ import pytest
 from blender_addon import body, bridge, worker
 from blender_addon.engine import pe, sight
 from blender_addon.overlay import casts, handler, updating
+from blender_addon.overlay.store import shown
 from tests.addon import scenes
 
 
@@ -80,6 +81,8 @@ def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypat
         (updating, "update"),
     ):
         monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail(forbidden))
+    sheet = shown.items(rig.name, "ground")[""].shape.sheet
+    assert "mesh" in vars(sheet), "its triangles would be made by the first redraw"
     rig.objects["roof"].location.x += 0.5  # even when the scene has moved on
     redraw()
     assert len(window.card.drawn) == 8 and "roof" in window.card.written

@@ -21,7 +21,7 @@ from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, SELECTED, Mounted, View, Wish
 
 WHOLE_RIG = ""
 """Under this name stands what belongs to no single sensor."""
-COARSE_M, FINE_M = 1.0, 0.5
+COARSE_M, FINE_M = 1.5, 0.5
 """Side of the ground map's places while something moves, and at rest."""
 MOST_PLACES = 60_000
 BLIND_WITHIN_M = 10.0

@@ -16,22 +16,22 @@ from .engine import advice, pe
 from .worker import desk
 
 TOPIC = "place"
-Point = tuple[float, float, float]
+AskedPoint = tuple[float, float, float]
 
 
-class Answer(NamedTuple):
+class Told(NamedTuple):
     """A point [m], and lines to tell of it; `place` is None where nothing could be told."""
 
-    point: Point
+    point: AskedPoint
     lines: tuple[str, ...]
     place: advice.AskedPlace | None = None
 
 
-_answers: dict[str, Answer] = {}
+_answers: dict[str, Told] = {}
 """By the scene's name."""
 
 
-def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Point) -> None:
+def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: AskedPoint) -> None:
     """Ask what the sensors, as they stand, make of a point; the answer comes soon."""
     name = scene.name
     vehicle = body.shared.read(scene, depsgraph).vehicle
@@ -42,25 +42,25 @@ def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Point) ->
         prior = bridge.prior_from_scene(scene)
         rig = pe.Rig(sensors)
     except pe.InputError as error:
-        note(name, Answer(point, (str(error),)))
+        note(name, Told(point, (str(error),)))
         return
 
     def work() -> advice.AskedPlace:
         return advice.ask_place(rig, space, prior, vehicle, point, model)
 
     def deliver(found: advice.AskedPlace) -> None:
-        note(name, Answer(point, found.text, found))
+        note(name, Told(point, found.text, found))
 
-    desk.ask(TOPIC, work, deliver, lambda error: note(name, Answer(point, (str(error),))))
+    desk.ask(TOPIC, work, deliver, lambda error: note(name, Told(point, (str(error),))))
 
 
-def note(scene_name: str, answer: Answer) -> None:
+def note(scene_name: str, answer: Told) -> None:
     """Keep an answer, and have it shown."""
     _answers[scene_name] = answer
     changes.picture.tell()
 
 
-def answer(scene: bpy.types.Scene) -> Answer | None:
+def answer(scene: bpy.types.Scene) -> Told | None:
     """Return what was told last of a place, None when none was asked about."""
     return _answers.get(scene.name)
 

@@ -19,7 +19,7 @@ POLL_S = 0.005
 PATIENCE_S = 5.0
 """How long the end of the add-on waits for work that is under way."""
 
-Work = Callable[[], Any]
+Errand = Callable[[], Any]
 Deliver = Callable[[Any], None]
 Fail = Callable[[Exception], None]
 
@@ -28,7 +28,7 @@ class Worker:
     """One thread, made when first asked for something, ended by `stop`."""
 
     def __init__(self) -> None:
-        self._wanted: dict[str, tuple[Work, Deliver, Fail]] = {}
+        self._wanted: dict[str, tuple[Errand, Deliver, Fail]] = {}
         self._done: list[tuple[str, Callable[[], None]]] = []
         self._round: dict[str, int] = {}
         self._changed = threading.Condition()
@@ -37,7 +37,7 @@ class Worker:
         self._end = threading.Event()
         self._timer = self._hand_over  # one object: Blender knows timers by it
 
-    def ask(self, topic: str, work: Work, deliver: Deliver, fail: Fail) -> None:
+    def ask(self, topic: str, work: Errand, deliver: Deliver, fail: Fail) -> None:
         """Have `work` done off the main thread, and its answer delivered on it.
 
         What was asked on the same topic and has not begun is forgotten; of what is under way the
@@ -113,7 +113,7 @@ class Worker:
         return POLL_S if self.busy() else None
 
 
-def _answer(work: Work, deliver: Deliver, fail: Fail) -> Callable[[], None]:
+def _answer(work: Errand, deliver: Deliver, fail: Fail) -> Callable[[], None]:
     """Do the work; return how its answer is handed over."""
     try:
         found = work()

@@ -30,7 +30,7 @@ class Problem(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Wish:
+class ScoreWish:
     """A rig to be scored."""
 
     problem: Problem
@@ -39,13 +39,13 @@ class Wish:
     prior_key: Hashable = None
 
 
-class Priors:
+class KeptPriors:
     """Priors by scene, made again when their settings change: a file of boxes takes long."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[Hashable, pe.Prior]] = {}
 
-    def of(self, scene: bpy.types.Scene) -> tuple[Hashable, pe.Prior]:
+    def get(self, scene: bpy.types.Scene) -> tuple[Hashable, pe.Prior]:
         """Return a scene's prior, and what it depends on."""
         key = bridge.prior_key(scene)
         known = self._known.get(scene.name)
@@ -58,10 +58,10 @@ class Priors:
         self._known.clear()
 
 
-priors = Priors()
+priors = KeptPriors()
 
 
-def read(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) -> Wish:
+def read(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) -> ScoreWish:
     """Read what the score needs of a scene; the vehicle only if it has changed.
 
     Raises
@@ -71,7 +71,7 @@ def read(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool)
     """
     bridge.check_scene(scene)
     rig = bridge.rig_from_objects(roster.sensors(scene), depsgraph)
-    settings, prior = priors.of(scene)
+    settings, prior = priors.get(scene)
     vehicle, key = body.shared.read(scene, depsgraph)
     if vehicle is None:
         collection = scene.perception_entropy.vehicle
@@ -79,16 +79,16 @@ def read(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool)
     own = scene.perception_entropy
     space, model = bridge.space_of(own), bridge.perception_of(own)
     problem = Problem((settings, key, space, model), prior, vehicle, space, model)
-    return Wish(problem, rig, draft, (settings, space, model))
+    return ScoreWish(problem, rig, draft, (settings, space, model))
 
 
-class Evaluators:
+class KeptEvaluators:
     """One evaluator a scene, kept as long as vehicle and prior stay. Used by one thread alone."""
 
     def __init__(self) -> None:
         self._kept: dict[str, tuple[Hashable, pe.Evaluator]] = {}
 
-    def glance(self, scene_name: str, wish: Wish) -> pe.Glance:
+    def glance(self, scene_name: str, wish: ScoreWish) -> pe.Glance:
         """Score a wish: only sensors that have moved are measured again."""
         return self._of(scene_name, wish.problem).glance(wish.rig, draft=wish.draft)
 

@@ -34,7 +34,7 @@ BY_SENSE = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
 
 
-class Line(NamedTuple):
+class TextRow(NamedTuple):
     """Words in a row: what, how large, in which colours."""
 
     size: float
@@ -77,27 +77,27 @@ def draw() -> None:
         draw_lines(lines, *_place(context), context.preferences.system.ui_scale)
 
 
-def lines_of(reading: latest.Reading | None, note: str) -> list[Line]:
+def lines_of(reading: latest.Reading | None, note: str) -> list[TextRow]:
     """Lines from the top down."""
     found = [] if reading is None else _lines_of_words(reading)
     if note:
-        found += [Line(SMALL, ((row, ALERT),)) for row in textwrap.wrap(note, MOST_COLUMNS)]
-    return found or [Line(SMALL, (("Live: scoring ...", FAINT),))]
+        found += [TextRow(SMALL, ((row, ALERT),)) for row in textwrap.wrap(note, MOST_COLUMNS)]
+    return found or [TextRow(SMALL, (("Live: scoring ...", FAINT),))]
 
 
-def _lines_of_words(reading: latest.Reading) -> list[Line]:
+def _lines_of_words(reading: latest.Reading) -> list[TextRow]:
     words = words_of(reading)
     arrow, color = ARROWS.get(words.sense, ""), BY_SENSE.get(words.sense, FAINT)
     change = ((f"{arrow} {words.change}".strip(), color),) if words.change else ()
-    small = [Line(SMALL, ((text, INK),)) for text in words.lines]
+    small = [TextRow(SMALL, ((text, INK),)) for text in words.lines]
     return [
-        Line(LARGE, ((words.headline, INK), *change)),
-        Line(SMALL, ((words.error, FAINT),)),
+        TextRow(LARGE, ((words.headline, INK), *change)),
+        TextRow(SMALL, ((words.error, FAINT),)),
         *small,
     ]
 
 
-def draw_lines(lines: list[Line], left: float, bottom: float, scale: float) -> None:
+def draw_lines(lines: list[TextRow], left: float, bottom: float, scale: float) -> None:
     """Draw lines on a dark plate whose lower left corner is given [px]."""
     width = max(LEAST_WIDTH * scale, *(_width(line, scale) for line in lines))
     height = sum(_height(line) for line in lines) * scale
@@ -109,7 +109,7 @@ def draw_lines(lines: list[Line], left: float, bottom: float, scale: float) -> N
         _write(line, left + pad, y + 0.3 * line.size * scale, scale)
 
 
-def _write(line: Line, x: float, y: float, scale: float) -> None:
+def _write(line: TextRow, x: float, y: float, scale: float) -> None:
     blf.size(FONT, line.size * scale)
     for text, color in line.words:
         blf.color(FONT, *color)
@@ -118,13 +118,13 @@ def _write(line: Line, x: float, y: float, scale: float) -> None:
         x += blf.dimensions(FONT, text)[0] + line.size * scale
 
 
-def _width(line: Line, scale: float) -> float:
+def _width(line: TextRow, scale: float) -> float:
     blf.size(FONT, line.size * scale)
     gaps = (len(line.words) - 1) * line.size * scale
     return gaps + sum(blf.dimensions(FONT, text)[0] for text, _ in line.words)
 
 
-def _height(line: Line) -> float:
+def _height(line: TextRow) -> float:
     return ROW * max(1.0, line.size / SMALL * 0.92)
 
 

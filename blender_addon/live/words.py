@@ -14,7 +14,7 @@ LEAST_ZONE_CHANGE = 0.005
 BETTER, SAME, WORSE = -1, 0, 1
 
 
-class Words(NamedTuple):
+class ReadoutText(NamedTuple):
     """What the read-out says: a headline, how it changed, and lines below."""
 
     headline: str
@@ -24,14 +24,14 @@ class Words(NamedTuple):
     lines: tuple[str, ...]
 
 
-def words_of(reading: Reading) -> Words:
+def words_of(reading: Reading) -> ReadoutText:
     """Put a reading into words."""
     now, before = reading.glance, reading.before
     change, sense = change_of(now.entropy, before.entropy) if before else ("", SAME)
     seen = f"{now.coverage:.1%} of where objects are is seen{points(now, before)}"
     lines = (seen, *zone_lines(now, before))
     state = "at rest" if reading.rested else "draft while it moves"
-    return Words(
+    return ReadoutText(
         f"{now.entropy:.3f} nats",
         f"± {max(now.stderr, 1e-3):.3f}  {state}",
         change,

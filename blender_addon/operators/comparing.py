@@ -9,7 +9,7 @@ import bpy
 
 from .. import bridge, stale
 from ..engine import advice, pe
-from .job import JobOperator, Task
+from .job import JobOperator, SceneJob
 from .reports import tell
 
 LABEL_PX, COLUMN_PX = 190, 140
@@ -78,7 +78,7 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
             return show()
         return super().invoke(context, event)
 
-    def _task(self, context: bpy.types.Context) -> Task:
+    def _task(self, context: bpy.types.Context) -> SceneJob:
         depsgraph, studies, refused = context.evaluated_depsgraph_get(), {}, []
         for row in unscored(context.scene):
             try:
@@ -90,7 +90,7 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
             raise refused[0]
         for error in refused:
             tell(self, "WARNING", str(error))
-        return Task(CompareJob(studies), stale.fingerprint(context.scene, depsgraph))
+        return SceneJob(CompareJob(studies), stale.fingerprint(context.scene, depsgraph))
 
     def write(
         self, scene: bpy.types.Scene, outcome: dict[int, pe.Score], taken: bridge.Fingerprint
@@ -137,11 +137,11 @@ class PE_OT_show_comparison(bpy.types.Operator):
         self.layout.label(text=text, translate=False)
 
 
-Cell = tuple[str, bool] | None
+TableCell = tuple[str, bool] | None
 """Text of a cell and whether it is the best; None for a gap."""
 
 
-def draw_column(column: bpy.types.UILayout, cells: list[Cell], alignment: str) -> None:
+def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: str) -> None:
     """Draw a column of the table; a star's room is kept where there is none."""
     other = "BLANK1" if alignment == "RIGHT" else "NONE"
     for cell in cells:
@@ -178,9 +178,9 @@ def compared(
     return list(scores), advice.compare(scores)
 
 
-def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[list[Cell]]:
+def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[list[TableCell]]:
     """Return the table by columns, the first one that of the rows' names."""
-    columns: list[list[Cell]] = [[("", False)], *[[(name, False)] for name in names]]
+    columns: list[list[TableCell]] = [[("", False)], *[[(name, False)] for name in names]]
     for measure, title in TITLES.items():
         _add(columns, [(title, False)])
         group = "rig"
@@ -195,13 +195,13 @@ def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[l
     return columns
 
 
-def _add(columns: list[list[Cell]], cells: list[Cell]) -> None:
+def _add(columns: list[list[TableCell]], cells: list[TableCell]) -> None:
     """Put a row under the table; what is missing at its end is empty."""
     for k, column in enumerate(columns):
         column.append(cells[k] if k < len(cells) else ("", False))
 
 
-def _cell(row: advice.ComparedRow, k: int) -> Cell:
+def _cell(row: advice.ComparedRow, k: int) -> TableCell:
     """Return a figure with its difference to the first one, where that can be seen."""
     value, less = row.values[k], row.differences[k]
     if value is None:

@@ -13,7 +13,7 @@ from .known import known_score, remember
 from .reports import REFUSALS, refuse, tell
 
 
-class Task(NamedTuple):
+class SceneJob(NamedTuple):
     """A job, and what its scene was when it was read."""
 
     job: pe.Job
@@ -72,7 +72,7 @@ class JobOperator:
             more = job.step()
             if not more:
                 scene = bpy.data.scenes.get(job.scene_name)
-                return self._apply(scene, Task(job.job, self.taken))
+                return self._apply(scene, SceneJob(job.job, self.taken))
             job.show_soon(context)
             return {"PASS_THROUGH"}
         except REFUSALS as error:
@@ -85,16 +85,16 @@ class JobOperator:
         """Called by Blender when the window or the file goes: nothing is kept."""
         running.end(context)
 
-    def _task(self, context: bpy.types.Context) -> Task:
+    def _task(self, context: bpy.types.Context) -> SceneJob:
         """Read the scene, and what tells it from others, at one time."""
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
         vehicle = body.shared.read(scene, depsgraph).vehicle
         sensors = bridge.sensor_objects(scene)
         study = bridge.study_from_scene(scene, depsgraph, vehicle, sensors)
         taken = stale.fingerprint(scene, depsgraph, sensors)
-        return Task(self.job_of(scene, study, taken), taken)
+        return SceneJob(self.job_of(scene, study, taken), taken)
 
-    def _apply(self, scene: bpy.types.Scene | None, task: Task) -> set[str]:
+    def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> set[str]:
         """Write placements and result to the scene; undo takes both back in one step."""
         outcome = task.job.outcome
         if outcome is None:

@@ -13,7 +13,7 @@ from .. import bridge, changes
 from ..engine import pe
 from .reports import REFUSALS, refuse, tell
 
-Amount = tuple[float, float, float]
+AdviceAmount = tuple[float, float, float]
 NEAR_M = 0.5
 """A sensor this near to the vehicle's box goes with it when that is turned or moved."""
 
@@ -62,28 +62,28 @@ class PE_OT_mend(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def turn_vehicle(context: bpy.types.Context, _subject: str, amount: Amount) -> None:
+def turn_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
     """Turn it about the vertical through the origin, counter-clockwise [deg]."""
     _transform(context, Matrix.Rotation(math.radians(amount[0]), 4, "Z"))
 
 
-def move_vehicle(context: bpy.types.Context, _subject: str, amount: Amount) -> None:
+def move_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
     """Move it [m]."""
     _transform(context, Matrix.Translation(amount))
 
 
-def scale_vehicle(context: bpy.types.Context, _subject: str, amount: Amount) -> None:
+def scale_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
     """Scale it about the origin; sensors are as large as they are."""
     _transform(context, Matrix.Scale(amount[0], 4))
 
 
-def roll_sensor(context: bpy.types.Context, subject: str, amount: Amount) -> None:
+def roll_sensor(context: bpy.types.Context, subject: str, amount: AdviceAmount) -> None:
     """Turn a sensor about where it looks [deg]."""
     obj = _sensor(context, subject)
     obj.matrix_world = obj.matrix_world @ Matrix.Rotation(math.radians(amount[0]), 4, "X")
 
 
-def apply_scale(context: bpy.types.Context, subject: str, _amount: Amount) -> None:
+def apply_scale(context: bpy.types.Context, subject: str, _amount: AdviceAmount) -> None:
     """Give a sensor the scale 1, wherever its own comes from."""
     obj = _sensor(context, subject)
     place, rotation, _ = obj.matrix_world.decompose()
@@ -91,13 +91,13 @@ def apply_scale(context: bpy.types.Context, subject: str, _amount: Amount) -> No
     context.view_layer.update()
 
 
-def metric_units(context: bpy.types.Context, _subject: str, _amount: Amount) -> None:
+def metric_units(context: bpy.types.Context, _subject: str, _amount: AdviceAmount) -> None:
     """Have one unit be one metre; nothing is moved or scaled."""
     units = context.scene.unit_settings
     units.system, units.scale_length, units.length_unit = "METRIC", 1.0, "METERS"
 
 
-FIXES: dict[str, Callable[[bpy.types.Context, str, Amount], None]] = {
+FIXES: dict[str, Callable[[bpy.types.Context, str, AdviceAmount], None]] = {
     "turn_vehicle": turn_vehicle,
     "scale_vehicle": scale_vehicle,
     "move_vehicle": move_vehicle,

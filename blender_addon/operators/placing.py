@@ -15,7 +15,7 @@ from mathutils import Matrix, Vector
 from .. import bridge
 from ..choices import free_name
 from ..engine import kinds, pe
-from ..overlay.beams import Channels, Choice
+from ..overlay.beams import BeamChoice, ChannelMode
 from ..overlay.colors import VIEWPORT
 from ..overlay.frustums import ring_lines
 from ..overlay.kinds import drawing_of
@@ -28,7 +28,7 @@ from .pointing import MOST_M, Stance, ray_of, view_under
 from .preview import Preview
 from .surface import Spot, parts_of, spot_on_ray
 
-SHOWN = Choice(96, Channels.FEW)
+SHOWN = BeamChoice(96, ChannelMode.FEW)
 LENGTH_M, RING_M, ALOFT_M = 2.0, 0.12, 100.0
 STEM = (1.0, 1.0, 1.0, 0.8)
 IN_THE_AIR = replace(VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.0, 0.93, 0.55, 0.9))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .colors import VIEWPORT, with_alpha
-from .primitives import Label, Primitives, Shape
+from .primitives import LayerShape, Primitives, Tag
 
 if TYPE_CHECKING:
     from ..engine import advice, pe
@@ -20,7 +20,7 @@ SEES, HIDDEN = with_alpha(VIEWPORT.free, 0.9), with_alpha(VIEWPORT.stopped, 0.9)
 MARK = (1.0, 1.0, 1.0, 0.95)
 
 
-def asked_place(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> Shape:
+def asked_place(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> LayerShape:
     """Return a mark at a place, a line from who sees it, and one from whom the vehicle hides it."""
     center = np.array(place.center)
     told = {each.name: each for each in place.sensors}
@@ -33,7 +33,7 @@ def asked_place(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> Shape
     seeing = sum(each.m > 0.0 for each in place.sensors)
     text = "in the vehicle" if place.in_vehicle else f"seen by {seeing}, AP {place.ap:.2f}"
     top = (float(center[0]), float(center[1]), float(center[2]) + POST_M)
-    return Shape(through=Primitives.joined(lines), labels=(Label(text, top, MARK, strong=True),))
+    return LayerShape(through=Primitives.joined(lines), labels=(Tag(text, top, MARK, strong=True),))
 
 
 def _mark(center: np.ndarray) -> Primitives:

@@ -8,7 +8,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from .primitives import Primitives, Shape, Sheet
+from .primitives import GroundSheet, LayerShape, Primitives
 
 THIN_PX = 1.0
 EDGE_PX, EDGE = 2.0, (0.05, 0.05, 0.05, 0.35)
@@ -20,7 +20,7 @@ _shaders: dict[str, gpu.types.GPUShader] = {}
 class Batches:
     """What one shape became: triangles, lines, and a sheet."""
 
-    shape: Shape
+    shape: LayerShape
     lines: gpu.types.GPUBatch | None
     through: gpu.types.GPUBatch | None
     thin: gpu.types.GPUBatch | None
@@ -28,7 +28,7 @@ class Batches:
     sheet: gpu.types.GPUBatch | None
 
     @classmethod
-    def of(cls, shape: Shape) -> Batches:
+    def of(cls, shape: LayerShape) -> Batches:
         """Upload a shape."""
         wide = shader("POLYLINE_SMOOTH_COLOR")
         several = (shape.lines, shape.through, shape.thin)
@@ -88,7 +88,7 @@ def _batch(of: gpu.types.GPUShader, kind: str, primitives: Primitives) -> gpu.ty
     return batch_for_shader(of, kind, arrays)
 
 
-def _sheet(sheet: Sheet) -> gpu.types.GPUBatch:
+def _sheet(sheet: GroundSheet) -> gpu.types.GPUBatch:
     """Upload a sheet as triangles: a picture's colours are understood differently by versions."""
     points, colors, triangles = sheet.mesh
     arrays = {"pos": points, "color": colors}

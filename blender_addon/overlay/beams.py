@@ -27,7 +27,7 @@ FEWEST_AZIMUTHS = 8
 """A LiDAR with fewer has no channels to speak of: each beam has its own elevation."""
 
 
-class Channels(enum.StrEnum):
+class ChannelMode(enum.StrEnum):
     """Of which channels beams are shown."""
 
     FEW = "FEW"
@@ -37,11 +37,11 @@ class Channels(enum.StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class BeamChoice:
     """At most `budget` beams; of the `number`-th channel from below, or of every `number`-th."""
 
     budget: int
-    channels: Channels = Channels.ALL
+    channels: ChannelMode = ChannelMode.ALL
     number: int = 1
 
 
@@ -61,16 +61,16 @@ class Beams:
     share: float
 
 
-def shown_beams(found: Cast, choice: Choice) -> Beams:
+def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
     """Return at most `budget` beams of a cast, stopped ones in their true share.
 
     That share is the sensor's; of one channel, that channel's own.
     """
-    lidar, few = found.sensor.model, choice.channels == Channels.FEW
+    lidar, few = found.sensor.model, choice.channels == ChannelMode.FEW
     rows = np.flatnonzero(np.isin(found.rows, channels_of(lidar, choice)))
     stopped = found.stopped
     meant = stopped.reshape(len(found.rows), -1)
-    meant = meant[rows] if choice.channels == Channels.ONE else meant
+    meant = meant[rows] if choice.channels == ChannelMode.ONE else meant
     share = float(meant.mean()) if meant.size else 0.0
     budget = min(choice.budget, A_FEW * AZIMUTHS_OF_FEW) if few else choice.budget
     chosen = _fair(found, rows, share, budget)
@@ -78,16 +78,16 @@ def shown_beams(found: Cast, choice: Choice) -> Beams:
     return Beams(found.directions[chosen], found.ends[chosen], stopped[chosen], channel, share)
 
 
-def channels_of(lidar: pe.Lidar, choice: Choice) -> Ints:
+def channels_of(lidar: pe.Lidar, choice: BeamChoice) -> Ints:
     """(C,) numbers of the channels that are shown, ascending."""
     count = len(lidar.elevations)
-    if choice.channels == Channels.ALL or len(lidar.azimuth_steps) < FEWEST_AZIMUTHS:
+    if choice.channels == ChannelMode.ALL or len(lidar.azimuth_steps) < FEWEST_AZIMUTHS:
         return evenly(count, choice.budget)
     upwards = np.argsort(lidar.elevations, kind="stable")
     number = max(choice.number, 1)
-    if choice.channels == Channels.ONE:
+    if choice.channels == ChannelMode.ONE:
         return upwards[[min(number, count) - 1]]
-    if choice.channels == Channels.EVERY:
+    if choice.channels == ChannelMode.EVERY:
         return np.sort(upwards[::number][: choice.budget])
     return _a_few(lidar.elevations, min(A_FEW, choice.budget))
 

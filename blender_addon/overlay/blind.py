@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .colors import VIEWPORT, Palette, Rgba, with_alpha
-from .primitives import Label, Legend, Primitives, Shape, polyline
+from .primitives import ColorKey, LayerShape, Primitives, Tag, polyline
 
 if TYPE_CHECKING:
     from ..engine import sight
@@ -30,7 +30,7 @@ TICK_M = 0.35
 
 def blind_ground(
     found: sight.BlindGround, body: Box | None, height: float, palette: Palette = VIEWPORT
-) -> Shape:
+) -> LayerShape:
     """Return outline, hatching and measures, on the ground.
 
     `body` are the vehicle's bounds; without one there is nothing to measure from.
@@ -39,7 +39,7 @@ def blind_ground(
     hatching = hatch(found.outlines, HATCH_M)
     thin = Primitives.of(_flat(hatching), with_alpha(color, color[3] * HATCH_ALPHA))
     lines = [Primitives.of(polyline(_flat(smooth(line))), color) for line in found.outlines]
-    labels: list[Label] = []
+    labels: list[Tag] = []
     for side in SIDES if body is not None else ():
         measure = _measure(found, body, side, palette)
         if measure is not None:
@@ -47,8 +47,10 @@ def blind_ground(
             labels.append(measure[1])
     title = f"Blind to what is {height:g} m tall" if height else "Blind to what lies flat"
     text = f"{found.area:.0f} m² within {found.within:g} m"
-    legend = Legend(title, classes=((color, text),))
-    return Shape(lines=Primitives.joined(lines), thin=thin, labels=tuple(labels), legend=legend)
+    legend = ColorKey(title, classes=((color, text),))
+    return LayerShape(
+        lines=Primitives.joined(lines), thin=thin, labels=tuple(labels), legend=legend
+    )
 
 
 def smooth(line: Floats) -> Floats:
@@ -82,7 +84,7 @@ def hatch(outlines: Sequence[Floats], spacing_m: float) -> Floats:
 
 def _measure(
     found: sight.BlindGround, body: Box, side: str, palette: Palette
-) -> tuple[Primitives, Label] | None:
+) -> tuple[Primitives, Tag] | None:
     """A line from the body to where blind ground begins or ends, and the metres beside it."""
     spot, zone = found.nearest[side], found.zone[side]
     if spot is None or (zone is not None and 0.0 < zone < LEAST_M):
@@ -108,9 +110,9 @@ def _measured(end: Floats, axis: int, sign: int, distance: float, color: Rgba) -
     return Primitives.of([start, end, end - across, end + across], with_alpha(color, 0.7))
 
 
-def _label(place: Floats, text: str, color: Rgba) -> Label:
+def _label(place: Floats, text: str, color: Rgba) -> Tag:
     x, y, z = place.tolist()
-    return Label(text, (x, y, z), color)
+    return Tag(text, (x, y, z), color)
 
 
 def _flat(points: Floats) -> Floats:

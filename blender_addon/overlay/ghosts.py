@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .beams import Choice
+from .beams import BeamChoice
 from .colors import VIEWPORT, Palette, with_alpha
 from .frustums import ring_lines
 from .kinds import drawing_of
-from .primitives import Label, Legend, Primitives, Shape
+from .primitives import ColorKey, LayerShape, Primitives, Tag
 
 if TYPE_CHECKING:
     from ..engine import pe
@@ -27,7 +27,7 @@ GHOSTS = replace(VIEWPORT, reach=with_alpha(PALE, 0.55), words=with_alpha(PALE, 
 """Colours of another variant's reach."""
 
 
-def ghosts(others: Sequence[pe.Sensor], present: Sequence[pe.Sensor], name: str = "") -> Shape:
+def ghosts(others: Sequence[pe.Sensor], present: Sequence[pe.Sensor], name: str = "") -> LayerShape:
     """Return another variant's sensors, and lines to those of the same names that stand here.
 
     Parameters
@@ -41,9 +41,11 @@ def ghosts(others: Sequence[pe.Sensor], present: Sequence[pe.Sensor], name: str 
     lines = [_outline(sensor) for sensor in others]
     lines += [_link(sensor, here[sensor.name]) for sensor in others if sensor.name in here]
     color = with_alpha(PALE, LINK)
-    labels = tuple(Label(s.name, s.pose.position, color) for s in others if _apart(s, here))
-    legend = Legend("Other variant", classes=((color, name or "another one"),)) if others else None
-    return Shape(through=Primitives.joined(lines), labels=labels, legend=legend)
+    labels = tuple(Tag(s.name, s.pose.position, color) for s in others if _apart(s, here))
+    legend = (
+        ColorKey("Other variant", classes=((color, name or "another one"),)) if others else None
+    )
+    return LayerShape(through=Primitives.joined(lines), labels=labels, legend=legend)
 
 
 def _outline(sensor: pe.Sensor, palette: Palette = VIEWPORT) -> Primitives:
@@ -52,7 +54,7 @@ def _outline(sensor: pe.Sensor, palette: Palette = VIEWPORT) -> Primitives:
     if drawing.beams:
         drawn = ring_lines(sensor, RING_M, palette)
     else:
-        drawn = drawing.sketch(sensor, None, Choice(1)).lines(VIEW_M, palette)
+        drawn = drawing.sketch(sensor, None, BeamChoice(1)).lines(VIEW_M, palette)
     return Primitives.of(drawn.points, with_alpha(PALE, FAINT))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .colors import CIVIDIS, COUNTS, VIRIDIS, Rgba, Scale, on_scale
-from .primitives import Legend, Shape, Sheet
+from .primitives import ColorKey, GroundSheet, LayerShape
 
 if TYPE_CHECKING:
     from ..engine import pe, sight
@@ -75,7 +75,7 @@ def ground_map(
     *,
     faded: bool = True,
     where: str | None = None,
-) -> Shape:
+) -> LayerShape:
     """Return a ground map and its legend; transparent where the vehicle is.
 
     `faded`: towards the edges of what was looked at; `where` is what the legend says of heights.
@@ -85,16 +85,16 @@ def ground_map(
         known = seen.sensors >= 0
         rgb = np.array(COUNTS, np.float32)[np.clip(seen.sensors, 0, 3)]
         classes = tuple(((*c, 1.0), name) for c, name in zip(COUNTS, COUNT_NAMES, strict=True))
-        legend = Legend(f"Seen by, {where}", classes=classes)
+        legend = ColorKey(f"Seen by, {where}", classes=classes)
     else:
         kind = QUANTITIES[quantity]
         values = seen.entropy if quantity == ENTROPY else seen.coverage
         known = np.isfinite(values)
         rgb = kind.colors(np.where(known, values, kind.low))
-        legend = Legend(f"{kind.title}, {where}", kind.swatches, kind.ticks)
+        legend = ColorKey(f"{kind.title}, {where}", kind.swatches, kind.ticks)
     alpha = np.where(known, opacity, 0.0) * (_fading(seen) if faded else 1.0)
     image = np.concatenate([rgb, alpha[..., None].astype(np.float32)], axis=-1)
-    return Shape(sheet=_sheet(seen, image.transpose(1, 0, 2)), legend=legend)
+    return LayerShape(sheet=_sheet(seen, image.transpose(1, 0, 2)), legend=legend)
 
 
 def as_scored(found: pe.GroundMap, space: pe.PerceptionSpace, step: float) -> AsScored:
@@ -109,11 +109,11 @@ def as_scored(found: pe.GroundMap, space: pe.PerceptionSpace, step: float) -> As
     return AsScored(x, y, side, coarse.entropy, coarse.coverage, nobody)
 
 
-def _sheet(seen: sight.GroundSight | AsScored, image: NDArray[np.float32]) -> Sheet:
+def _sheet(seen: sight.GroundSight | AsScored, image: NDArray[np.float32]) -> GroundSheet:
     half = seen.step / 2.0
     low = (float(seen.x[0]) - half, float(seen.y[0]) - half)
     high = (float(seen.x[-1]) + half, float(seen.y[-1]) + half)
-    return Sheet(np.ascontiguousarray(image, np.float32), low, high).prepared()
+    return GroundSheet(np.ascontiguousarray(image, np.float32), low, high).prepared()
 
 
 def _fading(seen: sight.GroundSight | AsScored) -> Floats:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .casts import Cast
 from .colors import VIRIDIS, on_scale
-from .primitives import Legend, Primitives, Shape
+from .primitives import ColorKey, LayerShape, Primitives
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,11 +29,11 @@ LEAST, MOST = 1.0, 100.0
 """Ends of the scale, which is logarithmic [beams a dm2]."""
 
 
-def heat(casts: Sequence[Cast], triangles: Floats) -> Shape:
+def heat(casts: Sequence[Cast], triangles: Floats) -> LayerShape:
     """Tiles where sensors' beams end on triangles (F, 3, 3); colours by all their hits together."""
     hits = [each.stopped for each in casts]
     if not any(stopped.any() for stopped in hits):
-        return Shape()
+        return LayerShape()
     pairs = list(zip(casts, hits, strict=True))
     points = np.concatenate([each.points[stopped] for each, stopped in pairs])
     looks = np.concatenate([each.directions[stopped] for each, stopped in pairs])
@@ -45,10 +45,12 @@ def heat(casts: Sequence[Cast], triangles: Floats) -> Shape:
     colors = np.concatenate(
         [on_scale(shares, VIRIDIS), np.full((len(shares), 1), ALPHA, np.float32)], axis=1
     )
-    return Shape(faces=Primitives.of(tiles.corners(), np.repeat(colors, 6, axis=0)), legend=LEGEND)
+    return LayerShape(
+        faces=Primitives.of(tiles.corners(), np.repeat(colors, 6, axis=0)), legend=LEGEND
+    )
 
 
-LEGEND = Legend(
+LEGEND = ColorKey(
     "Stopped beams per dm²",
     scale=tuple((*map(float, c), 1.0) for c in on_scale(np.linspace(0.0, 1.0, 13), VIRIDIS)),
     ticks=("1", "10", "100"),
@@ -68,7 +70,7 @@ class _Tiles:
         axis = np.abs(normals).argmax(axis=1)
         side = np.where(np.arange(3) == axis[:, None], DEPTH_M, TILE_M)
         place = np.column_stack([2 * axis, np.floor(points / side + ASIDE)]).astype(np.int64)
-        cells, cell = _Cells.of(place)
+        cells, cell = _HeatSquares.among(place)
         count = np.bincount(cell)
         middle = np.stack([np.bincount(cell, points[:, i]) for i in range(3)], axis=1)
         normal = np.stack([np.bincount(cell, normals[:, i]) for i in range(3)], axis=1)
@@ -94,14 +96,14 @@ class _Tiles:
 
 
 @dataclass(frozen=True, slots=True)
-class _Cells:
+class _HeatSquares:
     """Cells that hold something, by ascending `number` (T,); `steps` (4,) to the next one."""
 
     number: Ints
     steps: Ints
 
     @classmethod
-    def of(cls, corners: Ints) -> tuple[_Cells, Ints]:
+    def among(cls, corners: Ints) -> tuple[_HeatSquares, Ints]:
         """Return the cells that occur among (N, 4), and (N,) which of them each is."""
         low = corners.min(axis=0) - 1
         sides = corners.max(axis=0) - low + 2

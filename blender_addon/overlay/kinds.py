@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import frustums, rays
-from .beams import Beams, Choice, shown_beams
+from .beams import BeamChoice, Beams, shown_beams
 from .casts import cast
 from .colors import VIEWPORT, Palette, Rgba
 from .primitives import Primitives
@@ -138,14 +138,14 @@ class Drawing:
     returns the outline of the ground that a sensor looks at, as far as some metres.
     """
 
-    sketch: Callable[[pe.Sensor, pe.Vehicle | None, Choice], Sketch]
+    sketch: Callable[[pe.Sensor, pe.Vehicle | None, BeamChoice], Sketch]
     color: Callable[[Palette], Rgba]
     look: Look
     beams: bool = False
     footprint: Callable[[pe.Sensor, float], Floats] | None = None
 
 
-def _lidar(sensor: pe.Sensor, vehicle: pe.Vehicle | None, choice: Choice) -> BeamSketch:
+def _lidar(sensor: pe.Sensor, vehicle: pe.Vehicle | None, choice: BeamChoice) -> BeamSketch:
     return BeamSketch(sensor, shown_beams(cast(sensor, vehicle), choice))
 
 

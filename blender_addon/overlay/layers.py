@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from ..engine import pe
 from . import asked, blind, frustums, ghosts, ground, heat, rays, reach
-from .beams import Channels, Choice, channels_of, shown_beams
+from .beams import BeamChoice, ChannelMode, channels_of, shown_beams
 from .colors import VIEWPORT, VIRIDIS, Rgba, on_scale, sensor_color, with_alpha
 from .kinds import DRAWINGS, beam_budget, drawing_of
-from .primitives import Label, Legend, Primitives, Shape
+from .primitives import ColorKey, LayerShape, Primitives, Tag
 from .tools import Tools
-from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, SELECTED, Mounted, View, Wish
+from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, SELECTED, PictureWish, SceneSensor, ViewSettings
 
 WHOLE_RIG = ""
 """Under this name stands what belongs to no single sensor."""
@@ -44,18 +44,18 @@ class Layer:
 
     name: str
     label: str
-    keys: Callable[[Wish], dict[str, Hashable]]
-    shape: Callable[[Wish, Tools, str], Shape]
+    keys: Callable[[PictureWish], dict[str, Hashable]]
+    shape: Callable[[PictureWish, Tools, str], LayerShape]
     line_px: float = 1.2
     rough: bool = False
     on_ground: bool = False
     edged: bool = False
 
 
-def _of_rig(*settings: str, prior: bool = True) -> Callable[[Wish], dict[str, Hashable]]:
+def _of_rig(*settings: str, prior: bool = True) -> Callable[[PictureWish], dict[str, Hashable]]:
     """Keys of a layer that shows the whole rig, and depends on these settings."""
 
-    def keys(wish: Wish) -> dict[str, Hashable]:
+    def keys(wish: PictureWish) -> dict[str, Hashable]:
         if not wish.counted or (prior and wish.prior is None):
             return {}
         who = tuple(each.key for each in wish.counted)
@@ -65,23 +65,23 @@ def _of_rig(*settings: str, prior: bool = True) -> Callable[[Wish], dict[str, Ha
     return keys
 
 
-def _rig(wish: Wish) -> pe.Rig:
+def _rig(wish: PictureWish) -> pe.Rig:
     return pe.Rig([each.sensor for each in wish.counted])
 
 
-def _ground_keys(wish: Wish) -> dict[str, Hashable]:
+def _ground_keys(wish: PictureWish) -> dict[str, Hashable]:
     keys = _of_rig("ground_quantity", "ground_height", "ground_opacity")(wish)
     return {name: (key, id(_as_scored(wish))) for name, key in keys.items()}
 
 
-def _as_scored(wish: Wish) -> pe.GroundMap | None:
+def _as_scored(wish: PictureWish) -> pe.GroundMap | None:
     """The score's own map, where that is what is to be shown."""
     view = wish.view
     averaged = view.ground_height is None and view.ground_quantity != ground.SENSORS
     return wish.scored if averaged else None
 
 
-def _ground(wish: Wish, tools: Tools, _name: str) -> Shape:
+def _ground(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
     view = wish.view
     if _as_scored(wish) is not None:
         seen = ground.as_scored(wish.scored, wish.space, FINE_M)
@@ -100,7 +100,7 @@ def _step(space: pe.PerceptionSpace, *, moving: bool) -> float:
     return max(least, math.sqrt((x1 - x0) * (y1 - y0) / most))
 
 
-def _blind(wish: Wish, tools: Tools, _name: str) -> Shape:
+def _blind(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
     step = 0.2 if wish.moving else 0.1
     height = wish.view.blind_height
     found = tools.sight(wish).blind(
@@ -110,13 +110,13 @@ def _blind(wish: Wish, tools: Tools, _name: str) -> Shape:
     return blind.blind_ground(found, body, height)
 
 
-def _reach_keys(wish: Wish) -> dict[str, Hashable]:
+def _reach_keys(wish: PictureWish) -> dict[str, Hashable]:
     keys = _of_rig("reach_class", "reach_of")(wish)
     chosen = tuple(each.sensor.name for each in wish.counted if each.selected)
     return {name: (key, chosen) for name, key in keys.items()}
 
 
-def _reach(wish: Wish, tools: Tools, _name: str) -> Shape:
+def _reach(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
     view = wish.view
     known = wish.prior.class_names
     of = view.reach_class if view.reach_class in known else known[0]
@@ -129,22 +129,24 @@ def _reach(wish: Wish, tools: Tools, _name: str) -> Shape:
     everyone = view.reach_of == ALL
     named = {e.sensor.name: e.number for e in wish.counted if everyone or e.selected}
     alone = reach.reach_of_sensors(found, named)
-    legend = Legend(whole.legend.title, classes=whole.legend.classes + alone.legend.classes)
-    return Shape(Primitives.joined([alone.lines, whole.lines]), labels=whole.labels, legend=legend)
+    legend = ColorKey(whole.legend.title, classes=whole.legend.classes + alone.legend.classes)
+    return LayerShape(
+        Primitives.joined([alone.lines, whole.lines]), labels=whole.labels, legend=legend
+    )
 
 
-def _beam_keys(wish: Wish) -> dict[str, Hashable]:
+def _beam_keys(wish: PictureWish) -> dict[str, Hashable]:
     view, shown = wish.view, wish.of_beams(WITH_BEAMS)
     budget = beam_budget([each.sensor for each in shown], view.beam_limit)
     chosen = view.channels, view.channel, view.beam_colors, view.rings, view.beam_length, budget
     return {each.sensor.name: (each.key, wish.body_key, chosen) for each in shown}
 
 
-def _beams(wish: Wish, tools: Tools, name: str) -> Shape:
+def _beams(wish: PictureWish, tools: Tools, name: str) -> LayerShape:
     view, shown = wish.view, wish.of_beams(WITH_BEAMS)
     of = next(each for each in shown if each.sensor.name == name)
     budget = beam_budget([each.sensor for each in shown], view.beam_limit)
-    choice = Choice(budget, Channels(view.channels), view.channel)
+    choice = BeamChoice(budget, ChannelMode(view.channels), view.channel)
     found = tools.cast(wish, of)
     beams = shown_beams(found, choice)
     colors = _beam_colors(of, view, beams.channel, beams.stopped)
@@ -158,11 +160,11 @@ def _beams(wish: Wish, tools: Tools, name: str) -> Shape:
     stopped = rays.stopped_lines(of.sensor, beams, colors)
     ghosts = Primitives.of(stopped.points, stopped.colors * [1.0, 1.0, 1.0, GHOST])
     lines = Primitives.joined([*parts, stopped])
-    return Shape(lines=lines, through=ghosts, legend=_beam_legend(view))
+    return LayerShape(lines=lines, through=ghosts, legend=_beam_legend(view))
 
 
 def _beam_colors(
-    of: Mounted, view: View, channel: NDArray[np.int64], stopped: NDArray[np.bool_]
+    of: SceneSensor, view: ViewSettings, channel: NDArray[np.int64], stopped: NDArray[np.bool_]
 ) -> NDArray[np.float32]:
     """(N, 4) colours of beams of these channels."""
     free, hit = (np.float32(c) for c in (VIEWPORT.free, VIEWPORT.stopped))
@@ -175,38 +177,38 @@ def _beam_colors(
     return colors
 
 
-def _beam_legend(view: View) -> Legend | None:
+def _beam_legend(view: ViewSettings) -> ColorKey | None:
     if view.beam_colors == BY_SENSOR:
         return None  # the labels have the colours
     if view.beam_colors == BY_CHANNEL:
         row = on_scale(np.linspace(0.0, 1.0, ground.SWATCHES), VIRIDIS)
         swatches = tuple((*map(float, color), 1.0) for color in row)
-        return Legend("Channel", swatches, ("lowest", "highest"))
+        return ColorKey("Channel", swatches, ("lowest", "highest"))
     solid = tuple(with_alpha(c, 1.0) for c in (VIEWPORT.free, VIEWPORT.stopped))
     names = ("free", "stopped by the vehicle")
-    return Legend("Beams", classes=tuple(zip(solid, names, strict=True)))
+    return ColorKey("Beams", classes=tuple(zip(solid, names, strict=True)))
 
 
-def _heat_keys(wish: Wish) -> dict[str, Hashable]:
+def _heat_keys(wish: PictureWish) -> dict[str, Hashable]:
     who = tuple(each.key for each in wish.of_beams(WITH_BEAMS))
     return {WHOLE_RIG: (who, wish.body_key)} if who and wish.vehicle is not None else {}
 
 
-def _heat(wish: Wish, tools: Tools, _name: str) -> Shape:
+def _heat(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
     found = [tools.cast(wish, each) for each in wish.of_beams(WITH_BEAMS)]
     return heat.heat(found, tools.body(wish).triangles)
 
 
-def _view_keys(wish: Wish) -> dict[str, Hashable]:
+def _view_keys(wish: PictureWish) -> dict[str, Hashable]:
     view = wish.view
     shown = [e for e in wish.sensors if e.drawn and e.sensor.kind not in WITH_BEAMS]
     return {e.sensor.name: (e.key, e.selected, view.footprints, view.view_range) for e in shown}
 
 
-def _views(wish: Wish, _tools: Tools, name: str) -> Shape:
+def _views(wish: PictureWish, _tools: Tools, name: str) -> LayerShape:
     of = next(each for each in wish.sensors if each.sensor.name == name)
     drawing = drawing_of(of.sensor.kind)
-    sketch = drawing.sketch(of.sensor, None, Choice(1))
+    sketch = drawing.sketch(of.sensor, None, BeamChoice(1))
     lines, faces = [sketch.lines(FRUSTUM_M, VIEWPORT)], [sketch.faces(FRUSTUM_M, VIEWPORT)]
     if drawing.footprint is not None and wish.view.footprints:
         outline = drawing.footprint(of.sensor, wish.view.view_range)
@@ -214,22 +216,22 @@ def _views(wish: Wish, _tools: Tools, name: str) -> Shape:
         faces.append(frustums.footprint_faces(outline, VIEWPORT.camera_face))
     shown = Primitives.joined(lines)
     shown.colors[:, 3] *= 1.0 if of.selected else NOT_SELECTED
-    return Shape(shown, Primitives.joined(faces))
+    return LayerShape(shown, Primitives.joined(faces))
 
 
-def _label_keys(wish: Wish) -> dict[str, Hashable]:
+def _label_keys(wish: PictureWish) -> dict[str, Hashable]:
     colored = wish.view.beam_colors, wish.view.reach_of
     return {e.sensor.name: (e.key, e.selected, colored) for e in wish.sensors if e.drawn}
 
 
-def _label(wish: Wish, _tools: Tools, name: str) -> Shape:
+def _label(wish: PictureWish, _tools: Tools, name: str) -> LayerShape:
     of = next(each for each in wish.sensors if each.sensor.name == name)
     by_sensor = wish.view.beam_colors == BY_SENSOR or wish.view.reach_of in (SELECTED, ALL)
     color: Rgba = (*sensor_color(of.number), 1.0) if by_sensor else VIEWPORT.words
-    return Shape(labels=(Label(name, of.sensor.pose.position, color, strong=of.selected),))
+    return LayerShape(labels=(Tag(name, of.sensor.pose.position, color, strong=of.selected),))
 
 
-def _ghost_keys(wish: Wish) -> dict[str, Hashable]:
+def _ghost_keys(wish: PictureWish) -> dict[str, Hashable]:
     if not wish.ghosts:
         return {}
     others = tuple((s.name, id(s.model), s.pose, s.group) for s in wish.ghosts)
@@ -239,7 +241,7 @@ def _ghost_keys(wish: Wish) -> dict[str, Hashable]:
     return {WHOLE_RIG: (others, here, wish.ghosts_name, reached)}
 
 
-def _ghosts(wish: Wish, tools: Tools, _name: str) -> Shape:
+def _ghosts(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
     shape = ghosts.ghosts(wish.ghosts, [e.sensor for e in wish.counted], wish.ghosts_name)
     if "reach" not in wish.view.layers or wish.prior is None:
         return shape
@@ -249,7 +251,7 @@ def _ghosts(wish: Wish, tools: Tools, _name: str) -> Shape:
     return replace(shape, lines=line.lines)
 
 
-def _place_keys(wish: Wish) -> dict[str, Hashable]:
+def _place_keys(wish: PictureWish) -> dict[str, Hashable]:
     place = wish.place
     if place is None:
         return {}
@@ -258,7 +260,7 @@ def _place_keys(wish: Wish) -> dict[str, Hashable]:
     return {WHOLE_RIG: (place.center, place.ap, told, here)}
 
 
-def _place(wish: Wish, _tools: Tools, _name: str) -> Shape:
+def _place(wish: PictureWish, _tools: Tools, _name: str) -> LayerShape:
     return asked.asked_place(wish.place, [each.sensor for each in wish.counted])
 
 

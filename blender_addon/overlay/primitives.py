@@ -45,7 +45,7 @@ class Primitives:
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class GroundSheet:
     """A picture that lies on the ground: `image` (NY, NX, 4) sRGB with alpha, row 0 at low y.
 
     Its corners are `low` and `high` (x, y) [m].
@@ -55,7 +55,7 @@ class Sheet:
     low: tuple[float, float]
     high: tuple[float, float]
 
-    def prepared(self) -> Sheet:
+    def prepared(self) -> GroundSheet:
         """Return the sheet with its mesh worked out: not first while it is drawn."""
         _ = self.mesh
         return self
@@ -80,7 +80,7 @@ class Sheet:
 
 
 @dataclass(frozen=True, slots=True)
-class Label:
+class Tag:
     """A word or a figure at a place (x, y, z) [m]; `strong` ones are larger."""
 
     text: str
@@ -90,7 +90,7 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
-class Legend:
+class ColorKey:
     """What colours say: a title, and a scale or classes.
 
     `scale` is a row of colours from the low end to the high one with `ticks` evenly below it;
@@ -104,7 +104,7 @@ class Legend:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shape:
+class LayerShape:
     """What is drawn of one sensor or a whole rig in one layer.
 
     `lines` and `faces` are hidden by what is nearer, `through` are lines that nothing hides;
@@ -115,9 +115,9 @@ class Shape:
     faces: Primitives = field(default_factory=Primitives.empty)
     through: Primitives = field(default_factory=Primitives.empty)
     thin: Primitives = field(default_factory=Primitives.empty)
-    sheet: Sheet | None = None
-    labels: tuple[Label, ...] = ()
-    legend: Legend | None = None
+    sheet: GroundSheet | None = None
+    labels: tuple[Tag, ...] = ()
+    legend: ColorKey | None = None
 
 
 def polyline(points: Floats) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .colors import VIEWPORT, Palette, Rgba, sensor_color, with_alpha
-from .primitives import Label, Legend, Primitives, Shape, polyline
+from .primitives import ColorKey, LayerShape, Primitives, Tag, polyline
 
 if TYPE_CHECKING:
     from ..engine import pe, sight
@@ -27,27 +27,27 @@ AT_LEAST_M = 0.5
 FAINT = 0.25
 
 
-def reach_of_rig(found: sight.Reach, palette: Palette = VIEWPORT, name: str = "") -> Shape:
+def reach_of_rig(found: sight.Reach, palette: Palette = VIEWPORT, name: str = "") -> LayerShape:
     """Return the rig's reach with metres at some bearings; `name` says which rig, of several."""
     color = palette.reach
     title = f"{found.class_name.capitalize()} found, AP ≥ {AP:g}"
-    legend = Legend(title, classes=((color, name or "rig"),))
-    return Shape(
+    legend = ColorKey(title, classes=((color, name or "rig"),))
+    return LayerShape(
         lines=reach_lines(found, found.distance, color),
         labels=tuple(_figures(found, palette.words)),
         legend=legend,
     )
 
 
-def reach_of_sensors(found: sight.Reach, numbers: dict[str, int]) -> Shape:
+def reach_of_sensors(found: sight.Reach, numbers: dict[str, int]) -> LayerShape:
     """Return the reach of sensors one by one, in their colours; `numbers` are their places."""
     lines, classes = [], []
     for name, number in numbers.items():
         color = (*sensor_color(number), 0.75)
         lines.append(reach_lines(found, found.per_sensor[name], color))
         classes.append((color, name))
-    legend = Legend(f"{found.class_name.capitalize()} found, AP ≥ {AP:g}", classes=tuple(classes))
-    return Shape(lines=Primitives.joined(lines), legend=legend)
+    legend = ColorKey(f"{found.class_name.capitalize()} found, AP ≥ {AP:g}", classes=tuple(classes))
+    return LayerShape(lines=Primitives.joined(lines), legend=legend)
 
 
 def reach_lines(found: sight.Reach, distance: Floats, color: Rgba) -> Primitives:
@@ -66,7 +66,7 @@ def reach_lines(found: sight.Reach, distance: Floats, color: Rgba) -> Primitives
 
 def rig_reach(
     look: sight.Sight, rig: pe.Rig, class_name: str, palette: Palette = VIEWPORT, name: str = ""
-) -> Shape:
+) -> LayerShape:
     """Work out and return any rig's reach for a class: another variant's beside the scene's."""
     return reach_of_rig(look.reach(rig, class_name, ap=AP, bearings=BEARINGS), palette, name)
 
@@ -80,7 +80,7 @@ def _at_least(found: sight.Reach, distance: Floats) -> NDArray[np.bool_]:
     return distance >= found.limit - AT_LEAST_M
 
 
-def _figures(found: sight.Reach, color: Rgba) -> Iterable[Label]:
+def _figures(found: sight.Reach, color: Rgba) -> Iterable[Tag]:
     step = max(1, len(found.bearings) // FIGURES)
     cut = _at_least(found, found.distance)
     distance = np.where(cut, found.distance, rounded(found.distance))
@@ -89,4 +89,4 @@ def _figures(found: sight.Reach, color: Rgba) -> Iterable[Label]:
         if metres >= LEAST_FIGURE_M:
             text = f"{'≥ ' if cut[at] else ''}{metres:.0f} m"
             place = (metres * float(np.cos(angle)), metres * float(np.sin(angle)), 0.0)
-            yield Label(text, place, with_alpha(color, 1.0))
+            yield Tag(text, place, with_alpha(color, 1.0))

@@ -13,7 +13,7 @@ from .. import asking, body, bridge, roster
 from ..engine import pe
 from ..live import latest
 from .layers import LAYERS
-from .wish import AVERAGE, Mounted, View, Wish
+from .wish import AVERAGE, PictureWish, SceneSensor, ViewSettings
 
 LEAST_LENGTH_M = 0.1
 HEAVY_S = 0.05
@@ -29,7 +29,7 @@ class Judged(NamedTuple):
     key: Hashable
 
 
-class Reader:
+class SceneReader:
     """Remembers what is dear to read, by plain keys; never a Blender object."""
 
     def __init__(self) -> None:
@@ -43,14 +43,14 @@ class Reader:
 
     def wish(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool = False
-    ) -> Wish:
+    ) -> PictureWish:
         """Return what is to be shown of a scene."""
         sensors = _mounted(scene, depsgraph)
         vehicle, body_key = self._vehicle(scene, depsgraph, moving) if sensors else body.NOTHING
         judged = self._judged_by(scene)
         others, name = _ghosts(scene)
         answer = asking.answer(scene)
-        return Wish(
+        return PictureWish(
             *(sensors, vehicle, body_key, judged.prior, judged.key, view_of(scene), moving),
             scored=_scored(scene, sensors, judged.space),
             space=judged.space,
@@ -87,7 +87,7 @@ class Reader:
         return found
 
 
-def view_of(scene: bpy.types.Scene) -> View:
+def view_of(scene: bpy.types.Scene) -> ViewSettings:
     """Return the settings of what is shown, as plain values."""
     settings = scene.perception_entropy
     view = settings.view
@@ -95,7 +95,7 @@ def view_of(scene: bpy.types.Scene) -> View:
     layers = (each.name for each in LAYERS if on and getattr(view, f"show_{each.name}"))
     same = ("ground_quantity", "ground_opacity", "reach_class", "reach_of", "beams_of", "channels")
     same += ("beam_colors", "rings", "footprints", "view_range")
-    return View(
+    return ViewSettings(
         layers=frozenset(layers),
         ground_height=_height(view.ground_height),
         blind_height=_height(view.blind_height) or 0.0,
@@ -106,7 +106,7 @@ def view_of(scene: bpy.types.Scene) -> View:
     )
 
 
-def _mounted(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[Mounted, ...]:
+def _mounted(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[SceneSensor, ...]:
     """Sensors without those that are not possible; a score says what is wrong there."""
     layer, found = depsgraph.view_layer, []
     active = layer.objects.active
@@ -115,12 +115,12 @@ def _mounted(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[Mo
             sensor = bridge.sensor_from_object(obj, depsgraph)
             selected = obj == active or obj.select_get(view_layer=layer)
             drawn, counted = obj.perception_entropy.show, obj.visible_get(view_layer=layer)
-            found.append(Mounted(sensor, number, selected, drawn, counted))
+            found.append(SceneSensor(sensor, number, selected, drawn, counted))
     return tuple(found)
 
 
 def _scored(
-    scene: bpy.types.Scene, sensors: tuple[Mounted, ...], space: pe.PerceptionSpace | None
+    scene: bpy.types.Scene, sensors: tuple[SceneSensor, ...], space: pe.PerceptionSpace | None
 ) -> pe.GroundMap | None:
     """The last score's ground map, if the scene is not known to be another one since."""
     found = latest.scored(scene.name)

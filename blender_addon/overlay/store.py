@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass
 
-from .primitives import Shape
+from .primitives import LayerShape
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Item:
+class ShownLayer:
     """A shape, and what it was made from; `rough` while something moves."""
 
     key: Hashable
-    shape: Shape
+    shape: LayerShape
     rough: bool
 
 
@@ -21,13 +21,13 @@ class Store:
     """Shapes that are ready to be drawn."""
 
     def __init__(self) -> None:
-        self._items: dict[tuple[str, str], dict[str, Item]] = {}
+        self._items: dict[tuple[str, str], dict[str, ShownLayer]] = {}
 
-    def items(self, scene: str, layer: str) -> Mapping[str, Item]:
+    def items(self, scene: str, layer: str) -> Mapping[str, ShownLayer]:
         """Return what a layer shows in a scene, by the sensor's name."""
         return self._items.get((scene, layer), {})
 
-    def put(self, scene: str, layer: str, items: Mapping[str, Item]) -> None:
+    def put(self, scene: str, layer: str, items: Mapping[str, ShownLayer]) -> None:
         """Show these in a layer, and nothing else."""
         self._items[scene, layer] = dict(items)
 
@@ -39,7 +39,7 @@ class Store:
         """Show nothing at all."""
         self._items = {}
 
-    def layers(self, scene: str) -> Iterator[tuple[str, Mapping[str, Item]]]:
+    def layers(self, scene: str) -> Iterator[tuple[str, Mapping[str, ShownLayer]]]:
         """Yield layers and what they show in a scene."""
         yield from ((layer, items) for (of, layer), items in self._items.items() if of == scene)
 

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from ..engine import geometry, pe, sight
 from . import casts
 from .casts import Cast
-from .wish import Mounted, Wish
+from .wish import PictureWish, SceneSensor
 
 T = TypeVar("T")
 
@@ -24,13 +24,13 @@ class Tools:
     def __init__(self) -> None:
         self._kept: dict[str, dict[Hashable, Any]] = {}
 
-    def cast(self, wish: Wish, of: Mounted) -> Cast:
+    def cast(self, wish: PictureWish, of: SceneSensor) -> Cast:
         """Return where the beams of a LiDAR end; a few of them while something moves."""
         most = casts.A_DRAFT if wish.moving else casts.MOST
         key = of.key, wish.body_key, most
         return self._keep("casts", key, lambda: casts.cast(of.sensor, self.body(wish), most))
 
-    def body(self, wish: Wish) -> pe.Vehicle | None:
+    def body(self, wish: PictureWish) -> pe.Vehicle | None:
         """Return the vehicle, simplified where it has very many triangles."""
         vehicle = wish.vehicle
         if vehicle is None or len(vehicle.triangles) <= MOST_TRIANGLES:
@@ -39,12 +39,12 @@ class Tools:
             "body", wish.body_key, lambda: geometry.simplified(vehicle, MOST_TRIANGLES)[0]
         )
 
-    def sight(self, wish: Wish) -> sight.Sight:
+    def sight(self, wish: PictureWish) -> sight.Sight:
         """Return what tells what rigs see."""
         key = wish.body_key, wish.prior_key
         return self._keep("sight", key, lambda: self._sight(wish))
 
-    def _sight(self, wish: Wish) -> sight.Sight:
+    def _sight(self, wish: PictureWish) -> sight.Sight:
         return sight.Sight(wish.space, wish.prior, self.body(wish), model=wish.model)
 
     def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:

@@ -16,14 +16,14 @@ from bpy.app.handlers import persistent
 from .. import changes, roster, worker
 from ..engine import pe
 from .layers import LAYERS, Layer
-from .reading import Reader
-from .store import Item, shown
+from .reading import SceneReader
+from .store import ShownLayer, shown
 from .tools import Tools
-from .wish import Wish
+from .wish import PictureWish
 
 SOON_S = 0.01
 
-_reader = Reader()
+_reader = SceneReader()
 _tools = Tools()
 _asked: dict[tuple[str, str], Hashable] = {}
 """What was asked for last in each scene and layer: nothing is asked for twice."""
@@ -105,7 +105,7 @@ def _scenes() -> Iterator[tuple[bpy.types.Scene, bpy.types.Depsgraph]]:
         yield bpy.context.scene, bpy.context.evaluated_depsgraph_get()
 
 
-def _ask(scene: str, layer: Layer, wish: Wish) -> None:
+def _ask(scene: str, layer: Layer, wish: PictureWish) -> None:
     """Have one layer worked out, if it is not what it should be."""
     keys = layer.keys(wish) if layer.name in wish.view.layers else {}
     if not keys:
@@ -128,28 +128,28 @@ def _ask(scene: str, layer: Layer, wish: Wish) -> None:
     )
 
 
-def _enough(item: Item | None, key: Hashable, rough: bool) -> Item | None:
+def _enough(item: ShownLayer | None, key: Hashable, rough: bool) -> ShownLayer | None:
     """Return what is shown already, if it will do."""
     return item if item is not None and item.key == key and (rough or not item.rough) else None
 
 
 def _worked_out(
     layer: Layer,
-    wish: Wish,
+    wish: PictureWish,
     keys: Mapping[str, Hashable],
-    have: Mapping[str, Item | None],
+    have: Mapping[str, ShownLayer | None],
     tools: Tools,
-) -> dict[str, Item]:
+) -> dict[str, ShownLayer]:
     """Work on the thread: shapes by name; those that will do stay the same objects."""
     rough = wish.moving
     return {
-        name: have[name] or Item(key, layer.shape(wish, tools, name), rough)
+        name: have[name] or ShownLayer(key, layer.shape(wish, tools, name), rough)
         for name, key in keys.items()
     }
 
 
-def _delivery(scene: str, layer: str) -> Callable[[dict[str, Item]], None]:
-    def deliver(items: dict[str, Item]) -> None:
+def _delivery(scene: str, layer: str) -> Callable[[dict[str, ShownLayer]], None]:
+    def deliver(items: dict[str, ShownLayer]) -> None:
         shown.put(scene, layer, items)
         tag_redraw()
 

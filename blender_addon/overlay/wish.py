@@ -6,7 +6,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .beams import Channels
+from .beams import ChannelMode
 from .ground import SENSORS
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class ViewSettings:
     """Settings of what is shown, by the names that the scene has them under."""
 
     layers: frozenset[str] = frozenset()
@@ -29,7 +29,7 @@ class View:
     reach_class: str = "pedestrian"
     reach_of: str = RIG
     beams_of: str = ALL
-    channels: str = Channels.FEW
+    channels: str = ChannelMode.FEW
     channel: int = 1
     beam_colors: str = BY_STATE
     rings: bool = True
@@ -40,7 +40,7 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
-class Mounted:
+class SceneSensor:
     """A sensor of the scene, and what the scene says of it.
 
     `number` is its place among all of them; `drawn` whether its own picture is wanted, `counted`
@@ -61,7 +61,7 @@ class Mounted:
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class PictureWish:
     """A scene, as far as what is drawn depends on it.
 
     `body_key` tells vehicles from others, `prior_key` priors, spaces and AP curves; `moving`: a
@@ -69,12 +69,12 @@ class Wish:
     of all voxels, if the scene still is as it was then.
     """
 
-    sensors: tuple[Mounted, ...]
+    sensors: tuple[SceneSensor, ...]
     vehicle: pe.Vehicle | None
     body_key: Hashable
     prior: pe.Prior | None
     prior_key: Hashable
-    view: View
+    view: ViewSettings
     moving: bool = False
     scored: pe.GroundMap | None = None
     space: pe.PerceptionSpace | None = None
@@ -84,11 +84,11 @@ class Wish:
     place: advice.AskedPlace | None = None
 
     @property
-    def counted(self) -> tuple[Mounted, ...]:
+    def counted(self) -> tuple[SceneSensor, ...]:
         """Those that are scored."""
         return tuple(each for each in self.sensors if each.counted)
 
-    def of_beams(self, kinds: frozenset[str]) -> tuple[Mounted, ...]:
+    def of_beams(self, kinds: frozenset[str]) -> tuple[SceneSensor, ...]:
         """Return those of some kinds whose beams are wanted."""
         everyone = self.view.beams_of == ALL
         wanted = (each for each in self.sensors if each.drawn and each.sensor.kind in kinds)

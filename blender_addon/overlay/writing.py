@@ -12,7 +12,7 @@ from gpu_extras.batch import batch_for_shader
 
 from .batches import shader
 from .colors import Rgba
-from .primitives import Label, Legend
+from .primitives import ColorKey, Tag
 
 FONT = 0
 SIZE, STRONG_SIZE = 11.0, 12.5
@@ -27,7 +27,7 @@ PLATE: Rgba = (0.10, 0.10, 0.10, 0.78)
 LABEL_PLATE: Rgba = (0.08, 0.08, 0.08, 0.55)
 
 
-def write_labels(context: bpy.types.Context, labels: Sequence[Label]) -> None:
+def write_labels(context: bpy.types.Context, labels: Sequence[Tag]) -> None:
     """Write labels above their places; of those that overlap the later ones are left out."""
     scale, taken = _scale(), []
     for label in sorted(labels, key=lambda each: not each.strong):
@@ -46,7 +46,7 @@ def write_labels(context: bpy.types.Context, labels: Sequence[Label]) -> None:
         _text(label.text, x, y, label.color)
 
 
-def write_legends(context: bpy.types.Context, legends: Sequence[Legend]) -> None:
+def write_legends(context: bpy.types.Context, legends: Sequence[ColorKey]) -> None:
     """Write legends one above the other in the lower right corner, beside the sidebar."""
     scale = _scale()
     if _is_a_side_view(context):
@@ -60,9 +60,9 @@ def write_legends(context: bpy.types.Context, legends: Sequence[Legend]) -> None
         bottom = _legend(legend, (right - width, right), bottom, scale) + GAP * scale / 2.0
 
 
-def _fitting(legends: Sequence[Legend], height: float, scale: float) -> list[Legend]:
+def _fitting(legends: Sequence[ColorKey], height: float, scale: float) -> list[ColorKey]:
     """As many of the first legends as there is room for, one at least."""
-    found: list[Legend] = []
+    found: list[ColorKey] = []
     for legend in legends:
         height -= _height(legend, scale) + GAP * scale / 2.0
         if height >= 0.0 or not found:
@@ -70,19 +70,19 @@ def _fitting(legends: Sequence[Legend], height: float, scale: float) -> list[Leg
     return found
 
 
-def _height(legend: Legend, scale: float) -> float:
+def _height(legend: ColorKey, scale: float) -> float:
     rows = len(legend.classes) + (2 if legend.scale else 0)
     return (rows + 1) * ROW * scale + PADDING * 2.0 * scale
 
 
-def _width(legend: Legend, scale: float) -> float:
+def _width(legend: ColorKey, scale: float) -> float:
     """How wide a legend has to be for its words."""
     names = [blf.dimensions(FONT, name)[0] + 2.2 * BAR * scale for _, name in legend.classes]
     widest = max([blf.dimensions(FONT, legend.title)[0], *names])
     return max(LEAST_WIDTH * scale, widest + PADDING * 4.0 * scale)
 
 
-def _legend(legend: Legend, sides: tuple[float, float], bottom: float, scale: float) -> float:
+def _legend(legend: ColorKey, sides: tuple[float, float], bottom: float, scale: float) -> float:
     """Write one legend between its sides, standing there; return its upper edge."""
     top = bottom + _height(legend, scale)
     pad, (left, right) = PADDING * 2.0 * scale, sides

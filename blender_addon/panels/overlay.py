@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import bpy
 
-Layout = bpy.types.UILayout
+UILayout = bpy.types.UILayout
 Settings = bpy.types.PropertyGroup
 
 
@@ -27,7 +27,7 @@ class PE_PT_view(bpy.types.Panel):
         draw_layers(column, settings)
 
 
-def draw_layers(layout: Layout, settings: Settings) -> None:
+def draw_layers(layout: UILayout, settings: Settings) -> None:
     """Draw a switch for each layer, and below it what there is to choose."""
     view = settings.view
     for name, draw_choices in LAYERS:
@@ -41,7 +41,7 @@ def draw_layers(layout: Layout, settings: Settings) -> None:
     row.prop(view, "show_legend")
 
 
-def _ground(layout: Layout, settings: Settings) -> None:
+def _ground(layout: UILayout, settings: Settings) -> None:
     view = settings.view
     layout.row(align=True).prop(view, "ground_quantity", expand=True)
     row = layout.row(align=True)
@@ -49,16 +49,16 @@ def _ground(layout: Layout, settings: Settings) -> None:
     row.prop(view, "ground_opacity", text="Opacity", slider=True)
 
 
-def _blind(layout: Layout, settings: Settings) -> None:
+def _blind(layout: UILayout, settings: Settings) -> None:
     layout.row(align=True).prop(settings.view, "blind_height", expand=True)
 
 
-def _reach(layout: Layout, settings: Settings) -> None:
+def _reach(layout: UILayout, settings: Settings) -> None:
     layout.prop(settings.view, "reach_class", text="")
     layout.row(align=True).prop(settings.view, "reach_of", expand=True)
 
 
-def _frustums(layout: Layout, settings: Settings) -> None:
+def _frustums(layout: UILayout, settings: Settings) -> None:
     row = layout.row(align=True)
     row.prop(settings.view, "footprints")
     part = row.row(align=True)
@@ -66,7 +66,7 @@ def _frustums(layout: Layout, settings: Settings) -> None:
     part.prop(settings.view, "view_range", text="")
 
 
-def _beams(layout: Layout, settings: Settings) -> None:
+def _beams(layout: UILayout, settings: Settings) -> None:
     view = settings.view
     layout.row(align=True).prop(view, "beams_of", expand=True)
     layout.row(align=True).prop(view, "channels", expand=True)
@@ -79,7 +79,7 @@ def _beams(layout: Layout, settings: Settings) -> None:
     layout.prop(view, "rings")
 
 
-def _indented(layout: Layout) -> Layout:
+def _indented(layout: UILayout) -> UILayout:
     """Return a column that begins below the text of a check box."""
     row = layout.row()
     row.separator(factor=2.0)
@@ -99,8 +99,8 @@ def draw_in_header(self: bpy.types.Header, context: bpy.types.Context) -> None:
 NUMBERED = {"ONE": "channel", "EVERY": "every"}
 """The setting that says which channels, where there is one."""
 
-Choices = Callable[[Layout, Settings], None]
-LAYERS: tuple[tuple[str, Choices | None], ...] = (
+DrawChoices = Callable[[UILayout, Settings], None]
+LAYERS: tuple[tuple[str, DrawChoices | None], ...] = (
     ("ground", _ground),
     ("blind", _blind),
     ("reach", _reach),

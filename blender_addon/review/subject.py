@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import bridge
-from ..overlay.beams import Channels, Choice
+from ..overlay.beams import BeamChoice, ChannelMode
 from ..overlay.colors import PAPER, Rgba
 from ..overlay.kinds import Look, Sketch, beam_budget, drawing_of
 from . import shapes
@@ -47,7 +47,7 @@ class Subject:
     def of(cls, study: pe.Study, outcome: pe.Outcome) -> Subject:
         """Choose the beams to be shown."""
         rig, budget = study.rig, beam_budget(list(study.rig), BEAMS)
-        choice = Choice(budget, Channels.FEW)
+        choice = BeamChoice(budget, ChannelMode.FEW)
         sketches = {
             each.name: drawing_of(each.kind).sketch(each, study.vehicle, choice) for each in rig
         }

@@ -80,7 +80,7 @@ def _rays_met(sensor: Sensor, vehicle: Vehicle) -> Hits:
 
 
 @dataclass(frozen=True)
-class Mounted:
+class SensorAtBody:
     """A sensor, what it sees of the vehicle's body, and its score where there is one."""
 
     sensor: Sensor
@@ -118,7 +118,7 @@ class Mounted:
         return is_enclosed(self.body.itself, position, self.sensor.model.sees_through_glass)
 
 
-def odd_mounting(mounted: Mounted) -> Iterator[Advice]:
+def odd_mounting(mounted: SensorAtBody) -> Iterator[Advice]:
     """Yield advice on how a sensor is mounted on the vehicle."""
     sensor = mounted.sensor
     if mounted.inside:
@@ -163,7 +163,7 @@ def distance_to(vehicle: Vehicle, point: Floats) -> float:
         radius *= 2.0
 
 
-def _housing(mounted: Mounted) -> Iterator[Advice]:
+def _housing(mounted: SensorAtBody) -> Iterator[Advice]:
     """A housing of known size that cuts into the body."""
     sensor = mounted.sensor
     housing = catalog.housing(sensor.model.name)
@@ -175,7 +175,7 @@ def _housing(mounted: Mounted) -> Iterator[Advice]:
         yield Advice(sensor.name, "housing", text, part=parts[0])
 
 
-def _in_the_way(mounted: Mounted) -> Iterator[Advice]:
+def _in_the_way(mounted: SensorAtBody) -> Iterator[Advice]:
     """Looking at the body from near, or much of its field stopped."""
     name, unit = mounted.sensor.name, kind_of(mounted.sensor).unit
     if not mounted.stopped_by:

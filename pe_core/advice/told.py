@@ -11,7 +11,7 @@ from ..scene.vehicle import Vehicle
 from ..scoring.score import Score
 from .advice import Advice
 from .bodywork import Bodywork
-from .mounting import Mounted, odd_mounting, odd_place
+from .mounting import SensorAtBody, odd_mounting, odd_place
 from .vehicle_shape import odd_vehicle
 
 
@@ -51,4 +51,4 @@ def _told(
         yield from odd_place(sensor, space)
         if body is not None:
             own = None if score is None else score.per_sensor.get(sensor.name)
-            yield from odd_mounting(Mounted(sensor, body, own))
+            yield from odd_mounting(SensorAtBody(sensor, body, own))

@@ -72,7 +72,7 @@ def simplified(vehicle: Vehicle, triangles: int = DEFAULT_TRIANGLES) -> tuple[Ve
 
 
 @dataclass(frozen=True, slots=True)
-class _Chosen:
+class _Kept:
     """Triangles that stay with their corners moved, and those kept as they were: indices."""
 
     staying: Ints
@@ -106,7 +106,7 @@ class _Clusters:
         moves = np.sqrt(dot(away, away)).reshape(-1, 3).max(axis=1)
         return cls(cube.reshape(-1, 3), middles, moves)
 
-    def chosen(self, parts: NDArray[np.integer]) -> _Chosen:
+    def chosen(self, parts: NDArray[np.integer]) -> _Kept:
         """Choose triangles, by the part of each."""
         low, high = self.corners.min(axis=1), self.corners.max(axis=1)
         middle = self.corners.sum(axis=1) - low - high
@@ -127,15 +127,15 @@ class _Clusters:
             _numbers([w[there], w[there], parts[there]], sizes[1:]) for w in (low, middle, high)
         ]
         points = _first_not_among(short, line, np.concatenate(ends))
-        return _Chosen(staying, np.sort(np.concatenate([lines, points])))
+        return _Kept(staying, np.sort(np.concatenate([lines, points])))
 
-    def error(self, chosen: _Chosen) -> float:
+    def error(self, chosen: _Kept) -> float:
         """How far the surface moved at most [m]."""
         kept = float(self.moves[chosen.kept].max(initial=0.0))
         return float(self.moves.max()) + kept
 
 
-def _fitting(vehicle: Vehicle, wanted: int) -> tuple[_Clusters, _Chosen]:
+def _fitting(vehicle: Vehicle, wanted: int) -> tuple[_Clusters, _Kept]:
     """Cluster in cubes as small as the number of triangles allows; it goes with their square."""
     least = float(np.ptp(vehicle.triangles.reshape(-1, 3), axis=0).max()) / MOST_ACROSS + LEAST_M
     side = max(least, np.sqrt(3.0 * _area(vehicle.triangles) / wanted))

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 from ..scene.frozen import frozen
 from ..scene.vehicle import Vehicle
-from .cells import Cells, Rectangle
+from .cells import GroundCells, Rectangle
 from .outline import outlines
-from .places import Places
+from .places import VoxelsByCell
 from .regions import opened, without_specks
 
 Floats = NDArray[np.float64]
@@ -97,7 +97,7 @@ def body_rectangle(vehicle: Vehicle | None) -> Rectangle:
 
 
 def blind_ground(
-    cells: Cells, blind: Flags, body: Rectangle, height: float, within: float, draft: bool
+    cells: GroundCells, blind: Flags, body: Rectangle, height: float, within: float, draft: bool
 ) -> BlindGround:
     """Put together what is told of blind cells (NX, NY) round a body's rectangle."""
     strips = {side: _Strip.of(cells, blind, body, side) for side in SIDES}
@@ -129,7 +129,7 @@ class _Strip:
     sign: int
 
     @classmethod
-    def of(cls, cells: Cells, blind: Flags, body: Rectangle, side: str) -> _Strip:
+    def of(cls, cells: GroundCells, blind: Flags, body: Rectangle, side: str) -> _Strip:
         """Cut out the strip of a side, as wide as the body or one cell."""
         axis, sign = SIDES[side]
         along, across = (cells.x, cells.y)[axis], (cells.x, cells.y)[1 - axis]
@@ -169,7 +169,7 @@ class _Strip:
         return float(self.distance[rows[-1] + 1]) if len(rows) else 0.0
 
 
-def blind_cells(places: Places, m: Mapping[str, NDArray]) -> Flags:
+def blind_cells(places: VoxelsByCell, m: Mapping[str, NDArray]) -> Flags:
     """Which cells (NX, NY) are blind, by what sensors measure on their voxels."""
     seen = places.any(np.logical_or.reduce([of_one > 0 for of_one in m.values()]))
     step = places.cells.step

@@ -36,7 +36,7 @@ ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Cells:
+class GroundCells:
     """Squares side by side: their lower ends `x0` (NX,) and `y0` (NY,), and the `step` [m].
 
     The last ones end where the space does, at `x1` and `y1`.
@@ -49,7 +49,7 @@ class Cells:
     step: float
 
     @classmethod
-    def of(cls, space: PerceptionSpace, step: float, part: Rectangle | None = None) -> Cells:
+    def of(cls, space: PerceptionSpace, step: float, part: Rectangle | None = None) -> GroundCells:
         """Cut the ground of a space, or a part of it, into cells.
 
         Raises
@@ -91,7 +91,7 @@ class Cells:
     def points(self, interval: float, *, over_height: bool) -> tuple[Floats, Floats, Floats]:
         """Points of every cell: x, y [m] and a share of the height, each (cells, K).
 
-        Cells right of the vehicle have those of their mirror image on its left.
+        GroundCells right of the vehicle have those of their mirror image on its left.
         """
         count = self._voxels(interval, over_height)
         _, row = np.unique(np.round(np.abs(self.y0 + self.y1), 6), return_inverse=True)

@@ -12,7 +12,7 @@ from ..metric.fusion import Fusion
 from ..scene.frozen import frozen
 from ..scene.sensors import Rig
 from ..scoring.subsets import fused_early
-from .places import Places
+from .places import VoxelsByCell
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -55,7 +55,7 @@ class GroundSight:
 
 
 def ground_sight(
-    places: Places,
+    places: VoxelsByCell,
     rig: Rig,
     m: Mapping[str, NDArray],
     fusion: Fusion,
@@ -81,7 +81,7 @@ def ground_sight(
     )
 
 
-def _number(flags: Mapping[str, NDArray[np.bool_]], places: Places) -> Ints:
+def _number(flags: Mapping[str, NDArray[np.bool_]], places: VoxelsByCell) -> Ints:
     """How many flags are set in each cell; -1 where the vehicle is."""
     total = np.sum(list(flags.values()), axis=0, dtype=np.int64)
     return np.where(places.vehicle, -1, total)

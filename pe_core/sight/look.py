@@ -29,7 +29,7 @@ class HasVoxels(Protocol):
 P = TypeVar("P", bound=HasVoxels)
 
 
-class Look(Generic[P]):
+class Sighting(Generic[P]):
     """What is looked at, and the sensors measured on its voxels."""
 
     def __init__(self, places: P, sensors: MeasuredByName) -> None:
@@ -46,15 +46,15 @@ class Look(Generic[P]):
         return self._sensors.m, any(known.draft for known in self._sensors.last.values())
 
 
-class Looks:
+class KnownSightings:
     """Looks by what is asked for; of those asked for last, as many as there is room for."""
 
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion) -> None:
         self._space, self._vehicle, self._fusion = space, vehicle, fusion
         self._known: dict[str, Any] = {}  # by kind: beams are turned and cast once for all looks
-        self._looks: dict[Hashable, Look[Any]] = {}  # the one asked for last comes last
+        self._looks: dict[Hashable, Sighting[Any]] = {}  # the one asked for last comes last
 
-    def at(self, key: Hashable, places: Callable[[], P]) -> Look[P]:
+    def at(self, key: Hashable, places: Callable[[], P]) -> Sighting[P]:
         """Return what is kept by that key, or make it."""
         look = self._looks.pop(key, None) or self._made(places())
         self._looks[key] = look
@@ -65,7 +65,7 @@ class Looks:
                 del self._looks[other]
         return look
 
-    def _made(self, places: P) -> Look[P]:
+    def _made(self, places: P) -> Sighting[P]:
         voxels = Voxels(self._space, places.index, self._space.center_of(places.index))
         enough = self._fusion.enough
-        return Look(places, MeasuredByName(voxels, self._vehicle, enough, self._known))
+        return Sighting(places, MeasuredByName(voxels, self._vehicle, enough, self._known))

@@ -53,7 +53,7 @@ def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats
     field = np.pad(values - level, 1, constant_values=-EDGE)
     xs, ys = _widened(x), _widened(y)
     starts, ends = _segments(field)
-    points = _Points(field, xs, ys)
+    points = _EdgePoints(field, xs, ys)
     rings = [points.at(ring) for ring in _chained(starts, ends)]
     return tuple(sorted(rings, key=len, reverse=True))
 
@@ -101,7 +101,7 @@ def _chained(starts: Ints, ends: Ints) -> list[list[int]]:
     return rings
 
 
-class _Points:
+class _EdgePoints:
     """Where the level is crossed along edges of the grid."""
 
     def __init__(self, field: Floats, x: Floats, y: Floats) -> None:

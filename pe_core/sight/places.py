@@ -14,7 +14,7 @@ from ..prior.prior import ClassDensity
 from ..scene.numbering import blocks
 from ..scene.space import PerceptionSpace
 from ..text.values import FINITE
-from .cells import ROUNDING, Cells
+from .cells import ROUNDING, GroundCells
 from .regions import closed, gauss, without_specks
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,7 @@ NEXT_TO_NOTHING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class VoxelsByCell:
     """Voxels by cell: `index` (cells * K, 3), and what each weighs in its cell's mean, (cells, K).
 
     A voxel in the vehicle's own volume weighs nothing; a cell of nothing else is the vehicle's.
@@ -40,7 +40,7 @@ class Places:
     what any voxel there has is set: see `by_prior`.
     """
 
-    cells: Cells
+    cells: GroundCells
     index: Ints
     weights: Floats
     spread: float = 0.0
@@ -79,7 +79,9 @@ class Places:
         return gauss(cells, self.spread / self.cells.step) if self.spread else cells
 
 
-def in_layer(cells: Cells, space: PerceptionSpace, tops: Floats | None, layer: int) -> Places:
+def in_layer(
+    cells: GroundCells, space: PerceptionSpace, tops: Floats | None, layer: int
+) -> VoxelsByCell:
     """Choose voxels of one layer, numbered from the lowest."""
     x, y, _ = cells.points(space.interval, over_height=False)
     i, j = _columns(space, x, y)
@@ -87,10 +89,12 @@ def in_layer(cells: Cells, space: PerceptionSpace, tops: Floats | None, layer: i
     if tops is not None:
         weights[space.centers(2)[layer] < tops[i, j]] = 0.0
     index = np.stack([i, j, np.full_like(i, layer)], axis=-1).reshape(-1, 3)
-    return Places(cells, index, weights)
+    return VoxelsByCell(cells, index, weights)
 
 
-def standing(cells: Cells, space: PerceptionSpace, tops: Floats | None, layer: int) -> Places:
+def standing(
+    cells: GroundCells, space: PerceptionSpace, tops: Floats | None, layer: int
+) -> VoxelsByCell:
     """Choose voxels of what stands on the ground and reaches up into a layer.
 
     From z = 0 up, or from the space's floor; the lowest and the highest layer always, some between
@@ -104,7 +108,7 @@ def standing(cells: Cells, space: PerceptionSpace, tops: Floats | None, layer: i
     k[share * x.shape[1] < 1.0] = foot  # a run of the sequence has one in the lowest of its parts
     k[(1.0 - share) * x.shape[1] <= 1.0] = layer
     weights = np.ones(x.shape) if tops is None else np.where(np.isfinite(tops[i, j]), 0.0, 1.0)
-    return Places(cells, np.stack([i, j, k], axis=-1).reshape(-1, 3), weights)
+    return VoxelsByCell(cells, np.stack([i, j, k], axis=-1).reshape(-1, 3), weights)
 
 
 def layer_at(space: PerceptionSpace, height: float) -> int:
@@ -124,8 +128,8 @@ def layer_at(space: PerceptionSpace, height: float) -> int:
 
 
 def by_prior(
-    cells: Cells, space: PerceptionSpace, tops: Floats | None, densities: list[ClassDensity]
-) -> Places:
+    cells: GroundCells, space: PerceptionSpace, tops: Floats | None, densities: list[ClassDensity]
+) -> VoxelsByCell:
     """Choose voxels over height as the prior has it there, outside the vehicle (eq. 9).
 
     A voxel's height is drawn from the mix of the classes' profiles in its column, and its weight is
@@ -142,7 +146,7 @@ def by_prior(
     first = np.zeros_like(i)
     if tops is not None:
         first = np.searchsorted(space.centers(2), tops[i, j].reshape(-1)).reshape(i.shape)
-    columns = _Columns(densities)
+    columns = _WeightByColumn(densities)
     k, mass = np.empty(i.size, np.int64), np.empty(i.size)
     for some in blocks(i.size, AT_ONCE):
         at, beside, above = (w.reshape(-1)[some] for w in (i, j, first))
@@ -151,10 +155,10 @@ def by_prior(
     nobody = ~(weights > 0.0).any(axis=1)
     weights[nobody] = (first[nobody] < space.shape[2]) * NEXT_TO_NOTHING * weights.max()
     index = np.stack([i.reshape(-1), j.reshape(-1), k], axis=-1)
-    return Places(cells, index, weights, SPREAD_M)
+    return VoxelsByCell(cells, index, weights, SPREAD_M)
 
 
-class _Columns:
+class _WeightByColumn:
     """The prior's mix of heights in columns."""
 
     def __init__(self, densities: list[ClassDensity]) -> None:

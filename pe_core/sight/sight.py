@@ -21,10 +21,10 @@ from ..scoring.sampling import VoxelSample, draw
 from ..scoring.score import rounded
 from ..scoring.subsets import fused_early
 from .blind import BlindGround, blind_cells, blind_ground, body_rectangle
-from .cells import Cells, round_a
+from .cells import GroundCells, round_a
 from .ground import GroundSight, ground_sight
-from .look import Looks
-from .places import Places, by_prior, in_layer, layer_at, standing
+from .look import KnownSightings
+from .places import VoxelsByCell, by_prior, in_layer, layer_at, standing
 from .reach import AP, BEARINGS, Reach, Spokes, density_of
 from .shares import SeenShares, seen_shares
 
@@ -67,7 +67,7 @@ class Sight:
         self.space, self.prior, self.vehicle = space, prior, vehicle
         self._fusion = Fusion(model or PerceptionModel())
         self._densities: list[ClassDensity] = prior.densities(space)
-        self._looks = Looks(space, vehicle, self._fusion)
+        self._looks = KnownSightings(space, vehicle, self._fusion)
         self._is_free = RLock()
 
     def ground(
@@ -100,7 +100,7 @@ class Sight:
             nothing lies within.
         """
         part = None if within is None else round_a(ORIGIN, within)
-        cells = Cells.of(self.space, step, part)
+        cells = GroundCells.of(self.space, step, part)
         layer = None if height is None else layer_at(self.space, height)
         with self._is_free:
             look = self._looks.at(("ground", layer, cells.key), lambda: self._places(layer, cells))
@@ -136,7 +136,7 @@ class Sight:
             nothing lies within.
         """
         body = body_rectangle(self.vehicle)
-        cells = Cells.of(self.space, step, round_a(body, within))
+        cells = GroundCells.of(self.space, step, round_a(body, within))
         layer = layer_at(self.space, height)
         with self._is_free:
             look = self._looks.at(
@@ -241,7 +241,7 @@ class Sight:
         entropies, _ = self._fusion.entropies(fused_early(rig, m, members))
         return ap_of_entropy(entropies)
 
-    def _places(self, layer: int | None, cells: Cells) -> Places:
+    def _places(self, layer: int | None, cells: GroundCells) -> VoxelsByCell:
         if layer is None:
             return by_prior(cells, self.space, self._tops, self._densities)
         return in_layer(cells, self.space, self._tops, layer)

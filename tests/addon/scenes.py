@@ -8,7 +8,7 @@ import numpy as np
 from blender_addon import bridge
 from blender_addon.overlay import updating
 from blender_addon.overlay.layers import LAYERS
-from blender_addon.overlay.primitives import Shape
+from blender_addon.overlay.primitives import LayerShape
 from blender_addon.overlay.store import shown
 
 ASSETS = Path(__file__).resolve().parents[2] / "blend_assets"
@@ -78,7 +78,7 @@ def seen_rig(car) -> bpy.types.Scene:
     return car
 
 
-def drawn(scene) -> dict[str, dict[str, Shape]]:
+def drawn(scene) -> dict[str, dict[str, LayerShape]]:
     """Return what the 3D view shows of a scene: shapes by layer, then by sensor."""
     updating.update()
     layers = shown.layers(scene.name)

@@ -135,7 +135,7 @@ def test_stopped_search_keeps_the_best(car):
 def test_stopped_before_a_score_is_complete_changes_nothing(car):
     told = []
     operator = SimpleNamespace(report=lambda *words: told.append(words))
-    idle = job.Task(pe.OptimizeJob(scenes.study()), None)
+    idle = job.SceneJob(pe.OptimizeJob(scenes.study()), None)
     assert job.PE_OT_optimize._apply(operator, car, idle) == {"CANCELLED"}
     assert told == [({"INFO"}, "Stopped before a score was complete: nothing was changed")]
     assert not car.perception_entropy.has_result

@@ -10,7 +10,7 @@ from pe_core import catalog
 from tests.addon.overlay_alone import box, car, lidar, load, mounted
 
 beams, casts, rays = load("beams", "casts", "rays")
-Channels, Choice = beams.Channels, beams.Choice
+ChannelMode, BeamChoice = beams.ChannelMode, beams.BeamChoice
 
 LENGTH_M = 15.0
 
@@ -20,8 +20,8 @@ def vehicle():
     return car()
 
 
-def shown(sensor, vehicle, budget, channels=Channels.ALL, number=1):
-    return beams.shown_beams(casts.cast(sensor, vehicle), Choice(budget, channels, number))
+def shown(sensor, vehicle, budget, channels=ChannelMode.ALL, number=1):
+    return beams.shown_beams(casts.cast(sensor, vehicle), BeamChoice(budget, channels, number))
 
 
 def elevations_of(found):
@@ -29,7 +29,7 @@ def elevations_of(found):
 
 
 @pytest.mark.parametrize("budget", [1, 4, 5, 50, 401, 3600, 10_000])
-@pytest.mark.parametrize("channels", list(Channels))
+@pytest.mark.parametrize("channels", list(ChannelMode))
 def test_no_more_beams_than_the_budget(budget, channels, vehicle):
     for body in (vehicle, None):
         assert 0 < len(shown(mounted(), body, budget, channels).ends) <= budget
@@ -49,7 +49,7 @@ def test_agrees_with_the_engine_beam_by_beam(vehicle):
     assert found.stopped.any()
 
 
-@pytest.mark.parametrize("channels", [Channels.FEW, Channels.EVERY, Channels.ALL])
+@pytest.mark.parametrize("channels", [ChannelMode.FEW, ChannelMode.EVERY, ChannelMode.ALL])
 @pytest.mark.parametrize(("height", "low", "high"), [(1.9, 0.1, 0.2), (1.52, 0.5, 0.6)])
 def test_the_share_of_stopped_beams_is_the_true_one(channels, height, low, high, vehicle):
     """A beam more or less: well above the roof's corner, and right on it."""
@@ -68,35 +68,37 @@ def test_few_stopped_beams_are_neither_lost_nor_a_fan():
     sensor = mounted(lidar(azimuths=7200))
     true = (pe.beam_field(sensor, post).stopped_by >= 0).mean()
     assert 0.0 < true < 0.005
-    for channels in (Channels.FEW, Channels.ALL):
+    for channels in (ChannelMode.FEW, ChannelMode.ALL):
         assert 1 <= shown(sensor, post, 300, channels).stopped.sum() <= 2
 
 
 def test_one_channel_shows_its_own_share(vehicle):
     """The lowest channel's, which the roof stops; not that of the whole sensor."""
     sensor = mounted(position=(0.0, 0.0, 1.6))
-    lowest = shown(sensor, vehicle, 200, Channels.ONE, 1)
+    lowest = shown(sensor, vehicle, 200, ChannelMode.ONE, 1)
     assert elevations_of(lowest) == {-40.0} and lowest.stopped.all() and lowest.share == 1.0
-    highest = shown(sensor, vehicle, 200, Channels.ONE, 5)
+    highest = shown(sensor, vehicle, 200, ChannelMode.ONE, 5)
     assert elevations_of(highest) == {10.0} and not highest.stopped.any()
-    assert elevations_of(shown(sensor, vehicle, 200, Channels.ONE, 99)) == {10.0}
+    assert elevations_of(shown(sensor, vehicle, 200, ChannelMode.ONE, 99)) == {10.0}
 
 
 def test_every_nth_channel_is_counted_from_below():
-    assert elevations_of(shown(mounted(), None, 60, Channels.EVERY, 2)) == {-40.0, -10.0, 10.0}
+    assert elevations_of(shown(mounted(), None, 60, ChannelMode.EVERY, 2)) == {-40.0, -10.0, 10.0}
 
 
 def test_few_channels_are_spread_over_the_angles_not_over_their_numbers():
     """A Pandar64 has most of its channels near the horizon; the few reach from top to bottom."""
     pandar = catalog.load("Pandar64")
-    found = np.degrees(pandar.elevations[beams.channels_of(pandar, Choice(5000, Channels.FEW))])
+    found = np.degrees(
+        pandar.elevations[beams.channels_of(pandar, BeamChoice(5000, ChannelMode.FEW))]
+    )
     assert len(found) == beams.A_FEW
     assert (found.min(), found.max()) == pytest.approx((-25.0, 15.0))
     assert np.diff(np.sort(found)).max() < 12.0
 
 
 def test_few_are_few_whatever_the_budget():
-    found = shown(mounted(catalog.load("Pandar64")), None, 200_000, Channels.FEW)
+    found = shown(mounted(catalog.load("Pandar64")), None, 200_000, ChannelMode.FEW)
     assert len(found.ends) <= 300
 
 
@@ -105,7 +107,7 @@ def test_a_rosette_shows_all_over_its_picture():
     angles = np.linspace(0.0, 20.0, 3000)
     away = np.column_stack([np.ones(3000), 0.2 * np.sin(angles), 0.2 * np.cos(7.0 * angles)])
     rosette = pe.Lidar.from_directions("rosette", away, 50.0)
-    assert len(shown(mounted(rosette), None, 200, Channels.FEW).ends) == 200
+    assert len(shown(mounted(rosette), None, 200, ChannelMode.FEW).ends) == 200
 
 
 def test_azimuths_are_thinned_evenly():

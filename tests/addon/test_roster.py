@@ -8,7 +8,7 @@ import pytest
 from blender_addon import roster, stale
 from blender_addon.bridge.rig import sensor_objects
 from blender_addon.operators import listed_sensors
-from blender_addon.overlay.reading import Reader
+from blender_addon.overlay.reading import SceneReader
 from tests.addon import scenes
 
 OTHERS = 2000
@@ -56,7 +56,7 @@ def test_a_score_looks_once_before_the_work_and_once_after(crowd, looks):
 
 
 def test_redraws_without_a_change_look_once(crowd, looks):
-    cache = Reader()
+    cache = SceneReader()
 
     def work():
         for _ in range(10):
@@ -70,7 +70,7 @@ def test_redraws_without_a_change_look_once(crowd, looks):
 
 
 def test_a_change_is_seen_at_the_next_redraw(car):
-    cache = Reader()
+    cache = SceneReader()
     assert draw(car, cache)[0] == ["roof"]
     copy = car.objects["roof"].copy()
     copy.name = "copy"

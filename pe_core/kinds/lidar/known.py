@@ -12,7 +12,7 @@ from .beams import BeamEnds, BeamField, TurnedBeams, beam_field
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
+class CastBeams:
     """Where a LiDAR's beams end: (B,) [m]; `field` None where that is a draft."""
 
     sensor: Sensor
@@ -31,7 +31,7 @@ class KnownBeams:
     def __init__(self, vehicle: Vehicle | None) -> None:
         self._vehicle, self._drafts = vehicle, BeamEnds(vehicle)
         self._turned: dict[str, tuple[Sensor, TurnedBeams]] = {}
-        self._ended: dict[str, Ended] = {}
+        self._ended: dict[str, CastBeams] = {}
         """Both by the sensor's name, with the sensor they hold for: those of the last rig."""
 
     def turned(self, sensor: Sensor) -> TurnedBeams:
@@ -43,7 +43,7 @@ class KnownBeams:
         self._turned[sensor.name] = (sensor, beams)
         return beams
 
-    def ended(self, sensor: Sensor, draft: bool) -> Ended:
+    def ended(self, sensor: Sensor, draft: bool) -> CastBeams:
         """Say where a LiDAR's beams end, kept until it moves; as a draft if that will do."""
         known = self._ended.get(sensor.name)
         fits = known and (draft or known.field) and known.sensor.model is sensor.model
@@ -52,12 +52,12 @@ class KnownBeams:
         found = self._ended[sensor.name] = self._end(sensor, draft)
         return found
 
-    def _end(self, sensor: Sensor, draft: bool) -> Ended:
+    def _end(self, sensor: Sensor, draft: bool) -> CastBeams:
         beams = self.turned(sensor)
         if draft and self._drafts.can_draft(sensor):
-            return Ended(sensor, self._drafts.draft(sensor, beams), None)
+            return CastBeams(sensor, self._drafts.draft(sensor, beams), None)
         field = beam_field(sensor, self._vehicle, beams.directions)
-        return Ended(sensor, field.ends, field)
+        return CastBeams(sensor, field.ends, field)
 
     def forget_all_but(self, sensors: Collection[Sensor]) -> None:
         """Keep the beams of these sensors alone."""

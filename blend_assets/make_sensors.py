@@ -24,7 +24,6 @@ from sensor_previews import PIXELS, Studio  # noqa: E402
 import blender_addon  # noqa: E402
 import pe_core as pe  # noqa: E402
 from blender_addon.housing import housing_mesh  # noqa: E402
-from pe_core import kinds  # noqa: E402
 
 FOLDER = HERE.parent / "blender_addon" / "assets"
 BLEND, CATALOGS = "sensors.blend", "blender_assets.cats.txt"
@@ -137,9 +136,9 @@ def give_preview(obj: bpy.types.Object, studio: Studio, entry: pe.catalog.Entry)
     preview.image_pixels_float.foreach_set(picture.astype(np.float32).ravel())
 
 
-def looks(model: kinds.SensorModel) -> Array:
+def looks(model: pe.Lidar | pe.Camera) -> Array:
     """(R, 3) directions that show where a model looks: its channels ahead, or its view's sides."""
-    if model.kind == "camera":
+    if isinstance(model, pe.Camera):
         half = model.hfov / 2.0
         return np.array([[np.cos(a), np.sin(a), 0.0] for a in (-half, half)])
     up = model.elevations

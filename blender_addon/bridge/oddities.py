@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 import bpy
 
@@ -15,18 +15,26 @@ MISSING, DRIVER, UNITS, REFUSED = "missing", "driver", "units", "refused"
 
 def scene_advice(scene: bpy.types.Scene) -> tuple[pe.Advice, ...]:
     """Tell what is odd: pieces that are missing, units, and sensors that are no possible ones."""
-    return (*missing_pieces(scene), *_units(scene), *_refused(scene))
+    sensors = sensor_objects(scene)
+    return (*missing_pieces(scene, sensors), *_units(scene), *_refused(scene, sensors))
 
 
-def missing_pieces(scene: bpy.types.Scene) -> tuple[pe.Advice, ...]:
-    """Name what a score of the scene lacks: data of lost libraries, drivers that did not run."""
-    return (*_lost_data(scene), *_failed_drivers(scene))
+def missing_pieces(
+    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object] | None = None
+) -> tuple[pe.Advice, ...]:
+    """Name what a score of the scene lacks: data of lost libraries, drivers that did not run.
+
+    `sensors` are the scene's when they have been looked for already.
+    """
+    mounted = sensor_objects(scene) if sensors is None else sensors
+    blocks = list(_scored_data(scene, mounted))
+    return (*_lost_data(blocks), *_failed_drivers(blocks, set(mounted)))
 
 
-def _lost_data(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
+def _lost_data(blocks: Iterable[bpy.types.ID]) -> Iterator[pe.Advice]:
     """One piece of advice for each library: its name, and what the vehicle lacks of it."""
     lost: dict[str, list[str]] = {}
-    for block in _vehicle_data(scene):
+    for block in blocks:
         if block.is_missing:
             lost.setdefault(block.library.filepath, []).append(block.name)
     for path, names in lost.items():
@@ -34,11 +42,13 @@ def _lost_data(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
         yield pe.Advice(None, MISSING, f"{what} is missing: there is no {path}")
 
 
-def _vehicle_data(scene: bpy.types.Scene) -> Iterator[bpy.types.ID]:
+def _scored_data(
+    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]
+) -> Iterator[bpy.types.ID]:
     """Collections, objects and their data that the vehicle and the sensors are made of."""
     vehicle = scene.perception_entropy.vehicle
     waiting = [] if vehicle is None else [vehicle]
-    objects = dict.fromkeys(sensor_objects(scene))
+    objects = dict.fromkeys(sensors)
     known = set(waiting)
     while waiting:
         collection = waiting.pop()
@@ -57,10 +67,11 @@ def _vehicle_data(scene: bpy.types.Scene) -> Iterator[bpy.types.ID]:
             yield obj.data
 
 
-def _failed_drivers(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
+def _failed_drivers(
+    blocks: Iterable[bpy.types.ID], sensors: Collection[bpy.types.Object]
+) -> Iterator[pe.Advice]:
     """Advice on each object that a driver should move, change or show, and does not."""
-    sensors = set(sensor_objects(scene))
-    for block in _vehicle_data(scene):
+    for block in blocks:
         drivers = getattr(block.animation_data, "drivers", ()) if _animatable(block) else ()
         failed = sorted({d.data_path for d in drivers if not d.driver.is_valid})
         if failed:
@@ -83,10 +94,10 @@ def _units(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
         yield pe.Advice(None, UNITS, text, fix="metric_units")
 
 
-def _refused(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
+def _refused(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> Iterator[pe.Advice]:
     """Advice on sensors that no score would take."""
     layer = view_layer_of(scene)
-    for obj in sensor_objects(scene):
+    for obj in sensors:
         if layer.depsgraph is None or not obj.visible_get(view_layer=layer):
             continue
         try:

@@ -31,7 +31,8 @@ def study_from_scene(
     objects = sensor_objects(scene) if sensors is None else sensors
     check_scene(scene)  # said before what is wrong with a sensor
     free = {obj.name: free_axes(obj) for obj in objects}
-    return study_of_rig(scene, depsgraph, rig_from_objects(objects, depsgraph), free, vehicle)
+    rig, limits = rig_from_objects(objects, depsgraph), all_limits(objects)
+    return study_of_rig(scene, depsgraph, rig, free, vehicle, limits)
 
 
 def study_of_rig(

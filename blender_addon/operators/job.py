@@ -92,7 +92,9 @@ class JobOperator:
         sensors = bridge.sensor_objects(scene)
         study = bridge.study_from_scene(scene, depsgraph, vehicle, sensors)
         taken = stale.fingerprint(scene, depsgraph, sensors)
-        return SceneJob(self.job_of(scene, study, taken), taken)
+        job = self.job_of(scene, study, taken)
+        job.notes = bridge.missing_pieces(scene, sensors)  # what the scene lacks
+        return SceneJob(job, taken)
 
     def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> set[str]:
         """Write placements and result to the scene; undo takes both back in one step."""
@@ -122,7 +124,7 @@ class PE_OT_score(JobOperator, bpy.types.Operator):
 
     def job_of(self, scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> pe.Job:
         """Score it, whatever is known: who presses the button wants it done."""
-        return noted(pe.ScoreJob(study), scene)
+        return pe.ScoreJob(study)
 
     def write(
         self, scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
@@ -148,7 +150,7 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
     def job_of(self, scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> pe.Job:
         """Search, unless that is of no use; the start's score is not made again if it is known."""
         bridge.check_placeable(scene, study)
-        return noted(pe.OptimizeJob(study, before=known_score(scene, study, taken)), scene)
+        return pe.OptimizeJob(study, before=known_score(scene, study, taken))
 
     def write(
         self, scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
@@ -168,12 +170,6 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
         before, after = outcome.before.entropy, outcome.after.entropy
         best = "best so far, stopped early" if outcome.stopped else f"{outcome.evaluations} tried"
         return f"Perception entropy {before:.4f} to {after:.4f} nats ({best})"
-
-
-def noted(job: pe.Job, scene: bpy.types.Scene) -> pe.Job:
-    """Return a job that tells of what the scene lacks, beside its own warnings."""
-    job.notes = bridge.missing_pieces(scene)
-    return job
 
 
 def keep(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:

@@ -206,7 +206,7 @@ def test_nothing_stopped_is_no_heat():
 def test_a_sheet_as_triangles_has_its_colours_in_the_middles_of_squares():
     image = np.zeros((4, 6, 4), np.float32)
     image[1, 2] = [0.1, 0.2, 0.3, 1.0]
-    points, shades, triangles = ground.Sheet(image, (-3.0, -2.0), (3.0, 2.0)).mesh
+    points, shades, triangles = ground.GroundSheet(image, (-3.0, -2.0), (3.0, 2.0)).mesh
     at = np.flatnonzero(shades[:, 3])
     np.testing.assert_allclose(points[at], [[-0.5, -0.5, 0.0]], atol=1e-6)
     assert len(triangles) == 6, "those that touch it, and no more"

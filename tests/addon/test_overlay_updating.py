@@ -116,7 +116,7 @@ def test_what_is_not_moved_stays_fine_while_another_moves(rig, worked):
 
 
 def test_a_heavy_vehicle_is_read_when_it_rests(rig, monkeypatch):
-    reader, depsgraph = updating.Reader(), scenes.depsgraph()
+    reader, depsgraph = updating.SceneReader(), scenes.depsgraph()
     before = reader.wish(rig, depsgraph).body_key
     monkeypatch.setattr(reader, "_took_s", 10.0)
     body.shared.changed()
@@ -220,7 +220,7 @@ def test_older_names_still_work(rig):
     for name, value in (("show_overlay", True), ("beam_limit", 123), ("beam_length", 5.0)):
         setattr(settings, name, value)
         assert getattr(settings, name) == value
-    view = updating.Reader().wish(rig, scenes.depsgraph()).view
+    view = updating.SceneReader().wish(rig, scenes.depsgraph()).view
     assert (view.beam_limit, view.beam_length) == (123, 5.0)
 
 

@@ -84,24 +84,29 @@ def cuts_body(
     half = np.array(housing.size) / 2.0 - seat
     if half.min() <= 0.0:
         return ()
-    near, faces = _triangles_near(pose, housing, vehicle)
+    near, faces = _triangles_near(pose, housing, vehicle, half)
+    if not len(faces):
+        return ()
     inside = (_meets_box if housing.shape == "box" else _meets_cylinder)(near, half)
     found = np.unique(np.asarray(vehicle.parts)[faces[inside]])
     return tuple(vehicle.part_names[part] for part in found)
 
 
 def _triangles_near(
-    pose: Pose, housing: Housing, vehicle: Vehicle
+    pose: Pose, housing: Housing, vehicle: Vehicle, half: Floats
 ) -> tuple[Floats, NDArray[np.int64]]:
     """Triangles (N, 3, 3) round a housing in its own frame, its middle the origin; which they are.
 
-    Only the ball round the housing is looked at; sizes are exact further on.
+    Only what comes near its box of half sizes (3,) is told; shapes are exact further on.
     """
     rotation = pose.ground_from_sensor
     middle = np.array(pose.position) + rotate(rotation, housing.center)
     reach = float(np.sqrt(dot(np.array(housing.size), np.array(housing.size)))) / 2.0
     faces = vehicle.faces_near(middle, reach)
-    return rotate(rotation.T, vehicle.triangles[faces] - middle), faces
+    near = rotate(rotation.T, vehicle.triangles[faces] - middle)
+    least, most = near.min(axis=1), near.max(axis=1)
+    some = ((least <= half) & (most >= -half)).all(axis=1)
+    return near[some], faces[some]
 
 
 def _meets_box(triangles: Floats, half: Floats) -> NDArray[np.bool_]:

@@ -23,6 +23,9 @@ the sphere from 10 degrees below the horizon up; a sensor under the body looks o
 SIDES, LIFT_M, GRAZING = 64, 1e-3, 0.2
 """Directions over the whole sphere that tell the open side of a skin, from how far off it; those
 along the skin tell nothing."""
+SHAFT_M, SHAFT_FROM_M = 0.3, 0.1
+"""Half width of a shaft through which a place is open, wider than a window is high, and from where:
+what is nearer may be the skin that the sensor stands on."""
 
 
 def is_enclosed(vehicle: Vehicle, position: Floats, through_glass: bool = False) -> bool:
@@ -31,12 +34,27 @@ def is_enclosed(vehicle: Vehicle, position: Floats, through_glass: bool = False)
     return float(np.mean(np.isfinite(hits.distance))) >= ENCLOSED
 
 
-def is_covered(vehicle: Vehicle, position: Floats) -> bool:
-    """Whether anything of the body is straight above a place (3,): a quick look for most places."""
+def is_open(vehicle: Vehicle, position: Floats) -> bool:
+    """Whether a wide view gets away from a place (3,), up or by the nearest side.
+
+    A quick look at boxes round the triangles: what is open is not enclosed, what is not may be.
+    """
+    low, high = vehicle.bounds
+    gaps = np.concatenate([position[:2] - low[:2], high[:2] - position[:2]])
+    nearest = int(np.argmin(gaps))
+    sides = (2, 1.0), (nearest % 2, 1.0 if nearest > 1 else -1.0)
+    return any(_gets_away(vehicle, position, *side) for side in sides)
+
+
+def _gets_away(vehicle: Vehicle, position: Floats, axis: int, sign: float) -> bool:
+    """Whether nothing is in the shaft that leads away from a place along an axis."""
     low, high = vehicle.triangle_bounds
-    x, y, z = position.tolist()
-    over = (low[0] <= x) & (high[0] >= x) & (low[1] <= y) & (high[1] >= y) & (high[2] > z)
-    return bool(over.any())
+    start = float(position[axis]) + sign * SHAFT_FROM_M
+    within = high[axis] > start if sign > 0.0 else low[axis] < start
+    for across in {0, 1, 2} - {axis}:
+        within &= low[across] <= position[across] + SHAFT_M
+        within &= high[across] >= position[across] - SHAFT_M
+    return not within.any()
 
 
 def open_side(vehicle: Vehicle, point: Floats, normal: Floats) -> float:

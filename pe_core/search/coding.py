@@ -67,7 +67,7 @@ class Coding:
         self.unknowns = tuple(u for place in self._places.values() for u in place.unknowns)
         vector = tuple(value for place in self._places.values() for value in place.start)
         self.start = Candidate(rig, vector)
-        self.rules = rules_of(rig, space, self._moving(), self._places)
+        self.rules = rules_of(rig, space, self._moving(), self._clear(), self._places)
 
     def candidate(self, vector: Sequence[float]) -> Candidate:
         """Return the placement that a vector of (N,) unknowns stands for.
@@ -96,11 +96,20 @@ class Coding:
         return frozenset(rule.words for rule in self.rules if rule.broken(trial))
 
     def _moving(self) -> set[str]:
-        """Names of the sensors that the search moves, those that follow included."""
-        moving = {name for name, place in self._places.items() if place.unknowns}
+        """Names of the sensors that the search moves."""
+        return self._led({name for name, place in self._places.items() if place.unknowns})
+
+    def _clear(self) -> set[str]:
+        """Names of the sensors whose housings are kept clear: always of those on a surface."""
+        if self.space.mounting.constraints.clear_housings:
+            return {sensor.name for sensor in self.start.rig}
+        return self._led({n for n, place in self._places.items() if isinstance(place, OnSurface)})
+
+    def _led(self, names: set[str]) -> set[str]:
+        """Return sensors' names with those of all that follow them."""
         for tie in self._followers:
-            moving |= {tie.name} if tie.leader in moving else set()
-        return moving
+            names |= {tie.name} if tie.leader in names else set()
+        return names
 
 
 def _places(rig: Rig, space: SearchSpace, follow: set[str]) -> dict[str, Place]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..scene.geometry import FARTHEST_M, dot
 from ..scene.housing import cuts_body
-from ..scene.outside import is_covered, is_enclosed
+from ..scene.outside import is_enclosed, is_open
 from ..scene.sensors import Rig
 from ..scene.solids import Solid, meet, solid_box, solid_of
 from ..scene.vehicle import Vehicle
@@ -48,23 +48,28 @@ class Rule:
 
 
 def rules_of(
-    rig: Rig, space: SearchSpace, moving: Collection[str], places: dict[str, Place]
+    rig: Rig,
+    space: SearchSpace,
+    moving: Collection[str],
+    clear: Collection[str],
+    places: dict[str, Place],
 ) -> tuple[Rule, ...]:
     """Return the rules for a rig, those that are cheap to ask first.
 
     Sensors that do not move are as they are: of them only what is between them and others counts.
+    Of those that are named `clear`, housings are kept clear.
     """
     names = [sensor.name for sensor in rig if sensor.name in moving]
     pairs = [
         (a.name, b.name) for a, b in combinations(rig, 2) if a.name in moving or b.name in moving
     ]
     rules = [rule for name in names for rule in _of_one(name, space)]
-    rules += [rule for a, b in pairs for rule in _of_two(a, b, space)]
+    rules += [rule for a, b in pairs for rule in _of_two(a, b, space, clear)]
     for name in names:
         place = places.get(name)
-        if isinstance(place, OnSurface):
+        if isinstance(place, OnSurface) and place.mount.standoff > SETTLED_M:
             rules.append(_stand_off(name, place))
-        if space.vehicle is not None and _clear(name, space):
+        if space.vehicle is not None and name in clear:
             rules.append(_body(name, space.vehicle))
     return tuple(rules)
 
@@ -103,7 +108,7 @@ def _no_go(name: str, area: NoGo) -> Rule:
     return Rule(f"no_go {area.name!r} for {name!r}", lambda trial: meet(trial.solid(name), box))
 
 
-def _of_two(a: str, b: str, space: SearchSpace) -> Iterator[Rule]:
+def _of_two(a: str, b: str, space: SearchSpace, clear: Collection[str]) -> Iterator[Rule]:
     mounting = space.mounting
     if least := mounting.constraints.min_distance:
 
@@ -116,7 +121,7 @@ def _of_two(a: str, b: str, space: SearchSpace) -> Iterator[Rule]:
     if shared and isinstance(mounting.mount_of(a), Slots):
         yield Rule(f"one slot for {a!r} and {b!r}", lambda t: t.rig[a].pose == t.rig[b].pose)
     known = a in space.housings or b in space.housings
-    if known and (_clear(a, space) or _clear(b, space)):
+    if known and (a in clear or b in clear):
         words = f"clear housings of {a!r} and {b!r}"
         yield Rule(words, lambda trial: meet(trial.solid(a), trial.solid(b)))
 
@@ -126,7 +131,7 @@ def _stand_off(name: str, place: OnSurface) -> Rule:
 
     def near(trial: Trial) -> bool:
         base = place.base(trial.rig[name].pose)
-        return place.area.distance(base) < place.mount.standoff - SETTLED_M
+        return place.area.is_nearer(base, place.mount.standoff - SETTLED_M)
 
     return Rule(f"standoff of {name!r}", near)
 
@@ -140,12 +145,6 @@ def _body(name: str, vehicle: Vehicle) -> Rule:
         if housing is not None and cuts_body(sensor.pose, housing, vehicle):
             return True
         through_glass = sensor.model.sees_through_glass
-        return is_covered(vehicle, position) and is_enclosed(vehicle, position, through_glass)
+        return not is_open(vehicle, position) and is_enclosed(vehicle, position, through_glass)
 
     return Rule(f"the body for {name!r}", inside)
-
-
-def _clear(name: str, space: SearchSpace) -> bool:
-    """Whether a sensor's housing is kept clear: always on a surface, elsewhere where it is said."""
-    surface = isinstance(space.mounting.mount_of(name), Surface)
-    return surface or space.mounting.constraints.clear_housings

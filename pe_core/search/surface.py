@@ -50,10 +50,10 @@ class Area:
         best = int(np.argmin(dot(feet - point, feet - point)))
         return feet[best], int(near[best])
 
-    def distance(self, point: Floats) -> float:
-        """Return how far a point (3,) is from the surface [m]."""
-        foot, _ = self.closest(point)
-        return float(np.sqrt(dot(foot - point, foot - point)))
+    def is_nearer(self, point: Floats, distance: float) -> bool:
+        """Whether the surface is nearer to a point (3,) than a distance [m]."""
+        feet = closest_points(point, self.triangles[self._tree.near(point, distance)])
+        return bool((dot(feet - point, feet - point) < distance**2).any())
 
     def outward(self, face: int) -> Floats:
         """Return the unit normal (3,) of a face on its open side."""

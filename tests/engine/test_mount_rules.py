@@ -5,7 +5,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.scene.housing import Housing
-from pe_core.scene.outside import is_covered, is_enclosed
+from pe_core.scene.outside import is_enclosed, is_open
 from pe_core.scene.solids import meet, solid_box, solid_of
 from pe_core.search import Coding, first_allowed
 from pe_core.search.rules import Trial
@@ -86,6 +86,18 @@ def test_on_a_surface_the_housing_is_kept_clear_without_being_asked_for():
     assert broken(near, mount={"roof": roof()}, vehicle=vehicle) == ["the body for 'roof'"]
     far = can((0.7 - 1.1 * RADIUS, 0.0, ON_ROOF[2]))
     assert broken(far, mount={"roof": roof()}, vehicle=vehicle) == []
+
+
+def test_who_follows_a_sensor_on_a_surface_is_kept_clear_too():
+    """A wall stands on the roof's right half alone."""
+    wall = shapes.box((-0.1, -0.7, TOP), (0.1, -0.3, TOP + 0.3))
+    car = mounting.car()
+    parts = np.concatenate([car.parts, np.zeros(len(wall))]).astype(np.int32)
+    vehicle = pe.Vehicle(np.concatenate([car.triangles, wall]), parts, car.part_names)
+    two = [can((0.0, y, ON_ROOF[2]), name) for name, y in (("left", 0.5), ("right", -0.5))]
+    options = {"mount": {"left": roof()}, "pairs": [("left", "right")]}
+    assert broken(*two, vehicle=vehicle, **options) == ["the body for 'right'"]
+    assert broken(*two, **options) == []
 
 
 def test_housings_keep_out_of_each_other_where_that_is_asked_for():
@@ -188,11 +200,31 @@ def test_solids_that_touch_do_not_meet():
     assert meet(one, point) and not meet(solid_box(np.ones(3), np.full(3, 2.0)), point)
 
 
-def test_under_the_open_sky_nothing_is_enclosed():
+@pytest.mark.parametrize(
+    ("place", "open_"),
+    [
+        ((0.0, 0.0, 1.1), False),  # in the cabin
+        ((0.0, 0.0, TOP + 0.05), True),
+        ((2.32, 0.0, 0.6), True),  # at the front, the sky above it
+        ((0.0, 0.92, 0.3), True),  # at the left side
+        ((0.0, 0.0, 0.1), False),  # under the floor: not open at once, but nor enclosed
+        ((9.0, 0.0, 0.0), True),
+    ],
+)
+def test_what_is_open_at_first_sight_is_not_enclosed(place, open_):
     car = mounting.car()
-    assert is_covered(car, np.array([0.0, 0.0, 1.1])) and is_enclosed(car, np.array([0, 0, 1.1]))
-    assert not is_covered(car, np.array([0.0, 0.0, 1.5]))
-    assert not is_covered(car, np.array([9.0, 0.0, 0.0]))
+    assert is_open(car, np.array(place)) is open_
+    assert is_enclosed(car, np.array(place)) is (place == (0.0, 0.0, 1.1))
+
+
+def test_a_place_under_an_overhang_is_open_by_its_side():
+    """As a bumper under a bus's front: above is the body, ahead the road."""
+    vehicle = pe.Vehicle(
+        np.concatenate([shapes.box((-1, -1, 0), (1, 1, 1)), shapes.box((-1, -1, 1), (1.1, 1, 2))])
+    )
+    assert is_open(vehicle, np.array([1.05, 0.0, 0.5]))
+    assert is_open(vehicle, np.array([0.0, 1.05, 0.5]))
+    assert not is_open(vehicle, np.array([0.0, 0.0, 0.5]))
 
 
 # --- none that fits -------------------------------------------------------------------------------

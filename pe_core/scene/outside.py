@@ -42,6 +42,8 @@ def is_open(vehicle: Vehicle, position: Floats) -> bool:
     low, high = vehicle.bounds
     gaps = np.concatenate([position[:2] - low[:2], high[:2] - position[:2]])
     nearest = int(np.argmin(gaps))
+    if gaps[nearest] < 0.0 or position[2] > high[2]:  # beside all of it, or above
+        return True
     sides = (2, 1.0), (nearest % 2, 1.0 if nearest > 1 else -1.0)
     return any(_gets_away(vehicle, position, *side) for side in sides)
 

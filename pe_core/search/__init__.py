@@ -3,7 +3,7 @@
 from .axes import AXES, POSITION_AXES, pose_from_values, pose_values
 from .coding import Candidate, Coding
 from .feasible import first_allowed
-from .mounts import Constraints, Mount, Mounting, NoGo, Slot, Slots, Surface
+from .mounts import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, optimize
 from .schedule import Schedule
 from .search_space import PAPER_FREE, SearchSpace, checked_axes, checked_bounds
@@ -12,18 +12,18 @@ __all__ = [
     "AXES",
     "PAPER_FREE",
     "POSITION_AXES",
+    "AnyMount",
     "Candidate",
     "Coding",
     "Constraints",
-    "Mount",
     "Mounting",
     "NoGo",
     "Schedule",
     "SearchSpace",
     "Slot",
-    "Slots",
+    "SlotMount",
     "Step",
-    "Surface",
+    "SurfaceMount",
     "checked_axes",
     "checked_bounds",
     "first_allowed",

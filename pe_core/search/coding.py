@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 from ..scene.geometry import Pose
 from ..scene.sensors import Rig, Sensor
-from .mounts import Slots, Surface
-from .places import InBox, InSlots, OnSurface, Place
+from .domains import Domain, InBox, InSlots, OnSurface
+from .mounts import SlotMount, SurfaceMount
 from .rules import Rule, Trial, rules_of
 from .search_space import SearchSpace
-from .surface import Area
+from .surface import Skin
 from .ties import followers
 from .unknown import Unknown
 
@@ -63,11 +63,11 @@ class Coding:
         self.space = space.checked(rig)
         self._followers = followers(rig, space.mounting, space.vehicle)
         follow = {tie.name for tie in self._followers}
-        self._places = _places(rig, space, follow)
-        self.unknowns = tuple(u for place in self._places.values() for u in place.unknowns)
-        vector = tuple(value for place in self._places.values() for value in place.start)
+        self._domains = _domains(rig, space, follow)
+        self.unknowns = tuple(u for domain in self._domains.values() for u in domain.unknowns)
+        vector = tuple(value for domain in self._domains.values() for value in domain.start)
         self.start = Candidate(rig, vector)
-        self.rules = rules_of(rig, space, self._moving(), self._clear(), self._places)
+        self.rules = rules_of(rig, space, self._moving(), self._clear(), self._domains)
 
     def candidate(self, vector: Sequence[float]) -> Candidate:
         """Return the placement that a vector of (N,) unknowns stands for.
@@ -75,9 +75,9 @@ class Coding:
         Its own vector is the given one after rounding, and after the way down to a surface.
         """
         poses, held, at = dict[str, Pose](), list[float](), 0
-        for name, place in self._places.items():
-            count = len(place.unknowns)
-            poses[name], own = place.placed(vector[at : at + count])
+        for name, domain in self._domains.items():
+            count = len(domain.unknowns)
+            poses[name], own = domain.placed(vector[at : at + count])
             held += own
             at += count
         for tie in self._followers:
@@ -97,13 +97,15 @@ class Coding:
 
     def _moving(self) -> set[str]:
         """Names of the sensors that the search moves."""
-        return self._led({name for name, place in self._places.items() if place.unknowns})
+        return self._led({name for name, domain in self._domains.items() if domain.unknowns})
 
     def _clear(self) -> set[str]:
         """Names of the sensors whose housings are kept clear: always of those on a surface."""
         if self.space.mounting.constraints.clear_housings:
             return {sensor.name for sensor in self.start.rig}
-        return self._led({n for n, place in self._places.items() if isinstance(place, OnSurface)})
+        return self._led(
+            {n for n, domain in self._domains.items() if isinstance(domain, OnSurface)}
+        )
 
     def _led(self, names: set[str]) -> set[str]:
         """Return sensors' names with those of all that follow them."""
@@ -112,21 +114,21 @@ class Coding:
         return names
 
 
-def _places(rig: Rig, space: SearchSpace, follow: set[str]) -> dict[str, Place]:
+def _domains(rig: Rig, space: SearchSpace, follow: set[str]) -> dict[str, Domain]:
     """Return what the unknowns of each sensor mean that follows no other."""
-    areas: dict[str, Area] = {}
-    return {s.name: _place(s, space, areas) for s in rig if s.name not in follow}
+    skins: dict[str, Skin] = {}
+    return {s.name: _domain(s, space, skins) for s in rig if s.name not in follow}
 
 
-def _place(sensor: Sensor, space: SearchSpace, areas: dict[str, Area]) -> Place:
+def _domain(sensor: Sensor, space: SearchSpace, skins: dict[str, Skin]) -> Domain:
     mounting, name = space.mounting, sensor.name
     mount, bounds = mounting.mount_of(name), space.bounds.get(name, {})
     who = f"sensor {name!r}"
-    if isinstance(mount, Slots):
+    if isinstance(mount, SlotMount):
         return InSlots(who, mount, sensor.pose)
-    if isinstance(mount, Surface):
+    if isinstance(mount, SurfaceMount):
         key = mounting.on[name]
-        if key not in areas:
-            areas[key] = Area(f"mount {key!r}", mount, space.vehicle)
-        return OnSurface(who, mount, areas[key], sensor.pose, space.housings.get(name), bounds)
+        if key not in skins:
+            skins[key] = Skin(f"mount {key!r}", mount, space.vehicle)
+        return OnSurface(who, mount, skins[key], sensor.pose, space.housings.get(name), bounds)
     return InBox(sensor.pose, bounds)

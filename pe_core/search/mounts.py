@@ -20,7 +20,7 @@ NO_MOUNT = "the name of an [[optimize.mount]]"
 
 
 @dataclass(frozen=True, slots=True)
-class Surface:
+class SurfaceMount:
     """A mount: named parts of the vehicle's body, on which a sensor moves.
 
     Parameters
@@ -64,7 +64,7 @@ class Slot:
 
 
 @dataclass(frozen=True, slots=True)
-class Slots:
+class SlotMount:
     """A mount: a list of named poses, of which a sensor takes one. No two share a slot."""
 
     slots: Sequence[Slot]
@@ -81,7 +81,7 @@ class Slots:
         return min(self.slots, key=lambda slot: math.dist(slot.pose.position, position))
 
 
-Mount = Surface | Slots
+AnyMount = SurfaceMount | SlotMount
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +148,7 @@ class Mounting:
 
     Parameters
     ----------
-    mounts : mapping of name to Surface or Slots
+    mounts : mapping of name to SurfaceMount or SlotMount
     on : mapping of sensor name to name of its mount
         A sensor that is not named moves in its box of coordinates.
     pairs : sequence of (str, str)
@@ -163,7 +163,7 @@ class Mounting:
         When a name or a number is impossible, or a sensor is on no mount that there is.
     """
 
-    mounts: Mapping[str, Mount] = field(default_factory=dict)
+    mounts: Mapping[str, AnyMount] = field(default_factory=dict)
     on: Mapping[str, str] = field(default_factory=dict)
     pairs: Sequence[Sequence[str]] = ()
     groups: Sequence[Sequence[str]] = ()
@@ -171,10 +171,13 @@ class Mounting:
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "optimize"
+        for key in ("mounts", "on"):
+            if not isinstance(table := getattr(self, key), Mapping):
+                raise InputError(who, key, "a mapping of names", shown(table))
         for name, mount in self.mounts.items():
             A_NAME.checked(who, "mount", name)
-            if not isinstance(mount, (Surface, Slots)):
-                raise InputError(who, f"mount {name!r}", "a Surface or Slots", shown(mount))
+            if not isinstance(mount, (SurfaceMount, SlotMount)):
+                raise InputError(who, f"mount {name!r}", "a mount", shown(mount))
         for sensor, name in self.on.items():
             if name not in self.mounts:
                 known = f"one of {', '.join(self.mounts)}" if self.mounts else NO_MOUNT
@@ -184,14 +187,14 @@ class Mounting:
         put(self, "pairs", _ties("pair", self.pairs, lambda count: count == 2, "two sensors"))
         put(self, "groups", _ties("group", self.groups, lambda count: count > 1, "sensors"))
 
-    def mount_of(self, sensor: str) -> Mount | None:
+    def mount_of(self, sensor: str) -> AnyMount | None:
         """Return a sensor's mount; None where it moves in a box of coordinates."""
         name = self.on.get(sensor)
         return None if name is None else self.mounts[name]
 
     def unbounded(self, sensor: str) -> str:
         """Return why a sensor has no bounds of its own, in words; empty for one that may have."""
-        if isinstance(self.mount_of(sensor), Slots):
+        if isinstance(self.mount_of(sensor), SlotMount):
             return "a sensor on a list of slots"
         follows = any(sensor == pair[1] for pair in self.pairs)
         follows |= any(sensor in group[1:] for group in self.groups)
@@ -201,8 +204,10 @@ class Mounting:
 def _ties(
     field: str, ties: Any, enough: Callable[[int], bool], expected: str
 ) -> tuple[tuple[str, ...], ...]:
-    checked = []
-    for tie in listed(ties) or ():
+    checked, given = [], listed(ties)
+    if given is None:
+        raise InputError("optimize", field, "a list of names' lists", shown(ties))
+    for tie in given:
         names = listed(tie)
         if names is None or not enough(len(names)):
             raise InputError("optimize", field, f"the names of {expected}", shown(tie))

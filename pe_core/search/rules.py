@@ -10,13 +10,13 @@ import numpy as np
 
 from ..scene.geometry import FARTHEST_M, dot
 from ..scene.housing import cuts_body
+from ..scene.hulls import Hull, hull_box, hull_of, meet
 from ..scene.outside import is_enclosed, is_open
 from ..scene.sensors import Rig
-from ..scene.solids import Solid, meet, solid_box, solid_of
 from ..scene.vehicle import Vehicle
 from .axes import HELD_M, POSITION_AXES
-from .mounts import NoGo, Slots, Surface
-from .places import OnSurface, Place
+from .domains import Domain, OnSurface
+from .mounts import NoGo, SlotMount, SurfaceMount
 from .search_space import SearchSpace
 
 SETTLED_M = 1e-3
@@ -30,13 +30,13 @@ class Trial:
 
     rig: Rig
     space: SearchSpace
-    _solids: dict[str, Solid] = field(default_factory=dict)
+    _hulls: dict[str, Hull] = field(default_factory=dict)
 
-    def solid(self, name: str) -> Solid:
+    def hull(self, name: str) -> Hull:
         """Return the room that a sensor takes."""
-        if name not in self._solids:
-            self._solids[name] = solid_of(self.rig[name].pose, self.space.housings.get(name))
-        return self._solids[name]
+        if name not in self._hulls:
+            self._hulls[name] = hull_of(self.rig[name].pose, self.space.housings.get(name))
+        return self._hulls[name]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ def rules_of(
     space: SearchSpace,
     moving: Collection[str],
     clear: Collection[str],
-    places: dict[str, Place],
+    domains: dict[str, Domain],
 ) -> tuple[Rule, ...]:
     """Return the rules for a rig, those that are cheap to ask first.
 
@@ -66,9 +66,9 @@ def rules_of(
     rules = [rule for name in names for rule in _of_one(name, space)]
     rules += [rule for a, b in pairs for rule in _of_two(a, b, space, clear)]
     for name in names:
-        place = places.get(name)
-        if isinstance(place, OnSurface) and place.mount.standoff > SETTLED_M:
-            rules.append(_stand_off(name, place))
+        domain = domains.get(name)
+        if isinstance(domain, OnSurface) and domain.mount.standoff > SETTLED_M:
+            rules.append(_stand_off(name, domain))
         if space.vehicle is not None and name in clear:
             rules.append(_body(name, space.vehicle))
     return tuple(rules)
@@ -78,13 +78,13 @@ def _of_one(name: str, space: SearchSpace) -> Iterator[Rule]:
     limits = space.mounting.constraints
     if (height := limits.max_height) is not None:
         top = height + HELD_M
-        yield Rule(f"max_height of {name!r}", lambda t: t.solid(name).corners[:, 2].max() > top)
+        yield Rule(f"max_height of {name!r}", lambda t: t.hull(name).corners[:, 2].max() > top)
     if (width := limits.max_width) is not None:
         side = width / 2.0 + HELD_M
         yield Rule(
-            f"max_width of {name!r}", lambda t: np.abs(t.solid(name).corners[:, 1]).max() > side
+            f"max_width of {name!r}", lambda t: np.abs(t.hull(name).corners[:, 1]).max() > side
         )
-    if isinstance(space.mounting.mount_of(name), Surface):
+    if isinstance(space.mounting.mount_of(name), SurfaceMount):
         yield from _bounds(name, space)
     for area in limits.no_go:
         yield _no_go(name, area)
@@ -104,8 +104,8 @@ def _bounds(name: str, space: SearchSpace) -> Iterator[Rule]:
 
 def _no_go(name: str, area: NoGo) -> Rule:
     sides = np.clip([getattr(area, axis) or SPAN for axis in "xyz"], *SPAN)
-    box = solid_box(*sides.T)
-    return Rule(f"no_go {area.name!r} for {name!r}", lambda trial: meet(trial.solid(name), box))
+    box = hull_box(*sides.T)
+    return Rule(f"no_go {area.name!r} for {name!r}", lambda trial: meet(trial.hull(name), box))
 
 
 def _of_two(a: str, b: str, space: SearchSpace, clear: Collection[str]) -> Iterator[Rule]:
@@ -118,20 +118,20 @@ def _of_two(a: str, b: str, space: SearchSpace, clear: Collection[str]) -> Itera
 
         yield Rule(f"min_distance of {a!r} and {b!r}", near)
     shared = mounting.on.get(a) == mounting.on.get(b)
-    if shared and isinstance(mounting.mount_of(a), Slots):
+    if shared and isinstance(mounting.mount_of(a), SlotMount):
         yield Rule(f"one slot for {a!r} and {b!r}", lambda t: t.rig[a].pose == t.rig[b].pose)
     known = a in space.housings or b in space.housings
     if known and (a in clear or b in clear):
         words = f"clear housings of {a!r} and {b!r}"
-        yield Rule(words, lambda trial: meet(trial.solid(a), trial.solid(b)))
+        yield Rule(words, lambda trial: meet(trial.hull(a), trial.hull(b)))
 
 
-def _stand_off(name: str, place: OnSurface) -> Rule:
+def _stand_off(name: str, domain: OnSurface) -> Rule:
     """In a hollow, the surface may be nearer than where the sensor was put on it."""
 
     def near(trial: Trial) -> bool:
-        base = place.base(trial.rig[name].pose)
-        return place.area.is_nearer(base, place.mount.standoff - SETTLED_M)
+        base = domain.base(trial.rig[name].pose)
+        return domain.skin.is_nearer(base, domain.mount.standoff - SETTLED_M)
 
     return Rule(f"standoff of {name!r}", near)
 

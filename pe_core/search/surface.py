@@ -10,7 +10,7 @@ from ..scene.geometry import cross, dot
 from ..scene.outside import open_side
 from ..scene.triangle_tree import TriangleTree
 from ..scene.vehicle import Vehicle, closest_points
-from .mounts import Surface
+from .mounts import SurfaceMount
 
 Floats = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ ASKED = 8
 """Faces of which it is asked which side is open before it is taken for the others' side, too."""
 
 
-class Area:
+class Skin:
     """Faces of the vehicle's body that a mount names.
 
     Raises
@@ -29,7 +29,7 @@ class Area:
         When there is no vehicle, no such part, or the parts have no faces.
     """
 
-    def __init__(self, who: str, mount: Surface, vehicle: Vehicle | None) -> None:
+    def __init__(self, who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> None:
         self.vehicle, self.triangles = _faces(who, mount, vehicle)
         self._tree = TriangleTree(self.triangles)
         self._corners = np.unique(self.triangles.reshape(-1, 3), axis=0)
@@ -80,7 +80,7 @@ class Area:
         return sides.pop() if len(sides) == 1 else 0.0
 
 
-def _faces(who: str, mount: Surface, vehicle: Vehicle | None) -> tuple[Vehicle, Floats]:
+def _faces(who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> tuple[Vehicle, Floats]:
     """Return the vehicle and the mount's triangles that have an area."""
     names = () if vehicle is None else vehicle.part_names
     for part in mount.parts:

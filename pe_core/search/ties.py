@@ -12,8 +12,8 @@ from ..scene.geometry import Pose, rotate, rpy_from_matrix
 from ..scene.sensors import Rig
 from ..scene.vehicle import Vehicle
 from .axes import AXES, pose_from_values, rounded
+from .domains import same_pose, told
 from .mounts import Mounting
-from .places import same_pose, told
 
 LOPSIDED = 0.05
 """A body whose sides are at distances from y = 0 that differ by more than this share of its width

@@ -8,7 +8,7 @@ from .. import catalog
 from ..errors import InputError
 from ..scene.housing import Housing
 from ..scene.sensors import Rig, SensorModel
-from ..search import Mounting, Surface
+from ..search import Mounting, SurfaceMount
 
 
 def housings_of(rig: Rig) -> dict[str, Housing]:
@@ -33,7 +33,7 @@ def mounts_told(rig: Rig, mounting: Mounting) -> dict[str, dict[str, Any]]:
     told = {}
     for sensor, name in mounting.on.items():
         mount = mounting.mounts[name]
-        if isinstance(mount, Surface):
+        if isinstance(mount, SurfaceMount):
             own = {"parts": list(mount.parts), "standoff": mount.standoff}
             own |= {"orientation": mount.orientation}
         else:

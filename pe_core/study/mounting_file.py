@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from ..errors import InputError
 from ..scene.geometry import Pose
-from ..search import Constraints, Mount, Mounting, NoGo, Slot, Slots, Surface
+from ..search import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from ..text.tables import Table
 from ..text.values import A_NAME
 
@@ -48,22 +48,22 @@ def mounting_tables(mounting: Mounting) -> dict[str, Any]:
     }
 
 
-def _read_mount(table: Table) -> tuple[str, Mount]:
+def _read_mount(table: Table) -> tuple[str, AnyMount]:
     name = table.text("name", rule=A_NAME)
     slots = [_read_slot(each) for each in table.tables("slot")]
     if ("parts" in table) == bool(slots):
         found = "both" if slots else "neither"
         raise table.error("parts, slot", "parts of the vehicle, or a list of slots", found)
-    mount = _made(table, lambda: Slots(slots)) if slots else _read_surface(table)
+    mount = _made(table, lambda: SlotMount(slots)) if slots else _read_surface(table)
     table.finish()
     return name, mount
 
 
-def _read_surface(table: Table) -> Surface:
+def _read_surface(table: Table) -> SurfaceMount:
     parts = table.texts("parts")
     standoff = table.number("standoff", 0.0)
     orientation = table.text("orientation", "upright")
-    return _made(table, lambda: Surface(parts, standoff, orientation))
+    return _made(table, lambda: SurfaceMount(parts, standoff, orientation))
 
 
 def _read_slot(table: Table) -> Slot:
@@ -112,8 +112,8 @@ def _no_go_table(area: NoGo) -> dict[str, Any]:
     return {"name": area.name} | {a: None if s is None else list(s) for a, s in sides.items()}
 
 
-def _mount_table(name: str, mount: Mount) -> dict[str, Any]:
-    if isinstance(mount, Surface):
+def _mount_table(name: str, mount: AnyMount) -> dict[str, Any]:
+    if isinstance(mount, SurfaceMount):
         return {
             "name": name,
             "parts": list(mount.parts),

@@ -48,4 +48,4 @@ def space(*sensors, mount=None, limits=None, free=("x", "y", "z", "pitch"), vehi
 
 def roof(standoff=BASE, orientation="upright"):
     """The roof as a mount."""
-    return pe.Surface(["roof"], standoff, orientation)
+    return pe.SurfaceMount(["roof"], standoff, orientation)

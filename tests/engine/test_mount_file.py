@@ -65,7 +65,7 @@ def test_a_file_says_all_that_there_is(folder):
         group=[{"sensors": ["on the rack", "beside it"]}],
     )
     found = study.search.mounting
-    assert found.mounts["area"] == pe.Surface(("roof",), 0.04, "normal")
+    assert found.mounts["area"] == pe.SurfaceMount(("roof",), 0.04, "normal")
     assert [slot.name for slot in found.mounts["rack"].slots] == ["here", "there"]
     assert found.mounts["rack"].slots[1].pose.rpy == (0.0, math.radians(10), 0.0)
     assert found.on == {"roof": "area", "on the rack": "rack"}
@@ -283,7 +283,7 @@ def test_a_surface_needs_a_vehicle():
 def test_a_part_without_faces_is_no_surface():
     car = mounting.car()
     vehicle = pe.Vehicle(car.triangles, car.parts, (*car.part_names, "gone"))
-    mount = {"roof": pe.Surface(["gone"])}
+    mount = {"roof": pe.SurfaceMount(["gone"])}
     with pytest.raises(pe.InputError, match="parts: expected parts with faces, found none in gone"):
         Coding(*mounting.space(mounting.can(), mount=mount, vehicle=vehicle))
 

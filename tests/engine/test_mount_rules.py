@@ -5,8 +5,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.scene.housing import Housing
+from pe_core.scene.hulls import hull_box, hull_of, meet
 from pe_core.scene.outside import is_enclosed, is_open
-from pe_core.scene.solids import meet, solid_box, solid_of
 from pe_core.search import Coding, first_allowed
 from pe_core.search.rules import Trial
 from tests.engine import mounting, shapes
@@ -115,7 +115,7 @@ def test_a_surface_that_is_hollow_keeps_its_stand_off_all_round():
     )
     vehicle = pe.Vehicle(np.concatenate([floor, wall]))
     eye = shapes.camera(position=(0.0, 0.0, 0.4), name="eye")
-    mount = {"eye": pe.Surface(["vehicle"], 0.3)}
+    mount = {"eye": pe.SurfaceMount(["vehicle"], 0.3)}
     coding = Coding(*mounting.space(eye, mount=mount, free=("x", "y", "z"), vehicle=vehicle))
     near, far = (coding.candidate([x, 0.0, 0.1]).rig for x in (0.8, 0.5))
     assert coding.broken(near) == {"standoff of 'eye'"}
@@ -123,7 +123,9 @@ def test_a_surface_that_is_hollow_keeps_its_stand_off_all_round():
 
 
 def test_no_two_sensors_share_a_slot():
-    slots = pe.Slots([pe.Slot("1", pe.Pose((0, 0, FLYING))), pe.Slot("2", pe.Pose((1, 0, FLYING)))])
+    slots = pe.SlotMount(
+        [pe.Slot("1", pe.Pose((0, 0, FLYING))), pe.Slot("2", pe.Pose((1, 0, FLYING)))]
+    )
     two = can((0, 0, FLYING), "a"), can((1, 0, FLYING), "b")
     rig = pe.Rig(two)
     mounts = pe.Mounting({"rack": slots}, {"a": "rack", "b": "rack"})
@@ -164,12 +166,12 @@ def test_mirror_images_keep_to_the_rules_themselves():
     ]
 
 
-# --- solids ---------------------------------------------------------------------------------------
+# --- hulls ---------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("shape", ["box", "cylinder"])
 def test_solids_meet_when_points_of_one_are_in_the_other(shape):
-    """Against points sown densely in one solid and looked for in the other, at random poses."""
+    """Against points sown densely in one hull and looked for in the other, at random poses."""
     rng = np.random.default_rng(1)
     housing = Housing(shape, (0.2, 0.2, 0.3), (0.0, 0.0, 0.1))
     sown = rng.uniform(-1.0, 1.0, (20_000, 3))
@@ -185,7 +187,7 @@ def test_solids_meet_when_points_of_one_are_in_the_other(shape):
         within = (np.abs(local) < half).all(axis=1)
         if shape == "cylinder":
             within &= np.hypot(local[:, 0], local[:, 1]) < half[0]
-        found = meet(solid_of(a, housing), solid_of(b, housing))
+        found = meet(hull_of(a, housing), hull_of(b, housing))
         assert found or not within.any()
         met += within.any()
         apart += not found
@@ -193,11 +195,11 @@ def test_solids_meet_when_points_of_one_are_in_the_other(shape):
 
 
 def test_solids_that_touch_do_not_meet():
-    one = solid_box(np.zeros(3), np.ones(3))
+    one = hull_box(np.zeros(3), np.ones(3))
     for gap, told in ((0.0, False), (-1e-4, True), (1e-4, False)):
-        assert meet(one, solid_box(np.array([1.0 + gap, 0.0, 0.0]), np.full(3, 2.0))) is told
-    point = solid_of(pe.Pose((0.5, 0.5, 0.5)), None)
-    assert meet(one, point) and not meet(solid_box(np.ones(3), np.full(3, 2.0)), point)
+        assert meet(one, hull_box(np.array([1.0 + gap, 0.0, 0.0]), np.full(3, 2.0))) is told
+    point = hull_of(pe.Pose((0.5, 0.5, 0.5)), None)
+    assert meet(one, point) and not meet(hull_box(np.ones(3), np.full(3, 2.0)), point)
 
 
 @pytest.mark.parametrize(
@@ -268,4 +270,4 @@ def test_two_rules_that_leave_no_place_together():
 def test_a_room_is_worked_out_once():
     rig, space = mounting.space(can())
     trial = Trial(rig, space)
-    assert trial.solid("roof") is trial.solid("roof")
+    assert trial.hull("roof") is trial.hull("roof")

@@ -81,7 +81,7 @@ def test_a_mounted_search_is_the_seed_s():
 
 def test_slots_are_all_tried_and_the_best_is_found():
     slots = [pe.Slot(str(x), pe.Pose((float(x), 0.0, 2.5))) for x in range(6)]
-    rack = {"roof": pe.Slots(slots)}
+    rack = {"roof": pe.SlotMount(slots)}
     _, recorder, steps = searched(forward, can((2.0, 0.0, 2.5)), candidates=60, mount=rack)
     assert {rig["roof"].pose.position[0] for rig in recorder.rigs} == set(map(float, range(6)))
     assert steps[-1].best["roof"].pose.position[0] == 5.0
@@ -158,7 +158,7 @@ def test_result_json_says_the_mounts(sedan):
 def test_result_json_says_the_slot():
     slots = [pe.Slot(f"slot {x}", pe.Pose((float(x), 0.0, 2.0))) for x in range(3)]
     rig = pe.Rig([study().rig["roof"].moved(slots[1].pose)])
-    rack = pe.Mounting({"rack": pe.Slots(slots)}, {"roof": "rack"})
+    rack = pe.Mounting({"rack": pe.SlotMount(slots)}, {"roof": "rack"})
     search = pe.Search(samples=1024, schedule=pe.Schedule(candidates=2), mounting=rack)
     space = shapes.small_space()
     told = pe.result_dict(outcome_of(pe.Study(rig, space=space, samples=1024, search=search)))

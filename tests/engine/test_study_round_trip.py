@@ -147,13 +147,13 @@ def mountings(draw, rig, vehicle, limits):
     mounts, on = {}, {}
     if draw(st.booleans()):
         others = [pe.Slot(name, draw(POSES)) for name in names if name != first.name]
-        mounts[names[0]] = pe.Slots([pe.Slot(first.name, first.pose), *others])
+        mounts[names[0]] = pe.SlotMount([pe.Slot(first.name, first.pose), *others])
         if not limits.get(first.name):
             on[first.name] = names[0]
     if draw(st.booleans()):
         some = draw(st.lists(st.sampled_from(parts), min_size=1, unique=True))
         how = draw(st.sampled_from(["upright", "normal", "facing"]))
-        mounts[names[1]] = pe.Surface(some, draw(st.floats(0, 9)), how)
+        mounts[names[1]] = pe.SurfaceMount(some, draw(st.floats(0, 9)), how)
     followers = [sensor.name for sensor in rig if sensor.name != first.name]
     tied = draw(st.booleans()) and followers and not limits.get(followers[0])
     groups = [(first.name, followers[0])] if tied else []

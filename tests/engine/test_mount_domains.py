@@ -76,8 +76,8 @@ def test_orientation_upright_stays_so_and_normal_follows_the_surface():
     upright = can(foot + 0.2 * normal + [0.0, 0.0, CENTER], "a")
     tilted = can(foot + (0.2 + CENTER) * normal, "b", (0.0, -30.0, 0.0))
     mounts = {
-        "a": pe.Surface(["ramp"], 0.2, "upright"),
-        "b": pe.Surface(["ramp"], 0.2, "normal"),
+        "a": pe.SurfaceMount(["ramp"], 0.2, "upright"),
+        "b": pe.SurfaceMount(["ramp"], 0.2, "normal"),
     }
     free = ("x", "y", "z", "yaw")
     for rig in drawn(coded(upright, tilted, mount=mounts, free=free, vehicle=ramp()), 20):
@@ -93,8 +93,8 @@ def test_facing_looks_along_the_normal():
     ahead = shapes.camera(position=(2.32, 0.0, 0.6), name="ahead")
     aside = shapes.camera(position=(0.0, 0.92, 0.6), rotation=(0.0, 0.0, 90.0), name="aside")
     mounts = {
-        "ahead": pe.Surface(["front"], 0.02, "facing"),
-        "aside": pe.Surface(["left"], 0.02, "facing"),
+        "ahead": pe.SurfaceMount(["front"], 0.02, "facing"),
+        "aside": pe.SurfaceMount(["left"], 0.02, "facing"),
     }
     coding = coded(ahead, aside, mount=mounts, free=("x", "y", "z"))
     for rig in drawn(coding, 20):
@@ -111,7 +111,7 @@ def test_a_surface_s_outside_does_not_depend_on_how_its_corners_turn():
         assert rig["roof"].pose.position[2] == pytest.approx(TOP + BASE + CENTER, abs=1e-5)
 
 
-SLOTS = pe.Slots(
+SLOTS = pe.SlotMount(
     [
         pe.Slot("left", pe.Pose.from_degrees((0.0, 0.4, 1.6), (0.0, 5.0, 90.0))),
         pe.Slot("middle", pe.Pose.from_degrees(ON_ROOF)),

@@ -1,6 +1,6 @@
 """What one sensor's unknowns mean: a place in a box, on a surface, in a slot.
 
-A place has `unknowns`, the `start`'s values of them, and `placed`: values to a pose. With the pose
+A domain has `unknowns`, the `start`'s values of them, and `placed`: values to a pose. With the pose
 come the values as they are after rounding, or after the way down to the surface: from these the
 search goes on.
 """
@@ -19,8 +19,8 @@ from ..errors import InputError
 from ..scene.geometry import Pose, dot, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.housing import Housing
 from .axes import AXES, POSITION_AXES, pose_from_values, pose_values, rounded
-from .mounts import Slots, Surface
-from .surface import Area
+from .mounts import SlotMount, SurfaceMount
+from .surface import Skin
 from .unknown import SHARE, Unknown, unknown_of
 
 Floats = NDArray[np.float64]
@@ -31,7 +31,7 @@ START_M, START_TURN = 0.003, 0.002
 it [m, rad]."""
 
 
-class Place(Protocol):
+class Domain(Protocol):
     """Where one sensor may be."""
 
     @property
@@ -77,7 +77,7 @@ class InSlots:
     """One of a list of poses."""
 
     who: str
-    mount: Slots
+    mount: SlotMount
     pose: Pose
     unknowns: tuple[Unknown, ...] = (Unknown(0.0, 1.0, SHARE),)
     start: tuple[float, ...] = field(init=False)
@@ -106,8 +106,8 @@ class OnSurface:
     """
 
     who: str
-    mount: Surface
-    area: Area
+    mount: SurfaceMount
+    skin: Skin
     pose: Pose
     housing: Housing | None
     bounds: Mapping[str, Bounds]
@@ -119,15 +119,15 @@ class OnSurface:
     def __post_init__(self) -> None:
         put = object.__setattr__
         put(self, "axes", tuple(axis for axis in AXES[3:] if axis in self.bounds))
-        sides = zip(*(corner.tolist() for corner in self.area.bounds), strict=True)
+        sides = zip(*(corner.tolist() for corner in self.skin.bounds), strict=True)
         unknowns = [unknown_of(axis, side) for axis, side in zip("xyz", sides, strict=True)]
         unknowns += [unknown_of(axis, self.bounds[axis]) for axis in self.axes]
         put(self, "unknowns", tuple(unknowns))
-        foot, face = self.area.closest(self.base(self.pose))
-        angles = self._angles(self.area.outward(face))
+        foot, face = self.skin.closest(self.base(self.pose))
+        angles = self._angles(self.skin.outward(face))
         put(self, "angles", angles)
         put(self, "start", (*foot.tolist(), *(angles[axis] for axis in self.axes)))
-        self._check_start(foot, self.area.outward(face))
+        self._check_start(foot, self.skin.outward(face))
 
     def base(self, pose: Pose) -> Floats:
         """Return the point (3,) of a sensor at a pose from which the stand-off is measured [m]."""
@@ -135,8 +135,8 @@ class OnSurface:
 
     def placed(self, values: Sequence[float]) -> tuple[Pose, tuple[float, ...]]:
         """Return the pose at the closest point of the surface, and that point."""
-        foot, face = self.area.closest(np.array(values[:3]))
-        normal = self.area.outward(face)
+        foot, face = self.skin.closest(np.array(values[:3]))
+        normal = self.skin.outward(face)
         angles = {**self.angles, **dict(zip(self.axes, values[3:], strict=True))}
         rotation = rotate(frame_of(self.mount.orientation, normal), _turned(angles).T).T
         position = foot + self.mount.standoff * normal - rotate(rotation, self._seat)

@@ -1,4 +1,4 @@
-"""Convex solids: the room a housing takes, and whether two of them meet."""
+"""Convex hulls: the room a housing takes, and whether two of them meet."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ PARALLEL = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Solid:
-    """A convex solid in the ground frame.
+class Hull:
+    """A convex hull in the ground frame.
 
     Attributes
     ----------
@@ -39,36 +39,36 @@ class Solid:
     edges: Floats
 
 
-def solid_of(pose: Pose, housing: Housing | None) -> Solid:
+def hull_of(pose: Pose, housing: Housing | None) -> Hull:
     """Return the room that a sensor at a pose takes."""
     position = np.array(pose.position)
     if housing is None:
-        return Solid(position[None], np.zeros((0, 3)), np.zeros((0, 3)))
+        return Hull(position[None], np.zeros((0, 3)), np.zeros((0, 3)))
     outline, normals, edges = _BOX if housing.shape == "box" else _CYLINDER
     rotation = pose.ground_from_sensor
     corners = housing.center + outline * (np.array(housing.size) / 2.0)
-    return Solid(
+    return Hull(
         position + rotate(rotation, corners), rotate(rotation, normals), rotate(rotation, edges)
     )
 
 
-def solid_box(low: Floats, high: Floats) -> Solid:
+def hull_box(low: Floats, high: Floats) -> Hull:
     """Return the box between two corners (3,) [m], along the axes."""
     outline, normals, edges = _BOX
-    return Solid((low + high) / 2.0 + outline * ((high - low) / 2.0), normals, edges)
+    return Hull((low + high) / 2.0 + outline * ((high - low) / 2.0), normals, edges)
 
 
-def meet(a: Solid, b: Solid) -> bool:
-    """Whether two convex solids share more than a touch, by separating axes."""
+def meet(a: Hull, b: Hull) -> bool:
+    """Whether two convex hulls share more than a touch, by separating axes."""
     if _apart(a, b, np.eye(3)):
         return False
     axes = np.concatenate([a.normals, b.normals, _crossed(a.edges, b.edges)])
     return not _apart(a, b, axes)
 
 
-def _apart(a: Solid, b: Solid, axes: Floats) -> bool:
-    """Whether one of axes (K, 3) separates two solids."""
-    one, other = (dot(axes[:, None], solid.corners) for solid in (a, b))
+def _apart(a: Hull, b: Hull, axes: Floats) -> bool:
+    """Whether one of axes (K, 3) separates two hulls."""
+    one, other = (dot(axes[:, None], hull.corners) for hull in (a, b))
     gap = np.maximum(one.min(1) - other.max(1), other.min(1) - one.max(1))
     return bool((gap >= -TOUCH_M).any())
 

@@ -3,6 +3,7 @@
 SHELL := /bin/bash
 PYTHON_VENV := .venv/bin/python
 ARGS ?=
+ON_ALL_PROCESSORS := --numprocesses auto --maxprocesses 4 --dist loadgroup --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 .PHONY: demo test properties mutants bench lint extension screenshots clean help
@@ -11,7 +12,7 @@ demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, 
 	@tools/demo.sh $(ARGS)
 
 test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
-	@$(PYTHON_VENV) -m pytest $(or $(ARGS),tests)
+	@$(PYTHON_VENV) -m pytest $(ON_ALL_PROCESSORS) $(or $(ARGS),tests)
 
 properties: .venv/dev.stamp  ## what must hold for any rig, on 1,000 random ones: four minutes
 	@PE_PROPERTY_RIGS=1000 $(PYTHON_VENV) -m pytest $(or $(ARGS),tests/engine/test_properties.py)

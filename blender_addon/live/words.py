@@ -48,7 +48,7 @@ def change_of(now: float, before: float) -> tuple[str, int]:
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
 
 
-def points(now: pe.Glance | pe.PartScore, before: pe.Glance | pe.PartScore | None) -> str:
+def points(now: pe.Glance, before: pe.Glance | None) -> str:
     """How a share changed, in points of a hundred; nothing where that is none."""
     by = 0.0 if before is None else round(100.0 * (now.coverage - before.coverage), 1)
     return f" ({by:+.1f})".replace("-", "\N{MINUS SIGN}") if by else ""
@@ -64,7 +64,6 @@ def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:
     for word, sign in (("Better", -1.0), ("Worse", 1.0)):
         name = max(common, key=lambda each: sign * by[each], default=None)
         if name is not None and sign * by[name] >= LEAST_ZONE_CHANGE:
-            part = now.per_zone[name]
-            seen = f"{part.coverage:.0%} seen{points(part, before.per_zone[name])}"
-            found.append(f"{word} {advice.WHERE.get(name, name)}: {seen}")
+            where, seen = advice.WHERE.get(name, name), now.per_zone[name].coverage
+            found.append(f"{word} {where} by {abs(by[name]):.2f} nats, {seen:.0%} seen")
     return found

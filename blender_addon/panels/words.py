@@ -24,7 +24,12 @@ def letters(context: bpy.types.Context) -> int:
 def draw_sentence(
     layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "NONE"
 ) -> None:
-    """Draw a sentence in as many lines as it takes; the icon stands before the first."""
+    """Draw a sentence in as many lines as it takes; the icon stands before the first.
+
+    One that is set in says more of the one before, and has none.
+    """
+    if text.startswith(" "):
+        text, icon = text.strip(), "BLANK1"
     column = layout.column(align=True)
     column.scale_y = 0.8
     rest = "NONE" if icon == "NONE" else "BLANK1"

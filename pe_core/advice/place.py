@@ -30,6 +30,8 @@ Floats = NDArray[np.float64]
 SEES, HIDDEN = "sees", "hidden"
 """Reasons of a sensor that measures a place, and of one that the vehicle keeps from it; the others
 are `kinds.kind.OUT_OF_VIEW` and its like."""
+WAYS = (("ahead", "behind"), ("left", "right"), ("up", "down"))
+"""What the positive and the negative way of each axis are called."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,8 +218,13 @@ def _density(
     return here * space.size
 
 
+def _way(distance: float, ways: tuple[str, str]) -> str:
+    """Say how far along an axis, and which way: "7.95 m behind"."""
+    return f"{abs(distance):.2f} m {ways[distance < 0.0]}"
+
+
 def _headline(place: AskedPlace) -> str:
-    where = "({}) m".format(", ".join(f"{v:.2f}" for v in place.center))
+    where = ", ".join(map(_way, place.center, WAYS))
     if place.in_vehicle:
         return f"{where}: inside the vehicle, which does not count"
     if not place.seen:

@@ -49,8 +49,8 @@ def test_the_zones_that_changed_most_are_named():
     before = glance(zones=[("front", 3.0, 0.9), ("left", 2.0, 0.8), ("far", 5.0, 0.7)])
     now = glance(zones=[("front", 2.8, 0.94), ("left", 2.3, 0.72), ("far", 4.99, 0.7)])
     assert said(now, before).lines[1:] == (
-        "Better ahead: 94% seen (+4.0)",
-        "Worse on the left: 72% seen (\N{MINUS SIGN}8.0)",
+        "Better ahead by 0.20 nats, 94% seen",
+        "Worse on the left by 0.30 nats, 72% seen",
     )
     assert said(before, before).lines[1:] == ()
 

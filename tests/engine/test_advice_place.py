@@ -68,7 +68,8 @@ def test_one_beam_by_hand():
     assert place.entropy == pytest.approx(2 * math.log(1 / own.ap - 1) + 1 + math.log(2 * math.pi))
     assert place.density == pytest.approx(1.0)
     assert place.text == (
-        "(10.25, -0.25, 1.25) m: seen by 1 of 1 sensor; together AP 0.76, H 0.48 nats",
+        "10.25 m ahead, 0.25 m right, 1.25 m up: seen by 1 of 1 sensor; together AP 0.76, "
+        "H 0.48 nats",
         "objects are as likely here as on average",
         "beam: sees it with 2 beams, AP 0.76",
     )
@@ -155,7 +156,9 @@ def test_cameras_see_through_glass():
 def test_in_the_vehicle_nothing_counts():
     place = ask([one_beam()], (0, 0, 0.2), shapes.box_car())
     assert place.in_vehicle and place.density == 0.0
-    assert place.text == ("(0.25, 0.25, 0.25) m: inside the vehicle, which does not count",)
+    assert place.text == (
+        "0.25 m ahead, 0.25 m left, 0.25 m up: inside the vehicle, which does not count",
+    )
     assert not ask([one_beam()], (0, 0, 1.6), shapes.box_car()).in_vehicle  # over the roof, 1.4 m
 
 

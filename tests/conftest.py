@@ -6,6 +6,7 @@ WINDOWS = "blender"
 """The folder whose tests open a real Blender's window: one at a time, and begun first."""
 
 
+@pytest.hookimpl(tryfirst=True)  # before those who hand the tests out look for groups
 def pytest_collection_modifyitems(items):
     """Keep the tests of a file together, and all those that open windows."""
     items.sort(key=lambda item: item.path.parent.name != WINDOWS)

@@ -9,12 +9,16 @@ from typing import NamedTuple
 import bpy
 
 from .. import body, bridge, roster
-from ..engine import pe
+from ..engine import geometry, pe
 
 SAMPLES = 32_768
 """Voxels a live score looks at: an error of 0.02 nats on the sedan, and 10 ms a move of a LiDAR.
 16,384 would save 2 ms at nearly twice the error, 65,536 cost 5 ms more for 0.017."""
 
+
+MOST_TRIANGLES = 400_000
+"""A body of more is made simpler, once, and how far that moved it is told: a live score is to
+follow the hand. Score takes the body as it is."""
 
 DEFAULT_SPACE = pe.PerceptionSpace()
 
@@ -82,25 +86,50 @@ def read(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool)
     return ScoreWish(problem, rig, draft, (settings, space, model))
 
 
-class KeptEvaluators:
+class MadeFor(NamedTuple):
+    """An evaluator, what it was made for, and how far its body was moved to be simpler [m]."""
+
+    key: Hashable
+    evaluator: pe.Evaluator
+    moved_m: float
+
+
+class EvaluatorStore:
     """One evaluator a scene, kept as long as vehicle and prior stay. Used by one thread alone."""
 
     def __init__(self) -> None:
-        self._kept: dict[str, tuple[Hashable, pe.Evaluator]] = {}
+        self._kept: dict[str, MadeFor] = {}
 
-    def glance(self, scene_name: str, wish: ScoreWish) -> pe.Glance:
-        """Score a wish: only sensors that have moved are measured again."""
-        return self._of(scene_name, wish.problem).glance(wish.rig, draft=wish.draft)
+    def glance(self, scene_name: str, wish: ScoreWish) -> tuple[pe.Glance, float]:
+        """Score a wish: only sensors that have moved are measured again.
+
+        Returns
+        -------
+        glance : Glance
+        moved_m : float
+            How far the body was moved by making it simpler, at most [m].
+        """
+        kept = self._of(scene_name, wish.problem)
+        return kept.evaluator.glance(wish.rig, draft=wish.draft), kept.moved_m
 
     def clear(self) -> None:
         """Forget all."""
         self._kept.clear()
 
-    def _of(self, scene_name: str, problem: Problem) -> pe.Evaluator:
+    def _of(self, scene_name: str, problem: Problem) -> MadeFor:
         known = self._kept.get(scene_name)
-        if known is None or known[0] != problem.key:
+        if known is None or known.key != problem.key:
             self._kept.pop(scene_name, None)  # two of them need not fit in memory
-            space, prior, vehicle = problem.space, problem.prior, problem.vehicle
+            vehicle, moved_m = light(problem.vehicle)
+            space, prior = problem.space, problem.prior
             made = pe.Evaluator(space, prior, vehicle, samples=SAMPLES, model=problem.model)
-            known = self._kept[scene_name] = problem.key, made
-        return known[1]
+            known = self._kept[scene_name] = MadeFor(problem.key, made, moved_m)
+        return known
+
+
+def light(vehicle: pe.Vehicle | None) -> tuple[pe.Vehicle | None, float]:
+    """Return a vehicle of few enough triangles, and how far that moved its surface, at most [m]."""
+    if vehicle is None or len(vehicle.triangles) <= MOST_TRIANGLES:
+        return vehicle, 0.0
+    made: tuple[pe.Vehicle, float] = geometry.simplified(vehicle, MOST_TRIANGLES)
+    return made

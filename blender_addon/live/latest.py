@@ -34,12 +34,15 @@ class Reading:
         Whether it was read of a scene at rest: exactly, and to the bit as any front end would.
     rig : Rig
         What was scored.
+    moved_m : float
+        How far a body of very many triangles was moved by making it simpler, at most; 0 as a rule.
     """
 
     glance: pe.Glance
     before: pe.Glance | None
     rested: bool
     rig: pe.Rig
+    moved_m: float = 0.0
 
 
 _scored: dict[str, Scored] = {}

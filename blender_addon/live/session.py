@@ -17,7 +17,7 @@ from bpy.app.handlers import persistent
 from .. import body, bridge, changes, motion, worker
 from ..engine import pe
 from . import latest
-from .asking import KeptEvaluators, ScoreWish, priors, read
+from .asking import EvaluatorStore, ScoreWish, priors, read
 
 VEHICLE_MOVES = "The vehicle changes: measured again when it rests"
 
@@ -33,7 +33,7 @@ class Seen(NamedTuple):
 MOVING = "TRANSFORM_OT_"
 """How the names of Blender's operators begin that move things."""
 
-_evaluators = KeptEvaluators()
+_evaluators = EvaluatorStore()
 _before: dict[str, pe.Glance] = {}
 """By the scene's name: what the score was before the drag that is under way, or the last one."""
 _drags: dict[str, int] = {}
@@ -87,9 +87,10 @@ def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) 
 
 def work(name: str, wish: ScoreWish, generation: int) -> None:
     """In the thread: score, and put what was found where the next drawing looks."""
-    glance, before = _evaluators.glance(name, wish), _before.get(name)
+    (glance, moved_m), before = _evaluators.glance(name, wish), _before.get(name)
     if generation == _generation:
-        latest.note_reading(name, latest.Reading(glance, before, not wish.draft, wish.rig))
+        reading = latest.Reading(glance, before, not wish.draft, wish.rig, moved_m)
+        latest.note_reading(name, reading)
 
 
 def failed(name: str, error: Exception) -> None:

@@ -31,6 +31,8 @@ def words_of(reading: Reading) -> ReadoutText:
     seen = f"{now.coverage:.1%} of where objects are is seen{points(now, before)}"
     lines = (seen, *zone_lines(now, before))
     state = "at rest" if reading.rested else "draft while it moves"
+    if reading.moved_m:
+        state += f", body simplified to {1000.0 * reading.moved_m:.0f} mm"
     return ReadoutText(
         f"{now.entropy:.3f} nats",
         f"± {max(now.stderr, 1e-3):.3f}  {state}",

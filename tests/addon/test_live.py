@@ -285,3 +285,21 @@ def test_the_score_s_ground_map_is_kept_in_memory_for_the_views(car):
     assert isinstance(found.study, pe.Study)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert latest.scored(bpy.context.scene.name) is None
+
+
+def test_a_heavy_body_is_made_simpler_once_and_told(live, monkeypatch):
+    made = []
+
+    def simplified(vehicle, most):
+        made.append((len(vehicle.triangles), most))
+        return vehicle, 0.02
+
+    monkeypatch.setattr(asking, "MOST_TRIANGLES", 3)
+    monkeypatch.setattr(asking.geometry, "simplified", simplified)
+    session.forget()
+    session._evaluators.clear()
+    rest()
+    drag(live.objects["roof"])
+    rest()
+    assert len(made) == 1 and made[0][0] > made[0][1] == 3
+    assert reading(live).moved_m == 0.02

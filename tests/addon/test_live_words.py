@@ -80,3 +80,8 @@ def test_better_and_worse_differ_by_arrow_and_colour():
     (better, blue), (worse, orange) = lines
     assert better.startswith("\N{DOWNWARDS ARROW}") and worse.startswith("\N{UPWARDS ARROW}")
     assert blue[2] > blue[0] and orange[0] > orange[2]
+
+
+def test_a_body_that_was_made_simpler_is_told():
+    reading = latest.Reading(glance(), None, True, None, 0.0204)
+    assert words.words_of(reading).error == "± 0.022  at rest, body simplified to 20 mm"

@@ -3,7 +3,7 @@
 SHELL := /bin/bash
 PYTHON_VENV := .venv/bin/python
 ARGS ?=
-ON_ALL_PROCESSORS := --numprocesses auto --maxprocesses 4 --dist loadgroup --no-loadscope-reorder
+ON_ALL_PROCESSORS := --numprocesses auto --maxprocesses 4 --dist loadscope --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 .PHONY: demo test properties mutants bench lint extension screenshots clean help

@@ -52,7 +52,7 @@ class Running:
 
     @property
     def text(self) -> str:
-        """What is being done, how far it is, and the best so far."""
+        """What is being done, how far it is, and the best so far: about so good, if on a sample."""
         if self.job.dropped:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
@@ -60,7 +60,7 @@ class Running:
         if entropy is None:
             return stage
         sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
-        return f"{stage}, best {entropy:.3f}{' on a sample' if sampled else ''}"
+        return f"{stage}, best {'≈ ' if sampled else ''}{entropy:.3f}"
 
     @property
     def on_escape(self) -> str:

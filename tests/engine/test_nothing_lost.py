@@ -110,6 +110,11 @@ def test_nohup_means_it(study, out):
         assert command.end() == 143  # of two signals that count, it would be the second
 
 
+def heed_ctrl_c():
+    """What a shell starts in the background ignores it, and so does all that it starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("module", ["numpy", "pe_core.app.status"])
 def test_ctrl_c_while_loading_is_one_line(module):
     """Python tells of each module that it has loaded; many more follow these."""
@@ -119,6 +124,7 @@ def test_ctrl_c_while_loading_is_one_line(module):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=heed_ctrl_c,
     )
     told = []
     for line in process.stderr:

@@ -41,7 +41,7 @@ def test_ask_the_ground_by_a_click(window, screenshots):
     window.click(WIDTH // 4, HEIGHT - HEIGHT // 4)
     window.wait_for(lambda: window.state["answer"], ANSWER_TIMEOUT_S, "an answer")
     first = window.state["answer"]
-    assert "m: seen by" in first[0]
+    assert "up: seen by" in first[0]
     assert any(name in line for line in first for name in window.state["sensors"])
     window.click(WIDTH // 2, HEIGHT - HEIGHT // 6)  # it goes on asking
     window.wait_for(lambda: window.state["answer"] != first, ANSWER_TIMEOUT_S, "another answer")

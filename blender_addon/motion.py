@@ -59,18 +59,25 @@ def forget(*_: object) -> None:
     _known.clear()
 
 
-def tell_moved() -> None:
+def tell_moved() -> float | None:
     """Timer: something has just moved."""
+    count = _count
     changes.moved.tell()
+    return None if count == _count else 0.0
 
 
 def tell_rested() -> float | None:
-    """Timer: tell once nothing has moved for long enough; wait on until then."""
-    left = _rests_at - time.monotonic()
+    """Timer: tell once nothing has moved for long enough; wait on until then.
+
+    Timers are called between a move of the mouse and Blender's update of it. Who listens may bring
+    that update about: what is noted then finds this timer registered still, so that it has to go
+    on by itself.
+    """
+    left, count = _rests_at - time.monotonic(), _count
     if left > 0.0:
         return left
     changes.rested.tell()
-    return None
+    return None if count == _count else REST_S
 
 
 def _may_matter(depsgraph: bpy.types.Depsgraph) -> bool:

@@ -14,7 +14,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from .. import changes
+from .. import changes, redraw
 from . import latest
 from .words import BETTER, WORSE, words_of
 
@@ -48,23 +48,15 @@ def register() -> None:
     """Start drawing."""
     if not _handles:
         _handles.append(VIEW.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL"))
-        changes.reading.connect(draw_soon)
+        changes.reading.connect(redraw.editors)
 
 
 def unregister() -> None:
     """Stop drawing."""
     while _handles:
-        changes.reading.disconnect(draw_soon)
+        changes.reading.disconnect(redraw.editors)
         VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
-    draw_soon()
-
-
-def draw_soon() -> None:
-    """Have all 3D views drawn anew."""
-    for window in (each for manager in bpy.data.window_managers for each in manager.windows):
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+    redraw.editors()
 
 
 def draw() -> None:

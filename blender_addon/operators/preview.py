@@ -10,6 +10,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
+from .. import redraw
 from ..overlay.primitives import Primitives
 
 VIEW = bpy.types.SpaceView3D
@@ -54,11 +55,7 @@ class Preview:
 
     def redraw(self) -> None:
         """Have every 3D view drawn anew."""
-        for manager in bpy.data.window_managers:
-            for window in manager.windows:
-                for area in window.screen.areas:
-                    if area.type == "VIEW_3D":
-                        area.tag_redraw()
+        redraw.editors()
 
     def _draw(self) -> None:
         gpu.state.blend_set("ALPHA")

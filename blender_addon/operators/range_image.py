@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import redraw
 from ..engine import kinds, pe
 from ..worker import desk
 
@@ -71,11 +72,7 @@ def put(sensor: str, pixels: NDArray[np.float32]) -> None:
     image.pixels.foreach_set(np.ascontiguousarray(pixels[::-1]).ravel())
     image.update()
     image.pack()
-    for manager in bpy.data.window_managers:
-        for window in manager.windows:
-            for area in window.screen.areas:
-                if area.type == "IMAGE_EDITOR":
-                    area.tag_redraw()
+    redraw.editors("IMAGE_EDITOR")
 
 
 def image_of(sensor: str) -> bpy.types.Image:

@@ -26,7 +26,6 @@ OVER_THE_CAR = 0.06
 """How strong a free beam is over the vehicle, beside where it leaves its surroundings."""
 SURROUNDINGS_M = 0.5
 STUB_M = 0.7
-LEAST_RANGE_M = 1e-3
 RING_AZIMUTHS, RING_FAR_M = 360, 45.0
 """Places along a ring on the ground, and where rings have faded to nothing."""
 RING_JUMP = 1.35

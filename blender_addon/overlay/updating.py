@@ -13,7 +13,7 @@ from dataclasses import replace
 import bpy
 from bpy.app.handlers import persistent
 
-from .. import changes, roster, worker
+from .. import changes, redraw, roster, worker
 from ..engine import pe
 from .layers import LAYERS, Layer
 from .reading import SceneReader
@@ -112,7 +112,7 @@ def _ask(scene: str, layer: Layer, wish: PictureWish) -> None:
         worker.desk.drop(_topic(scene, layer.name))
         if _asked.pop((scene, layer.name), None) is not None:
             shown.drop(scene, layer.name)
-            tag_redraw()
+            redraw.editors()
         return
     rough = wish.moving and layer.rough
     have = shown.items(scene, layer.name)
@@ -151,7 +151,7 @@ def _worked_out(
 def _delivery(scene: str, layer: str) -> Callable[[dict[str, ShownLayer]], None]:
     def deliver(items: dict[str, ShownLayer]) -> None:
         shown.put(scene, layer, items)
-        tag_redraw()
+        redraw.editors()
 
     return deliver
 
@@ -159,7 +159,7 @@ def _delivery(scene: str, layer: str) -> Callable[[dict[str, ShownLayer]], None]
 def _failure(scene: str, layer: str) -> Callable[[Exception], None]:
     def fail(problem: Exception) -> None:
         shown.drop(scene, layer)
-        tag_redraw()
+        redraw.editors()
         if not isinstance(problem, pe.InputError):  # a score says what is wrong with the scene
             raise problem
 
@@ -168,15 +168,6 @@ def _failure(scene: str, layer: str) -> Callable[[Exception], None]:
 
 def _topic(scene: str, layer: str) -> str:
     return f"overlay {layer} of {scene}"
-
-
-def tag_redraw() -> None:
-    """Have every 3D view drawn anew."""
-    for manager in bpy.data.window_managers:
-        for window in manager.windows:
-            for area in window.screen.areas:
-                if area.type == "VIEW_3D":
-                    area.tag_redraw()
 
 
 def _handlers() -> tuple[tuple[list, object], ...]:
@@ -224,4 +215,4 @@ def unregister() -> None:
     if bpy.app.timers.is_registered(_turn):
         bpy.app.timers.unregister(_turn)
     forget()
-    tag_redraw()
+    redraw.editors()

@@ -14,7 +14,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..engine import kinds, pe, search
+from ..engine import pe, search
 from .callbacks import changed
 
 SPACE = pe.PerceptionSpace()
@@ -172,9 +172,3 @@ class SearchBounds:
         size=len(search.AXES),
         precision=3,
     )
-
-
-def default_curve(kind: str) -> tuple[float, float]:
-    """Return a and b of a kind."""
-    curve = kinds.KINDS[kind].curve
-    return curve.a, curve.b

@@ -29,15 +29,16 @@ class Timers:
         return self.now
 
     def pass_by(self, seconds):
-        """Let time pass, and call what is due on the way."""
+        """Let time pass, and call what is due; as in Blender, it is registered while it runs."""
         end = self.now + seconds
         while due := [(at, f) for f, at in self.waiting.items() if at <= end]:
             at, function = min(due, key=lambda pair: pair[0])
             self.now = max(at, self.now)
-            del self.waiting[function]
             again = function()
             if again is not None:
                 self.waiting[function] = self.now + again
+            else:
+                del self.waiting[function]
         self.now = end
 
 
@@ -81,6 +82,25 @@ def test_a_drag_is_told_as_long_as_it_lasts_and_its_rest_once(car, timers, heard
     assert heard == [MOVED] * 5
     timers.pass_by(10.0)
     assert heard == [MOVED] * 5 + [RESTED] and not timers.waiting
+
+
+@pytest.mark.parametrize("signal", [changes.moved, changes.rested], ids=[MOVED, RESTED])
+def test_a_move_that_comes_while_one_is_told_is_told_as_well(car, timers, heard, signal):
+    """Timers run before Blender's update of a move; who listens may bring it about."""
+    late = [car.objects["roof"]]
+
+    def listener():
+        if late:
+            drag(late.pop())
+
+    signal.connect(listener)
+    try:
+        drag(car.objects["roof"])
+        timers.pass_by(10.0)
+    finally:
+        signal.disconnect(listener)
+    told = [MOVED, MOVED, RESTED] if signal is changes.moved else [MOVED, RESTED, MOVED, RESTED]
+    assert heard == told and not timers.waiting
 
 
 def move_a_point(car):

@@ -81,7 +81,7 @@ class Window:
             ended = [each.args[0] for each in self._processes if each.poll() is not None]
             if ended or time.monotonic() > deadline:
                 problem = f"{ended[0]} ended" if ended else f"{timeout_s:g} s passed"
-                raise AssertionError(f"{problem}, waiting for {what}\n{self._end_of_log()}")
+                raise AssertionError(f"{problem}, waiting for {what}\n{self._what_there_is()}")
             time.sleep(POLL_S)
 
     def click(self, x: int, y: int) -> None:
@@ -192,6 +192,11 @@ class Window:
     def _tool(self, *command: str) -> None:
         answer = process.run(command, TOOL_TIMEOUT_S, self._env)
         assert answer.returncode == 0, f"{command}: {answer.stderr}"
+
+    def _what_there_is(self) -> str:
+        """What Blender wrote last of its state, and its log: for whoever has to find out why."""
+        state = self.folder / "state.json"
+        return f"{state.read_text() if state.exists() else ''}\n{self._end_of_log()}"
 
     def _end_of_log(self) -> str:
         return self.log.read_text()[-2000:] if self.log.exists() else ""

@@ -11,6 +11,7 @@ from .scene import Housing, PerceptionSpace, Pose, Rig, Sensor, Vehicle, cuts_bo
 from .scoring import Evaluator, Glance, GroundMap, PartScore, Score, SensorScore
 from .search import (
     Constraints,
+    MountArea,
     Mounting,
     NoGo,
     Schedule,
@@ -60,6 +61,7 @@ __all__ = [
     "Job",
     "Lidar",
     "Mesh",
+    "MountArea",
     "Mounting",
     "NoGo",
     "ObjectClass",

@@ -1,5 +1,6 @@
 """Searches for better placements."""
 
+from .areas import MountArea
 from .axes import AXES, POSITION_AXES, pose_from_values, pose_values
 from .coding import Candidate, Coding
 from .feasible import first_allowed
@@ -16,6 +17,7 @@ __all__ = [
     "Candidate",
     "Coding",
     "Constraints",
+    "MountArea",
     "Mounting",
     "NoGo",
     "Schedule",

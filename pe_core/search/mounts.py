@@ -11,6 +11,7 @@ from ..errors import InputError, shown
 from ..scene.geometry import Pose
 from ..text.fixed import FixedDict
 from ..text.values import A_NAME, ANY, LENGTH, Number, choice, listed, pair
+from .areas import MountArea
 
 ORIENTATIONS = ("upright", "normal", "facing")
 STANDOFF = Number(0.0, 10.0, unit="m")
@@ -21,29 +22,35 @@ NO_MOUNT = "the name of an [[optimize.mount]]"
 
 @dataclass(frozen=True, slots=True)
 class SurfaceMount:
-    """A mount: named parts of the vehicle's body, on which a sensor moves.
+    """A mount: named parts of the vehicle's body, or an area of it, on which a sensor moves.
 
     Parameters
     ----------
     parts : sequence of str
-        Names of the parts.
+        Names of the parts; none where an area is given.
     standoff : float
         From the surface, along its normal, to the middle of the base of the sensor's housing (of
         one that is facing: of its back); to the sensor's origin where its housing is not known [m].
     orientation : {"upright", "normal", "facing"}
         Whether the sensor's angles are to the ground frame, to one whose z axis is the surface's
         normal (a base plate), or to one whose x axis is (a camera in a bumper).
+    area : MountArea, optional
+        Faces of their own, in place of parts: what was painted in Blender, or has a material there.
     """
 
-    parts: Sequence[str]
+    parts: Sequence[str] = ()
     standoff: float = 0.0
     orientation: str = "upright"
+    area: MountArea | None = None
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "mount"
         names = listed(self.parts)
-        if not names:
-            raise InputError(who, "parts", "names of the vehicle's parts", shown(self.parts))
+        if not isinstance(self.area, MountArea | None):
+            raise InputError(who, "area", "a MountArea", shown(self.area))
+        if names is None or bool(names) == (self.area is not None):
+            found = shown(self.parts) if self.area is None else "parts and an area"
+            raise InputError(who, "parts", "names of the vehicle's parts", found)
         put(self, "parts", tuple(A_NAME.checked(who, "parts", name) for name in names))
         put(self, "standoff", STANDOFF.checked(who, "standoff", self.standoff))
         chosen = choice(who, "orientation", self.orientation, ORIENTATIONS)

@@ -1,4 +1,4 @@
-"""Named parts of the body as a surface to move in."""
+"""Named parts of the body, or an area of it, as a surface to move in."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ ASKED = 8
 
 
 class Skin:
-    """Faces of the vehicle's body that a mount names.
+    """Faces of the vehicle's body that a mount names, or brings.
 
     Raises
     ------
     InputError
-        When there is no vehicle, no such part, or the parts have no faces.
+        When there is no vehicle, no such part, or what is named has no faces.
     """
 
     def __init__(self, who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> None:
@@ -82,6 +82,10 @@ class Skin:
 
 def _faces(who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> tuple[Vehicle, Floats]:
     """Return the vehicle and the mount's triangles that have an area."""
+    if mount.area is not None:
+        if vehicle is None:
+            raise InputError(who, "area", "a vehicle that it is an area of", "none")
+        return vehicle, _with_area(who, "area", mount.area.triangles, "the area")
     names = () if vehicle is None else vehicle.part_names
     for part in mount.parts:
         if vehicle is None or part not in names:
@@ -89,9 +93,14 @@ def _faces(who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> tuple[Vehi
             raise InputError(who, "parts", known, shown(part))
     assert vehicle is not None  # a mount has at least one part
     ours = np.isin(vehicle.parts, [names.index(part) for part in mount.parts])
-    triangles = vehicle.triangles[ours]
+    return vehicle, _with_area(who, "parts", vehicle.triangles[ours], ", ".join(mount.parts))
+
+
+def _with_area(who: str, field: str, triangles: Floats, named: str) -> Floats:
+    """Return triangles without those that are none; complain where none is left."""
     normals = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    triangles = triangles[dot(normals, normals) > 0.0]
-    if not len(triangles):
-        raise InputError(who, "parts", "parts with faces", f"none in {', '.join(mount.parts)}")
-    return vehicle, triangles
+    left = triangles[dot(normals, normals) > 0.0]
+    if not len(left):
+        expected = "parts with faces" if field == "parts" else "faces"
+        raise InputError(who, field, expected, f"none in {named}")
+    return left

@@ -8,7 +8,7 @@ from .. import catalog
 from ..errors import InputError
 from ..scene.housing import Housing
 from ..scene.sensors import Rig, SensorModel
-from ..search import Mounting, SurfaceMount
+from ..search import MountArea, Mounting, SurfaceMount
 
 
 def housings_of(rig: Rig) -> dict[str, Housing]:
@@ -34,12 +34,17 @@ def mounts_told(rig: Rig, mounting: Mounting) -> dict[str, dict[str, Any]]:
     for sensor, name in mounting.on.items():
         mount = mounting.mounts[name]
         if isinstance(mount, SurfaceMount):
-            own = {"parts": list(mount.parts), "standoff": mount.standoff}
-            own |= {"orientation": mount.orientation}
+            faces = {"parts": list(mount.parts)} if mount.area is None else _area_told(mount.area)
+            own = {**faces, "standoff": mount.standoff, "orientation": mount.orientation}
         else:
             own = {"slot": mount.nearest(rig[sensor].pose.position).name}
         told[sensor] = {"mount": name, **own}
     return told
+
+
+def _area_told(area: MountArea) -> dict[str, Any]:
+    """Return what result.json says of an area, whatever file it is in: how many faces."""
+    return {"area_triangles": len(area.triangles)}
 
 
 def alike(one: SensorModel, other: SensorModel) -> bool:

@@ -1,29 +1,48 @@
-"""Mounts, pairs, groups and constraints of a search: their tables in the study file."""
+"""Mounts, pairs, groups and constraints of a search: their tables in the study file.
+
+An area of the body is in a mesh file beside the study.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
 from typing import Any, TypeVar
 
-from ..errors import InputError
+import numpy as np
+
+from ..errors import InputError, shown
+from ..formats.meshes import Mesh, read_mesh
 from ..scene.geometry import Pose
-from ..search import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
+from ..search import (
+    AnyMount,
+    Constraints,
+    MountArea,
+    Mounting,
+    NoGo,
+    Slot,
+    SlotMount,
+    SurfaceMount,
+)
 from ..text.tables import Table
-from ..text.values import A_NAME
+from ..text.values import A_NAME, A_PATH
 
 T = TypeVar("T")
 LIMITS = ("max_height", "max_width")
 
 
-def read_mounting(table: Table, on: Mapping[str, str]) -> Mounting:
+def read_mounting(table: Table, on: Mapping[str, str], folder: Path) -> Mounting:
     """Return what `[optimize]` says of where sensors may sit.
 
     Parameters
     ----------
     table : Table
     on : mapping of sensor name to name of its mount
+    folder : Path
+        Where the study is: files of areas are named relative to it.
     """
-    mounts = [_read_mount(each) for each in table.tables("mount")]
+    mounts = [_read_mount(each, folder) for each in table.tables("mount")]
     names = [name for name, _ in mounts]
     for name in names:
         if names.count(name) > 1:
@@ -48,22 +67,63 @@ def mounting_tables(mounting: Mounting) -> dict[str, Any]:
     }
 
 
-def _read_mount(table: Table) -> tuple[str, AnyMount]:
+def areas_mesh(mounting: Mounting) -> Mesh | None:
+    """Return the areas of all mounts as one mesh, a part a mount; None where there are none."""
+    areas = {name: area.triangles for name, area in areas_of(mounting).items()}
+    if not areas:
+        return None
+    parts = np.repeat(np.arange(len(areas), dtype=np.int32), [len(each) for each in areas.values()])
+    return Mesh(np.concatenate(list(areas.values())), parts, tuple(areas))
+
+
+def areas_of(mounting: Mounting) -> dict[str, MountArea]:
+    """Return the areas of mounts, by the mount's name."""
+    surfaces = ((n, m) for n, m in mounting.mounts.items() if isinstance(m, SurfaceMount))
+    return {name: mount.area for name, mount in surfaces if mount.area is not None}
+
+
+def with_areas_in(mounting: Mounting, file: str) -> Mounting:
+    """Return the same, its areas being parts of one file that are named after their mounts."""
+    mounts = dict(mounting.mounts)
+    for name, mount in mounts.items():
+        if isinstance(mount, SurfaceMount) and mount.area is not None:
+            mounts[name] = replace(mount, area=replace(mount.area, file=file, parts=(name,)))
+    return replace(mounting, mounts=mounts)
+
+
+def _read_mount(table: Table, folder: Path) -> tuple[str, AnyMount]:
     name = table.text("name", rule=A_NAME)
     slots = [_read_slot(each) for each in table.tables("slot")]
-    if ("parts" in table) == bool(slots):
+    if ("parts" in table or "area" in table) == bool(slots):
         found = "both" if slots else "neither"
-        raise table.error("parts, slot", "parts of the vehicle, or a list of slots", found)
-    mount = _made(table, lambda: SlotMount(slots)) if slots else _read_surface(table)
+        expected = "parts of the vehicle or an area, or a list of slots"
+        raise table.error("parts, area, slot", expected, found)
+    mount = _made(table, lambda: SlotMount(slots)) if slots else _read_surface(table, folder)
     table.finish()
     return name, mount
 
 
-def _read_surface(table: Table) -> SurfaceMount:
-    parts = table.texts("parts")
+def _read_surface(table: Table, folder: Path) -> SurfaceMount:
+    file = table.text("area", None, rule=A_PATH)
+    parts = table.texts("parts", ()) if file else table.texts("parts")
     standoff = table.number("standoff", 0.0)
     orientation = table.text("orientation", "upright")
-    return _made(table, lambda: SurfaceMount(parts, standoff, orientation))
+    if file is None:
+        return _made(table, lambda: SurfaceMount(parts, standoff, orientation))
+    area = _read_area(table, folder, file, parts)
+    return _made(table, lambda: SurfaceMount((), standoff, orientation, area))
+
+
+def _read_area(table: Table, folder: Path, file: str, parts: tuple[str, ...]) -> MountArea:
+    """Return the faces of a mesh file, of some of its parts or of all."""
+    mesh = read_mesh(folder / file)
+    for part in parts:
+        if part not in mesh.part_names:
+            expected = f"one of {', '.join(mesh.part_names)}"
+            raise table.error("parts", f"{expected} in {file}", shown(part))
+    wanted = [mesh.part_names.index(part) for part in parts or mesh.part_names]
+    triangles = mesh.triangles[np.isin(mesh.parts, wanted)]
+    return _made(table, lambda: MountArea(triangles, file, parts))
 
 
 def _read_slot(table: Table) -> Slot:
@@ -116,11 +176,17 @@ def _mount_table(name: str, mount: AnyMount) -> dict[str, Any]:
     if isinstance(mount, SurfaceMount):
         return {
             "name": name,
-            "parts": list(mount.parts),
+            **_faces_table(mount),
             "standoff": mount.standoff,
             "orientation": mount.orientation,
         }
     return {"name": name, "slot": [_slot_table(slot) for slot in mount.slots]}
+
+
+def _faces_table(mount: SurfaceMount) -> dict[str, Any]:
+    if mount.area is None:
+        return {"parts": list(mount.parts)}
+    return {"area": mount.area.file, "parts": list(mount.area.parts) or None}
 
 
 def _slot_table(slot: Slot) -> dict[str, Any]:

@@ -1,11 +1,13 @@
 """Names of the files that a run leaves in its output folder."""
 
 RESULT, HISTORY, STUDY, MESH = "result.json", "history.csv", "study.toml", "vehicle.npz"
+AREAS = "areas.npz"
+"""Areas of the body that sensors are mounted on, a part a mount."""
 BOXES = "boxes.csv"
 """The name boxes get beside a study when they have no file of their own."""
 OPTIMIZED, REVIEW = "optimized.blend", "review.png"
 """What Blender adds."""
-BESIDE_RESULT = (STUDY, MESH, BOXES, HISTORY, OPTIMIZED, REVIEW)
+BESIDE_RESULT = (STUDY, MESH, AREAS, BOXES, HISTORY, OPTIMIZED, REVIEW)
 """All that belongs to a result.json."""
 SCHEMA = 1
 """Of result.json."""

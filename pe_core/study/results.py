@@ -27,7 +27,8 @@ from ..version import __version__
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
 from .jobs import HistoryRow, Outcome
 from .mounted import mounts_told
-from .names import BESIDE_RESULT, BOXES, HISTORY, MESH, RESULT, SCHEMA, STUDY
+from .mounting_file import areas_mesh, areas_of, with_areas_in
+from .names import AREAS, BESIDE_RESULT, BOXES, HISTORY, MESH, RESULT, SCHEMA, STUDY
 from .study import Study, vehicle_digest
 from .study_file import study_bytes, study_to_dict
 
@@ -35,7 +36,8 @@ from .study_file import study_bytes, study_to_dict
 def result_names(study: Study, kind: str) -> list[str]:
     """Names of the files that a run of this kind (score or optimize) writes to its folder."""
     vehicle, boxes = study.vehicle is not None, study.prior.boxes is not None
-    with_study = [STUDY, *[MESH] * vehicle, *[BOXES] * boxes]
+    areas = bool(areas_of(study.search.mounting))
+    with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *[BOXES] * boxes]
     return [*with_study, *[HISTORY] * (kind == "optimize"), RESULT]
 
 
@@ -152,13 +154,13 @@ def files_of_other_runs(folder: Path) -> list[str]:
 
 
 def export_study(study: Study, path: str | Path, *, replace_study: bool = False) -> None:
-    """Write a study, its vehicle's mesh and its prior's boxes side by side, to run anywhere.
+    """Write a study with its vehicle's mesh, areas and boxes side by side, to run anywhere.
 
     Parameters
     ----------
     study : Study
     path : path
-        Of the study file; mesh and boxes are named after it.
+        Of the study file; mesh, areas and boxes are named after it.
     replace_study : bool
         The user has agreed to replace the file at `path`, whoever wrote it. This does not go for
         the files beside it.
@@ -183,6 +185,12 @@ def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
         mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
         study = study.with_mesh(MESH if name == STUDY else path.with_suffix(".npz").name)
         writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
+    search = study.search
+    if (areas := areas_mesh(search.mounting)) is not None:
+        file = AREAS if name == STUDY else path.with_suffix(f".{AREAS}").name
+        writers[file] = lambda at: write_mesh(at, areas)
+        search = replace(search, mounting=with_areas_in(search.mounting, file))
+        study = replace(study, search=search)
     if (boxes := study.prior.boxes) is not None:
         table = BOXES if name == STUDY else path.with_suffix(f".{BOXES}").name
         writers[table] = lambda at: write_boxes(at, boxes)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, shown
@@ -40,6 +41,7 @@ def read_search(
     free: Mapping[str, tuple[str, ...]],
     limits: Mapping[str, Mapping[str, Bounds]],
     on: Mapping[str, str],
+    folder: Path,
 ) -> Search:
     """Return the search of `[optimize]`; what its sensors say of themselves is known already."""
     search = Search(
@@ -48,7 +50,7 @@ def read_search(
         table.whole("seed", 0, SEED),
         table.whole("samples", DEFAULT_SEARCH_SAMPLES),
         _read_schedule(table),
-        read_mounting(table, on),
+        read_mounting(table, on, folder),
     )
     table.finish()
     return search

@@ -22,6 +22,7 @@ from ..text.tables import Table
 from ..text.toml_reader import load_toml
 from ..text.toml_writer import dumps
 from ..text.values import A_NAME, A_PATH
+from .mounting_file import areas_of
 from .prior_file import prior_table, read_prior
 from .search_file import in_file, read_limits, read_search, search_table
 from .study import Search, Study
@@ -43,17 +44,20 @@ def load_study(path: str | Path) -> Study:
 def save_study(study: Study, path: str | Path) -> None:
     """Write a study's TOML file, atomically.
 
-    The mesh and the boxes are not written, but have to be there; `export_study` writes them, too.
+    Mesh, areas and boxes are not written, but have to be there; `export_study` writes them, too.
 
     Raises
     ------
     InputError
-        When the vehicle's mesh or the prior's boxes are in no file, or the study cannot be written.
+        When the vehicle's mesh, an area or the prior's boxes are in no file, or the study cannot
+        be written.
     """
     path = Path(path)
     _check_beside(path, "vehicle.mesh", study.vehicle is not None, study.mesh)
     boxes = study.prior.boxes
     _check_beside(path, "prior.boxes", boxes is not None, boxes.file if boxes else None)
+    for name, area in areas_of(study.search.mounting).items():
+        _check_beside(path, f"mount {name!r}: area", True, area.file)
     write_bytes(path, study_bytes(study))
 
 
@@ -126,7 +130,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         _read_space(table.table("space")),
         read_prior(table.table("prior"), folder),
         _read_model(table.table("ap"), table.table("fusion")),
-        read_search(search, free, limits, on),
+        read_search(search, free, limits, on, folder),
         table.whole("samples", 0),
         mesh,
     )

@@ -154,12 +154,14 @@ BAD = {
     "parts and slots": (
         [sensor()],
         {"mount": [AREA | RACK]},
-        "optimize.mount[0].parts, slot: expected parts of the vehicle, or a list of slots, found",
+        "optimize.mount[0].parts, area, slot: expected parts of the vehicle or an area, or a list "
+        "of slots, found",
     ),
     "a mount of nothing": (
         [sensor()],
         {"mount": [{"name": "area"}]},
-        "optimize.mount[0].parts, slot: expected parts of the vehicle, or a list of slots, found",
+        "optimize.mount[0].parts, area, slot: expected parts of the vehicle or an area, or a list "
+        "of slots, found",
     ),
     "NaN": (
         [sensor()],

@@ -1,0 +1,148 @@
+"""Areas of the body as surfaces: from a mesh file beside the study, as Blender writes it."""
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.search import Coding
+from pe_core.study.study_file import study_from_dict
+from tests.engine import mounting, shapes
+from tests.engine.mounting import BASE, CENTER, TOP
+
+FRONT_HALF = (0.0, 0.8)
+"""Of the roof, which the area is [m along x]."""
+START = (0.4, 0.0, TOP + BASE + CENTER)
+
+
+def painted():
+    """The front half of the box car's roof, with a triangle that is none."""
+    top = shapes.box((FRONT_HALF[0], -0.7, 0.8), (FRONT_HALF[1], 0.7, TOP))
+    level = top[(top[:, :, 2] == TOP).all(axis=1)]
+    return np.concatenate([level, np.full((1, 3, 3), TOP)])
+
+
+def area_mount(standoff=BASE, orientation="upright"):
+    return pe.SurfaceMount((), standoff, orientation, pe.MountArea(painted()))
+
+
+@pytest.fixture
+def folder(tmp_path):
+    car, faces = mounting.car(), painted()
+    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    parts = np.repeat(np.arange(2, dtype=np.int32), len(faces))
+    both = np.concatenate([faces, faces - [0.0, 0.0, 0.3]])
+    pe.write_mesh(tmp_path / "areas.npz", pe.Mesh(both, parts, ("front half", "lower")))
+    return tmp_path
+
+
+def data(mount):
+    sensor = {"name": "roof", "model": mounting.CAN, "position": list(START), "mount": "area"}
+    mount = {"name": "area", "standoff": BASE, **mount}
+    return {"vehicle": {"mesh": "car.npz"}, "sensor": [sensor], "optimize": {"mount": [mount]}}
+
+
+def test_a_sensor_stays_on_the_area_though_the_part_goes_on():
+    rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
+    coding = Coding(rig, space)
+    for x in np.linspace(-1.5, 0.8, 7):
+        pose = coding.candidate((x, 0.1, TOP, 0.0)).rig["roof"].pose
+        assert pose.position[2] == pytest.approx(START[2], abs=1e-5)
+        assert pose.position[0] == pytest.approx(max(x, 0.0), abs=1e-5)
+
+
+def test_the_faces_of_a_file_s_part_are_those_of_the_area(folder):
+    study = study_from_dict(
+        data({"area": "areas.npz", "parts": ["front half"]}), "study.toml", folder
+    )
+    area = study.search.mounting.mounts["area"].area
+    assert area == pe.MountArea(painted(), "areas.npz", ["front half"])
+    assert area != pe.MountArea(painted() + 1.0, "areas.npz", ["front half"])
+    assert study.coding().candidate((-1.0, 0.0, TOP, 0.0)).rig["roof"].pose.position[0] == 0.0
+
+
+def test_a_study_with_areas_is_written_with_them_and_searches_the_same(folder, tmp_path):
+    rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
+    search = pe.Search(mounting=space.mounting, samples=1024, schedule=pe.Schedule(2))
+    study = pe.Study(rig, mounting.car(), search=search, samples=1024)
+    there = pe.prepare_folder(tmp_path / "out")
+    pe.export_study(study, there / "study.toml")
+    again = pe.load_study(there / "study.toml")
+    assert {each.name for each in there.glob("*.npz")} == {"vehicle.npz", "areas.npz"}
+    assert np.array_equal(again.search.mounting.mounts["roof"].area.triangles, painted())
+    found = [run(each) for each in (study, again)]
+    assert found[0] == found[1]
+    pe.save_study(again, there / "again.toml")
+    assert pe.load_study(there / "again.toml").search == again.search
+
+
+def run(study):
+    job = pe.OptimizeJob(study)
+    list(job)
+    return [(row.entropy, row.rig["roof"].pose) for row in job.history]
+
+
+def test_a_study_whose_areas_are_in_no_file_is_not_saved_alone(tmp_path):
+    rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
+    car, search = mounting.car(), pe.Search(mounting=space.mounting)
+    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    with pytest.raises(pe.InputError, match="mount 'roof': area: expected a file beside"):
+        pe.save_study(pe.Study(rig, car, search=search, mesh="car.npz"), tmp_path / "a.toml")
+
+
+BAD = {
+    "a file that is not there": (
+        {"area": "none.npz"},
+        "none.npz: file: expected an existing file, found",
+    ),
+    "a part that is none": (
+        {"area": "areas.npz", "parts": ["upper"]},
+        "optimize.mount[0].parts: expected one of front half, lower in areas.npz, found 'upper'",
+    ),
+    "no name": ({"area": ""}, "optimize.mount[0].area: expected the name of a file"),
+    "an area and slots": (
+        {"area": "areas.npz", "slot": [{"name": "a", "position": [0, 0, 2]}]},
+        "optimize.mount[0].parts, area, slot: expected parts of the vehicle or an area, or a list",
+    ),
+    "faces that are none": (
+        {"area": "flat.npz"},
+        "mount 'area': area: expected faces, found none in the area",
+    ),
+    "what is no mesh": ({"area": "text.npz"}, "text.npz: file: expected a NumPy .npz archive"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_is_wrong_with_an_area_is_one_line(folder, name):
+    mount, told = BAD[name]
+    flat = pe.Mesh(np.ones((2, 3, 3)), np.zeros(2, np.int32), ("flat",))
+    pe.write_mesh(folder / "flat.npz", flat)
+    (folder / "text.npz").write_text("no archive")
+    with pytest.raises(pe.InputError) as error:
+        study_from_dict(data(mount), "study.toml", folder)
+    line = str(error.value).replace(f"{folder}/", "")
+    assert told in line and "\n" not in line
+
+
+def test_an_area_needs_a_vehicle():
+    rig = pe.Rig([mounting.can(START)])
+    where = pe.Mounting({"area": area_mount()}, {"roof": "area"})
+    with pytest.raises(pe.InputError, match="area: expected a vehicle that it is an area of"):
+        pe.Study(rig, search=pe.Search(mounting=where)).coding()
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: pe.MountArea(np.zeros((0, 3, 3))),
+        lambda: pe.MountArea(np.full((1, 3, 3), np.nan)),
+        lambda: pe.MountArea("roof"),
+        lambda: pe.MountArea(painted(), ""),
+        lambda: pe.MountArea(painted(), "a.npz", "roof"),
+        lambda: pe.SurfaceMount(["roof"], area=pe.MountArea(painted())),
+        lambda: pe.SurfaceMount(area=painted()),
+        lambda: pe.SurfaceMount(),
+    ],
+)
+def test_an_impossible_area_is_refused(make):
+    with pytest.raises(pe.InputError):
+        make()

@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 import pytest
 
-from blender_addon import commands
+from blender_addon.commands import leaving
 from blender_addon.engine import pe
 from tests.addon import scenes
 from tests.addon.test_commands import FAST, ROOT, TIMEOUT_S, command, complaints, run, wait_for
@@ -121,7 +121,7 @@ def test_half_a_file_is_told(addon, tmp_path, name):
         {"cut.blend": b"\x28\xb5\x2f\xfdhalf", "cut.png": b"\x89PNGhalf"}.get(name, b"")
     )
     with pytest.raises(pe.InputError, match="expected room to write to"):
-        commands.complain_unless_whole(path)
+        leaving.complain_unless_whole(path)
 
 
 def test_the_export_of_the_panel_replaces_the_chosen_file_and_no_other(car, tmp_path):

@@ -1,0 +1,47 @@
+"""The verbs, and their options."""
+
+from __future__ import annotations
+
+import argparse
+
+from ..engine import app, pe
+from .leaving import REVIEW
+from .scene_verbs import explain_study, export_study, run_job
+from .variants import compare_variants, list_variants
+
+
+def parser(prog: str) -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    top = app.Parser(prog=prog, description="Perception entropy of vehicle sensors.")
+    top.add_argument("--version", action="version", version=f"pe {pe.__version__}")
+    verbs = top.add_subparsers(required=True, metavar="VERB")
+    score = verbs.add_parser("score", help="score the sensors of the scene")
+    optimize = verbs.add_parser("optimize", help="search for better places for the sensors")
+    for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
+        app.add_run_options(verb, search=job is pe.OptimizeJob)
+        verb.add_argument("--no-render", action="store_false", dest="render", help=f"no {REVIEW}")
+        add_variant_option(verb)
+        verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
+    export = verbs.add_parser("export", help="write the scene as a study with its mesh")
+    export.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for them")
+    add_variant_option(export)
+    export.set_defaults(function=export_study)
+    explain = verbs.add_parser("explain", help="the score in words, or one place of it")
+    app.add_explain_options(explain)
+    add_variant_option(explain)
+    explain.set_defaults(function=explain_study)
+    listing = verbs.add_parser("variants", help="list the variants in the file")
+    listing.add_argument("--json", action="store_true", help="print JSON")
+    listing.set_defaults(function=list_variants)
+    compare = verbs.add_parser("compare", help="score variants and put them side by side")
+    compare.add_argument("variants", nargs="*", metavar="NAME", help="of these (default: all)")
+    app.add_compare_options(compare)
+    compare.set_defaults(function=compare_variants)
+    app.add_sensors_verb(verbs)
+    return top
+
+
+def add_variant_option(verb: argparse.ArgumentParser) -> None:
+    """Add the option that puts a variant in place of what stands in the scene."""
+    about = "this variant in place of what stands in the scene"
+    verb.add_argument("--variant", metavar="NAME", help=about)

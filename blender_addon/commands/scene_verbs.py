@@ -1,0 +1,52 @@
+"""The verbs of the scene's own study: score, optimize, export, explain."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import bpy
+
+from .. import bridge
+from ..engine import app, pe, studies
+from .leaving import OPTIMIZED, REVIEW, leave_scene
+from .opened import from_file, opened_study
+from .streams import quiet_blender
+
+
+def run_job(args: argparse.Namespace) -> app.Answer:
+    """Score or optimize, and leave the results in the output folder."""
+    study, kind = app.with_options(opened_study(args.variant), args), args.kind
+    if kind == "optimize":
+        with from_file():
+            bridge.check_placeable(bpy.context.scene, study)
+    output, ours = args.output, [OPTIMIZED] * (kind == "optimize") + [REVIEW] * args.render
+    if output is not None:
+        output = pe.prepare_folder(output, [*ours, *studies.result_names(study, kind)])
+
+    def leave(outcome: pe.Outcome, data: dict, folder: Path) -> None:
+        with quiet_blender():
+            leave_scene(outcome, data, folder, render=args.render)
+
+    job = args.job(study, args.workers)
+    job.notes = bridge.missing_pieces(bpy.context.scene)
+    return app.carry_out(
+        job,
+        output,
+        as_json=args.json,
+        host=bridge.blender_version(),
+        more=app.More(ours, leave),
+    )
+
+
+def export_study(args: argparse.Namespace) -> app.Answer:
+    """Write the scene as a study file, with the vehicle's mesh."""
+    study = opened_study(args.variant)
+    path = pe.prepare_folder(args.output) / studies.STUDY
+    pe.export_study(study, path)
+    return str(path), app.DONE
+
+
+def explain_study(args: argparse.Namespace) -> app.Answer:
+    """Tell the scene's score in words, or ask a place."""
+    return app.explain(app.with_options(opened_study(args.variant), args), args)

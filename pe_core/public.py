@@ -10,10 +10,13 @@ from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import Housing, PerceptionSpace, Pose, Rig, Sensor, Vehicle, cuts_body
 from .scoring import Evaluator, Glance, GroundMap, PartScore, Score, SensorScore
 from .search import (
+    METHODS,
     Constraints,
+    Method,
     MountArea,
     Mounting,
     NoGo,
+    Objective,
     Schedule,
     SearchSpace,
     Slot,
@@ -43,6 +46,7 @@ from .study import (
 from .version import __version__
 
 __all__ = [
+    "METHODS",
     "Advice",
     "ApCurve",
     "BeamField",
@@ -61,10 +65,12 @@ __all__ = [
     "Job",
     "Lidar",
     "Mesh",
+    "Method",
     "MountArea",
     "Mounting",
     "NoGo",
     "ObjectClass",
+    "Objective",
     "OptimizeJob",
     "Outcome",
     "PartScore",

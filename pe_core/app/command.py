@@ -15,7 +15,7 @@ from typing import Any, NoReturn, TextIO
 from .. import catalog
 from ..errors import InputError
 from ..kinds import kind_of
-from ..study import Study
+from ..study import METHODS, Study
 from ..text.cells import quoted
 from .interrupts import FATAL
 from .status import BAD_INPUT, DONE, Answer
@@ -47,7 +47,10 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
             ("--seed", LAST_SEED, "seed of the search"),
             ("--candidates", MOST_VOXELS, "placements tried in a round"),
             ("--samples", MOST_VOXELS, "voxels a candidate is judged on (0: all)"),
+            ("--evaluations", MOST_VOXELS, "placements judged at most (0: as the method says)"),
         )
+        about = f"how to search: one of {', '.join(METHODS)}"
+        parser.add_argument("--method", choices=METHODS, metavar="NAME", help=about)
         for option, greatest, about in options:
             parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
 
@@ -78,10 +81,9 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     if args.grid_samples is not None:
         study = replace(study, samples=args.grid_samples)
     search = study.search
-    if getattr(args, "seed", None) is not None:
-        search = replace(search, seed=args.seed)
-    if getattr(args, "samples", None) is not None:
-        search = replace(search, samples=args.samples)
+    for name in ("method", "seed", "samples", "evaluations"):
+        if (value := getattr(args, name, None)) is not None:
+            search = replace(search, **{name: value})
     if getattr(args, "candidates", None) is not None:
         schedule = replace(search.schedule, candidates=args.candidates)
         search = replace(search, schedule=schedule)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from ..errors import InputError
 from ..kinds import PerceptionModel
 from ..metric.fusion import Fusion
@@ -127,7 +129,7 @@ class Evaluator:
             raise InputError("evaluator", "glance", "a sampled score", "a grid score")
         return self._scorer.glance(rig, draft)
 
-    def judge(self, rig: Rig, below: float) -> Judgement:
+    def judge(self, rig: Rig, below: float = inf) -> Judgement:
         """Tell whether a rig's entropy is below a value: what a search asks of its candidates.
 
         A sampled score often need not ask what the vehicle hides to tell that it is not.
@@ -136,7 +138,7 @@ class Evaluator:
         ----------
         rig : Rig
         below : float
-            As a rule the best entropy so far [nats].
+            As a rule the best entropy so far [nats]; inf: only an entropy will do.
 
         Returns
         -------

@@ -4,22 +4,29 @@ from .areas import MountArea
 from .axes import AXES, POSITION_AXES, pose_from_values, pose_values
 from .coding import Candidate, Coding
 from .feasible import first_allowed
+from .methods import DEFAULT_METHOD, METHODS, Method, checked_method
 from .mounts import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
+from .objective import Judgement, Objective
 from .optimize import Step, optimize
 from .schedule import Schedule
 from .search_space import PAPER_FREE, SearchSpace, checked_axes, checked_bounds
 
 __all__ = [
     "AXES",
+    "DEFAULT_METHOD",
+    "METHODS",
     "PAPER_FREE",
     "POSITION_AXES",
     "AnyMount",
     "Candidate",
     "Coding",
     "Constraints",
+    "Judgement",
+    "Method",
     "MountArea",
     "Mounting",
     "NoGo",
+    "Objective",
     "Schedule",
     "SearchSpace",
     "Slot",
@@ -28,6 +35,7 @@ __all__ = [
     "SurfaceMount",
     "checked_axes",
     "checked_bounds",
+    "checked_method",
     "first_allowed",
     "optimize",
     "pose_from_values",

@@ -1,24 +1,23 @@
-"""Algorithm 1 of the paper: random search in a shrinking neighbourhood, as a generator of steps."""
+"""The search for a better placement, by any method, as one generator of steps."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..scene.sensors import Rig
-from ..scoring.evaluator import Evaluator
 from .coding import Candidate, Coding
 from .feasible import first_allowed
+from .methods import DEFAULT_METHOD, METHODS, Given, Question, checked_method
+from .methods.method import Answered, Asking
+from .objective import Judgement, Objective
 from .schedule import Schedule
 from .search_space import SearchSpace
-from .unknown import METRE, RADIAN, SHARE
 
-SHARE_REACH = 0.5
-"""Half width of the first neighbourhood in a list: all of it, which is taken as a ring."""
-MOST_DRAWN = 100
-"""Placements drawn for one candidate; where none of them is allowed, none is scored."""
+BATCH = 16
+"""Candidates that a method may ask for at once where several are judged at a time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +29,7 @@ class Step:
     best : Rig
         The best placement so far.
     entropy : float
-        Its perception entropy [nats].
+        Its perception entropy, on the voxels of the level [nats].
     evaluations : int
         Rigs scored so far, the start included.
     fraction : float
@@ -38,7 +37,9 @@ class Step:
     round : int
         Round, from 0.
     improved : bool
-        Whether this candidate became the best.
+        Whether this candidate became the best, or the best was judged anew on another level.
+    level : int
+        Which of the objectives judged it: methods that raise the number of voxels have several.
     """
 
     best: Rig
@@ -47,26 +48,30 @@ class Step:
     fraction: float
     round: int
     improved: bool
+    level: int = 0
 
 
 def optimize(
-    evaluator: Evaluator,
+    objective: Objective | Sequence[Objective],
     rig: Rig,
     search_space: SearchSpace,
     seed: int = 0,
     schedule: Schedule | None = None,
+    *,
+    method: str = DEFAULT_METHOD,
+    evaluations: int = 0,
+    executor: Executor | None = None,
 ) -> Iterator[Step]:
     """Search for the placement of lowest perception entropy; yields a step a candidate.
 
-    Round by round, candidates are drawn uniformly in the neighbourhood of the best placement found
-    before the round, each coordinate clipped to its bounds; the neighbourhood then shrinks. What
-    breaks a rule of the search space is drawn anew, and neither scored nor returned; a start that
-    does gives way to a placement near it. Stop whenever you like: the last step holds the best so
-    far.
+    What breaks a rule of the search space is neither scored nor returned; a start that does gives
+    way to a placement near it. Stop whenever you like: the last step holds the best so far.
 
     Parameters
     ----------
-    evaluator : Evaluator
+    objective : Objective, or sequence of Objective
+        What judges placements: an `Evaluator`, say. Several: those of the method's levels, the
+        cheapest first.
     rig : Rig
         Where the search starts.
     search_space : SearchSpace
@@ -74,46 +79,76 @@ def optimize(
         The same seed gives the same steps.
     schedule : Schedule, optional
         The paper's by default: seven rounds of 1000 candidates.
+    method : str
+        A name of `METHODS`.
+    evaluations : int
+        How many placements are judged at most; 0: as many as the method takes.
+    executor : concurrent.futures.Executor, optional
+        Judges several candidates at once. The steps do not depend on it.
 
     Raises
     ------
     InputError
-        When the search space does not fit the rig, or no placement keeps to all of its rules.
+        When there is no such method, the search space does not fit the rig, or no placement keeps
+        to all of its rules.
     """
+    chosen = METHODS[checked_method("optimize", method)]
+    levels = list(objective) if isinstance(objective, Sequence) else [objective]
     coding, schedule = Coding(rig, search_space), schedule or Schedule()
-    rng, best = np.random.default_rng(seed), first_allowed(coding, seed)
-    entropy, count = evaluator.entropy(best.rig), 1
-    yield Step(best.rig, entropy, count, 0.0, 0, False)
-    if not coding.unknowns:
-        return
-    total, done = len(schedule.scales) * schedule.candidates, 0
-    for number, scale in enumerate(schedule.scales):
-        center = best
-        for _ in range(schedule.candidates):
-            candidate = _neighbour(center, coding, schedule, scale, rng)
-            improved, done = False, done + 1
-            if candidate is not None:
-                found = evaluator.judge(candidate.rig, below=entropy)
-                improved = found.entropy < entropy
-                count += 1
-                if improved:
-                    best, entropy = candidate, found.entropy
-            yield Step(best.rig, entropy, count, done / total, number, improved)
+    start = first_allowed(coding, seed)
+    first = Step(start.rig, levels[0].entropy(start.rig), 1, 0.0, 0, False)
+    yield first
+    if coding.unknowns:
+        batch = 1 if executor is None else BATCH
+        told = (seed, schedule, len(levels), batch, evaluations)
+        given = Given(coding, start, first.entropy, *told)
+        yield from _steps(first, chosen.ask(given), levels, evaluations or sys.maxsize)
 
 
-def _neighbour(
-    center: Candidate,
-    coding: Coding,
-    schedule: Schedule,
-    scale: float,
-    rng: np.random.Generator,
-) -> Candidate | None:
-    """Return a candidate that all rules allow; None when none is drawn."""
-    reach = {METRE: schedule.reach_m, RADIAN: schedule.reach_rad, SHARE: SHARE_REACH}
-    for _ in range(MOST_DRAWN):
-        known = zip(coding.unknowns, center.vector, strict=True)
-        vector = [u.brought(v + scale * reach[u.unit] * rng.uniform(-1.0, 1.0)) for u, v in known]
-        candidate = coding.candidate(vector)
-        if coding.allowed(candidate.rig):
-            return candidate
-    return None
+def _steps(step: Step, asking: Asking, levels: Sequence[Objective], most: int) -> Iterator[Step]:
+    """Answer a method's questions, one step a candidate, until it or the budget ends."""
+    question, done = next(asking, None), 0
+    while question is not None and step.evaluations < most:
+        if question.level != step.level:
+            yield (step := _judged_anew(step, levels[question.level], question))
+        answers: Answered = []
+        for candidate in question.candidates:
+            answer = _judged(candidate, levels[question.level], question.below)
+            answers.append(answer)
+            done += 1
+            fraction = max(done / question.total, (step.evaluations + 1) / most)
+            yield (step := _after(step, candidate, answer, question.round, fraction))
+            if step.evaluations == most:
+                return
+        question = _next_question(asking, answers)
+
+
+def _judged(candidate: Candidate | None, objective: Objective, below: float) -> Judgement | None:
+    return None if candidate is None else objective.judge(candidate.rig, below=below)
+
+
+def _judged_anew(step: Step, objective: Objective, question: Question) -> Step:
+    """Return the step at which the best so far is looked at on another level."""
+    entropy, count = objective.entropy(step.best), step.evaluations + 1
+    number, level = question.round, question.level
+    return Step(step.best, entropy, count, step.fraction, number, True, level)
+
+
+def _after(
+    step: Step, candidate: Candidate | None, answer: Judgement | None, number: int, fraction: float
+) -> Step:
+    """Return the step after a candidate was judged, or none could be drawn."""
+    best, entropy, count, improved = step.best, step.entropy, step.evaluations, False
+    if candidate is not None and answer is not None:
+        count += 1
+        improved = answer.entropy < entropy
+        if improved:
+            best, entropy = candidate.rig, answer.entropy
+    return Step(best, entropy, count, min(fraction, 1.0), number, improved, step.level)
+
+
+def _next_question(asking: Asking, answers: Answered) -> Question | None:
+    try:
+        return asking.send(answers)
+    except StopIteration:
+        return None

@@ -1,8 +1,11 @@
 """Studies: their files, the work on them, and the results it leaves."""
 
+from ..search import METHODS
 from .folder import FileSet, check_files, prepare_folder
-from .jobs import HistoryRow, Job, OptimizeJob, Outcome, Progress, ScoreJob
+from .job import Job, Progress
+from .jobs import OptimizeJob, ScoreJob
 from .names import MESH, OPTIMIZED, RESULT, REVIEW, STUDY
+from .outcome import HistoryRow, Outcome
 from .results import (
     add_to_result,
     export_study,
@@ -18,6 +21,7 @@ from .study_file import load_study, save_study, study_from_dict, study_to_dict
 
 __all__ = [
     "MESH",
+    "METHODS",
     "OPTIMIZED",
     "RESULT",
     "REVIEW",

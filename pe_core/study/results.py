@@ -25,10 +25,10 @@ from ..text.files import read_bytes
 from ..text.json_text import dump_json, finite
 from ..version import __version__
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
-from .jobs import HistoryRow, Outcome
 from .mounted import mounts_told
 from .mounting_file import areas_mesh, areas_of, with_areas_in
 from .names import AREAS, BESIDE_RESULT, BOXES, HISTORY, MESH, RESULT, SCHEMA, STUDY
+from .outcome import HistoryRow, Outcome
 from .study import Study, vehicle_digest
 from .study_file import study_bytes, study_to_dict
 

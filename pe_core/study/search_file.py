@@ -9,11 +9,18 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, shown
-from ..search import AXES, POSITION_AXES, Schedule, checked_bounds
+from ..search import (
+    AXES,
+    DEFAULT_METHOD,
+    METHODS,
+    POSITION_AXES,
+    Schedule,
+    checked_bounds,
+)
 from ..text.degrees import degrees_in_file
 from ..text.tables import Table
 from .mounting_file import mounting_tables, read_mounting
-from .study import DEFAULT_SEARCH_SAMPLES, SEED, Search
+from .study import DEFAULT_SEARCH_SAMPLES, EVALUATIONS, SEED, Search
 
 Bounds = tuple[float, float]
 
@@ -51,6 +58,8 @@ def read_search(
         table.whole("samples", DEFAULT_SEARCH_SAMPLES),
         _read_schedule(table),
         read_mounting(table, on, folder),
+        table.text("method", DEFAULT_METHOD, tuple(METHODS)),
+        table.whole("evaluations", 0, EVALUATIONS),
     )
     table.finish()
     return search
@@ -75,6 +84,8 @@ def _read_schedule(table: Table) -> Schedule:
 def search_table(search: Search) -> dict[str, Any]:
     """Return the table `[optimize]` of a search."""
     return {
+        "method": search.method,
+        "evaluations": search.evaluations,
         "seed": search.seed,
         "samples": search.samples,
         **{

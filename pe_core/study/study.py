@@ -21,6 +21,8 @@ from ..scoring.evaluator import Evaluator
 from ..scoring.sampling import samples_or_grid
 from ..search import (
     AXES,
+    DEFAULT_METHOD,
+    METHODS,
     PAPER_FREE,
     Coding,
     Mounting,
@@ -28,6 +30,7 @@ from ..search import (
     SearchSpace,
     checked_axes,
     checked_bounds,
+    checked_method,
 )
 from ..sight import Sight
 from ..text.fixed import FixedDict
@@ -37,6 +40,7 @@ from .mounted import check_pairs, housings_of
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
 """What a TOML file can hold."""
+EVALUATIONS = Whole(0, 1_000_000_000)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +57,13 @@ class Search:
     samples : int
         Voxels a candidate is judged on; 0: all.
     schedule : Schedule
+        Of the method "random".
     mounting : Mounting
         Mounts, pairs, groups and constraints.
+    method : str
+        A name of `METHODS`.
+    evaluations : int
+        Placements judged at most; 0: as many as the method takes.
 
     Raises
     ------
@@ -68,6 +77,8 @@ class Search:
     samples: int = DEFAULT_SEARCH_SAMPLES
     schedule: Schedule = field(default_factory=Schedule)
     mounting: Mounting = field(default_factory=Mounting)
+    method: str = DEFAULT_METHOD
+    evaluations: int = 0
 
     def __post_init__(self) -> None:
         who = "optimize"
@@ -79,6 +90,14 @@ class Search:
             raise InputError(who, "schedule", "a Schedule", type(self.schedule).__name__)
         if not isinstance(self.mounting, Mounting):
             raise InputError(who, "mounting", "a Mounting", type(self.mounting).__name__)
+        checked_method(who, self.method)
+        budget = EVALUATIONS.checked(who, "evaluations", self.evaluations)
+        object.__setattr__(self, "evaluations", budget)
+
+    @property
+    def level_samples(self) -> tuple[int, ...]:
+        """Voxels that each level of the method judges on, the cheapest first."""
+        return METHODS[self.method].samples(self.samples)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.study.jobs import HistoryRow
+from pe_core.study import HistoryRow
 from pe_core.text import dump_json
 from tests.engine import shapes
 

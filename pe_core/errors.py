@@ -38,9 +38,12 @@ class InputError(ValueError):
     def __init__(self, source: object, field: str, expected: str, found: object) -> None:
         self.source, self.field, self.expected, self.found = str(source), field, expected, found
         where = f"{_middle_cut(visible(self.source))}: {_cut(visible(field), LONGEST_WORDS)}"
-        told = visible(found) if isinstance(found, str) else _short(found)
+        self._told = told = visible(found) if isinstance(found, str) else _short(found)
         wanted = _cut(visible(expected), LONGEST_WORDS)
         super().__init__(f"{where}: expected {wanted}, found {_cut(told, LONGEST_FOUND)}")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.source, self.field, self.expected, self._told)
 
     def at(self, source: object) -> InputError:
         """Return the same error, said of another source (the file a value came from)."""

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import multiprocessing
-import multiprocessing.connection
 import os
 import signal
-import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -15,6 +13,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from pe_core import InputError
+from pe_core.search import live_as_long_as_the_parent
 
 from . import tasks
 from .effort import Effort
@@ -62,7 +61,7 @@ def run_all(
     context = multiprocessing.get_context("spawn")
     processors = os.cpu_count() or 1
     pool = ProcessPoolExecutor(
-        min(workers or processors, processors), context, initializer=_live_as_long_as_the_parent
+        min(workers or processors, processors), context, initializer=live_as_long_as_the_parent
     )
     running: dict[Future[tuple[dict[str, Any], float]], Task] = {}
     with _signals_end():
@@ -133,17 +132,3 @@ def _run(function: str, arguments: dict[str, Any]) -> tuple[dict[str, Any], floa
     started = time.perf_counter()
     value = tasks.FUNCTIONS[function](**arguments)
     return value, time.perf_counter() - started
-
-
-def _live_as_long_as_the_parent() -> None:
-    """Leave signals to the parent, and end with it, however it ends."""
-    for number in _numbers():
-        signal.signal(number, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    threading.Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()
-
-
-def _end_after(sentinel: int) -> None:
-    multiprocessing.connection.wait([sentinel])
-    os._exit(1)

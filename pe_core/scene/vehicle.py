@@ -76,6 +76,11 @@ class Vehicle:
             object.__setattr__(self, key, value)
         object.__setattr__(self, "glass", tuple(self.glass))
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """What can be worked out again is not sent to another process."""
+        own = self.triangles, self.parts, self.part_names, self.glass, self.clearance
+        return type(self), own
+
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner, each (3,) [m]."""

@@ -64,12 +64,18 @@ class Evaluator:
         in_range = vector("evaluator", "shift", shift, 3, SHIFT)
         shift = in_range[0], in_range[1], in_range[2]
         self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
+        self._shift, self._model, self._workers = shift, model, workers
         densities, fusion = prior.densities(space), Fusion(model or PerceptionModel())
         self._scorer: GridScorer | SampledScorer
         if samples == 0:
             self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
         else:
             self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Another process makes its own from what this one was made from."""
+        what = self.space, self.prior, self.vehicle
+        return _evaluator_again, (*what, self.samples, self._shift, self._model, self._workers)
 
     def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full: entropy, coverage, by class, by sensor, ground map.
@@ -154,3 +160,18 @@ class Evaluator:
         if isinstance(self._scorer, SampledScorer):
             return self._scorer
         raise InputError("evaluator", "draft", "a sampled score", "a grid score")
+
+
+def _evaluator_again(
+    space: PerceptionSpace,
+    prior: Prior,
+    vehicle: Vehicle | None,
+    samples: int,
+    shift: tuple[float, float, float],
+    model: PerceptionModel | None,
+    workers: int | None,
+) -> Evaluator:
+    """Make an evaluator that was pickled: for worker processes."""
+    return Evaluator(
+        space, prior, vehicle, samples=samples, shift=shift, model=model, workers=workers
+    )

@@ -2,12 +2,14 @@
 
 from .areas import MountArea
 from .axes import AXES, POSITION_AXES, pose_from_values, pose_values
+from .batch import judge_all
 from .coding import Candidate, Coding
 from .feasible import first_allowed
 from .methods import DEFAULT_METHOD, METHODS, Method, checked_method
 from .mounts import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .objective import Judgement, Objective
 from .optimize import Step, optimize
+from .processes import Processes, live_as_long_as_the_parent, started
 from .schedule import Schedule
 from .search_space import PAPER_FREE, SearchSpace, checked_axes, checked_bounds
 
@@ -27,6 +29,7 @@ __all__ = [
     "Mounting",
     "NoGo",
     "Objective",
+    "Processes",
     "Schedule",
     "SearchSpace",
     "Slot",
@@ -37,7 +40,10 @@ __all__ = [
     "checked_bounds",
     "checked_method",
     "first_allowed",
+    "judge_all",
+    "live_as_long_as_the_parent",
     "optimize",
     "pose_from_values",
     "pose_values",
+    "started",
 ]

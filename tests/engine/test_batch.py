@@ -1,0 +1,185 @@
+"""Candidates judged together: the same result whoever judges them, whatever becomes of workers."""
+
+import math
+import os
+import subprocess
+import sys
+import time
+from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+import pe_core as pe
+from pe_core.scoring import Judgement
+from pe_core.search import Processes, judge_all, processes, started
+from tests.engine import shapes
+
+CANDIDATES = 7
+ROOM = pe.PerceptionSpace((-8.0, 8.0), (-8.0, 8.0), (0.0, 2.0), 0.5)
+
+
+@pytest.fixture(scope="module")
+def pool():
+    """Two processes."""
+    with Processes(2) as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def evaluator():
+    """A sampled one, with a vehicle that hides something."""
+    car = pe.Vehicle(shapes.box((-1.0, -0.5, 0.2), (1.0, 0.5, 1.0)))
+    return pe.Evaluator(ROOM, pe.Prior.uniform(), car, samples=1024)
+
+
+@pytest.fixture(scope="module")
+def rigs():
+    """A LiDAR pushed along the roof, and a camera that stays."""
+    lidar, camera = shapes.small_lidar(8, 40), pe.Camera("c", 200, 100, 1.0)
+    still = pe.Sensor("ahead", camera, pe.Pose((0.9, 0.0, 1.1)))
+    places = [pe.Pose((x / 5.0 - 0.6, 0.0, 1.1)) for x in range(CANDIDATES)]
+    return [pe.Rig([pe.Sensor("roof", lidar, pose), still]) for pose in places]
+
+
+class Landscape:
+    """An objective: how far forward the first sensor is. It notes wherever it is unpacked."""
+
+    def __init__(self, folder, deaths=0, error=None):
+        self.folder, self.deaths, self.error = Path(folder), deaths, error
+
+    def __setstate__(self, state):
+        vars(self).update(state)
+        (self.folder / f"unpacked {os.getpid()} {time.monotonic_ns()}").touch()
+
+    def judge(self, rig, below):
+        x = rig.sensors[0].pose.position[0]
+        if x > 0.5:
+            for number in range(self.deaths):
+                self.die_unless(self.folder / f"death {number}")
+            if self.error:
+                raise self.error
+        return Judgement(x, False)
+
+    def die_unless(self, it_was):
+        if not it_was.exists():
+            it_was.touch()
+            os._exit(1)
+
+    @property
+    def unpacked(self):
+        """The processes that it was unpacked in, once a time."""
+        return [path.name.split()[1] for path in self.folder.glob("unpacked *")]
+
+
+def test_results_do_not_depend_on_who_judges(evaluator, rigs, pool):
+    """To the bit: here, in one process, in two, in threads, in any order, after anything."""
+    alone = [evaluator.entropy(rig) for rig in rigs]
+    assert len(set(alone)) == CANDIDATES
+    with ThreadPoolExecutor(3) as threads, Processes(1) as one:
+        for executor in (None, threads, one, pool):
+            judged = judge_all(evaluator, rigs, math.inf, executor)
+            assert judged == [(entropy, False) for entropy in alone]
+        backward = judge_all(evaluator, rigs[::-1], math.inf, pool)
+    assert [found.entropy for found in backward[::-1]] == alone
+
+
+def test_what_is_not_below_is_told_alike_by_all(evaluator, rigs, pool):
+    """Whether an evaluator needs the vehicle to tell so depends on what it measured before."""
+    alone = [evaluator.entropy(rig) for rig in rigs]
+    below = sorted(alone)[2]
+    expected = [(e, False) if e < below else (below, True) for e in alone]
+    assert sum(bound for _, bound in expected) == CANDIDATES - 2
+    for executor in (None, pool):
+        assert judge_all(evaluator, rigs, below, executor) == expected
+        assert judge_all(evaluator, rigs[::-1], below, executor) == expected[::-1]
+
+
+def test_an_objective_is_sent_to_a_process_once(tmp_path, rigs, pool):
+    objective = Landscape(tmp_path)
+    for _ in range(3):
+        judge_all(objective, rigs, math.inf, pool)
+    assert 1 <= len(objective.unpacked) <= 2
+    assert len(set(objective.unpacked)) == len(objective.unpacked)
+
+
+def test_evaluators_of_one_vehicle_share_it_in_a_worker(evaluator, rigs, pool):
+    """What is large is named by its content: a second evaluator's parcel is small."""
+    from pe_core.search.parcels import packed
+
+    finer = pe.Evaluator(ROOM, pe.Prior.uniform(), evaluator.vehicle, samples=2048)
+    assert judge_all(finer, rigs[:1], math.inf, pool)[0].entropy == finer.entropy(rigs[0])
+    assert packed(finer).inner == packed(evaluator).inner != {}
+
+
+def test_a_worker_that_dies_is_replaced_and_its_rig_judged_again(tmp_path, rigs, pool):
+    objective = Landscape(tmp_path, deaths=1)
+    judged = judge_all(objective, rigs, math.inf, pool)
+    assert [j.entropy for j in judged] == [rig.sensors[0].pose.position[0] for rig in rigs]
+    assert (tmp_path / "death 0").exists()
+
+
+def test_a_rig_that_kills_two_workers_is_named(tmp_path, rigs):
+    with Processes(2) as fresh, pytest.raises(pe.InputError) as raised:
+        judge_all(Landscape(tmp_path, deaths=9), rigs, math.inf, fresh)
+    assert str(raised.value) == (
+        "workers: process: expected one that lives through its work, "
+        "found two that died with roof at [0.6, 0.0, 1.1], ahead at [0.9, 0.0, 1.1]"
+    )
+
+
+def test_what_an_objective_raises_in_a_worker_is_raised(tmp_path, rigs, pool):
+    error = pe.InputError("mount", "part", "a surface", 3.5)
+    with pytest.raises(pe.InputError) as raised:
+        judge_all(Landscape(tmp_path, error=error), rigs, math.inf, pool)
+    assert str(raised.value) == str(error)
+
+
+def test_an_objective_that_cannot_be_sent_judges_here(tmp_path, rigs, pool):
+    objective = Landscape(tmp_path)
+    objective.cannot_be_pickled = lambda: None
+    assert judge_all(objective, rigs, math.inf, pool) == judge_all(objective, rigs)
+    assert not objective.unpacked
+
+
+def test_an_executor_that_broke_down_is_named(evaluator, rigs):
+    class Broken(Executor):
+        def submit(self, *_, **__):
+            raise BrokenExecutor("gone")
+
+    with pytest.raises(pe.InputError, match="workers: process: expected one that lives"):
+        judge_all(evaluator, rigs, math.inf, Broken())
+
+
+def test_where_no_process_can_be_started_there_are_none(monkeypatch):
+    assert started(1) is None
+    monkeypatch.setattr(processes, "BEGIN", "raise SystemExit(1)")
+    assert started(2) is None
+
+
+PACKED = """
+import os, shutil, sys
+from pathlib import Path
+here = Path(sys.argv[1])
+shutil.copytree(sys.argv[2], here / "outer" / "addon" / "pe_core", copy_function=os.symlink)
+(here / "outer" / "__init__.py").touch()
+(here / "outer" / "addon" / "__init__.py").write_text("import sys; sys.in_blender")
+sys.in_blender = True
+sys.path.insert(0, str(here))
+from outer.addon.pe_core.search import started
+with started(2) as pool:
+    from outer.addon.pe_core import Pose
+    assert pool.submit(Pose, (1.0, 2.0, 3.0)).result() == Pose((1.0, 2.0, 3.0))
+print("done")
+"""
+"""The engine inside an add-on, which runs in Blender alone; a script that is run by workers never
+ends."""
+
+
+def test_workers_of_an_engine_packed_into_an_add_on_run_no_add_on(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(PACKED)
+    arguments = [str(tmp_path), str(Path(pe.__file__).parent)]
+    command = [sys.executable, str(script), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.stdout == "done\n", done.stderr

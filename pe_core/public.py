@@ -23,6 +23,7 @@ from .search import (
     SlotMount,
     Step,
     SurfaceMount,
+    Tolerance,
     optimize,
 )
 from .sight import BlindGround, GroundSight, Reach, Sight
@@ -94,6 +95,7 @@ __all__ = [
     "Step",
     "Study",
     "SurfaceMount",
+    "Tolerance",
     "Vehicle",
     "__version__",
     "advice",

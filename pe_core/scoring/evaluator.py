@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 
 from ..errors import InputError
@@ -12,6 +13,7 @@ from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..text.values import Number, Whole, vector
+from .cases import Cases, together
 from .gridded import GridScorer
 from .sampled import Judgement, SampledScorer
 from .sampling import CENTERED, samples_or_grid
@@ -155,6 +157,46 @@ class Evaluator:
         if isinstance(self._scorer, SampledScorer):
             return self._scorer.judge(rig, below)
         return Judgement(self._scorer.entropy(rig), False)
+
+    def entropies(self, rigs: Sequence[Rig]) -> list[float]:
+        """Perception entropy of each of several rigs [nats].
+
+        On a sample, a sensor that has the same name and pose in several of them is measured once.
+
+        Parameters
+        ----------
+        rigs : sequence of Rig
+            Of the same sensors, at the same or other poses; some may lack some.
+
+        Raises
+        ------
+        InputError
+            When there is no rig.
+        """
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer.entropies(rigs)
+        return [self._scorer.entropy(part) for part in Cases(rigs).parts]
+
+    def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool = False) -> Judgement:
+        """As `judge`, of several rigs at once: of the mean of their entropies.
+
+        Parameters
+        ----------
+        rigs : sequence of Rig
+            As in `entropies`, with the same error.
+        below : float
+            As in `judge`.
+        worst : bool
+            The highest of the entropies instead of their mean.
+
+        Returns
+        -------
+        Judgement
+            As in `judge`: the mean (or highest) of the rigs' entropies, or of lower bounds of them.
+        """
+        if isinstance(self._scorer, SampledScorer):
+            return self._scorer.judge_together(rigs, below, worst)
+        return Judgement(together(self.entropies(rigs), worst), False)
 
     def _drafting(self) -> SampledScorer:
         if isinstance(self._scorer, SampledScorer):

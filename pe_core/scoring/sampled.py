@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from threading import RLock
 from typing import NamedTuple
 
@@ -16,6 +16,7 @@ from ..prior.prior import ClassDensity
 from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
+from .cases import Cases, together
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
 from .score import DECIMALS, Glance, PartScore, Score, SensorScore, rounded, sensor_score
 from .subsets import fused_early
@@ -97,6 +98,41 @@ class SampledScorer:
             m[sensor.name] = self._sensors.measure_again(sensor)
             bound = self._entropy_of(rig, m)
         return bound
+
+    def entropies(self, rigs: Sequence[Rig]) -> list[float]:
+        """Perception entropy of each of several rigs; what they share is measured once."""
+        cases = Cases(rigs)
+        with self._is_free:
+            self._sensors.measure(cases.all)
+            m = self._sensors.m
+            return [self._entropy_of(part, m) for part in cases.parts]
+
+    def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool) -> Judgement:
+        """As `judge`, of the mean of several rigs' entropies, or of the highest."""
+        with self._is_free:
+            asked = below < np.inf and self._vehicle is not None
+            bound = self._bound_together(Cases(rigs), below, worst) if asked else -np.inf
+            if bound >= below:
+                return Judgement(bound, True)
+            return Judgement(together(self.entropies(rigs), worst), False)
+
+    def _bound_together(self, cases: Cases, below: float, worst: bool) -> float:
+        """Bound several rigs together as `_lower_bound` does one.
+
+        Half of the moved sensors are asked about at first: fusing each rig anew takes time, too.
+        """
+        known = {s.name: self._sensors.known(s, False) for s in cases.all}
+        moved = [s for s in cases.all if known[s.name] is None]
+        m = {
+            s.name: self._sensors.unhidden(s) if (own := known[s.name]) is None else own.m
+            for s in cases.all
+        }
+        bound = together([self._entropy_of(part, m) for part in cases.parts], worst)
+        some = moved[: len(moved) // 2]
+        if bound >= below or not some:
+            return bound
+        m |= {sensor.name: self._sensors.measure_again(sensor) for sensor in some}
+        return together([self._entropy_of(part, m) for part in cases.parts], worst)
 
     def glance(self, rig: Rig, draft: bool = False) -> Glance:
         """Everything a sampled score tells of the whole rig."""

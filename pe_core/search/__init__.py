@@ -10,8 +10,10 @@ from .mounts import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, Surf
 from .objective import Judgement, Objective
 from .optimize import Step, optimize
 from .processes import Processes, live_as_long_as_the_parent, started
+from .robust import RobustObjective, objective_of
 from .schedule import Schedule
 from .search_space import PAPER_FREE, SearchSpace, checked_axes, checked_bounds
+from .tolerance import Tolerance
 
 __all__ = [
     "AXES",
@@ -30,18 +32,21 @@ __all__ = [
     "NoGo",
     "Objective",
     "Processes",
+    "RobustObjective",
     "Schedule",
     "SearchSpace",
     "Slot",
     "SlotMount",
     "Step",
     "SurfaceMount",
+    "Tolerance",
     "checked_axes",
     "checked_bounds",
     "checked_method",
     "first_allowed",
     "judge_all",
     "live_as_long_as_the_parent",
+    "objective_of",
     "optimize",
     "pose_from_values",
     "pose_values",

@@ -7,7 +7,7 @@ from functools import cached_property
 
 from ..scoring.evaluator import Evaluator
 from ..scoring.score import Score
-from ..search import Step, first_allowed, optimize
+from ..search import Objective, Step, first_allowed, objective_of, optimize
 from .job import Job, Progress, begun
 from .outcome import HistoryRow, Outcome
 from .study import Study
@@ -49,13 +49,15 @@ class OptimizeJob(Job):
         return self.study.with_rig(self.history[-1].rig) if self.history else self.study
 
     @cached_property
-    def _objectives(self) -> list[Evaluator]:
+    def _objectives(self) -> list[Objective]:
         """What judges candidates on each of the method's levels; the study's own where it can."""
-        own = self.study.samples
-        levels = self.study.search.level_samples
-        return [self._evaluator if n == own else self._evaluator_of(n) for n in levels]
+        search = self.study.search
+        evaluators = [self._evaluator_of(samples) for samples in search.level_samples]
+        return [objective_of(each, search.tolerance, search.seed) for each in evaluators]
 
     def _evaluator_of(self, samples: int) -> Evaluator:
+        if samples == self.study.samples:
+            return self._evaluator
         return self.study.evaluator(samples, self.workers)
 
     def __iter__(self) -> Iterator[Progress]:
@@ -88,7 +90,7 @@ class OptimizeJob(Job):
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 
-    def _checked(self) -> list[Evaluator]:
+    def _checked(self) -> list[Objective]:
         """What judges candidates; `InputError` for a search that cannot be made, before it begins.
 
         It is made here, beside whoever waits: that takes long for a large vehicle.
@@ -102,10 +104,18 @@ class OptimizeJob(Job):
             return before, self.study
         waiting = Progress("scoring the result", 1.0, self.history[-1].entropy, self.evaluations)
         found = yield from self._score(self.best.rig, waiting, to_the_end=True)
-        kept = self.history[0].rig is self.study.rig  # else the start broke a rule of the search
-        if found is not None and (found.entropy < before.entropy or not kept):
+        if found is not None and (found.entropy < before.entropy or not self._start_may_stay):
             return found, self.best
         return before, self.study  # the search's sample flattered a placement
+
+    @property
+    def _start_may_stay(self) -> bool:
+        """Whether the start is kept where what was found scores no better.
+
+        Not where it breaks a rule of the search, nor where both are scored as they stand, but were
+        searched by what they are worth mounted off or without a sensor.
+        """
+        return self.history[0].rig is self.study.rig and not self.study.search.tolerance.is_on
 
     def _search(self) -> Iterator[Progress]:
         """Search in a thread, step by step: a candidate may take longer than a window waits."""

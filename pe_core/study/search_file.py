@@ -21,6 +21,7 @@ from ..text.degrees import degrees_in_file
 from ..text.tables import Table
 from .mounting_file import mounting_tables, read_mounting
 from .study import DEFAULT_SEARCH_SAMPLES, EVALUATIONS, SEED, Search
+from .tolerance_file import read_tolerance, tolerance_keys
 
 Bounds = tuple[float, float]
 
@@ -60,6 +61,7 @@ def read_search(
         read_mounting(table, on, folder),
         table.text("method", DEFAULT_METHOD, tuple(METHODS)),
         table.whole("evaluations", 0, EVALUATIONS),
+        tolerance=read_tolerance(table),
     )
     table.finish()
     return search
@@ -94,6 +96,7 @@ def search_table(search: Search) -> dict[str, Any]:
             )
             for field in fields(Schedule)
         },
+        **tolerance_keys(search.tolerance),
         **mounting_tables(search.mounting),
     }
 

@@ -28,6 +28,7 @@ from ..search import (
     Mounting,
     Schedule,
     SearchSpace,
+    Tolerance,
     checked_axes,
     checked_bounds,
     checked_method,
@@ -60,10 +61,15 @@ class Search:
         Of the method "random".
     mounting : Mounting
         Mounts, pairs, groups and constraints.
+<<<<<<< HEAD
     method : str
         A name of `METHODS`.
     evaluations : int
         Placements judged at most; 0: as many as the method takes.
+=======
+    tolerance : Tolerance
+        Mounting errors and failures that a candidate is judged with; none by default.
+>>>>>>> 8b4bc93 (Searches can judge placements by their mean over mounting errors and failures)
 
     Raises
     ------
@@ -77,8 +83,12 @@ class Search:
     samples: int = DEFAULT_SEARCH_SAMPLES
     schedule: Schedule = field(default_factory=Schedule)
     mounting: Mounting = field(default_factory=Mounting)
+<<<<<<< HEAD
     method: str = DEFAULT_METHOD
     evaluations: int = 0
+=======
+    tolerance: Tolerance = field(default_factory=Tolerance)
+>>>>>>> 8b4bc93 (Searches can judge placements by their mean over mounting errors and failures)
 
     def __post_init__(self) -> None:
         who = "optimize"
@@ -90,6 +100,7 @@ class Search:
             raise InputError(who, "schedule", "a Schedule", type(self.schedule).__name__)
         if not isinstance(self.mounting, Mounting):
             raise InputError(who, "mounting", "a Mounting", type(self.mounting).__name__)
+<<<<<<< HEAD
         checked_method(who, self.method)
         budget = EVALUATIONS.checked(who, "evaluations", self.evaluations)
         object.__setattr__(self, "evaluations", budget)
@@ -98,6 +109,10 @@ class Search:
     def level_samples(self) -> tuple[int, ...]:
         """Voxels that each level of the method judges on, the cheapest first."""
         return METHODS[self.method].samples(self.samples)
+=======
+        if not isinstance(self.tolerance, Tolerance):
+            raise InputError(who, "tolerance", "a Tolerance", type(self.tolerance).__name__)
+>>>>>>> 8b4bc93 (Searches can judge placements by their mean over mounting errors and failures)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +149,7 @@ class Study:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
         object.__setattr__(self, "samples", samples_or_grid("study", self.samples))
         object.__setattr__(self, "search", _of_rig(self.search, self.rig))
+        self.search.tolerance.checked(self.rig)
 
     def evaluator(self, samples: int | None = None, workers: int | None = None) -> Evaluator:
         """Return the evaluator of this study; `samples` replaces the study's own."""

@@ -29,9 +29,11 @@ Floats = NDArray[np.float64]
 
 DRAWS = 8
 """Draws unless a study says otherwise."""
-POSITION = Number(0.0, 1.0, unit="m", noun="length")
-ANGLE = Angle(0.0, 45.0)
-COUNT = Whole(2, 1024)
+RULES: dict[str, Number | Whole] = {
+    "position": Number(0.0, 1.0, unit="m", noun="length"),
+    "angle": Angle(0.0, 45.0),
+    "draws": Whole(2, 1024),
+}
 COMBINATIONS = 4
 """In how many ways the sensors' draws are put together; in one where sensors fail, too."""
 SEARCHED, FRESH = 0, 1
@@ -67,8 +69,7 @@ class Tolerance:
     worst: bool = False
 
     def __post_init__(self) -> None:
-        rules = {"position": POSITION, "angle": ANGLE, "draws": COUNT}
-        for name, rule in rules.items():
+        for name, rule in RULES.items():
             value = rule.checked("optimize", f"tolerance.{name}", getattr(self, name))
             object.__setattr__(self, name, value)
         if self.draws % 2:
@@ -117,13 +118,13 @@ def mounted_off(rig: Rig, tolerance: Tolerance, seed: int = 0, stream: int = SEA
         Others give other errors. Those of a sensor depend on its place in the rig, and on no other
         sensor: sensors that are tied to each other are mounted off each by itself.
     """
-    off = [
-        [_off(sensor.pose, error) for error in _drawn(tolerance, (seed, stream, place))]
+    poses = [
+        [off(sensor.pose, error) for error in _drawn(tolerance, (seed, stream, place))]
         for place, sensor in enumerate(rig)
     ]
     ways = min(COMBINATIONS, tolerance.draws) if len(rig) > 1 else 1
     return [
-        rig.with_poses([own[(draw + way * n) % tolerance.draws] for n, own in enumerate(off)])
+        rig.with_poses([own[(draw + way * n) % tolerance.draws] for n, own in enumerate(poses)])
         for way in range(ways)
         for draw in range(tolerance.draws)
     ]
@@ -150,7 +151,7 @@ def _middles(half: int) -> Floats:
     return middles / math.sqrt(float(np.mean(middles * middles)))
 
 
-def _off(pose: Pose, error: Floats) -> Pose:
+def off(pose: Pose, error: Floats) -> Pose:
     """Return a pose with an error: moved along the ground's axes, turned in its own frame."""
     moved = np.clip(np.array(pose.position) + error[:3], -FARTHEST_M, FARTHEST_M)
     turn = rotation_matrix(*error[3:].tolist())

@@ -61,15 +61,12 @@ class Search:
         Of the method "random".
     mounting : Mounting
         Mounts, pairs, groups and constraints.
-<<<<<<< HEAD
     method : str
         A name of `METHODS`.
     evaluations : int
         Placements judged at most; 0: as many as the method takes.
-=======
     tolerance : Tolerance
         Mounting errors and failures that a candidate is judged with; none by default.
->>>>>>> 8b4bc93 (Searches can judge placements by their mean over mounting errors and failures)
 
     Raises
     ------
@@ -83,12 +80,9 @@ class Search:
     samples: int = DEFAULT_SEARCH_SAMPLES
     schedule: Schedule = field(default_factory=Schedule)
     mounting: Mounting = field(default_factory=Mounting)
-<<<<<<< HEAD
     method: str = DEFAULT_METHOD
     evaluations: int = 0
-=======
     tolerance: Tolerance = field(default_factory=Tolerance)
->>>>>>> 8b4bc93 (Searches can judge placements by their mean over mounting errors and failures)
 
     def __post_init__(self) -> None:
         who = "optimize"
@@ -100,7 +94,8 @@ class Search:
             raise InputError(who, "schedule", "a Schedule", type(self.schedule).__name__)
         if not isinstance(self.mounting, Mounting):
             raise InputError(who, "mounting", "a Mounting", type(self.mounting).__name__)
-<<<<<<< HEAD
+        if not isinstance(self.tolerance, Tolerance):
+            raise InputError(who, "tolerance", "a Tolerance", type(self.tolerance).__name__)
         checked_method(who, self.method)
         budget = EVALUATIONS.checked(who, "evaluations", self.evaluations)
         object.__setattr__(self, "evaluations", budget)
@@ -109,10 +104,6 @@ class Search:
     def level_samples(self) -> tuple[int, ...]:
         """Voxels that each level of the method judges on, the cheapest first."""
         return METHODS[self.method].samples(self.samples)
-=======
-        if not isinstance(self.tolerance, Tolerance):
-            raise InputError(who, "tolerance", "a Tolerance", type(self.tolerance).__name__)
->>>>>>> 8b4bc93 (Searches can judge placements by their mean over mounting errors and failures)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,7 @@ ERRORS = ("position", "angle", "draws")
 def read_tolerance(table: Table) -> Tolerance:
     """Return what `[optimize]` says of them: the table `tolerance`, and two keys."""
     errors, default = table.table("tolerance"), Tolerance()
-    values = {
+    values: dict[str, Any] = {
         "position": errors.number("position", default.position),
         "angle": math.radians(errors.number("angle", default.angle)),
         "draws": errors.whole("draws", default.draws),

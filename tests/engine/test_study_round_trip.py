@@ -135,7 +135,16 @@ def searches(draw, rig, vehicle):
     )
     samples = draw(st.sampled_from([0, 1024, 65_536]))
     mounting = draw(mountings(rig, vehicle, limits))
-    return pe.Search(free, limits, draw(st.integers(0, 2**63 - 1)), samples, schedule, mounting)
+    seed, tolerance = draw(st.integers(0, 2**63 - 1)), draw(tolerances(len(rig)))
+    return pe.Search(free, limits, seed, samples, schedule, mounting, tolerance=tolerance)
+
+
+@st.composite
+def tolerances(draw, sensors):
+    position, angle = draw(st.floats(0, 1)), draw(st.floats(0, math.pi / 4))
+    failures = sensors > 1 and draw(st.booleans())
+    worst = (position > 0 or angle > 0 or failures) and draw(st.booleans())
+    return pe.Tolerance(position, angle, 2 * draw(st.integers(1, 9)), failures, worst)
 
 
 @st.composite

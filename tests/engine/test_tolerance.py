@@ -1,0 +1,259 @@
+"""Mounting errors and failures: what is drawn, what a candidate is worth, what a study says."""
+
+import math
+import pickle
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.scene.geometry import rotate
+from pe_core.search import RobustObjective, judge_all
+from pe_core.search.tolerance import COMBINATIONS, FRESH, mounted_off, off, without_each
+from pe_core.study.study_file import study_from_dict, study_to_dict
+from tests.engine import shapes
+
+USUAL = pe.Tolerance(0.01, math.radians(0.3))
+BOTH = pe.Tolerance(0.02, math.radians(1.0), 2, failures=True)
+NOSE = (2.21663, 0.31663, 1.0947), (19.4249, -30.1023, 50.1524)
+"""The first draw of the second sensor."""
+ROUNDING_M, ROUNDING_RAD = 0.51e-5, math.radians(0.51e-4)
+
+
+def rig():
+    """Two LiDARs and a camera on the box car, the second LiDAR turned all ways."""
+    model = shapes.small_lidar(8, 90)
+    return pe.Rig(
+        [
+            shapes.lidar_on_roof(model),
+            shapes.lidar_on_roof(model, (2.2, 0.3, 1.1), (20.0, -30.0, 50.0), "nose"),
+            shapes.camera(),
+        ]
+    )
+
+
+@pytest.fixture(scope="module")
+def evaluator():
+    space = shapes.small_space()
+    return pe.Evaluator(space, pe.Prior.road(), shapes.box_car(), samples=1024)
+
+
+def errors(tolerance, seed=0, start=None):
+    """(draws, sensors, 6) errors of the first combination, measured from the rigs themselves."""
+    start = start or rig()
+    found = []
+    for each in mounted_off(start, tolerance, seed)[: tolerance.draws]:
+        rows = []
+        for sensor, meant in zip(each, start, strict=True):
+            moved = np.array(sensor.pose.position) - np.array(meant.pose.position)
+            back = meant.pose.ground_from_sensor.T
+            turn = rotate(back, sensor.pose.ground_from_sensor.T).T
+            small = turn[2, 1], turn[0, 2], turn[1, 0]  # roll, pitch, yaw of a small turn
+            rows.append([*moved, *np.arcsin(small)])
+        found.append(rows)
+    return np.array(found)
+
+
+# --- what is drawn --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("draws", [2, 8, 30])
+def test_errors_have_a_mean_of_zero_and_the_sigma_asked_for_in_each_coordinate(draws):
+    found = errors(pe.Tolerance(0.01, math.radians(0.3), draws))
+    scale = np.array([0.01] * 3 + [math.radians(0.3)] * 3)
+    assert np.abs(found.mean(axis=0) / scale).max() < 0.02
+    assert np.abs(np.sqrt((found**2).mean(axis=0)) / scale - 1.0).max() < 0.02
+
+
+def test_the_second_half_of_the_draws_are_the_first_with_their_signs_reversed():
+    found = errors(USUAL)
+    together = np.abs(found[:4] + found[4:])
+    assert together[:, :, :3].max() <= 2 * ROUNDING_M
+    assert together[:, :, 3:].max() < 1e-4  # turns do not commute: to first order
+
+
+def test_a_coordinate_s_errors_are_the_middles_of_equal_shares():
+    found = np.sort(errors(pe.Tolerance(0.1, 0.0, 4)), axis=0)[:, :, :3]
+    middles = np.array([-1.15034938, -0.31863936, 0.31863936, 1.15034938])  # of the eighths
+    middles = 0.1 * middles / math.sqrt(np.mean(middles**2))
+    assert np.abs(found - middles[:, None, None]).max() <= ROUNDING_M
+
+
+def test_no_two_sensors_or_coordinates_have_the_same_errors():
+    found = errors(pe.Tolerance(0.01, 0.01, 16)).reshape(16, -1)
+    assert all(
+        np.abs(found[:, a] - found[:, b]).max() > 1e-3 for a, b in combinations(range(18), 2)
+    )
+
+
+def test_errors_follow_from_seed_and_stream_and_from_nothing_else():
+    first = mounted_off(rig(), USUAL, 5)
+    assert [s.pose for r in first for s in r] == [
+        s.pose for r in mounted_off(rig(), USUAL, 5) for s in r
+    ]
+    for seed, stream in ((6, 0), (5, FRESH)):
+        assert first[0]["roof"].pose != mounted_off(rig(), USUAL, seed, stream)[0]["roof"].pose
+    alone = pe.Rig([rig()["roof"]])
+    poses = [r["roof"].pose for r in mounted_off(alone, USUAL, 5)]
+    assert poses == [r["roof"].pose for r in first[: USUAL.draws]]
+
+
+def test_errors_are_the_same_numbers_everywhere():
+    pose = mounted_off(rig(), USUAL, 0)[0]["nose"].pose
+    assert pose.position == NOSE[0] and pose.rotation_deg == NOSE[1]
+
+
+def test_a_turn_is_in_the_sensor_s_own_frame():
+    """An error of yaw turns a sensor about its own upward axis, wherever that points."""
+    pose = rig()["nose"].pose
+    turned = off(pose, np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.1]))
+    ahead, up = (np.stack([p.ground_from_sensor[:, k] for p in (pose, turned)]) for k in (0, 2))
+    assert np.abs(up[0] - up[1]).max() <= 2 * ROUNDING_RAD
+    assert ahead[0] @ ahead[1] == pytest.approx(math.cos(0.1), abs=1e-6)
+    assert turned.position == pose.position and abs(turned.rpy[0] - pose.rpy[0]) > 0.01
+
+
+def test_the_draws_of_one_sensor_meet_several_of_the_others():
+    cases = mounted_off(rig(), USUAL)
+    pairs = {(each["roof"].pose, each["nose"].pose) for each in cases}
+    assert len(pairs) == len(cases) == COMBINATIONS * USUAL.draws
+    for name in ("roof", "nose", "camera"):
+        assert len({each[name].pose for each in cases}) == USUAL.draws
+
+
+# --- what a candidate is worth --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "tolerance",
+    [BOTH, pe.Tolerance(failures=True), pe.Tolerance(0.05, draws=2, worst=True)],
+)
+def test_a_candidate_is_worth_the_mean_or_the_worst_of_its_cases(tolerance, evaluator):
+    fresh = pe.Evaluator(evaluator.space, evaluator.prior, evaluator.vehicle, samples=1024)
+    each = [fresh.entropy(case) for case in tolerance.cases(rig(), 3)]
+    expected = max(each) if tolerance.worst else sum(each) / len(each)
+    objective = RobustObjective(evaluator, tolerance, 3)
+    assert objective.entropy(rig()) == pytest.approx(expected, abs=1e-9)
+    assert objective.judge(rig()) == (objective.entropy(rig()), False)
+
+
+def test_failures_are_the_loss_of_each_sensor():
+    lost = pe.Tolerance(failures=True).cases(rig())
+    assert [[s.name for s in each] for each in lost] == [
+        ["nose", "camera"],
+        ["roof", "camera"],
+        ["roof", "nose"],
+    ]
+    assert len(BOTH.cases(rig())) == 2 * 3
+    assert [len(each) for each in without_each(rig())] == [2, 2, 2]
+
+
+def test_what_several_cases_share_is_measured_once(evaluator, monkeypatch):
+    kernel = type(evaluator._scorer._sensors._kernel(rig()["roof"]))
+    measured, whole = [], kernel.measure
+    monkeypatch.setattr(kernel, "measure", lambda k, s, d: measured.append(s) or whole(k, s, d))
+    fresh = pe.Evaluator(evaluator.space, evaluator.prior, evaluator.vehicle, samples=1024)
+    objective, start = RobustObjective(fresh, BOTH), rig()
+    objective.entropy(start)
+    assert len(measured) == 2 * BOTH.draws  # of two LiDARs, though they are in 6 cases
+    moved = start.with_poses([pe.Pose((0.0, 0.0, 2.0)), *(s.pose for s in start.sensors[1:])])
+    objective.entropy(moved)
+    assert len(measured) == 3 * BOTH.draws  # the one that moved
+
+
+@pytest.mark.parametrize("changes", [{}, {"failures": True}, {"worst": True}])
+def test_a_bound_is_no_higher_than_the_truth_and_told_only_where_it_settles(changes, evaluator):
+    tolerance = pe.Tolerance(0.02, 0.02, 2, **changes)
+    exact = RobustObjective(evaluator, tolerance).entropy(rig())
+    rested = {name: (1.0, 0.5, 3.0 + n) for n, name in enumerate(("roof", "nose", "camera"))}
+    elsewhere = rig().with_poses([pe.Pose(rested[s.name]) for s in rig()])
+    for above in (2.0, 0.01, 0.0, -0.01):
+        objective, below = RobustObjective(evaluator, tolerance), exact - above
+        objective.entropy(elsewhere)  # nothing of the candidate is known any more
+        found = objective.judge(rig(), below)
+        assert found.is_lower_bound or found.entropy == exact
+        assert below <= found.entropy <= exact or not found.is_lower_bound
+        assert (found.entropy < below) == (above < 0.0)
+        assert found.is_lower_bound or above < 2.0  # where much is to spare, it is not measured
+
+
+def test_a_grid_judges_as_a_sample_does():
+    space = pe.PerceptionSpace((-4, 4), (-4, 4), (0, 2), 0.5)
+    grid = pe.Evaluator(space, pe.Prior.uniform(), shapes.box_car())
+    each = [grid.entropy(case) for case in BOTH.cases(rig())]
+    objective = RobustObjective(grid, BOTH)
+    assert objective.judge(rig(), 0.0) == (pytest.approx(np.mean(each), abs=1e-9), False)
+
+
+def test_an_objective_can_be_sent_to_a_worker(evaluator):
+    objective = RobustObjective(evaluator, BOTH, 2)
+    again = pickle.loads(pickle.dumps(objective))
+    (found,) = judge_all(again, [rig()])
+    assert found.entropy == objective.entropy(rig())
+
+
+def test_a_search_minimises_what_placements_are_worth_mounted_off(evaluator):
+    bounds = {"roof": {"z": (1.5, 2.2), "pitch": (-0.2, 0.2)}}
+    objective = RobustObjective(evaluator, BOTH)
+    schedule = pe.Schedule(4, floor_m=0.4, floor_rad=0.2)
+    *_, last = pe.optimize(objective, rig(), pe.SearchSpace(bounds), 1, schedule)
+    assert last.entropy == objective.entropy(last.best) < objective.entropy(rig())
+
+
+# --- studies --------------------------------------------------------------------------------------
+
+SENSOR = {"name": "roof", "model": "Pandar64", "position": [0.0, 0.0, 2.0]}
+TWO = [SENSOR, SENSOR | {"name": "nose"}]
+
+
+def read(sensors=TWO, **optimize):
+    return study_from_dict({"sensor": sensors, "optimize": optimize}, "study.toml")
+
+
+def test_a_study_says_tolerance_and_failures():
+    study = read(tolerance={"position": 0.02, "angle": 0.5, "draws": 6}, failures=True, worst=True)
+    assert study.search.tolerance == pe.Tolerance(0.02, math.radians(0.5), 6, True, True)
+    again = study_from_dict(study_to_dict(study))
+    assert again.search == study.search
+
+
+def test_a_study_that_says_nothing_of_it_is_written_as_ever():
+    study = read()
+    assert study.search.tolerance == pe.Tolerance() and not pe.Tolerance().is_on
+    assert not {"tolerance", "failures", "worst"} & set(study_to_dict(study)["optimize"])
+
+
+BAD = {
+    "optimize.tolerance.position: expected a length from 0 to 1 m, found -0.01": {
+        "tolerance": {"position": -0.01}
+    },
+    "optimize.tolerance.angle: expected an angle from 0 to 45 degrees, found -0.3 degrees": {
+        "tolerance": {"angle": -0.3}
+    },
+    "optimize.tolerance.position: expected a number, found nan": {
+        "tolerance": {"position": math.nan}
+    },
+    "optimize.tolerance.draws: expected an even number, found 7": {
+        "tolerance": {"angle": 0.3, "draws": 7}
+    },
+    "optimize.tolerance.sigma: expected one of angle, draws, position, found an unknown key": {
+        "tolerance": {"sigma": 1}
+    },
+    "optimize.tolerance: expected a table, found float": {"tolerance": 0.01},
+    "optimize.failures: expected true or false, found 1": {"failures": 1},
+    "optimize.worst: expected a tolerance, or failures = true, found neither": {"worst": True},
+}
+
+
+@pytest.mark.parametrize("line", BAD)
+def test_what_is_wrong_is_told_in_one_line(line):
+    with pytest.raises(pe.InputError) as error:
+        read(**BAD[line])
+    assert str(error.value) == f"study.toml: {line}"
+
+
+def test_failures_need_a_second_sensor():
+    expected = "failures: expected a rig of at least two sensors, found one"
+    with pytest.raises(pe.InputError, match=expected):
+        read([SENSOR], failures=True)

@@ -10,6 +10,7 @@ from ..engine import pe, studies
 from .advanced import Limits, all_limits, clearance_of, perception_of, space_of
 from .prior import prior_from_scene
 from .rig import free_axes, rig_from_objects, sensor_objects
+from .tolerance import tolerance_of
 from .vehicle import vehicle_from_collection
 
 
@@ -105,7 +106,14 @@ def _search(
     limits: Mapping[str, Limits],
 ) -> pe.Search:
     schedule = pe.Schedule(candidates=settings.candidates)
-    return pe.Search(dict(free), dict(limits), settings.seed, settings.search_samples, schedule)
+    return pe.Search(
+        dict(free),
+        dict(limits),
+        settings.seed,
+        settings.search_samples,
+        schedule,
+        tolerance=tolerance_of(settings),
+    )
 
 
 def _check_metres(scene: bpy.types.Scene) -> None:

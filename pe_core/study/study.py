@@ -140,7 +140,6 @@ class Study:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
         object.__setattr__(self, "samples", samples_or_grid("study", self.samples))
         object.__setattr__(self, "search", _of_rig(self.search, self.rig))
-        self.search.tolerance.checked(self.rig)
 
     def evaluator(self, samples: int | None = None, workers: int | None = None) -> Evaluator:
         """Return the evaluator of this study; `samples` replaces the study's own."""
@@ -166,6 +165,7 @@ class Study:
 
     def coding(self) -> Coding:
         """Return the unknowns of the search; `InputError` when it cannot be made."""
+        self.search.tolerance.checked(self.rig)
         return Coding(self.rig, self.search_space())
 
     def with_rig(self, rig: Rig) -> Study:

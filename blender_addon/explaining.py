@@ -44,12 +44,17 @@ def look() -> None:
     except pe.InputError:  # a score says so
         space = pe.PerceptionSpace()
 
-    def work() -> tuple[pe.Advice, ...]:
-        return advice.warnings(sensors, vehicle, space, pe.Prior.uniform())
+    def work() -> tuple[str, tuple[pe.Advice, ...]]:
+        line = "" if vehicle is None else advice.vehicle_line(vehicle)
+        return line, advice.warnings(sensors, vehicle, space, pe.Prior.uniform())
 
-    def deliver(found: tuple[pe.Advice, ...]) -> None:
+    def deliver(found: tuple[str, tuple[pe.Advice, ...]]) -> None:
         if name in bpy.data.scenes:
-            bridge.store_warnings(bpy.data.scenes[name].perception_entropy, (*own, *found))
+            line, told = found
+            settings = bpy.data.scenes[name].perception_entropy
+            bridge.store_warnings(settings, (*own, *told))
+            if settings.vehicle_line != line:
+                settings.vehicle_line = line
             changes.picture.tell()
 
     desk.ask(WARNINGS, work, deliver, lambda _: None)

@@ -3,7 +3,7 @@
 from . import advice, catalog
 from .advice import Advice
 from .errors import InputError
-from .formats import Mesh, read_boxes, read_mesh, write_boxes, write_mesh
+from .formats import Mesh, MeshAxes, read_boxes, read_mesh, write_boxes, write_mesh
 from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
 from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
@@ -66,6 +66,7 @@ __all__ = [
     "Job",
     "Lidar",
     "Mesh",
+    "MeshAxes",
     "Method",
     "MountArea",
     "Mounting",

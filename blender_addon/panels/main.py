@@ -7,7 +7,7 @@ import bpy
 from ..choices import VERSION
 from ..operators import brief, makers, models, offers
 from .layout import Tab
-from .result import draw_actions, draw_result, draw_vehicle_warnings
+from .result import draw_actions, draw_result, draw_vehicle_told
 from .sensors import draw_sensors
 from .words import draw_sentence
 
@@ -27,7 +27,7 @@ class PE_PT_main(Tab, bpy.types.Panel):
             newer = "This file is of a newer version of the extension: what is new is not seen here"
             draw_sentence(self.layout, context, newer, icon="ERROR")
         self.layout.prop(settings, "vehicle")
-        draw_vehicle_warnings(self.layout, context)
+        draw_vehicle_told(self.layout, context)
         draw_add(self.layout)
         draw_sensors(self.layout, context)
         draw_actions(self.layout, settings)

@@ -47,8 +47,11 @@ def draw_figure(layout: bpy.types.UILayout, name: str, value: str) -> None:
     right.label(text=value, translate=False)
 
 
-def draw_vehicle_warnings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what is odd about the vehicle, under its field."""
+def draw_vehicle_told(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the vehicle in a line, and what is odd about it, under its field."""
+    settings = context.scene.perception_entropy
+    if settings.vehicle is not None and settings.vehicle_line:
+        draw_sentence(layout, context, settings.vehicle_line)
     told = [w for w in context.scene.perception_entropy.result_warnings if not w.subject]
     if told:
         box = layout.box().column(align=True)

@@ -166,6 +166,9 @@ class PE_SceneSettings(AdvancedSceneSettings, ToleranceSettings, bpy.types.Prope
     result_missing: StringProperty(
         name="Missing", description="What was missing when it was scored, a line each"
     )
+    vehicle_line: StringProperty(
+        name="Vehicle in a Line", description="Its size, which way it faces, triangles and parts"
+    )
     result_warnings: CollectionProperty(
         type=PE_Warning, name="Warnings", description="What the last score found odd"
     )

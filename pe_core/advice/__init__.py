@@ -7,6 +7,7 @@ from .phrases import WHERE, sensor_words, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
 from .side_by_side import ComparedRow, compare
 from .told import warnings
+from .vehicle_line import vehicle_line
 
 __all__ = [
     "WHERE",
@@ -22,6 +23,7 @@ __all__ = [
     "sensor_words",
     "stopped_shares",
     "stopped_words",
+    "vehicle_line",
     "warnings",
     "words",
 ]

@@ -18,7 +18,7 @@ from .interrupts import Interrupted, stop_at_first
 from .side_by_side import comparison
 from .status import DONE, Answer
 from .summary import warned, with_error
-from .work import drive
+from .work import drive, tell_vehicle
 
 
 def add_explain_options(parser: argparse.ArgumentParser) -> None:
@@ -42,6 +42,7 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
     if args.at is not None:
         parts = (study.rig, study.space, study.prior, study.vehicle, args.at, study.model)
         place = advice.ask_place(*parts)
+        tell_vehicle(study)
         return _answer({"place": place.to_dict()}, place.text, args.json)
     name = advice.class_of(study.prior, args.class_name)
     outcome = _scored(study, args)
@@ -84,6 +85,7 @@ def named_by_file(paths: list[str]) -> dict[str, str]:
 
 def _scored(study: Study, args: argparse.Namespace) -> Outcome:
     """Score a study, with progress; Ctrl-C ends it."""
+    tell_vehicle(study)
     job = ScoreJob(study, args.workers)
     with stop_at_first(job.stop) as received:
         outcome = drive(job)

@@ -17,6 +17,7 @@ from ..study import (
     OptimizeJob,
     Outcome,
     Progress,
+    Study,
     export_study,
     files_of_other_runs,
     prepare_folder,
@@ -27,7 +28,7 @@ from ..text import dump_json
 from .interrupts import Interrupted, stop_at_first
 from .status import BAD_INPUT, DONE, Answer
 from .summary import summary
-from .terminal import is_terminal, printable, show, tell
+from .terminal import is_terminal, one_line, printable, show, tell
 
 REPORT_EVERY_S = {True: 0.2, False: 5.0}
 """How often progress is shown: on a terminal, where it overwrites itself, and in a log."""
@@ -59,6 +60,7 @@ def carry_out(
     The second ends at once, with the best so far kept as it is. Results that cannot be written to
     `output` go to a folder that is told on stderr; the status is then 1.
     """
+    tell_vehicle(job.study)
     with stop_at_first(job.stop) as received:
         outcome = drive(job, output)
         if outcome is None:
@@ -69,6 +71,12 @@ def carry_out(
             status, data = keep(outcome, output, host, more)
         text = dump_json(data) if as_json else summary(outcome)
         return text, status or received.status(DONE)
+
+
+def tell_vehicle(study: Study) -> None:
+    """Tell the study's vehicle in one line: how large it is, which way it faces."""
+    if study.vehicle_line is not None:
+        show(f"{one_line(study.vehicle_line)}\n", sys.stderr)
 
 
 def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) -> Outcome | None:

@@ -2,10 +2,11 @@
 
 from .ap_table import read_ap_table
 from .boxes import read_boxes, write_boxes
-from .meshes import Mesh, read_mesh, write_mesh
+from .meshes import Mesh, MeshAxes, read_mesh, write_mesh
 
 __all__ = [
     "Mesh",
+    "MeshAxes",
     "read_ap_table",
     "read_boxes",
     "read_mesh",

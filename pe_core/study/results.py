@@ -70,6 +70,7 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         "history": [_history_dict(row) for row in outcome.history],
         "inputs": {
             "study": study_to_dict(outcome.start),
+            "vehicle": outcome.study.vehicle_line,
             "vehicle_triangles": _triangle_count(outcome.study),
             "vehicle_sha256": vehicle_digest(outcome.study.vehicle),
         },

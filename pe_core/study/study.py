@@ -7,16 +7,20 @@ is why they agree to the bit.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from ..advice import vehicle_line
 from ..errors import InputError, shown
+from ..formats.meshes import MeshAxes
 from ..kinds import PerceptionModel
 from ..prior.prior import Prior
 from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
+from ..scene.vehicle_size import require_vehicle_size
 from ..scoring.evaluator import Evaluator
 from ..scoring.sampling import samples_or_grid
 from ..search import (
@@ -110,9 +114,10 @@ class Search:
 class Study:
     """Space, prior, perception model, vehicle, rig, and how to search.
 
-    `mesh` names the file the vehicle was read from (or is written to); `samples` is the number of
-    voxels a score looks at, 0: all. Of `search`, what concerns the rig's sensors is
-    kept; one that it does not name is free as in the paper.
+    `mesh` names the file the vehicle was read from (or is written to), `axes` is how that is to be
+    taken, and `faces` how its axes were taken, in words (empty: they are the ground frame's).
+    `samples` is the number of voxels a score looks at, 0: all. Of `search`, what concerns the
+    rig's sensors is kept; one that it does not name is free as in the paper.
 
     Raises
     ------
@@ -128,6 +133,8 @@ class Study:
     search: Search = field(default_factory=Search)
     samples: int = 0
     mesh: str | None = None
+    axes: MeshAxes = field(default_factory=MeshAxes)
+    faces: str = ""
 
     def __post_init__(self) -> None:
         for name, kind in FIELDS.items():
@@ -136,25 +143,47 @@ class Study:
                 raise InputError("study", name, f"a {kind.__name__}", found)
         if self.vehicle is not None and not isinstance(self.vehicle, Vehicle):
             raise InputError("study", "vehicle", "a Vehicle", type(self.vehicle).__name__)
+        if self.vehicle is not None:
+            require_vehicle_size("vehicle", self.vehicle)
         if self.mesh is not None:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
         object.__setattr__(self, "samples", samples_or_grid("study", self.samples))
         object.__setattr__(self, "search", _of_rig(self.search, self.rig))
 
+    @property
+    def vehicle_line(self) -> str | None:
+        """The vehicle in one line: its file, its size, which way it faces; None without one."""
+        if self.vehicle is None:
+            return None
+        return f"{self.mesh or 'vehicle'}: {vehicle_line(self.vehicle, self.faces)}"
+
     def evaluator(self, samples: int | None = None, workers: int | None = None) -> Evaluator:
         """Return the evaluator of this study; `samples` replaces the study's own."""
-        return Evaluator(
-            self.space,
-            self.prior,
-            self.vehicle,
-            samples=self.samples if samples is None else samples,
-            model=self.model,
-            workers=workers,
-        )
+        with self._naming_vehicle():
+            return Evaluator(
+                self.space,
+                self.prior,
+                self.vehicle,
+                samples=self.samples if samples is None else samples,
+                model=self.model,
+                workers=workers,
+            )
 
     def sight(self) -> Sight:
         """Return what tells the places that rigs of this study see."""
-        return Sight(self.space, self.prior, self.vehicle, model=self.model)
+        with self._naming_vehicle():
+            return Sight(self.space, self.prior, self.vehicle, model=self.model)
+
+    @contextmanager
+    def _naming_vehicle(self) -> Iterator[None]:
+        """Tell which vehicle it is that leaves no weight of the prior outside it."""
+        try:
+            yield
+        except InputError as error:
+            if error.source != "prior" or self.vehicle_line is None:
+                raise
+            found = f"{error.found}; {self.vehicle_line}"
+            raise InputError("prior", error.field, error.expected, found) from None
 
     def search_space(self) -> SearchSpace:
         """Return free axes and bounds, in radians, with mounts and what is kept to."""
@@ -173,8 +202,8 @@ class Study:
         return replace(self, rig=rig)
 
     def with_mesh(self, mesh: str) -> Study:
-        """Return the study with the vehicle's mesh file named."""
-        return replace(self, mesh=mesh)
+        """Return the study with the file named that has the vehicle's mesh as it is here."""
+        return replace(self, mesh=mesh, axes=MeshAxes(), faces="")
 
 
 FIELDS: dict[str, type] = {
@@ -183,6 +212,7 @@ FIELDS: dict[str, type] = {
     "prior": Prior,
     "model": PerceptionModel,
     "search": Search,
+    "axes": MeshAxes,
 }
 
 

@@ -16,12 +16,14 @@ from ..scene.geometry import Pose
 from ..scene.sensors import Rig, Sensor, SensorModel
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import DEFAULT_CLEARANCE_M, Vehicle
+from ..scene.vehicle_size import require_vehicle_size
 from ..search import PAPER_FREE, checked_axes
 from ..text.files import decode_text, read_bytes, write_bytes
 from ..text.tables import Table
 from ..text.toml_reader import load_toml
 from ..text.toml_writer import dumps
 from ..text.values import A_NAME, A_PATH
+from .mesh_file import AXES_KEYS, MeshFile, axes_table, read_axes
 from .mounting_file import areas_of
 from .prior_file import prior_table, read_prior
 from .search_file import in_file, read_limits, read_search, search_table
@@ -111,7 +113,7 @@ def _named(error: InputError, source: str) -> InputError:
 
 
 def _read_study(table: Table, folder: Path) -> Study:
-    vehicle, mesh = _read_vehicle(table.table("vehicle"), folder)
+    vehicle, file = _read_vehicle(table.table("vehicle"), folder)
     sensors, search = table.tables("sensor"), table.table("optimize")
     if not sensors:
         raise table.error("sensor", "at least one [[sensor]]", "none")
@@ -132,7 +134,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         _read_model(table.table("ap"), table.table("fusion")),
         read_search(search, free, limits, on, folder),
         table.whole("samples", 0),
-        mesh,
+        *file,
     )
     study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     return study
@@ -163,17 +165,21 @@ def _read_curve(table: Table, default: ApCurve) -> ApCurve:
     return curve
 
 
-def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, str | None]:
+def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, MeshFile]:
     mesh = table.text("mesh", None, rule=A_PATH)
-    if mesh is None and any(key in table for key in ("glass", "clearance")):
+    keys = ("glass", "clearance", *AXES_KEYS)
+    if mesh is None and any(key in table for key in keys):
         raise table.error("mesh", "the file of the vehicle's mesh", "nothing")
     glass = table.texts("glass", ())
     clearance = table.number("clearance", DEFAULT_CLEARANCE_M)
+    axes = read_axes(table)
     table.finish()
     if mesh is None:
-        return None, None
-    read = read_mesh(folder / mesh)
-    return Vehicle(read.triangles, read.parts, read.part_names, glass, clearance), mesh
+        return None, MeshFile()
+    read = read_mesh(folder / mesh, axes)
+    require_vehicle_size(mesh, read)
+    vehicle = Vehicle(read.triangles, read.parts, read.part_names, glass, clearance)
+    return vehicle, MeshFile(mesh, axes, read.axes)
 
 
 def _read_sensor(table: Table, folder: Path) -> Sensor:
@@ -213,6 +219,7 @@ def _vehicle_table(study: Study) -> dict[str, Any] | None:
         "mesh": study.mesh,
         "glass": list(study.vehicle.glass),
         "clearance": study.vehicle.clearance,
+        **axes_table(study.axes),
     }
 
 

@@ -45,6 +45,12 @@ def test_nothing_is_odd_about_a_car_with_a_lidar_on_its_roof(car):
     assert told(car) == []
 
 
+def test_the_vehicle_is_told_in_a_line_under_its_field(car):
+    explaining.look()
+    line = "4.00 x 1.80 x 1.30 m, lies along x, 24 triangles, 2 parts"
+    assert car.perception_entropy.vehicle_line == line
+
+
 def test_a_sunk_vehicle_is_lifted_with_the_sensor_on_it(car):
     car.objects["roof"].location.z = 1.3
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from pe_core.errors import InputError
-from pe_core.formats.meshes import Mesh, read_mesh
+from pe_core.formats.meshes import Mesh, MeshAxes, read_mesh
 
 # A box with three different sides, so that no two axes can be mistaken for each other; its
 # coordinates are exact in single precision.
@@ -145,10 +145,10 @@ def changed(*steps: Any, **keywords: Any) -> bytes:
     return glb_file(root, binary)
 
 
-def read(folder: Path, name: str, data: bytes) -> Mesh:
+def read(folder: Path, name: str, data: bytes, **axes: Any) -> Mesh:
     path = folder / name
     path.write_bytes(data)
-    return read_mesh(path)
+    return read_mesh(path, MeshAxes(**axes))
 
 
 def cut(data: bytes) -> bytes:

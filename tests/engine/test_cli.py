@@ -29,6 +29,8 @@ def test_score_prints_what_a_person_wants_to_know(study, capsys):
     out, err = capsys.readouterr()
     assert out.startswith("entropy ") and "coverage" in out and "roof: " in out
     assert "scoring" in err
+    line = "car.npz: 4.60 x 1.80 x 1.20 m, lies along x, 24 triangles, 2 parts"
+    assert err.splitlines()[0] == line
 
 
 def test_json_is_one_document_and_nothing_else(study, capsys):

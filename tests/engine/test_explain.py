@@ -64,7 +64,8 @@ def test_explain_one_place(study, capsys):
         loaded.rig, loaded.space, loaded.prior, loaded.vehicle, (8, -2.2, 0.7), loaded.model
     )
     out, err = capsys.readouterr()
-    assert (out.splitlines(), err) == (list(place.text), "")  # nothing is scored for it
+    assert out.splitlines() == list(place.text)
+    assert err == f"{loaded.vehicle_line}\n"  # nothing is scored for it
     assert main(["explain", study, "--at", "8", "-2.2", "0.7", "--json"]) == 0
     data = json.loads(capsys.readouterr().out)["place"]
     assert data == json.loads(json.dumps(place.to_dict())) and data["sensors"][0]["name"] == "roof"

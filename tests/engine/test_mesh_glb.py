@@ -67,7 +67,7 @@ def test_glb_normalized_positions(tmp_path: Path) -> None:
     root["accessors"][0].update(componentType=5122, normalized=True)
     binary = struct.pack("<9h", 32767, 0, 0, -32768, -32767, 0, 0, 0, 0)
     root["bufferViews"][0]["byteLength"] = len(binary)
-    mesh = read(tmp_path, "x.glb", glb_file(root, binary))
+    mesh = read(tmp_path, "x.glb", glb_file(root, binary), forward="+z")
     assert mesh.triangles.tolist() == [[[0, 1, 0], [0, -1, -1], [0, 0, 0]]]
 
 
@@ -100,7 +100,7 @@ def test_glb_rotation_is_a_quaternion(tmp_path: Path) -> None:
     """A third of a turn about (1, 1, 1): glTF's X goes to Y, Y to Z, Z to X; halved, not unit."""
     root, binary = gltf()
     root["nodes"][0].update(rotation=[1, 1, 1, 1], scale=[0.5, 0.5, 0.5])
-    mesh = read(tmp_path, "x.glb", glb_file(root, binary))
+    mesh = read(tmp_path, "x.glb", glb_file(root, binary), forward="+z")
     # Ours: left goes to up, up to forward, forward to left.
     assert mesh.triangles.tolist() == (BOX[..., [2, 0, 1]] / 2).tolist()
 

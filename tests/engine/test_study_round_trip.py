@@ -237,6 +237,13 @@ def vehicles(draw):
 
 
 @st.composite
+def mesh_axes(draw):
+    """Keys for the mesh's axes that leave a file in the ground frame as it is."""
+    up, forward = draw(st.sampled_from([None, "+z"])), draw(st.sampled_from([None, "+x"]))
+    return pe.MeshAxes(up, forward, 1.0, draw(st.sampled_from([None, (0.0, 0.0, 0.0)])))
+
+
+@st.composite
 def studies(draw, folder):
     rig = draw(rigs())
     vehicle = draw(st.one_of(st.none(), vehicles()))
@@ -249,7 +256,7 @@ def studies(draw, folder):
         pe.PerceptionModel(draw(st.sampled_from(["floor", "literal"])), lidar=lidar, camera=camera),
         draw(searches(rig, vehicle)),
         draw(st.sampled_from([0, 1024, 10_007])),
-        None if vehicle is None else "body.npz",
+        *((None,) if vehicle is None else ("body.npz", draw(mesh_axes()))),
     )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import InputError
 from ...text.files import MESH_BYTES, read_bytes, write_bytes
 from ...text.memory import told_if_too_much
+from .axes import GLTF, OURS, UNSAID, MeshAxes, SaidAxes, oriented, said_in_comments
 from .glb import read_glb
 from .mesh import Mesh, make_mesh
 from .npz import dump_npz, read_npz
@@ -22,7 +23,7 @@ from .stl import read_stl
 
 _F = TypeVar("_F")
 
-__all__ = ["Mesh", "read_mesh", "write_mesh"]
+__all__ = ["Mesh", "MeshAxes", "read_mesh", "write_mesh"]
 
 _READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
     ".npz": read_npz,
@@ -31,24 +32,34 @@ _READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
     ".ply": read_ply,
     ".glb": read_glb,
 }
+_SAYS: dict[str, Callable[[bytes], SaidAxes]] = {
+    ".npz": lambda _: OURS,
+    ".obj": said_in_comments,
+    ".glb": lambda _: GLTF,
+}
+"""What the files of a format say about their axes; of others it is unsaid."""
 _WRITERS: dict[str, Callable[[Path, Mesh], bytes]] = {".npz": dump_npz, ".obj": dump_obj}
 
 
-def read_mesh(path: str | Path) -> Mesh:
+def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     """Read a mesh from a .npz, .obj, .stl, .ply or .glb file.
 
     Parameters
     ----------
     path : str or Path
-        The suffix, in either case, says the format. Coordinates are taken to be metres in
-        the ground frame (x forward, y left, z up), except that glTF's axes are turned into
-        it: x forward = its +Z, y left = its +X, z up = its +Y.
+        The suffix, in either case, says the format.
+    axes : MeshAxes, optional
+        Which axes of the file are forward and up, a scale and a rotation. What it leaves out is
+        what the file says: .npz, and .obj with a comment like ours, are in the ground frame
+        (x forward, y left, z up), .glb has +Y up. Else names of parts and the shape decide, or
+        the default: the ground frame, in .glb +Z forward.
 
     Returns
     -------
     Mesh
-        Triangles (F, 3, 3) [m], F at least 1, those without area among them; parts in the
-        order the file names them, their names made printable (`part_names.fit_names`).
+        Triangles (F, 3, 3) [m] in the ground frame, F at least 1, those without area among them;
+        parts in the order the file names them, their names made printable
+        (`part_names.fit_names`); in words how the axes were taken.
 
     Raises
     ------
@@ -63,7 +74,10 @@ def read_mesh(path: str | Path) -> Mesh:
     # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
     with np.errstate(all="ignore"), told_if_too_much(path):
         mesh = reader(path, data)
-    return replace(mesh, part_names=fit_names(mesh.part_names))
+        fit = replace(mesh, part_names=fit_names(mesh.part_names))
+        says = _SAYS.get(path.suffix.lower())
+        said = UNSAID if says is None else says(data)
+        return oriented(str(path), fit, said, axes or MeshAxes())
 
 
 def write_mesh(path: str | Path, mesh: Mesh) -> None:

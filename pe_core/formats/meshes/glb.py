@@ -1,4 +1,4 @@
-"""Binary glTF 2.0: the container, and the scene's triangles in the ground frame."""
+"""Binary glTF 2.0: the container, and the scene's triangles in its own axes."""
 
 from __future__ import annotations
 
@@ -29,11 +29,10 @@ JSON_UNFOLDS = 30
 def read_glb(path: Path, data: bytes) -> Mesh:
     """Read the default scene of a binary glTF 2.0 file.
 
-    glTF is right-handed with +Y up, +Z forward and -X right, in metres. Corners are turned
-    into the ground frame: x forward = +Z, y left = +X, z up = +Y. Each node's transforms are
-    applied down the hierarchy; a mirroring one also reverses its triangles, so that their
-    outer sides stay outside. Parts are the names of the nodes that hold a mesh, or else of
-    the mesh. Points and lines are passed over.
+    glTF is right-handed with +Y up, +Z forward and -X right, in metres; so are the corners
+    here. Each node's transforms are applied down the hierarchy; a mirroring one also reverses
+    its triangles, so that their outer sides stay outside. Parts are the names of the nodes
+    that hold a mesh, or else of the mesh. Points and lines are passed over.
 
     Raises
     ------
@@ -191,4 +190,4 @@ def _place(triangles: NDArray[np.float64], world: NDArray[np.float64]) -> NDArra
     placed = triangles @ world[:3, :3].T + world[:3, 3]
     if np.linalg.det(world[:3, :3]) < 0:
         placed = placed[:, ::-1]
-    return placed[..., [2, 0, 1]]  # (Z, X, Y) of glTF is (forward, left, up)
+    return placed

@@ -33,11 +33,14 @@ class Mesh:
         Index of each triangle's part in `part_names`.
     part_names : tuple of str
         Names of the parts; every part has a triangle and no name comes twice.
+    axes : str
+        How the file's axes were taken, in words; empty where it is in the ground frame.
     """
 
     triangles: NDArray[np.float64]
     parts: NDArray[np.int32]
     part_names: tuple[str, ...]
+    axes: str = ""
 
 
 def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequence[str]) -> Mesh:

@@ -1,0 +1,31 @@
+"""What Blender's own exporters write with their default settings scores as the scene does."""
+
+from dataclasses import replace
+
+import bpy
+import pytest
+
+import pe_core as pe
+from tests.addon import scenes
+
+EXPORTS = {
+    "glb": lambda path: bpy.ops.export_scene.gltf(filepath=path),
+    "obj": lambda path: bpy.ops.wm.obj_export(filepath=path),
+    "ply": lambda path: bpy.ops.wm.ply_export(filepath=path),
+    "stl": lambda path: bpy.ops.wm.stl_export(filepath=path),
+}
+SPACE = pe.PerceptionSpace((-20.0, 20.0), (-10.0, 10.0), (0.0, 3.0), 0.5)
+
+
+@pytest.mark.parametrize("suffix", EXPORTS)
+@pytest.mark.parametrize("name", ["sedan", "bus"])
+def test_an_export_scores_as_the_scene(addon, tmp_path, name, suffix):
+    """To six digits: coordinates in files are rounded. Also for a car that nobody turned right."""
+    study = replace(scenes.shipped_study(name), space=SPACE)
+    assert EXPORTS[suffix](str(tmp_path / f"car.{suffix}")) == {"FINISHED"}
+    data = pe.study_to_dict(study)
+    data["vehicle"] = {"mesh": f"car.{suffix}"}
+    again = pe.study_from_dict(data, folder=tmp_path)
+    expected = study.evaluator().entropy(study.rig)
+    assert again.evaluator().entropy(again.rig) == pytest.approx(expected, rel=2e-6)
+    assert f"car.{suffix}: " in again.vehicle_line and "faces +x" in again.vehicle_line

@@ -1,0 +1,207 @@
+"""Axes of mesh files: asked for, said by the file, guessed by names and shape; and always told."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.formats.meshes.axes import AXIS_NAMES
+from pe_core.study.study_file import study_from_dict, study_to_dict
+from tests.engine.mesh_files import glb_file, gltf, obj_bytes, ply_binary, read, stl_binary
+
+SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
+# A car in the ground frame: a body, a cabin nearer to its rear, a nose. No side is like another.
+BOXES = {
+    "body": ((-2.0, -0.9, 0.25), (2.0, 0.9, 0.8)),
+    "cabin": ((-1.7, -0.75, 0.8), (0.6, 0.75, 1.5)),
+    "hood": ((1.2, -0.8, 0.8), (1.9, 0.8, 0.9)),
+    "tail": ((-2.0, -0.8, 0.8), (-1.8, 0.8, 0.9)),
+    "wheels": ((-1.5, -0.9, 0.0), (1.5, 0.9, 0.5)),
+}
+TURNS = {  # of (forward, left, up): what a program's axes x, y, z are
+    "ours": (lambda x, y, z: (x, y, z)),
+    "Blender, Y up": (lambda x, y, z: (x, z, -y)),
+    "Z forward, Y up": (lambda x, y, z: (y, z, x)),
+    "-Y forward, Z up": (lambda x, y, z: (y, -x, z)),
+}
+
+
+def corners(box):
+    ends = np.array(box)
+    return np.array(
+        [(ends[i, 0], ends[j, 1], ends[k, 2]) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+    )
+
+
+QUADS = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+
+
+def car(turn, names=tuple(BOXES)):
+    """Points (N, 3) of the boxes in a program's axes, and lists of faces by name."""
+    points = np.concatenate([corners(BOXES[name]) for name in names])
+    faces = {name: np.array(QUADS) + 8 * k for k, name in enumerate(names)}
+    return np.stack(TURNS[turn](*points.T), axis=1), faces
+
+
+def obj(turn, named=True, head=b""):
+    points, faces = car(turn)
+    text = [head, obj_bytes(points, [])]
+    for name, quads in faces.items():
+        text.append(f"o {name if named else 'mesh'}".encode())
+        text.append(obj_bytes([], quads))
+    return b"\n".join(text)
+
+
+def triangles_of(turn):
+    points, faces = car(turn)
+    return np.concatenate(
+        [points[q[[0, a, a + 1]]][None] for quads in faces.values() for q in quads for a in (1, 2)]
+    )
+
+
+def is_upright(mesh):
+    corners = mesh.triangles.reshape(-1, 3)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    np.testing.assert_allclose([low, high], [(-2.0, -0.9, 0.0), (2.0, 0.9, 1.5)], atol=1e-6)
+    return True
+
+
+def faces_ahead(mesh):
+    """Whether the nose is ahead and left is left: the box of the nose is where it was."""
+    hood = mesh.triangles[mesh.parts == mesh.part_names.index("hood")].reshape(-1, 3)
+    np.testing.assert_allclose(hood.min(axis=0), BOXES["hood"][0], atol=1e-6)
+    return True
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_an_obj_with_names_is_turned_whatever_its_axes_are(tmp_path, turn):
+    mesh = read(tmp_path, "car.obj", obj(turn))
+    assert is_upright(mesh) and faces_ahead(mesh)
+    assert "(part names)" in mesh.axes
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_without_names_the_shape_says_up_and_along(tmp_path, turn):
+    mesh = read(tmp_path, "car.obj", obj(turn, named=False))
+    assert is_upright(mesh)
+    up = "+y" if turn.endswith("Y up") else "+z"
+    assert f"up is {up} (shape)" in mesh.axes
+    stl = read(tmp_path, "car.stl", stl_binary(triangles=triangles_of(turn)))
+    assert is_upright(stl) and stl.axes == mesh.axes
+
+
+@pytest.mark.parametrize(
+    ("comment", "told"),
+    [
+        (b"# metres, x forward, y left, z up", ""),
+        (b"# X-Forward, Z-Up", ""),
+        (b"# axes: -y forward, +z up", "faces -y (file), up is +z (file)"),
+        (b"# z forward\n# y up", "faces +z (file), up is +y (file)"),
+    ],
+)
+def test_comments_that_name_the_axes_are_believed(tmp_path, comment, told):
+    """Against the names of parts, which would say otherwise."""
+    assert read(tmp_path, "car.obj", obj("Blender, Y up", head=comment)).axes == told
+
+
+def test_gltf_is_y_up_and_its_front_is_looked_for(tmp_path):
+    """As the standard has it, and as Blender writes a car that faces its +X."""
+    for turn, told in (("Z forward, Y up", "faces +z"), ("Blender, Y up", "faces +x (shape)")):
+        points = np.stack(TURNS[turn](*(triangles_of("ours").reshape(-1, 3).T)), axis=1)
+        root, _ = gltf(points=points, indices=None)
+        data = points.astype("<f4").tobytes()
+        mesh = read(tmp_path, "car.glb", glb_file(root, data))
+        assert is_upright(mesh)
+        assert mesh.axes.startswith(told) and mesh.axes.endswith("up is +y (format)")
+
+
+@pytest.mark.parametrize("up", AXIS_NAMES)
+@pytest.mark.parametrize("forward", AXIS_NAMES)
+def test_a_study_s_axes_hold_against_any_guess(tmp_path, up, forward):
+    """x of the result is the file's forward, z its up, y what is left of them: det is 1."""
+    if up[1] == forward[1]:
+        with pytest.raises(pe.InputError, match="across up"):
+            pe.MeshAxes(up, forward)
+        return
+    mesh = read(tmp_path, "car.obj", obj("ours"), up=up, forward=forward)
+    ours = read(tmp_path, "car.obj", obj("ours"), up="+z", forward="+x").triangles
+    unit = {n: np.eye(3)["xyz".index(n[1])] * (1 if n[0] == "+" else -1) for n in (up, forward)}
+    turn = np.stack([unit[forward], np.cross(unit[up], unit[forward]), unit[up]])
+    assert np.linalg.det(turn) == pytest.approx(1.0)
+    np.testing.assert_array_equal(mesh.triangles, ours @ turn.T)
+    assert mesh.axes == f"faces {forward} (study), up is {up} (study)"
+
+
+def test_scale_and_rotation_come_last(tmp_path):
+    mesh = read(tmp_path, "box.stl", stl_binary(), scale=0.5, rotation_deg=(0, 0, 90))
+    low, high = (f(mesh.triangles.reshape(-1, 3), axis=0) for f in (np.min, np.max))
+    # The box of x -1 to 4, y -1 to 1.5: halved, then x becomes y and y becomes -x.
+    np.testing.assert_allclose([low, high], [(-0.75, -0.5, 0.125), (0.5, 2.0, 1.0)], atol=1e-12)
+
+
+def test_a_body_that_tells_nothing_stays_as_it_is(tmp_path):
+    cube = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    mesh = read(tmp_path, "cube.ply", ply_binary("<", cube, [(0, 1, 2), (5, 6, 7)]))
+    assert mesh.triangles[0].tolist() == cube[:3].tolist()
+    assert mesh.axes == "faces +x (assumed), up is +z (assumed)"
+
+
+def study_of(folder, data, **vehicle):
+    (folder / "car.obj").write_bytes(data)
+    return study_from_dict(
+        {"sensor": [SENSOR], "vehicle": {"mesh": "car.obj", **vehicle}}, folder=folder
+    )
+
+
+def test_a_study_tells_its_vehicle_in_one_line(tmp_path):
+    line = study_of(tmp_path, obj("Blender, Y up")).vehicle_line
+    assert line == (
+        "car.obj: 4.00 x 1.80 x 1.50 m, faces +x (part names), up is +y (part names), "
+        "60 triangles, 5 parts"
+    )
+    head = b"# x forward, y left, z up"
+    line = study_of(tmp_path, obj("-Y forward, Z up", head=head)).vehicle_line
+    assert line == "car.obj: 1.80 x 4.00 x 1.50 m, faces -y, 60 triangles, 5 parts"
+
+
+def test_the_keys_come_back_from_a_file(tmp_path):
+    keys = {"scale": 1.5, "rotation": [0.0, 0.0, 30.0], "up": "+y", "forward": "-z"}
+    assert len(keys) == len(fields(pe.MeshAxes))
+    study = study_of(tmp_path, obj("ours"), **keys)
+    assert study.axes == pe.MeshAxes("+y", "-z", 1.5, (0.0, 0.0, 30.0))
+    again = study_from_dict(study_to_dict(study), folder=tmp_path)
+    assert again.axes == study.axes and again.faces == study.faces
+    assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
+
+
+def test_an_exported_mesh_is_not_turned_again(tmp_path):
+    study = study_of(tmp_path, obj("Blender, Y up"), scale=1.1, rotation=[0, 0, 3])
+    (tmp_path / "out").mkdir()
+    pe.export_study(study, tmp_path / "out" / "study.toml")
+    again = pe.load_study(tmp_path / "out" / "study.toml")
+    assert again.axes == pe.MeshAxes() and again.faces == ""
+    assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"up": "north"}, r"vehicle\.up: expected one of \+x"),
+        ({"up": "+z", "forward": "-z"}, r"vehicle\.forward: expected an axis across up = \+z"),
+        ({"scale": 0}, r"vehicle\.scale: expected a number above 0"),
+        ({"scale": -1}, r"vehicle\.scale"),
+        ({"scale": True}, r"vehicle\.scale"),
+        ({"rotation": [0, 0]}, r"vehicle\.rotation: expected a list of 3 numbers"),
+        ({"rotation": [0, 0, 9999]}, r"vehicle\.rotation"),
+        ({"rotation": "left"}, r"vehicle\.rotation"),
+    ],
+)
+def test_impossible_keys_are_told_in_one_line(tmp_path, keys, words):
+    with pytest.raises(pe.InputError, match=words):
+        study_of(tmp_path, obj("ours"), **keys)
+
+
+def test_the_keys_need_a_mesh():
+    with pytest.raises(pe.InputError, match=r"vehicle\.mesh"):
+        study_from_dict({"sensor": [SENSOR], "vehicle": {"up": "+y"}})

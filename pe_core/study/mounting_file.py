@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..errors import InputError, shown
-from ..formats.meshes import Mesh, read_mesh
+from ..formats.meshes import AS_SAID, Mesh, read_mesh
 from ..scene.geometry import Pose
 from ..search import (
     AnyMount,
@@ -116,7 +116,7 @@ def _read_surface(table: Table, folder: Path) -> SurfaceMount:
 
 def _read_area(table: Table, folder: Path, file: str, parts: tuple[str, ...]) -> MountArea:
     """Return the faces of a mesh file, of some of its parts or of all."""
-    mesh = read_mesh(folder / file)
+    mesh = read_mesh(folder / file, AS_SAID)  # a patch's shape tells nothing
     for part in parts:
         if part not in mesh.part_names:
             expected = f"one of {', '.join(mesh.part_names)}"

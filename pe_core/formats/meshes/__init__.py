@@ -12,7 +12,7 @@ import numpy as np
 from ...errors import InputError
 from ...text.files import MESH_BYTES, read_bytes, write_bytes
 from ...text.memory import told_if_too_much
-from .axes import GLTF, OURS, UNSAID, MeshAxes, SaidAxes, oriented, said_in_comments
+from .axes import AS_SAID, GLTF, OURS, UNSAID, MeshAxes, SaidAxes, oriented, said_in_comments
 from .glb import read_glb
 from .mesh import Mesh, make_mesh
 from .npz import dump_npz, read_npz
@@ -23,7 +23,7 @@ from .stl import read_stl
 
 _F = TypeVar("_F")
 
-__all__ = ["Mesh", "MeshAxes", "read_mesh", "write_mesh"]
+__all__ = ["AS_SAID", "Mesh", "MeshAxes", "read_mesh", "write_mesh"]
 
 _READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
     ".npz": read_npz,

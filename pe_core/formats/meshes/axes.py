@@ -72,6 +72,10 @@ class MeshAxes:
             object.__setattr__(self, "rotation_deg", turned)
 
 
+AS_SAID = MeshAxes(rotation_deg=(0.0, 0.0, 0.0))
+"""As the file says, or the default: nothing is guessed."""
+
+
 class SaidAxes(NamedTuple):
     """What a file says, and by what; without a word for that it is a default, open to a guess."""
 
@@ -107,9 +111,9 @@ def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
     triangles = _turned(mesh.triangles, chosen.up, chosen.forward)
     if axes.scale != 1.0:
         triangles = triangles * axes.scale
-    if axes.rotation_deg is not None:
+    if any(axes.rotation_deg or ()):
         triangles = rotate(
-            Pose.from_degrees((0, 0, 0), axes.rotation_deg).ground_from_sensor, triangles
+            Pose.from_degrees((0, 0, 0), axes.rotation_deg or ()).ground_from_sensor, triangles
         )
     if not np.isfinite(triangles).all():
         raise InputError(source, "scale", "finite coordinates", shown(axes.scale))

@@ -1,0 +1,16 @@
+"""Rigs in and out of other programs' files."""
+
+from .exporting import export_rig, rig_files
+from .importing import ImportedRig, import_rig
+from .table import RIG_FORMATS, RigFormat, add_format, rig_format
+
+__all__ = [
+    "RIG_FORMATS",
+    "ImportedRig",
+    "RigFormat",
+    "add_format",
+    "export_rig",
+    "import_rig",
+    "rig_files",
+    "rig_format",
+]

@@ -1,0 +1,130 @@
+"""Autoware's sensor kit: sensors_calibration.yaml and sensor_kit_calibration.yaml.
+
+base_link is the rear axle on the ground; metres, radians. A camera's frame is NAME/camera_link,
+with our axes; a LiDAR's is NAME_base_link, at the foot of its housing where that is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError
+from ..scene.geometry import Pose
+from ..text.tables import Table
+from ..text.yaml_blocks import parse_yaml_blocks
+from .carried import CAMERA, LIDAR, CarriedSensor
+from .files import Written, named_numbers, plain_number, pose_from, text_of
+from .frame_names import with_legal_frames
+from .frames import composed
+
+BASE, KIT = "base_link", "sensor_kit_base_link"
+TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
+LENS_FRAME, FOOT_FRAME = "/camera_link", "_base_link"
+PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
+FEET_M = {"VLP-16": 0.0377, "Pandar40P": 0.047}
+"""From the foot of a housing up to the centre of the scan, as tier4's sensor_component_description
+(03ba094) mounts these models; other models' frames are written at the centre of the scan."""
+HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
+
+
+def foot_of(model: str | None) -> float:
+    """Return how far below the centre of its scan Autoware has a LiDAR's frame [m]."""
+    words = (model or "").split()
+    return next((FEET_M[word] for word in words if word in FEET_M), 0.0)
+
+
+def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
+    """Return the kit's two files."""
+    named, lines = with_legal_frames(sensors)
+    kit = _kit(named)
+    frames = {each.name: _in_kit(each, kit) for each in named}
+    files = {
+        TO_KIT: _yaml(BASE, {KIT: (kit, "")}),
+        IN_KIT: _yaml(KIT, {_frame(s): (frames[s.name], s.model or "") for s in named}),
+    }
+    lines += [
+        f"{s.name}: its frame is written at the centre of its scan; Autoware's description of "
+        f"{s.model} may want the foot of the housing"
+        for s in named
+        if s.kind == LIDAR and not foot_of(s.model)
+    ]
+    return files, lines
+
+
+def _kit(sensors: Sequence[CarriedSensor]) -> Pose:
+    """Return where the kit is: amid the sensors, level, to the centimetre."""
+    middle = [sum(s.pose.position[k] for s in sensors) / len(sensors) for k in range(3)]
+    x, y, z = (round(v, 2) for v in middle)
+    return Pose((x, y, z))
+
+
+def _in_kit(each: CarriedSensor, kit: Pose) -> Pose:
+    frame = each.pose
+    if each.kind == LIDAR:
+        frame = composed(frame, Pose((0.0, 0.0, -foot_of(each.model))))
+    x, y, z = (a - b for a, b in zip(frame.position, kit.position, strict=True))
+    return Pose((x, y, z), frame.rpy)
+
+
+def _frame(each: CarriedSensor) -> str:
+    return each.name + {CAMERA: LENS_FRAME, LIDAR: FOOT_FRAME}.get(each.kind or "", "")
+
+
+def _yaml(parent: str, frames: Mapping[str, tuple[Pose, str]]) -> bytes:
+    lines = [f"{parent}:"]
+    for name, (pose, model) in frames.items():
+        lines.append(f"  {name}:" + (f"  # {model}" if model else ""))
+        numbers = zip((*PLACE, *TURN), (*pose.position, *pose.rpy), strict=True)
+        lines += [f"    {key}: {plain_number(value)}" for key, value in numbers]
+    return (HEAD + "\n".join(lines) + "\n").encode()
+
+
+def read(path: Path) -> tuple[CarriedSensor, ...]:
+    """Read a kit: a folder with both files, or either of them.
+
+    Frames come as they are: a LiDAR's foot is lifted to the centre of its scan when its model has
+    been chosen.
+
+    Raises
+    ------
+    InputError
+        When a file is missing or wrong.
+    """
+    folder = path if path.is_dir() else path.parent
+    poses = dict(_frames(folder / TO_KIT, BASE))
+    if KIT not in poses:
+        raise InputError(folder / TO_KIT, BASE, KIT, ", ".join(poses))
+    kit = poses.pop(KIT)
+    inside = {name: composed(kit, pose) for name, pose in _frames(folder / IN_KIT, KIT)}
+    return tuple(_sensor(name, pose) for name, pose in {**inside, **poses}.items())
+
+
+def _frames(path: Path, parent: str) -> Iterator[tuple[str, Pose]]:
+    """Yield names and poses of the frames in a parent."""
+    data: Any = parse_yaml_blocks(str(path), text_of(path))
+    top = Table(data, str(path))
+    if parent not in top:
+        raise InputError(path, parent, "a mapping of frames", "nothing")
+    frames = top.raw(parent)
+    table = Table(frames, str(path), parent)
+    for name in frames:
+        row = table.table(name)
+        place, turn = (named_numbers(row, keys) for keys in (PLACE, TURN))
+        yield name, pose_from(path, row.path, place, turn)
+
+
+def _sensor(frame: str, pose: Pose) -> CarriedSensor:
+    if frame.endswith(LENS_FRAME):
+        return CarriedSensor(frame.removesuffix(LENS_FRAME), pose, CAMERA)
+    name = frame.removesuffix(FOOT_FRAME)
+    kind = LIDAR if name != frame and not {"imu", "gnss"} & set(name.split("_")) else None
+    return CarriedSensor(name, pose, kind)
+
+
+def lifted(each: CarriedSensor) -> CarriedSensor:
+    """Return a LiDAR at the centre of its scan, now that its model is known."""
+    if each.kind != LIDAR or not foot_of(each.model):
+        return each
+    return each.moved(composed(each.pose, Pose((0.0, 0.0, foot_of(each.model)))))

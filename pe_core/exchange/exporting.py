@@ -1,0 +1,82 @@
+"""Rigs out: a study's sensors as files of another program."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from ..errors import InputError
+from ..scene.reference import Reference
+from ..scene.sensors import Rig
+from ..text.files import write_bytes
+from .carried import carried
+from .frames import origin_in_ground, shifted
+from .table import rig_format
+
+
+def rig_files(
+    rig: Rig, name: str, reference: Reference | None = None
+) -> tuple[Mapping[str, bytes], list[str]]:
+    """Return a rig in another program's format.
+
+    Parameters
+    ----------
+    rig : Rig
+    name : str
+        Of the format: one of `RIG_FORMATS`.
+    reference : Reference, optional
+        Where the rear axle is, which is the origin of some.
+
+    Returns
+    -------
+    dict of str to bytes, list of str
+        Files by name; a line for each thing that the format cannot say.
+
+    Raises
+    ------
+    InputError
+        When there is no such format, it needs the rear axle, or it has no room for the rig.
+    """
+    row = rig_format(name)
+    origin = origin_in_ground(row.origin, reference, row.title)
+    back = [-value for value in origin]
+    return row.write(tuple(s.moved(shifted(s.pose, back)) for s in carried(rig)))
+
+
+def export_rig(
+    rig: Rig,
+    name: str,
+    output: str | Path,
+    reference: Reference | None = None,
+    *,
+    replace: bool = False,
+) -> tuple[list[Path], list[str]]:
+    """Write a rig in another program's format; return the files, and lines on what is missing.
+
+    `output` is the file, or the folder where a format has several; what is there stays unless
+    `replace` says otherwise.
+
+    Raises
+    ------
+    InputError
+        As `rig_files`, and when a file is there already or cannot be written.
+    """
+    files, lines = rig_files(rig, name, reference)
+    output = Path(output)
+    inside = output.is_dir() or len(files) > 1
+    paths = {output / file if inside else output: data for file, data in files.items()}
+    for path in paths:
+        if path.exists() and not replace:
+            raise InputError(path, "file", "a new file, or leave to replace it", "one is there")
+    if inside:
+        _make_folder(output)
+    for path, data in paths.items():
+        write_bytes(path, data)
+    return list(paths), lines
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(folder, "folder", "a place to write to", error) from None

@@ -1,0 +1,143 @@
+"""Rigs back in: files of another program as sensors of ours."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from .. import catalog
+from ..errors import InputError, shown
+from ..kinds.camera import Camera
+from ..scene.geometry import Pose
+from ..scene.reference import Reference
+from ..scene.sensors import Rig, Sensor, SensorModel
+from .carried import CAMERA, LIDAR, CarriedSensor, Picture, named_apart
+from .frames import composed, origin_in_ground, shifted
+from .table import RigFormat, rig_format, told_format
+
+STAND_INS = {LIDAR: "Velodyne VLP-16 Puck", CAMERA: "nuScenes front"}
+"""Models that stand in for those a file does not tell, until somebody chooses."""
+NO_WORD = re.compile("[^a-z0-9]+")
+CHOOSE = "choose its model"
+LENS_WORDS = ("cam", "fisheye", "rgb", "image")
+"""What the name of a camera has in it, where the file says no kind."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedRig:
+    """A rig that was read, and what has to be told of it.
+
+    Attributes
+    ----------
+    rig : Rig
+    to_choose : tuple of str
+        Names of sensors whose model the file did not tell: another one stands in.
+    lines : tuple of str
+        What to know of single sensors.
+    """
+
+    rig: Rig
+    to_choose: tuple[str, ...]
+    lines: tuple[str, ...]
+
+
+def import_rig(
+    path: str | Path,
+    name: str | None = None,
+    reference: Reference | None = None,
+    models: Mapping[str, str] | None = None,
+    placed: Pose | None = None,
+) -> ImportedRig:
+    """Read a rig of another program.
+
+    Parameters
+    ----------
+    path : str or Path
+        File or folder.
+    name : str, optional
+        Of the format; told from the file's name by default.
+    reference : Reference, optional
+        Where the rear axle is, for formats whose origin is there.
+    models : mapping of sensor name to catalogue name, optional
+        Models that the file does not tell.
+    placed : Pose, optional
+        Where the file's origin is, for a file that has no vehicle in it.
+
+    Raises
+    ------
+    InputError
+        When the file is wrong, needs the rear axle, or a chosen model is none.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(path, "file", "an existing file or folder", "nothing of that name")
+    row = told_format(path) if name is None else rig_format(name)
+    origin = origin_in_ground(row.origin, reference, row.title)
+    found, models = row.read(path), models or {}
+    names = named_apart([each.name for each in found])
+    unknown = next((key for key in models if key not in names), None)
+    if unknown is not None:
+        raise InputError(path, f"model of {unknown}", f"one of {', '.join(names)}", "no sensor")
+    place = _placing(origin, placed)
+    called = [each.called(n) for each, n in zip(found, names, strict=True)]
+    done = [_sensor(each, models.get(each.name), row, place) for each in called]
+    lines = tuple(line for _, line in done if line)
+    to_choose = tuple(sensor.name for sensor, line in done if line.endswith(CHOOSE))
+    return ImportedRig(Rig([sensor for sensor, _ in done]), to_choose, lines)
+
+
+def _placing(origin: tuple[float, ...], placed: Pose | None) -> Callable[[Pose], Pose]:
+    if placed is None:
+        return lambda pose: shifted(pose, origin)
+    return lambda pose: shifted(composed(placed, pose), origin)
+
+
+def _sensor(
+    each: CarriedSensor, chosen: str | None, row: RigFormat, place: Callable[[Pose], Pose]
+) -> tuple[Sensor, str]:
+    """Return a sensor with its model, and a line about it where there is something to tell."""
+    each = replace(each, kind=each.kind or (CAMERA if _sounds_like_a_camera(each.name) else LIDAR))
+    model, line = _model(each, chosen)
+    if not line.endswith(CHOOSE):
+        each = row.settled(replace(each, model=model.name))
+    return Sensor(each.name, model, place(each.pose), each.fusion), line
+
+
+def _sounds_like_a_camera(name: str) -> bool:
+    return any(word in name.lower() for word in LENS_WORDS)
+
+
+def _model(each: CarriedSensor, chosen: str | None) -> tuple[SensorModel, str]:
+    if chosen is not None:
+        return catalog.load(chosen), ""
+    if (known := _known(each)) is not None:
+        return catalog.load(known), ""
+    if each.kind == CAMERA and each.picture is not None:
+        return _camera(each.name, each.picture)
+    stand_in = STAND_INS.get(each.kind or "", STAND_INS[LIDAR])
+    called = f"no {shown(each.model)} in the catalogue" if each.model else "no model in the file"
+    return catalog.load(stand_in), f"{each.name}: {called}; {stand_in} stands in: {CHOOSE}"
+
+
+def _known(each: CarriedSensor) -> str | None:
+    """Return the catalogue's name for what the file calls the model, or None."""
+    wanted = NO_WORD.sub("", (each.model or "").lower())
+    names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(each.kind)}
+    return names.get(wanted) if wanted else None
+
+
+def _camera(name: str, p: Picture) -> tuple[Camera, str]:
+    """Return the camera of a picture, and what of it is lost."""
+    width, height = p.size or (round(2.0 * p.cx), round(2.0 * p.cy))
+    model = Camera(name, width, height, 2.0 * math.atan(width / (2.0 * p.fx)))
+    if p.size is None:
+        return model, f"{name}: no size in the file; {width} x {height} px has its middle there"
+    off = math.hypot(p.cx - width / 2.0, p.cy - height / 2.0)
+    line = f"{name}: its principal point is {off:.1f} px off the middle; taken there"
+    return model, line if off > 0.5 else ""
+
+
+__all__ = ["ImportedRig", "import_rig"]

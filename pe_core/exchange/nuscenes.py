@@ -1,0 +1,105 @@
+"""nuScenes: the tables sensor.json and calibrated_sensor.json.
+
+Ego frame: the rear axle on the ground. A camera's frame is optical; a LiDAR's has x to the right
+and y forward.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError, shown
+from ..scene.geometry import METRES
+from ..text.tables import Table
+from ..text.values import numbers, vector
+from .carried import CAMERA, LIDAR, CarriedSensor, Picture
+from .files import Written, json_bytes, json_of, json_rows
+from .frames import (
+    BODY_FROM_OPTICAL,
+    BODY_FROM_RIGHT_FORWARD,
+    Floats,
+    from_quaternion,
+    pose_of,
+    product,
+    quaternion,
+)
+
+CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
+AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
+"""A kind's axes there, in ours; other kinds have ours."""
+
+
+def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
+    """Return the two tables."""
+    calibrated = [_calibrated(each) for each in sensors]
+    known = [
+        {"token": _token("sensor", s.name), "channel": s.name, "modality": s.kind} for s in sensors
+    ]
+    sizes = [
+        f"{s.name}: nuScenes' tables have no size of a picture; it is {w} x {h}"
+        for s in sensors
+        if s.picture is not None and s.picture.size is not None
+        for w, h in [s.picture.size]
+    ]
+    return {CALIBRATED: json_bytes(calibrated), SENSORS: json_bytes(known)}, sizes
+
+
+def _calibrated(each: CarriedSensor) -> dict[str, Any]:
+    rotation = each.pose.ground_from_sensor
+    if each.kind in AXES:
+        rotation = product(rotation, AXES[each.kind])
+    p = each.picture
+    intrinsic = [] if p is None else [[p.fx, 0.0, p.cx], [0.0, p.fy, p.cy], [0.0, 0.0, 1.0]]
+    return {
+        "token": _token("calibrated", each.name),
+        "sensor_token": _token("sensor", each.name),
+        "translation": list(each.pose.position),
+        "rotation": list(quaternion(rotation)),
+        "camera_intrinsic": intrinsic,
+    }
+
+
+def _token(table: str, name: str) -> str:
+    """Return a token as nuScenes has them, 32 hexadecimal digits, the same every time."""
+    return hashlib.sha256(f"{table} {name}".encode()).hexdigest()[:32]
+
+
+def read(path: Path) -> tuple[CarriedSensor, ...]:
+    """Read calibrated_sensor.json with the sensor.json beside it; a folder with both will do.
+
+    Of a sensor that was calibrated several times the last is taken.
+    """
+    path = path / CALIBRATED if path.is_dir() else path
+    beside = path.with_name(SENSORS)
+    names = {row.text("token"): row for row in json_rows(beside, json_of(beside))}
+    found = {}
+    for row in json_rows(path, json_of(path)):
+        token = row.text("sensor_token")
+        if token not in names:
+            raise InputError(path, row.field("sensor_token"), f"one in {SENSORS}", shown(token))
+        sensor = _sensor(path, row, names[token])
+        found[sensor.name] = sensor
+    return tuple(found.values())
+
+
+def _sensor(path: Path, row: Table, known: Table) -> CarriedSensor:
+    name, kind = known.text("channel"), known.text("modality")
+    place = vector(path, row.field("translation"), row.raw("translation"), 3, METRES)
+    turn = vector(path, row.field("rotation"), row.raw("rotation"), 4)
+    rotation = from_quaternion(path, row.field("rotation"), turn)
+    if kind in AXES:
+        rotation = product(rotation, AXES[kind].T)
+    picture = _picture(path, row.field("camera_intrinsic"), row.raw("camera_intrinsic", []))
+    return CarriedSensor(name, pose_of(rotation, place), kind, None, picture)
+
+
+def _picture(path: Path, field: str, value: Any) -> Picture | None:
+    if value == []:
+        return None
+    matrix: Floats | None = numbers(value)
+    if matrix is None or matrix.shape != (3, 3):
+        raise InputError(path, field, "a 3 x 3 matrix, or []", shown(value))
+    fx, fy, cx, cy = (float(matrix[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
+    return Picture(fx, fy, cx, cy)

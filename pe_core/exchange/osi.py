@@ -1,0 +1,95 @@
+"""ASAM OSI: mounting positions in a SensorViewConfiguration, as protobuf's JSON.
+
+Origin: the middle of the rear axle, at its height. Radians.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..kinds.lidar import Lidar
+from ..text.files import LABEL_BYTES
+from ..text.tables import Table
+from .carried import CAMERA, LIDAR, CarriedSensor, Picture
+from .files import Written, json_of, json_rows, pose_from
+
+FILE = "sensor_view_configuration.json"
+LISTS = {kind: f"{kind}_sensor_view_configuration" for kind in (CAMERA, LIDAR)}
+DIGITS = 9
+"""Of a beam's direction: one has up to 240,000 of them."""
+OTHER = "generic_sensor_view_configuration"
+PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
+
+
+def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
+    """Return a configuration with all sensors; ids are their places in the rig, from 0."""
+    lists: dict[str, list[dict[str, Any]]] = {}
+    for number, each in enumerate(sensors):
+        row = {"sensor_id": {"value": number}, "mounting_position": _mounting(each)}
+        lists.setdefault(LISTS.get(each.kind or "", OTHER), []).append(row | _figures(each))
+    order = ", ".join(f"{k} {s.name}" for k, s in enumerate(sensors))
+    text = json.dumps(lists, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return {FILE: text.encode()}, [f"OSI numbers sensors, it has no names: {order}"]
+
+
+def _mounting(each: CarriedSensor) -> dict[str, Any]:
+    return {
+        "position": dict(zip(PLACE, each.pose.position, strict=True)),
+        "orientation": dict(zip(TURN, each.pose.rpy, strict=True)),
+    }
+
+
+def _figures(each: CarriedSensor) -> dict[str, Any]:
+    """Return field of view [rad], range [m], pixels, and each beam's direction."""
+    if each.picture is not None and each.picture.size is not None:
+        (width, height), p = each.picture.size, each.picture
+        return {
+            "field_of_view_horizontal": 2.0 * math.atan(width / (2.0 * p.fx)),
+            "field_of_view_vertical": 2.0 * math.atan(height / (2.0 * p.fy)),
+            "number_of_pixels_horizontal": width,
+            "number_of_pixels_vertical": height,
+        }
+    if isinstance(each.sensor_model, Lidar):
+        model = each.sensor_model
+        low, high = model.horizontal_fov
+        up = model.elevations
+        vertical = 2.0 * max(abs(float(up.min())), abs(float(up.max())))
+        figures = {"field_of_view_horizontal": high - low, "field_of_view_vertical": vertical}
+        beams = np.round(model.directions, DIGITS).tolist()
+        rays = [dict(zip(PLACE, beam, strict=True)) for beam in beams]
+        return {**figures, "directions": rays}
+    return {}
+
+
+def read(path: Path) -> tuple[CarriedSensor, ...]:
+    """Read a configuration's sensors, called by kind and id."""
+    top = Table(json_of(path, LABEL_BYTES), str(path))
+    found: dict[int, CarriedSensor] = {}
+    for kind, key in (*LISTS.items(), (None, OTHER)):
+        for row in json_rows(path, top.raw(key, []), key):
+            number = row.table("sensor_id").whole("value", len(found))
+            found[number] = _sensor(path, row, kind, number)
+    return tuple(found[number] for number in sorted(found))
+
+
+def _sensor(path: Path, row: Table, kind: str | None, number: int) -> CarriedSensor:
+    mounting = row.table("mounting_position")
+    place, turn = (
+        [table.number(key, 0.0) for key in keys]
+        for table, keys in (
+            (mounting.table("position"), PLACE),
+            (mounting.table("orientation"), TURN),
+        )
+    )
+    pose, picture = pose_from(path, mounting.path, place, turn), None
+    keys = ("number_of_pixels_horizontal", "number_of_pixels_vertical", "field_of_view_horizontal")
+    if kind == CAMERA and all(key in row for key in keys):
+        width, height = row.whole(keys[0]), row.whole(keys[1])
+        focal = width / (2.0 * math.tan(row.number(keys[2]) / 2.0))
+        picture = Picture(focal, focal, width / 2.0, height / 2.0, (width, height))
+    return CarriedSensor(f"{kind or 'sensor'}_{number}", pose, kind, None, picture)

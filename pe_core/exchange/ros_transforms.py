@@ -1,0 +1,130 @@
+"""ROS 2 static transforms: a launch file of tf2's static_transform_publisher.
+
+Read back from there, and from lines of a shell that call the publisher.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from ..errors import InputError, shown
+from ..scene.geometry import Pose
+from .carried import CAMERA, CarriedSensor
+from .files import Written, plain_number, pose_from, text_of
+from .frame_names import with_legal_frames
+from .frames import OPTICAL_RPY, composed, from_quaternion, pose_of
+
+FILE, ROOT, OPTICAL = "rig.launch.xml", "base_link", "_optical"
+CONVENTIONS = (
+    " base_link is on the ground under the vehicle's centre: x forward, y left, z up; metres, "
+    "radians. NAME_optical looks along z, x right, y down (REP 103). "
+)
+PUBLISHER = "static_transform_publisher"
+PLACE, TURN, QUATERNION = ("x", "y", "z"), ("roll", "pitch", "yaw"), ("qw", "qx", "qy", "qz")
+ENDS = ("frame-id", "child-frame-id")
+ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
+
+
+def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
+    """Return a launch file with a publisher for each sensor."""
+    named, lines = with_legal_frames(sensors)
+    launch = Element("launch")
+    for each in named:
+        _publisher(launch, ROOT, each.name, each.pose)
+        if each.kind == CAMERA:
+            optical = Pose((0.0, 0.0, 0.0), OPTICAL_RPY)
+            _publisher(launch, each.name, each.name + OPTICAL, optical)
+    indent(launch)
+    text = f"<!--{CONVENTIONS}-->\n{tostring(launch, 'unicode')}\n"
+    return {FILE: text.encode()}, lines
+
+
+def _publisher(launch: Element, parent: str, child: str, pose: Pose) -> None:
+    named = zip((*PLACE, *TURN), (*pose.position, *pose.rpy), strict=True)
+    numbers = " ".join(f"--{key} {plain_number(value)}" for key, value in named)
+    args = f"{numbers} --{ENDS[0]} {parent} --{ENDS[1]} {child}"
+    SubElement(launch, "node", {"pkg": "tf2_ros", "exec": PUBLISHER, "args": args})
+
+
+def read(path: Path) -> tuple[CarriedSensor, ...]:
+    """Read the transforms of all calls of the publisher in a file, in the frame of their root.
+
+    A frame with an optical one below it is a camera; of others the file says no kind.
+
+    Raises
+    ------
+    InputError
+        When there is no call, a number is none, or frames have two roots or a circle.
+    """
+    text = re.sub("<!--.*?-->", "", text_of(path), flags=re.DOTALL)
+    links: dict[str, tuple[str, Pose]] = {}
+    for number, found in enumerate(ARGS.findall(text)):
+        parent, child, pose = _transform(path, f"transform {number + 1}", found)
+        if child in links:
+            raise InputError(path, f"frame {child}", "one parent", "two")
+        links[child] = parent, pose
+    if not links:
+        raise InputError(path, "file", f"calls of {PUBLISHER}", "none")
+    poses = placed(path, links)
+    optical = {name for name in links if name.endswith(OPTICAL)}
+    cameras = {links[name][0] for name in optical}
+    named = [name for name in links if name not in optical]
+    return tuple(CarriedSensor(n, poses[n], CAMERA if n in cameras else None) for n in named)
+
+
+def placed(path: Path, links: dict[str, tuple[str, Pose]]) -> dict[str, Pose]:
+    """Return where frames are in the one that is nobody's child, by name.
+
+    Raises
+    ------
+    InputError
+        When there are two such frames, or none.
+    """
+    roots = sorted({parent for parent, _ in links.values()} - set(links))
+    if len(roots) != 1:
+        found = "none: frames go in a circle" if not roots else ", ".join(roots)
+        raise InputError(path, "frame", "one root", found)
+    poses, left = {roots[0]: Pose((0.0, 0.0, 0.0))}, dict(links)
+    while left:
+        ready = [child for child, (parent, _) in left.items() if parent in poses]
+        if not ready:
+            raise InputError(path, f"frame {next(iter(left))}", "a way to the root", "a circle")
+        for child in ready:
+            parent, pose = left.pop(child)
+            poses[child] = composed(poses[parent], pose)
+    return poses
+
+
+def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
+    """Return parent, child and pose of one call."""
+    try:
+        words = shlex.split(args)
+    except ValueError as error:
+        raise InputError(path, field, "arguments", error) from None
+    given = dict(zip(words[::2], words[1::2], strict=False))
+    ends = [given.get(f"--{end}", "") for end in ENDS]
+    if not all(ends):
+        raise InputError(path, field, "--frame-id and --child-frame-id", shown(args.strip()))
+    place = [_number(path, field, given, key) for key in PLACE]
+    if any(f"--{key}" in given for key in QUATERNION):
+        default = {"qw": "1"}
+        turn = [_number(path, field, default | _bare(given), key, "") for key in QUATERNION]
+        pose = pose_of(from_quaternion(path, field, turn), place)
+    else:
+        pose = pose_from(path, field, place, [_number(path, field, given, key) for key in TURN])
+    return ends[0], ends[1], pose
+
+
+def _bare(given: dict[str, str]) -> dict[str, str]:
+    return {key.removeprefix("--"): value for key, value in given.items()}
+
+
+def _number(path: Path, field: str, given: dict[str, str], key: str, dashes: str = "--") -> float:
+    text = given.get(f"{dashes}{key}", "0")
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(path, f"{field}, {key}", "a number", shown(text)) from None

@@ -1,0 +1,160 @@
+"""The formats that rigs go out in and come back from, a row a format."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+from ..errors import InputError, shown
+from . import (
+    autoware,
+    carla,
+    csv_table,
+    driveworks,
+    kitti,
+    nuscenes,
+    osi,
+    ros_transforms,
+    urdf,
+)
+from .carried import CarriedSensor
+from .files import Written
+from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
+
+Sensors = tuple[CarriedSensor, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RigFormat:
+    """A format of rigs.
+
+    Attributes
+    ----------
+    name, title : str
+        What commands and what people call it.
+    origin : str
+        Where its frame is on the vehicle: `GROUND` is ours.
+    files : tuple of str
+        Names of what is written; where there are several, the first one tells the format.
+    write : callable
+        Sensors in the format's frame to bytes by file name, and lines on what it cannot say.
+    read : callable
+        A path to sensors in the format's frame.
+    settled : callable
+        A sensor as it is once its model is known.
+    """
+
+    name: str
+    title: str
+    origin: str
+    files: tuple[str, ...]
+    write: Callable[[Sensors], tuple[Written, list[str]]]
+    read: Callable[[Path], Sensors]
+    settled: Callable[[CarriedSensor], CarriedSensor] = lambda each: each
+
+
+_ROWS = (
+    RigFormat(
+        "csv",
+        "table (CSV)",
+        GROUND,
+        (csv_table.FILE,),
+        csv_table.write,
+        csv_table.read,
+    ),
+    RigFormat(
+        "urdf",
+        "URDF",
+        GROUND,
+        (urdf.FILE,),
+        urdf.write,
+        urdf.read,
+    ),
+    RigFormat(
+        "ros",
+        "ROS 2 static transforms",
+        GROUND,
+        (ros_transforms.FILE,),
+        ros_transforms.write,
+        ros_transforms.read,
+    ),
+    RigFormat(
+        "autoware",
+        "Autoware sensor kit",
+        REAR_AXLE_GROUND,
+        (autoware.IN_KIT, autoware.TO_KIT),
+        autoware.write,
+        autoware.read,
+        autoware.lifted,
+    ),
+    RigFormat(
+        "nuscenes",
+        "nuScenes",
+        REAR_AXLE_GROUND,
+        (nuscenes.CALIBRATED, nuscenes.SENSORS),
+        nuscenes.write,
+        nuscenes.read,
+    ),
+    RigFormat(
+        "carla",
+        "CARLA objects.json",
+        GROUND,
+        (carla.FILE,),
+        carla.write,
+        carla.read,
+    ),
+    RigFormat(
+        "kitti",
+        "KITTI calibration",
+        GROUND,
+        (kitti.FILE,),
+        kitti.write,
+        kitti.read,
+    ),
+    RigFormat(
+        "osi",
+        "ASAM OSI mounting positions",
+        REAR_AXLE,
+        (osi.FILE,),
+        osi.write,
+        osi.read,
+    ),
+    RigFormat(
+        "driveworks",
+        "DriveWorks rig.json",
+        REAR_AXLE_GROUND,
+        (driveworks.FILE,),
+        driveworks.write,
+        driveworks.read,
+    ),
+)
+_formats = {row.name: row for row in _ROWS}
+RIG_FORMATS = MappingProxyType(_formats)
+"""Formats by name."""
+
+
+def add_format(row: RigFormat) -> None:
+    """Add a format that needs more than the engine has."""
+    _formats[row.name] = row
+
+
+def rig_format(name: str) -> RigFormat:
+    """Return the format of that name, or raise `InputError`."""
+    if name not in _formats:
+        raise InputError("exchange", "format", f"one of {', '.join(_formats)}", shown(name))
+    return _formats[name]
+
+
+def told_format(path: Path) -> RigFormat:
+    """Return the format that a file's or a folder's names tell, or raise `InputError`."""
+    names = {each.name for each in path.iterdir()} if path.is_dir() else {path.name}
+    for row in _formats.values():
+        if names & set(row.files):
+            return row
+    ending = {".csv": "csv", ".urdf": "urdf", ".xacro": "urdf", ".sh": "ros", ".xml": "ros"}
+    if path.suffix.lower() in ending:
+        return _formats[ending[path.suffix.lower()]]
+    expected = f"a name that tells its format, or the format said: {', '.join(_formats)}"
+    raise InputError(path, "format", expected, path.name)

@@ -1,0 +1,80 @@
+"""The part of YAML that calibrations are written in: nested mappings of plain values.
+
+No lists, anchors, tags or texts over several lines: a file that has them is refused with its line,
+not read wrong.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from ..errors import InputError, shown
+
+DEEPEST = 20
+QUOTED = r"'[^']*'|\"[^\"\\]*\""
+LINE = re.compile(
+    rf"^(?P<blanks> *)(?P<key>{QUOTED}|[^\s'\"#\[{{&*!|>%@-][^:#]*?) *:(?P<rest>( .*)?)$"
+)
+PLAIN_REST = re.compile(rf"^ *(?P<value>{QUOTED}|[^\s'\"#\[{{&*!|>%@][^#]*?)? *( #.*)?$")
+NUMBER = re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+WORDS = {"true": True, "false": False, "null": None, "~": None}
+
+
+def parse_yaml_blocks(source: str, text: str) -> dict[str, Any]:
+    """Return nested dicts of texts, numbers, booleans and None.
+
+    Raises
+    ------
+    InputError
+        When a line is not ``key: value`` or ``key:``, an indent fits no level, a key comes twice.
+    """
+    root: dict[str, Any] = {}
+    levels: list[tuple[int, dict[str, Any]]] = [(-1, root)]
+    opened: tuple[int, dict[str, Any], str] | None = None
+    for number, line in enumerate(text.splitlines(), start=1):
+        bare = line.strip()
+        if not bare or bare.startswith(("#", "---", "%YAML")):
+            continue
+        blanks, key, value, is_value = _parsed(source, number, line)
+        if opened is not None and blanks > opened[0]:
+            fresh: dict[str, Any] = {}
+            opened[1][opened[2]] = fresh
+            levels.append((blanks, fresh))
+        while len(levels) > 1 and levels[-1][0] > blanks:
+            levels.pop()
+        if len(levels) == 1:
+            levels.append((blanks, root))
+        if levels[-1][0] != blanks or len(levels) > DEEPEST:
+            raise InputError(source, f"line {number}", "an indent of a level above it", shown(line))
+        table = levels[-1][1]
+        if key in table:
+            raise InputError(source, f"line {number}", "a key used once", shown(key))
+        table[key] = value
+        opened = None if is_value else (blanks, table, key)
+    return root
+
+
+def _parsed(source: str, number: int, line: str) -> tuple[int, str, Any, bool]:
+    """Return indent, key and value of a line, and whether there is a value."""
+    found = LINE.match(line.rstrip())
+    rest = PLAIN_REST.match(found["rest"]) if found else None
+    if found is None or rest is None:
+        expected = "nested `key: value`, the part of YAML that calibrations use"
+        raise InputError(source, f"line {number}", expected, shown(line.strip()))
+    value = rest["value"]
+    return len(found["blanks"]), _unquoted(found["key"]), _value(value), value is not None
+
+
+def _unquoted(text: str) -> str:
+    return text[1:-1] if text[:1] in ("'", '"') else text
+
+
+def _value(text: str | None) -> Any:
+    if text is None:
+        return None
+    if text[:1] in ("'", '"'):
+        return _unquoted(text)
+    if text.lower() in WORDS:
+        return WORDS[text.lower()]
+    return float(text) if NUMBER.match(text) else text

@@ -3,11 +3,22 @@
 from . import advice, catalog
 from .advice import Advice
 from .errors import InputError
+from .exchange import export_rig, import_rig
 from .formats import Mesh, MeshAxes, read_boxes, read_mesh, write_boxes, write_mesh
 from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
 from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
-from .scene import Housing, PerceptionSpace, Pose, Rig, Sensor, Vehicle, cuts_body
+from .scene import (
+    Housing,
+    PerceptionSpace,
+    Pose,
+    Reference,
+    Rig,
+    Sensor,
+    Vehicle,
+    cuts_body,
+    guessed_reference,
+)
 from .scoring import Evaluator, Glance, GroundMap, PartScore, Score, SensorScore
 from .search import (
     METHODS,
@@ -82,6 +93,7 @@ __all__ = [
     "Prior",
     "Progress",
     "Reach",
+    "Reference",
     "Rig",
     "Schedule",
     "Score",
@@ -103,7 +115,10 @@ __all__ = [
     "beam_field",
     "catalog",
     "cuts_body",
+    "export_rig",
     "export_study",
+    "guessed_reference",
+    "import_rig",
     "load_study",
     "measure",
     "optimize",

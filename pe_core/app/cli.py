@@ -11,6 +11,7 @@ from ..errors import InputError
 from ..study import STUDY, OptimizeJob, ScoreJob, load_study, prepare_folder, result_names
 from ..version import __version__
 from .command import Parser, add_run_options, add_sensors_verb, run, with_options
+from .exchanging import add_export_options, add_import_options, export, import_study
 from .explaining import (
     add_compare_options,
     add_explain_options,
@@ -64,6 +65,13 @@ def parser() -> argparse.ArgumentParser:
     verb.add_argument("studies", nargs="+", metavar="STUDY", help="study file (TOML)")
     add_compare_options(verb)
     verb.set_defaults(function=_compare)
+    verb = verbs.add_parser("export", help="write a study's rig for another program")
+    verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
+    add_export_options(verb)
+    verb.set_defaults(function=_export)
+    verb = verbs.add_parser("import", help="make a study of another program's rig")
+    add_import_options(verb)
+    verb.set_defaults(function=import_study)
     add_sensors_verb(verbs)
     for other in entry_points(group=VERBS):
         other.load()(verbs)
@@ -85,6 +93,10 @@ def _run_job(args: argparse.Namespace) -> Answer:
 
 def _explain(args: argparse.Namespace) -> Answer:
     return explain(with_options(load_study(args.study), args), args)
+
+
+def _export(args: argparse.Namespace) -> Answer:
+    return export(load_study(args.study), args)
 
 
 def _compare(args: argparse.Namespace) -> Answer:

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..kinds.lidar import Lidar
 from ..text.tables import Table
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture, beam_fan, uneven
+from ..text.values import Number, Whole
+from .carried import CAMERA, LIDAR, CarriedSensor, Picture, Scan, uneven
 from .files import Written, json_bytes, json_of, json_rows, named_numbers, pose_from
 
 FILE = "objects.json"
 TYPES = {CAMERA: "sensor.camera.rgb", LIDAR: "sensor.lidar.ray_cast"}
 VEHICLE = {"type": "vehicle.*", "id": "ego_vehicle"}
 FRAMES_A_SECOND = 10
+SCAN_KEYS = (
+    *("channels", "upper_fov", "lower_fov", "range", "points_per_second", "rotation_frequency"),
+)
+FOV = Number(0.0, 180.0, above=True, below=True, unit="degrees", noun="angle")
+RATE, MANY = Number(0.0, above=True, cap=1e12), Whole(1, 10_000)
 PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
@@ -39,19 +45,18 @@ def _row(each: CarriedSensor) -> dict[str, Any]:
         width, height = each.picture.size
         fov = math.degrees(2.0 * math.atan(width / (2.0 * each.picture.fx)))
         row |= {"image_size_x": width, "image_size_y": height, "fov": fov}
-    if isinstance(each.sensor_model, Lidar):
-        row |= _lidar(each.sensor_model)
+    if each.scan is not None:
+        row |= _lidar(each.scan)
     return row
 
 
-def _lidar(model: Lidar) -> dict[str, Any]:
-    channels, low, high, _ = beam_fan(model) or (0, 0.0, 0.0, True)
+def _lidar(scan: Scan) -> dict[str, Any]:
     return {
-        "range": model.max_range,
-        "channels": channels,
-        "points_per_second": model.beam_count * FRAMES_A_SECOND,
-        "upper_fov": math.degrees(high),
-        "lower_fov": math.degrees(low),
+        "range": scan.max_range,
+        "channels": scan.channels,
+        "points_per_second": scan.beam_count * FRAMES_A_SECOND,
+        "upper_fov": math.degrees(scan.high),
+        "lower_fov": math.degrees(scan.low),
         "rotation_frequency": FRAMES_A_SECOND,
     }
 
@@ -75,9 +80,23 @@ def _sensor(path: Path, row: Table) -> CarriedSensor:
     )
     pose = pose_from(path, row.field("spawn_point"), place, turn, degrees=True)
     kind = next((kind for kind in (CAMERA, LIDAR) if f".{kind}." in words), None)
-    picture = None
-    if all(key in row for key in ("image_size_x", "image_size_y", "fov")):
-        width, height = row.whole("image_size_x"), row.whole("image_size_y")
-        focal = width / (2.0 * math.tan(math.radians(row.number("fov")) / 2.0))
-        picture = Picture(focal, focal, width / 2.0, height / 2.0, (width, height))
-    return CarriedSensor(row.text("id"), pose, kind, None, picture)
+    where = CarriedSensor(row.text("id"), pose, kind)
+    if kind == CAMERA and all(key in row for key in ("image_size_x", "image_size_y", "fov")):
+        return replace(where, picture=_picture(row))
+    if kind == LIDAR and all(key in row for key in SCAN_KEYS):
+        return replace(where, scan=_scan(row))
+    return where
+
+
+def _picture(row: Table) -> Picture:
+    width, height = row.whole("image_size_x"), row.whole("image_size_y")
+    focal = width / (2.0 * math.tan(math.radians(row.number("fov", rule=FOV)) / 2.0))
+    return Picture(focal, focal, width / 2.0, height / 2.0, (width, height))
+
+
+def _scan(row: Table) -> Scan:
+    frames, channels = row.number("rotation_frequency", rule=RATE), row.whole("channels", rule=MANY)
+    beams = row.number("points_per_second", rule=RATE) / frames
+    low, high = (math.radians(row.number(key)) for key in ("lower_fov", "upper_fov"))
+    azimuths = max(round(beams / channels), 1)
+    return Scan(channels, low, high, azimuths, (-math.pi, math.pi), row.number("range"))

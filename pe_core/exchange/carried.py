@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..kinds.camera import Camera
 from ..kinds.lidar import Lidar
 from ..scene.geometry import Pose
-from ..scene.sensors import Rig, Sensor, SensorModel
+from ..scene.sensors import Rig, Sensor
+
+Floats = NDArray[np.float64]
 
 CAMERA, LIDAR = Camera.kind, Lidar.kind
+
+
+EVEN_RAD = 1e-4
+"""Channels nearer to even distances than this are even."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +40,29 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True)
+class Scan:
+    """A LiDAR's beams, as formats have them that know channels at even distances.
+
+    Angles in radians, the range in metres. `even` says whether the channels are so; `directions`
+    are the beams themselves, where they are known.
+    """
+
+    channels: int
+    low: float
+    high: float
+    azimuths: int
+    fov: tuple[float, float]
+    max_range: float
+    even: bool = True
+    directions: Floats | None = None
+
+    @property
+    def beam_count(self) -> int:
+        """Beams of a frame."""
+        return self.channels * self.azimuths
+
+
+@dataclass(frozen=True, slots=True)
 class CarriedSensor:
     """A sensor of another program.
 
@@ -43,8 +77,7 @@ class CarriedSensor:
     model : str or None
         What the file calls its model.
     picture : Picture or None
-    sensor_model : SensorModel or None
-        The model itself, for writers.
+    scan : Scan or None
     fusion : str or None
     """
 
@@ -53,7 +86,7 @@ class CarriedSensor:
     kind: str | None = None
     model: str | None = None
     picture: Picture | None = None
-    sensor_model: SensorModel | None = None
+    scan: Scan | None = None
     fusion: str | None = None
 
     def moved(self, pose: Pose) -> CarriedSensor:
@@ -80,39 +113,55 @@ def lidars(sensors: Iterable[CarriedSensor]) -> list[CarriedSensor]:
     return [each for each in sensors if each.kind == LIDAR]
 
 
-def beam_fan(model: SensorModel) -> tuple[int, float, float, bool] | None:
-    """Return channels, lowest and highest elevation [rad] of a LiDAR, and whether they are even."""
-    if not isinstance(model, Lidar):
-        return None
-    angles = sorted(model.elevations.tolist())
-    step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
-    gaps = (abs(b - a - step) for a, b in pairwise(angles))
-    return len(angles), angles[0], angles[-1], all(gap < 1e-4 for gap in gaps)
-
-
 def uneven(sensors: Iterable[CarriedSensor], asking: str) -> list[str]:
     """Return a line for each LiDAR whose channels a format cannot say, that knows even ones."""
     lines = []
-    for each in lidars(sensors):
-        fan = beam_fan(each.sensor_model) if each.sensor_model is not None else None
-        if fan is not None and not fan[3]:
-            lines.append(
-                f"{each.name}: {asking} spaces channels evenly; the {fan[0]} of "
-                f"{each.model} are not"
-            )
+    for each in sensors:
+        if each.scan is not None and not each.scan.even:
+            had = f"the {each.scan.channels} of {each.model} are not"
+            lines.append(f"{each.name}: {asking} spaces channels evenly; {had}")
     return lines
+
+
+def camera_of(name: str, p: Picture) -> Camera:
+    """Return the camera of a picture; one without a size has its principal point in the middle."""
+    width, height = p.size or (round(2.0 * p.cx), round(2.0 * p.cy))
+    return Camera(name, width, height, 2.0 * math.atan(width / (2.0 * p.fx)))
+
+
+def lidar_of(name: str, scan: Scan) -> Lidar:
+    """Return the LiDAR of a scan: of its beams where they are known, else of even channels."""
+    if scan.directions is not None:
+        return Lidar.from_directions(name, scan.directions, scan.max_range)
+    elevations = np.linspace(scan.low, scan.high, scan.channels)
+    low, high = scan.fov
+    share = min((high - low) / (2.0 * math.pi), 1.0)
+    steps = max(round(scan.azimuths / share), 1)
+    return Lidar(name, elevations, steps, scan.max_range, horizontal_fov=scan.fov)
 
 
 def _carried(sensor: Sensor) -> CarriedSensor:
     model = sensor.model
-    picture = None
+    figures: dict[str, Any] = {}
     if isinstance(model, Camera):
-        focal = model.focal_px
-        size = (model.width, model.height)
-        picture = Picture(focal, focal, model.width / 2.0, model.height / 2.0, size)
-    return CarriedSensor(
-        *(sensor.name, sensor.pose, sensor.kind, model.name, picture, model, sensor.fusion)
-    )
+        figures["picture"] = _picture(model)
+    elif isinstance(model, Lidar):
+        figures["scan"] = _scan(model)
+    known = (sensor.name, sensor.pose, sensor.kind, model.name)
+    return CarriedSensor(*known, fusion=sensor.fusion, **figures)
+
+
+def _picture(model: Camera) -> Picture:
+    focal, size = model.focal_px, (model.width, model.height)
+    return Picture(focal, focal, model.width / 2.0, model.height / 2.0, size)
+
+
+def _scan(model: Lidar) -> Scan:
+    angles = sorted(model.elevations.tolist())
+    step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
+    even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
+    figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
+    return Scan(*figures, model.max_range, even, model.directions)
 
 
 def named_apart(names: Sequence[str]) -> list[str]:

@@ -67,7 +67,7 @@ def export_rig(
     paths = {output / file if inside else output: data for file, data in files.items()}
     for path in paths:
         if path.exists() and not replace:
-            raise InputError(path, "file", "a new file, or leave to replace it", "one is there")
+            raise InputError(path, "file", "a new file, or a wish to replace it", "one is there")
     if inside:
         _make_folder(output)
     for path, data in paths.items():

@@ -115,8 +115,8 @@ def origin_in_ground(origin: str, reference: Reference | None, asking: str) -> t
     if origin == GROUND:
         return 0.0, 0.0, 0.0
     if reference is None:
-        expected = f"the rear axle's place: the origin of {asking} is there"
-        raise InputError("reference", "rear_axle_x", expected, "nothing")
+        expected = f"the rear axle's place, which is the origin of {asking}"
+        raise InputError("study", "reference", expected, "none")
     return reference.rear_axle_x, 0.0, reference.rear_axle_z if origin == REAR_AXLE else 0.0
 
 

@@ -10,11 +10,18 @@ from pathlib import Path
 
 from .. import catalog
 from ..errors import InputError, shown
-from ..kinds.camera import Camera
 from ..scene.geometry import Pose
 from ..scene.reference import Reference
 from ..scene.sensors import Rig, Sensor, SensorModel
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture, named_apart
+from .carried import (
+    CAMERA,
+    LIDAR,
+    CarriedSensor,
+    Picture,
+    camera_of,
+    lidar_of,
+    named_apart,
+)
 from .frames import composed, origin_in_ground, shifted
 from .table import RigFormat, rig_format, told_format
 
@@ -117,6 +124,8 @@ def _model(each: CarriedSensor, chosen: str | None) -> tuple[SensorModel, str]:
         return catalog.load(known), ""
     if each.kind == CAMERA and each.picture is not None:
         return _camera(each.name, each.picture)
+    if each.kind == LIDAR and each.scan is not None:
+        return lidar_of(each.name, each.scan), ""
     stand_in = STAND_INS.get(each.kind or "", STAND_INS[LIDAR])
     called = f"no {shown(each.model)} in the catalogue" if each.model else "no model in the file"
     return catalog.load(stand_in), f"{each.name}: {called}; {stand_in} stands in: {CHOOSE}"
@@ -129,13 +138,13 @@ def _known(each: CarriedSensor) -> str | None:
     return names.get(wanted) if wanted else None
 
 
-def _camera(name: str, p: Picture) -> tuple[Camera, str]:
+def _camera(name: str, p: Picture) -> tuple[SensorModel, str]:
     """Return the camera of a picture, and what of it is lost."""
-    width, height = p.size or (round(2.0 * p.cx), round(2.0 * p.cy))
-    model = Camera(name, width, height, 2.0 * math.atan(width / (2.0 * p.fx)))
+    model = camera_of(name, p)
+    size = f"{model.width} x {model.height} px"
     if p.size is None:
-        return model, f"{name}: no size in the file; {width} x {height} px has its middle there"
-    off = math.hypot(p.cx - width / 2.0, p.cy - height / 2.0)
+        return model, f"{name}: no size in the file; {size} has its middle there"
+    off = math.hypot(p.cx - model.width / 2.0, p.cy - model.height / 2.0)
     line = f"{name}: its principal point is {off:.1f} px off the middle; taken there"
     return model, line if off > 0.5 else ""
 

@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..kinds.lidar import Lidar
+from ..errors import InputError, shown
 from ..text.files import LABEL_BYTES
 from ..text.tables import Table
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture
+from ..text.values import Number, numbers
+from .carried import CAMERA, LIDAR, CarriedSensor, Picture, Scan
 from .files import Written, json_of, json_rows, pose_from
 
 FILE = "sensor_view_configuration.json"
@@ -24,6 +26,7 @@ DIGITS = 9
 """Of a beam's direction: one has up to 240,000 of them."""
 OTHER = "generic_sensor_view_configuration"
 PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
+FOV = Number(0.0, math.pi, above=True, below=True, unit="rad", noun="angle")
 
 
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
@@ -54,15 +57,13 @@ def _figures(each: CarriedSensor) -> dict[str, Any]:
             "number_of_pixels_horizontal": width,
             "number_of_pixels_vertical": height,
         }
-    if isinstance(each.sensor_model, Lidar):
-        model = each.sensor_model
-        low, high = model.horizontal_fov
-        up = model.elevations
-        vertical = 2.0 * max(abs(float(up.min())), abs(float(up.max())))
+    if each.scan is not None and (beams := each.scan.directions) is not None:
+        scan, (low, high) = each.scan, each.scan.fov
+        vertical = 2.0 * max(abs(scan.low), abs(scan.high))
         figures = {"field_of_view_horizontal": high - low, "field_of_view_vertical": vertical}
-        beams = np.round(model.directions, DIGITS).tolist()
-        rays = [dict(zip(PLACE, beam, strict=True)) for beam in beams]
-        return {**figures, "directions": rays}
+        rounded = np.round(beams, DIGITS)
+        rays = [dict(zip(PLACE, beam, strict=True)) for beam in rounded.tolist()]
+        return {**figures, "range": scan.max_range, "directions": rays}
     return {}
 
 
@@ -86,10 +87,26 @@ def _sensor(path: Path, row: Table, kind: str | None, number: int) -> CarriedSen
             (mounting.table("orientation"), TURN),
         )
     )
-    pose, picture = pose_from(path, mounting.path, place, turn), None
+    where = CarriedSensor(
+        f"{kind or 'sensor'}_{number}", pose_from(path, mounting.path, place, turn), kind
+    )
     keys = ("number_of_pixels_horizontal", "number_of_pixels_vertical", "field_of_view_horizontal")
     if kind == CAMERA and all(key in row for key in keys):
         width, height = row.whole(keys[0]), row.whole(keys[1])
-        focal = width / (2.0 * math.tan(row.number(keys[2]) / 2.0))
+        focal = width / (2.0 * math.tan(row.number(keys[2], rule=FOV) / 2.0))
         picture = Picture(focal, focal, width / 2.0, height / 2.0, (width, height))
-    return CarriedSensor(f"{kind or 'sensor'}_{number}", pose, kind, None, picture)
+        return replace(where, picture=picture)
+    if kind == LIDAR and "directions" in row and "range" in row:
+        return replace(where, scan=_scan(path, row))
+    return where
+
+
+def _scan(path: Path, row: Table) -> Scan:
+    beams = row.raw("directions")
+    plain = isinstance(beams, list) and all(isinstance(beam, dict) for beam in beams)
+    found = numbers([[beam.get(key) for key in PLACE] for beam in beams]) if plain else None
+    if found is None or not len(found):
+        raise InputError(path, row.field("directions"), "a list of vectors {x, y, z}", shown(beams))
+    up = np.arctan2(found[:, 2], np.hypot(found[:, 0], found[:, 1]))
+    fov, ends = (-math.pi, math.pi), (float(up.min()), float(up.max()))
+    return Scan(len(found), *ends, 1, fov, row.number("range"), False, found)

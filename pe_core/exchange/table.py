@@ -23,7 +23,7 @@ from .carried import CarriedSensor
 from .files import Written
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
 
-Sensors = tuple[CarriedSensor, ...]
+Carried = tuple[CarriedSensor, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +50,8 @@ class RigFormat:
     title: str
     origin: str
     files: tuple[str, ...]
-    write: Callable[[Sensors], tuple[Written, list[str]]]
-    read: Callable[[Path], Sensors]
+    write: Callable[[Carried], tuple[Written, list[str]]]
+    read: Callable[[Path], Carried]
     settled: Callable[[CarriedSensor], CarriedSensor] = lambda each: each
 
 

@@ -12,11 +12,10 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ..errors import InputError, shown
-from ..kinds.lidar import Lidar
 from ..scene.geometry import Pose
 from ..text.files import read_bytes
 from ..text.xml_text import parse_xml
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture, beam_fan, uneven
+from .carried import CAMERA, LIDAR, CarriedSensor, Picture, Scan, uneven
 from .files import Written, pose_from, spaced
 from .frame_names import with_legal_frames
 from .frames import OPTICAL_RPY, composed
@@ -27,7 +26,7 @@ CONVENTIONS = (
     "radians. NAME_optical looks along z, x right, y down (REP 103). "
 )
 GAZEBO_KINDS = {CAMERA: CAMERA, LIDAR: "gpu_lidar"}
-KIND_WORDS = {"camera": CAMERA, "lidar": LIDAR, "ray": LIDAR, "depth": CAMERA}
+KIND_WORDS = {CAMERA: CAMERA, LIDAR: LIDAR, "ray": LIDAR, "depth": CAMERA}
 """What a word in a Gazebo sensor's type says of its kind."""
 
 
@@ -63,9 +62,9 @@ def _gazebo(robot: Element, each: CarriedSensor) -> None:
         return
     sensor = SubElement(block, "sensor", {"name": each.name, "type": kind})
     if each.picture is not None and each.picture.size is not None:
-        _camera(SubElement(sensor, "camera"), each.picture, each.picture.size)
-    elif isinstance(each.sensor_model, Lidar):
-        _lidar(SubElement(sensor, "lidar"), each.sensor_model)
+        _camera(SubElement(sensor, CAMERA), each.picture, each.picture.size)
+    elif each.scan is not None:
+        _lidar(SubElement(sensor, LIDAR), each.scan)
 
 
 def _camera(element: Element, picture: Picture, size: tuple[int, int]) -> None:
@@ -76,18 +75,17 @@ def _camera(element: Element, picture: Picture, size: tuple[int, int]) -> None:
     SubElement(image, "width").text, SubElement(image, "height").text = str(width), str(height)
 
 
-def _lidar(element: Element, model: Lidar) -> None:
-    channels, low, high, _ = beam_fan(model) or (0, 0.0, 0.0, True)
-    scan = SubElement(element, "scan")
+def _lidar(element: Element, scan: Scan) -> None:
+    block = SubElement(element, "scan")
     ranges = (
-        ("horizontal", len(model.azimuth_steps), *model.horizontal_fov),
-        ("vertical", channels, low, high),
+        ("horizontal", scan.azimuths, *scan.fov),
+        ("vertical", scan.channels, scan.low, scan.high),
     )
     for name, samples, least, most in ranges:
-        block = SubElement(scan, name)
+        part = SubElement(block, name)
         for key, value in (("samples", samples), ("min_angle", least), ("max_angle", most)):
-            SubElement(block, key).text = repr(value)
-    SubElement(SubElement(element, "range"), "max").text = repr(model.max_range)
+            SubElement(part, key).text = repr(value)
+    SubElement(SubElement(element, "range"), "max").text = repr(scan.max_range)
 
 
 def read(path: Path) -> tuple[CarriedSensor, ...]:
@@ -192,19 +190,33 @@ def _sensor(name: str, poses: dict[str, Pose], block: Element | None) -> Carried
         kind = next((k for word, k in KIND_WORDS.items() if word in words), kind)
     if own is not None:
         kind = own.get("kind") or kind
-    return CarriedSensor(name, poses[name], kind, model or None, _picture(sensor))
+    figures = (_picture(sensor), _scan(sensor))
+    return CarriedSensor(name, poses[name], kind, model or None, *figures)
+
+
+def _numbers(sensor: Element | None, keys: tuple[str, ...]) -> list[float] | None:
+    """Return numbers inside a Gazebo sensor, by where they are; None unless all are there."""
+    try:
+        texts = [None if sensor is None else sensor.findtext(f".//{key}") for key in keys]
+        return [float(text or "") for text in texts]
+    except ValueError:
+        return None
 
 
 def _picture(sensor: Element | None) -> Picture | None:
-    """Return a Gazebo camera's picture, where all of it is said."""
-    texts = (
-        []
-        if sensor is None
-        else [sensor.findtext(f".//{key}") for key in ("horizontal_fov", "width", "height")]
-    )
-    try:
-        fov, width, height = (float(text or "") for text in texts)
-        focal = width / (2.0 * math.tan(fov / 2.0))
-    except (ValueError, ZeroDivisionError):
+    numbers = _numbers(sensor, ("camera/horizontal_fov", "image/width", "image/height"))
+    if numbers is None or not 0.0 < numbers[0] < math.pi:
         return None
+    fov, width, height = numbers
+    focal = width / (2.0 * math.tan(fov / 2.0))
     return Picture(focal, focal, width / 2.0, height / 2.0, (int(width), int(height)))
+
+
+def _scan(sensor: Element | None) -> Scan | None:
+    keys = ("samples", "min_angle", "max_angle")
+    across, up = ([f"{way}/{key}" for key in keys] for way in ("horizontal", "vertical"))
+    numbers = _numbers(sensor, (*across, *up, "range/max"))
+    if numbers is None:
+        return None
+    azimuths, left, right, channels, low, high, max_range = numbers
+    return Scan(int(channels), low, high, int(azimuths), (left, right), max_range)

@@ -3,6 +3,7 @@ vehicle's body."""
 
 from .geometry import Pose, rotate, rotation_matrix, rpy_from_matrix
 from .housing import Housing, cuts_body
+from .reference import Reference, guessed_reference
 from .sensors import Rig, Sensor
 from .simplify import simplified
 from .space import PerceptionSpace
@@ -12,10 +13,12 @@ __all__ = [
     "Housing",
     "PerceptionSpace",
     "Pose",
+    "Reference",
     "Rig",
     "Sensor",
     "Vehicle",
     "cuts_body",
+    "guessed_reference",
     "rotate",
     "rotation_matrix",
     "rpy_from_matrix",

@@ -53,10 +53,15 @@ def named_parts(shape: BodyShape, begin: tuple[str, ...], but: tuple[str, ...]) 
     """Return the middles of parts whose names have a word that begins so, and none as in `but`."""
     found = []
     for name, center in shape.part_centers().items():
-        words = [word.lower() for word in WORD.findall(name)]
-        if any(w.startswith(begin) for w in words) and not any(w.startswith(but) for w in words):
+        if is_called(name, begin, but):
             found.append(center)
     return found
+
+
+def is_called(name: str, begin: tuple[str, ...], but: tuple[str, ...]) -> bool:
+    """Whether a name has a word that begins so, and none as in `but`."""
+    words = [word.lower() for word in WORD.findall(name)]
+    return any(w.startswith(begin) for w in words) and not any(w.startswith(but) for w in words)
 
 
 def across(shape: BodyShape) -> int | None:

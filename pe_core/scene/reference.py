@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..text.values import Number
+from .facing import NO_WHEELS, WHEELS, is_called
 from .geometry import METRES
 from .vehicle import Vehicle
 
 Floats = NDArray[np.float64]
 
-WORD = re.compile("[A-Z]*[a-z]+|[A-Z]+")
-WHEELS, NO_WHEELS = ("wheel", "tire", "tyre"), ("steering", "spare", "arch", "well")
-"""What a word in a part's name begins with when it is a wheel, and when it only sounds like one."""
 LENGTH = Number(0.0, above=True, cap=100.0, unit="m", noun="length")
 AXLE_APART_M = 0.3
 """Wheels nearer to each other than this along the vehicle are on one axle, or twin axles."""
@@ -76,18 +73,11 @@ def guessed_reference(vehicle: Vehicle | None) -> Reference | None:
     return Reference(*(round(float(number), ROUNDED) for number in numbers))
 
 
-def sounds_like_a_wheel(name: str) -> bool:
-    """Whether a part's name has a word for a wheel, and none for what only sounds like one."""
-    words = [word.lower() for word in WORD.findall(name)]
-    has = [any(word.startswith(begin) for word in words) for begin in (WHEELS, NO_WHEELS)]
-    return has[0] and not has[1]
-
-
 def _wheels(vehicle: Vehicle) -> list[Floats]:
     """Return the middles of parts that are wheels, (3,) each."""
     found = []
     for number, name in enumerate(vehicle.part_names):
         points = vehicle.triangles[vehicle.parts == number].reshape(-1, 3)
-        if len(points) and sounds_like_a_wheel(name):
+        if len(points) and is_called(name, WHEELS, NO_WHEELS):
             found.append((points.min(axis=0) + points.max(axis=0)) / 2.0)
     return found

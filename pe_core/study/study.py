@@ -17,6 +17,7 @@ from ..errors import InputError, shown
 from ..formats.meshes import MeshAxes
 from ..kinds import PerceptionModel
 from ..prior.prior import Prior
+from ..scene.reference import Reference
 from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
@@ -116,8 +117,9 @@ class Study:
 
     `mesh` names the file the vehicle was read from (or is written to), `axes` is how that is to be
     taken, and `faces` how its axes were taken, in words (empty: they are the ground frame's).
-    `samples` is the number of voxels a score looks at, 0: all. Of `search`, what concerns the
-    rig's sensors is kept; one that it does not name is free as in the paper.
+    `samples` is the number of voxels a score looks at, 0: all; `reference` says where the vehicle's
+    axles are, for exports. Of `search`, what concerns the rig's sensors is kept; one that it does
+    not name is free as in the paper.
 
     Raises
     ------
@@ -135,6 +137,7 @@ class Study:
     mesh: str | None = None
     axes: MeshAxes = field(default_factory=MeshAxes)
     faces: str = ""
+    reference: Reference | None = None
 
     def __post_init__(self) -> None:
         for name, kind in FIELDS.items():
@@ -145,6 +148,9 @@ class Study:
             raise InputError("study", "vehicle", "a Vehicle", type(self.vehicle).__name__)
         if self.vehicle is not None:
             require_vehicle_size("vehicle", self.vehicle)
+        if self.reference is not None and not isinstance(self.reference, Reference):
+            found = type(self.reference).__name__
+            raise InputError("study", "reference", "a Reference", found)
         if self.mesh is not None:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
         object.__setattr__(self, "samples", samples_or_grid("study", self.samples))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from ..formats.meshes import read_mesh
 from ..kinds import BLIND_RULES, KINDS, PerceptionModel
 from ..metric.entropy import ApCurve
 from ..scene.geometry import Pose
+from ..scene.reference import Reference
 from ..scene.sensors import Rig, Sensor, SensorModel
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import DEFAULT_CLEARANCE_M, Vehicle
@@ -93,6 +95,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "ap": {kind: {"a": c.a, "b": c.b} for kind, c in study.model.curves.items()},
         "fusion": {"blind": study.model.blind},
         "vehicle": _vehicle_table(study),
+        "reference": None if study.reference is None else asdict(study.reference),
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
         "optimize": search_table(study.search),
     }
@@ -135,6 +138,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_search(search, free, limits, on, folder),
         table.whole("samples", 0),
         *file,
+        _read_reference(table),
     )
     study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     return study
@@ -163,6 +167,17 @@ def _read_curve(table: Table, default: ApCurve) -> ApCurve:
     curve = ApCurve(table.number("a", default.a), table.number("b", default.b))
     table.finish()
     return curve
+
+
+def _read_reference(table: Table) -> Reference | None:
+    if "reference" not in table:
+        return None
+    own = table.table("reference")
+    keys = [each.name for each in fields(Reference)]
+    needed = {key: own.number(key) for key in keys[:2]}
+    reference = Reference(**needed, **{key: own.number(key, None) for key in keys[2:]})
+    own.finish()
+    return reference
 
 
 def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, MeshFile]:

@@ -25,6 +25,7 @@ ALLOWED = {
     "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
     "search": {"errors", "text", "scene", "scoring"},
     "catalog": {"errors", "text", "scene", "kinds"},
+    "exchange": {"errors", "text", "scene", "kinds", "catalog"},
     "advice": {
         *("errors", "text", "metric", "scene", "prior", "kinds", "scoring", "sight", "catalog"),
     },
@@ -34,9 +35,12 @@ ALLOWED = {
     },
     "public": {
         *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
-        *("sight", "search", "catalog", "advice", "study"),
+        *("sight", "search", "catalog", "exchange", "advice", "study"),
     },
-    "app": {"errors", "version", "text", "kinds", "catalog", "sight", "advice", "study"},
+    "app": {
+        *("errors", "version", "text", "scene", "kinds", "formats", "catalog", "exchange", "sight"),
+        *("advice", "study"),
+    },
     "__main__": {"app"},
 }
 """Rooms of the engine, lowest first, and those they may look into: all of them further up here."""
@@ -107,6 +111,8 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
     for path in FILES:
         inside = path.relative_to(ROOT).parts
         if inside[:2] in (("kinds", "lidar"), ("kinds", "camera")) or len(inside) == 1:
+            continue
+        if inside == ("exchange", "carried.py"):  # other programs' files know these two alone
             continue
         named = {name for _, _, name in imports(path)} & {"Lidar", "Camera"}
         texts = {

@@ -1,0 +1,109 @@
+"""The verbs ``export`` and ``import``: rigs to and from other programs' files."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ..errors import InputError
+from ..exchange import RIG_FORMATS, ImportedRig, export_rig, import_rig
+from ..formats import read_mesh
+from ..scene import Pose, Reference, Vehicle, guessed_reference
+from ..study import Study, save_study
+from ..text.cells import quoted
+from .status import DONE, Answer
+from .terminal import tell
+
+POSE = ("X", "Y", "Z", "ROLL", "PITCH", "YAW")
+NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
+
+
+def add_export_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``export`` to a parser."""
+    about = f"format: {', '.join(RIG_FORMATS)}"
+    parser.add_argument("--to", required=True, choices=RIG_FORMATS, metavar="FORMAT", help=about)
+    about = "file, or folder for a format of several files"
+    parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
+    parser.add_argument("--replace", action="store_true", help="replace files that are there")
+    _add_axle_options(parser)
+
+
+def add_import_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``import`` to a parser."""
+    parser.add_argument("file", metavar="FILE", help="file or folder of another program")
+    about = f"its format, if its name does not tell: {', '.join(RIG_FORMATS)}"
+    parser.add_argument("--from", dest="format", choices=RIG_FORMATS, metavar="FORMAT", help=about)
+    parser.add_argument("-o", "--output", required=True, metavar="STUDY", help="study to write")
+    about = "the vehicle's mesh, from the study's folder"
+    parser.add_argument("--mesh", metavar="FILE", help=about)
+    about = "a sensor's model, which the file does not tell; any number"
+    parser.add_argument("--model", action="append", default=[], metavar="NAME=MODEL", help=about)
+    about = "where the file's origin is: x y z in m, roll pitch yaw in degrees"
+    parser.add_argument(
+        "--at", type=float, nargs=6, metavar=("X", "Y", "Z", "R", "P", "W"), help=about
+    )
+    parser.add_argument("--replace", action="store_true", help="replace a study that is there")
+    _add_axle_options(parser)
+
+
+def _add_axle_options(parser: argparse.ArgumentParser) -> None:
+    where = parser.add_mutually_exclusive_group()
+    about = "middle of the rear axle: forward of the origin, above the ground [m]"
+    where.add_argument("--rear-axle", type=float, nargs=2, metavar=("X", "Z"), help=about)
+    about = "take it from parts that are named as wheels"
+    where.add_argument("--guess-rear-axle", action="store_true", help=about)
+
+
+def export(study: Study, args: argparse.Namespace) -> Answer:
+    """Write a study's rig for another program."""
+    reference = _reference(args, study.reference, study.vehicle, args.to)
+    paths, lines = export_rig(study.rig, args.to, args.output, reference, replace=args.replace)
+    for line in lines:
+        tell(line)
+    return "\n".join(f"wrote {path}" for path in paths), DONE
+
+
+def import_study(args: argparse.Namespace) -> Answer:
+    """Write a study of a rig that another program has written."""
+    output = Path(args.output)
+    if output.exists() and not args.replace:
+        raise InputError(output, "file", "a new file (or --replace)", "one is there")
+    vehicle = None
+    if args.mesh is not None:
+        mesh = read_mesh(output.parent / args.mesh)
+        vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
+    reference = _reference(args, None, vehicle, args.format or args.file)
+    placed = None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
+    models = dict(_model(text) for text in args.model)
+    found = import_rig(args.file, args.format, reference, models, placed)
+    save_study(Study(found.rig, vehicle, mesh=args.mesh, reference=reference), output)
+    return "\n".join(_told(found, output)), DONE
+
+
+def _told(found: ImportedRig, output: Path) -> list[str]:
+    for line in found.lines:
+        tell(line)
+    count = len(found.rig)
+    return [f"wrote {output}: {count} sensor{'s' if count > 1 else ''}"]
+
+
+def _reference(
+    args: argparse.Namespace, known: Reference | None, vehicle: Vehicle | None, asking: str
+) -> Reference | None:
+    """Return where the axles are: as the options say, or else as the study does."""
+    if args.rear_axle is not None:
+        return Reference(*args.rear_axle)
+    if not args.guess_rear_axle:
+        return known
+    guess = guessed_reference(vehicle)
+    if guess is None:
+        raise InputError(asking, "rear axle", NO_GUESS, "none")
+    tell(f"rear axle guessed from its wheels: x {guess.rear_axle_x:g}, z {guess.rear_axle_z:g} m")
+    return guess
+
+
+def _model(text: str) -> tuple[str, str]:
+    name, equals, model = text.partition("=")
+    if not (name and equals and model):
+        raise InputError("--model", "choice", "NAME=MODEL", quoted(text))
+    return name, model

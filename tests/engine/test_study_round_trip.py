@@ -236,6 +236,10 @@ def vehicles(draw):
     return pe.Vehicle(moved, car.parts, tuple(names), tuple(renamed[g] for g in glass), clearance)
 
 
+MAYBE_M = st.one_of(st.none(), st.floats(1e-3, 99))
+REFERENCES = st.builds(pe.Reference, METRES, st.floats(1e-3, 9), MAYBE_M, MAYBE_M, MAYBE_M)
+
+
 @st.composite
 def mesh_axes(draw):
     """Keys for the mesh's axes that leave a file in the ground frame as it is."""
@@ -257,6 +261,7 @@ def studies(draw, folder):
         draw(searches(rig, vehicle)),
         draw(st.sampled_from([0, 1024, 10_007])),
         *((None,) if vehicle is None else ("body.npz", draw(mesh_axes()))),
+        reference=draw(st.one_of(st.none(), REFERENCES)),
     )
 
 

@@ -20,7 +20,8 @@ def run_job(args: argparse.Namespace) -> app.Answer:
     if kind == "optimize":
         with from_file():
             bridge.check_placeable(bpy.context.scene, study)
-    output, ours = args.output, [OPTIMIZED] * (kind == "optimize") + [REVIEW] * args.render
+    job, output = app.job_and_folder(study, args, app.begun_search(args))
+    ours = [OPTIMIZED] * (kind == "optimize") + [REVIEW] * args.render
     if output is not None:
         output = pe.prepare_folder(output, [*ours, *studies.result_names(study, kind)])
 
@@ -28,7 +29,6 @@ def run_job(args: argparse.Namespace) -> app.Answer:
         with quiet_blender():
             leave_scene(outcome, data, folder, render=args.render)
 
-    job = args.job(study, args.workers)
     job.notes = bridge.missing_pieces(bpy.context.scene)
     return app.carry_out(
         job,

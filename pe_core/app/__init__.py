@@ -3,6 +3,7 @@
 from .command import Parser, add_run_options, add_sensors_verb, count_up_to, run, with_options
 from .explaining import add_compare_options, add_explain_options, compare, explain
 from .interrupts import leave
+from .resuming import begun_search, job_and_folder
 from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
 from .summary import summary
 from .terminal import open_missing_streams, printable, show, tell
@@ -20,11 +21,13 @@ __all__ = [
     "add_explain_options",
     "add_run_options",
     "add_sensors_verb",
+    "begun_search",
     "carry_out",
     "compare",
     "count_up_to",
     "drive",
     "explain",
+    "job_and_folder",
     "leave",
     "open_missing_streams",
     "printable",

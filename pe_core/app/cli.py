@@ -19,6 +19,7 @@ from .explaining import (
     explain,
     named_by_file,
 )
+from .resuming import begun_search, job_and_folder
 from .status import Answer
 from .terminal import open_missing_streams, tell
 from .work import carry_out
@@ -53,9 +54,13 @@ def parser() -> argparse.ArgumentParser:
     score = verbs.add_parser("score", help="score a study's rig")
     optimize = verbs.add_parser("optimize", help="search for a better placement")
     for verb, job in ((score, ScoreJob), (optimize, OptimizeJob)):
-        verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
-        add_run_options(verb, search=job is OptimizeJob)
-        verb.set_defaults(function=_run_job, job=job)
+        search = job is OptimizeJob
+        needed = "?" if search else None
+        verb.add_argument("study", metavar="STUDY", nargs=needed, help="study file (TOML)")
+        add_run_options(verb, search=search)
+        verb.set_defaults(
+            function=_run_job, job=job, kind=verb.prog.split()[-1], usage_error=verb.error
+        )
     verb = verbs.add_parser("explain", help="a study's score in words, or one place of it")
     verb.usage = f"{verb.prog} STUDY [--at X Y [Z]] [options]"
     verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
@@ -79,16 +84,22 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _run_job(args: argparse.Namespace) -> Answer:
-    study = with_options(load_study(args.study), args)
-    job: ScoreJob | OptimizeJob = args.job(study, args.workers)
-    output = None
-    if args.output is not None:
-        names = result_names(study, "optimize" if isinstance(job, OptimizeJob) else "score")
-        _refuse_to_replace(Path(args.study), Path(args.output))
-        output = prepare_folder(args.output, names)
+    begun = begun_search(args)
+    if args.study is not None:
+        study = load_study(args.study)
+    elif begun is not None:
+        study = begun.study
+    else:
+        args.usage_error("expected STUDY, or --resume DIR")
+    study = with_options(study, args)
+    job, output = job_and_folder(study, args, begun)
+    if output is not None:
+        if args.study is not None:
+            _refuse_to_replace(Path(args.study), Path(output))
+        prepare_folder(output, result_names(study, args.kind))
     if (report := study.prior.report(study.space)) is not None:
         tell(str(report))
-    return carry_out(job, output, as_json=args.json)
+    return carry_out(job, None if output is None else Path(output), as_json=args.json)
 
 
 def _explain(args: argparse.Namespace) -> Answer:

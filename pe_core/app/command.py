@@ -39,7 +39,11 @@ class Parser(argparse.ArgumentParser):
 
 def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     """Add the options of ``score`` and ``optimize`` to a parser."""
-    parser.add_argument("-o", "--output", metavar="DIR", help="folder for the results")
+    folder = parser.add_mutually_exclusive_group()
+    folder.add_argument("-o", "--output", metavar="DIR", help="folder for the results")
+    if search:
+        about = "go on with the search that was begun in this folder"
+        folder.add_argument("--resume", metavar="DIR", help=about)
     parser.add_argument("--json", action="store_true", help="print result.json on stdout")
     add_score_options(parser)
     if search:

@@ -5,6 +5,7 @@ from .axes import AXES, POSITION_AXES, pose_from_values, pose_values
 from .batch import judge_all
 from .coding import Candidate, Coding
 from .feasible import first_allowed
+from .journal import Journal, JudgedRig
 from .methods import DEFAULT_METHOD, METHODS, Method, checked_method
 from .mounts import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .objective import Judgement, Objective
@@ -25,6 +26,8 @@ __all__ = [
     "Candidate",
     "Coding",
     "Constraints",
+    "Journal",
+    "JudgedRig",
     "Judgement",
     "Method",
     "MountArea",

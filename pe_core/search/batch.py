@@ -5,11 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
+from typing import Protocol, runtime_checkable
 
 from ..scene.sensors import Rig
 from .handing_out import Assignment, Reply, Unreadable, handed_out
 from .objective import Judgement, Objective
 from .parcels import NotHere, Parcel, contents, packed, unpacked
+
+
+@runtime_checkable
+class OfItself(Protocol):
+    """An objective that sees to several rigs itself: it knows some of them, say."""
+
+    def judge_all(
+        self, rigs: Sequence[Rig], below: float, executor: Executor | None
+    ) -> list[Judgement]:
+        """As the function of this name."""
 
 
 def judge_all(
@@ -42,6 +53,8 @@ def judge_all(
     InputError
         When workers died twice with the same rig, and whatever the objective raises.
     """
+    if isinstance(objective, OfItself):
+        return objective.judge_all(rigs, below, executor)
     if executor is not None and rigs:
         try:
             return handed_out(_assigned(objective, rigs, below), executor)

@@ -1,21 +1,22 @@
 """Studies: their files, the work on them, and the results it leaves."""
 
 from ..search import METHODS
+from .exporting import export_study, study_writers
+from .fingerprint import fingerprint
 from .folder import FileSet, check_files, prepare_folder
 from .job import Job, Progress
 from .jobs import OptimizeJob, ScoreJob
-from .names import MESH, OPTIMIZED, RESULT, REVIEW, STUDY
+from .names import MESH, OPTIMIZED, RESULT, REVIEW, SEARCH, STUDY
 from .outcome import HistoryRow, Outcome
 from .results import (
     add_to_result,
-    export_study,
     files_of_other_runs,
     placements,
     result_dict,
     result_names,
-    study_writers,
     write_outcome,
 )
+from .search_state import BegunSearch, SearchState, read_search
 from .study import Search, Study, vehicle_digest
 from .study_file import load_study, save_study, study_from_dict, study_to_dict
 
@@ -25,7 +26,9 @@ __all__ = [
     "OPTIMIZED",
     "RESULT",
     "REVIEW",
+    "SEARCH",
     "STUDY",
+    "BegunSearch",
     "FileSet",
     "HistoryRow",
     "Job",
@@ -34,14 +37,17 @@ __all__ = [
     "Progress",
     "ScoreJob",
     "Search",
+    "SearchState",
     "Study",
     "add_to_result",
     "check_files",
     "export_study",
     "files_of_other_runs",
+    "fingerprint",
     "load_study",
     "placements",
     "prepare_folder",
+    "read_search",
     "result_dict",
     "result_names",
     "save_study",

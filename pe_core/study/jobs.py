@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator
 from functools import cached_property
+from typing import Any
 
 from ..scoring.evaluator import Evaluator
 from ..scoring.score import Score
-from ..search import Objective, Step, first_allowed, objective_of, optimize
+from ..search import Journal, Objective, Step, first_allowed, objective_of, optimize
 from .job import Job, Progress, begun
 from .outcome import HistoryRow, Outcome
 from .study import Study
@@ -32,13 +33,20 @@ class OptimizeJob(Job):
     """Scores a study's rig, searches for a better placement, and scores that.
 
     `before` is the score of the study's rig where that is known already; it is not made again.
+    `journal` is that of a search to go on with.
     """
 
     def __init__(
-        self, study: Study, workers: int | None = None, before: Score | None = None
+        self,
+        study: Study,
+        workers: int | None = None,
+        before: Score | None = None,
+        journal: Journal | None = None,
     ) -> None:
         super().__init__(study, workers)
-        self.before = before
+        self.before, self.journal = before, journal or Journal()
+        self.inputs: dict[str, Any] | None = None
+        self.round = 0
         self.history: list[HistoryRow] = []
         self.evaluations = 0
         self._told = Progress("preparing", 0.0)
@@ -87,6 +95,8 @@ class OptimizeJob(Job):
             stopped,
             self.seconds,
             told,
+            self.inputs,
+            self.journal.entries,
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 
@@ -121,7 +131,7 @@ class OptimizeJob(Job):
         """Search in a thread, step by step: a candidate may take longer than a window waits."""
         search = self.study.search
         steps = optimize(
-            self._objectives,
+            self.journal.over(self._objectives),
             self.study.rig,
             self.study.search_space(),
             search.seed,
@@ -137,7 +147,7 @@ class OptimizeJob(Job):
         return self._told
 
     def _note(self, step: Step) -> None:
-        self.evaluations = step.evaluations
+        self.evaluations, self.round = step.evaluations, step.round
         self._told = Progress("optimizing", step.fraction, step.entropy, step.evaluations)
         if step.improved or not self.history:
             row = HistoryRow(step.evaluations, step.round, step.entropy, step.best)

@@ -7,7 +7,9 @@ BOXES = "boxes.csv"
 """The name boxes get beside a study when they have no file of their own."""
 OPTIMIZED, REVIEW = "optimized.blend", "review.png"
 """What Blender adds."""
-BESIDE_RESULT = (STUDY, MESH, AREAS, BOXES, HISTORY, OPTIMIZED, REVIEW)
+SEARCH = "search.json"
+"""The state of a search: from it, it goes on."""
+BESIDE_RESULT = (STUDY, MESH, AREAS, BOXES, HISTORY, SEARCH, OPTIMIZED, REVIEW)
 """All that belongs to a result.json."""
 SCHEMA = 1
 """Of result.json."""

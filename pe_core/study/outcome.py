@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from ..advice import Advice
 from ..scene.sensors import Rig
 from ..scoring.score import Score
+from ..search import JudgedRig
 from .study import Study
 
 
@@ -41,6 +43,10 @@ class Outcome:
     seconds : float
     warnings : tuple of Advice
         What is odd about `study`.
+    inputs : dict
+        What a search that went on was given at its beginning: `start` may call files otherwise.
+    judged : tuple of JudgedRig
+        What the search was told: one that was stopped goes on from there.
     """
 
     kind: str
@@ -53,3 +59,5 @@ class Outcome:
     stopped: bool = False
     seconds: float = 0.0
     warnings: tuple[Advice, ...] = ()
+    inputs: dict[str, Any] | None = None
+    judged: tuple[JudgedRig, ...] = ()

@@ -11,26 +11,25 @@ import io
 import json
 import platform
 from collections.abc import Collection, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..formats.boxes import write_boxes
-from ..formats.meshes import Mesh, write_mesh
 from ..scene.sensors import Rig
 from ..search import AXES
 from ..text.files import read_bytes
 from ..text.json_text import dump_json, finite
 from ..version import __version__
+from .exporting import study_writers
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
+from .inputs import inputs_of
 from .mounted import mounts_told
-from .mounting_file import areas_mesh, areas_of, with_areas_in
-from .names import AREAS, BESIDE_RESULT, BOXES, HISTORY, MESH, RESULT, SCHEMA, STUDY
+from .mounting_file import areas_of
+from .names import AREAS, BESIDE_RESULT, BOXES, HISTORY, MESH, RESULT, SCHEMA, SEARCH, STUDY
 from .outcome import HistoryRow, Outcome
-from .study import Study, vehicle_digest
-from .study_file import study_bytes, study_to_dict
+from .search_state import SearchState
+from .study import Study
 
 
 def result_names(study: Study, kind: str) -> list[str]:
@@ -38,7 +37,7 @@ def result_names(study: Study, kind: str) -> list[str]:
     vehicle, boxes = study.vehicle is not None, study.prior.boxes is not None
     areas = bool(areas_of(study.search.mounting))
     with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *[BOXES] * boxes]
-    return [*with_study, *[HISTORY] * (kind == "optimize"), RESULT]
+    return [*with_study, *[HISTORY, SEARCH] * (kind == "optimize"), RESULT]
 
 
 def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[str, Any]:
@@ -68,12 +67,7 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         "stopped": outcome.stopped,
         "warnings": [each.to_dict() for each in outcome.warnings],
         "history": [_history_dict(row) for row in outcome.history],
-        "inputs": {
-            "study": study_to_dict(outcome.start),
-            "vehicle": outcome.study.vehicle_line,
-            "vehicle_triangles": _triangle_count(outcome.study),
-            "vehicle_sha256": vehicle_digest(outcome.study.vehicle),
-        },
+        "inputs": outcome.inputs or inputs_of(outcome.start),
         "run": {
             "seconds": round(outcome.seconds, 3),
             "versions": {
@@ -100,7 +94,7 @@ def write_outcome(
     host: dict[str, str] | None = None,
     later: Collection[str] = (),
 ) -> dict[str, Any]:
-    """Write result.json, history.csv (of a search) and the study; return result.json's data.
+    """Write result.json and the study, and of a search history.csv and its state; return the data.
 
     Files that an earlier run left in the folder, and that this one does not write, are taken away
     if they are ours and nobody has changed them: they would tell of another result. Those that are
@@ -116,6 +110,7 @@ def write_outcome(
     writers = study_writers(outcome.study, STUDY)
     if outcome.kind == "optimize":
         writers[HISTORY] = history_csv(outcome.history).encode(errors="backslashreplace")
+        writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.judged)
     add_to_result(data, folder, writers, unwanted=set(BESIDE_RESULT) - set(later))
     return data
 
@@ -154,53 +149,6 @@ def files_of_other_runs(folder: Path) -> list[str]:
         return []
 
 
-def export_study(study: Study, path: str | Path, *, replace_study: bool = False) -> None:
-    """Write a study with its vehicle's mesh, areas and boxes side by side, to run anywhere.
-
-    Parameters
-    ----------
-    study : Study
-    path : path
-        Of the study file; mesh, areas and boxes are named after it.
-    replace_study : bool
-        The user has agreed to replace the file at `path`, whoever wrote it. This does not go for
-        the files beside it.
-
-    Raises
-    ------
-    InputError
-        A file is there that was not written by this program, or changed since, or one cannot be
-        written: then none is.
-    """
-    path = Path(path)
-    with FileSet(path.parent, (path.name,) if replace_study else ()) as files:
-        for name, write in study_writers(study, path.name).items():
-            files.add(name, write)
-
-
-def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
-    """Return what writes a study file of this name, and the files beside it, by name."""
-    path, writers = Path(name), dict[str, Write | bytes]()
-    if study.vehicle is not None:
-        vehicle = study.vehicle
-        mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
-        study = study.with_mesh(MESH if name == STUDY else path.with_suffix(".npz").name)
-        writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
-    search = study.search
-    if (areas := areas_mesh(search.mounting)) is not None:
-        file = AREAS if name == STUDY else path.with_suffix(f".{AREAS}").name
-        writers[file] = lambda at: write_mesh(at, areas)
-        search = replace(search, mounting=with_areas_in(search.mounting, file))
-        study = replace(study, search=search)
-    if (boxes := study.prior.boxes) is not None:
-        table = BOXES if name == STUDY else path.with_suffix(f".{BOXES}").name
-        writers[table] = lambda at: write_boxes(at, boxes)
-        named = replace(boxes, file=table, origin=None)
-        study = replace(study, prior=replace(study.prior, boxes=named))
-    writers[name] = study_bytes(study)
-    return writers
-
-
 def history_csv(history: tuple[HistoryRow, ...]) -> str:
     """Return the history as CSV: one row each time a better placement was found."""
     text = io.StringIO()
@@ -222,7 +170,3 @@ def _history_dict(row: HistoryRow) -> dict[str, Any]:
         "entropy": row.entropy,
         "placements": placements(row.rig),
     }
-
-
-def _triangle_count(study: Study) -> int:
-    return 0 if study.vehicle is None else len(study.vehicle.triangles)

@@ -11,6 +11,7 @@ from pathlib import Path
 import bpy
 import pytest
 
+from blender_addon.engine import studies
 from tests.addon import scenes
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -99,6 +100,7 @@ def test_optimize_and_export_agree_with_the_engine(blend, tmp_path):
     for name in ("history.csv", "study.toml"):
         assert (inside / name).read_bytes() == (outside / name).read_bytes(), name
     check_optimized_scene(inside)
+    check_resumed(blend, inside)
 
 
 @pytest.mark.parametrize("prior", ["highway", "boxes"])
@@ -121,6 +123,17 @@ def test_focus_and_prior_of_the_scene_agree_with_the_engine(car, tmp_path, prior
     result = without_run(inside / "result.json")
     assert result == without_run(outside / "result.json")
     assert len(result["inputs"]["study"]["prior"]["focus"]) == 3
+
+
+def check_resumed(blend: Path, folder: Path) -> None:
+    """The search goes on from a state that a kill would leave, to the same result."""
+    whole, begun = without_run(folder / "result.json"), studies.read_search(folder)
+    state = studies.SearchState(begun.study, begun.inputs)
+    state.save(folder, begun.study, begun.judged[:5])
+    answer = run("blender_addon", blend, "optimize", *FAST, "--resume", folder, "--no-render")
+    assert answer.returncode == 0, answer.stderr
+    assert complaints(answer) == ["pe: going on after 5 placements"]
+    assert without_run(folder / "result.json") == whole
 
 
 def check_optimized_scene(folder: Path) -> None:

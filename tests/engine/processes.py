@@ -9,7 +9,7 @@ import pe_core as pe
 
 ROOT = Path(pe.__file__).parent.parent
 GUARD_S = 120
-TELL_ALL = "from pe_core.app import work; work.REPORT_EVERY_S = {True: 0.0, False: 0.0}\n"
+TELL_ALL = "from pe_core.app import reporting; reporting.REPORT_EVERY_S = {True: 0.0, False: 0.0}\n"
 """Every step of a job is told, so that a test knows where it is."""
 HANG = """
 from pe_core.scoring.evaluator import Evaluator

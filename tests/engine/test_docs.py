@@ -19,6 +19,7 @@ PAGES = [
     "docs/seeing.md",
     "docs/study.md",
     "docs/blender.md",
+    "docs/long_runs.md",
 ]
 
 

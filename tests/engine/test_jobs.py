@@ -162,6 +162,7 @@ def test_result_files_hold_the_run(tmp_path):
         ".perception-entropy.json",
         "history.csv",
         "result.json",
+        "search.json",
         "study.toml",
         "vehicle.npz",
     ]

@@ -193,7 +193,7 @@ def test_a_folder_that_vanishes_is_made_again(study, out):
 def test_results_that_cannot_be_written_go_elsewhere(study, out, elsewhere):
     with Command("optimize", study, "-o", out, *ENDLESS, env=environment(elsewhere)) as command:
         command.wait_for_better()
-        out.rmdir()
+        shutil.rmtree(out)
         out.write_text("in the way")
         command.send(signal.SIGINT)
         assert command.end() == 1
@@ -207,7 +207,7 @@ def test_the_best_goes_elsewhere_at_the_second_signal_too(study, out, elsewhere)
     options = {"env": environment(elsewhere), "hang_in_score": 2}
     with Command("optimize", study, "-o", out, *ENDLESS, **options) as command:
         command.wait_for_better()
-        out.rmdir()
+        shutil.rmtree(out)
         out.write_text("in the way")
         command.send(signal.SIGINT)
         command.wait_for_stage("scoring the result")

@@ -1,0 +1,142 @@
+"""How far a job is, on stderr: a bar with the time left on a terminal, lines in a log."""
+
+from __future__ import annotations
+
+import time
+from typing import Any, Protocol, TextIO
+
+from ..study import Progress
+from .extras import extra
+from .terminal import is_terminal, show
+
+REPORT_EVERY_S = {True: 0.2, False: 5.0}
+"""How often progress is shown: on a terminal, where it overwrites itself, and in a log."""
+BAR = "{desc} {percentage:3.0f}% |{bar:24}| {elapsed}<{remaining}{postfix}"
+"""Time gone and time left stand behind the bar."""
+
+
+class Display(Protocol):
+    """Shows how far a job is, and takes that away again."""
+
+    def show(self, progress: Progress, new_stage: bool) -> None:
+        """Show it."""
+
+    def clear(self) -> None:
+        """Leave no half line behind."""
+
+
+class Reporter:
+    """Tells how far a job is. It never fails: when nobody can be told, nobody is."""
+
+    def __init__(self, stream: TextIO | None) -> None:
+        on_terminal = is_terminal(stream)
+        self._pause_s = REPORT_EVERY_S[on_terminal]
+        self._display = _display(Sure(stream), on_terminal)
+        self._reported, self._stage = 0.0, ""
+
+    def report(self, progress: Progress) -> None:
+        """Tell, if it is some time since that was done or there is a new stage."""
+        now, new_stage = time.monotonic(), progress.stage != self._stage
+        if now - self._reported < self._pause_s and not new_stage:
+            return
+        self._reported, self._stage = now, progress.stage
+        self._display.show(progress, new_stage)
+
+    def clear(self) -> None:
+        """Leave no half line behind."""
+        self._display.clear()
+
+
+def _display(stream: Sure, on_terminal: bool) -> Display:
+    if not on_terminal:
+        return LogLines(stream)
+    tqdm = extra("tqdm")
+    return OneLine(stream) if tqdm is None else Bar(stream, tqdm)
+
+
+class Sure:
+    """A stream that never fails: once something cannot be written, nothing is."""
+
+    def __init__(self, stream: TextIO | None) -> None:
+        self._stream = stream
+        self.encoding = getattr(stream, "encoding", None) or "utf-8"
+
+    def write(self, text: str) -> int:
+        """Write what can be written."""
+        if show(text, self._stream) is not None:
+            self._stream = None
+        return len(text)
+
+    def flush(self) -> None:
+        """Nothing is kept back."""
+
+    def isatty(self) -> bool:
+        """Whether somebody is looking."""
+        return is_terminal(self._stream)
+
+    def fileno(self) -> int:
+        """The number of its file, which tells how wide a terminal is."""
+        if self._stream is None:
+            raise OSError("no stream")
+        return self._stream.fileno()
+
+
+class LogLines:
+    """A line each time, for a log or a pipe."""
+
+    def __init__(self, stream: Sure) -> None:
+        self._stream = stream
+
+    def show(self, progress: Progress, new_stage: bool) -> None:
+        """Write a line."""
+        self._stream.write(f"{_words(progress)}\n")
+
+    def clear(self) -> None:
+        """Lines stay."""
+
+
+class OneLine:
+    """A line that overwrites itself, for a terminal without a progress library."""
+
+    def __init__(self, stream: Sure) -> None:
+        self._stream = stream
+
+    def show(self, progress: Progress, new_stage: bool) -> None:
+        """Overwrite it."""
+        self._stream.write(f"\r\x1b[K{_words(progress)}")
+
+    def clear(self) -> None:
+        """Take it away."""
+        self._stream.write("\r\x1b[K")
+
+
+class Bar:
+    """A bar with the time gone and the time left, for a terminal, by tqdm."""
+
+    def __init__(self, stream: Sure, tqdm: Any) -> None:
+        tqdm.tqdm.monitor_interval = 0  # no thread of its own: we tell it often enough
+        self._tqdm, self._stream = tqdm, stream
+        self._bar: Any = None
+
+    def show(self, progress: Progress, new_stage: bool) -> None:
+        """Move it; a new stage has a bar, and a time, of its own."""
+        if new_stage:
+            self.clear()
+            self._bar = self._tqdm.tqdm(
+                total=1.0, file=self._stream, bar_format=BAR, leave=False, dynamic_ncols=True
+            )
+        self._bar.set_description_str(progress.stage, refresh=False)
+        if progress.entropy is not None:
+            self._bar.set_postfix_str(f"entropy {progress.entropy:.4f}", refresh=False)
+        self._bar.update(max(0.0, min(1.0, progress.fraction) - self._bar.n))
+        self._bar.refresh()
+
+    def clear(self) -> None:
+        """Take it away."""
+        if self._bar is not None:
+            self._bar.close()
+
+
+def _words(progress: Progress) -> str:
+    entropy = "" if progress.entropy is None else f"  entropy {progress.entropy:.4f}"
+    return f"{progress.stage} {progress.fraction:4.0%}{entropy}"

@@ -1,0 +1,76 @@
+"""How far a job is: a bar with the time left on a terminal, lines elsewhere, never a failure."""
+
+import io
+import re
+import sys
+
+import pytest
+
+from pe_core.app import extras, reporting
+from pe_core.app.reporting import Reporter
+from pe_core.study import Progress
+
+
+class Screen(io.StringIO):
+    """A stream somebody looks at."""
+
+    encoding = "utf-8"
+
+    def isatty(self):
+        return True
+
+
+SCORING = [Progress("scoring the start", 0.0), Progress("scoring the start", 0.5)]
+SEARCHING = [Progress("optimizing", k / 4, 1.5 - 0.1 * k, k) for k in range(5)]
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch):
+    monkeypatch.setattr(reporting, "REPORT_EVERY_S", {True: 0.0, False: 0.0})
+
+
+def told(stream):
+    reporter = Reporter(stream)
+    for progress in SCORING + SEARCHING:
+        reporter.report(progress)
+    reporter.clear()
+    return stream.getvalue()
+
+
+def test_a_terminal_shows_the_time_that_is_left():
+    pytest.importorskip("tqdm")
+    text = told(Screen())
+    assert re.search(r"optimizing\s+25% \|.*\| \d\d:\d\d<\d\d:\d\d, entropy 1\.4000", text)
+    assert re.search(r"scoring the start\s+50% \|", text)
+    assert "\n" not in text and not text.split("\r")[-2].strip(), "the bar is taken away"
+
+
+def test_a_terminal_without_the_library_shows_a_line(monkeypatch):
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    text = told(Screen())
+    assert "\r\x1b[Koptimizing  25%  entropy 1.4000" in text and text.endswith("\r\x1b[K")
+
+
+def test_a_log_has_lines_and_no_bar():
+    lines = told(io.StringIO()).splitlines()
+    assert lines[0] == "scoring the start   0%" and lines[-1] == "optimizing 100%  entropy 1.1000"
+    assert len(lines) == len(SCORING + SEARCHING)
+
+
+def test_a_terminal_that_goes_away_ends_nothing():
+    class Gone(Screen):
+        def write(self, text):
+            raise OSError("input/output error")
+
+    assert told(Gone()) == ""
+
+
+def test_extras_are_those_that_the_project_offers():
+    import tomllib
+    from pathlib import Path
+
+    project = Path(extras.__file__).parents[2] / "pyproject.toml"
+    offered = tomllib.loads(project.read_text("utf-8"))["project"]["optional-dependencies"]
+    for package, name in extras.EXTRAS.items():
+        assert any(need.startswith(package) for need in offered[name]), package
+        assert any(need.startswith(package) for need in offered["test"]), "tests are not skipped"

@@ -1,0 +1,284 @@
+"""A search goes on from the state in its folder, to the bits of one that was never broken off."""
+
+import json
+import signal
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import pytest
+
+import pe_core as pe
+from pe_core.app.cli import main
+from pe_core.search import METHODS, Journal, judge_all
+from pe_core.study import SEARCH, SearchState, fingerprint, read_search
+from tests.engine import shapes
+from tests.engine.processes import GUARD_S, ROOT
+from tests.engine.recording import Recorder, distance_to
+
+CANDIDATES = 12
+MOMENTS = (1, 17, 40, 70)
+"""Candidates after which a search is broken off: in the first round, and later ones."""
+
+
+def a_study(method="random"):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
+    schedule = pe.Schedule(candidates=CANDIDATES)
+    more = {"method": method, "evaluations": 90}
+    search = pe.Search({"roof": ("x", "z", "pitch")}, {}, 3, 1024, schedule, **more)
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
+
+
+@pytest.fixture
+def path(tmp_path):
+    pe.export_study(a_study(), tmp_path / "car.toml")
+    return tmp_path / "car.toml"
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "out"
+
+
+def result(folder):
+    """What result.json says but for times; the files beside it have to be those it tells of."""
+    data = json.loads((folder / "result.json").read_text("utf-8"))
+    assert pe.study.files_of_other_runs(folder) == []
+    del data["run"]["seconds"]
+    return data
+
+
+def outcome_of(job, steps=None):
+    """Run a job, as far as a number of placements."""
+    for _ in job:
+        if steps is not None and job.evaluations >= steps:
+            break
+    return job.outcome
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
+    study = a_study(method)
+    whole = outcome_of(pe.OptimizeJob(study))
+    known = ()
+    for steps in MOMENTS:  # broken off again and again
+        job = pe.OptimizeJob(study, journal=Journal(known))
+        outcome_of(job, steps)
+        known = job.journal.entries
+        assert len(known) >= steps
+    end = outcome_of(pe.OptimizeJob(study, journal=Journal(known)))
+    data, expected = pe.result_dict(end), pe.result_dict(whole)
+    del data["run"], expected["run"]
+    assert data == expected
+    assert end.judged == whole.judged
+
+
+def test_what_the_journal_knows_is_not_judged_again():
+    study = a_study()
+    plain = Recorder(distance_to({"x": 0.1, "z": 1.9}))
+    journal = Journal()
+    list(search(study, journal.over([plain])))
+    assert len(journal.entries) == len(plain.rigs) > 50
+    again = Recorder(distance_to({"x": 0.1, "z": 1.9}))
+    list(search(study, Journal(journal.entries[:50]).over([again])))
+    assert [placed(rig) for rig in again.rigs] == [placed(rig) for rig in plain.rigs[50:]]
+
+
+def test_candidates_judged_together_are_known_as_well():
+    study, journal = a_study(), Journal()
+    rigs = [shapes.lidar_on_roof(shapes.small_lidar(16, 90), (0.1 * k, 0.0, 1.8)) for k in range(6)]
+    rigs = [pe.Rig([sensor]) for sensor in rigs]
+    [whole] = journal.over([study.evaluator()])
+    with ThreadPoolExecutor(2) as executor:
+        told = judge_all(whole, rigs, executor=executor)
+        plain = Recorder(distance_to({"x": 0.1}))
+        [again] = Journal(journal.entries[:4]).over([plain])
+        both = judge_all(again, rigs[:2]) + judge_all(again, rigs[2:], executor=executor)
+    assert told == judge_all(study.evaluator(), rigs)
+    assert both[:4] == told[:4]
+    assert [placed(rig) for rig in plain.rigs] == [placed(rig) for rig in rigs[4:]]
+
+
+def placed(rig):
+    return [(sensor.name, sensor.pose) for sensor in rig]
+
+
+def search(study, objectives):
+    given = (study.rig, study.search_space(), study.search.seed, study.search.schedule)
+    return pe.optimize(objectives, *given)
+
+
+def test_a_journal_of_other_placements_is_refused():
+    study = a_study()
+    journal = Journal()
+    list(search(study, journal.over([Recorder(distance_to({"x": 0.1}))])))
+    other = replace(study, search=replace(study.search, seed=4))
+    again = Journal(journal.entries, "out/search.json")
+    with pytest.raises(pe.InputError, match=r"judged\[1\]: expected the placements"):
+        list(search(other, again.over([Recorder(distance_to({"x": 0.1}))])))
+
+
+def test_a_resumed_search_leaves_the_same_files(path, tmp_path, capsys):
+    """Broken off by a kill between two rounds; gone on with, with and without naming the study."""
+    assert main(["optimize", str(path), "-o", str(tmp_path / "whole")]) == 0
+    for number, named in enumerate(([], [str(path)])):
+        out = tmp_path / f"out{number}"
+        study = pe.load_study(path)
+        job = pe.OptimizeJob(study)
+        outcome_of(job, 30)
+        SearchState(study).save(out, job.best, job.journal.entries)
+        assert main(["optimize", *named, "--resume", str(out)]) == 0
+        assert result(out) == result(tmp_path / "whole")
+    assert "going on after" in capsys.readouterr().err
+
+
+ENDING_ITSELF = """
+import os, signal, sys
+from pe_core.app import work
+told, replaced, replace = [], [], os.replace
+
+class Told(work.Reporter):
+    def report(self, progress):
+        print(progress.evaluations, file=sys.stderr, flush=True)
+        if {moment} == ("told", progress.evaluations) and not told:
+            told.append(True)
+            os.kill(os.getpid(), signal.{signal})
+
+def replace_and_end(*paths):
+    replaced.append(paths)
+    if {moment} == ("replaced", len(replaced)):
+        os.kill(os.getpid(), signal.{signal})
+    replace(*paths)
+
+os.replace, work.Reporter = replace_and_end, Told
+from pe_core.__main__ import main
+main()
+"""
+"""A search that is sent a real signal after so many placements, or in the middle of writing."""
+
+
+def broken_off(signum, moment, *arguments):
+    """Run a search that a signal ends; return the number of placements it had told of."""
+    code = ENDING_ITSELF.format(signal=signum.name, moment=moment)
+    command = [sys.executable, "-c", code, *map(str, arguments)]
+    answer = subprocess.run(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, timeout=GUARD_S)
+    assert answer.returncode in (-signum, 128 + signum), answer.stderr
+    return max(int(line) for line in answer.stderr.splitlines() if line.isdecimal())
+
+
+def test_a_kill_at_any_moment_loses_at_most_a_round(path, tmp_path, out):
+    assert main(["optimize", str(path), "-o", str(tmp_path / "whole")]) == 0
+    begin = (path, "-o", out)
+    for moment in (("told", 20), ("replaced", 2), ("told", 71)):
+        told = broken_off(signal.SIGKILL, moment, "optimize", *begin)
+        kept = len(read_search(out).judged)
+        assert kept >= told - CANDIDATES - 1, "a round, and the candidate that had been judged"
+        begin = ("--resume", out)
+    assert main(["optimize", "--resume", str(out)]) == 0
+    assert result(out) == result(tmp_path / "whole")
+
+
+def test_a_search_that_ctrl_c_stopped_goes_on(path, tmp_path, out):
+    assert main(["optimize", str(path), "-o", str(tmp_path / "whole")]) == 0
+    told = broken_off(signal.SIGINT, ("told", 31), "optimize", path, "-o", out)
+    assert json.loads((out / "result.json").read_text("utf-8"))["stopped"]
+    assert 31 <= told <= len(read_search(out).judged) < 40, "all is kept, not just whole rounds"
+    assert main(["optimize", "--resume", str(out)]) == 0
+    assert result(out) == result(tmp_path / "whole")
+
+
+def begun_in(folder, **changes):
+    """Leave the state of a search in a folder, with other words in it."""
+    study = a_study()
+    SearchState(study).save(folder, study, ())
+    data = json.loads((folder / SEARCH).read_text("utf-8")) | changes
+    (folder / SEARCH).write_text(json.dumps(data))
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("changes", "complaint"),
+    [
+        ({"version": "0.0.9"}, f"version: expected {pe.__version__}, the version of this program"),
+        ({"perception-entropy": "other"}, "file: expected the state of a search, as this program"),
+        ({"study": 3}, "file: expected the state of a search"),
+        ({"study": "a = 1"}, "sensor: expected at least one [[sensor]], found none"),
+        ({"study_sha256": "0"}, "study: expected the files beside it as they were, found that"),
+        (
+            {"judged": [[1.0, False, "a"], [1, 2]]},
+            "judged[1]: expected an entropy, a truth, a mark",
+        ),
+        ({"judged": None}, "judged[0]: expected an entropy, a truth, a mark, found None"),
+    ],
+)
+def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, capsys):
+    begun_in(out, **changes)
+    assert main(["optimize", "--resume", str(out)]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"pe: {out / SEARCH}: {complaint}")
+
+
+def test_another_study_or_option_is_refused_in_one_line(path, out, capsys):
+    begun_in(out)
+    study = pe.load_study(path)
+    lower = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90), (-0.43, 0.0, 1.7))])
+    pe.export_study(study.with_rig(lower), path.with_name("lower.toml"))
+    for more in ([str(path.with_name("lower.toml"))], ["--seed", "9"], [str(path), "--seed", "9"]):
+        assert main(["optimize", *more, "--resume", str(out)]) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        expected = "study: expected the study and the options that it was begun with, found others"
+        assert line == f"pe: {out / SEARCH}: {expected}"
+
+
+def test_a_mesh_that_changed_is_refused(out, capsys):
+    begun_in(out)
+    body = shapes.box_car()
+    moved = pe.Mesh(body.triangles + 0.5, body.parts, body.part_names)
+    pe.write_mesh(out / "vehicle.npz", moved)
+    assert main(["optimize", "--resume", str(out)]) == 1
+    assert "study: expected the files beside it as they were" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "complaint"),
+    [
+        (["optimize"], 2, "expected STUDY, or --resume DIR"),
+        (["optimize", "--resume", "a", "-o", "b"], 2, "not allowed with argument"),
+        (
+            ["optimize", "--resume", "nowhere"],
+            1,
+            "pe: nowhere/search.json: file: expected",
+        ),
+    ],
+)
+def test_usage(arguments, status, complaint, capsys):
+    try:
+        assert main(arguments) == status
+    except SystemExit as stop:
+        assert stop.code == status
+    assert complaint in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_written_is_told_before_the_work(out, capsys):
+    begun_in(out)
+    (out / "history.csv").write_text("somebody's own\n")
+    assert main(["optimize", "--resume", str(out)]) == 1
+    assert capsys.readouterr().err.splitlines()[-1].startswith(f"pe: {out / 'history.csv'}: output")
+
+
+def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):
+    """Not by the names of their files: a copy in another folder is the same study."""
+    study = a_study()
+    pe.export_study(study, tmp_path / "copy.toml")
+    assert fingerprint(pe.load_study(tmp_path / "copy.toml")) == fingerprint(study)
+    body = study.vehicle
+    others = [
+        replace(study, samples=2048),
+        replace(study, search=replace(study.search, seed=9)),
+        replace(study, vehicle=replace(body, triangles=body.triangles + 0.001)),
+        replace(study, vehicle=replace(body, parts=None, part_names=("other",))),
+        replace(study, vehicle=None),
+    ]
+    prints = {fingerprint(other) for other in (study, *others)}
+    assert len(prints) == len(others) + 1

@@ -22,6 +22,10 @@ BEHIND: Range = (-math.inf, 0.0)
 FAR_M = 40.0
 CUSTOM = "custom"
 ROAD, HIGHWAY, UNIFORM, FROM_BOXES = "road", "highway", "uniform", "boxes"
+ON_SURFACE, ON_SLOTS = "SURFACE", "SLOTS"
+"""Kinds of mounts."""
+BY_PARTS, BY_MATERIAL, BY_GROUP = "PARTS", "MATERIAL", "GROUP"
+"""What faces a surface is made of."""
 
 PRIORS = (
     (ROAD, "Road", "Cars, trucks, cyclists, pedestrians and cones as met on public roads", 0),

@@ -2,6 +2,7 @@
 
 from .advanced import clearance_of, perception_of, space_of
 from .fingerprint import Fingerprint, fingerprint, signature
+from .holds import constrained, free_axes, locked_axes
 from .mirroring import (
     follow_mirrors,
     forget_mirrors,
@@ -12,6 +13,8 @@ from .mirroring import (
     mirrored_pose,
     unlink_mirror,
 )
+from .mount_shapes import LimitBox, bounds_box, mount_faces, mount_key, no_go_boxes
+from .mounting import mount_of_row, mounting_of
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .oddities import missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
@@ -58,35 +61,45 @@ from .view_camera import look_back, look_through, tend_views, view_camera
 __all__ = [
     "SENSORS",
     "Fingerprint",
+    "LimitBox",
     "Record",
     "active_variant",
     "add_variant",
     "alike",
     "blender_version",
+    "bounds_box",
     "bring_up_to_date",
     "check_placeable",
     "check_scene",
     "check_variants",
     "choose_variant",
     "clearance_of",
+    "constrained",
     "copy_score",
     "drop_foreign_results",
     "fingerprint",
     "follow_mirrors",
     "forget_mirrors",
     "forget_own_sensors",
+    "free_axes",
     "in_the_middle",
     "keep_score",
     "keep_search",
     "link_mirror",
+    "locked_axes",
     "look_back",
     "look_through",
     "mirror_of",
     "mirrored_name",
     "mirrored_pose",
     "missing_pieces",
+    "mount_faces",
+    "mount_key",
+    "mount_of_row",
     "mounted_on_sensor",
+    "mounting_of",
     "newer_version",
+    "no_go_boxes",
     "perception_of",
     "place_poses",
     "place_rig",

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import bpy
 
 from ..engine import pe
-from .mirroring import mirror_of
-from .rig import free_axes
+from .holds import CALLED, free_axes, locked_axes
+from .mounting import followers_of
 
 PLACING = ("location", "rotation", "delta_location", "delta_rotation")
 """How the paths of properties begin that say where an object stands."""
@@ -23,22 +23,34 @@ def check_placeable(scene: bpy.types.Scene, study: pe.Study) -> None:
     ------
     InputError
         When no axis of the study's sensors is free, or an animation, a driver or a constraint holds
-        one that has free axes: the placement would be lost at the next frame.
+        one that is moved: the placement would be lost at the next frame. When one that is to move
+        on a mount is locked.
     """
+    mounting = study.search.mounting
     sensors = [scene.objects[sensor.name] for sensor in study.rig]
-    free = [obj for obj in sensors if free_axes(obj)]
+    follow = followers_of(mounting.pairs, mounting.groups)
+    leading = [obj for obj in sensors if obj.name not in follow]
+    free = [obj for obj in leading if free_axes(obj) or obj.name in mounting.on]
     if not free:
         expected = "X, Y, Z, Roll, Pitch or Yaw ticked of at least one sensor (panel Sensor)"
         raise pe.InputError("scene", "what the search may change", expected, "nothing")
-    for obj in free:
-        if (other := mirror_of(obj, scene)) is not None:
-            expected = "one that is not linked to its mirror image, as each is moved on its own"
-            raise pe.InputError(
-                "scene", f"sensor {obj.name!r}", expected, f"linked to {other.name}"
-            )
+    for obj in leading:
+        _check_locks(obj, mounting)
+    for obj in (*free, *(scene.objects[name] for name in sorted(follow))):
         for holder in _holders(obj):
             expected = "an object that can be placed"
             raise pe.InputError("scene", f"sensor {obj.name!r}: placement", expected, holder)
+
+
+def _check_locks(obj: bpy.types.Object, mounting: pe.Mounting) -> None:
+    """Complain of a lock that a mount takes no notice of: on a surface, a place is found as one."""
+    mount, locked = mounting.mount_of(obj.name), locked_axes(obj)
+    if isinstance(mount, pe.SurfaceMount):
+        locked = tuple(axis for axis in locked if axis in "xyz")
+    if mount is not None and locked:
+        expected = "no lock of what its mount moves (bounds are kept to)"
+        found = f"a lock of {', '.join(CALLED[axis] for axis in locked)}"
+        raise pe.InputError("scene", f"sensor {obj.name!r}", expected, found)
 
 
 def _holders(obj: bpy.types.Object) -> Iterator[str]:

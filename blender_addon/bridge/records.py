@@ -25,7 +25,8 @@ NO_BOUNDS, ZEROS = (False,) * len(search.AXES), (0.0,) * len(search.AXES)
 class Record:
     """One sensor: what the score and the search know of it, whether it counts, and its look.
 
-    `bounded` says which axes have bounds of their own, `low` and `high` which [m or deg].
+    `bounded` says which axes have bounds of their own, `low` and `high` which [m or deg];
+    `mirror_of` is the sensor it is linked to, `mount` and `rack` where it may sit, and with whom.
     """
 
     name: str
@@ -39,6 +40,9 @@ class Record:
     bounded: tuple[bool, ...] = NO_BOUNDS
     low: tuple[float, ...] = ZEROS
     high: tuple[float, ...] = ZEROS
+    mirror_of: str = ""
+    mount: str = ""
+    rack: str = ""
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -54,7 +58,8 @@ class Record:
     def told_apart(self) -> tuple[object, ...]:
         """What makes it another idea: all but its look."""
         bounds = zip(self.bounded, self.low, self.high, strict=True)
-        return (*self.scored, self.free, *((lo, hi) if own else None for own, lo, hi in bounds))
+        held = self.mirror_of, self.mount, self.rack
+        return (*self.scored, self.free, *((a, b) if own else None for own, a, b in bounds), *held)
 
 
 def alike(some: Iterable[Record], others: Iterable[Record]) -> bool:
@@ -94,6 +99,9 @@ def _record_of(obj: bpy.types.Object, layer: bpy.types.ViewLayer) -> Record:
         tuple(own.bounded),
         tuple(own.bounds_low),
         tuple(own.bounds_high),
+        own.mirror_of,
+        own.mount,
+        own.rack,
     )
 
 
@@ -127,6 +135,9 @@ def records_of(variant: bpy.types.PropertyGroup) -> tuple[Record, ...]:
             tuple(row.bounded),
             tuple(row.bounds_low),
             tuple(row.bounds_high),
+            row.mirror_of,
+            row.mount,
+            row.rack,
         )
         for row in variant.sensors
     )
@@ -142,6 +153,7 @@ def write_records(variant: bpy.types.PropertyGroup, records: Sequence[Record]) -
         row.pose, row.free, row.visible = record.numbers, record.free, record.visible
         row.display, row.size = record.display, record.size_m
         row.bounded, row.bounds_low, row.bounds_high = record.bounded, record.low, record.high
+        row.mirror_of, row.mount, row.rack = record.mirror_of, record.mount, record.rack
 
 
 def rig_of(records: Sequence[Record]) -> pe.Rig:

@@ -74,12 +74,6 @@ def possible_sensors(
     return found
 
 
-def free_axes(obj: bpy.types.Object) -> tuple[str, ...]:
-    """Axes of a sensor that the search may change."""
-    chosen = obj.perception_entropy.free
-    return tuple(axis for axis, free in zip(search.AXES, chosen, strict=True) if free)
-
-
 def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
     """Return where a sensor stands in the ground frame, rounded as placements are.
 

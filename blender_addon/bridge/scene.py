@@ -7,9 +7,11 @@ from collections.abc import Mapping, Sequence
 import bpy
 
 from ..engine import pe, studies
-from .advanced import Limits, all_limits, clearance_of, perception_of, space_of
+from .advanced import Limits, all_limits, clearance_of, limits_of, perception_of, space_of
+from .holds import constrained, free_axes
+from .mounting import mounting_of
 from .prior import prior_from_scene
-from .rig import free_axes, rig_from_objects, sensor_objects
+from .rig import rig_from_objects, sensor_objects
 from .tolerance import tolerance_of
 from .vehicle import vehicle_from_collection
 
@@ -32,8 +34,12 @@ def study_from_scene(
     objects = sensor_objects(scene) if sensors is None else sensors
     check_scene(scene)  # said before what is wrong with a sensor
     free = {obj.name: free_axes(obj) for obj in objects}
-    rig, limits = rig_from_objects(objects, depsgraph), all_limits(objects)
-    return study_of_rig(scene, depsgraph, rig, free, vehicle, limits)
+    rig = rig_from_objects(objects, depsgraph)
+    vehicle = vehicle or vehicle_of_scene(scene, depsgraph)
+    counted = [scene.objects[sensor.name] for sensor in rig]
+    mounting = mounting_of(scene, depsgraph, counted)
+    limits = _limits(counted, rig, vehicle, mounting)
+    return study_of_rig(scene, depsgraph, rig, free, vehicle, limits, mounting)
 
 
 def study_of_rig(
@@ -43,10 +49,12 @@ def study_of_rig(
     free: Mapping[str, tuple[str, ...]],
     vehicle: pe.Vehicle | None = None,
     limits: Mapping[str, Limits] | None = None,
+    mounting: pe.Mounting | None = None,
 ) -> pe.Study:
     """Return the study of a scene's vehicle and settings with any rig, and what is free of it.
 
-    `limits` are bounds of its axes, by sensor; by default those of the scene's sensors.
+    `limits` are bounds of its axes, by sensor; by default those of the scene's sensors. Without
+    `mounting` all sensors move in boxes of coordinates.
 
     Raises
     ------
@@ -62,10 +70,26 @@ def study_of_rig(
         space_of(settings),
         prior=prior_from_scene(scene),
         model=perception_of(settings),
-        search=_search(settings, free, bounds),
+        search=_search(settings, free, bounds, mounting or pe.Mounting()),
         samples=settings.score_samples,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
     )
+
+
+def _limits(
+    objects: Sequence[bpy.types.Object],
+    rig: pe.Rig,
+    vehicle: pe.Vehicle,
+    mounting: pe.Mounting,
+) -> dict[str, Limits]:
+    """Bounds of the sensors that may have some: not of those in slots, or that follow others."""
+    found = {}
+    for obj in objects:
+        if mounting.unbounded(obj.name):
+            continue
+        if own := constrained(obj, rig[obj.name], vehicle, limits_of(obj)):
+            found[obj.name] = own
+    return found
 
 
 def check_scene(scene: bpy.types.Scene) -> None:
@@ -104,14 +128,15 @@ def _search(
     settings: bpy.types.PropertyGroup,
     free: Mapping[str, tuple[str, ...]],
     limits: Mapping[str, Limits],
+    mounting: pe.Mounting,
 ) -> pe.Search:
-    schedule = pe.Schedule(candidates=settings.candidates)
     return pe.Search(
         dict(free),
         dict(limits),
         settings.seed,
         settings.search_samples,
-        schedule,
+        pe.Schedule(candidates=settings.candidates),
+        mounting,
         tolerance=tolerance_of(settings),
     )
 

@@ -38,6 +38,9 @@ def stand(scene: bpy.types.Scene, records: Sequence[Record]) -> dict[str, str]:
         obj = present.get(name) or aside.get(name) or _made(scene, record)
         _dress(obj, record)
         objects[name] = obj
+    for name, record in wanted.items():
+        other = objects.get(record.mirror_of)
+        objects[name].perception_entropy.mirror_of = "" if other is None else other.name
     _place(scene, records, objects)
     return {name: obj.name for name, obj in objects.items()}
 
@@ -80,6 +83,9 @@ def _dress(obj: bpy.types.Object, record: Record) -> None:
         own.fusion = record.fusion
     own.free, own.bounded = record.free, record.bounded
     own.bounds_low, own.bounds_high = record.low, record.high
+    own.rack = record.rack
+    if own.mount != record.mount:
+        own.mount = record.mount
     if not own.is_sensor:
         own.is_sensor = True
 

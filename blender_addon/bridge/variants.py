@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import bpy
@@ -79,8 +79,13 @@ def put_variant(scene: bpy.types.Scene, variant: Variant) -> None:
     records = records_of(variant)
     names = stand(scene, records)
     if any(name != actual for name, actual in names.items()):
-        write_records(variant, [replace(r, name=names[r.name]) for r in records])
+        write_records(variant, [_renamed(record, names) for record in records])
     choose_variant(scene, key)
+
+
+def _renamed(record: Record, names: Mapping[str, str]) -> Record:
+    other = names.get(record.mirror_of, record.mirror_of)
+    return replace(record, name=names[record.name], mirror_of=other)
 
 
 def choose_variant(scene: bpy.types.Scene, key: int) -> None:

@@ -60,26 +60,36 @@ def visible_members(
     return found.union(*(visible_members(child, layer) for child in collection.children))
 
 
-def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> Iterator[Part]:
-    """Yield a part for every drawn object and instance that belongs to the collection."""
+def drawn_meshes(
+    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
+) -> Iterator[tuple[bpy.types.Object, np.ndarray]]:
+    """Yield every drawn mesh and instance that belongs to a vehicle, evaluated, and where it is.
+
+    An object is only good until the next one: nothing of it may be kept. The places are (4, 4),
+    ground from object.
+    """
     visible = visible_members(collection, depsgraph.view_layer)
     members = {obj for obj in visible if not mounted_on_sensor(obj)}
-    local: dict[int, np.ndarray] = {}
-    # An instance is only good until the next one: nothing of it may be kept. Curves, texts and
-    # metaballs come twice, as what they are and as the mesh they make.
+    # Curves, texts and metaballs come twice, as what they are and as the mesh they make.
     for instance in depsgraph.object_instances:
         owner = instance.parent if instance.is_instance else instance.object
-        obj, original = instance.object, instance.object.original
-        if owner.original not in members or obj.type != "MESH" or original.hide_render:
-            continue
-        triangles = _triangles_local(obj, local)
+        obj = instance.object
+        hidden = obj.original.hide_render
+        if owner.original in members and obj.type == "MESH" and not hidden:
+            yield obj, np.array(instance.matrix_world, dtype=float)
+
+
+def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> Iterator[Part]:
+    """Yield a part for every drawn object and instance that belongs to the collection."""
+    local: dict[int, np.ndarray] = {}
+    for obj, ground_from_object in drawn_meshes(collection, depsgraph):
+        original, triangles = obj.original, _triangles_local(obj, local)
         if not len(triangles):
             continue
-        ground_from_object = np.array(instance.matrix_world, dtype=float)
         if not (np.isfinite(triangles).all() and np.isfinite(ground_from_object).all()):
             field = f"vehicle object {original.name!r}"
             raise pe.InputError("scene", field, "finite coordinates", "NaN or infinity")
-        placed = _placed(triangles, ground_from_object)
+        placed = placed_triangles(triangles, ground_from_object)
         yield Part(original.name_full, placed, original.perception_entropy.see_through)
 
 
@@ -89,12 +99,13 @@ def _triangles_local(obj: bpy.types.Object, known: dict[int, np.ndarray]) -> np.
     if key in known:
         return known[key]
     mesh = obj.to_mesh()
-    known[key] = _triangles_of(mesh)
+    known[key] = triangles_of(mesh)
     obj.to_mesh_clear()
     return known[key]
 
 
-def _triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
+def triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return (F, 3, 3) triangles of a mesh in its own frame."""
     mesh.calc_loop_triangles()
     points = np.empty(3 * len(mesh.vertices), np.float32)
     corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
@@ -103,8 +114,8 @@ def _triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
     return points.reshape(-1, 3).astype(float)[corners.reshape(-1, 3)]
 
 
-def _placed(triangles: np.ndarray, ground_from_object: np.ndarray) -> np.ndarray:
-    """Triangles in the ground frame; a mirrored object keeps its faces looking outwards."""
+def placed_triangles(triangles: np.ndarray, ground_from_object: np.ndarray) -> np.ndarray:
+    """Return triangles in the ground frame; a mirrored object keeps its faces looking outwards."""
     linear = ground_from_object[:3, :3]
     placed = geometry.rotate(linear, triangles) + ground_from_object[:3, 3]
     return placed[:, ::-1] if np.linalg.det(linear) < 0.0 else placed

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import pe
-from . import asked, blind, frustums, ghosts, ground, heat, rays, reach
+from . import asked, blind, frustums, ghosts, ground, heat, mounts, rays, reach
 from .beams import BeamChoice, ChannelMode, channels_of, shown_beams
 from .colors import VIEWPORT, VIRIDIS, Rgba, on_scale, sensor_color, with_alpha
 from .kinds import DRAWINGS, beam_budget, drawing_of
@@ -264,6 +264,16 @@ def _place(wish: PictureWish, _tools: Tools, _name: str) -> LayerShape:
     return asked.asked_place(wish.place, [each.sensor for each in wish.counted])
 
 
+def _mount_keys(wish: PictureWish) -> dict[str, Hashable]:
+    if not wish.mounts and not wish.boxes:
+        return {}
+    return {WHOLE_RIG: (tuple((each.key, each.strong) for each in wish.mounts), wish.boxes)}
+
+
+def _mounts(wish: PictureWish, _tools: Tools, _name: str) -> LayerShape:
+    return mounts.mounts(wish.mounts, wish.boxes)
+
+
 LAYERS = (
     Layer(
         "ground",
@@ -284,6 +294,7 @@ LAYERS = (
         edged=True,
     ),
     Layer("reach", "Reach", _reach_keys, _reach, 2.2, rough=True, on_ground=True, edged=True),
+    Layer("mounts", "Mounts", _mount_keys, _mounts, 1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
     Layer("heat", "Stopped Where", _heat_keys, _heat, rough=True),

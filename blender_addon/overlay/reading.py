@@ -8,12 +8,13 @@ from collections.abc import Hashable
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 
 from .. import asking, body, bridge, roster
 from ..engine import pe
 from ..live import latest
 from .layers import LAYERS
-from .wish import AVERAGE, PictureWish, SceneSensor, ViewSettings
+from .wish import AVERAGE, MountFaces, PictureWish, SceneSensor, SearchBox, ViewSettings
 
 LEAST_LENGTH_M = 0.1
 HEAVY_S = 0.05
@@ -35,6 +36,7 @@ class SceneReader:
     def __init__(self) -> None:
         self._judged: dict[str, Judged] = {}
         self._bodies: dict[str, body.Body] = {}
+        self._faces: dict[str, dict[Hashable, np.ndarray]] = {}
         self._took_s = 0.0
 
     def clear(self) -> None:
@@ -58,7 +60,36 @@ class SceneReader:
             ghosts=others,
             ghosts_name=name,
             place=None if answer is None else answer.place,
+            mounts=self._mounts(scene, depsgraph, sensors, vehicle, body_key),
+            boxes=_boxes(scene, sensors, vehicle),
         )
+
+    def _mounts(
+        self,
+        scene: bpy.types.Scene,
+        depsgraph: bpy.types.Depsgraph,
+        sensors: tuple[SceneSensor, ...],
+        vehicle: pe.Vehicle | None,
+        body_key: Hashable,
+    ) -> tuple[MountFaces, ...]:
+        """Surfaces of the scene's mounts; read again when they, or the vehicle, are others."""
+        if vehicle is None:
+            return ()
+        objects = (scene.objects.get(each.sensor.name) for each in sensors if each.selected)
+        chosen = {obj.perception_entropy.mount for obj in objects if obj is not None}
+        known, found, shown = self._faces.get(scene.name, {}), {}, []
+        for row in scene.perception_entropy.mounts:
+            if (said := bridge.mount_key(row)) is None:
+                continue
+            key = said, body_key
+            faces = known.get(key)
+            if faces is None:
+                faces = bridge.mount_faces(scene, depsgraph, row, vehicle)
+            found[key] = faces
+            if len(faces):
+                shown.append(MountFaces(key, faces, row.name in chosen))
+        self._faces[scene.name] = found
+        return tuple(shown)
 
     def _judged_by(self, scene: bpy.types.Scene) -> Judged:
         """Prior, space and AP curves; no prior where there is a mistake, which a score tells."""
@@ -117,6 +148,21 @@ def _mounted(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[Sc
             drawn, counted = obj.perception_entropy.show, obj.visible_get(view_layer=layer)
             found.append(SceneSensor(sensor, number, selected, drawn, counted))
     return tuple(found)
+
+
+def _boxes(
+    scene: bpy.types.Scene, sensors: tuple[SceneSensor, ...], vehicle: pe.Vehicle | None
+) -> tuple[SearchBox, ...]:
+    """No-go areas, and the bounds of the selected sensors; a search says what is wrong there."""
+    found: list[bridge.LimitBox] = []
+    with contextlib.suppress(pe.InputError):
+        found += bridge.no_go_boxes(scene)
+    for each in sensors:
+        if each.selected and (obj := scene.objects.get(each.sensor.name)) is not None:
+            with contextlib.suppress(pe.InputError):
+                box = bridge.bounds_box(obj, each.sensor, vehicle)
+                found += [] if box is None else [box]
+    return tuple(SearchBox(*box) for box in found)
 
 
 def _scored(

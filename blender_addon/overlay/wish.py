@@ -6,6 +6,9 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .beams import ChannelMode
 from .ground import SENSORS
 
@@ -60,6 +63,24 @@ class SceneSensor:
         return sensor.name, id(sensor.model), sensor.pose, sensor.group, self.number
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class MountFaces:
+    """The surface of a mount (F, 3, 3) [m]; `key` tells it from others, `strong`: draw it so."""
+
+    key: Hashable
+    triangles: NDArray[np.float64]
+    strong: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SearchBox:
+    """A box of bounds, or one that is forbidden: its lowest and highest corner [m]."""
+
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    forbidden: bool = False
+
+
 @dataclass(frozen=True, slots=True)
 class PictureWish:
     """A scene, as far as what is drawn depends on it.
@@ -82,6 +103,8 @@ class PictureWish:
     ghosts: tuple[pe.Sensor, ...] = ()
     ghosts_name: str = ""
     place: advice.AskedPlace | None = None
+    mounts: tuple[MountFaces, ...] = ()
+    boxes: tuple[SearchBox, ...] = ()
 
     @property
     def counted(self) -> tuple[SceneSensor, ...]:

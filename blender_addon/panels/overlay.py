@@ -104,6 +104,7 @@ LAYERS: tuple[tuple[str, DrawChoices | None], ...] = (
     ("ground", _ground),
     ("blind", _blind),
     ("reach", _reach),
+    ("mounts", None),
     ("frustums", _frustums),
     ("beams", _beams),
     ("heat", None),

@@ -28,6 +28,7 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         layout.prop(settings, "fusion")
         layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
         draw_mirror(layout, obj)
+        draw_mounted(layout, settings)
         layout.label(text=f"The search may change, for {obj.name}:")
         row = layout.row(align=True)
         for index, label in enumerate(AXIS_LABELS):
@@ -45,6 +46,15 @@ def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
     row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
     linked = row.operator("pe.mirror_sensor", text="Mirror Linked", icon="LINKED")
     linked.name, linked.linked = obj.name, True
+
+
+def draw_mounted(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw where the search may put a sensor, and what it moves with."""
+    split = layout.split(factor=0.4)
+    split.label(text="Mounted on")
+    chosen = settings.mount or "Box of Coordinates"
+    split.operator_menu_enum("pe.mount_sensor", "mount", text=chosen, translate=False)
+    layout.prop(settings, "rack")
 
 
 def draw_bounds(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:

@@ -13,6 +13,7 @@ from .breakdown import PE_ResultPart
 from .callbacks import model_suggestions
 from .focus import DEFAULT_REGION, PE_FocusSettings
 from .live import PE_LiveSettings
+from .mounting import PE_MountPart, PE_MountSettings
 from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, DEFAULT_MODEL, FREE_BY_DEFAULT, PE_ObjectSettings
 from .variants import PE_Variant, PE_VariantSensor
@@ -34,6 +35,8 @@ CLASSES = (
     PE_OwnSensorSettings,
     PE_FocusSettings,
     PE_LiveSettings,
+    PE_MountPart,
+    PE_MountSettings,
     PE_VariantSensor,
     PE_Variant,
     PE_Warning,

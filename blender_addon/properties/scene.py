@@ -20,6 +20,7 @@ from .breakdown import PE_ResultPart
 from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
 from .live import PE_LiveSettings
+from .mounting import MountingSettings
 from .tolerance import ToleranceSettings
 from .variants import PE_Variant
 from .view import PE_ViewSettings
@@ -32,7 +33,9 @@ DEFAULT_BEAM_LENGTH_M = 8.0
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 
 
-class PE_SceneSettings(AdvancedSceneSettings, ToleranceSettings, bpy.types.PropertyGroup):
+class PE_SceneSettings(
+    AdvancedSceneSettings, MountingSettings, ToleranceSettings, bpy.types.PropertyGroup
+):
     """The study's settings, and the last result."""
 
     version: IntProperty(

@@ -16,6 +16,7 @@ from bpy.props import (
 from ..engine import search
 from .advanced import SearchBounds
 from .callbacks import changed, model_chosen, models_of_a_kind, redraw
+from .mounting import MountedSettings
 from .warnings import PE_StoppingPart
 
 DEFAULT_MODEL = "Pandar64"
@@ -24,7 +25,7 @@ AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
-class PE_ObjectSettings(SearchBounds, bpy.types.PropertyGroup):
+class PE_ObjectSettings(SearchBounds, MountedSettings, bpy.types.PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: BoolProperty(

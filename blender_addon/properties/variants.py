@@ -51,6 +51,9 @@ class PE_VariantSensor(bpy.types.PropertyGroup):
     bounds_high: FloatVectorProperty(
         name="High Bounds", description="Of these axes [m or deg]", size=len(search.AXES)
     )
+    mirror_of: StringProperty(name="Mirror Of", description="The sensor it is linked to")
+    mount: StringProperty(name="Mount", description="Where the search may put it")
+    rack: StringProperty(name="Rack", description="What it moves with")
     visible: BoolProperty(name="Visible", description="It is seen, and so it counts", default=True)
     display: StringProperty(name="Display", description="How its empty is drawn", default="ARROWS")
     size: FloatProperty(name="Size", description="How large its empty is drawn", default=0.25)

@@ -93,6 +93,12 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         update=redraw,
     )
 
+    show_mounts: BoolProperty(
+        name="Mounts",
+        description="Tint the surfaces that sensors may sit on; no-go areas and bounds are boxes",
+        default=True,
+        update=redraw,
+    )
     show_blind: BoolProperty(
         name="Blind Ground",
         description="Outline the ground round the vehicle that no sensor sees, and say how far it "

@@ -13,7 +13,14 @@ from .optimize import Step, optimize
 from .processes import Processes, live_as_long_as_the_parent, started
 from .robust import RobustObjective, objective_of
 from .schedule import Schedule
-from .search_space import PAPER_FREE, SearchSpace, checked_axes, checked_bounds
+from .search_space import (
+    PAPER_FREE,
+    SearchSpace,
+    checked_axes,
+    checked_bounds,
+    default_bounds,
+)
+from .seating import seated
 from .tolerance import Tolerance
 
 __all__ = [
@@ -46,6 +53,7 @@ __all__ = [
     "checked_axes",
     "checked_bounds",
     "checked_method",
+    "default_bounds",
     "first_allowed",
     "judge_all",
     "live_as_long_as_the_parent",
@@ -53,5 +61,6 @@ __all__ = [
     "optimize",
     "pose_from_values",
     "pose_values",
+    "seated",
     "started",
 ]

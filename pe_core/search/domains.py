@@ -102,7 +102,8 @@ class OnSurface:
     """A point of a surface, and the free ones of the sensor's angles.
 
     The first three unknowns are a point near the surface [m]; the sensor stands at the surface's
-    point that is closest to it. So it moves in surfaces of any shape, and across their parts.
+    point that is closest to it. So it moves in surfaces of any shape, and across their parts. Its
+    start is checked to be on it, unless it may be `anywhere`.
     """
 
     who: str
@@ -111,6 +112,7 @@ class OnSurface:
     pose: Pose
     housing: Housing | None
     bounds: Mapping[str, Bounds]
+    anywhere: bool = False
     axes: tuple[str, ...] = field(init=False)
     unknowns: tuple[Unknown, ...] = field(init=False)
     start: tuple[float, ...] = field(init=False)
@@ -127,7 +129,8 @@ class OnSurface:
         angles = self._angles(self.skin.outward(face))
         put(self, "angles", angles)
         put(self, "start", (*foot.tolist(), *(angles[axis] for axis in self.axes)))
-        self._check_start(foot, self.skin.outward(face))
+        if not self.anywhere:
+            self._check_start(foot, self.skin.outward(face))
 
     def base(self, pose: Pose) -> Floats:
         """Return the point (3,) of a sensor at a pose from which the stand-off is measured [m]."""

@@ -6,7 +6,7 @@ from .fingerprint import fingerprint
 from .folder import FileSet, check_files, prepare_folder
 from .job import Job, Progress
 from .jobs import OptimizeJob, ScoreJob
-from .names import MESH, OPTIMIZED, RESULT, REVIEW, SEARCH, STUDY
+from .names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW, SEARCH, STUDY
 from .outcome import HistoryRow, Outcome
 from .results import (
     add_to_result,
@@ -21,6 +21,7 @@ from .study import Search, Study, vehicle_digest
 from .study_file import load_study, save_study, study_from_dict, study_to_dict
 
 __all__ = [
+    "AREAS",
     "MESH",
     "METHODS",
     "OPTIMIZED",

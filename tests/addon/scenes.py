@@ -63,6 +63,24 @@ def add_sensor(name: str, model: str = "Pandar64", **settings) -> bpy.types.Obje
     return sensor
 
 
+def add_mount(scene, name: str, *parts: bpy.types.Object, **settings):
+    """Return a new mount of a scene, made of these parts; settings are its own."""
+    row = scene.perception_entropy.mounts.add()
+    row.name = name
+    for part in parts:
+        row.parts.add().part = part
+    for key, value in settings.items():
+        setattr(row, key, value)
+    return row
+
+
+def paint(obj: bpy.types.Object, group: str, weight) -> None:
+    """Paint a vertex group: the weight of each vertex by its place in the object's frame."""
+    painted = obj.vertex_groups.get(group) or obj.vertex_groups.new(name=group)
+    for vertex in obj.data.vertices:
+        painted.add([vertex.index], weight(vertex.co), "REPLACE")
+
+
 def depsgraph() -> bpy.types.Depsgraph:
     """Return the evaluated scene, up to date."""
     return bpy.context.evaluated_depsgraph_get()
@@ -71,6 +89,7 @@ def depsgraph() -> bpy.types.Depsgraph:
 def seen_rig(car) -> bpy.types.Scene:
     """Return a car with a LiDAR, and now a camera at its front, all layers shown."""
     add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
+    add_mount(car, "cabin", bpy.data.objects["cabin"])
     view = car.perception_entropy.view
     for layer in LAYERS:
         setattr(view, f"show_{layer.name}", True)

@@ -16,7 +16,7 @@ ARRAYS = {
     f"overlay.{name}"
     for name in (
         *("asked", "beams", "blind", "casts", "colors", "frustums", "ghosts", "ground", "heat"),
-        *("kinds", "layers"),
+        *("kinds", "layers", "mounts"),
         *("primitives", "rays", "reach", "store", "tools", "wish"),
     )
 }

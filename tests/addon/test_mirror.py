@@ -161,11 +161,25 @@ def test_unlinked_they_go_their_own_ways(left):
     assert not alike(left, right)
 
 
-def test_a_search_says_in_one_line_that_it_moves_each_on_its_own(left):
+def test_a_search_moves_linked_mirror_images_as_a_pair(left):
     mirror(linked=True)
-    with pytest.raises(RuntimeError, match=r"front_left.*linked.*front_right") as raised:
-        bpy.ops.pe.optimize()
-    assert len(str(raised.value).strip().splitlines()) == 1
-    for name in ("front_left", "front_right"):
-        bpy.data.objects[name].perception_entropy.free = [False] * 6
-    assert bpy.ops.pe.optimize() == {"FINISHED"}  # what is held does not matter
+    study = scenes.study()
+    assert study.search.mounting.pairs == (("front_left", "front_right"),)
+    before = poses()
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    found = poses()
+    assert found["front_left"] != before["front_left"]
+    assert found["front_right"] == bridge.mirrored_pose(found["front_left"])
+
+
+def test_a_pair_of_which_one_is_hidden_is_none(left):
+    mirror(linked=True)
+    bpy.data.objects["front_right"].hide_set(True)
+    assert scenes.study().search.mounting.pairs == ()
+
+
+def poses():
+    """Where the two sensors stand."""
+    graph = scenes.depsgraph()
+    names = ("front_left", "front_right")
+    return {name: bridge.pose_of(bpy.data.objects[name], graph) for name in names}

@@ -1,0 +1,196 @@
+"""Mounts: rows of the panel's list, what they are made of, and sensors put on them."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import EnumProperty, StringProperty
+
+from .. import bridge, changes
+from ..choices import BY_GROUP, BY_PARTS, free_name
+from ..engine import catalog, pe, search
+from .reports import REFUSALS, refuse, tell
+
+IN_A_BOX = "BOX"
+"""What the menu of a sensor's mounts calls none."""
+NO_GO_SIZE_M = 0.25
+_shown: list[tuple[str, str, str]] = []
+"""What the menu lists: Blender reads the texts after the function that made them is done."""
+
+
+class PE_OT_add_mount(bpy.types.Operator):
+    """Add a surface for sensors: of the vehicle's selected objects, or the group being painted"""
+
+    bl_idname = "pe.add_mount"
+    bl_label = "Add Mount"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        settings = context.scene.perception_entropy
+        taken = {row.name for row in settings.mounts}
+        painted = painted_group(context)
+        parts = () if painted else selected_parts(context)
+        name = painted or (parts[0].name if len(parts) == 1 else "Mount")
+        row = settings.mounts.add()
+        row.name = free_name(name, taken)
+        row.faces, row.group = (BY_GROUP, painted) if painted else (BY_PARTS, "")
+        _take(row, parts)
+        settings.mount_index = len(settings.mounts) - 1
+        changes.picture.tell()
+        return {"FINISHED"}
+
+
+class MountRow:
+    """What operators on the selected mount share."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        settings = context.scene.perception_entropy
+        if settings.mount_index >= len(settings.mounts):
+            cls.poll_message_set("No mount is selected")
+            return False
+        return True
+
+
+class PE_OT_remove_mount(MountRow, bpy.types.Operator):
+    """Remove the mount that is selected in the list; sensors on it move in boxes again"""
+
+    bl_idname = "pe.remove_mount"
+    bl_label = "Remove Mount"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        scene = context.scene
+        settings = scene.perception_entropy
+        index = settings.mount_index
+        name = settings.mounts[index].name
+        settings.mounts.remove(index)
+        settings.mount_index = max(0, min(index, len(settings.mounts) - 1))
+        for obj in bridge.sensor_objects(scene):
+            if obj.perception_entropy.mount == name:
+                obj.perception_entropy.mount = ""
+        changes.picture.tell()
+        return {"FINISHED"}
+
+
+class PE_OT_mount_parts(MountRow, bpy.types.Operator):
+    """Make the mount of the vehicle's objects that are selected, all of their faces"""
+
+    bl_idname = "pe.mount_parts"
+    bl_label = "Take Selected"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        settings, parts = context.scene.perception_entropy, selected_parts(context)
+        if not parts:
+            tell(self, "WARNING", "Select objects of the vehicle's collection first")
+            return {"CANCELLED"}
+        _take(settings.mounts[settings.mount_index], parts)
+        changes.picture.tell()
+        return {"FINISHED"}
+
+
+def _mounts(
+    _operator: bpy.types.OperatorProperties, context: bpy.types.Context
+) -> list[tuple[str, str, str]]:
+    """Return the scene's mounts as Blender wants a menu."""
+    rows = context.scene.perception_entropy.mounts
+    free = (IN_A_BOX, "Box of Coordinates", "The search moves it in its bounds, wherever they go")
+    _shown[:] = [free, *((row.name, row.name, "Put it on this mount") for row in rows)]
+    return _shown
+
+
+class PE_OT_mount_sensor(bpy.types.Operator):
+    """Choose where the search may put this sensor, and put it on that mount where it is nearest"""
+
+    bl_idname = "pe.mount_sensor"
+    bl_label = "Mount Sensor"
+    bl_options = {"REGISTER", "UNDO"}
+
+    mount: EnumProperty(name="Mount", description="Where it may sit", items=_mounts)
+    name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        scene = context.scene
+        obj = scene.objects.get(self.name) if self.name else context.active_object
+        try:
+            if self.mount != IN_A_BOX:
+                put_on_mount(scene, context.evaluated_depsgraph_get(), obj, self.mount)
+        except REFUSALS as error:
+            return refuse(self, error)
+        obj.perception_entropy.mount = "" if self.mount == IN_A_BOX else self.mount
+        changes.study.tell()
+        return {"FINISHED"}
+
+
+class PE_OT_add_no_go(bpy.types.Operator):
+    """Add a box that no part of a sensor may be in; move and scale it as any empty"""
+
+    bl_idname = "pe.add_no_go"
+    bl_label = "Add No-Go Area"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        obj = bpy.data.objects.new("no_go", None)
+        obj.empty_display_type, obj.empty_display_size = "CUBE", NO_GO_SIZE_M
+        obj.location = context.scene.cursor.location
+        bridge.shown_collection(context.scene).objects.link(obj)
+        obj.perception_entropy.is_no_go = True
+        for other in context.selected_objects:
+            other.select_set(False)
+        obj.select_set(True)
+        context.view_layer.objects.active = obj
+        return {"FINISHED"}
+
+
+def put_on_mount(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+    obj: bpy.types.Object | None,
+    name: str,
+) -> None:
+    """Put a sensor on a mount, where that is nearest to where it stands.
+
+    Raises
+    ------
+    InputError
+        When it is no possible sensor, the mount has no faces or slots, or something holds it.
+    """
+    if obj is None or not obj.perception_entropy.is_sensor:
+        raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
+    row = scene.perception_entropy.mounts[name]
+    mount = bridge.mount_of_row(scene, depsgraph, row)
+    vehicle = bridge.vehicle_of_scene(scene, depsgraph)
+    sensor = bridge.sensor_from_object(obj, depsgraph)
+    housing = catalog.housing(sensor.model.name)
+    bridge.place_poses(scene, {obj.name: search.seated(sensor, mount, vehicle, housing)})
+
+
+def selected_parts(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Return the vehicle's objects that are selected, by name."""
+    vehicle = context.scene.perception_entropy.vehicle
+    members = set() if vehicle is None else set(vehicle.all_objects)
+    found = (o for o in context.selected_objects if o.type == "MESH" and o in members)
+    return sorted(found, key=lambda o: o.name)
+
+
+def painted_group(context: bpy.types.Context) -> str:
+    """Return the vertex group that is being painted; empty in other modes."""
+    obj = context.active_object
+    if obj is None or obj.mode != "WEIGHT_PAINT" or obj.vertex_groups.active is None:
+        return ""
+    return obj.vertex_groups.active.name
+
+
+def _take(row: bpy.types.PropertyGroup, parts: list[bpy.types.Object]) -> None:
+    row.parts.clear()
+    for part in parts:
+        row.parts.add().part = part
+
+
+CLASSES = (
+    PE_OT_add_mount,
+    PE_OT_remove_mount,
+    PE_OT_mount_parts,
+    PE_OT_mount_sensor,
+    PE_OT_add_no_go,
+)

@@ -1,0 +1,301 @@
+"""Mounts in Blender: painted areas, materials, slots, ties, locks, bounds, constraints."""
+
+import bpy
+import numpy as np
+import pytest
+
+import pe_core as pe
+from blender_addon import bridge
+from tests.addon import scenes
+
+CAN = "Velodyne VLP-16 Puck"
+BASE_M, CENTER_M = 0.04, 0.0377
+"""Base plate, and how high the origin of the can is above its own base."""
+TOP_M = 1.5
+"""Of the car's cabin."""
+
+
+@pytest.fixture(autouse=True)
+def few_voxels(car):
+    """Score and search on few voxels."""
+    settings = car.perception_entropy
+    settings.score_samples, settings.search_samples, settings.candidates = 1024, 1024, 1
+
+
+@pytest.fixture
+def roof(car):
+    """Return the scene with the cabin's top painted, and a can on it."""
+    scenes.paint(bpy.data.objects["cabin"], "roof", lambda co: 1.0 if co.z > 0 else 0.0)
+    scenes.add_mount(car, "roof area", faces="GROUP", group="roof", standoff=BASE_M)
+    sensor = bpy.data.objects["roof"]
+    sensor.perception_entropy.model = CAN
+    put(sensor, "roof area")
+    return car
+
+
+def put(sensor, mount):
+    assert bpy.ops.pe.mount_sensor(name=sensor.name, mount=mount) == {"FINISHED"}
+    bpy.context.view_layer.update()
+
+
+def faces(name="roof area"):
+    return scenes.study().search.mounting.mounts[name].area.triangles
+
+
+def among(triangles, vehicle):
+    """Whether all are triangles of the vehicle, to the bit."""
+    known = {each.tobytes() for each in vehicle.triangles}
+    return all(each.tobytes() in known for each in np.ascontiguousarray(triangles))
+
+
+def place_of(name):
+    return bridge.pose_of(bpy.data.objects[name], scenes.depsgraph()).position
+
+
+def test_painted_faces_are_those_whose_corners_all_weigh_more_than_a_half(roof):
+    assert np.all(np.abs(faces()[:, :, 2] - TOP_M) < 1e-6) and len(faces()) == 2
+    assert among(faces(), scenes.study().vehicle)
+    cabin = bpy.data.objects["cabin"]
+    scenes.paint(cabin, "roof", lambda co: 0.5 if co.x > 0 and co.z > 0 else float(co.z > 0))
+    bpy.context.view_layer.update()
+    with pytest.raises(pe.InputError, match=r"mount 'roof area': vertex group 'roof': expected .*"):
+        scenes.study()
+
+
+def test_painted_faces_come_with_modifiers_and_instances_and_places(roof):
+    cabin = bpy.data.objects["cabin"]
+    cabin.modifiers.new("finer", "SUBSURF").levels = 2
+    cabin.modifiers["finer"].subdivision_type = "SIMPLE"
+    cabin.rotation_euler = (0.0, 0.1, 0.0)
+    bpy.context.view_layer.update()
+    area = bridge.mount_of_row(
+        roof, scenes.depsgraph(), roof.perception_entropy.mounts["roof area"]
+    ).area
+    assert len(area.triangles) == 2 * (16 + 4 * 4)  # the top, and the sides' upper quarters
+    vehicle = scenes.vehicle(roof.perception_entropy.vehicle)
+    assert among(area.triangles, vehicle)
+
+
+def test_a_material_is_an_area(roof):
+    cabin, row = bpy.data.objects["cabin"], roof.perception_entropy.mounts["roof area"]
+    paint, glass = (bpy.data.materials.new(name) for name in ("paint", "glass"))
+    cabin.data.materials.append(paint)
+    cabin.data.materials.append(glass)
+    cabin.data.polygons[1].material_index = 1  # the top
+    row.faces, row.material = "MATERIAL", glass
+    bpy.context.view_layer.update()
+    assert np.all(np.abs(faces()[:, :, 2] - TOP_M) < 1e-6) and len(faces()) == 2
+    row.material = bpy.data.materials.new("unused")
+    with pytest.raises(pe.InputError, match="material 'unused': expected faces of the vehicle"):
+        scenes.study()
+    row.material = None
+    with pytest.raises(pe.InputError, match="material: expected a material of the vehicle"):
+        scenes.study()
+
+
+def test_a_sensor_put_on_the_painted_roof_stands_on_it_and_stays_there(roof):
+    on_it = TOP_M + BASE_M + CENTER_M
+    assert place_of("roof")[2] == pytest.approx(on_it, abs=1e-5)
+    before = place_of("roof")
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    assert place_of("roof") != before
+    pose = bridge.pose_of(bpy.data.objects["roof"], scenes.depsgraph())
+    base = np.array(pose.position) + pose.ground_from_sensor @ [0.0, 0.0, -CENTER_M]
+    assert base[2] == pytest.approx(TOP_M + BASE_M, abs=1e-5)
+
+
+def test_an_exported_study_gives_the_same_bits(roof, tmp_path):
+    here = scenes.study()
+    pe.export_study(here, pe.prepare_folder(tmp_path / "out") / "study.toml")
+    there = pe.load_study(tmp_path / "out" / "study.toml")
+    assert history(there) == history(here)
+    mount = there.search.mounting.mounts["roof area"]
+    assert np.array_equal(mount.area.triangles, faces())
+
+
+def history(study):
+    job = pe.OptimizeJob(study)
+    list(job)
+    assert len(job.history) > 1
+    return [(row.entropy, row.rig["roof"].pose) for row in job.history], job.outcome.after.entropy
+
+
+def test_a_start_that_is_not_on_its_mount_is_told(roof):
+    bpy.data.objects["roof"].location.z += 0.1
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="a start on its mount, such as"):
+        bpy.ops.pe.optimize()
+
+
+def test_slots_are_the_empties_of_a_collection(car):
+    rack = scenes.add_collection(car.collection, "Rack")
+    for name, x in (("front", 0.2), ("rear", -0.9)):
+        slot = bpy.data.objects.new(name, None)
+        slot.location = (x, 0.0, 1.9)
+        rack.objects.link(slot)
+    scenes.add_mount(car, "rack", kind="SLOTS", slots=rack)
+    bpy.context.view_layer.update()
+    put(bpy.data.objects["roof"], "rack")
+    assert place_of("roof") == (-0.9, 0.0, 1.9)
+    mount = scenes.study().search.mounting.mounts["rack"]
+    assert [slot.name for slot in mount.slots] == ["front", "rear"]
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    assert place_of("roof") in ((-0.9, 0.0, 1.9), (0.2, 0.0, 1.9))
+
+
+def test_a_collection_without_empties_is_no_list_of_slots(car):
+    scenes.add_mount(car, "rack", kind="SLOTS")
+    with pytest.raises(RuntimeError, match="slot: expected at least one slot"):
+        bpy.ops.pe.mount_sensor(name="roof", mount="rack")
+    assert not bpy.data.objects["roof"].perception_entropy.mount
+
+
+def test_a_renamed_mount_keeps_its_sensors_and_a_removed_one_lets_them_go(roof):
+    row, sensor = roof.perception_entropy.mounts[0], bpy.data.objects["roof"]
+    row.name = "top"
+    assert sensor.perception_entropy.mount == "top"
+    scenes.add_mount(roof, "top")
+    assert [each.name for each in roof.perception_entropy.mounts] == ["top", "top 2"]
+    roof.perception_entropy.mount_index = 0
+    bpy.ops.pe.remove_mount()
+    assert not sensor.perception_entropy.mount
+    sensor.perception_entropy.mount = "gone"
+    with pytest.raises(pe.InputError, match=r"sensor 'roof': mount: expected one of top 2"):
+        scenes.study()
+
+
+def test_sensors_on_a_rack_move_as_one(car):
+    for name, y in (("left", 0.4), ("eye", 0.5)):
+        obj = scenes.add_sensor(name, CAN, location=(0.0, y, 2.2))
+        obj.perception_entropy.rack = "arm"
+    assert scenes.study().search.mounting.groups == (("eye", "left"),)
+    before = np.subtract(place_of("left"), place_of("eye"))
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    assert np.subtract(place_of("left"), place_of("eye")) == pytest.approx(before, abs=2e-5)
+
+
+def test_sensors_on_one_empty_that_is_a_rack_are_a_group(car):
+    arm = bpy.data.objects.new("arm", None)
+    car.collection.objects.link(arm)
+    for name, y in (("left", 0.4), ("eye", 0.5)):
+        scenes.add_sensor(name, CAN, location=(0.0, y, 2.2)).parent = arm
+    bpy.context.view_layer.update()
+    assert scenes.study().search.mounting.groups == ()
+    arm.perception_entropy.is_rack = True
+    assert scenes.study().search.mounting.groups == (("eye", "left"),)
+
+
+def test_followers_have_neither_mount_nor_bounds_in_the_study(roof):
+    sensor = bpy.data.objects["roof"]
+    sensor.location.y = 0.3
+    put(sensor, "roof area")
+    assert bpy.ops.pe.mirror_sensor(name="roof", linked=True) == {"FINISHED"}
+    own = bpy.data.objects["roof mirrored"].perception_entropy
+    own.bounded[0] = True
+    study = scenes.study()
+    assert study.search.mounting.on == {"roof": "roof area"}
+    assert study.search.limits == {}
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+
+
+def test_locks_hold_a_coordinate(car):
+    sensor = bpy.data.objects["roof"]
+    sensor.lock_location[0] = sensor.lock_rotation[1] = True
+    assert scenes.study().search.free["roof"] == ("y", "z")
+    before = place_of("roof")
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    assert place_of("roof")[0] == before[0] and place_of("roof") != before
+
+
+def test_a_lock_on_a_surface_is_told(roof):
+    bpy.data.objects["roof"].lock_location[1] = True
+    with pytest.raises(RuntimeError, match=r"sensor 'roof': expected no lock .* a lock of Y"):
+        bpy.ops.pe.optimize()
+
+
+def test_limit_constraints_are_bounds(car):
+    sensor = bpy.data.objects["roof"]
+    limit = sensor.constraints.new("LIMIT_LOCATION")
+    limit.use_min_x, limit.min_x, limit.use_max_z, limit.max_z = True, -0.6, True, 1.9
+    limits = scenes.study().search.limits["roof"]
+    assert limits["x"] == (-0.6, 2.0) and limits["z"] == (0.2, 1.9) and set(limits) == {"x", "z"}
+    own = sensor.perception_entropy
+    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -1.0, -0.2
+    assert scenes.study().search.limits["roof"]["x"] == (-0.6, -0.2)
+    turn = sensor.constraints.new("LIMIT_ROTATION")
+    turn.use_limit_y, turn.min_y, turn.max_y = True, -0.1, 0.2
+    assert scenes.study().search.limits["roof"]["pitch"] == pytest.approx((-0.1, 0.2))
+    limit.enabled = turn.enabled = False
+    assert scenes.study().search.limits["roof"] == {"x": (-1.0, -0.2)}
+
+
+def test_bounds_and_constraints_that_leave_nothing_are_told(car):
+    sensor = bpy.data.objects["roof"]
+    own, limit = sensor.perception_entropy, sensor.constraints.new("LIMIT_LOCATION")
+    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -1.0, -0.7
+    limit.use_min_x, limit.min_x = True, -0.6
+    with pytest.raises(pe.InputError, match="sensor 'roof': X: expected bounds and constraints"):
+        scenes.study()
+
+
+def test_what_every_placement_keeps_to(car):
+    settings = car.perception_entropy
+    settings.max_height, settings.max_width, settings.min_distance = 1.9, 1.7, 0.2
+    settings.clear_housings = True
+    bpy.context.scene.cursor.location = (1.0, 0.0, 1.0)
+    assert bpy.ops.pe.add_no_go() == {"FINISHED"}
+    bpy.context.object.scale.x = 2.0
+    bpy.context.view_layer.update()
+    found = scenes.study().search.mounting.constraints
+    area = pe.NoGo("no_go", (0.5, 1.5), (-0.25, 0.25), (0.75, 1.25))
+    assert found == pe.Constraints(1.9, 1.7, 0.2, True, [area])
+
+
+def test_variants_hold_links_mounts_and_racks(roof):
+    sensor = bpy.data.objects["roof"]
+    sensor.location.y = 0.3
+    put(sensor, "roof area")
+    sensor.perception_entropy.rack = "arm"
+    bpy.ops.pe.mirror_sensor(name="roof", linked=True)
+    bpy.ops.pe.save_variant()
+    bpy.ops.pe.unlink_mirror(name="roof")
+    sensor.perception_entropy.mount = sensor.perception_entropy.rack = ""
+    bridge.put_variant(roof, roof.perception_entropy.variants[0])
+    own = sensor.perception_entropy
+    assert (own.mirror_of, own.mount, own.rack) == ("roof mirrored", "roof area", "arm")
+    assert bpy.data.objects["roof mirrored"].perception_entropy.mirror_of == "roof"
+
+
+def test_the_view_tints_mounts_and_draws_boxes(roof):
+    sensor = bpy.data.objects["roof"]
+    sensor.select_set(True)
+    bpy.ops.pe.add_no_go()
+    (shape,) = scenes.drawn(roof)["mounts"].values()
+    assert len(shape.faces.points) == 2 * len(faces()) * 3
+    names = [name for _, name in shape.legend.classes]
+    assert names == ["a sensor may sit here", "no-go area"]
+    rim_and_box = len(shape.lines.points)
+    assert rim_and_box == 2 * 4 + 24
+    own = sensor.perception_entropy
+    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -0.8, 0.2
+    sensor.select_set(True)
+    (shape,) = scenes.drawn(roof)["mounts"].values()
+    assert "bounds" in [name for _, name in shape.legend.classes]
+    roof.perception_entropy.view.show_mounts = False
+    assert "mounts" not in scenes.drawn(roof)
+
+
+def test_a_mount_is_added_of_what_is_selected_or_painted(car):
+    cabin = bpy.data.objects["cabin"]
+    bpy.ops.object.select_all(action="DESELECT")
+    cabin.select_set(True)
+    bpy.context.view_layer.objects.active = cabin
+    assert bpy.ops.pe.add_mount() == {"FINISHED"}
+    row = car.perception_entropy.mounts[0]
+    assert row.name == "cabin" and [each.part for each in row.parts] == [cabin]
+    cabin.vertex_groups.new(name="painted")
+    bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+    assert bpy.ops.pe.add_mount() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    row = car.perception_entropy.mounts[1]
+    assert (row.name, row.faces, row.group) == ("painted", "GROUP", "painted")

@@ -22,14 +22,17 @@ from .scene import (
 from .scoring import Evaluator, Glance, GroundMap, PartScore, Score, SensorScore
 from .search import (
     METHODS,
+    Choice,
     Constraints,
     Method,
     MountArea,
     Mounting,
     NoGo,
     Objective,
+    Option,
     Schedule,
     SearchSpace,
+    Selection,
     Slot,
     SlotMount,
     Step,
@@ -39,6 +42,8 @@ from .search import (
 )
 from .sight import BlindGround, GroundSight, Reach, Sight
 from .study import (
+    ChoiceJob,
+    Design,
     Job,
     OptimizeJob,
     Outcome,
@@ -46,6 +51,7 @@ from .study import (
     ScoreJob,
     Search,
     Study,
+    TradeOff,
     export_study,
     load_study,
     prepare_folder,
@@ -53,6 +59,7 @@ from .study import (
     save_study,
     study_from_dict,
     study_to_dict,
+    write_front,
     write_outcome,
 )
 from .version import __version__
@@ -66,7 +73,10 @@ __all__ = [
     "BoxReport",
     "Boxes",
     "Camera",
+    "Choice",
+    "ChoiceJob",
     "Constraints",
+    "Design",
     "Evaluator",
     "Focus",
     "Glance",
@@ -85,6 +95,7 @@ __all__ = [
     "ObjectClass",
     "Objective",
     "OptimizeJob",
+    "Option",
     "Outcome",
     "PartScore",
     "PerceptionModel",
@@ -100,6 +111,7 @@ __all__ = [
     "ScoreJob",
     "Search",
     "SearchSpace",
+    "Selection",
     "Sensor",
     "SensorScore",
     "Sight",
@@ -109,6 +121,7 @@ __all__ = [
     "Study",
     "SurfaceMount",
     "Tolerance",
+    "TradeOff",
     "Vehicle",
     "__version__",
     "advice",
@@ -130,6 +143,7 @@ __all__ = [
     "study_from_dict",
     "study_to_dict",
     "write_boxes",
+    "write_front",
     "write_mesh",
     "write_outcome",
 ]

@@ -1,4 +1,4 @@
-"""The verbs ``fit`` and ``reproduce`` of the command ``pe``: their options alone.
+"""The verbs ``fit``, ``front`` and ``reproduce`` of the command ``pe``: their options alone.
 
 What they do is imported when they are called, so that the other verbs start without it.
 """
@@ -6,8 +6,11 @@ What they do is imported when they are called, so that the other verbs start wit
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
-from pe_core.app import Answer, count_up_to
+from pe_core.app import Answer, count_up_to, plots
 from pe_core.metric import SATURATION
 
 FOLDER, QUICK_FOLDER = "docs/reproduction", "reproduction-quick"
@@ -18,7 +21,10 @@ MOST_WORKERS = 1024
 def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the verbs to the parser of ``pe``."""
     _add_fit(verbs)
+    _add_front(verbs)
     _add_reproduce(verbs)
+    if _draw_front not in plots:
+        plots.append(_draw_front)
 
 
 def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -35,6 +41,14 @@ def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     fit.add_argument("-o", "--output", metavar="DIR", help=f"folder for {SNIPPET} and {PLOT}")
     fit.add_argument("--json", action="store_true", help="print JSON on stdout")
     fit.set_defaults(function=_fit)
+
+
+def _add_front(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    front = verbs.add_parser("front", help="draw the front of price against entropy again")
+    front.add_argument(
+        "folder", metavar="DIR", help="folder of `pe optimize`, of a study's choices"
+    )
+    front.set_defaults(function=_front)
 
 
 def _add_reproduce(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -71,6 +85,20 @@ def _fit(args: argparse.Namespace) -> Answer:
     from .fitting import fit
 
     return fit(args)
+
+
+def _front(args: argparse.Namespace) -> Answer:
+    from .fronts import front
+
+    return front(args)
+
+
+def _draw_front(data: Mapping[str, Any], folder: Path) -> None:
+    from .drawing import has_matplotlib
+    from .fronts import write_plot
+
+    if has_matplotlib():
+        write_plot(data, folder)
 
 
 def _reproduce(args: argparse.Namespace) -> Answer:

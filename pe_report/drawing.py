@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
@@ -26,8 +27,16 @@ def figures() -> Any:
     InputError
         Where matplotlib is missing.
     """
+    return _drawing_module("figures")
+
+
+def front_figure() -> Any:
+    """Return the module of the plot of a front; the same error."""
+    return _drawing_module("front")
+
+
+def _drawing_module(name: str) -> Any:
     try:
-        from . import figures
+        return import_module(f".{name}", __package__)
     except ImportError:
         raise InputError("plots", "package", f"matplotlib: {EXTRA}", "no matplotlib") from None
-    return figures

@@ -1,5 +1,6 @@
 """The command ``pe``, and what all command lines share."""
 
+from .choosing import choose, plots
 from .command import Parser, add_run_options, add_sensors_verb, count_up_to, run, with_options
 from .explaining import add_compare_options, add_explain_options, compare, explain
 from .interrupts import leave
@@ -23,6 +24,7 @@ __all__ = [
     "add_sensors_verb",
     "begun_search",
     "carry_out",
+    "choose",
     "compare",
     "count_up_to",
     "drive",
@@ -30,6 +32,7 @@ __all__ = [
     "job_and_folder",
     "leave",
     "open_missing_streams",
+    "plots",
     "printable",
     "run",
     "show",

@@ -8,8 +8,18 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 from ..errors import InputError
-from ..study import STUDY, OptimizeJob, ScoreJob, load_study, prepare_folder, result_names
+from ..study import (
+    STUDY,
+    ChoiceJob,
+    OptimizeJob,
+    ScoreJob,
+    Study,
+    load_study,
+    prepare_folder,
+    result_names,
+)
 from ..version import __version__
+from .choosing import choose
 from .command import Parser, add_run_options, add_sensors_verb, run, with_options
 from .exchanging import add_export_options, add_import_options, export, import_study
 from .explaining import (
@@ -92,14 +102,30 @@ def _run_job(args: argparse.Namespace) -> Answer:
     else:
         args.usage_error("expected STUDY, or --resume DIR")
     study = with_options(study, args)
+    if args.kind == "optimize" and study.selection.choices:
+        return _choose(study, args)
     job, output = job_and_folder(study, args, begun)
     if output is not None:
         if args.study is not None:
             _refuse_to_replace(Path(args.study), Path(output))
         prepare_folder(output, result_names(study, args.kind))
+    _tell_of_boxes(study)
+    return carry_out(job, None if output is None else Path(output), as_json=args.json)
+
+
+def _choose(study: Study, args: argparse.Namespace) -> Answer:
+    """Search for which sensors, too: the front is in the folder of results."""
+    if args.resume is not None:
+        expected = "none for a study with choices, which begins anew"
+        raise InputError("command line", "--resume", expected, args.resume)
+    output = None if args.output is None else Path(args.output)
+    _tell_of_boxes(study)
+    return choose(ChoiceJob(study, args.workers), output, as_json=args.json)
+
+
+def _tell_of_boxes(study: Study) -> None:
     if (report := study.prior.report(study.space)) is not None:
         tell(str(report))
-    return carry_out(job, None if output is None else Path(output), as_json=args.json)
 
 
 def _explain(args: argparse.Namespace) -> Answer:

@@ -4,12 +4,15 @@ from .areas import MountArea
 from .axes import AXES, POSITION_AXES, pose_from_values, pose_values
 from .batch import judge_all
 from .coding import Candidate, Coding
+from .designs import DesignSpace, Picks
+from .domains import seat_of
 from .feasible import first_allowed
 from .journal import Journal, JudgedRig
 from .methods import DEFAULT_METHOD, METHODS, Method, checked_method
 from .mounts import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .objective import Judgement, Objective
 from .optimize import Step, optimize
+from .pareto import DesignSearch, above_front, pareto_front
 from .processes import Processes, live_as_long_as_the_parent, started
 from .robust import RobustObjective, objective_of
 from .schedule import Schedule
@@ -21,6 +24,9 @@ from .search_space import (
     default_bounds,
 )
 from .seating import seated
+from .selection import Choice, Option, Selection
+from .sites import Site
+from .ties import mirrored
 from .tolerance import Tolerance
 
 __all__ = [
@@ -31,8 +37,11 @@ __all__ = [
     "POSITION_AXES",
     "AnyMount",
     "Candidate",
+    "Choice",
     "Coding",
     "Constraints",
+    "DesignSearch",
+    "DesignSpace",
     "Journal",
     "JudgedRig",
     "Judgement",
@@ -41,15 +50,20 @@ __all__ = [
     "Mounting",
     "NoGo",
     "Objective",
+    "Option",
+    "Picks",
     "Processes",
     "RobustObjective",
     "Schedule",
     "SearchSpace",
+    "Selection",
+    "Site",
     "Slot",
     "SlotMount",
     "Step",
     "SurfaceMount",
     "Tolerance",
+    "above_front",
     "checked_axes",
     "checked_bounds",
     "checked_method",
@@ -57,10 +71,13 @@ __all__ = [
     "first_allowed",
     "judge_all",
     "live_as_long_as_the_parent",
+    "mirrored",
     "objective_of",
     "optimize",
+    "pareto_front",
     "pose_from_values",
     "pose_values",
+    "seat_of",
     "seated",
     "started",
 ]

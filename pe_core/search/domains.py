@@ -151,11 +151,7 @@ class OnSurface:
     @property
     def _seat(self) -> Floats:
         """Middle (3,) of the housing's base, or of its back, in the sensor frame [m]."""
-        if self.housing is None:
-            return np.zeros(3)
-        if self.mount.orientation == "facing":
-            return self.housing.center - np.array([self.housing.size[0] / 2.0, 0.0, 0.0])
-        return -np.array(self.housing.optical_center)
+        return seat_of(self.mount, self.housing)
 
     def _angles(self, normal: Floats) -> dict[str, float]:
         if self.mount.orientation == "upright":
@@ -179,6 +175,15 @@ class OnSurface:
                 expected = f"bounds around the start, {degrees(self.angles[axis])}"
                 found = f"{degrees(low)} to {degrees(high)}"
                 raise InputError(self.who, f"bounds of {axis}", expected, found)
+
+
+def seat_of(mount: SurfaceMount, housing: Housing | None) -> Floats:
+    """Return the point (3,) of a sensor, in its frame, that a mount's stand-off ends at [m]."""
+    if housing is None:
+        return np.zeros(3)
+    if mount.orientation == "facing":
+        return housing.center - np.array([housing.size[0] / 2.0, 0.0, 0.0])
+    return -np.array(housing.optical_center)
 
 
 def frame_of(orientation: str, normal: Floats) -> Floats:

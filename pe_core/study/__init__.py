@@ -1,11 +1,23 @@
 """Studies: their files, the work on them, and the results it leaves."""
 
 from ..search import METHODS
+from .choice_job import ChoiceJob, Design, TradeOff
+from .designed import design_study
 from .exporting import export_study, study_writers
 from .fingerprint import fingerprint
 from .folder import FileSet, check_files, prepare_folder
+from .front_files import (
+    DESIGNS,
+    FRONT_CSV,
+    FRONT_JSON,
+    FRONT_NAMES,
+    FRONT_PLOT,
+    front_dict,
+    write_front,
+)
 from .job import Job, Progress
 from .jobs import OptimizeJob, ScoreJob
+from .mounted import mounts_told
 from .names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW, SEARCH, STUDY
 from .outcome import HistoryRow, Outcome
 from .results import (
@@ -22,6 +34,11 @@ from .study_file import load_study, save_study, study_from_dict, study_to_dict
 
 __all__ = [
     "AREAS",
+    "DESIGNS",
+    "FRONT_CSV",
+    "FRONT_JSON",
+    "FRONT_NAMES",
+    "FRONT_PLOT",
     "MESH",
     "METHODS",
     "OPTIMIZED",
@@ -30,6 +47,8 @@ __all__ = [
     "SEARCH",
     "STUDY",
     "BegunSearch",
+    "ChoiceJob",
+    "Design",
     "FileSet",
     "HistoryRow",
     "Job",
@@ -40,12 +59,16 @@ __all__ = [
     "Search",
     "SearchState",
     "Study",
+    "TradeOff",
     "add_to_result",
     "check_files",
+    "design_study",
     "export_study",
     "files_of_other_runs",
     "fingerprint",
+    "front_dict",
     "load_study",
+    "mounts_told",
     "placements",
     "prepare_folder",
     "read_search",
@@ -56,5 +79,6 @@ __all__ = [
     "study_to_dict",
     "study_writers",
     "vehicle_digest",
+    "write_front",
     "write_outcome",
 ]

@@ -68,14 +68,19 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         "warnings": [each.to_dict() for each in outcome.warnings],
         "history": [_history_dict(row) for row in outcome.history],
         "inputs": outcome.inputs or inputs_of(outcome.start),
-        "run": {
-            "seconds": round(outcome.seconds, 3),
-            "versions": {
-                "perception-entropy": __version__,
-                "numpy": np.__version__,
-                "python": platform.python_version(),
-                **host,
-            },
+        "run": run_dict(outcome.seconds, host),
+    }
+
+
+def run_dict(seconds: float, host: Mapping[str, str]) -> dict[str, Any]:
+    """Return what a result says of the run: the time it took, and the programs."""
+    return {
+        "seconds": round(seconds, 3),
+        "versions": {
+            "perception-entropy": __version__,
+            "numpy": np.__version__,
+            "python": platform.python_version(),
+            **host,
         },
     }
 

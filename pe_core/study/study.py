@@ -30,9 +30,11 @@ from ..search import (
     METHODS,
     PAPER_FREE,
     Coding,
+    DesignSpace,
     Mounting,
     Schedule,
     SearchSpace,
+    Selection,
     Tolerance,
     checked_axes,
     checked_bounds,
@@ -119,7 +121,8 @@ class Study:
     taken, and `faces` how its axes were taken, in words (empty: they are the ground frame's).
     `samples` is the number of voxels a score looks at, 0: all; `reference` says where the vehicle's
     axles are, for exports. Of `search`, what concerns the rig's sensors is kept; one that it does
-    not name is free as in the paper.
+    not name is free as in the paper. `selection` says which sensors it may have instead of those of
+    `rig`, and what they cost.
 
     Raises
     ------
@@ -138,6 +141,7 @@ class Study:
     axes: MeshAxes = field(default_factory=MeshAxes)
     faces: str = ""
     reference: Reference | None = None
+    selection: Selection = field(default_factory=Selection)
 
     def __post_init__(self) -> None:
         for name, kind in FIELDS.items():
@@ -203,6 +207,10 @@ class Study:
         self.search.tolerance.checked(self.rig)
         return Coding(self.rig, self.search_space())
 
+    def designs(self) -> DesignSpace:
+        """Return the designs among which to choose; `InputError` where there is none."""
+        return DesignSpace.of(self.selection, self.rig, self.search.mounting)
+
     def with_rig(self, rig: Rig) -> Study:
         """Return the study with other placements."""
         return replace(self, rig=rig)
@@ -219,6 +227,7 @@ FIELDS: dict[str, type] = {
     "model": PerceptionModel,
     "search": Search,
     "axes": MeshAxes,
+    "selection": Selection,
 }
 
 

@@ -29,7 +29,11 @@ from .mesh_file import AXES_KEYS, MeshFile, axes_table, read_axes
 from .mounting_file import areas_of
 from .prior_file import prior_table, read_prior
 from .search_file import in_file, read_limits, read_search, search_table
+from .selection_file import read_selection, selection_tables
 from .study import Search, Study
+
+OWN_MODEL = "own"
+"""What a model of a choice is called that is given no name."""
 
 
 def load_study(path: str | Path) -> Study:
@@ -98,6 +102,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "reference": None if study.reference is None else asdict(study.reference),
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
         "optimize": search_table(study.search),
+        **selection_tables(study.selection, _model_value),
     }
     plain: dict[str, Any] = _without_none(data)
     return plain
@@ -139,7 +144,9 @@ def _read_study(table: Table, folder: Path) -> Study:
         table.whole("samples", 0),
         *file,
         _read_reference(table),
+        read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
     )
+    study.designs()
     study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     return study
 
@@ -243,7 +250,7 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
     limits = {axis: [in_file(axis, v) for v in bounds] for axis, bounds in own.items()}
     return {
         "name": sensor.name,
-        "model": _model_value(sensor),
+        "model": _model_value(sensor.model, sensor.name),
         "position": list(sensor.pose.position),
         "rotation": list(sensor.pose.rotation_deg),
         "fusion": sensor.fusion,
@@ -253,13 +260,15 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
     }
 
 
-def _model_value(sensor: Sensor) -> str | dict[str, Any]:
-    """Return the catalogue's name, or the intrinsics of a sensor that not everybody has."""
-    model = sensor.model
+def _model_value(model: SensorModel, unnamed: str = OWN_MODEL) -> str | dict[str, Any]:
+    """Return the catalogue's name, or the intrinsics of a sensor that not everybody has.
+
+    `unnamed` is what a model is called that is given no name.
+    """
     entry = catalog.entries().get(model.name)
     if entry is not None and entry.file != catalog.OWN and catalog.load(model.name) is model:
         return model.name
-    name = {} if model.name == sensor.name else {"name": model.name}
+    name = {} if model.name == unnamed else {"name": model.name}
     return name | catalog.to_table(model)
 
 

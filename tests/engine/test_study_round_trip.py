@@ -248,6 +248,18 @@ def mesh_axes(draw):
 
 
 @st.composite
+def selections(draw, rig):
+    """Choices of one sensor, and limits that leave a design."""
+    some = draw(st.lists(st.one_of(CATALOGUE, CAMERAS), max_size=3, unique_by=lambda m: m.name))
+    options = [pe.Option(model, draw(st.floats(0, 1e6))) for model in some]
+    choices = [pe.Choice(options, [[*rig][-1].name], None, draw(st.booleans()))] if some else []
+    count = st.one_of(st.none(), st.integers(9, 99))
+    kinds = {kind: n for kind in ("lidar", "camera") if (n := draw(count)) is not None}
+    price = draw(st.one_of(st.none(), st.floats(1e6, 1e9)))
+    return pe.Selection(choices, price, draw(count), kinds, draw(st.one_of(st.just(""), NAMES)))
+
+
+@st.composite
 def studies(draw, folder):
     rig = draw(rigs())
     vehicle = draw(st.one_of(st.none(), vehicles()))
@@ -262,6 +274,7 @@ def studies(draw, folder):
         draw(st.sampled_from([0, 1024, 10_007])),
         *((None,) if vehicle is None else ("body.npz", draw(mesh_axes()))),
         reference=draw(st.one_of(st.none(), REFERENCES)),
+        selection=draw(selections(rig)),
     )
 
 
@@ -299,6 +312,7 @@ def test_an_exported_study_holds_the_same_prior_and_vehicle(data):
     assert not differences(study.vehicle, again.vehicle)
     assert not differences(study.rig, again.rig)
     assert not differences(study.search, again.search)
+    assert not differences(study.selection, again.selection)
 
 
 def test_a_difference_of_one_bit_or_a_forgotten_field_is_seen():

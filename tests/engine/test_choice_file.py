@@ -1,0 +1,116 @@
+"""What a study file says of choices: read, written, and refused in one line each."""
+
+import pytest
+
+import pe_core as pe
+
+LIDARS = [{"model": "Pandar64", "price": 9}, {"model": "HDL-64E", "price": 5}]
+ROOF = {"sensor": "roof", "option": LIDARS}
+
+
+def data(**more):
+    sensors = [
+        {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]},
+        {"name": "eye", "model": "Camera 60 deg", "position": [1, 0, 2]},
+    ]
+    return {"sensor": sensors, **more}
+
+
+def option(model, price):
+    return {"sensor": "roof", "option": [{"model": model, "price": price}]}
+
+
+def test_what_is_read_is_written_again():
+    own = {
+        "kind": "lidar",
+        "elevations_deg": [-5.0, 0.0],
+        "azimuth_step_deg": 1.0,
+        "max_range_m": 9,
+    }
+    choice = {
+        "sensors": ["roof", "eye"],
+        "optional": True,
+        "option": [*LIDARS, {"model": own, "price": 0.1}],
+    }
+    limits = {"max_price": 30, "max_sensors": 2, "max_of_kind": {"lidar": 2}, "currency": "EUR"}
+    sensor = {"name": "held", "model": "Pandar40", "position": [0, 0, 1]}
+    first = pe.study_from_dict(
+        {"sensor": [*data()["sensor"], sensor], "choice": [choice], "selection": limits}
+    )
+    written = pe.study_to_dict(first)
+    again = pe.study_from_dict(written)
+    assert pe.study_to_dict(again) == written
+    assert again.selection.max_of_kind == {"lidar": 2}
+    assert [o.price for o in again.selection.choices[0].options] == [9.0, 5.0, 0.1]
+    assert "choice" not in pe.study_to_dict(pe.study_from_dict(data()))
+
+
+REFUSED = [
+    ({"choice": [{"sensor": "roof"}]}, "choice[0].option: expected at least one model"),
+    (
+        {"choice": [{"sensor": "roof", "option": [{"model": "Pandar64"}]}]},
+        "choice[0].option[0].price: expected what a sensor of this model costs, found nothing",
+    ),
+    ({"choice": [option("Pandar64", -1)]}, "option[0].price: expected a price >= 0, found -1.0"),
+    ({"choice": [option("Pandar65", 1)]}, "choice[0].option[0].model: expected a name such as"),
+    (
+        {"choice": [option("Pandar64", 1)], "selection": {"max_of_kind": {"lidar": 0}}},
+        "choice[0]: option: expected models of kinds that are allowed",
+    ),
+    ({"choice": [{**ROOF, "sensor": "foot"}]}, "sensor: expected one of roof, eye, found 'foot'"),
+    ({"choice": [{"mount": "rack", "option": LIDARS}]}, "mount: expected the name of an"),
+    ({"choice": [{"option": LIDARS}]}, "sensor, mount: expected one of the two, found neither"),
+    ({"choice": [{**ROOF, "mount": "rack"}]}, "expected one of the two, found both"),
+    ({"choice": [{**ROOF, "sensors": ["eye"]}]}, "expected one of the two, found both"),
+    ({"choice": [ROOF, ROOF]}, "choice[1]: sensor: expected one choice for each sensor, found two"),
+    ({"choice": [{**ROOF, "option": LIDARS * 2}]}, "expected each model once"),
+    ({"choice": [{**ROOF, "optional": 1}]}, "optional: expected true or false, found 1"),
+    ({"choice": [{**ROOF, "pice": 1}]}, "choice[0].pice: expected one of"),
+    ({"selection": {"max_of_kind": {"radar": 1}}}, "max_of_kind.radar: expected one of"),
+    (
+        {"selection": {"max_price": float("nan")}},
+        "selection.max_price: expected a number, found nan",
+    ),
+    (
+        {"choice": [ROOF], "selection": {"max_price": 4}},
+        "max_price: expected limits that leave a design, found none; the cheapest costs 5",
+    ),
+    (
+        {"choice": [ROOF], "selection": {"max_sensors": 1}},
+        "max_sensors: expected limits that leave a design, found none; the smallest has 2",
+    ),
+]
+
+
+@pytest.mark.parametrize(("more", "line"), REFUSED, ids=[line[:40] for _, line in REFUSED])
+def test_what_is_wrong_is_one_line(more, line):
+    with pytest.raises(pe.InputError) as told:
+        pe.study_from_dict(data(**more))
+    assert line in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+def test_limits_that_leave_nothing_together_are_named_together():
+    """A second camera is too many, a LiDAR too dear: each limit alone leaves the other."""
+    either = [{"model": "Pandar64", "price": 9}, {"model": "Camera 30 deg", "price": 1}]
+    limits = {"max_of_kind": {"camera": 1}, "max_price": 5, "max_sensors": 7}
+    with pytest.raises(
+        pe.InputError, match="selection: max_price and max_of_kind: expected limits"
+    ):
+        pe.study_from_dict(data(choice=[{"sensor": "roof", "option": either}], selection=limits))
+
+
+def test_what_leads_a_group_stays():
+    group = {"group": [{"sensors": ["roof", "eye"]}]}
+    with pytest.raises(pe.InputError, match="optional: expected false for the sensor that leads"):
+        pe.study_from_dict(data(choice=[{**ROOF, "optional": True}], optimize=group))
+
+
+def test_the_second_of_a_pair_goes_with_the_first():
+    left = {"name": "left", "model": "Pandar64", "position": [0, 1, 2]}
+    right = {"name": "right", "model": "Pandar64", "position": [0, -1, 2]}
+    rest = {"sensor": [left, right], "optimize": {"pair": [{"sensors": ["left", "right"]}]}}
+    with pytest.raises(pe.InputError, match="the first of the pair, 'left'"):
+        pe.study_from_dict({**rest, "choice": [{"sensor": "right", "option": LIDARS}]})
+    study = pe.study_from_dict({**rest, "choice": [{"sensor": "left", "option": LIDARS}]})
+    assert [study.designs().price(picks) for picks in study.designs()] == [10.0, 18.0]

@@ -1,0 +1,168 @@
+"""The front of price against entropy: against exhaustive search, stopped, and kept in files."""
+
+import csv
+import json
+from dataclasses import replace
+
+import pytest
+
+import pe_core as pe
+from pe_core.app import front_table
+from pe_core.study import choice_job, design_study, front_dict, write_front
+from tests.engine import mounting
+
+SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 3), 0.5)
+PRICES = {"Pandar64": 9.0, "Pandar40": 7.0, "Velodyne VLP-16 Puck": 2.0, "HDL-64E": 8.0}
+
+
+def options(names=PRICES):
+    return [pe.Option(pe.catalog.load(name), PRICES.get(name, 1.0)) for name in names]
+
+
+def study(choices, *sensors, free=("x", "pitch"), candidates=3, **limits):
+    """A small study on the box car: few voxels, two rounds."""
+    sensors = sensors or (mounting.can(),)
+    schedule = pe.Schedule(candidates, 0.4, 0.1, 0.2, 0.05)
+    return pe.Study(
+        pe.Rig(sensors),
+        mounting.car(),
+        SPACE,
+        search=pe.Search({s.name: free for s in sensors}, samples=1024, schedule=schedule),
+        samples=2048,
+        mesh="car.npz",
+        selection=pe.Selection(choices, **limits),
+    )
+
+
+def front_of(study, workers=None):
+    job = pe.ChoiceJob(study, workers)
+    for _ in job:
+        pass
+    return job.trade_off
+
+
+def test_one_lidar_out_of_four_is_what_exhaustive_search_finds():
+    """Every model put there by hand, searched by an ordinary job; what no other beats is left."""
+    given = study([pe.Choice(options(), ["roof"])])
+    found = front_of(given)
+    by_hand = {}
+    for name, price in PRICES.items():
+        rig = pe.Rig([mounting.can(model=name)])
+        job = pe.OptimizeJob(replace(given, rig=rig, selection=pe.Selection()))
+        list(job)
+        by_hand[name] = (price, job.outcome.after.entropy, job.outcome.study.rig["roof"].pose)
+    best = {
+        name
+        for name, (price, entropy, _) in by_hand.items()
+        if not any(p <= price and e <= entropy and n != name for n, (p, e, _) in by_hand.items())
+    }
+    assert {
+        d.name: (d.price, d.entropy, d.study.rig["roof"].pose) for d in found.designs
+    } == by_hand
+    assert [d.name for d in found.front] == sorted(best, key=PRICES.get)
+    assert found.is_complete
+    assert found.searched == 4
+    assert len(best) > 1
+
+
+def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch):
+    """Nothing is free: a first look then is the search, and what it drops cannot be missed."""
+    eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
+    choices = [
+        pe.Choice(options(), ["roof"], optional=True),
+        pe.Choice(options(["Camera 60 deg", "Camera 120 deg"]), ["eye"], optional=True),
+    ]
+    given = study(choices, mounting.can(), eye, free=())
+    every = front_of(given)
+    monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 5)
+    found = front_of(given)
+    assert len(every.designs) == len(found.designs) == 14
+    assert found.searched < every.searched == 14
+    assert [(d.name, d.entropy) for d in found.front] == [(d.name, d.entropy) for d in every.front]
+    assert found.is_complete
+
+
+def test_a_further_sensor_never_raises_the_entropy():
+    """At places that stay: what a cheaper design may not beat by leaving a sensor out."""
+    eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
+    other = mounting.can((-1.0, 0.3, 1.6), "other", model="Pandar40")
+    sensors = (mounting.can(), other, eye)
+    choices = [pe.Choice([pe.Option(s.model, 1.0)], [s.name], optional=True) for s in sensors]
+    found = front_of(study(choices, *sensors, free=()))
+    by_names = {frozenset(s.name for s in d.study.rig): d.entropy for d in found.designs}
+    assert len(by_names) == 7
+    for some, entropy in by_names.items():
+        assert all(more <= entropy for names, more in by_names.items() if names > some)
+
+
+def test_the_result_is_the_same_with_one_worker_or_two():
+    given = study([pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])], candidates=1)
+    one, two = (front_dict(front_of(given, workers)) for workers in (1, 2))
+    assert {**one, "run": 0} == {**two, "run": 0}
+
+
+@pytest.mark.parametrize("after", [1, 2])
+def test_a_stop_keeps_the_front_so_far(after):
+    job = pe.ChoiceJob(study([pe.Choice(options(), ["roof"])]))
+    for _ in job:
+        if job.trade_off is not None and len(job.trade_off.designs) == after:
+            job.stop()
+    found = job.trade_off
+    assert found.stopped
+    assert len(found.designs) < 4
+    assert found.front
+    assert "stopped early" in front_table.front_summary(found)
+
+
+def test_a_design_without_a_place_is_told_and_the_others_stay():
+    """The tall can does not fit under a height that the small one keeps to."""
+    given = study([pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])], free=("x",))
+    limits = pe.Constraints(max_height=mounting.ON_ROOF[2] + 0.04)
+    search = replace(given.search, mounting=pe.Mounting(constraints=limits))
+    found = front_of(replace(given, search=search))
+    assert [d.name for d in found.front] == [mounting.CAN]
+    assert "height" in found.refused["Pandar64"]
+
+
+def test_files_hold_every_design_of_the_front_as_a_study(tmp_path):
+    """What is read back scores to the bit what front.json tells."""
+    eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
+    eyes = pe.Choice(options(["Camera 60 deg"]), ["eye"], optional=True)
+    given = study([pe.Choice(options(), ["roof"]), eyes], mounting.can(), eye, free=())
+    found = front_of(given)
+    data = write_front(found, tmp_path)
+    assert json.loads((tmp_path / "front.json").read_text()) == data
+    rows = list(csv.DictReader((tmp_path / "front.csv").open()))
+    assert [row["design"] for row in rows if row["on_front"] == "1"] == data["front"]
+    on_front = [row for row in data["designs"] if row["on_front"]]
+    assert len(on_front) == len(list((tmp_path / "designs").glob("*.toml"))) > 2
+    for row in on_front:
+        read = pe.load_study(tmp_path / row["study"])
+        assert read.evaluator().score(read.rig).entropy == row["entropy"]
+        assert not read.selection.choices
+        assert {s.name: s.model.name for s in read.rig} == {
+            name: model for name, model in row["models"].items() if model is not None
+        }
+
+
+def test_an_earlier_run_s_designs_are_taken_away(tmp_path):
+    given = study([pe.Choice(options(), ["roof"])], free=())
+    write_front(front_of(given), tmp_path)
+    fewer = study([pe.Choice(options([mounting.CAN]), ["roof"])], free=())
+    write_front(front_of(fewer), tmp_path)
+    assert [p.name for p in (tmp_path / "designs").glob("*.toml")] == ["velodyne-vlp-16-puck.toml"]
+
+
+def test_on_a_surface_another_housing_keeps_the_place_of_its_base():
+    rig, _ = mounting.space(mounting.can(), mount={"roof": mounting.roof()})
+    spots = pe.Mounting({"roof": mounting.roof()}, {"roof": "roof"})
+    given = pe.Study(rig, mounting.car(), search=pe.Search(mounting=spots))
+    tall = pe.catalog.load("Velodyne HDL-32E")
+    changed = design_study(given, {"roof": tall}).rig["roof"]
+    base, own = (
+        s.pose.position[2] - pe.catalog.housing(s.model.name).optical_center[2]
+        for s in (rig["roof"], changed)
+    )
+    assert own == pytest.approx(base, abs=1e-5)
+    assert changed.pose.position[2] > rig["roof"].pose.position[2] + 0.05
+    design_study(given, {"roof": tall}).coding()  # its start is on the mount

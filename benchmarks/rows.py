@@ -21,6 +21,7 @@ from .problems import (
     two_lidars,
     two_lidars_two_cameras,
 )
+from .search_rows import candidate, candidates_in_processes
 from .sight_rows import blind_ground, fine_map, live_map, reach, simplify
 from .timing import Timing, Work, best, best_in_turn, peak_mb
 
@@ -205,5 +206,7 @@ ROWS: dict[str, Callable[[], Timing]] = {
         blind_ground,
         reach,
         simplify,
+        candidate,
+        candidates_in_processes,
     )
 }

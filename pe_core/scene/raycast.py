@@ -31,7 +31,7 @@ Ints = NDArray[np.int64]
 PAIRS_AT_ONCE = 1 << 15
 MANY = np.iinfo(np.int64).max
 """A number above every triangle's."""
-FIRST_BOXES = 512
+FIRST_BOXES = 64
 """Boxes of triangles that are opened before it is asked which rays are done; doubled each time."""
 WORTH_CUTTING = 16
 """Rays in a triangle's rectangle from which on it is asked where its sides run in it."""

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 import pe_core as pe
+from pe_core.kinds.lidar.ends import KnownEnds
 from pe_core.kinds.lidar.lattice import lattice_of
 from pe_core.kinds.lidar.points import PlacedLidar, VoxelPoints, count_through
 from pe_core.kinds.lidar.ties import position_in_voxels, without_zeros
@@ -70,6 +71,7 @@ def counted(sensor, space, index, vehicle=None, enough=None):
         position_in_voxels(sensor.pose.position, space.origin, space.interval),
         sensor.pose.ground_from_sensor,
         without_zeros(field.directions),
-        field.ends / space.interval,
+        KnownEnds(field.ends),
+        space.interval,
     )
     return count_through(VoxelPoints(index), lidar, enough)

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
 
 from ...scene.sensors import Sensor
 from ...scene.vehicle import Vehicle
-from ..kernels import Floats
-from .beams import BeamEnds, BeamField, TurnedBeams, beam_field
+from .beams import BeamEnds, TurnedBeams
+from .ends import AnyEnds, KnownEnds, LazyEnds
+from .model import Lidar
 
 
 @dataclass(frozen=True, slots=True)
 class CastBeams:
-    """Where a LiDAR's beams end: (B,) [m]; `field` None where that is a draft."""
+    """Where a LiDAR's beams end, and whether that is a draft."""
 
     sensor: Sensor
-    ends: Floats
-    field: BeamField | None
+    ends: AnyEnds
+    is_draft: bool
 
 
 class KnownBeams:
@@ -46,21 +50,31 @@ class KnownBeams:
     def ended(self, sensor: Sensor, draft: bool) -> CastBeams:
         """Say where a LiDAR's beams end, kept until it moves; as a draft if that will do."""
         known = self._ended.get(sensor.name)
-        fits = known and (draft or known.field) and known.sensor.model is sensor.model
-        if known and fits and known.sensor.pose == sensor.pose:
+        if known and (draft or not known.is_draft) and is_same(known.sensor, sensor):
             return known
         found = self._ended[sensor.name] = self._end(sensor, draft)
         return found
 
+    def endless(self, sensor: Sensor) -> KnownEnds:
+        """Say where a LiDAR's beams end where there is no vehicle: at its range."""
+        model = cast(Lidar, sensor.model)
+        return KnownEnds(np.full(model.beam_count, model.max_range))
+
     def _end(self, sensor: Sensor, draft: bool) -> CastBeams:
         beams = self.turned(sensor)
         if draft and self._drafts.can_draft(sensor):
-            return CastBeams(sensor, self._drafts.draft(sensor, beams), None)
-        field = beam_field(sensor, self._vehicle, beams.directions)
-        return CastBeams(sensor, field.ends, field)
+            return CastBeams(sensor, KnownEnds(self._drafts.draft(sensor, beams)), True)
+        if self._vehicle is None:
+            return CastBeams(sensor, self.endless(sensor), False)
+        return CastBeams(sensor, LazyEnds(sensor, beams.directions, self._vehicle), False)
 
     def forget_all_but(self, sensors: Collection[Sensor]) -> None:
         """Keep the beams of these sensors alone."""
         names = {sensor.name for sensor in sensors}
         self._turned = {name: kept for name, kept in self._turned.items() if name in names}
         self._ended = {name: kept for name, kept in self._ended.items() if name in names}
+
+
+def is_same(one: Sensor, other: Sensor) -> bool:
+    """Whether two sensors measure the same."""
+    return one.model is other.model and one.pose == other.pose

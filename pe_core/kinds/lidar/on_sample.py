@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import cast
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ...scene.sensors import Sensor
 from ...scene.vehicle import Vehicle
-from ..kernels import Floats, Measured, SampleKernel, Stopped, Voxels
-from .beams import TurnedBeams, beam_field, stopped_beams
-from .known import KnownBeams
+from ..kernels import Measured, SampleKernel, Stopped, Voxels
+from .beams import beam_field, stopped_beams
+from .ends import AnyEnds, LazyEnds
+from .known import KnownBeams, is_same
 from .lattice import lattice_of
 from .model import Lidar
-from .points import PlacedLidar, VoxelPoints, count_through
+from .points import PlacedLidar, Unhidden, VoxelPoints, count_through, count_unhidden
 from .ties import position_in_voxels
 
 
@@ -26,39 +26,48 @@ class LidarSample(SampleKernel):
         self._space, self._vehicle, self._enough = voxels.space, vehicle, enough
         self._points = VoxelPoints(voxels.index)
         self.known = KnownBeams(vehicle)
+        self._unhidden: dict[str, tuple[Sensor, Unhidden]] = {}  # by name: those of the last rig
 
     def measure(self, sensor: Sensor, draft: bool) -> Measured:
         """Count a LiDAR's beams; a draft has them stopped by a map of the vehicle's top."""
-        beams, ended = self.known.turned(sensor), self.known.ended(sensor, draft)
-        is_draft = ended.field is None
-        return Measured(sensor, self._count(sensor, beams, ended.ends), is_draft, ended.field)
+        ended = self.known.ended(sensor, draft)
+        lidar = self._placed(sensor, ended.ends)
+        known = self._unhidden.get(sensor.name)
+        unhidden = known[1] if known and is_same(known[0], sensor) else None
+        counts = count_through(self._points, lidar, self._enough, unhidden)
+        return Measured(sensor, counts, ended.is_draft, ended.ends)
 
     def unhidden(self, sensor: Sensor) -> NDArray:
         """Count a LiDAR's beams as if there were no vehicle."""
-        beams = self.known.turned(sensor)
-        max_range = cast(Lidar, sensor.model).max_range
-        return self._count(sensor, beams, np.full(len(beams.directions), max_range))
+        lidar = self._placed(sensor, self.known.endless(sensor))
+        found = count_unhidden(self._points, lidar, self._enough)
+        self._unhidden[sensor.name] = sensor, found
+        return found.counts
 
     def stopped(self, measured: Measured) -> Stopped:
         """Count the beams that the vehicle stops; those of a draft are cast for it."""
-        field = measured.found or beam_field(measured.sensor, self._vehicle)
+        ends = measured.found
+        is_cast = isinstance(ends, LazyEnds)
+        field = ends.field() if is_cast else beam_field(measured.sensor, self._vehicle)
         return stopped_beams(field, self._vehicle)
 
     def forget_all_but(self, sensors: Collection[Sensor]) -> None:
         """Keep the beams of these sensors alone."""
         self.known.forget_all_but(sensors)
+        names = {sensor.name for sensor in sensors}
+        self._unhidden = {name: kept for name, kept in self._unhidden.items() if name in names}
 
     def share(self, known: KnownBeams) -> None:
         """Use beams that another sample of voxels knows as well."""
         self.known = known
 
-    def _count(self, sensor: Sensor, beams: TurnedBeams, ends: Floats) -> NDArray:
+    def _placed(self, sensor: Sensor, ends: AnyEnds) -> PlacedLidar:
         side = self._space.interval
-        lidar = PlacedLidar(
+        return PlacedLidar(
             lattice_of(cast(Lidar, sensor.model)),
             position_in_voxels(sensor.pose.position, self._space.origin, side),
             sensor.pose.ground_from_sensor,
-            beams.without_zeros,
-            ends / side,
+            self.known.turned(sensor).without_zeros,
+            ends,
+            side,
         )
-        return count_through(self._points, lidar, self._enough)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...scene.numbering import blocks
 from .bracket import Bracket, Singles, bracket
+from .ends import AnyEnds
 from .lattice import Lattice, windows_of
 from .upright import Upright
 
@@ -75,18 +76,40 @@ class PlacedLidar:
 
     `position` (3,) is seen from the grid's lowest corner (`ties.position_in_voxels`),
     `ground_from_sensor` (3, 3) how it is turned. `directions` (B, 3) are all beams of the lattice
-    in the ground frame, without zeros; `ends` (B,) where each of them ends.
+    in the ground frame, without zeros; `ends` where they end [m], `side` a voxel's side [m].
     """
 
     lattice: Lattice
     position: Floats
     ground_from_sensor: Floats
     directions: Floats
-    ends: Floats
+    ends: AnyEnds
+    side: float
+
+    @property
+    def longest(self) -> float:
+        """The range, in sides."""
+        return self.ends.longest / self.side
+
+    @property
+    def stopped(self) -> NDArray[np.bool_]:
+        """(C, A) beams that the vehicle may stop, lowest channel first."""
+        return self.ends.stopped.reshape(-1, self.lattice.width)[self.lattice.channels]
+
+
+@dataclass(frozen=True, slots=True)
+class Unhidden:
+    """Beams through voxels as if there were no vehicle: `counts` (V,), and windows if tilted."""
+
+    counts: NDArray[np.signedinteger]
+    bounds: Bracket | None = None
 
 
 def count_through(
-    voxels: VoxelPoints, lidar: PlacedLidar, enough: int | None = None
+    voxels: VoxelPoints,
+    lidar: PlacedLidar,
+    enough: int | None = None,
+    unhidden: Unhidden | None = None,
 ) -> NDArray[np.signedinteger]:
     """Count a LiDAR's beams through voxels.
 
@@ -97,6 +120,8 @@ def count_through(
     enough : int, optional
         A count of this or more need not be exact: it may be told as any number from `enough` up to
         the count.
+    unhidden : Unhidden, optional
+        What `count_unhidden` finds with the same arguments, if that is known.
 
     Returns
     -------
@@ -107,62 +132,101 @@ def count_through(
         offsets = voxels.offsets(lidar.position)
         windows = windows_of(offsets, 0.5, lidar.ground_from_sensor)
         return _count_pairs(offsets, lidar, *lattice.candidates(windows))
-    if lattice.slope_counts is None or lidar.ground_from_sensor[2, 2] != 1.0 or not len(voxels):
+    if _is_upright(lidar) and len(voxels):
+        counts, unsure = _upright(voxels, lidar, lidar.stopped, lidar.ends.farthest / lidar.side)
+        doubtful = np.flatnonzero(unsure)
+        free = _bracketed(voxels, lidar, enough, doubtful)
+        counts[doubtful] = _hidden(voxels, lidar, free, doubtful)
+        return counts
+    free = unhidden or count_unhidden(voxels, lidar, enough)
+    return _hidden(voxels, lidar, free, slice(None))
+
+
+def count_unhidden(voxels: VoxelPoints, lidar: PlacedLidar, enough: int | None = None) -> Unhidden:
+    """Count a LiDAR's beams through voxels as if there were no vehicle; `enough` as above."""
+    lattice = lidar.lattice
+    if lattice.slope_bounds is None:
+        offsets = voxels.offsets(lidar.position)
+        windows = windows_of(offsets, 0.5, lidar.ground_from_sensor)
+        pairs = lattice.candidates(windows)
+        return Unhidden(_count_pairs(offsets, lidar, *pairs, is_free=True))
+    if not (_is_upright(lidar) and len(voxels)):
         return _bracketed(voxels, lidar, enough, slice(None))
-    counts, unsure = _upright(voxels, lidar)
+    counts, unsure = _upright(voxels, lidar, np.zeros_like(lidar.stopped), 0.0)
     doubtful = np.flatnonzero(unsure)
-    counts[doubtful] = _bracketed(voxels, lidar, enough, doubtful)
-    return counts
+    counts[doubtful] = _bracketed(voxels, lidar, enough, doubtful).counts
+    return Unhidden(counts)
 
 
-def _upright(voxels: VoxelPoints, lidar: PlacedLidar) -> tuple[Counts, NDArray[np.bool_]]:
-    """Count for an upright LiDAR, and say where that is unsure."""
-    lattice, ends = lidar.lattice, lidar.ends
+def _is_upright(lidar: PlacedLidar) -> bool:
+    return lidar.lattice.slope_counts is not None and lidar.ground_from_sensor[2, 2] == 1.0
+
+
+def _upright(
+    voxels: VoxelPoints, lidar: PlacedLidar, stopped: NDArray[np.bool_], farthest: float
+) -> tuple[Counts, NDArray[np.bool_]]:
+    """Count for an upright LiDAR, and say where that is unsure.
+
+    `stopped` (C, A), none of which ends farther away than `farthest`, in sides.
+    """
+    lattice, longest = lidar.lattice, lidar.longest
     assert lattice.slope_counts is not None
-    longest = float(ends.max())
-    early = ends < longest
-    farthest = float(ends.max(where=early, initial=0.0))
-    stopped = early.reshape(-1, lattice.width)[lattice.channels]
     upright = Upright.of(lattice.slope_counts, lidar.ground_from_sensor, stopped, farthest)
     counts, unsure = upright.count(voxels.corners, lidar.position)
     if voxels.farthest(lidar.position) > longest - CUBE_REACH:
-        x, y, z = voxels.offsets_single(lidar.position)
-        unsure |= x * x + y * y + z * z > max(longest - CUBE_REACH, 0.0) ** 2
+        unsure |= _beyond(voxels.offsets_single(lidar.position), longest)
     return counts, unsure
+
+
+def _beyond(points: Sequence[Singles], longest: float) -> NDArray[np.bool_]:
+    """Whether a beam may end at its range before it has passed a voxel."""
+    x, y, z = points
+    beyond: NDArray[np.bool_] = x * x + y * y + z * z > max(longest - CUBE_REACH, 0.0) ** 2
+    return beyond
 
 
 def _bracketed(
     voxels: VoxelPoints, lidar: PlacedLidar, enough: int | None, some: Ints | slice
-) -> Ints:
+) -> Unhidden:
     """Count the beams through some voxels: by bounds, and one by one where they differ."""
     points = voxels.offsets_single(lidar.position, some)
     lattice = lidar.lattice
     assert lattice.slope_bounds is not None
     bounds = bracket(points, lidar.ground_from_sensor, lattice.slope_bounds, lattice.count)
     counts = bounds.least.astype(np.int64)
-    counts[_may_end_early(points, bounds, lidar)] = 0
+    counts[_beyond(points, lidar.longest)] = 0
     limit = np.iinfo(np.int64).max if enough is None else enough
     doubtful = np.flatnonzero((counts < bounds.most) & (counts < limit))
-    where = doubtful if isinstance(some, slice) else some[doubtful]
-    offsets = voxels.offsets(lidar.position, where)
-    counts[doubtful] = _count_pairs(offsets, lidar, *lattice.window_beams(bounds, doubtful))
+    counts[doubtful] = _one_by_one(voxels, lidar, bounds, some, doubtful, is_free=True)
+    return Unhidden(counts, bounds)
+
+
+def _hidden(
+    voxels: VoxelPoints, lidar: PlacedLidar, unhidden: Unhidden, some: Ints | slice
+) -> Ints:
+    """Count again where beams of a voxel's window may be stopped."""
+    bounds, counts, stopped = unhidden.bounds, unhidden.counts.astype(np.int64), lidar.stopped
+    assert bounds is not None
+    rows = np.flatnonzero(stopped.any(axis=1))
+    if len(rows):
+        touched = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.most > 0) & (counts > 0))
+        touched = touched[_holds_any(stopped, bounds, touched)]
+        counts[touched] = _one_by_one(voxels, lidar, bounds, some, touched)
     return counts
 
 
-def _may_end_early(
-    points: Sequence[Singles], bounds: Bracket, lidar: PlacedLidar
-) -> NDArray[np.bool_]:
-    """Whether a beam of the voxel's window may end before it: at its range, or on the vehicle."""
-    lattice, ends = lidar.lattice, lidar.ends
-    longest = float(ends.max())
-    x, y, z = points
-    early: NDArray[np.bool_] = x * x + y * y + z * z > max(longest - CUBE_REACH, 0.0) ** 2
-    stopped = (ends < longest).reshape(-1, lattice.width)[lattice.channels]
-    rows = np.flatnonzero(stopped.any(axis=1))
-    if len(rows):
-        touched = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.most > 0))
-        early[touched] |= _holds_any(stopped, bounds, touched)
-    return early
+def _one_by_one(
+    voxels: VoxelPoints,
+    lidar: PlacedLidar,
+    bounds: Bracket,
+    some: Ints | slice,
+    which: Ints,
+    is_free: bool = False,
+) -> Ints:
+    """Count with each beam of the windows of some of some voxels tested."""
+    where = which if isinstance(some, slice) else some[which]
+    offsets = voxels.offsets(lidar.position, where)
+    return _count_pairs(offsets, lidar, *lidar.lattice.window_beams(bounds, which), is_free)
 
 
 def _holds_any(stopped: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> NDArray[np.bool_]:
@@ -176,21 +240,35 @@ def _holds_any(stopped: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> NDA
     return held
 
 
-def _count_pairs(offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints) -> Ints:
-    """(V,) how many of the (voxel, beam) pairs are beams through their voxel."""
-    counts = np.zeros(len(offsets), np.int64)
+def _count_pairs(
+    offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints, is_free: bool = False
+) -> Ints:
+    """(V,) how many of the (voxel, beam) pairs are beams through their voxel.
+
+    With `is_free` as if there were no vehicle.
+    """
+    counts, doubtful = np.zeros(len(offsets), np.int64), []
     for some in blocks(len(voxel), PAIRS_AT_ONCE):
-        through = _through(offsets, lidar, voxel[some], beam[some])
-        counts += np.bincount(voxel[some][through], minlength=len(counts))
+        through, enter = _through(offsets, lidar, voxel[some], beam[some])
+        pairs = voxel[some][through], beam[some][through]
+        counts += np.bincount(pairs[0], minlength=len(counts))
+        if not is_free:
+            at = np.flatnonzero(lidar.ends.stopped[pairs[1]])
+            doubtful.append((pairs[0][at], pairs[1][at], enter[at]))
+    if doubtful:
+        voxel, beam, reach = (np.concatenate(w) for w in zip(*doubtful, strict=True))
+        early = reach > lidar.ends.some(beam) / lidar.side
+        counts -= np.bincount(voxel[early], minlength=len(counts))
     return counts
 
 
-def _through(offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints) -> NDArray[np.bool_]:
-    """Whether each beam passes its cube: `definition.cube_crossing`, an axis at a time."""
+def _through(offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints) -> tuple[Ints, Floats]:
+    """Pairs whose beam passes its cube in range, and where: `definition.cube_crossing` by axes."""
     enter, leave = np.zeros(len(voxel)), np.full(len(voxel), np.inf)
     for axis in range(3):
         step, center = lidar.directions[beam, axis], offsets[voxel, axis]
         t0, t1 = (center - 0.5) / step, (center + 0.5) / step
         np.maximum(enter, np.minimum(t0, t1), out=enter)
         np.minimum(leave, np.maximum(t0, t1), out=leave)
-    return (enter < leave) & (enter <= lidar.ends[beam])
+    through = np.flatnonzero((enter < leave) & (enter <= lidar.longest))
+    return through, enter[through]

@@ -1,0 +1,133 @@
+"""Beams cast when they are asked for: all that the vehicle stops are known beforehand, and no bit
+of a count depends on which were cast."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.kinds.lidar import bracket, points
+from pe_core.kinds.lidar.ends import KnownEnds, LazyEnds
+from pe_core.kinds.lidar.lattice import lattice_of
+from pe_core.kinds.lidar.maybe import may_be_stopped
+from pe_core.kinds.lidar.points import PlacedLidar, VoxelPoints, count_through, count_unhidden
+from pe_core.kinds.lidar.ties import position_in_voxels, without_zeros
+from tests.engine import shapes
+
+CAR = shapes.box_car(3)
+SPACE = shapes.small_space()
+POSES = {
+    "roof": ((-0.4, 0.1, 1.7), (0.0, 0.0, 0.0)),
+    "roof, turned": ((-0.4, 0.1, 1.7), (0.0, 0.0, 33.3)),
+    "tilted": ((-0.43, 0.0, 1.8), (7.0, -11.0, 20.0)),
+    "corner": ((2.35, 0.95, 0.7), (0.0, 2.0, 45.0)),
+    "flush": ((0.2, 0.1, 1.405), (1.0, 0.0, 0.0)),
+    "inside": ((0.0, 0.1, 0.6), (0.0, 5.0, 0.0)),
+    "lying": ((3.5, 0.2, 0.8), (90.0, 0.0, 10.0)),
+    "upside down": ((0.1, -2.0, 1.0), (180.0, 3.0, 0.0)),
+    "afar": ((-15.0, 6.0, 3.0), (0.0, 8.0, -20.0)),
+}
+
+
+def soup(seed):
+    """Triangles of all sizes and slants, everywhere."""
+    rng = np.random.default_rng(seed)
+    size = 10.0 ** rng.uniform(-2.0, 0.6, (150, 1, 1))
+    places = rng.uniform((-4.0, -3.0, 0.0), (4.0, 3.0, 2.5), (150, 3))
+    return pe.Vehicle(places[:, None] + size * rng.normal(size=(150, 3, 3)))
+
+
+def lidar(pose, model=None):
+    model = model or shapes.small_lidar(24, 360)
+    return pe.Sensor("lidar", model, pe.Pose.from_degrees(*pose))
+
+
+def lazy(sensor, vehicle):
+    return LazyEnds(sensor, pe.beam_field(sensor, None).directions, vehicle)
+
+
+def placed(sensor, ends):
+    return PlacedLidar(
+        lattice_of(sensor.model),
+        position_in_voxels(sensor.pose.position, SPACE.origin, SPACE.interval),
+        sensor.pose.ground_from_sensor,
+        without_zeros(pe.beam_field(sensor, None).directions),
+        ends,
+        SPACE.interval,
+    )
+
+
+def some_voxels(count=3000):
+    rng = np.random.default_rng(0)
+    return VoxelPoints(np.stack([rng.integers(0, n, count) for n in SPACE.shape], axis=1))
+
+
+@pytest.mark.parametrize("vehicle", [CAR, soup(1), soup(2)], ids=["car", "soup", "other soup"])
+@pytest.mark.parametrize("pose", POSES)
+def test_every_beam_that_is_stopped_may_be(pose, vehicle):
+    sensor = lidar(POSES[pose], shapes.small_lidar(40, 720))
+    ends = lazy(sensor, vehicle)
+    stopped = pe.beam_field(sensor, vehicle).stopped_by >= 0
+    assert stopped.any() and not (stopped & ~ends.stopped).any()
+
+
+def test_few_beams_may_be_stopped_that_are_not():
+    """A map that says so of all would be right, and of no use."""
+    for pose in ("roof", "tilted", "corner", "afar"):
+        sensor = lidar(POSES[pose], shapes.small_lidar(40, 720))
+        stopped = int((pe.beam_field(sensor, CAR).stopped_by >= 0).sum())
+        assert stopped <= lazy(sensor, CAR).stopped.sum() <= 1.3 * stopped + 300, pose
+
+
+def test_a_vehicle_of_no_triangle_that_is_left_stops_nothing():
+    """All of it glass, to a sensor that looks through it."""
+    clear = pe.Vehicle(CAR.triangles, CAR.parts, CAR.part_names, glass=("body", "cabin"))
+    sensor = lidar(POSES["tilted"])
+    seen = clear.seen_from(sensor.pose.position, through_glass=True).seen
+    lattice = lattice_of(sensor.model)
+    assert not may_be_stopped(seen, sensor.pose.ground_from_sensor, lattice).any()
+
+
+@pytest.mark.parametrize("kind", ["full circle", "part of a circle"])
+@pytest.mark.parametrize("pose", POSES)
+def test_counts_are_those_of_all_beams_cast(pose, kind):
+    """The plain way is to cast every beam; with what is known without a vehicle, and without."""
+    part = {"horizontal_fov": (-2.6, 2.6)} if kind == "part of a circle" else {}
+    sensor = lidar(POSES[pose], shapes.small_lidar(24, 360, **part))
+    field, voxels = pe.beam_field(sensor, CAR), some_voxels()
+    plain = count_through(voxels, placed(sensor, KnownEnds(field.ends)))
+    free = count_unhidden(voxels, placed(sensor, KnownEnds(np.full_like(field.ends, 60.0))))
+    for unhidden in (None, free):
+        found = count_through(voxels, placed(sensor, lazy(sensor, CAR)), None, unhidden)
+        assert np.array_equal(found, plain)
+    assert (free.counts >= plain).all()
+    assert kind != "full circle" or (free.counts > plain).any()
+
+
+def test_fewer_beams_are_cast_than_there_are_and_each_once(monkeypatch):
+    cast, plain = [], LazyEnds._cast
+    monkeypatch.setattr(LazyEnds, "_cast", lambda s, new: cast.append(new) or plain(s, new))
+    sensor = lidar(POSES["corner"])
+    ends = lazy(sensor, CAR)
+    count_through(some_voxels(), placed(sensor, ends))
+    assert 0 < len(cast[0]) < 0.5 * sensor.model.beam_count
+    field, expected = ends.field(), pe.beam_field(sensor, CAR)
+    assert len(np.unique(np.concatenate(cast))) == len(np.concatenate(cast))
+    assert np.array_equal(field.ends, expected.ends)
+    assert np.array_equal(field.stopped_by, expected.stopped_by)
+
+
+def test_what_a_bound_took_is_not_counted_again(monkeypatch):
+    """A candidate whose bound is good is counted without the vehicle once."""
+    calls, plain = [], bracket.bracket
+    monkeypatch.setattr(points, "bracket", lambda *a: calls.append(a) or plain(*a))
+    evaluator = pe.Evaluator(SPACE, pe.Prior.uniform(), CAR, samples=2048)
+    rig = pe.Rig([lidar(POSES["tilted"])])
+    assert evaluator.judge(rig, math.nextafter(28.0, 30.0)) == (evaluator.entropy(rig), False)
+    assert len(calls) == 1
+    moved = pe.Rig([lidar(POSES["corner"])])
+    assert evaluator.entropy(moved) == pe.Evaluator(
+        SPACE, pe.Prior.uniform(), CAR, samples=2048
+    ).entropy(moved)
+    assert len(calls) == 3

@@ -16,6 +16,7 @@ from . import (
     panels,
     properties,
     roster,
+    searching,
     stale,
     unsaved,
     upkeep,
@@ -40,6 +41,7 @@ def register() -> None:
     stale.register()
     unsaved.register()
     live.register()
+    searching.register()
     explaining.register()
     asking.register()
     overlay.register()
@@ -58,6 +60,7 @@ def unregister() -> None:
     fitting.unregister()
     panels.unregister()
     overlay.unregister()
+    searching.unregister()
     live.unregister()
     asking.unregister()
     explaining.unregister()

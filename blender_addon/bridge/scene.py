@@ -137,7 +137,9 @@ def _search(
         settings.search_samples,
         pe.Schedule(candidates=settings.candidates),
         mounting,
-        tolerance=tolerance_of(settings),
+        settings.method,
+        settings.evaluations,
+        tolerance_of(settings),
     )
 
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import bpy
 
+from .. import changes, redraw, searching
 from ..engine import pe
 
 TICK_S = 0.05
@@ -20,6 +21,8 @@ TURN_S = 0.03
 """How long a turn takes: a frame of a responsive window."""
 SHOW_EVERY_S = 0.2
 """How often the progress is drawn: that takes time from the work."""
+CURVE_EVERY_S, BEST_EVERY_S = 2.0, 0.5
+"""How often the 3D view is: its curve goes on, or a better placement was found."""
 
 
 class Running:
@@ -30,7 +33,8 @@ class Running:
         self.scene_name = context.scene.name
         self.progress = pe.Progress("starting", 0.0)
         self._steps: Iterator[pe.Progress] = iter(job)
-        self._shown = 0.0
+        self._shown = self._seen = 0.0
+        self._better = 0
         manager = context.window_manager
         self._timer = manager.event_timer_add(TICK_S, window=context.window)
         manager.progress_begin(0.0, 1.0)
@@ -75,14 +79,34 @@ class Running:
     def show(self, context: bpy.types.Context) -> None:
         """Draw the progress again, but not the scene: that would take longer than the work."""
         self._shown = time.monotonic()
+        self._show_search()
         context.window_manager.progress_update(self.progress.fraction)
         context.workspace.status_text_set(draw_status)
         for region in _regions(context.window_manager):
             if region.type == "UI":
                 region.tag_redraw()
 
+    def _show_search(self) -> None:
+        """Have the 3D view show the curve of a search and the best so far, not too often."""
+        history = getattr(self.job, "history", ())
+        better = len(history) > self._better
+        wait = BEST_EVERY_S if better else CURVE_EVERY_S
+        if not history or time.monotonic() - self._seen < wait:
+            return
+        self._seen, self._better = time.monotonic(), len(history)
+        points = tuple((row.evaluation, row.entropy) for row in history)
+        sensors = tuple(history[-1].rig) if len(history) > 1 else ()
+        sampled = bool(self.job.study.search.samples)
+        seen = searching.SearchView(points, self.job.evaluations, sensors, sampled)
+        searching.note(self.scene_name, seen)
+        if better:
+            changes.picture.tell()  # the best placement is drawn as ghosts
+        redraw.editors()
+
     def end(self, context: bpy.types.Context) -> None:
         """Take away all that shows the job, whatever way it ended."""
+        searching.drop(self.scene_name)
+        changes.picture.tell()
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         # Any workspace will do: the text is drawn by one function for all of them.

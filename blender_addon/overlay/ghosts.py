@@ -25,9 +25,15 @@ SAME_M = 1e-4
 PALE = (0.85, 0.85, 0.9)
 GHOSTS = replace(VIEWPORT, reach=with_alpha(PALE, 0.55), words=with_alpha(PALE, 0.75))
 """Colours of another variant's reach."""
+VARIANT = "Other variant"
 
 
-def ghosts(others: Sequence[pe.Sensor], present: Sequence[pe.Sensor], name: str = "") -> LayerShape:
+def ghosts(
+    others: Sequence[pe.Sensor],
+    present: Sequence[pe.Sensor],
+    name: str = "",
+    title: str = VARIANT,
+) -> LayerShape:
     """Return another variant's sensors, and lines to those of the same names that stand here.
 
     Parameters
@@ -36,15 +42,15 @@ def ghosts(others: Sequence[pe.Sensor], present: Sequence[pe.Sensor], name: str 
         The other variant's, and the scene's.
     name : str
         Of the other variant, for the legend.
+    title : str
+        What the legend calls them.
     """
     here = {sensor.name: sensor for sensor in present}
     lines = [_outline(sensor) for sensor in others]
     lines += [_link(sensor, here[sensor.name]) for sensor in others if sensor.name in here]
     color = with_alpha(PALE, LINK)
     labels = tuple(Tag(s.name, s.pose.position, color) for s in others if _apart(s, here))
-    legend = (
-        ColorKey("Other variant", classes=((color, name or "another one"),)) if others else None
-    )
+    legend = ColorKey(title, classes=((color, name or "another one"),)) if others else None
     return LayerShape(through=Primitives.joined(lines), labels=labels, legend=legend)
 
 

@@ -242,7 +242,10 @@ def _ghost_keys(wish: PictureWish) -> dict[str, Hashable]:
 
 
 def _ghosts(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
-    shape = ghosts.ghosts(wish.ghosts, [e.sensor for e in wish.counted], wish.ghosts_name)
+    here, of = [e.sensor for e in wish.counted], "Search" if wish.searching else ghosts.VARIANT
+    shape = ghosts.ghosts(wish.ghosts, here, wish.ghosts_name, of)
+    if wish.searching:
+        return shape
     if "reach" not in wish.view.layers or wish.prior is None:
         return shape
     rig, known = pe.Rig(wish.ghosts), wish.prior.class_names

@@ -10,13 +10,14 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from .. import asking, body, bridge, roster
+from .. import asking, body, bridge, roster, searching
 from ..engine import pe
 from ..live import latest
 from .layers import LAYERS
 from .wish import AVERAGE, MountFaces, PictureWish, SceneSensor, SearchBox, ViewSettings
 
 LEAST_LENGTH_M = 0.1
+BEST_SO_FAR = "best so far"
 HEAVY_S = 0.05
 """A vehicle that took longer to read is not read again while it is being moved."""
 
@@ -59,6 +60,7 @@ class SceneReader:
             model=judged.model,
             ghosts=others,
             ghosts_name=name,
+            searching=bool(searching.best(scene.name)),
             place=None if answer is None else answer.place,
             mounts=self._mounts(scene, depsgraph, sensors, vehicle, body_key),
             boxes=_boxes(scene, sensors, vehicle),
@@ -178,7 +180,10 @@ def _scored(
 
 
 def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
-    """Sensors and name of the variant that is shown beside the scene's own."""
+    """Sensors that are shown beside the scene's own, and what they are: the best that a search has
+    found so far, else another variant."""
+    if best := searching.best(scene.name):
+        return best, BEST_SO_FAR
     key = scene.perception_entropy.view.ghost_key
     for row in scene.perception_entropy.variants if key else ():
         if row.key == key:

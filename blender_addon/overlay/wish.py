@@ -87,7 +87,8 @@ class PictureWish:
 
     `body_key` tells vehicles from others, `prior_key` priors, spaces and AP curves; `moving`: a
     rough picture now is better than a fine one later. `scored` is the ground map of the last score,
-    of all voxels, if the scene still is as it was then.
+    of all voxels, if the scene still is as it was then. `ghosts` are another variant, or what a
+    search that runs has found: `searching`.
     """
 
     sensors: tuple[SceneSensor, ...]
@@ -102,6 +103,7 @@ class PictureWish:
     model: pe.PerceptionModel | None = None
     ghosts: tuple[pe.Sensor, ...] = ()
     ghosts_name: str = ""
+    searching: bool = False
     place: advice.AskedPlace | None = None
     mounts: tuple[MountFaces, ...] = ()
     boxes: tuple[SearchBox, ...] = ()

@@ -19,7 +19,12 @@ class PE_PT_search(Tab, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
         boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
-        draw_properties(self.layout, settings, ("prior", *boxes, "candidates", "seed"))
+        draw_properties(self.layout, settings, ("prior", *boxes, "method", "candidates"))
+        row = self.layout.row(align=True)
+        row.prop(settings, "evaluations")
+        if not settings.evaluations:
+            row.label(text="Method's own")
+        self.layout.prop(settings, "seed")
         for name in ("search_samples", "score_samples"):
             draw_voxels(self.layout, settings, name)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zlib
+
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -14,7 +16,7 @@ from bpy.props import (
 )
 
 from ..choices import PRIORS
-from ..engine import pe
+from ..engine import pe, search
 from .advanced import AdvancedSceneSettings
 from .breakdown import PE_ResultPart
 from .callbacks import changed, redraw
@@ -26,6 +28,11 @@ from .variants import PE_Variant
 from .view import PE_ViewSettings
 from .warnings import PE_Warning
 
+METHODS = tuple(
+    (name, method.label, method.about, 1 + zlib.crc32(name.encode()) % 2**30)
+    for name, method in search.METHODS.items()
+)
+"""Of searches; a file holds a number that stays a method's whatever others there are."""
 DEFAULT_CANDIDATES = 150
 DEFAULT_BEAM_LIMIT = 5_000
 DEFAULT_BEAM_LENGTH_M = 8.0
@@ -77,6 +84,19 @@ class PE_SceneSettings(
         default=0,
         min=0,
         update=changed,
+    )
+    method: EnumProperty(
+        items=METHODS,
+        name="Method",
+        description="How the search looks for better placements",
+        default=search.DEFAULT_METHOD,
+    )
+    evaluations: IntProperty(
+        name="Budget",
+        description="Placements judged at most; 0: as many as the method takes",
+        default=0,
+        min=0,
+        soft_max=10_000,
     )
     candidates: IntProperty(
         name="Candidates",

@@ -42,7 +42,10 @@ ALLOWED = {
     "redraw": set(),
     "live": {"body", "bridge", "changes", "engine", "motion", "redraw", "roster", "worker"},
     "overlay": {"engine"},
-    "overlay.reading": {"asking", "body", "bridge", "engine", "live", "overlay", "roster"},
+    "searching": {"engine", "redraw"},
+    "overlay.reading": {
+        *("asking", "body", "bridge", "engine", "live", "overlay", "roster", "searching"),
+    },
     "overlay.updating": {
         *("changes", "engine", "overlay", "overlay.reading", "redraw", "roster", "worker"),
     },
@@ -50,14 +53,15 @@ ALLOWED = {
     "review": {"bridge", "engine", "overlay"},
     "operators": {
         *("asking", "body", "bridge", "changes", "choices", "engine", "explaining", "housing"),
-        *("live", "overlay", "properties", "redraw", "review", "roster", "stale", "worker"),
+        *("live", "overlay", "properties", "redraw", "review", "roster", "searching", "stale"),
+        "worker",
     },
     "panels": {"choices", "operators", "properties"},
     "commands": {"bridge", "engine", "review", "stale"},
     "__init__": {
         *("asking", "body", "commands", "explaining", "housing", "library", "live", "motion"),
-        *("operators", "overlay.handler", "panels", "properties", "roster", "stale", "unsaved"),
-        *("upkeep", "worker"),
+        *("operators", "overlay.handler", "panels", "properties", "roster", "searching"),
+        *("stale", "unsaved", "upkeep", "worker"),
     },
     "__main__": {"__init__", "commands", "engine"},
 }

@@ -1,0 +1,144 @@
+"""The curve of the search that runs, in the lower right corner of the 3D view."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import blf
+import bpy
+import gpu
+from gpu_extras.batch import batch_for_shader
+
+from .. import redraw
+from .curve import Curve, curve_of
+from .latest import view
+
+VIEW = bpy.types.SpaceView3D
+FONT = 0
+SMALL, TITLE = 11.0, 13.0
+"""Sizes of letters, in pixels of an interface at scale 1; so are all lengths below."""
+WIDTH, HEIGHT = 268.0, 148.0
+PAD, LEFT, TOP, BOTTOM = 10.0, 36.0, 26.0, 18.0
+"""Round the plate's inside, and what axes and title take of it."""
+MARGIN, ABOVE_EDGE = 14.0, 37.0
+LINE_PX, AXIS_PX, DOT_PX = 2.0, 1.0, 5.0
+Color = tuple[float, float, float, float]
+INK: Color = (0.95, 0.95, 0.95, 1.0)
+FAINT: Color = (0.74, 0.74, 0.74, 1.0)
+AXIS: Color = (0.55, 0.55, 0.55, 1.0)
+LINE: Color = (0.45, 0.78, 0.96, 1.0)
+PLATE: Color = (0.08, 0.08, 0.08, 0.72)
+
+
+class Place(NamedTuple):
+    """Where the axes are in the region [px]: lower left corner and size."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    def at(self, across: float, up: float) -> tuple[float, float, float]:
+        """Return a point of the unit square."""
+        return self.x + across * self.width, self.y + up * self.height, 0.0
+
+
+_handles: list[object] = []
+
+
+def register() -> None:
+    """Start drawing."""
+    if not _handles:
+        _handles.append(VIEW.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL"))
+
+
+def unregister() -> None:
+    """Stop drawing, and forget what was shown."""
+    view.clear()
+    while _handles:
+        VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
+    redraw.editors()
+
+
+def draw() -> None:
+    """Draw into the current 3D view; Blender calls this at each redraw."""
+    context = bpy.context
+    seen = view.get(context.scene.name)
+    if seen is not None and _is_corner(context):
+        draw_curve(curve_of(seen), *_corner(context), context.preferences.system.ui_scale)
+
+
+def draw_curve(curve: Curve, right: float, bottom: float, scale: float) -> None:
+    """Draw a curve on a dark plate whose lower right corner is given [px]."""
+    left, top = right - WIDTH * scale, bottom + HEIGHT * scale
+    pad = PAD * scale
+    axes = Place(
+        left + pad + LEFT * scale,
+        bottom + pad + BOTTOM * scale,
+        WIDTH * scale - 2.0 * pad - LEFT * scale,
+        HEIGHT * scale - 2.0 * pad - (TOP + BOTTOM) * scale,
+    )
+    before = gpu.state.blend_get()
+    gpu.state.blend_set("ALPHA")
+    _fill(((left, bottom, 0), (right, bottom, 0), (right, top, 0), (left, top, 0)), PLATE)
+    _line([axes.at(0, 1), axes.at(0, 0), axes.at(1, 0)], AXIS, AXIS_PX * scale)
+    _line([axes.at(*point) for point in curve.points], LINE, LINE_PX * scale)
+    x, y, _ = axes.at(*curve.points[-1])
+    half = DOT_PX * scale / 2.0
+    corners = ((-half, -half), (half, -half), (half, half), (-half, half))
+    _fill(tuple((x + a, y + b, 0) for a, b in corners), LINE)
+    gpu.state.blend_set(before)
+    _words(curve, axes, left + pad, top - pad, right - pad, scale)
+
+
+def _words(curve: Curve, axes: Place, left: float, top: float, right: float, scale: float) -> None:
+    """Write the title and what the axes say."""
+    _write(curve.title, left, top - TITLE * scale, TITLE * scale, INK)
+    _write(curve.aside, right, top - TITLE * scale, SMALL * scale, FAINT, 1.0)
+    small, gap = SMALL * scale, 5.0 * scale
+    _write(curve.high, axes.x - gap, axes.y + axes.height - 0.7 * small, small, FAINT, 1.0)
+    _write(curve.low, axes.x - gap, axes.y, small, FAINT, 1.0)
+    below = axes.y - small - gap
+    _write("1", axes.x, below, small, FAINT)
+    _write(curve.last, axes.x + axes.width, below, small, FAINT, 1.0)
+
+
+def _write(text: str, x: float, y: float, size: float, color: Color, before: float = 0.0) -> None:
+    """Write words; `before` is the share of them that lies left of x."""
+    blf.size(FONT, size)
+    blf.color(FONT, *color)
+    blf.position(FONT, round(x - before * blf.dimensions(FONT, text)[0]), round(y), 0.0)
+    blf.draw(FONT, text)
+
+
+def _fill(corners: tuple[tuple[float, float, float], ...], color: Color) -> None:
+    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+    shader.uniform_float("color", color)
+    batch_for_shader(shader, "TRI_FAN", {"pos": corners}).draw(shader)
+
+
+def _line(points: list[tuple[float, float, float]], color: Color, width_px: float) -> None:
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    batch = batch_for_shader(shader, "LINE_STRIP", {"pos": points})
+    region = bpy.context.region
+    shader.bind()
+    shader.uniform_float("viewportSize", (region.width, region.height))
+    shader.uniform_float("lineWidth", width_px)
+    shader.uniform_float("color", color)
+    batch.draw(shader)
+
+
+def _corner(context: bpy.types.Context) -> tuple[float, float]:
+    """Lower right corner of the plate in the region [px]: clear of the sidebar."""
+    scale, region = context.preferences.system.ui_scale, context.region
+    right = float(region.width)
+    for each in context.area.regions:
+        if each.type == "UI" and each.width > 1 and each.x > region.x + region.width / 2:
+            right = min(right, each.x - region.x)
+    return right - MARGIN * scale, ABOVE_EDGE * scale
+
+
+def _is_corner(context: bpy.types.Context) -> bool:
+    """Whether the region is the lower right one of its area: of four in a quad view, one."""
+    windows = [each for each in context.area.regions if each.type == "WINDOW"]
+    return context.region == max(windows, key=lambda each: (-each.y, each.x))

@@ -1,10 +1,19 @@
 """The search that runs, as the 3D view shows it: its curve, and the best placement so far."""
 
 from . import drawing
-from .curve import Curve, curve_of
+from .curve import SearchCurve, curve_of
 from .latest import SearchView, best, drop, view
 
-__all__ = ["Curve", "SearchView", "best", "curve_of", "drop", "note", "register", "unregister"]
+__all__ = [
+    "SearchCurve",
+    "SearchView",
+    "best",
+    "curve_of",
+    "drop",
+    "note",
+    "register",
+    "unregister",
+]
 
 register, unregister = drawing.register, drawing.unregister
 

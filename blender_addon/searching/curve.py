@@ -8,18 +8,18 @@ from .latest import SearchView
 
 LEAST_SPAN = 0.01
 """The entropy's axis covers no less than this [nats]: noise is not to look like progress."""
-Points = tuple[tuple[float, float], ...]
+CurvePoints = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class SearchCurve:
     """A staircase from the start to now.
 
     `points` go from (0, 1), the start, to the right; 1 is the axis' upper end. `low`, `high` and
     `last` are its ends' words, `title` and `aside` those above it.
     """
 
-    points: Points
+    points: CurvePoints
     low: str
     high: str
     last: str
@@ -27,7 +27,7 @@ class Curve:
     aside: str
 
 
-def curve_of(seen: SearchView) -> Curve:
+def curve_of(seen: SearchView) -> SearchCurve:
     """Return the curve of a search; every point is a placement that became the best."""
     entropies = [entropy for _, entropy in seen.points]
     high, best = max(entropies), entropies[-1]
@@ -41,4 +41,6 @@ def curve_of(seen: SearchView) -> Curve:
     shown.append((1.0, shown[-1][1]))
     about = "\N{ALMOST EQUAL TO} " if seen.sampled else ""
     title, aside = f"Best so far {about}{best:.3f} nats", f"from {entropies[0]:.3f}"
-    return Curve(tuple(shown), f"{low:.2f}", f"{high:.2f}", f"{last:,} placements", title, aside)
+    return SearchCurve(
+        tuple(shown), f"{low:.2f}", f"{high:.2f}", f"{last:,} placements", title, aside
+    )

@@ -10,7 +10,7 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 
 from .. import redraw
-from .curve import Curve, curve_of
+from .curve import SearchCurve, curve_of
 from .latest import view
 
 VIEW = bpy.types.SpaceView3D
@@ -30,7 +30,7 @@ LINE: Color = (0.45, 0.78, 0.96, 1.0)
 PLATE: Color = (0.08, 0.08, 0.08, 0.72)
 
 
-class Place(NamedTuple):
+class PlotAxes(NamedTuple):
     """Where the axes are in the region [px]: lower left corner and size."""
 
     x: float
@@ -68,11 +68,11 @@ def draw() -> None:
         draw_curve(curve_of(seen), *_corner(context), context.preferences.system.ui_scale)
 
 
-def draw_curve(curve: Curve, right: float, bottom: float, scale: float) -> None:
+def draw_curve(curve: SearchCurve, right: float, bottom: float, scale: float) -> None:
     """Draw a curve on a dark plate whose lower right corner is given [px]."""
     left, top = right - WIDTH * scale, bottom + HEIGHT * scale
     pad = PAD * scale
-    axes = Place(
+    axes = PlotAxes(
         left + pad + LEFT * scale,
         bottom + pad + BOTTOM * scale,
         WIDTH * scale - 2.0 * pad - LEFT * scale,
@@ -91,7 +91,9 @@ def draw_curve(curve: Curve, right: float, bottom: float, scale: float) -> None:
     _words(curve, axes, left + pad, top - pad, right - pad, scale)
 
 
-def _words(curve: Curve, axes: Place, left: float, top: float, right: float, scale: float) -> None:
+def _words(
+    curve: SearchCurve, axes: PlotAxes, left: float, top: float, right: float, scale: float
+) -> None:
     """Write the title and what the axes say."""
     _write(curve.title, left, top - TITLE * scale, TITLE * scale, INK)
     _write(curve.aside, right, top - TITLE * scale, SMALL * scale, FAINT, 1.0)

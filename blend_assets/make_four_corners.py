@@ -1,0 +1,117 @@
+"""Make examples/four_corners: `python make_four_corners.py` with the bpy module, after the bus.
+
+The shuttle with a LiDAR at each front corner of its roof and a camera in each rear corner of its
+bumper, as mirrored pairs, on areas that are painted on its body. The scene and the study are one
+problem; the study takes its mesh from bus.npz. Run it with bpy 4.2: later versions read its files.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent), str(HERE)]
+
+from blend_file import save  # noqa: E402
+
+import blender_addon  # noqa: E402
+from blender_addon import bridge  # noqa: E402
+from blender_addon.engine import pe  # noqa: E402
+
+FOLDER = HERE / "examples" / "four_corners"
+LIDAR, CAMERA = "Velodyne VLP-16 Puck", "Camera 120 deg"
+ROOF, BUMPER = "roof corners", "rear bumper"
+BASE_M, RECESS_M = 0.04, 0.01
+"""A base plate of 40 mm on the roof; a lens 10 mm proud of the bumper."""
+SIDE_M = (0.3, 1.0)
+"""Bounds of y of the sensors on the left: each pair has one on either side."""
+
+Vertex = bpy.types.MeshVertex
+
+
+def at_front_corner(place: Vertex) -> bool:
+    """Whether a point of the roof is in a front corner, and not on its steep rim."""
+    return place.x > 1.3 and 0.35 < abs(place.y) < 0.86
+
+
+def on_upright_part(place: Vertex) -> bool:
+    """Whether a point of the rear bumper is on the part that a lens fits into."""
+    return place.z > 0.27 and place.x < -2.5 and abs(place.y) > 0.15
+
+
+def paint(part: str, name: str, chosen: Callable[[Vertex], bool]) -> None:
+    """Paint a vertex group on a part of the shuttle, and make a mount of it."""
+    obj = bpy.data.objects[part]
+    group = obj.vertex_groups.new(name=name)
+    group.add([v.index for v in obj.data.vertices if chosen(v.co)], 1.0, "REPLACE")
+
+
+def add_mount(name: str, standoff: float, orientation: str) -> None:
+    """Add a mount of the faces that are painted under its name."""
+    row = bpy.context.scene.perception_entropy.mounts.add()
+    row.name, row.faces, row.group = name, "GROUP", name
+    row.standoff, row.orientation = standoff, orientation
+
+
+def add_pair(name: str, model: str, near: tuple[float, float, float], mount: str) -> None:
+    """Add a sensor on the left, on a mount, and its mirror image."""
+    bpy.ops.pe.add_sensor(model=model)
+    obj = bpy.context.object
+    obj.name, obj.location = f"{name}_left", near
+    bpy.context.view_layer.update()
+    bpy.ops.pe.mount_sensor(name=obj.name, mount=mount)
+    own = obj.perception_entropy
+    own.free = [False, False, False, False, True, mount == BUMPER]
+    own.bounded[1], own.bounds_low[1], own.bounds_high[1] = True, *SIDE_M
+    if mount == BUMPER:
+        own.bounded[5], own.bounds_low[5], own.bounds_high[5] = True, -40.0, 40.0
+    own.bounded[4], own.bounds_low[4], own.bounds_high[4] = True, -20.0, 30.0
+    bpy.ops.pe.mirror_sensor(name=obj.name, linked=True)
+
+
+def design() -> None:
+    """Have the bus's scene hold this example."""
+    for obj in bridge.sensor_objects(bpy.context.scene):
+        bpy.data.objects.remove(obj)
+    paint("roof", ROOF, at_front_corner)
+    paint("bumper_rear", BUMPER, on_upright_part)
+    add_mount(ROOF, BASE_M, "upright")
+    add_mount(BUMPER, RECESS_M, "facing")
+    add_pair("lidar", LIDAR, (2.2, 0.7, 2.6), ROOF)
+    add_pair("camera", CAMERA, (-3.0, 0.7, 0.42), BUMPER)
+    settings = bpy.context.scene.perception_entropy
+    settings.min_distance, settings.max_height = 0.3, 2.7
+
+
+def write_study() -> None:
+    """Write the scene as a study beside the others, its areas in a file of their own."""
+    scene = bpy.context.scene
+    study = bridge.study_from_scene(scene, bpy.context.evaluated_depsgraph_get())
+    mounts = study.search.mounting.mounts
+    areas = [mount.area.triangles for mount in mounts.values()]
+    parts = np.repeat(np.arange(len(areas), dtype=np.int32), [len(area) for area in areas])
+    pe.write_mesh(FOLDER / "areas.npz", pe.Mesh(np.concatenate(areas), parts, tuple(mounts)))
+    pe.save_study(study.with_mesh("../../bus.npz"), FOLDER / "study.toml")
+
+
+def main() -> None:
+    """Make all of it."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    blender_addon.register()
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(HERE / "bus.blend"))
+        design()
+        write_study()
+        save(FOLDER / "four_corners.blend")
+    finally:
+        blender_addon.unregister()
+
+
+if __name__ == "__main__":
+    main()

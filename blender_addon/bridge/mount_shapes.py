@@ -50,21 +50,28 @@ def mount_faces(
 
 
 def bounds_box(
-    obj: bpy.types.Object, sensor: pe.Sensor, vehicle: pe.Vehicle | None
+    obj: bpy.types.Object,
+    sensor: pe.Sensor,
+    vehicle: pe.Vehicle | None,
+    around: np.ndarray | None = None,
 ) -> LimitBox | None:
     """Return the box of a sensor's own bounds and constraints; None for one without any.
 
-    What the search does not change is where it is.
+    What the search does not change is where it is. What has no bounds is as usual; of a sensor on
+    a surface, as far as the faces (F, 3, 3) `around` it and itself go.
     """
     limits = constrained(obj, sensor, vehicle, limits_of(obj))
     if not set("xyz") & set(limits):
         return None
     usual, free = search.default_bounds(sensor, vehicle), free_axes(obj)
-    mounted = bool(obj.perception_entropy.mount)
     ends = []
-    for axis, place in zip("xyz", sensor.pose.position, strict=True):
-        moves = mounted or axis in free
-        ends.append(limits.get(axis, usual[axis]) if moves else (place, place))
+    for number, axis in enumerate("xyz"):
+        place = sensor.pose.position[number]
+        still = (place, place) if axis not in free else usual[axis]
+        if around is not None:
+            side = around[:, :, number]
+            still = (min(float(side.min()), place), max(float(side.max()), place))
+        ends.append(limits.get(axis, still) if around is not None or axis in free else still)
     return LimitBox(*zip(*ends, strict=True), False)
 
 

@@ -43,7 +43,7 @@ def mounts(several: Sequence[MountFaces], boxes: Sequence[SearchBox]) -> LayerSh
         lines += [Primitives.of(outline(box.low, box.high), color) for box in chosen]
         if chosen:
             classes.append((color, words))
-    legend = ColorKey("Search", classes=tuple(classes)) if classes else None
+    legend = ColorKey("Mounts", classes=tuple(classes)) if classes else None
     return LayerShape(lines=Primitives.joined(lines), faces=Primitives.joined(faces), legend=legend)
 
 

@@ -53,6 +53,7 @@ class SceneReader:
         judged = self._judged_by(scene)
         others, name = _ghosts(scene)
         answer = asking.answer(scene)
+        mounts = self._mounts(scene, depsgraph, sensors, vehicle, body_key)
         return PictureWish(
             *(sensors, vehicle, body_key, judged.prior, judged.key, view_of(scene), moving),
             scored=_scored(scene, sensors, judged.space),
@@ -62,8 +63,8 @@ class SceneReader:
             ghosts_name=name,
             searching=bool(searching.best(scene.name)),
             place=None if answer is None else answer.place,
-            mounts=self._mounts(scene, depsgraph, sensors, vehicle, body_key),
-            boxes=_boxes(scene, sensors, vehicle),
+            mounts=mounts,
+            boxes=_boxes(scene, sensors, vehicle, mounts),
         )
 
     def _mounts(
@@ -89,7 +90,7 @@ class SceneReader:
                 faces = bridge.mount_faces(scene, depsgraph, row, vehicle)
             found[key] = faces
             if len(faces):
-                shown.append(MountFaces(key, faces, row.name in chosen))
+                shown.append(MountFaces(row.name, key, faces, row.name in chosen))
         self._faces[scene.name] = found
         return tuple(shown)
 
@@ -153,16 +154,21 @@ def _mounted(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[Sc
 
 
 def _boxes(
-    scene: bpy.types.Scene, sensors: tuple[SceneSensor, ...], vehicle: pe.Vehicle | None
+    scene: bpy.types.Scene,
+    sensors: tuple[SceneSensor, ...],
+    vehicle: pe.Vehicle | None,
+    mounts: tuple[MountFaces, ...],
 ) -> tuple[SearchBox, ...]:
     """No-go areas, and the bounds of the selected sensors; a search says what is wrong there."""
     found: list[bridge.LimitBox] = []
+    faces = {each.name: each.triangles for each in mounts}
     with contextlib.suppress(pe.InputError):
         found += bridge.no_go_boxes(scene)
     for each in sensors:
         if each.selected and (obj := scene.objects.get(each.sensor.name)) is not None:
             with contextlib.suppress(pe.InputError):
-                box = bridge.bounds_box(obj, each.sensor, vehicle)
+                around = faces.get(obj.perception_entropy.mount)
+                box = bridge.bounds_box(obj, each.sensor, vehicle, around)
                 found += [] if box is None else [box]
     return tuple(SearchBox(*box) for box in found)
 

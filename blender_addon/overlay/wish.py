@@ -65,8 +65,9 @@ class SceneSensor:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MountFaces:
-    """The surface of a mount (F, 3, 3) [m]; `key` tells it from others, `strong`: draw it so."""
+    """The surface (F, 3, 3) [m] of a mount; `key` tells it from others, `strong`: draw it so."""
 
+    name: str
     key: Hashable
     triangles: NDArray[np.float64]
     strong: bool = False

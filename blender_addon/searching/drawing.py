@@ -1,4 +1,7 @@
-"""The curve of the search that runs, in the lower right corner of the 3D view."""
+"""The curve of the search that runs, in the lower left corner of the 3D view.
+
+It stands clear of the toolbar and of the panel of the last operation, and above the live score.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ SMALL, TITLE = 11.0, 13.0
 WIDTH, HEIGHT = 268.0, 148.0
 PAD, LEFT, TOP, BOTTOM = 10.0, 36.0, 26.0, 18.0
 """Round the plate's inside, and what axes and title take of it."""
-MARGIN, ABOVE_EDGE = 14.0, 37.0
+MARGIN, HUD_ROW, LIVE_HEIGHT = 14.0, 30.0, 150.0
 LINE_PX, AXIS_PX, DOT_PX = 2.0, 1.0, 5.0
 Color = tuple[float, float, float, float]
 INK: Color = (0.95, 0.95, 0.95, 1.0)
@@ -68,9 +71,9 @@ def draw() -> None:
         draw_curve(curve_of(seen), *_corner(context), context.preferences.system.ui_scale)
 
 
-def draw_curve(curve: SearchCurve, right: float, bottom: float, scale: float) -> None:
-    """Draw a curve on a dark plate whose lower right corner is given [px]."""
-    left, top = right - WIDTH * scale, bottom + HEIGHT * scale
+def draw_curve(curve: SearchCurve, left: float, bottom: float, scale: float) -> None:
+    """Draw a curve on a dark plate whose lower left corner is given [px]."""
+    right, top = left + WIDTH * scale, bottom + HEIGHT * scale
     pad = PAD * scale
     axes = PlotAxes(
         left + pad + LEFT * scale,
@@ -131,16 +134,20 @@ def _line(points: list[tuple[float, float, float]], color: Color, width_px: floa
 
 
 def _corner(context: bpy.types.Context) -> tuple[float, float]:
-    """Lower right corner of the plate in the region [px]: clear of the sidebar."""
+    """Lower left corner of the plate in the region [px]."""
     scale, region = context.preferences.system.ui_scale, context.region
-    right = float(region.width)
+    left, bottom = 0.0, HUD_ROW * scale
     for each in context.area.regions:
-        if each.type == "UI" and each.width > 1 and each.x > region.x + region.width / 2:
-            right = min(right, each.x - region.x)
-    return right - MARGIN * scale, ABOVE_EDGE * scale
+        if each.type == "TOOLS" and each.x < region.x + region.width / 2:
+            left = max(left, each.x + each.width - region.x)
+        elif each.type == "HUD" and each.height > 1:
+            bottom = max(bottom, each.y + each.height - region.y)
+    if context.scene.perception_entropy.live.on:
+        bottom += LIVE_HEIGHT * scale
+    return left + MARGIN * scale, bottom + MARGIN * scale / 2.0
 
 
 def _is_corner(context: bpy.types.Context) -> bool:
-    """Whether the region is the lower right one of its area: of four in a quad view, one."""
+    """Whether the region is the lower left one of its area: of four in a quad view, one."""
     windows = [each for each in context.area.regions if each.type == "WINDOW"]
-    return context.region == max(windows, key=lambda each: (-each.y, each.x))
+    return context.region == min(windows, key=lambda each: (each.y, each.x))

@@ -17,7 +17,7 @@ ROOM_M = 4.0
 """A part is as large as a room when two of its sides are this long [m]..."""
 FAR_LARGER = 1.5
 """...and so many times as long as those of all smaller parts together."""
-BINS, ENOUGH = 256, 200_000
+BINS, ENOUGH = 256, 100_000
 """Bins of a mesh's surface along an axis, and how many of its triangles are sorted into them."""
 
 
@@ -85,6 +85,12 @@ class BodyShape:
         return _part_bounds(self.triangles, np.asarray(self.parts), len(self.part_names))
 
 
+def corner_bounds(triangles: Floats) -> tuple[Floats, Floats]:
+    """Lowest and highest corner (3,) of triangles (F, 3, 3), F at least 1."""
+    axes = [triangles[..., k] for k in range(3)]  # axis by axis: many times as fast
+    return np.array([each.min() for each in axes]), np.array([each.max() for each in axes])
+
+
 def _lopsided(at: Floats, area: Floats) -> float:
     low, high = float(at.min()), float(at.max())
     total = float(area.sum())
@@ -108,8 +114,7 @@ def _bounds_of_runs(triangles: Floats, starts: NDArray[np.int64]) -> tuple[Float
     """Lowest and highest corner (R, 3) of each run of triangles."""
     stops = np.append(starts[1:], len(triangles))
     if len(starts) < FEW_RUNS:
-        runs = [triangles[a:b].reshape(-1, 3) for a, b in zip(starts, stops, strict=True)]
-        pairs = [(run.min(axis=0), run.max(axis=0)) for run in runs]
+        pairs = [corner_bounds(triangles[a:b]) for a, b in zip(starts, stops, strict=True)]
         return np.array([low for low, _ in pairs]), np.array([high for _, high in pairs])
     a, b, c = (triangles[:, k] for k in range(3))
     least, most = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .body_shape import BodyShape
+from .body_shape import BodyShape, corner_bounds
 
 SMALLEST_M, LARGEST_M, WIDEST_M = 0.1, 60.0, 25.0
 """The longest side of a vehicle is from the first to the second, the next one up to the last."""
@@ -46,8 +46,8 @@ def require_vehicle_size(source: str, body: Meshed) -> None:
     InputError
         One line with its size, and the factor that would make it a vehicle.
     """
-    corners = body.triangles.reshape(-1, 3)
-    if _is_possible((corners.max(axis=0) - corners.min(axis=0)).tolist()):
+    low, high = corner_bounds(body.triangles)
+    if _is_possible((high - low).tolist()):
         return
     size = BodyShape(body.triangles, body.parts, body.part_names).size
     if not _is_possible(size):

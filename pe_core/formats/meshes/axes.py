@@ -111,12 +111,11 @@ def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
     triangles = _turned(mesh.triangles, chosen.up, chosen.forward)
     if axes.scale != 1.0:
         triangles = triangles * axes.scale
+        if not np.isfinite(triangles).all():
+            raise InputError(source, "scale", "finite coordinates", shown(axes.scale))
     if any(axes.rotation_deg or ()):
-        triangles = rotate(
-            Pose.from_degrees((0, 0, 0), axes.rotation_deg or ()).ground_from_sensor, triangles
-        )
-    if not np.isfinite(triangles).all():
-        raise InputError(source, "scale", "finite coordinates", shown(axes.scale))
+        turn = Pose.from_degrees((0, 0, 0), axes.rotation_deg or ())
+        triangles = rotate(turn.ground_from_sensor, triangles)
     return Mesh(triangles, mesh.parts, mesh.part_names, _words(chosen))
 
 

@@ -12,10 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from ...scene.geometry import rotate
 from ...text.memory import require_memory
 from .glb_document import Document, Item
 from .glb_nodes import placed_meshes
-from .mesh import Mesh, fan, make_mesh, require_room
+from .mesh import Mesh, fan, gathered, make_mesh, require_room
+
+Floats = NDArray[np.float64]
+Surface = tuple[Floats, NDArray[Any]]
+"""Points (N, 3) and the corners (F, 3) among them of triangles."""
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant")
@@ -116,13 +121,13 @@ def _scene(document: Document) -> Mesh:
     placed = list(placed_meshes(document))
     sizes = {index: _size(document, index) for index in dict.fromkeys(m for _, m, _ in placed)}
     require_room(document.source, sum(sizes[index] for _, index, _ in placed))
-    # Each mesh is made once, however many nodes show it.
+    # Each mesh is read once, however many nodes show it.
     shapes = {index: _shape(document, index) for index in sizes}
-    triangles = [np.zeros((0, 3, 3)), *(_place(shapes[m], world) for _, m, world in placed)]
+    triangles = [each for _, m, world in placed for each in _place(shapes[m], world)]
     counts = [sizes[index] for _, index, _ in placed]
     parts = np.repeat(np.arange(len(placed), dtype=np.int32), counts)
     names = [name for name, _, _ in placed]
-    return make_mesh(document.source, np.concatenate(triangles), parts, names)
+    return make_mesh(document.source, _joined(triangles), parts, names)
 
 
 def _size(document: Document, index: int) -> int:
@@ -149,45 +154,55 @@ def _corner_list(primitive: Item) -> Any:
     return primitive["indices"] if indexed else primitive["attributes"]["POSITION"]
 
 
-def _shape(document: Document, index: int) -> NDArray[np.float64]:
-    """Triangles (F, 3, 3) of a mesh in its own frame."""
+def _joined(triangles: list[Floats]) -> Floats:
+    if len(triangles) == 1:
+        return triangles[0]
+    return np.concatenate([np.zeros((0, 3, 3)), *triangles])
+
+
+def _shape(document: Document, index: int) -> list[Surface]:
+    """The surfaces of a mesh in its own frame."""
     primitives = document.item("meshes", index)["primitives"]
-    return np.concatenate([np.zeros((0, 3, 3)), *(_primitive(document, p) for p in primitives)])
+    return [_primitive(document, each) for each in primitives if _has_faces(each)]
 
 
-def _primitive(document: Document, primitive: Item) -> NDArray[np.float64]:
-    """Triangles (F, 3, 3) of a primitive in its mesh's own frame."""
-    if not _has_faces(primitive):
-        return np.zeros((0, 3, 3))
+def _primitive(document: Document, primitive: Item) -> Surface:
+    """The surface of a primitive in its mesh's own frame."""
     mode, listed = _mode(primitive), _corner_list(primitive)
     positions = primitive["attributes"]["POSITION"]
     points = document.accessor(positions, "VEC3")
     order: NDArray[Any] = np.arange(len(points))
     if "indices" in primitive:
         order = document.accessor(listed, "SCALAR").ravel()
-        if order.dtype.kind != "u" or (order >= len(points)).any():
+        if order.dtype.kind != "u" or int(order.max()) >= len(points):
             expected = f"whole numbers within the {len(points)} vertices"
             raise document.error(f"accessors[{listed}]", expected, f"up to {order.max()}")
     if mode == _TRIANGLES and len(order) % 3:
         raise document.error("primitive", "three corners to a triangle", f"{len(order)} corners")
-    # Only the corners become doubles: many small primitives may share a long list of points.
-    return document.numbers(positions, points[order[_corners(mode, len(order))]])
+    corners = _corners(mode, order)
+    if corners.size < len(points):
+        # Only the corners become doubles: many small primitives may share a long list of points.
+        points = points[corners.ravel()]
+        corners = np.arange(len(points)).reshape(-1, 3)
+    return document.numbers(positions, points), corners
 
 
-def _corners(mode: int, count: int) -> NDArray[np.int64]:
-    """Which of a primitive's `count` corners make up its triangles (F, 3)."""
+def _corners(mode: int, order: NDArray[Any]) -> NDArray[Any]:
+    """Which of the corners in their order make up a primitive's triangles (F, 3)."""
     if mode == _TRIANGLES:
-        return np.arange(count).reshape(-1, 3)
+        return order.reshape(-1, 3)
     if mode == _FAN:
-        return fan(np.array([count]))[0]
-    first = np.arange(max(count - 2, 0))
+        return order[fan(np.array([len(order)]))[0]]
+    first = np.arange(max(len(order) - 2, 0))
     # Every other triangle of a strip runs the other way round.
     odd = first % 2
-    return np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)
+    return order[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
 
 
-def _place(triangles: NDArray[np.float64], world: NDArray[np.float64]) -> NDArray[np.float64]:
-    placed = triangles @ world[:3, :3].T + world[:3, 3]
-    if np.linalg.det(world[:3, :3]) < 0:
-        placed = placed[:, ::-1]
-    return placed
+def _place(surfaces: list[Surface], world: Floats) -> Iterator[Floats]:
+    """Triangles (F, 3, 3) of surfaces where a node puts them."""
+    linear = world[:3, :3]
+    mirrors = np.linalg.det(linear) < 0
+    for points, corners in surfaces:
+        moved = rotate(linear, points) + world[:3, 3]
+        yield gathered(moved, corners[:, ::-1] if mirrors else corners)

@@ -63,7 +63,7 @@ def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequen
         There is no triangle, a shape is wrong, a coordinate is NaN or infinite,
         or a part index is out of range.
     """
-    corners = np.array(triangles, dtype=np.float64)
+    corners = np.ascontiguousarray(triangles, dtype=np.float64)
     labels = np.asarray(parts)
     if corners.size == 0:
         raise InputError(source, "triangles", "at least one triangle", "none")
@@ -120,6 +120,8 @@ def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         The polygon each triangle came from.
     """
     sizes = counts.astype(np.int64)
+    if (sizes == 3).all():  # as nearly all files have it
+        return np.arange(3 * len(sizes)).reshape(-1, 3), np.arange(len(sizes))
     triangles = np.maximum(sizes - 2, 0)
     polygons = np.repeat(np.arange(len(sizes)), triangles)
     step = np.arange(len(polygons)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
@@ -128,17 +130,20 @@ def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 
 def _require_finite(source: str, corners: NDArray[np.float64]) -> None:
-    bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
-    if bad.size:
-        row = int(bad[0])
+    if not np.isfinite(corners).all():
+        row = int(np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))[0])
         found = str(corners[row].tolist())
         raise InputError(source, f"triangles[{row}]", "finite coordinates", found)
 
 
+def gathered(points: NDArray[np.float64], corners: NDArray[Any]) -> NDArray[np.float64]:
+    """Triangles (T, 3, 3) of points (N, 3) at indices (T, 3) that are within them."""
+    return np.take(points, corners, axis=0, mode="clip")  # "clip" does without a buffer
+
+
 def _require_within(source: str, labels: NDArray[Any], names: int) -> None:
-    bad = np.flatnonzero((labels < 0) | (labels >= names))
-    if bad.size:
-        row = int(bad[0])
+    if labels.size and not 0 <= int(labels.min()) <= int(labels.max()) < names:
+        row = int(np.flatnonzero((labels < 0) | (labels >= names))[0])
         expected = f"an index into the {names} part names"
         raise InputError(source, f"parts[{row}]", expected, str(labels[row]))
 
@@ -146,6 +151,8 @@ def _require_within(source: str, labels: NDArray[Any], names: int) -> None:
 def _tidy_parts(
     labels: NDArray[Any], names: Sequence[str]
 ) -> tuple[NDArray[np.int32], tuple[str, ...]]:
+    if len(names) == 1:
+        return np.zeros(len(labels), np.int32), tuple(names)
     used = np.bincount(labels.astype(np.int64), minlength=len(names)) > 0
     wanted = [name for name, has_triangles in zip(names, used, strict=True) if has_triangles]
     kept = {name: new for new, name in enumerate(dict.fromkeys(wanted))}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from ...errors import InputError
 from ...text.files import decode_text
 from ...text.memory import require_memory
-from .mesh import TEXT_UNFOLDS, Mesh, fan, fan_size, make_mesh, require_room
+from .mesh import TEXT_UNFOLDS, Mesh, fan, fan_size, gathered, make_mesh, require_room
 from .ply_elements import Column, Element, Property, read_element
 
 _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -53,9 +54,16 @@ def read_ply(path: Path, data: bytes) -> Mesh:
     points = _points(source, columns.get("vertex", {}))
     faces = _faces(source, columns.get("face", {}), len(points))
     require_room(source, fan_size(faces.counts))
-    corners, _ = fan(faces.counts)
-    triangles = points[faces.values.astype(np.int64)[corners]]
+    triangles = gathered(points, _corners(faces))
     return make_mesh(source, triangles, np.zeros(len(triangles), np.int32), [path.stem])
+
+
+def _corners(faces: Column) -> NDArray[np.int64]:
+    """Indices (T, 3) of the fans that faces are cut into."""
+    indices = faces.values.astype(np.int64)
+    if (faces.counts == 3).all():
+        return indices.reshape(-1, 3)
+    return indices[fan(faces.counts)[0]]
 
 
 def _split(source: str, data: bytes) -> tuple[list[str], bytes]:
@@ -140,6 +148,8 @@ def _faces(source: str, face: dict[str, Column], points: int) -> Column:
         found = ", ".join(face) or "none"
         raise InputError(source, "element face", "a list called vertex_indices", found)
     values = faces.values
+    if _all_within(values, points):
+        return faces
     # Asked this way round, NaN is bad too.
     bad = np.flatnonzero(~((values >= 0) & (values < points) & (values == np.floor(values))))
     if bad.size:
@@ -147,3 +157,9 @@ def _faces(source: str, face: dict[str, Column], points: int) -> Column:
         expected = f"vertex indices within the {points} vertices"
         raise InputError(source, f"face[{row}]", expected, str(values[bad[0]]))
     return faces
+
+
+def _all_within(values: NDArray[Any], points: int) -> bool:
+    """Whether values are whole numbers within so many points; also False for some that are."""
+    whole = values.dtype.kind in "iu" and values.size > 0
+    return whole and 0 <= int(values.min()) <= int(values.max()) < points

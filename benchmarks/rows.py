@@ -10,6 +10,7 @@ import pe_core as pe
 
 from . import literal
 from .embree import Embree
+from .mesh_rows import read_glb, read_obj, read_ply
 from .problems import (
     ROOF_LIDAR,
     car,
@@ -208,5 +209,8 @@ ROWS: dict[str, Callable[[], Timing]] = {
         simplify,
         candidate,
         candidates_in_processes,
+        read_obj,
+        read_ply,
+        read_glb,
     )
 }

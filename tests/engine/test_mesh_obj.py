@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pe_core.formats.meshes import Mesh, write_mesh
+from pe_core.formats.meshes import Mesh, obj, write_mesh
 from tests.engine.mesh_files import BOX, HUGE, SQUARE, one_line_test, read
 
 
@@ -64,6 +64,53 @@ OBJ_FORMS = {
 def test_obj_forms(tmp_path: Path, text: str) -> None:
     """Every way OBJ has of writing a unit square gives the same two triangles."""
     assert read(tmp_path, "s.obj", text.encode()).triangles.tolist() == SQUARE.tolist()
+
+
+def both(data: bytes) -> tuple[Mesh | None, Mesh]:
+    """What a file is in blocks, None if they do not have it, and what it is line by line."""
+    return obj._read_blocks(Path("car.obj"), data), obj._read_lines(Path("car.obj"), data)
+
+
+def same(a: Mesh, b: Mesh) -> bool:
+    """Whether two meshes are alike to the bit."""
+    names, parts = a.part_names == b.part_names, a.parts.tolist() == b.parts.tolist()
+    return names and parts and a.triangles.tobytes() == b.triangles.tobytes()
+
+
+@pytest.mark.parametrize("text", [*OBJ_FORMS.values(), *(CORNERS + t for t, _ in PARTS.values())])
+def test_blocks_say_what_lines_say_or_nothing(text: str) -> None:
+    """Whatever is not written as programs do is left to those who read lines."""
+    fast, slow = both(text.encode())
+    assert fast is None or same(fast, slow)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_blocks_read_random_files_to_the_bit(seed: int) -> None:
+    """Numbers of any length, names between faces, triangles alone or polygons, either ending."""
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(300, 3)) * 10.0 ** rng.integers(-12, 12, (300, 3))
+    form = ("{!r}", "{:.6f}", "{:e}")[seed % 3]
+    colours = " 0.5 1 .25" if seed % 2 else ""
+    lines = ["# made", "mtllib a.mtl", "o first"]
+    lines += ["v " + " ".join(form.format(x) for x in row) + colours for row in points.tolist()]
+    for k in range(400):
+        corners = rng.integers(1, 301, 3 if seed < 3 else rng.integers(2, 6)).tolist()
+        tail = ("", "/7", "//12", "/3/4")[seed % 4]
+        lines += [f"o Teil ä{k}"] * (k % 90 == 0) + ["vn 0 0 1", "s off"] * (k % 70 == 0)
+        lines.append("f " + " ".join(f"{i}{tail}" for i in corners))
+    fast, slow = both(("\r\n" if seed % 2 else "\n").join(lines).encode())
+    assert fast is not None and same(fast, slow)
+    assert len(fast.part_names) == 5
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["v 1 2 3v", "v 1_0 2 3", "v 1 2 -", "v 1 2", "f 1 2 /3", "f 1 f 3", "f 1 2 3 #", " v 1 2 3"],
+)
+def test_what_is_not_as_programs_write_it_is_not_read_in_blocks(line: str) -> None:
+    """One line among good ones: it is an error, or read by who reads lines."""
+    data = f"{V}{line}\nf 1 2 3\n".encode()
+    assert obj._read_blocks(Path("car.obj"), data) is None
 
 
 BAD = {

@@ -6,11 +6,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...text.files import decode_text
 from ...text.memory import require_memory
-from .mesh import TEXT_UNFOLDS, Mesh, fan, fan_size, make_mesh, require_room
+from .mesh import TEXT_UNFOLDS, Mesh, fan, fan_size, gathered, make_mesh, require_room
+from .obj_blocks import Statements, regular_statements
 
 
 @dataclass(slots=True)
@@ -42,6 +44,46 @@ def read_obj(path: Path, data: bytes) -> Mesh:
     if b"\0" in data:
         raise InputError(source, "file", "OBJ text", "binary data")
     require_memory(source, "file", len(data) * TEXT_UNFOLDS)
+    return _read_blocks(path, data) or _read_lines(path, data)
+
+
+def _read_blocks(path: Path, data: bytes) -> Mesh | None:
+    """Read a file as programs write it; None for what has to be read line by line."""
+    found = regular_statements(data)
+    if found is None or not _is_within(found.corners, len(found.points)):
+        return None
+    source = str(path)
+    require_room(source, fan_size(found.counts))
+    names = {path.stem: 0}
+    labels = _labels(found, names)
+    if (found.counts == 3).all():
+        corners = found.corners.reshape(-1, 3)
+    else:
+        positions, faces = fan(found.counts)
+        corners, labels = found.corners[positions], labels[faces]
+    return make_mesh(source, gathered(found.points, corners), labels, list(names))
+
+
+def _is_within(corners: NDArray[np.int64], points: int) -> bool:
+    return corners.size > 0 and 0 <= int(corners.min()) <= int(corners.max()) < points
+
+
+def _labels(found: Statements, names: dict[str, int]) -> NDArray[np.int32]:
+    """The part of each face, by the names among the other lines; new ones are added to `names`."""
+    # Together: a single letter says how all of them are encoded.
+    lines = decode_text(b"".join(found.others)).split("\n")
+    keyword = "o" if any(line.split(None, 1)[:1] == ["o"] for line in lines) else "g"
+    labels = np.zeros(len(found.counts), np.int32)
+    for line, first in zip(lines, found.before.tolist(), strict=False):
+        if line.split(None, 1)[:1] == [keyword]:
+            name = line.strip()[1:].strip()
+            labels[first:] = names.setdefault(name, len(names)) if name else 0
+    return labels
+
+
+def _read_lines(path: Path, data: bytes) -> Mesh:
+    """Read any file, line by line: what `_read_blocks` is held to, and what tells of errors."""
+    source = str(path)
     lines = _logical_lines(decode_text(data))
     keyword = "o" if any(line.split(None, 1)[:1] == ["o"] for line in lines) else "g"
     names = {path.stem: 0}

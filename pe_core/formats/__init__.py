@@ -2,9 +2,10 @@
 
 from .ap_table import read_ap_table
 from .boxes import read_boxes, write_boxes
-from .meshes import Mesh, MeshAxes, read_mesh, write_mesh
+from .meshes import FoundMesh, Mesh, MeshAxes, read_mesh, write_mesh
 
 __all__ = [
+    "FoundMesh",
     "Mesh",
     "MeshAxes",
     "read_ap_table",

@@ -13,6 +13,7 @@ from ...errors import InputError
 from ...text.files import MESH_BYTES, read_bytes, write_bytes
 from ...text.memory import told_if_too_much
 from .axes import AS_SAID, GLTF, OURS, UNSAID, MeshAxes, SaidAxes, oriented, said_in_comments
+from .elsewhere import FoundMesh, is_read_elsewhere, read_elsewhere
 from .glb import read_glb
 from .mesh import Mesh, make_mesh
 from .npz import dump_npz, read_npz
@@ -23,7 +24,7 @@ from .stl import read_stl
 
 _F = TypeVar("_F")
 
-__all__ = ["AS_SAID", "Mesh", "MeshAxes", "read_mesh", "write_mesh"]
+__all__ = ["AS_SAID", "FoundMesh", "Mesh", "MeshAxes", "read_mesh", "write_mesh"]
 
 _READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
     ".npz": read_npz,
@@ -42,7 +43,7 @@ _WRITERS: dict[str, Callable[[Path, Mesh], bytes]] = {".npz": dump_npz, ".obj": 
 
 
 def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
-    """Read a mesh from a .npz, .obj, .stl, .ply or .glb file.
+    """Read a mesh from a .npz, .obj, .stl, .ply or .glb file; with the extra `meshes`, .dae or USD.
 
     Parameters
     ----------
@@ -51,8 +52,8 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     axes : MeshAxes, optional
         Which axes of the file are forward and up, a scale and a rotation. What it leaves out is
         what the file says: .npz, and .obj with a comment like ours, are in the ground frame
-        (x forward, y left, z up), .glb has +Y up. Else names of parts and the shape decide, or
-        the default: the ground frame, in .glb +Z forward.
+        (x forward, y left, z up), .glb has +Y up, .dae and USD say which is. Else names of parts
+        and the shape decide, or the default: the ground frame, in .glb +Z forward.
 
     Returns
     -------
@@ -64,19 +65,23 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     Raises
     ------
     InputError
-        The file is missing, of no known suffix or not what its suffix says, cut short, has
-        an index out of range or a coordinate that is not finite, has no triangles, or is
-        more than a mesh may be (`MESH_BYTES`, `MOST_TRIANGLES`) or than memory holds.
+        The file is missing, of no known suffix or of one whose reader is not installed; it is
+        not what its suffix says, cut short, has an index out of range or a coordinate that is
+        not finite, has no triangles, or is more than a mesh may be (`MESH_BYTES`,
+        `MOST_TRIANGLES`) or than memory holds.
     """
     path = Path(path)
-    reader = _of_suffix(path, _READERS)
+    suffix = path.suffix.lower()
+    if suffix not in _READERS and not is_read_elsewhere(suffix):
+        _of_suffix(path, _READERS)  # complains
     data = read_bytes(path, MESH_BYTES)
     # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
     with np.errstate(all="ignore"), told_if_too_much(path):
-        mesh = reader(path, data)
+        if suffix in _READERS:
+            mesh, said = _READERS[suffix](path, data), _SAYS.get(suffix, _unsaid)(data)
+        else:
+            mesh, said = read_elsewhere(path, data)
         fit = replace(mesh, part_names=fit_names(mesh.part_names))
-        says = _SAYS.get(path.suffix.lower())
-        said = UNSAID if says is None else says(data)
         return oriented(str(path), fit, said, axes or MeshAxes())
 
 
@@ -103,6 +108,10 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
     writer = _of_suffix(path, _WRITERS)
     sound = make_mesh(str(path), mesh.triangles, mesh.parts, mesh.part_names)
     write_bytes(path, writer(path, sound))
+
+
+def _unsaid(_data: bytes) -> SaidAxes:
+    return UNSAID
 
 
 def _of_suffix(path: Path, table: dict[str, _F]) -> _F:

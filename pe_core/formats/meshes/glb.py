@@ -19,7 +19,7 @@ from .glb_nodes import placed_meshes
 from .mesh import Mesh, fan, gathered, make_mesh, require_room
 
 Floats = NDArray[np.float64]
-Surface = tuple[Floats, NDArray[Any]]
+Faceted = tuple[Floats, NDArray[Any]]
 """Points (N, 3) and the corners (F, 3) among them of triangles."""
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
@@ -160,14 +160,14 @@ def _joined(triangles: list[Floats]) -> Floats:
     return np.concatenate([np.zeros((0, 3, 3)), *triangles])
 
 
-def _shape(document: Document, index: int) -> list[Surface]:
-    """The surfaces of a mesh in its own frame."""
+def _shape(document: Document, index: int) -> list[Faceted]:
+    """The triangles of a mesh in its own frame."""
     primitives = document.item("meshes", index)["primitives"]
     return [_primitive(document, each) for each in primitives if _has_faces(each)]
 
 
-def _primitive(document: Document, primitive: Item) -> Surface:
-    """The surface of a primitive in its mesh's own frame."""
+def _primitive(document: Document, primitive: Item) -> Faceted:
+    """The triangles of a primitive in its mesh's own frame."""
     mode, listed = _mode(primitive), _corner_list(primitive)
     positions = primitive["attributes"]["POSITION"]
     points = document.accessor(positions, "VEC3")
@@ -199,7 +199,7 @@ def _corners(mode: int, order: NDArray[Any]) -> NDArray[Any]:
     return order[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
 
 
-def _place(surfaces: list[Surface], world: Floats) -> Iterator[Floats]:
+def _place(surfaces: list[Faceted], world: Floats) -> Iterator[Floats]:
     """Triangles (F, 3, 3) of surfaces where a node puts them."""
     linear = world[:3, :3]
     mirrors = np.linalg.det(linear) < 0

@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...text.files import decode_text
 from ...text.memory import require_memory
 from .mesh import TEXT_UNFOLDS, Mesh, fan, fan_size, gathered, make_mesh, require_room
-from .obj_blocks import Statements, regular_statements
+from .obj_blocks import ObjContent, regular_statements
 
 
 @dataclass(slots=True)
@@ -68,7 +68,7 @@ def _is_within(corners: NDArray[np.int64], points: int) -> bool:
     return corners.size > 0 and 0 <= int(corners.min()) <= int(corners.max()) < points
 
 
-def _labels(found: Statements, names: dict[str, int]) -> NDArray[np.int32]:
+def _labels(found: ObjContent, names: dict[str, int]) -> NDArray[np.int32]:
     """The part of each face, by the names among the other lines; new ones are added to `names`."""
     # Together: a single letter says how all of them are encoded.
     lines = decode_text(b"".join(found.others)).split("\n")

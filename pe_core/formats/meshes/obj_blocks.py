@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Bytes = NDArray[np.uint8]
-Places = NDArray[np.int64]
+Offsets = NDArray[np.int64]
 
 NEWLINE, BLANK = b"\n"[0], b" "[0]
 LONGEST_INDEX = 18
@@ -25,27 +25,27 @@ for _sort, _letters in ((LETTER, b"f"), (SPACE, b" \n"), (SLASH, b"/"), (DIGIT, 
     FACE_LETTERS[list(_letters)] = _sort
 
 
-class Statements(NamedTuple):
+class ObjContent(NamedTuple):
     """What a file says: points, corners of faces end to end from 0, corners of each face.
 
     `others` are all other lines, `before` how many faces are before each of them.
     """
 
     points: NDArray[np.float64]
-    corners: Places
-    counts: Places
+    corners: Offsets
+    counts: Offsets
     others: list[bytes]
-    before: Places
+    before: Offsets
 
 
 class _Block(NamedTuple):
     """The bytes of some lines, end to end, and where each line ends (its newline)."""
 
     text: Bytes
-    ends: Places
+    ends: Offsets
 
 
-def regular_statements(data: bytes) -> Statements | None:
+def regular_statements(data: bytes) -> ObjContent | None:
     """Return what a file says; None for one that has to be read line by line."""
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n")
@@ -66,7 +66,7 @@ def regular_statements(data: bytes) -> Statements | None:
     others = [text[a : b + 1].tobytes() for a, b in lines]
     if any(_is_hidden_statement(line) for line in others):
         return None
-    return Statements(points, *faces, others, np.cumsum(is_face)[is_other])
+    return ObjContent(points, *faces, others, np.cumsum(is_face)[is_other])
 
 
 def _is_hidden_statement(line: bytes) -> bool:
@@ -74,7 +74,7 @@ def _is_hidden_statement(line: bytes) -> bool:
     return line.split(None, 1)[:1] in ([b"v"], [b"f"])
 
 
-def _block(text: Bytes, starts: Places, ends: Places, which: NDArray[np.bool_]) -> _Block:
+def _block(text: Bytes, starts: Offsets, ends: Offsets, which: NDArray[np.bool_]) -> _Block:
     """Return the lines of one sort, which stand in runs one after the other."""
     edges = np.flatnonzero(np.diff(which.view(np.int8), prepend=0, append=0))
     runs = [text[starts[a] : ends[b - 1] + 1] for a, b in edges.reshape(-1, 2).tolist()]
@@ -105,7 +105,7 @@ def _points(block: _Block) -> NDArray[np.float64] | None:
     return np.ascontiguousarray(numbers.reshape(-1, columns)[:, :3])
 
 
-def _each_has(count: int, begins: Places, ends: Places) -> bool:
+def _each_has(count: int, begins: Offsets, ends: Offsets) -> bool:
     """Whether each line, which ends there, has so many of the words that begin there."""
     if count < 1 or len(begins) != count * len(ends):
         return False
@@ -113,7 +113,7 @@ def _each_has(count: int, begins: Places, ends: Places) -> bool:
     return bool((last < ends).all()) and bool((following > ends[:-1]).all())
 
 
-def _faces(block: _Block) -> tuple[Places, Places] | None:
+def _faces(block: _Block) -> tuple[Offsets, Offsets] | None:
     """Corners of all faces end to end, from 0, and how many each face has."""
     text, ends = block
     sort = FACE_LETTERS[text]
@@ -134,7 +134,7 @@ def _faces(block: _Block) -> tuple[Places, Places] | None:
     return _whole_numbers(text, begins, stops) - 1, counts
 
 
-def _whole_numbers(text: Bytes, begins: Places, stops: Places) -> Places:
+def _whole_numbers(text: Bytes, begins: Offsets, stops: Offsets) -> Offsets:
     """The numbers whose digits are from `begins` to before `stops`."""
     values = np.zeros(len(begins), np.int64)
     size = (stops - begins).astype(np.int8)

@@ -1,0 +1,112 @@
+"""Formats that other packages read: found by entry points, turned as all are; told when missing."""
+
+import ast
+import sys
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.formats import FoundMesh
+from pe_core.formats.meshes import elsewhere
+from tests.engine.mesh_files import BOX
+
+PACKAGE = Path(pe.__file__).parent.parent / "pe_meshes"
+DAE = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><created>2026-01-01T00:00:00</created><modified>2026-01-01T00:00:00</modified>
+<unit name="inch" meter="0.0254"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g" name="shape"><mesh>
+<source id="p"><float_array id="a" count="12">0 0 0 100 0 0 100 0 40 0 0 40</float_array>
+<technique_common><accessor source="#a" count="4" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>4</vcount>
+<p>0 1 2 3</p></polylist></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n" name="roof">
+<translate>0 60 0</translate><node id="m" name="inner"><instance_geometry url="#g"/></node>
+</node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>
+"""
+
+
+def install(monkeypatch, value):
+    """Let an entry point for .dae lead there."""
+    points = [EntryPoint("dae", value, elsewhere.READERS)]
+    monkeypatch.setattr(
+        elsewhere, "entry_points", lambda group, name: points if name == "dae" else []
+    )
+
+
+def box(path, data):
+    """A reader: a box whose y is up, its length along z."""
+    assert path.name == "box.dae" and data == b"anything"
+    return FoundMesh(BOX[..., [1, 2, 0]], np.zeros(12, np.int32), ["a\nname"], "+y")
+
+
+def test_a_reader_is_found_and_its_mesh_is_checked_and_turned(monkeypatch, tmp_path):
+    install(monkeypatch, f"{__name__}:box")
+    monkeypatch.setitem(sys.modules, __name__, sys.modules[box.__module__])
+    (tmp_path / "box.dae").write_bytes(b"anything")
+    mesh = pe.read_mesh(tmp_path / "box.dae")
+    assert mesh.triangles.tolist() == BOX.tolist()
+    assert mesh.part_names == ("a?name",)
+    assert mesh.axes == "faces +z (shape), up is +y (file)"
+
+
+@pytest.mark.parametrize(
+    ("value", "found"),
+    [(None, "none installed"), ("no_such_library_at_all:read", "no no_such_library_at_all")],
+)
+def test_without_its_reader_one_line_says_what_to_install(monkeypatch, tmp_path, value, found):
+    if value:
+        install(monkeypatch, value)
+    else:
+        monkeypatch.setattr(elsewhere, "entry_points", lambda group, name: [])
+    (tmp_path / "car.dae").write_bytes(b"<COLLADA/>")
+    with pytest.raises(
+        pe.InputError, match=r"pip install 'perception-entropy\[meshes\]'.*" + found
+    ):
+        pe.read_mesh(tmp_path / "car.dae")
+
+
+def read_dae(monkeypatch, folder, text):
+    pytest.importorskip("collada", reason="of the extra meshes")
+    install(monkeypatch, "pe_meshes.collada:read_dae")
+    (folder / "car.dae").write_text(text)
+    return pe.read_mesh(folder / "car.dae", pe.MeshAxes(forward="+x"))
+
+
+def test_collada_s_unit_up_axis_polygons_and_nodes(monkeypatch, tmp_path):
+    """A rectangle of 100 x 40 inches, 60 inches up in a parent node, y up: z is right."""
+    mesh = read_dae(monkeypatch, tmp_path, DAE)
+    inch = 0.0254
+    corners = np.array([(0, 0, 60), (100, 0, 60), (100, -40, 60), (0, -40, 60)]) * inch
+    np.testing.assert_allclose(mesh.triangles, corners[[(0, 1, 2), (0, 2, 3)]], atol=1e-6)
+    assert mesh.part_names == ("inner",)
+    assert mesh.axes == "faces +x (study), up is +y (file)"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("<COLLADA>", "expected Collada, found"),
+        (DAE.replace("0 1 2 3</p>", "0 1 2 7</p>"), "vertex indices within the 4|expected Collada"),
+        (DAE.replace("?>", "?><!DOCTYPE a [<!ENTITY b 'c'>]>"), "found <!DOCTYPE"),
+        (DAE.replace('meter="0.0254"', 'meter="0"'), "unit: expected a length"),
+    ],
+)
+def test_bad_collada_is_one_line(monkeypatch, tmp_path, text, words):
+    with pytest.raises(pe.InputError, match=words) as caught:
+        read_dae(monkeypatch, tmp_path, text)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_readers_take_from_the_engine_its_faces_alone():
+    """And what they need to install is imported by nobody else."""
+    faces = {"pe_core.errors", "pe_core.formats"}
+    for path in PACKAGE.glob("*.py"):
+        nodes = [n for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.ImportFrom)]
+        assert {n.module for n in nodes if n.level == 0 and n.module.startswith("pe_core")} <= faces

@@ -35,6 +35,7 @@ from .rig import (
     view_layer_of,
 )
 from .scene import check_scene, study_from_scene, study_of_rig, vehicle_of_scene
+from .selection import check_choosable, keep_front
 from .standing import sensors_collection, shown_collection, stand
 from .variants import (
     active_variant,
@@ -69,6 +70,7 @@ __all__ = [
     "blender_version",
     "bounds_box",
     "bring_up_to_date",
+    "check_choosable",
     "check_placeable",
     "check_scene",
     "check_variants",
@@ -83,6 +85,7 @@ __all__ = [
     "forget_own_sensors",
     "free_axes",
     "in_the_middle",
+    "keep_front",
     "keep_score",
     "keep_search",
     "link_mirror",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import bpy
 
@@ -10,6 +11,7 @@ from ..engine import pe, studies
 from .advanced import Limits, all_limits, clearance_of, limits_of, perception_of, space_of
 from .holds import constrained, free_axes
 from .mounting import mounting_of
+from .offers import selection_of
 from .prior import prior_from_scene
 from .rig import rig_from_objects, sensor_objects
 from .tolerance import tolerance_of
@@ -39,7 +41,8 @@ def study_from_scene(
     counted = [scene.objects[sensor.name] for sensor in rig]
     mounting = mounting_of(scene, depsgraph, counted)
     limits = _limits(counted, rig, vehicle, mounting)
-    return study_of_rig(scene, depsgraph, rig, free, vehicle, limits, mounting)
+    study = study_of_rig(scene, depsgraph, rig, free, vehicle, limits, mounting)
+    return replace(study, selection=selection_of(scene.perception_entropy, counted))
 
 
 def study_of_rig(

@@ -145,16 +145,16 @@ def keep_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) 
     """Keep where a search began and what it found as variants; the second one stands here."""
     now = records_of_scene(scene)
     began, found = _moved(now, outcome.start.rig), _moved(now, outcome.study.rig)
-    before = _kept(scene, "Before optimize", began).key
+    before = kept_variant(scene, "Before optimize", began).key
     name = f"Optimized, seed {outcome.start.search.seed}"
-    after = _kept(scene, name, found).key
+    after = kept_variant(scene, name, found).key
     keep_score(scene, outcome.start.rig, outcome.before, surroundings)
     keep_score(scene, outcome.study.rig, outcome.after, surroundings)
     choose_variant(scene, after if after != before else before)
 
 
-def _kept(scene: bpy.types.Scene, name: str, records: Sequence[Record]) -> Variant:
-    """A variant of these sensors: one that there is, or a new one."""
+def kept_variant(scene: bpy.types.Scene, name: str, records: Sequence[Record]) -> Variant:
+    """Return a variant of these sensors: one that there is, or a new one."""
     taken = {row.name for row in scene.perception_entropy.variants}
     known = same_variant(scene, records)
     return known if known is not None else add_variant(scene, free_name(name, taken), records)

@@ -39,6 +39,14 @@ def leave_scene(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) 
         studies.add_to_result(data, folder, {REVIEW: picture})
 
 
+def leave_front(found: pe.TradeOff, folder: Path) -> None:
+    """Write the scene with the designs of a front as variants."""
+    scene = bpy.context.scene
+    bridge.keep_front(scene, found, stale.fingerprint(scene).surroundings)
+    with studies.FileSet(folder) as files:
+        files.add(OPTIMIZED, save_copy)
+
+
 def save_copy(path: Path) -> None:
     """Save the open scene to another file; the open file stays as it is."""
     try:

@@ -9,7 +9,7 @@ import bpy
 
 from .. import bridge
 from ..engine import app, pe, studies
-from .leaving import OPTIMIZED, REVIEW, leave_scene
+from .leaving import OPTIMIZED, REVIEW, leave_front, leave_scene
 from .opened import from_file, opened_study
 from .streams import quiet_blender
 
@@ -17,6 +17,8 @@ from .streams import quiet_blender
 def run_job(args: argparse.Namespace) -> app.Answer:
     """Score or optimize, and leave the results in the output folder."""
     study, kind = app.with_options(opened_study(args.variant), args), args.kind
+    if kind == "optimize" and study.selection.choices:
+        return choose_sensors(study, args)
     if kind == "optimize":
         with from_file():
             bridge.check_placeable(bpy.context.scene, study)
@@ -37,6 +39,23 @@ def run_job(args: argparse.Namespace) -> app.Answer:
         host=bridge.blender_version(),
         more=app.More(ours, leave),
     )
+
+
+def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
+    """Search for the front of a scene with choices; its designs are variants of the new scene."""
+    scene, output = bpy.context.scene, None
+    app.check_not_resumed(args)
+    with from_file():
+        bridge.check_choosable(scene, study)
+    if args.output is not None:
+        output = pe.prepare_folder(args.output, [OPTIMIZED])
+
+    def leave(found: pe.TradeOff, folder: Path) -> None:
+        with quiet_blender():
+            leave_front(found, folder)
+
+    job, host = pe.ChoiceJob(study, args.workers), bridge.blender_version()
+    return app.choose(job, output, as_json=args.json, host=host, more=leave)
 
 
 def export_study(args: argparse.Namespace) -> app.Answer:

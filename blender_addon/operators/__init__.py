@@ -23,6 +23,7 @@ from . import (
     running,
     search_sensor,
     select,
+    selection,
     variants,
 )
 from .ask_place import answer
@@ -59,6 +60,7 @@ CLASSES = (
     *select.CLASSES,
     *focus.CLASSES,
     *job.CLASSES,
+    *selection.CLASSES,
     *export.CLASSES,
     *review.CLASSES,
     *variants.CLASSES,

@@ -11,6 +11,7 @@ from . import (
     overlay,
     part,
     search,
+    selection,
     sensor,
     variants,
 )
@@ -22,6 +23,7 @@ CLASSES = (
     *explain.CLASSES,
     *breakdown.CLASSES,
     *variants.CLASSES,
+    *selection.CLASSES,
     *search.CLASSES,
     *mounts.CLASSES,
     *focus.CLASSES,

@@ -15,6 +15,7 @@ from .focus import DEFAULT_REGION, PE_FocusSettings
 from .live import PE_LiveSettings
 from .mounting import PE_MountPart, PE_MountSettings
 from .scene import PE_SceneSettings
+from .selection import PE_FrontRow, PE_SensorOption
 from .sensor import AXIS_LABELS, DEFAULT_MODEL, FREE_BY_DEFAULT, PE_ObjectSettings
 from .variants import PE_Variant, PE_VariantSensor
 from .view import PE_ViewSettings
@@ -37,6 +38,8 @@ CLASSES = (
     PE_LiveSettings,
     PE_MountPart,
     PE_MountSettings,
+    PE_SensorOption,
+    PE_FrontRow,
     PE_VariantSensor,
     PE_Variant,
     PE_Warning,

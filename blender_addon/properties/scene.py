@@ -23,6 +23,7 @@ from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
 from .live import PE_LiveSettings
 from .mounting import MountingSettings
+from .selection import SelectionSettings
 from .tolerance import ToleranceSettings
 from .variants import PE_Variant
 from .view import PE_ViewSettings
@@ -41,7 +42,11 @@ PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) 
 
 
 class PE_SceneSettings(
-    AdvancedSceneSettings, MountingSettings, ToleranceSettings, bpy.types.PropertyGroup
+    AdvancedSceneSettings,
+    MountingSettings,
+    SelectionSettings,
+    ToleranceSettings,
+    bpy.types.PropertyGroup,
 ):
     """The study's settings, and the last result."""
 

@@ -17,6 +17,7 @@ from ..engine import search
 from .advanced import SearchBounds
 from .callbacks import changed, model_chosen, models_of_a_kind, redraw
 from .mounting import MountedSettings
+from .selection import OfferedModels
 from .warnings import PE_StoppingPart
 
 DEFAULT_MODEL = "Pandar64"
@@ -25,7 +26,7 @@ AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
-class PE_ObjectSettings(SearchBounds, MountedSettings, bpy.types.PropertyGroup):
+class PE_ObjectSettings(SearchBounds, MountedSettings, OfferedModels, bpy.types.PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: BoolProperty(

@@ -1,6 +1,6 @@
 """The command ``pe``, and what all command lines share."""
 
-from .choosing import choose, plots
+from .choosing import check_not_resumed, choose, plots
 from .command import Parser, add_run_options, add_sensors_verb, count_up_to, run, with_options
 from .explaining import add_compare_options, add_explain_options, compare, explain
 from .interrupts import leave
@@ -24,6 +24,7 @@ __all__ = [
     "add_sensors_verb",
     "begun_search",
     "carry_out",
+    "check_not_resumed",
     "choose",
     "compare",
     "count_up_to",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import signal
 import sys
 import time
@@ -25,6 +26,13 @@ Draw = Callable[[Mapping[str, Any], Path], None]
 plots: list[Draw] = []
 """What draws the front beside its files: packages built on the engine add to it, with their verbs.
 """
+
+
+def check_not_resumed(args: argparse.Namespace) -> None:
+    """Complain of `--resume`: a search among designs is not gone on with."""
+    if getattr(args, "resume", None) is not None:
+        expected = "none for a study with choices, which begins anew"
+        raise InputError("command line", "--resume", expected, args.resume)
 
 
 def choose(

@@ -19,7 +19,7 @@ from ..study import (
     result_names,
 )
 from ..version import __version__
-from .choosing import choose
+from .choosing import check_not_resumed, choose
 from .command import Parser, add_run_options, add_sensors_verb, run, with_options
 from .exchanging import add_export_options, add_import_options, export, import_study
 from .explaining import (
@@ -115,9 +115,7 @@ def _run_job(args: argparse.Namespace) -> Answer:
 
 def _choose(study: Study, args: argparse.Namespace) -> Answer:
     """Search for which sensors, too: the front is in the folder of results."""
-    if args.resume is not None:
-        expected = "none for a study with choices, which begins anew"
-        raise InputError("command line", "--resume", expected, args.resume)
+    check_not_resumed(args)
     output = None if args.output is None else Path(args.output)
     _tell_of_boxes(study)
     return choose(ChoiceJob(study, args.workers), output, as_json=args.json)

@@ -114,8 +114,8 @@ class ChoiceJob(Job):
 
     @property
     def trade_off(self) -> TradeOff | None:
-        """What was found so far; None before the first design."""
-        if not self._found:
+        """What was found so far; None before the first design, and where all was dropped."""
+        if self.dropped or not self._found:
             return None
         ordered = sorted(self._named(), key=lambda design: (design.price, design.entropy))
         able = [d for d in ordered if d.score is not None] or ordered

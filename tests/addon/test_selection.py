@@ -1,0 +1,134 @@
+"""Which sensors: a scene's choices are the engine's, its front is variants to click through."""
+
+import json
+
+import bpy
+import pytest
+
+from blender_addon.engine import pe
+from tests.addon import scenes
+
+CAN, LARGE = "Velodyne VLP-16 Puck", "Pandar64"
+
+
+def offer(name, *options, left_out=False):
+    """Offer models at prices for a sensor's place."""
+    own = bpy.data.objects[name].perception_entropy
+    own.may_be_left_out = left_out
+    for model, price in options:
+        row = own.options.add()
+        row.model, row.price = model, price
+
+
+@pytest.fixture
+def offered(car):
+    """The car with two models for its roof, at prices that single precision does not hold."""
+    settings = car.perception_entropy
+    settings.candidates, settings.search_samples, settings.currency = 1, 1024, "EUR"
+    offer("roof", (LARGE, 99.1), (CAN, 7.3))
+    car.objects["roof"].perception_entropy.free = (False,) * 6
+    return car
+
+
+def refused(match):
+    with pytest.raises(RuntimeError, match=match) as told:
+        bpy.ops.pe.choose_sensors()
+    return told
+
+
+def test_the_scene_s_choices_are_the_study_s(offered):
+    scenes.add_sensor("eye", model="Camera 60 deg")
+    offer("eye", ("Camera 30 deg", 1.0), left_out=True)
+    offered.perception_entropy.max_price = 99.2
+    selection = scenes.study().selection
+    assert [c.sensors for c in selection.choices] == [("eye",), ("roof",)]
+    assert [c.optional for c in selection.choices] == [True, False]
+    roof = selection.choices[1].options
+    assert [(o.model.name, o.price) for o in roof] == [(LARGE, 99.1), (CAN, 7.3)]
+    assert (selection.max_price, selection.currency) == (99.2, "EUR")
+
+
+def test_a_scene_without_models_to_choose_from_has_no_selection(car):
+    car.perception_entropy.max_price = 5.0
+    assert "choice" not in pe.study_to_dict(scenes.study())
+    refused("choices: expected a sensor with models to choose from")
+
+
+def test_each_design_of_the_front_is_a_variant_and_nothing_moves(offered):
+    """Scores of the variants are the engine's, and switching puts the model there."""
+    job = pe.ChoiceJob(scenes.study())
+    list(job)
+    assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
+    settings = offered.perception_entropy
+    assert offered.objects["roof"].perception_entropy.model == LARGE
+    assert [row.name for row in settings.front] == [d.name for d in job.trade_off.front]
+    assert [row.name for row in settings.front] == [CAN, LARGE]
+    assert settings.front_told == "2 searched of 2 looked at, all there are"
+    rows = {row.key: row for row in settings.variants}
+    for row, design in zip(settings.front, job.trade_off.front, strict=True):
+        kept = json.loads(rows[row.key].score_json)
+        assert kept["entropy"] == design.entropy
+        assert not rows[row.key].stale
+    assert bpy.ops.pe.switch_variant(key=settings.front[0].key) == {"FINISHED"}
+    assert offered.objects["roof"].perception_entropy.model == CAN
+    assert len(offered.objects["roof"].perception_entropy.options) == 2
+
+
+def test_a_design_without_a_sensor_is_a_variant_without_it(offered):
+    scenes.add_sensor("eye", model="Camera 60 deg")
+    offered.objects["eye"].perception_entropy.free = (False,) * 6
+    offer("eye", ("Camera 60 deg", 1.0), left_out=True)
+    bpy.ops.pe.choose_sensors()
+    settings = offered.perception_entropy
+    cheapest = settings.front[0]
+    assert (cheapest.name, cheapest.price) == (CAN, pytest.approx(7.3))
+    bpy.ops.pe.switch_variant(key=cheapest.key)
+    assert [s.name for s in scenes.study().rig] == ["roof"]
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        ([(CAN, 0.0)], f"sensor 'roof': price of {CAN}: expected a price above 0"),
+        ([("Puck 17", 1.0)], "sensor 'roof': model: expected a name"),
+        ([(CAN, 1.0), (CAN, 2.0)], "sensor 'roof': option: expected each model once"),
+    ],
+)
+def test_bad_offers_are_one_line_that_names_the_sensor(car, options, line):
+    offer("roof", *options)
+    refused(line)
+
+
+def test_limits_that_leave_nothing_are_named(offered):
+    offered.perception_entropy.max_price = 5.0
+    refused("selection: max_price: expected limits that leave a design.*cheapest costs 7.3")
+
+
+def test_models_are_added_and_removed_in_the_panel(car):
+    bpy.context.view_layer.objects.active = car.objects["roof"]
+    own = car.objects["roof"].perception_entropy
+    assert bpy.ops.pe.add_option() == {"FINISHED"}
+    assert bpy.ops.pe.add_option() == {"FINISHED"}
+    assert [row.model for row in own.options] == [LARGE, ""]
+    own.options[1].model = CAN
+    assert bpy.ops.pe.remove_option(index=0) == {"FINISHED"}
+    assert [row.model for row in own.options] == [CAN]
+    assert bpy.ops.pe.remove_option(index=3) == {"CANCELLED"}
+
+
+def test_the_command_leaves_the_front_and_a_scene_with_its_designs(offered, tmp_path):
+    from blender_addon import commands
+
+    path = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    out = tmp_path / "out"
+    with (tmp_path / "said").open("w") as said:
+        assert commands.main(["optimize", "-o", str(out)], "pe", said) == 0
+    assert (tmp_path / "said").read_text().startswith("price [EUR]  ")
+    data = json.loads((out / "front.json").read_text())
+    assert data["front"] == [CAN, LARGE]
+    assert "blender" in data["run"]["versions"]
+    assert len(list((out / "designs").glob("*.toml"))) == 2
+    bpy.ops.wm.open_mainfile(filepath=str(out / "optimized.blend"))
+    names = [row.name for row in bpy.context.scene.perception_entropy.front]
+    assert names == data["front"]

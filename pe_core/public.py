@@ -5,7 +5,18 @@ from .advice import Advice
 from .errors import InputError
 from .exchange import export_rig, import_rig
 from .formats import Mesh, MeshAxes, read_boxes, read_mesh, write_boxes, write_mesh
-from .kinds import BeamField, Camera, Lidar, PerceptionModel, beam_field, measure
+from .kinds import (
+    BeamField,
+    BrownConrady,
+    Camera,
+    FTheta,
+    KannalaBrandt,
+    Lidar,
+    PerceptionModel,
+    Pinhole,
+    beam_field,
+    measure,
+)
 from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import (
@@ -72,12 +83,14 @@ __all__ = [
     "BlindGround",
     "BoxReport",
     "Boxes",
+    "BrownConrady",
     "Camera",
     "Choice",
     "ChoiceJob",
     "Constraints",
     "Design",
     "Evaluator",
+    "FTheta",
     "Focus",
     "Glance",
     "GroundMap",
@@ -85,6 +98,7 @@ __all__ = [
     "Housing",
     "InputError",
     "Job",
+    "KannalaBrandt",
     "Lidar",
     "Mesh",
     "MeshAxes",
@@ -100,6 +114,7 @@ __all__ = [
     "PartScore",
     "PerceptionModel",
     "PerceptionSpace",
+    "Pinhole",
     "Pose",
     "Prior",
     "Progress",

@@ -1,7 +1,7 @@
 """Kinds of sensors: one folder a kind, with its beams or pixels and all that counts them."""
 
 from .by_name import MeasuredByName
-from .camera import CAMERA, Camera
+from .camera import CAMERA, BrownConrady, Camera, FTheta, KannalaBrandt, Lens, Pinhole
 from .kernels import GridKernel, Measured, SampleKernel, Stopped, Voxels
 from .kind import Kind
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
@@ -13,13 +13,18 @@ __all__ = [
     "BLIND_RULES",
     "KINDS",
     "BeamField",
+    "BrownConrady",
     "Camera",
+    "FTheta",
     "GridKernel",
+    "KannalaBrandt",
     "Kind",
+    "Lens",
     "Lidar",
     "Measured",
     "MeasuredByName",
     "PerceptionModel",
+    "Pinhole",
     "RangePicture",
     "SampleKernel",
     "Stopped",

@@ -25,7 +25,9 @@ def measure(
     range and not stopped earlier by the vehicle. A cube owns its lower faces: a beam that runs
     exactly along a face belongs to the cube above it (`lidar.ties`).
     Camera: the area in pixels of the cube's image, clipped to the image; 0 when a corner lies
-    behind the camera or in its plane, or the vehicle hides the centre (`camera.ties`).
+    behind the camera or in its plane, the centre is out of range, or the vehicle hides it
+    (`camera.ties`). Through a lens that bends, what lies inside its field counts, wherever the
+    corners are (`camera.bent_area`).
 
     Parameters
     ----------

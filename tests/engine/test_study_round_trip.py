@@ -98,6 +98,23 @@ def lidars(draw):
 CAMERAS = st.builds(
     pe.Camera, NAMES, st.integers(1, 9000), st.integers(1, 9000), st.floats(0.01, math.pi - 0.01)
 )
+SMALL = st.floats(-0.02, 0.02)
+FOCAL, CENTER = st.floats(400, 2000), st.tuples(st.floats(100, 540), st.floats(100, 380))
+CIRCLE = st.one_of(st.none(), st.floats(0.3, 1.0))
+
+
+@st.composite
+def lens_cameras(draw):
+    (cx, cy), circle = draw(CENTER), draw(CIRCLE)
+    lens = draw(st.sampled_from([pe.Pinhole, pe.BrownConrady, pe.KannalaBrandt, pe.FTheta]))
+    first = {"k1": draw(st.floats(300, 900))} if lens is pe.FTheta else {}
+    values = {key: draw(SMALL) for key in lens.coefficients} | first
+    focal = (1.0, 1.0) if lens is pe.FTheta else (draw(FOCAL), draw(FOCAL))
+    ranges = draw(st.one_of(st.just((0.0, math.inf)), st.tuples(st.floats(0, 1), METRES.map(abs))))
+    own = lens(*focal, cx, cy, circle, **values)
+    return pe.Camera(draw(NAMES), 640, 480, None, own, ranges[0], ranges[1] + 2.0)
+
+
 CATALOGUE = st.sampled_from(pe.catalog.names()).map(pe.catalog.load)
 POSES = st.builds(pe.Pose, st.tuples(METRES, METRES, METRES), st.tuples(TURN, TURN, TURN))
 
@@ -107,7 +124,7 @@ def rigs(draw):
     names = draw(st.lists(NAMES, min_size=1, max_size=4, unique=True))
     sensors = []
     for name in names:
-        model = draw(st.one_of(CATALOGUE, lidars(), CAMERAS))
+        model = draw(st.one_of(CATALOGUE, lidars(), CAMERAS, lens_cameras()))
         group = draw(st.one_of(st.none(), NAMES))
         fusion = None if group is None else f"{model.kind} {group} shared"
         sensors.append(pe.Sensor(name, model, draw(POSES), fusion))

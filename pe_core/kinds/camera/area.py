@@ -55,10 +55,19 @@ def in_sensor_frame(axes: Floats, offsets: Floats) -> SensorAxes:
 
 def frustum_distance(camera: Camera, depth: Floats, left: Floats, up: Floats) -> Floats:
     """Signed distance to the nearest side of the frustum [m]; positive inside."""
-    half_w, half_h, f = camera.width / 2.0, camera.height / 2.0, camera.focal_px
-    side = (half_w * depth - f * np.abs(left)) / np.sqrt(half_w**2 + f**2)
-    top = (half_h * depth - f * np.abs(up)) / np.sqrt(half_h**2 + f**2)
+    lens = camera.projection
+    side = _inside(depth, left, lens.fx, (lens.cx, camera.width - lens.cx))
+    top = _inside(depth, up, lens.fy, (lens.cy, camera.height - lens.cy))
     return np.minimum(side, top)
+
+
+def _inside(depth: Floats, aside: Floats, focal: float, room: tuple[float, float]) -> Floats:
+    """Distance to the nearer of two sides, which are so many pixels from the axis."""
+    this, other = room
+    if this == other:
+        return np.asarray((this * depth - focal * np.abs(aside)) / np.sqrt(this**2 + focal**2))
+    near = (this * depth - focal * aside) / np.sqrt(this**2 + focal**2)
+    return np.minimum(near, (other * depth + focal * aside) / np.sqrt(other**2 + focal**2))
 
 
 def in_view(
@@ -88,18 +97,20 @@ def _area_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) ->
 def _project(camera: Camera, face: SensorAxes, corner: Floats) -> tuple[Floats, Floats]:
     """Image position [px], right and down, of the faces' corner that is (3,) from their centres."""
     depth, left, up = (center + along for center, along in zip(face, corner, strict=True))
-    scale = camera.focal_px / np.where(depth > 0.0, depth, 1.0)
-    return camera.width / 2.0 - left * scale, camera.height / 2.0 - up * scale
+    lens, safe = camera.projection, np.where(depth > 0.0, depth, 1.0)
+    scale = lens.fx / safe
+    high = scale if lens.fx == lens.fy else lens.fy / safe
+    return lens.cx - left * scale, lens.cy - up * high
 
 
 def _clipped_quad_area(corners: list[tuple[Floats, Floats]], camera: Camera) -> Floats:
     total = np.zeros_like(corners[0][0])
     for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
-        total += _clamped_integral(x0, y0, x1, y1, float(camera.width), float(camera.height))
+        total += clamped_integral(x0, y0, x1, y1, float(camera.width), float(camera.height))
     return np.abs(total)
 
 
-def _clamped_integral(
+def clamped_integral(
     x0: Floats, y0: Floats, x1: Floats, y1: Floats, width: float, height: float
 ) -> Floats:
     """Integral over an edge of clamp(y, 0, height) dx, for x in [0, width]."""

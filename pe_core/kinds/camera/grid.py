@@ -23,8 +23,10 @@ from ...scene.vehicle import SeenMesh
 from .area import clipped_pixel_area, in_sensor_frame
 from .cover_shadow import CoverShadow
 from .definition import hidden
+from .lists import places_of, span_of
 from .model import Camera
 from .points import NEAR_SIDES
+from .ranged import cut_to_range, is_ranged
 from .shadow import BORDER, ShadowMap
 from .ties import MARGIN, NUDGE, aims_at, axes_of, offsets_of
 
@@ -83,8 +85,8 @@ class CameraPlanes:
         self._offsets = [offsets_of(space.centers(k), pose.position[k], side) for k in range(3)]
         self._aims = [aims_at(w, side, NUDGE[k]) for k, w in enumerate(self._offsets)]
         self._forward = self._axes[:, 0]
-        wide, high = (n / 2.0 / camera.focal_px for n in (camera.width, camera.height))
-        self._sides = _sides(self._axes, (-wide, wide), (-high, high))
+        wide, high = _slopes(camera)
+        self._sides = _sides(self._axes, wide, high)
         _, y, z = self._offsets
         self._depth = np.add.outer(self._forward[1] * y, self._forward[2] * z).astype(np.float32)
         self._away = np.add.outer(self._away_from(y), self._away_from(z)).astype(np.float32)
@@ -93,7 +95,8 @@ class CameraPlanes:
         self._shadow = self._cover = None
         if seen is not None:
             self._shadow = ShadowMap(camera, self._axes, seen.seen.triangles)
-            self._cover = CoverShadow(self._aims, seen, self._corners(wide, high))
+            widest = (max(abs(low), top) for low, top in (wide, high))
+            self._cover = CoverShadow(self._aims, seen, self._corners(*widest))
 
     def areas(self, planes: slice) -> SeenRows:
         """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""
@@ -108,6 +111,8 @@ class CameraPlanes:
         behind = ColumnRuns(plain.end, touched.end)
         edge = np.concatenate([before.listed(nz), behind.listed(nz)])
         self._settle_edges(area, edge, (planes.start, rows.start))
+        if is_ranged(self._camera):
+            cut_to_range(self._camera, area, self._offsets, (planes.start, rows.start))
         if self._shadow is not None:
             asked = np.concatenate([edge, self._shaded(planes, rows, plain).listed(nz)])
             self._settle_hidden(area, asked, (planes.start, rows.start))
@@ -146,7 +151,7 @@ class CameraPlanes:
         for n, least in [(self._forward, 0.0), *self._at_sides(-1.0)]:
             most = max(n[0] * x[0], n[0] * x[-1]) + max(n[2] * z[0], n[2] * z[-1])
             inside &= n[1] * y > least - most
-        return _span(inside)
+        return span_of(inside)
 
     def _runs(self, planes: slice, rows: slice, half_spaces: list[HalfSpace]) -> ColumnRuns:
         """Voxels that lie in all half spaces."""
@@ -176,7 +181,7 @@ class CameraPlanes:
         for plane, x_depth, x_away, first, end in zip(
             area, self._forward[0] * x, self._away_from(x), *plain, strict=True
         ):
-            some = _span(first < end)
+            some = span_of(first < end)
             plane[: some.start] = 0.0
             plane[some.stop :] = 0.0
             self._flat(plane[some], held[some], (depth[some], x_depth), (away[some], x_away))
@@ -205,7 +210,7 @@ class CameraPlanes:
 
     def _settle_edges(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
         """Measure voxels on the picture's border, and near ones, exactly."""
-        offsets = _places(self._offsets, index, area.shape, first)
+        offsets = places_of(self._offsets, index, area.shape, first)
         exact = clipped_pixel_area(self._camera, self._axes, offsets, self._space.interval)
         area.reshape(-1)[index] = exact
 
@@ -229,7 +234,7 @@ class CameraPlanes:
     ) -> tuple[Ints, Floats]:
         """Those of some voxels that the vehicle may hide, and where the rays to them aim at."""
         assert self._shadow is not None
-        aims = _places(self._aims, index, shape, first)
+        aims = places_of(self._aims, index, shape, first)
         perhaps = np.flatnonzero(self._shadow.may_hide(*in_sensor_frame(self._axes, aims)))
         return index[perhaps], aims[perhaps]
 
@@ -241,17 +246,14 @@ class CameraPlanes:
         np.copyto(area, 0.0, where=shade.hidden)
         index = np.flatnonzero(shade.unsure)
         index = index[area.reshape(-1)[index] > 0.0]
-        return index, _places(self._aims, index, area.shape, first)
+        return index, places_of(self._aims, index, area.shape, first)
 
 
-def _places(
-    axes: list[Floats], index: Ints, shape: tuple[int, ...], first: tuple[int, int]
-) -> Floats:
-    """Places (V, 3), told axis by axis, of voxels numbered from a plane and a row on."""
-    column, k = np.divmod(index, shape[2])
-    i, j = np.divmod(column, shape[1])
-    x, y, z = axes
-    return np.stack([x[first[0] + i], y[first[1] + j], z[k]], axis=1)
+def _slopes(camera: Camera) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Least and greatest left / depth, and up / depth, of the picture."""
+    lens = camera.projection
+    wide = -(camera.width - lens.cx) / lens.fx, lens.cx / lens.fx
+    return wide, (-(camera.height - lens.cy) / lens.fy, lens.cy / lens.fy)
 
 
 def _sides(axes: Floats, wide: tuple[float, float], high: tuple[float, float]) -> list[Floats]:
@@ -263,9 +265,3 @@ def _sides(axes: Floats, wide: tuple[float, float], high: tuple[float, float]) -
         for sign, slope in zip((1.0, -1.0), slopes, strict=True)
     ]
     return [n / np.sqrt(dot(n, n)) for n in normals]
-
-
-def _span(mask: NDArray[np.bool_]) -> slice:
-    """From the first to the last that is true."""
-    seen = np.flatnonzero(mask)
-    return slice(int(seen[0]), int(seen[-1]) + 1) if len(seen) else slice(0, 0)

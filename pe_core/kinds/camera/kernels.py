@@ -15,9 +15,13 @@ from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import SeenMesh, Vehicle
 from ..kernels import GridKernel, Measured, Planes, SampleKernel, Voxels
+from .bent_grid import BentPlanes
+from .bent_points import bent_pixel_areas
 from .grid import CameraPlanes
 from .model import Camera
 from .points import pixel_areas
+
+ViewPlanes = CameraPlanes | BentPlanes
 
 
 class CameraGrid(GridKernel):
@@ -26,12 +30,13 @@ class CameraGrid(GridKernel):
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None) -> None:
         self._space, self._vehicle = space, vehicle
 
-    def ready(self, sensor: Sensor) -> CameraPlanes:
+    def ready(self, sensor: Sensor) -> ViewPlanes:
         """Look at the vehicle from the camera."""
-        seen = _seen(self._vehicle, sensor)
-        return CameraPlanes(cast(Camera, sensor.model), sensor.pose, self._space, seen)
+        camera, seen = cast(Camera, sensor.model), _seen(self._vehicle, sensor)
+        kind = CameraPlanes if camera.projection.is_straight else BentPlanes
+        return kind(camera, sensor.pose, self._space, seen)
 
-    def planes(self, groups: Sequence[Sequence[CameraPlanes]], pool: Executor) -> list[Planes]:
+    def planes(self, groups: Sequence[Sequence[ViewPlanes]], pool: Executor) -> list[Planes]:
         """Measure each group when its planes are asked for."""
         return [partial(_areas, cameras) for cameras in groups]
 
@@ -53,10 +58,11 @@ class CameraSample(SampleKernel):
     def _pixels(self, sensor: Sensor, vehicle: Vehicle | None) -> NDArray:
         camera, side = cast(Camera, sensor.model), self._voxels.space.interval
         seen = _seen(vehicle, sensor)
-        return pixel_areas(camera, sensor.pose, self._voxels.centers, side, seen)
+        areas = pixel_areas if camera.projection.is_straight else bent_pixel_areas
+        return areas(camera, sensor.pose, self._voxels.centers, side, seen)
 
 
-def _areas(cameras: Sequence[CameraPlanes], planes: slice) -> SeenRows:
+def _areas(cameras: Sequence[ViewPlanes], planes: slice) -> SeenRows:
     return reduce(add, (camera.areas(planes) for camera in cameras))
 
 

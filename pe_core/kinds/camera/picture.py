@@ -21,6 +21,10 @@ def picture_rays(sensor: Sensor, most: int) -> Floats:
     across, down = _raster(camera, most)
     u = (np.arange(across) + 0.5) / across - 0.5
     v = (np.arange(down) + 0.5) / down - 0.5
+    if camera.lens is not None:
+        places = np.meshgrid((u + 0.5) * camera.width, (v + 0.5) * camera.height, indexing="ij")
+        bent = camera.lens.unproject(places[0].ravel(), places[1].ravel())
+        return rotate(sensor.pose.ground_from_sensor, bent[~np.isnan(bent[:, 0])])
     left, up = np.meshgrid(-u * camera.width, -v * camera.height, indexing="ij")
     rays = np.stack([np.full(left.size, camera.focal_px), left.ravel(), up.ravel()], axis=1)
     return rotate(sensor.pose.ground_from_sensor, rays / np.sqrt(dot(rays, rays))[:, None])

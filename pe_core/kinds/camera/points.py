@@ -18,6 +18,7 @@ from ...scene.vehicle import SeenMesh
 from .area import clipped_pixel_area, frustum_distance, in_sensor_frame, in_view
 from .definition import hidden
 from .model import Camera
+from .ranged import is_ranged, out_of_range
 from .ties import MARGIN, aims_at, axes_of, offsets_of
 
 Floats = NDArray[np.float64]
@@ -50,6 +51,8 @@ def pixel_areas(
     index = np.flatnonzero(in_view(camera, *roughly, side))
     offsets = offsets_of(centers[index], pose.position, side)
     found = _areas_in_view(camera, axes, offsets, side)
+    if is_ranged(camera):
+        found[out_of_range(camera, offsets)] = 0.0
     if seen is not None:
         visible = np.flatnonzero(found)
         found[visible[hidden(seen, aims_at(offsets[visible], side))]] = 0.0

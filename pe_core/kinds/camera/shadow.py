@@ -36,8 +36,10 @@ class ShadowMap:
     """
 
     def __init__(self, camera: Camera, axes: Floats, triangles: Floats) -> None:
-        self._wide = BORDER * camera.width / 2.0 / camera.focal_px
-        self._high = BORDER * camera.height / 2.0 / camera.focal_px
+        lens = camera.projection
+        width, height = camera.width, camera.height
+        self._wide = BORDER * (2.0 * max(lens.cx, width - lens.cx)) / 2.0 / lens.fx
+        self._high = BORDER * (2.0 * max(lens.cy, height - lens.cy)) / 2.0 / lens.fy
         corners = rotate(axes.T, triangles).transpose(2, 1, 0)
         depth, left, up = np.ascontiguousarray(corners)
         (i0, i1), (j0, j1) = _bins(depth, left / self._wide, up / self._high)

@@ -1,0 +1,102 @@
+"""A lens by look-up: where far voxels fall in the picture, and how large they are there.
+
+What a lens does depends on the angle from its axis, so on its cosine alone: tables over that need
+neither an arc tangent nor a polynomial a voxel. Good to a few parts in ten thousand.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .lens import BrownConrady
+from .model import Camera
+
+Floats = NDArray[np.float64]
+Array = NDArray[np.floating]
+
+ENTRIES = 1 << 14
+BEYOND = 0.12
+"""How far past what the picture shows a lens is tabulated [rad]."""
+BORDER_PLACES = 33
+"""Places along each side of the picture, to find what is farthest from the axis in it."""
+
+
+class Imaged(NamedTuple):
+    """Voxels through a lens: image position right and down [px], and pixels a steradian."""
+
+    right: Array
+    down: Array
+    density: Array
+
+
+class QuickLens:
+    """A camera's lens in tables.
+
+    `outer` is the greatest angle from the axis that the picture shows [rad], `stretch` the most
+    pixels a radian anywhere in it.
+    """
+
+    def __init__(self, camera: Camera) -> None:
+        lens = self._lens = camera.projection
+        self.outer = min(lens.edge, _widest_in(camera))
+        last = min(self.outer + BEYOND, math.pi - 1e-3)
+        self._per_cosine = (ENTRIES - 1) / (1.0 - math.cos(last))
+        cosine = 1.0 - np.arange(ENTRIES) / self._per_cosine
+        theta = np.maximum(np.arccos(np.clip(cosine, -1.0, 1.0)), 1e-6)
+        inside, sine = np.minimum(theta, lens.edge), np.sin(theta)
+        slope = lens.slope(inside)
+        around = (lens.radius(inside) + slope * (theta - inside)) / sine
+        most = max(float(around.max()), float(slope.max())) * max(lens.fx, lens.fy)
+        self.stretch = 1.1 * most
+        self._around = around.astype(np.float32)
+        self._density = (lens.fx * lens.fy * around * slope).astype(np.float32)
+        self._tilt = self._tilted(lens, inside) if isinstance(lens, BrownConrady) else None
+
+    def _tilted(self, lens: BrownConrady, theta: Floats) -> Array | None:
+        """What the tangential part adds to the density, a unit of p1 times down, p2 times right."""
+        if not lens.shifts:
+            return None
+        r = np.tan(theta)
+        both = 6.0 * lens.radius(theta) / r + 2.0 * lens.slope(theta) / (1.0 + r * r)
+        added = lens.fx * lens.fy * (1.0 + r * r) ** 1.5 * both * r / np.sin(theta)
+        return np.asarray(added.astype(np.float32))
+
+    def seen(self, cosine: Array, depth: Array, left: Array, up: Array, per: Array) -> Imaged:
+        """See voxels at an angle from the axis with that cosine; `per` is 1 / distance."""
+        lens = self._lens
+        entry = ((1.0 - cosine) * np.float32(self._per_cosine)).astype(np.int32)
+        around = np.take(self._around, entry, mode="clip") * per
+        x, y = around * -left, around * -up
+        density = np.take(self._density, entry, mode="clip")
+        if self._tilt is not None and isinstance(lens, BrownConrady):
+            tilt = np.take(self._tilt, entry, mode="clip")
+            density -= tilt * per * (np.float32(lens.p1) * up + np.float32(lens.p2) * left)
+            dx, dy = _shifts(lens, depth, left, up)
+            x, y = x + dx, y + dy
+        focal = np.float32(lens.fx), np.float32(lens.fy)
+        right, down = np.float32(lens.cx) + focal[0] * x, np.float32(lens.cy) + focal[1] * y
+        return Imaged(right, down, density)
+
+
+def _shifts(lens: BrownConrady, depth: Array, left: Array, up: Array) -> tuple[Array, Array]:
+    safe = np.maximum(depth, np.float32(1e-3))
+    x, y = -left / safe, -up / safe
+    square, both = x * x + y * y, np.float32(2.0) * x * y
+    p1, p2 = np.float32(lens.p1), np.float32(lens.p2)
+    return p1 * both + p2 * (square + 2 * x * x), p1 * (square + 2 * y * y) + p2 * both
+
+
+def _widest_in(camera: Camera) -> float:
+    """Greatest angle from the axis that falls on the border of the picture [rad]."""
+    share = np.linspace(0.0, 1.0, BORDER_PLACES)
+    none, all_ = np.zeros_like(share), np.ones_like(share)
+    right = np.concatenate([share, share, none, all_]) * camera.width
+    down = np.concatenate([none, all_, share, share]) * camera.height
+    depth = camera.projection.unproject(right, down)[:, 0]
+    edge = camera.projection.edge
+    angles = np.where(np.isnan(depth), edge, np.arccos(np.clip(depth, -1.0, 1.0)))
+    return min(float(angles.max()) + 0.01, edge)

@@ -1,0 +1,139 @@
+"""Lenses: their projections as OpenCV has them, there and back, and those that are refused."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.kinds.camera.lens import BrownConrady, FTheta, KannalaBrandt, Pinhole
+
+WIDE = BrownConrady(930.5, 932.25, 965.0, 530.0, k1=-0.25, k2=0.12, p1=1e-3, p2=-2e-3, k3=-0.02)
+RATIONAL = BrownConrady(
+    610.0, 612.0, 640.0, 400.0, None, 0.3, 0.05, -5e-4, 4e-4, 0.01, 0.6, 0.1, 0.005
+)
+FISHEYE = KannalaBrandt(440.0, 446.0, 1000.0, 680.0, None, -0.02, 0.001, -5e-4, 2e-5)
+ROUND = FTheta(1.0, 1.0, 649.0, 486.0, None, 339.749, -31.988, 48.275, -7.201)
+SIZES = {WIDE: (1920, 1080), RATIONAL: (1280, 800), FISHEYE: (2000, 1400), ROUND: (1280, 966)}
+
+OPENCV = [
+    (WIDE, (0.427, 0.308), (1337.334144184, 799.705196847)),
+    (WIDE, (-0.3, -0.446), (702.727556749, 140.425175789)),
+    (WIDE, (0.699, 0.152), (1548.334561338, 657.771213156)),
+    (WIDE, (0.482, -0.108), (1387.801769874, 435.211689984)),
+    (RATIONAL, (0.247, -0.439), (780.522355716, 149.459579053)),
+    (RATIONAL, (-0.32, 0.38), (458.007948583, 616.820360628)),
+    (RATIONAL, (0.554, 0.372), (940.520405771, 602.245643974)),
+    (FISHEYE, (-0.805, 3.492), (875.891868898, 1225.708568151)),
+    (FISHEYE, (-2.079, 1.931), (614.621983469, 1042.824749294)),
+    (FISHEYE, (1.474, -0.289), (1416.62301073, 597.200866003)),
+    (FISHEYE, (1.083, -0.988), (1310.185931662, 393.164588234)),
+]
+"""Lens, a point one metre ahead (right, down), and its image: of OpenCV 4.11, `projectPoints` and
+`fisheye.projectPoints` with the coefficients in their order."""
+
+
+@pytest.mark.parametrize(("lens", "point", "image"), OPENCV)
+def test_points_fall_where_opencv_has_them(lens, point, image):
+    right, down = lens.project(np.array(1.0), np.array(-point[0]), np.array(-point[1]))
+    assert (float(right), float(down)) == pytest.approx(image, abs=1e-6)
+
+
+@pytest.mark.parametrize("lens", [WIDE, RATIONAL, FISHEYE, ROUND])
+def test_places_in_the_picture_come_back(lens):
+    width, height = SIZES[lens]
+    camera = pe.Camera("mine", width, height, lens=lens)
+    rng = np.random.default_rng(3)
+    right, down = rng.uniform(0, width, 500), rng.uniform(0, height, 500)
+    directions = camera.lens.unproject(right, down)
+    seen = ~np.isnan(directions[:, 0])
+    assert seen.mean() > 0.6
+    np.testing.assert_allclose((directions[seen] ** 2).sum(axis=1), 1.0, atol=1e-12)
+    again = camera.lens.project(*directions[seen].T)
+    np.testing.assert_allclose(again, (right[seen], down[seen]), atol=1e-6)
+
+
+@pytest.mark.parametrize("lens", [WIDE, RATIONAL, FISHEYE, ROUND])
+def test_pixels_a_steradian_are_the_projection_s_derivative(lens):
+    rng = np.random.default_rng(4)
+    turn, theta = rng.uniform(0, 2 * math.pi, 200), rng.uniform(0.02, 0.7, 200)
+    at = np.stack([np.cos(theta), np.sin(theta) * np.cos(turn), np.sin(theta) * np.sin(turn)], 1)
+    one = np.cross(at, [0.3, 0.5, 0.7])
+    one /= np.linalg.norm(one, axis=1)[:, None]
+    steps = []
+    for way in (one, np.cross(at, one)):
+        ends = [np.array(lens.project(*(at + s * way).T)) for s in (1e-5, -1e-5)]
+        steps.append((ends[0] - ends[1]) / 2e-5)
+    (a, b), (c, d) = steps
+    np.testing.assert_allclose(lens.density(*at.T), np.abs(a * d - b * c), rtol=1e-6)
+
+
+def test_a_fisheye_sees_behind_its_shoulders():
+    camera = pe.Camera("mine", 1280, 966, lens=ROUND)
+    assert math.degrees(camera.hfov) == pytest.approx(189.8, abs=0.1)
+    assert math.degrees(camera.lens.edge) == pytest.approx(100.0)
+
+
+def test_a_pinhole_of_an_ideal_camera_is_that_camera():
+    ideal = pe.Camera("ideal", 640, 480, math.radians(60.0))
+    f = ideal.focal_px
+    lens = pe.Camera("lens", 640, 480, lens=Pinhole(f, f, 320.0, 240.0))
+    assert lens.projection.is_straight and lens.focal_px == f
+    assert (lens.hfov, lens.vfov) == pytest.approx((ideal.hfov, ideal.vfov), abs=1e-12)
+
+
+KEYS = {"kind": "camera", "width": 640, "height": 480, "fx": 400, "cx": 320, "cy": 240}
+BENT = {"model": "brown-conrady"}
+REFUSED = [
+    ({"cx": -5}, "cx: expected a place in the picture, 0 to 640, found -5"),
+    ({"cy": 481.5}, "cy: expected a place in the picture, 0 to 480, found 481.5"),
+    ({"fx": -400}, "fx: expected a focal length above 0 pixels, found -400"),
+    ({"fy": 0}, "fy: expected a focal length above 0 pixels, found 0"),
+    ({"cx": None}, "cx: expected a finite number, found None"),
+    ({"hfov_deg": 60}, "hfov_deg: expected either hfov_deg or a lens .*, found both"),
+    ({"distortion": 3}, "distortion: expected a table, found 3"),
+    ({"distortion": {"model": "fish"}}, "distortion.model: expected one of pinhole, .*'fish'"),
+    ({"distortion": BENT | {"k7": 1}}, "distortion.k7: expected one of .*, found an unknown key"),
+    ({"distortion": BENT | {"k1": "x"}}, "distortion.k1: expected a finite coefficient, .*'x'"),
+    (
+        {"distortion": BENT | {"coefficients": [1, 2, 3]}},
+        "distortion.coefficients: expected 4, 5 or 8 numbers, found 3",
+    ),
+    (
+        {"distortion": {"model": "kannala-brandt", "coefficients": [0] * 5}},
+        "coefficients: expected 4 numbers, found 5",
+    ),
+    ({"distortion": BENT | {"coefficients": [0] * 4, "k1": 1}}, "a list or names, found both"),
+    ({"distortion": {"model": "f-theta"}}, "distortion.k1: expected pixels a radian.*found none"),
+    (
+        {"distortion": BENT | {"k1": -0.8}},
+        r"distortion: expected a lens that can be inverted in all of the picture, or fov_deg of "
+        r"at most 65\.\d, found it folds 32\.\d+ deg from the axis, 172 px from the centre",
+    ),
+    ({"fov_deg": 230}, "fov_deg: expected an angle from 0.001 to 220 degrees, found 230"),
+    ({"min_range_m": 8, "max_range_m": 6}, "min_range: expected a length below max_range, 6 m"),
+    ({"max_range_m": 0}, "max_range: expected a length above 0 m, found 0"),
+]
+
+
+@pytest.mark.parametrize(("change", "line"), REFUSED)
+def test_impossible_lenses_are_refused_in_one_line(change, line):
+    with pytest.raises(pe.InputError, match=line) as told:
+        pe.catalog.from_table("mine", {k: v for k, v in (KEYS | change).items()})
+    assert "\n" not in str(told.value)
+
+
+def test_a_folding_lens_is_taken_up_to_a_field_of_view():
+    table = KEYS | {"distortion": BENT | {"k1": -0.8}, "fov_deg": 60}
+    camera = pe.catalog.from_table("mine", table)
+    assert math.degrees(camera.hfov) == pytest.approx(60.0)
+    assert pe.catalog.to_table(camera) == table | {"fx": 400.0, "fy": 400.0}
+
+
+def test_listed_coefficients_are_opencv_s():
+    listed = KEYS | {"distortion": BENT | {"coefficients": [-0.2, 0.05, 1e-3, -2e-3, 0.01]}}
+    named = KEYS | {
+        "distortion": BENT | {"k1": -0.2, "k2": 0.05, "p1": 1e-3, "p2": -2e-3, "k3": 0.01}
+    }
+    one, other = (pe.catalog.from_table("mine", t) for t in (listed, named))
+    assert one.lens == other.lens

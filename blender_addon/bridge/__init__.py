@@ -3,6 +3,7 @@
 from .advanced import clearance_of, perception_of, space_of
 from .fingerprint import Fingerprint, fingerprint, signature
 from .holds import constrained, free_axes, locked_axes
+from .loading import load_into
 from .mirroring import (
     follow_mirrors,
     forget_mirrors,
@@ -89,6 +90,7 @@ __all__ = [
     "keep_score",
     "keep_search",
     "link_mirror",
+    "load_into",
     "locked_axes",
     "look_back",
     "look_through",

@@ -130,8 +130,7 @@ def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[st
     for obj, pose in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):
         _check_own(obj)
         layer.update()
-        _move(obj, pose)
-        obj.perception_entropy.placed = (*pose.position, *pose.rotation_deg)
+        stand_at(obj, pose)
     layer.update()
     for obj, pose in present:
         seen = obj.visible_get(view_layer=layer)  # of others Blender does not work out the place
@@ -139,6 +138,12 @@ def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[st
             found = "a constraint, driver or animation that holds it"
             raise _not_placed(obj, found)
     return [name for name in poses if not _is_sensor(scene.objects.get(name))]
+
+
+def stand_at(obj: bpy.types.Object, pose: pe.Pose) -> None:
+    """Put an object at a pose, and note it: what single precision makes of it is read as that."""
+    _move(obj, pose)
+    obj.perception_entropy.placed = (*pose.position, *pose.rotation_deg)
 
 
 def _check_own(obj: bpy.types.Object) -> None:

@@ -11,6 +11,9 @@ import numpy as np
 from ..engine import geometry, pe
 from .rig import mounted_on_sensor
 
+RESIDUAL = "pe_residual"
+"""Attribute of a mesh that came from a study: its points are in double precision there."""
+
 
 class Part(NamedTuple):
     """Triangles (F, 3, 3) [m] of one object, and whether cameras see through them."""
@@ -111,11 +114,25 @@ def triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
     corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
     mesh.vertices.foreach_get("co", points)
     mesh.loop_triangles.foreach_get("vertices", corners)
-    return points.reshape(-1, 3).astype(float)[corners.reshape(-1, 3)]
+    return (points.reshape(-1, 3).astype(float) + residual_of(mesh))[corners.reshape(-1, 3)]
+
+
+def residual_of(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return what single precision leaves out of a mesh's points (P, 3), where that is kept."""
+    kept = mesh.attributes.get(RESIDUAL)
+    found = np.zeros(3 * len(mesh.vertices), np.float32)
+    if kept is not None and kept.domain == "POINT" and kept.data_type == "FLOAT_VECTOR":
+        kept.data.foreach_get("vector", found)
+    return found.reshape(-1, 3).astype(float)
 
 
 def placed_triangles(triangles: np.ndarray, ground_from_object: np.ndarray) -> np.ndarray:
     """Return triangles in the ground frame; a mirrored object keeps its faces looking outwards."""
     linear = ground_from_object[:3, :3]
-    placed = geometry.rotate(linear, triangles) + ground_from_object[:3, 3]
+    placed = placed_points(triangles, ground_from_object)
     return placed[:, ::-1] if np.linalg.det(linear) < 0.0 else placed
+
+
+def placed_points(points: np.ndarray, ground_from_object: np.ndarray) -> np.ndarray:
+    """Return points (..., 3) in the ground frame."""
+    return geometry.rotate(ground_from_object[:3, :3], points) + ground_from_object[:3, 3]

@@ -17,6 +17,7 @@ class PE_PT_export(Tab, bpy.types.Panel):
 
     def draw(self, _context: bpy.types.Context) -> None:
         self.layout.operator("pe.export_study", icon="EXPORT")
+        self.layout.operator("pe.import_study", icon="IMPORT")
         self.layout.operator("pe.render_review", icon="RENDER_STILL")
 
 

@@ -30,9 +30,7 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         draw_mirror(layout, obj)
         draw_mounted(layout, settings)
         layout.label(text=f"The search may change, for {obj.name}:")
-        row = layout.row(align=True)
-        for index, label in enumerate(AXIS_LABELS):
-            row.prop(settings, "free", index=index, text=label, toggle=True)
+        draw_free(layout, settings)
 
 
 def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
@@ -46,6 +44,15 @@ def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
     row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
     linked = row.operator("pe.mirror_sensor", text="Mirror Linked", icon="LINKED")
     linked.name, linked.linked = obj.name, True
+
+
+def draw_free(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw a switch for each axis; where a mount says the place, its axes are dim."""
+    row = layout.row(align=True)
+    for index, label in enumerate(AXIS_LABELS):
+        part = row.row(align=True)
+        part.active = index >= len("xyz") or not settings.mount
+        part.prop(settings, "free", index=index, text=label, toggle=True)
 
 
 def draw_mounted(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:

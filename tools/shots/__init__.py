@@ -3,9 +3,10 @@
 from .assets import ASSETS
 from .film import FILM
 from .guide import GUIDE
+from .mounts import MOUNTS
 from .reel import Reel
 
-REELS = {"guide": GUIDE, "assets": ASSETS, "film": FILM}
+REELS = {"guide": GUIDE, "assets": ASSETS, "film": FILM, "mounts": MOUNTS}
 """By the name that `tools/screenshots.py` takes."""
 
 __all__ = ["REELS", "Reel"]

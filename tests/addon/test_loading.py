@@ -1,0 +1,109 @@
+"""A study put into a scene: the scene is that study again, to the bit, or says what it is not."""
+
+import bpy
+import numpy as np
+import pytest
+
+import pe_core as pe
+from blender_addon import bridge
+from tests.addon import scenes
+
+CORNERS = scenes.ASSETS / "examples" / "four_corners" / "study.toml"
+CAN = "Velodyne VLP-16 Puck"
+
+
+def load(study):
+    return bridge.load_into(bpy.context.scene, study)
+
+
+def history(study):
+    job = pe.OptimizeJob(study)
+    list(job)
+    rows = [(row.entropy, [s.pose for s in row.rig]) for row in job.history]
+    return rows, job.outcome.after.entropy
+
+
+def test_the_four_corners_come_into_an_empty_scene_to_the_bit(scene):
+    study = pe.load_study(CORNERS)
+    assert load(study) == []
+    again = scenes.study()
+    assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
+    assert again.search == study.search
+    left = bpy.data.objects["lidar_left"].perception_entropy
+    assert (left.mirror_of, left.mount) == ("lidar_right", "roof corners")
+    settings = scene.perception_entropy
+    settings.score_samples = settings.search_samples = 1024
+    settings.candidates = 1
+    here = scenes.study()
+    there = pe.Study(**{**vars(study), "search": here.search, "samples": 1024})
+    assert history(here) == history(there)
+
+
+def test_all_that_a_scene_says_of_its_search_comes_back(car, tmp_path):
+    settings = car.perception_entropy
+    settings.max_height, settings.min_distance = 2.5, 0.2
+    settings.space_interval, settings.clearance = 0.2, 0.03
+    settings.evaluations, settings.seed, settings.prior = 7, 5, "highway"
+    settings.failures = True
+    for name, y in (("arm", 0.4), ("eye", 0.5)):
+        scenes.add_sensor(name, CAN, location=(0.0, y, 2.2)).perception_entropy.rack = "r"
+    bpy.ops.pe.add_no_go()
+    rack = scenes.add_collection(car.collection, "Rack")
+    slot = bpy.data.objects.new("front", None)
+    slot.location, slot.rotation_euler = (0.2, 0.0, 1.9), (0.1, 0.2, 0.3)
+    rack.objects.link(slot)
+    scenes.add_mount(car, "rack", kind="SLOTS", slots=rack)
+    scenes.add_mount(car, "cabin", bpy.data.objects["cabin"], standoff=0.04)
+    bpy.context.view_layer.update()
+    assert bpy.ops.pe.mount_sensor(name="roof", mount="rack") == {"FINISHED"}
+    own = bpy.data.objects["eye"].perception_entropy
+    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -1.0, 0.5
+    study = scenes.study()
+    path = tmp_path / "study.toml"
+    pe.export_study(study, path)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert bpy.ops.pe.import_study(filepath=str(path)) == {"FINISHED"}
+    again, saved = scenes.study(), pe.load_study(path)
+    assert bridge.load_into(bpy.context.scene, saved) == []
+    assert again.search == saved.search
+    assert (again.space, again.model, again.samples) == (saved.space, saved.model, saved.samples)
+    assert {s.name: s.pose for s in again.rig} == {s.name: s.pose for s in saved.rig}
+
+
+def test_a_vehicle_that_is_the_study_s_stays(car, tmp_path):
+    study, collection = scenes.study(), car.perception_entropy.vehicle
+    assert load(study) == []
+    assert car.perception_entropy.vehicle == collection
+    bpy.data.objects["cabin"].location.z += 0.1
+    bpy.context.view_layer.update()
+    load(study)
+    assert car.perception_entropy.vehicle != collection
+
+
+def test_coordinates_in_double_precision_come_back_to_the_bit(scene):
+    turn = np.array(bpy.data.objects.new("any", None).matrix_world)[:3, :3]
+    rng = np.random.default_rng(0)
+    triangles = rng.uniform(-1.0, 1.0, (50, 3, 3)) @ turn + [0.1, 0.2, 1.0]
+    triangles = np.float32(triangles).astype(float) + np.float32(1e-9 * rng.normal(size=(50, 3, 3)))
+    scene.perception_entropy.vehicle = bridge.loading.make_body(scene, pe.Vehicle(triangles))
+    bpy.context.view_layer.update()
+    found = scenes.vehicle(scene.perception_entropy.vehicle)
+    assert np.array_equal(found.triangles, triangles)
+
+
+def test_what_a_scene_cannot_hold_is_told(car, monkeypatch):
+    study = scenes.study()
+    schedule = pe.Schedule(candidates=3, decay=0.7)
+    other = pe.Study(study.rig, study.vehicle, search=pe.Search(schedule=schedule))
+    assert load(other) == ["optimize.decay"]
+
+
+def test_a_model_of_the_study_s_own_is_refused_and_nothing_is_changed(car):
+    own = pe.catalog.from_table(
+        "mine", {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60}
+    )
+    study = scenes.study()
+    rig = pe.Rig([pe.Sensor("eye", own, pe.Pose((0.0, 0.0, 2.0)))])
+    with pytest.raises(pe.InputError, match=r"study: sensor 'eye': model: expected one of"):
+        load(pe.Study(rig, study.vehicle))
+    assert scenes.study().rig["roof"]

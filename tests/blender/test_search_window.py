@@ -1,0 +1,67 @@
+"""A search on a painted roof in a real window: the mount is picked, the curve drawn, Esc, undo."""
+
+import numpy as np
+from PIL import Image
+
+from tests.blender.window import HEIGHT, WIDTH
+
+START_TIMEOUT_S, BETTER_TIMEOUT_S = 60, 120
+LINE = (0.45, 0.78, 0.96)
+"""Colour of the curve (`blender_addon/searching/drawing.py`)."""
+ADDON = "bl_ext.user_default.perception_entropy"
+ON_THE_ROOF_M = 1.45 + 0.04 + 0.12
+"""No sensor on a base plate of 40 mm is higher than this."""
+
+
+def test_a_search_on_a_painted_roof_shows_its_curve(stage, screenshots):
+    stage.do("""
+        settings, roof = window.scene.perception_entropy, bpy.data.objects["roof"]
+        settings.score_samples = settings.search_samples = 1024
+        settings.candidates = 40
+        settings.view.show_ground = False
+        group = roof.vertex_groups.new(name="painted")
+        group.add([v.index for v in roof.data.vertices if abs(v.co.y) < 0.5], 1.0, "REPLACE")
+        row = settings.mounts.add()
+        row.name, row.faces, row.group, row.standoff = "roof", "GROUP", "painted", 0.04
+        with bpy.context.temp_override(window=window, area=area):
+            bpy.ops.pe.mount_sensor(name="roof_lidar", mount="roof")
+            bpy.ops.ed.undo_push(message="on the roof")
+    """)
+    start = place(stage)
+    assert start[2] < ON_THE_ROOF_M
+    stage.press("pe.optimize")
+    stage.wait_until(f"len({shown('points')}) > 1", BETTER_TIMEOUT_S)
+    stage.point_at_view()
+    stage.rest()
+    stage.photograph(screenshots / "window_search.png")
+    if stage.do(f"kept['still'] = bool({VIEW})")["still"]:
+        assert pixels_of_the_curve(screenshots / "window_search.png") > 100
+
+    stage.key("Escape")
+    stage.wait_until("window.scene.perception_entropy.result_kind == 'optimize'", BETTER_TIMEOUT_S)
+    stage.wait_until(f"not {VIEW}")
+    found = place(stage)
+    assert found != start and found[2] < ON_THE_ROOF_M
+    stage.point_at_view()
+    stage.key("ctrl+z")
+    stage.wait_until(f"abs({PLACE}.x - {start[0]}) < 1e-6", START_TIMEOUT_S)
+    assert "Traceback" not in stage.log.read_text()
+
+
+VIEW = f"__import__('{ADDON}.searching.latest', fromlist=['view']).view"
+PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
+
+
+def shown(what: str) -> str:
+    """Python for something that the view shows of the search; nothing before it begins."""
+    return f"next((seen.{what} for seen in {VIEW}.values()), ())"
+
+
+def place(stage) -> list[float]:
+    return stage.do(f"kept['place'] = list({PLACE})")["place"]
+
+
+def pixels_of_the_curve(path) -> int:
+    """How many pixels in the lower left corner of a picture have the curve's colour."""
+    corner = np.asarray(Image.open(path).convert("RGB"), float)[HEIGHT // 2 :, : WIDTH // 3]
+    return int((np.abs(corner - 255.0 * np.array(LINE)).max(axis=-1) < 12).sum())

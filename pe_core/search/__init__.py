@@ -28,6 +28,8 @@ from .selection import Choice, Option, Selection
 from .sites import Site
 from .ties import mirrored
 from .tolerance import Tolerance
+from .search_space import PAPER_FREE, SearchSpace, checked_axes, checked_bounds
+from .tolerance import Tolerance, mounted_off
 
 __all__ = [
     "AXES",
@@ -72,6 +74,7 @@ __all__ = [
     "judge_all",
     "live_as_long_as_the_parent",
     "mirrored",
+    "mounted_off",
     "objective_of",
     "optimize",
     "pareto_front",

@@ -30,7 +30,7 @@ DEARER = 7
 
 
 @dataclass(frozen=True)
-class Setting:
+class HowToSearch:
     """How to search, and with which seed."""
 
     method: str
@@ -40,7 +40,7 @@ class Setting:
     seed: int
 
 
-def found(setting: Setting, degrees: float) -> tuple[pe.Rig, float]:
+def found(setting: HowToSearch, degrees: float) -> tuple[pe.Rig, float]:
     """Return the best placement of a search from the paper's, and its processor time [s]."""
     tolerance = pe.Tolerance(angle=math.radians(degrees), draws=setting.draws)
     study, began = study_of("3_front"), time.process_time()
@@ -77,7 +77,7 @@ def judged(rig: pe.Rig) -> tuple[float, ...]:
     return (evaluator.entropy(rig), *map(float, means))
 
 
-def rows(setting: Setting) -> Iterator[str]:
+def rows(setting: HowToSearch) -> Iterator[str]:
     """Yield the table's rows of a seed: optimized as they stand, and for each of OFF_DEG."""
     for degrees in (0.0, *OFF_DEG):
         rig, seconds = found(setting, degrees)
@@ -111,7 +111,7 @@ def main() -> None:
     print(row("the paper's", study_of("3_front").rig, ""), flush=True)
     for seed in told.seeds:
         how = told.method, told.candidates, told.draws, told.samples
-        for line in rows(Setting(*how, seed)):
+        for line in rows(HowToSearch(*how, seed)):
             print(line, flush=True)
 
 

@@ -10,6 +10,7 @@ import bpy
 from ..engine import advice, pe
 from .oddities import DRIVER, MISSING
 from .rig import sensor_objects
+from .tolerance import store_robustness
 
 PARTS_NAMED = 3
 """How many parts of the vehicle the panel names as stopping beams."""
@@ -38,6 +39,7 @@ def store_outcome(
     settings.result_stderr = outcome.after.stderr
     settings.result_json = json.dumps(pe.result_dict(outcome, blender_version()))
     store_warnings(settings, outcome.warnings)
+    store_robustness(settings, outcome)
     settings.result_missing = "\n".join(w.text for w in outcome.warnings if w.code in MARKING)
     settings.result_signature = signature
     for obj in sensor_objects(scene) if sensors is None else sensors:
@@ -96,7 +98,7 @@ def _store_parts(settings: bpy.types.PropertyGroup, shares: Mapping[str, float])
 def store_warnings(settings: bpy.types.PropertyGroup, told: Sequence[pe.Advice]) -> None:
     """Keep what is odd about a scene's sensors and vehicle in its settings, for the panel."""
     settings.result_warnings.clear()
-    for each in told:
+    for each in (each for each in told if each.code != advice.FRAGILE):
         row = settings.result_warnings.add()
         row.subject, row.code, row.text = each.subject or "", each.code, each.text
         row.part, row.fix = each.part or "", each.fix or ""

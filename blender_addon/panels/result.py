@@ -33,7 +33,13 @@ def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         gain = settings.result_entropy - settings.result_before
         draw_figure(column, "Before", f"{settings.result_before:.4f}  ({gain:+.4f})")
     draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
+    for name in ("mounted_off", "sensor_lost"):
+        if told := getattr(settings, f"result_{name}"):
+            draw_figure(column, name.replace("_", " ").title(), told)
     state = layout.column(align=True)
+    if settings.result_fragile:
+        text = settings.result_fragile
+        draw_sentence(state, context, text[:1].upper() + text[1:], icon="ERROR")
     for line in settings.result_missing.splitlines():
         draw_sentence(state, context, f"Scored without it: {line}", icon="ERROR")
     if settings.result_stale:

@@ -1,8 +1,8 @@
-"""What a search's placements have to stand: mounting errors, and the loss of a sensor."""
+"""What a search's placements have to stand, and what that costs those it began with and found."""
 
 from __future__ import annotations
 
-from bpy.props import BoolProperty, FloatProperty
+from bpy.props import BoolProperty, FloatProperty, StringProperty
 
 
 class ToleranceSettings:
@@ -39,4 +39,16 @@ class ToleranceSettings:
     worst: BoolProperty(
         name="Worst Case",
         description="Judge by the worst of mounting errors and failures instead of their mean",
+    )
+
+    result_mounted_off: StringProperty(
+        name="Mounted Off",
+        description="What mounting errors add to the entropy on average, before and after",
+    )
+    result_sensor_lost: StringProperty(
+        name="Sensor Lost",
+        description="What the loss of one sensor adds to the entropy on average, before and after",
+    )
+    result_fragile: StringProperty(
+        name="Fragile", description="Why what was found cannot be mounted exactly enough, if so"
     )

@@ -1,6 +1,7 @@
 """In words a designer uses: a place asked about, warnings, a score in words, several compared."""
 
-from .advice import Advice
+from .advice import FRAGILE, Advice
+from .fragile import fragile, off_by
 from .mounting import stopped_shares
 from .outlook import Outlook, class_of, outlook
 from .phrases import WHERE, sensor_words, stopped_words, words
@@ -10,6 +11,7 @@ from .told import warnings
 from .vehicle_line import vehicle_line
 
 __all__ = [
+    "FRAGILE",
     "WHERE",
     "Advice",
     "AskedPlace",
@@ -19,6 +21,8 @@ __all__ = [
     "ask_place",
     "class_of",
     "compare",
+    "fragile",
+    "off_by",
     "outlook",
     "sensor_words",
     "stopped_shares",

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+FRAGILE = "fragile"
+"""Code of the warning that is of all sensors' placement."""
+
 
 @dataclass(frozen=True, slots=True)
 class Advice:
@@ -13,7 +16,7 @@ class Advice:
     Attributes
     ----------
     subject : str or None
-        Name of the sensor that it concerns; None for the vehicle.
+        Name of the sensor that it concerns; None for the vehicle, or all sensors' placement.
     code : str
         Which warning it is, for programs: ``"inside"``, ``"size"``, ...
     text : str
@@ -37,7 +40,8 @@ class Advice:
     @property
     def line(self) -> str:
         """The sentence with whom it concerns."""
-        return f"{self.subject or 'vehicle'}: {self.text}"
+        whole = "placement" if self.code == FRAGILE else "vehicle"
+        return f"{self.subject or whole}: {self.text}"
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ..advice import off_by
+from ..search import Robustness
 from ..study import Outcome
 
 LEAST_SHOWN = 1e-4
@@ -18,6 +20,7 @@ def summary(outcome: Outcome) -> str:
         lines = [
             f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats",
             f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
+            *_moves(outcome.robustness),
         ]
     scores = outcome.after.per_sensor
     for sensor in outcome.study.rig:
@@ -32,6 +35,18 @@ def summary(outcome: Outcome) -> str:
     if outcome.stopped:
         lines.append("stopped early: this is the best placement found so far")
     return "\n".join([*lines, *warned(outcome)])
+
+
+def _moves(found: Robustness | None) -> list[str]:
+    """Return how far the entropy of start and end moves under mounting errors and failures."""
+    if found is None:
+        return []
+    before, after = found.before, found.after
+    off = off_by(found.errors.position, found.errors.angle)
+    lines = [f"{off} (1 sigma)  {before.rise:+.4f} -> {after.rise:+.4f} nats on average"]
+    if before.loss is not None and after.loss is not None:
+        lines.append(f"one sensor lost  {before.loss:+.4f} -> {after.loss:+.4f} nats on average")
+    return lines
 
 
 def warned(outcome: Outcome) -> list[str]:

@@ -15,6 +15,7 @@ from .optimize import Step, optimize
 from .pareto import DesignSearch, above_front, pareto_front
 from .processes import Processes, live_as_long_as_the_parent, started
 from .robust import RobustObjective, objective_of
+from .robustness import Robustness, Stands, robustness
 from .schedule import Schedule
 from .search_space import (
     PAPER_FREE,
@@ -27,8 +28,6 @@ from .seating import seated
 from .selection import Choice, Option, Selection
 from .sites import Site
 from .ties import mirrored
-from .tolerance import Tolerance
-from .search_space import PAPER_FREE, SearchSpace, checked_axes, checked_bounds
 from .tolerance import Tolerance, mounted_off
 
 __all__ = [
@@ -56,12 +55,14 @@ __all__ = [
     "Picks",
     "Processes",
     "RobustObjective",
+    "Robustness",
     "Schedule",
     "SearchSpace",
     "Selection",
     "Site",
     "Slot",
     "SlotMount",
+    "Stands",
     "Step",
     "SurfaceMount",
     "Tolerance",
@@ -80,6 +81,7 @@ __all__ = [
     "pareto_front",
     "pose_from_values",
     "pose_values",
+    "robustness",
     "seat_of",
     "seated",
     "started",

@@ -1,4 +1,4 @@
-"""How far the entropy of what a search began with and found moves: mounted off, or a sensor lost."""
+"""How far the entropy of a search's start and end moves: mounted off, or with a sensor lost."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..scoring.score import rounded
 from ..text.degrees import degrees_in_file
 from .tolerance import FRESH, Tolerance, mounted_off, without_each
 
-WORKSHOP = Tolerance(0.01, math.radians(0.3))
+WORKSHOP = Tolerance(0.01, math.radians(0.3), draws=6)
 """The errors of a careful workshop: these are looked at where a study names none."""
 
 
@@ -49,6 +49,11 @@ class Stands:
     def rise(self) -> float:
         """What mounting errors cost on average [nats]."""
         return rounded(self.mounted_off - self.entropy)
+
+    @property
+    def loss(self) -> float | None:
+        """What the loss of one sensor costs on average [nats]; None of a single sensor."""
+        return None if self.failed is None else rounded(self.failed - self.entropy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,15 +111,24 @@ def _stands(evaluator: Evaluator, rig: Rig, errors: Tolerance, seed: int) -> Sta
     off = evaluator.entropies(mounted_off(rig, errors, seed, FRESH))
     lost = without_each(rig) if len(rig) > 1 else []
     entropy, *failed = evaluator.entropies([rig, *lost])
-    about_errors = rounded(float(np.mean(off))), max(off), _standard_error(off, errors.draws)
+    about_errors = (
+        rounded(float(np.mean(off))),
+        max(off),
+        _standard_error(off, errors.draws, len(rig)),
+    )
     if not failed:
         return Stands(entropy, *about_errors)
     missed = rig.sensors[int(np.argmax(failed))].name
     return Stands(entropy, *about_errors, rounded(float(np.mean(failed))), max(failed), missed)
 
 
-def _standard_error(entropies: Sequence[float], draws: int) -> float:
-    """From the scatter of the draws, each with that of opposite signs, in all combinations."""
-    half = draws // 2
-    means = np.array(entropies).reshape(-1, 2, half).mean(axis=(0, 1))
-    return rounded(float(np.std(means, ddof=1)) / math.sqrt(half)) if half > 1 else 0.0
+def _standard_error(entropies: Sequence[float], draws: int, sensors: int) -> float:
+    """From the scatter of each sensor's draws, each with that of opposite signs."""
+    half, variance = draws // 2, 0.0
+    if half < 2:
+        return 0.0
+    ways = np.array(entropies).reshape(-1, draws)
+    for place in range(sensors):
+        by_draw = np.mean([np.roll(own, way * place) for way, own in enumerate(ways)], axis=0)
+        variance += float(np.var(by_draw.reshape(2, half).mean(axis=0), ddof=1)) / half
+    return rounded(math.sqrt(variance))

@@ -6,12 +6,22 @@ from collections.abc import Generator, Iterator
 from functools import cached_property
 from typing import Any
 
+from ..advice import Advice, fragile
 from ..scoring.evaluator import Evaluator
 from ..scoring.score import Score
-from ..search import Journal, Objective, Step, first_allowed, objective_of, optimize
+from ..search import (
+    Journal,
+    Objective,
+    Robustness,
+    Step,
+    first_allowed,
+    objective_of,
+    optimize,
+    robustness,
+)
 from .job import Job, Progress, begun
 from .outcome import HistoryRow, Outcome
-from .study import Study
+from .study import DEFAULT_SEARCH_SAMPLES, Study
 
 
 class ScoreJob(Job):
@@ -60,8 +70,12 @@ class OptimizeJob(Job):
     def _objectives(self) -> list[Objective]:
         """What judges candidates on each of the method's levels; the study's own where it can."""
         search = self.study.search
-        evaluators = [self._evaluator_of(samples) for samples in search.level_samples]
-        return [objective_of(each, search.tolerance, search.seed) for each in evaluators]
+        return [objective_of(each, search.tolerance, search.seed) for each in self._evaluators]
+
+    @cached_property
+    def _evaluators(self) -> list[Evaluator]:
+        """Those of the method's levels."""
+        return [self._evaluator_of(samples) for samples in self.study.search.level_samples]
 
     def _evaluator_of(self, samples: int) -> Evaluator:
         if samples == self.study.samples:
@@ -81,8 +95,9 @@ class OptimizeJob(Job):
         stopped = self.stopped
         after, best = yield from self._better_of(before)
         looking = Progress("scoring the result", 1.0, after.entropy, self.evaluations)
+        shaken = yield from self._shaken(best, looking)
         told = yield from self._warnings(best, after, looking)
-        if told is None:
+        if told is None or shaken is None:
             return
         self.outcome = Outcome(
             "optimize",
@@ -94,9 +109,10 @@ class OptimizeJob(Job):
             self.evaluations,
             stopped,
             self.seconds,
-            told,
+            (*told, *_fragile(best, shaken)),
             self.inputs,
             self.journal.entries,
+            shaken,
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 
@@ -117,6 +133,19 @@ class OptimizeJob(Job):
         if found is not None and (found.entropy < before.entropy or not self._start_may_stay):
             return found, self.best
         return before, self.study  # the search's sample flattered a placement
+
+    def _shaken(
+        self, best: Study, waiting: Progress
+    ) -> Generator[Progress, None, Robustness | None]:
+        """Tell in a thread how far entropies move under mounting errors and failures."""
+        search = self.study.search
+
+        def work() -> Robustness:
+            last = self._evaluators[-1]
+            sampled = last if last.samples else self._evaluator_of(DEFAULT_SEARCH_SAMPLES)
+            return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
+
+        return (yield from self._beside(work, lambda: waiting, to_the_end=True))
 
     @property
     def _start_may_stay(self) -> bool:
@@ -152,3 +181,9 @@ class OptimizeJob(Job):
         if step.improved or not self.history:
             row = HistoryRow(step.evaluations, step.round, step.entropy, step.best)
             self.history.append(row)
+
+
+def _fragile(study: Study, found: Robustness) -> tuple[Advice, ...]:
+    after, errors = found.after, found.errors
+    tolerant = study.search.tolerance.mounts_off
+    return fragile(after.rise, after.stderr, errors.position, errors.angle, tolerant)

@@ -8,7 +8,7 @@ from typing import Any
 from ..advice import Advice
 from ..scene.sensors import Rig
 from ..scoring.score import Score
-from ..search import JudgedRig
+from ..search import JudgedRig, Robustness
 from .study import Study
 
 
@@ -47,6 +47,8 @@ class Outcome:
         What a search that went on was given at its beginning: `start` may call files otherwise.
     judged : tuple of JudgedRig
         What the search was told: one that was stopped goes on from there.
+    robustness : Robustness or None
+        Of a search: how far the entropy of start and end moves under mounting errors and failures.
     """
 
     kind: str
@@ -61,3 +63,4 @@ class Outcome:
     warnings: tuple[Advice, ...] = ()
     inputs: dict[str, Any] | None = None
     judged: tuple[JudgedRig, ...] = ()
+    robustness: Robustness | None = None

@@ -63,6 +63,7 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
             "after": placements(outcome.study.rig),
         },
         "mounts": mounts_told(outcome.study.rig, outcome.study.search.mounting),
+        **_robustness(outcome),
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,
         "warnings": [each.to_dict() for each in outcome.warnings],
@@ -166,6 +167,12 @@ def history_csv(history: tuple[HistoryRow, ...]) -> str:
         poses = [(*s.pose.position, *s.pose.rotation_deg) for s in row.rig]
         writer.writerow([row.evaluation, row.round, row.entropy, *(v for p in poses for v in p)])
     return text.getvalue()
+
+
+def _robustness(outcome: Outcome) -> dict[str, Any]:
+    """Return what a search tells besides: a score has nothing of it."""
+    found = outcome.robustness
+    return {} if found is None else {"robustness": found.to_dict()}
 
 
 def _history_dict(row: HistoryRow) -> dict[str, Any]:

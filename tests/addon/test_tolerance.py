@@ -5,6 +5,8 @@ import math
 import pytest
 
 import pe_core as pe
+from blender_addon import bridge
+from pe_core import advice, search
 from tests.addon import scenes
 
 
@@ -36,3 +38,37 @@ def test_a_failure_that_leaves_nothing_is_told_by_the_search_and_hinders_no_scor
     study = scenes.study()
     with pytest.raises(pe.InputError, match="failures: expected a rig of at least two sensors"):
         study.coding()
+
+
+def outcome(rise, loss, warnings=()):
+    """Return a search's outcome with a start that stands everything."""
+    study = scenes.study()
+    score = study.evaluator(1024).score(study.rig)
+    failed = None if loss is None else 2.0 + loss
+    before = search.Stands(2.0, 2.0, 2.0, 0.0, None if loss is None else 2.0)
+    after = search.Stands(2.0, 2.0 + rise, 3.0, 0.01, failed)
+    found = search.Robustness(pe.Tolerance(0.01, 0.005), 1024, before, after)
+    both = study, study, score, score
+    return pe.Outcome("optimize", *both, warnings=warnings, robustness=found)
+
+
+def test_what_a_search_tells_of_it_is_stored_for_the_panel(settings, car):
+    told = advice.fragile(0.25, 0.01, 0.01, 0.005, tolerant=True)
+    bridge.store_outcome(car, outcome(0.25, 1.5, told), "signature")
+    assert settings.result_mounted_off == "+0.000 \N{RIGHTWARDS ARROW} +0.250 nats"
+    assert settings.result_sensor_lost == "+0.000 \N{RIGHTWARDS ARROW} +1.500 nats"
+    assert settings.result_fragile == told[0].text
+    assert not len(settings.result_warnings)  # none of the vehicle
+    bridge.store_outcome(car, outcome(0.01, None), "signature")
+    assert settings.result_mounted_off and not settings.result_sensor_lost
+    assert not settings.result_fragile
+
+
+def test_a_score_takes_away_what_a_search_told(settings, car):
+    settings.score_samples = 1024
+    bridge.store_outcome(car, outcome(0.25, 1.5), "signature")
+    study = scenes.study()
+    job = pe.ScoreJob(study)
+    list(job)
+    bridge.store_outcome(car, job.outcome, "signature")
+    assert settings.result_mounted_off == settings.result_sensor_lost == ""

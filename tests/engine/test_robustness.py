@@ -1,0 +1,127 @@
+"""What a search tells of its start and end: mounted off, and with a sensor lost."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import advice
+from pe_core.app.summary import summary
+from pe_core.search import mounted_off, robustness
+from pe_core.search.tolerance import FRESH
+from tests.engine import shapes
+
+OFF = pe.Tolerance(0.02, math.radians(0.5), 4)
+
+
+def study(tolerance=OFF, samples=1024, failures=False):
+    model = shapes.small_lidar(4, 90)
+    rig = pe.Rig(
+        [
+            shapes.lidar_on_roof(model),
+            shapes.lidar_on_roof(model, (1.0, 0.4, 1.6), name="front"),
+        ]
+    )
+    search = pe.Search(
+        free={"roof": ("z",), "front": ("z",)},
+        samples=samples,
+        schedule=pe.Schedule(2, floor_m=0.3, floor_rad=1.0),
+        tolerance=tolerance,
+    )
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
+
+
+@pytest.fixture(scope="module")
+def outcome():
+    job = pe.OptimizeJob(study())
+    assert list(job)[-1].stage == "done"
+    return job.outcome
+
+
+def test_it_tells_the_mean_and_the_worst_of_errors_that_the_search_has_not_seen(outcome):
+    evaluator, found = study().evaluator(1024), outcome.robustness
+    for rig, stands in ((study().rig, found.before), (outcome.study.rig, found.after)):
+        off = [evaluator.entropy(each) for each in mounted_off(rig, OFF, 0, FRESH)]
+        assert stands.mounted_off == pytest.approx(np.mean(off), abs=1e-9)
+        assert stands.mounted_worst == pytest.approx(max(off), abs=1e-9)
+        assert stands.entropy == evaluator.entropy(rig)
+        assert stands.rise == pytest.approx(np.mean(off) - stands.entropy, abs=2e-9)
+        searched = [evaluator.entropy(each) for each in mounted_off(rig, OFF, 0)]
+        assert set(searched).isdisjoint(off)
+    assert found.samples == 1024 and found.errors == OFF
+
+
+def test_it_tells_the_loss_of_each_sensor(outcome):
+    lost, rig = outcome.robustness.before, outcome.start.rig
+    evaluator = study().evaluator(1024)
+    each = {s.name: evaluator.entropy(pe.Rig([o for o in rig if o is not s])) for s in rig}
+    assert lost.failed == pytest.approx(sum(each.values()) / 2, abs=1e-9)
+    assert lost.missed == max(each, key=each.get) and lost.failed_worst == each[lost.missed]
+    assert lost.loss == pytest.approx(lost.failed - lost.entropy, abs=2e-9)
+    alone = pe.Rig([rig["roof"]])
+    told = robustness(evaluator, alone, alone, OFF)
+    assert told.before is told.after and told.before.failed is told.before.loss is None
+
+
+def test_a_study_without_mounting_errors_is_told_of_a_careful_workshop_s():
+    evaluator, rig = study().evaluator(1024), study().rig
+    told = robustness(evaluator, rig, rig, pe.Tolerance(failures=True))
+    assert told.errors == pe.Tolerance(0.01, math.radians(0.3))
+
+
+def test_the_standard_error_covers_what_other_seeds_tell():
+    evaluator, rig, off = study().evaluator(1024), study().rig, replace(OFF, draws=6)
+    told = [robustness(evaluator, rig, rig, off, seed).after for seed in range(5)]
+    scatter = np.std([each.mounted_off for each in told], ddof=1)
+    errors = np.sqrt(np.mean([each.stderr**2 for each in told]))
+    assert 0.5 * scatter < errors < 4.0 * scatter
+
+
+def test_result_json_and_the_terminal_say_it(outcome):
+    told = json.loads(json.dumps(pe.result_dict(outcome)))["robustness"]
+    assert (told["position"], told["angle"], told["draws"], told["samples"]) == (0.02, 0.5, 4, 1024)
+    before, after = outcome.robustness.before, outcome.robustness.after
+    for when, stands in (("before", before), ("after", after)):
+        assert told[when]["mounted_off"] == stands.mounted_off
+        assert told[when]["missed"] == stands.missed
+    text = summary(outcome)
+    line = f"mounted 2 cm and 0.5 deg off (1 sigma)  {before.rise:+.4f} -> {after.rise:+.4f} nats"
+    assert line in text
+    assert f"one sensor lost  {before.loss:+.4f} -> {after.loss:+.4f} nats" in text
+
+
+def test_a_score_has_nothing_of_it():
+    job = pe.ScoreJob(study())
+    list(job)
+    assert job.outcome.robustness is None and "robustness" not in pe.result_dict(job.outcome)
+    assert "mounted" not in summary(job.outcome)
+
+
+def test_a_search_under_errors_keeps_what_it_found_though_it_scores_worse_as_it_stands(outcome):
+    assert len(outcome.history) > 1
+    again = pe.OptimizeJob(study(), before=replace(outcome.before, entropy=0.0))
+    list(again)
+    assert again.outcome.study.rig is again.history[-1].rig is not again.outcome.start.rig
+
+
+@pytest.mark.parametrize(
+    ("rise", "stderr", "told"),
+    [(0.051, 0.01, True), (0.05, 0.0, False), (0.2, 0.11, False), (0.2, 0.09, True)],
+)
+def test_a_fragile_placement_is_told(rise, stderr, told):
+    found = advice.fragile(rise, stderr, 0.01, math.radians(0.3), tolerant=False)
+    assert bool(found) is told
+
+
+def test_advice_on_a_fragile_placement_is_one_line():
+    (plain,) = advice.fragile(0.29, 0.01, 0.01, math.radians(0.3), tolerant=False)
+    assert plain.line == (
+        "placement: mounted 1 cm and 0.3 deg off (1 sigma) it is 0.29 nats worse on average; "
+        "a search with a tolerance looks for one that is less fragile"
+    )
+    (searched,) = advice.fragile(0.29, 0.01, 0.0, math.radians(0.3), tolerant=True)
+    assert searched.text == "mounted 0.3 deg off (1 sigma) it is 0.29 nats worse on average"
+    assert advice.off_by(0.0025, 0.0) == "mounted 2.5 mm off"

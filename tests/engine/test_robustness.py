@@ -69,7 +69,7 @@ def test_it_tells_the_loss_of_each_sensor(outcome):
 def test_a_study_without_mounting_errors_is_told_of_a_careful_workshop_s():
     evaluator, rig = study().evaluator(1024), study().rig
     told = robustness(evaluator, rig, rig, pe.Tolerance(failures=True))
-    assert told.errors == pe.Tolerance(0.01, math.radians(0.3))
+    assert told.errors == pe.Tolerance(0.01, math.radians(0.3), 6)
 
 
 def test_the_standard_error_covers_what_other_seeds_tell():

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from ..advice import off_by
-from ..search import Robustness
-from ..study import Outcome
+from ..study import Outcome, Robustness
 
 LEAST_SHOWN = 1e-4
 """In the last digit that is printed."""

@@ -1,6 +1,6 @@
 """Studies: their files, the work on them, and the results it leaves."""
 
-from ..search import METHODS
+from ..search import METHODS, Robustness
 from .choice_job import ChoiceJob, Design, TradeOff
 from .designed import design_study
 from .exporting import export_study, study_writers
@@ -55,6 +55,7 @@ __all__ = [
     "OptimizeJob",
     "Outcome",
     "Progress",
+    "Robustness",
     "ScoreJob",
     "Search",
     "SearchState",

@@ -1,6 +1,7 @@
 """The only place that turns Blender's data into the engine's and back."""
 
 from .advanced import clearance_of, perception_of, space_of
+from .axles import reference_of, write_reference
 from .fingerprint import Fingerprint, fingerprint, signature
 from .holds import constrained, free_axes, locked_axes
 from .loading import load_into
@@ -19,7 +20,7 @@ from .mounting import mount_of_row, mounting_of
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .oddities import missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
-from .own_sensors import forget_own_sensors, sync_own_sensors, table_of
+from .own_sensors import add_own_sensor, forget_own_sensors, sync_own_sensors, table_of
 from .placeable import check_placeable
 from .prior import prior_from_scene, prior_key
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
@@ -66,6 +67,7 @@ __all__ = [
     "LimitBox",
     "Record",
     "active_variant",
+    "add_own_sensor",
     "add_variant",
     "alike",
     "blender_version",
@@ -116,6 +118,7 @@ __all__ = [
     "put_variant",
     "records_of",
     "records_of_scene",
+    "reference_of",
     "rig_from_objects",
     "rig_of",
     "same_score",
@@ -149,5 +152,6 @@ __all__ = [
     "view_layer_of",
     "visible_members",
     "write_records",
+    "write_reference",
     "write_score",
 ]

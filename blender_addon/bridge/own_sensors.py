@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import bpy
 
+from ..choices import free_name
 from ..engine import catalog, pe
 from .rig import sensor_objects
 from .typed import as_typed, pair_as_typed
@@ -52,6 +54,35 @@ def table_of(row: bpy.types.PropertyGroup) -> dict[str, Any]:
         "azimuth_step_deg": as_typed(row.azimuth_step),
         "max_range_m": as_typed(row.max_range),
         "horizontal_fov_deg": list(pair_as_typed(row.azimuths)),
+    }
+
+
+def add_own_sensor(scene: bpy.types.Scene, name: str, table: Mapping[str, Any]) -> str:
+    """Add an own sensor with a catalogue table's figures, and return what it is called.
+
+    LiDARs have evenly spread channels here.
+    """
+    row = scene.perception_entropy.own_sensors.add()
+    row.kind = table["kind"]
+    for key, value in _figures(table).items():
+        setattr(row, key, value)
+    row.name = free_name(name, set(catalog.entries()))
+    sync_own_sensors()
+    return str(row.name)
+
+
+def _figures(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the properties of a row that has a table's figures."""
+    if table["kind"] == "camera":
+        return {k: table[k] for k in ("width", "height")} | {"hfov": table["hfov_deg"]}
+    elevations = table["elevations_deg"]
+    step = table.get("azimuth_step_deg") or 360.0 / table["azimuth_count"]
+    return {
+        "channels": len(elevations),
+        "elevations": (min(elevations), max(elevations)),
+        "azimuths": tuple(table.get("horizontal_fov_deg", (-180.0, 180.0))),
+        "azimuth_step": step,
+        "max_range": table["max_range_m"],
     }
 
 

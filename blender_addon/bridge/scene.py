@@ -9,6 +9,7 @@ import bpy
 
 from ..engine import pe, studies
 from .advanced import Limits, all_limits, clearance_of, limits_of, perception_of, space_of
+from .axles import reference_of
 from .holds import constrained, free_axes
 from .mounting import mounting_of
 from .offers import selection_of
@@ -76,6 +77,7 @@ def study_of_rig(
         search=_search(settings, free, bounds, mounting or pe.Mounting()),
         samples=settings.score_samples,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
+        reference=reference_of(settings),
     )
 
 

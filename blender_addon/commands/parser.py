@@ -22,8 +22,9 @@ def parser(prog: str) -> argparse.ArgumentParser:
         verb.add_argument("--no-render", action="store_false", dest="render", help=f"no {REVIEW}")
         add_variant_option(verb)
         verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
-    export = verbs.add_parser("export", help="write the scene as a study with its mesh")
-    export.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for them")
+    about = "write the scene as a study with its mesh, or its rig for another program"
+    export = verbs.add_parser("export", help=about)
+    app.add_export_options(export, also_study=True)
     add_variant_option(export)
     export.set_defaults(function=export_study)
     explain = verbs.add_parser("explain", help="the score in words, or one place of it")

@@ -59,8 +59,10 @@ def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
 
 
 def export_study(args: argparse.Namespace) -> app.Answer:
-    """Write the scene as a study file, with the vehicle's mesh."""
+    """Write the scene as a study file, with the vehicle's mesh; or for another program."""
     study = opened_study(args.variant)
+    if args.to is not None:
+        return app.export(study, args)
     path = pe.prepare_folder(args.output) / studies.STUDY
     pe.export_study(study, path)
     return str(path), app.DONE

@@ -6,12 +6,11 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 
 from .. import body, bridge, changes
-from ..choices import free_name
-from ..engine import catalog, pe, search
+from ..engine import catalog, search
 from ..properties import FREE_BY_DEFAULT
 from .mounting import mount_of
 from .reports import REFUSALS, refuse, tell
-from .variants import keep_unsaved, switch
+from .variants import stand_as_variant
 
 
 class PE_OT_add_rig(bpy.types.Operator):
@@ -53,40 +52,13 @@ class PE_OT_add_rig(bpy.types.Operator):
             vehicle = body.shared.read(scene, context.evaluated_depsgraph_get()).vehicle
             fitted = self.fit and vehicle is not None and rig.size is not None
             sensors = rig.on_vehicle(*vehicle.bounds) if fitted else rig.sensors
-            key = self._add(scene, rig, sensors, fitted, before)
+            note, records = note_of(rig, fitted), tuple(map(record_of, sensors))
+            name = stand_as_variant(scene, rig.title, records, note, before)
         except REFUSALS as error:
             return refuse(self, error)
         changes.study.tell()
-        name = bridge.active_variant(scene).name if key else rig.title
         tell(self, "INFO", f"Added {name}: {len(rig.sensors)} sensors")
         return {"FINISHED"}
-
-    def _add(
-        self,
-        scene: bpy.types.Scene,
-        rig: catalog.KnownRig,
-        sensors: tuple[catalog.KnownSensor, ...],
-        fitted: bool,
-        before: tuple[bridge.Record, ...],
-    ) -> int:
-        """Keep what is here, and have the rig stand; return its variant's key."""
-        keep_unsaved(scene, before)
-        taken = {row.name for row in scene.perception_entropy.variants}
-        row = bridge.add_variant(scene, free_name(rig.title, taken), records_of(sensors))
-        row.note = note_of(rig, fitted)
-        key = row.key
-        try:
-            switch(scene, row, before)
-        except pe.InputError:
-            rows = scene.perception_entropy.variants
-            rows.remove([each.key for each in rows].index(key))
-            raise
-        return key
-
-
-def records_of(sensors: tuple[catalog.KnownSensor, ...]) -> tuple[bridge.Record, ...]:
-    """Return the sensors of a known rig as a variant holds them."""
-    return tuple(map(_record, sensors))
 
 
 def note_of(rig: catalog.KnownRig, fitted: bool) -> str:
@@ -98,7 +70,8 @@ def note_of(rig: catalog.KnownRig, fitted: bool) -> str:
     )
 
 
-def _record(sensor: catalog.KnownSensor) -> bridge.Record:
+def record_of(sensor: catalog.KnownSensor) -> bridge.Record:
+    """Return a sensor of a known rig as a variant holds it."""
     mount = mount_of(catalog.load(sensor.model).kind)
     values = (*sensor.pose.position, *sensor.pose.rpy)
     pose = search.pose_from_values(dict(zip(search.AXES, values, strict=True)))

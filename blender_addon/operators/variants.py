@@ -181,6 +181,33 @@ def _free(scene: bpy.types.Scene, name: str) -> str:
     return free_name(name, {row.name for row in scene.perception_entropy.variants})
 
 
+def stand_as_variant(
+    scene: bpy.types.Scene,
+    title: str,
+    records: tuple[bridge.Record, ...],
+    note: str,
+    before: tuple[bridge.Record, ...],
+) -> str:
+    """Keep what is here, and have other sensors stand, as a variant; return its name.
+
+    Raises
+    ------
+    InputError
+        When they cannot stand here; there is no such variant then.
+    """
+    keep_unsaved(scene, before)
+    rows = scene.perception_entropy.variants
+    row = bridge.add_variant(scene, free_name(title, {row.name for row in rows}), records)
+    row.note = note
+    key, name = row.key, row.name
+    try:
+        switch(scene, row, before)
+    except pe.InputError:
+        rows.remove([each.key for each in rows].index(key))
+        raise
+    return name
+
+
 CLASSES = (
     PE_OT_save_variant,
     PE_OT_update_variant,

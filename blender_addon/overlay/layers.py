@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import pe
-from . import asked, blind, frustums, ghosts, ground, heat, mounts, rays, reach
+from . import asked, axles, blind, frustums, ghosts, ground, heat, mounts, rays, reach
 from .beams import BeamChoice, ChannelMode, channels_of, shown_beams
 from .colors import VIEWPORT, VIRIDIS, Rgba, on_scale, sensor_color, with_alpha
 from .kinds import DRAWINGS, beam_budget, drawing_of
@@ -277,6 +277,15 @@ def _mounts(wish: PictureWish, _tools: Tools, _name: str) -> LayerShape:
     return mounts.mounts(wish.mounts, wish.boxes)
 
 
+def _axle_keys(wish: PictureWish) -> dict[str, Hashable]:
+    return {} if wish.reference is None else {WHOLE_RIG: (wish.reference, wish.body_key)}
+
+
+def _axles(wish: PictureWish, _tools: Tools, _name: str) -> LayerShape:
+    half = None if wish.vehicle is None else float(wish.vehicle.bounds[1][1])
+    return axles.axles(wish.reference, half)
+
+
 LAYERS = (
     Layer(
         "ground",
@@ -301,6 +310,7 @@ LAYERS = (
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
     Layer("heat", "Stopped Where", _heat_keys, _heat, rough=True),
+    Layer("axles", "Axles", _axle_keys, _axles, 1.6, edged=True),
     Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, 1.6, edged=True),
     Layer("place", "Asked Place", _place_keys, _place, 1.8, edged=True),
     Layer("labels", "Names", _label_keys, _label),

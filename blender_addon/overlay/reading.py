@@ -65,6 +65,7 @@ class SceneReader:
             place=None if answer is None else answer.place,
             mounts=mounts,
             boxes=_boxes(scene, sensors, vehicle, mounts),
+            reference=bridge.reference_of(scene.perception_entropy),
         )
 
     def _mounts(

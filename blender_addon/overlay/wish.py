@@ -108,6 +108,7 @@ class PictureWish:
     place: advice.AskedPlace | None = None
     mounts: tuple[MountFaces, ...] = ()
     boxes: tuple[SearchBox, ...] = ()
+    reference: pe.Reference | None = None
 
     @property
     def counted(self) -> tuple[SceneSensor, ...]:

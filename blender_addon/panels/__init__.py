@@ -34,10 +34,12 @@ CLASSES = (
 
 
 def register() -> None:
-    """Add what stands in headers of Blender's own."""
+    """Add what stands in headers and menus of Blender's own."""
     overlay.register()
+    export.register()
 
 
 def unregister() -> None:
     """Take it out again."""
+    export.unregister()
     overlay.unregister()

@@ -108,6 +108,7 @@ LAYERS: tuple[tuple[str, DrawChoices | None], ...] = (
     ("frustums", _frustums),
     ("beams", _beams),
     ("heat", None),
+    ("axles", None),
     ("ghosts", None),
     ("place", None),
 )

@@ -18,6 +18,7 @@ from bpy.props import (
 from ..choices import PRIORS
 from ..engine import pe, search
 from .advanced import AdvancedSceneSettings
+from .axles import AxleSettings
 from .breakdown import PE_ResultPart
 from .callbacks import changed, redraw
 from .focus import PE_FocusSettings
@@ -43,6 +44,7 @@ PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) 
 
 class PE_SceneSettings(
     AdvancedSceneSettings,
+    AxleSettings,
     MountingSettings,
     SelectionSettings,
     ToleranceSettings,

@@ -77,6 +77,13 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         update=redraw,
     )
 
+    show_axles: BoolProperty(
+        name="Axles",
+        description="Show the axles, where they are known, and the rear one's axes on the ground: "
+        "the origin of other programs",
+        default=True,
+        update=redraw,
+    )
     show_ghosts: BoolProperty(
         name="Other Variant",
         description="Show the variant whose ghost is switched on in the list of variants",

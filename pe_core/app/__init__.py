@@ -2,6 +2,7 @@
 
 from .choosing import check_not_resumed, choose, plots
 from .command import Parser, add_run_options, add_sensors_verb, count_up_to, run, with_options
+from .exchanging import add_export_options, export
 from .explaining import add_compare_options, add_explain_options, compare, explain
 from .interrupts import leave
 from .resuming import begun_search, job_and_folder
@@ -20,6 +21,7 @@ __all__ = [
     "Parser",
     "add_compare_options",
     "add_explain_options",
+    "add_export_options",
     "add_run_options",
     "add_sensors_verb",
     "begun_search",
@@ -30,6 +32,7 @@ __all__ = [
     "count_up_to",
     "drive",
     "explain",
+    "export",
     "job_and_folder",
     "leave",
     "open_missing_streams",

@@ -18,10 +18,11 @@ POSE = ("X", "Y", "Z", "ROLL", "PITCH", "YAW")
 NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
 
 
-def add_export_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``export`` to a parser."""
-    about = f"format: {', '.join(RIG_FORMATS)}"
-    parser.add_argument("--to", required=True, choices=RIG_FORMATS, metavar="FORMAT", help=about)
+def add_export_options(parser: argparse.ArgumentParser, *, also_study: bool = False) -> None:
+    """Add the options of ``export`` to a parser; `also_study`: without a format that is written."""
+    about = f"format: {', '.join(RIG_FORMATS)}" + (" (default: a study)" if also_study else "")
+    needed = not also_study
+    parser.add_argument("--to", required=needed, choices=RIG_FORMATS, metavar="FORMAT", help=about)
     about = "file, or folder for a format of several files"
     parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
     parser.add_argument("--replace", action="store_true", help="replace files that are there")

@@ -104,7 +104,9 @@ def composed(outer: Pose, inner: Pose) -> Pose:
     return pose_of(product(rotation, inner.ground_from_sensor), position)
 
 
-def origin_in_ground(origin: str, reference: Reference | None, asking: str) -> tuple[float, ...]:
+def origin_in_ground(
+    origin: str, reference: Reference | None, asking: str, source: object = "study"
+) -> tuple[float, ...]:
     """Return where an origin is in the ground frame, (3,) [m].
 
     Raises
@@ -116,7 +118,7 @@ def origin_in_ground(origin: str, reference: Reference | None, asking: str) -> t
         return 0.0, 0.0, 0.0
     if reference is None:
         expected = f"the rear axle's place, which is the origin of {asking}"
-        raise InputError("study", "reference", expected, "none")
+        raise InputError(source, "reference", expected, "none")
     return reference.rear_axle_x, 0.0, reference.rear_axle_z if origin == REAR_AXLE else 0.0
 
 

@@ -82,7 +82,7 @@ def import_rig(
     if not path.exists():
         raise InputError(path, "file", "an existing file or folder", "nothing of that name")
     row = told_format(path) if name is None else rig_format(name)
-    origin = origin_in_ground(row.origin, reference, row.title)
+    origin = origin_in_ground(row.origin, reference, row.title, path)
     found, models = row.read(path), models or {}
     names = named_apart([each.name for each in found])
     unknown = next((key for key in models if key not in names), None)

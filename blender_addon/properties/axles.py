@@ -1,0 +1,35 @@
+"""Where the vehicle's axles are: other programs have their origin at the rear one."""
+
+from __future__ import annotations
+
+from bpy.props import BoolProperty, FloatProperty
+
+from .callbacks import redraw
+
+
+def _metres(name: str, description: str, least: float = 0.0) -> FloatProperty:
+    return FloatProperty(
+        name=name,
+        description=description,
+        min=least,
+        soft_max=10.0,
+        precision=3,
+        unit="LENGTH",
+        update=redraw,
+    )
+
+
+class AxleSettings:
+    """A part of the scene's settings."""
+
+    axles_known: BoolProperty(
+        name="Axles",
+        description="Say where the axles are: the origin of Autoware, nuScenes, ASAM OSI and "
+        "DriveWorks is the rear one",
+        update=redraw,
+    )
+    rear_axle_x: _metres("Rear Axle X", "Middle of the rear axle: forward of the origin", -100.0)
+    rear_axle_z: _metres("Rear Axle Z", "Middle of the rear axle: above the ground")
+    wheelbase: _metres("Wheelbase", "From the rear axle to the front one; 0: not known")
+    front_overhang: _metres("Front Overhang", "In front of the front axle; 0: not known")
+    rear_overhang: _metres("Rear Overhang", "Behind the rear axle; 0: not known")

@@ -1,0 +1,96 @@
+"""Rigs of other programs leave the scene and come into it; axles stand where wheels are."""
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon import bridge
+from blender_addon.engine import exchange, pe
+from blender_addon.overlay import axles
+from tests.addon import scenes
+
+AXLE = pe.Reference(-1.31, 0.33, 2.8)
+
+
+def wheel(name, x):
+    """A part of the car that is called a wheel."""
+    car = bpy.context.scene.perception_entropy.vehicle
+    return scenes.add_box(car, name, (0.3, 0.1, 0.3), location=(x, 0.8, 0.3))
+
+
+@pytest.fixture
+def axled(car):
+    place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.0, 0.1, 0.2)}
+    scenes.add_sensor("eye", "Front 120 deg 8 MP", **place)
+    bridge.write_reference(car.perception_entropy, AXLE)
+    return car
+
+
+def test_a_scene_s_axles_are_its_study_s_and_the_same_bits(axled):
+    assert scenes.study().reference == AXLE
+    axled.perception_entropy.axles_known = False
+    assert scenes.study().reference is None
+
+
+@pytest.mark.parametrize("name", [n for n in exchange.RIG_FORMATS if n != "kitti"])
+def test_a_rig_leaves_and_comes_back_as_a_variant(axled, tmp_path, name):
+    before = scenes.study().rig
+    row = exchange.rig_format(name)
+    path = tmp_path / (row.files[0] if len(row.files) == 1 else "rig")
+    assert bpy.ops.pe.export_rig(filepath=str(path), format=name) == {"FINISHED"}
+    chosen = path / row.files[0] if len(row.files) > 1 else path
+    assert bpy.ops.pe.import_rig(filepath=str(chosen)) == {"FINISHED"}
+    settings, after = axled.perception_entropy, scenes.study().rig
+    assert settings.variants[0].name == "Unsaved", "what stood here is kept"
+    assert bridge.active_variant(axled).note.startswith("Read from")
+    assert len(after) == len(before)
+    by_place = sorted(after, key=lambda s: s.pose.position)
+    for ours, theirs in zip(sorted(before, key=lambda s: s.pose.position), by_place, strict=True):
+        assert theirs.kind == ours.kind
+        assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-5)
+        turned = theirs.pose.ground_from_sensor - ours.pose.ground_from_sensor
+        assert np.abs(turned).max() < 1e-5
+
+
+def test_a_camera_that_nobody_has_becomes_the_file_s_own(axled, tmp_path):
+    path = tmp_path / "objects.json"
+    bpy.ops.pe.export_rig(filepath=str(path), format="carla")
+    bpy.ops.pe.import_rig(filepath=str(path))
+    own = [row.name for row in axled.perception_entropy.own_sensors]
+    assert "eye" in own and scenes.study().rig["eye"].model.width == 3840
+
+
+def test_axles_are_found_by_wheels_and_refused_without(car):
+    with pytest.raises(RuntimeError, match="parts named as wheels, front and rear"):
+        bpy.ops.pe.guess_axles()
+    wheel("wheel_front_left", 1.5)
+    wheel("wheel_rear_left", -1.3)
+    bpy.context.view_layer.update()
+    assert bpy.ops.pe.guess_axles() == {"FINISHED"}
+    found = scenes.study().reference
+    assert (found.rear_axle_x, found.rear_axle_z, found.wheelbase) == (-1.3, 0.3, 2.8)
+
+
+def test_without_axles_their_formats_are_refused_in_one_line(car, tmp_path):
+    with pytest.raises(RuntimeError, match="rear axle's place, which is the origin of nuScenes"):
+        bpy.ops.pe.export_rig(filepath=str(tmp_path / "out"), format="nuscenes")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_bad_file_changes_nothing(car, tmp_path):
+    (tmp_path / "objects.json").write_text("{")
+    before = scenes.study().rig
+    with pytest.raises(RuntimeError, match="valid JSON"):
+        bpy.ops.pe.import_rig(filepath=str(tmp_path / "objects.json"))
+    assert [s.pose for s in scenes.study().rig] == [s.pose for s in before]
+    assert not car.perception_entropy.variants
+
+
+def test_axles_are_drawn_across_the_body_and_axes_on_the_ground():
+    shape = axles.axles(AXLE, 0.9)
+    ends = shape.through.points.reshape(-1, 2, 3)
+    across = [pair for pair in ends if pair[0][1] < 0.0]
+    assert [round(float(pair[0][0]), 2) for pair in across] == [-1.31, 1.49]
+    assert all(abs(pair[0][1]) > 0.9 and np.allclose(pair[:, 2], 0.33) for pair in across)
+    triad = [pair for pair in ends if pair[0][1] == 0.0]
+    assert len(triad) == 3 and all(np.allclose(pair[0], (-1.31, 0, 0)) for pair in triad)

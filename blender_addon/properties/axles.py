@@ -7,11 +7,13 @@ from bpy.props import BoolProperty, FloatProperty
 from .callbacks import redraw
 
 
-def _metres(name: str, description: str, least: float = 0.0) -> FloatProperty:
+def _metres(name: str, description: str, least: float = 0.0, default: float = 0.0) -> FloatProperty:
     return FloatProperty(
         name=name,
         description=description,
+        default=default,
         min=least,
+        max=100.0,
         soft_max=10.0,
         precision=3,
         unit="LENGTH",
@@ -28,8 +30,10 @@ class AxleSettings:
         "DriveWorks is the rear one",
         update=redraw,
     )
-    rear_axle_x: _metres("Rear Axle X", "Middle of the rear axle: forward of the origin", -100.0)
-    rear_axle_z: _metres("Rear Axle Z", "Middle of the rear axle: above the ground")
+    rear_axle_x: _metres(
+        "Rear Axle X", "Middle of the rear axle: forward of the origin", -100.0, -1.3
+    )
+    rear_axle_z: _metres("Rear Axle Z", "Middle of the rear axle: above the ground", 0.001, 0.3)
     wheelbase: _metres("Wheelbase", "From the rear axle to the front one; 0: not known")
     front_overhang: _metres("Front Overhang", "In front of the front axle; 0: not known")
     rear_overhang: _metres("Rear Overhang", "Behind the rear axle; 0: not known")

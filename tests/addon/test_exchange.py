@@ -8,6 +8,7 @@ from blender_addon import bridge
 from blender_addon.engine import exchange, pe
 from blender_addon.overlay import axles
 from tests.addon import scenes
+from tests.addon.test_commands import run
 
 AXLE = pe.Reference(-1.31, 0.33, 2.8)
 
@@ -94,3 +95,14 @@ def test_axles_are_drawn_across_the_body_and_axes_on_the_ground():
     assert all(abs(pair[0][1]) > 0.9 and np.allclose(pair[:, 2], 0.33) for pair in across)
     triad = [pair for pair in ends if pair[0][1] == 0.0]
     assert len(triad) == 3 and all(np.allclose(pair[0], (-1.31, 0, 0)) for pair in triad)
+
+
+def test_the_command_in_blender_writes_a_rig(axled, tmp_path):
+    path = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    answer = run("blender_addon", path, "export", "--to", "autoware", "-o", tmp_path / "kit")
+    assert answer.returncode == 0, answer.stderr
+    bpy.ops.pe.export_rig(filepath=str(tmp_path / "panel"), format="autoware")
+    for name in exchange.rig_format("autoware").files:
+        from_panel = (tmp_path / "panel" / name).read_bytes()
+        assert (tmp_path / "kit" / name).read_bytes() == from_panel

@@ -20,8 +20,8 @@ def reference_of(settings: bpy.types.PropertyGroup) -> pe.Reference | None:
     return pe.Reference(*values[:NEEDED], *(value or None for value in values[NEEDED:]))
 
 
-def write_reference(settings: bpy.types.PropertyGroup, reference: pe.Reference) -> None:
-    """Have the settings say where the axles are."""
-    for key in KEYS:
+def write_reference(settings: bpy.types.PropertyGroup, reference: pe.Reference | None) -> None:
+    """Have the settings say where the axles are; None: nothing of them."""
+    settings.axles_known = reference is not None
+    for key in KEYS if reference is not None else ():
         setattr(settings, key, getattr(reference, key) or 0.0)
-    settings.axles_known = True

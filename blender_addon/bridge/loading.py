@@ -10,6 +10,7 @@ import bpy
 
 from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, kinds, pe, search, studies
+from .axles import write_reference
 from .loaded_body import make_body, paint_area, same_body
 from .records import NO_BOUNDS, ZEROS, Record
 from .rig import stand_at, view_layer_of
@@ -153,6 +154,7 @@ def _put_settings(settings: bpy.types.PropertyGroup, study: pe.Study) -> None:
     settings.candidates, settings.seed = own.schedule.candidates, min(own.seed, 2**31 - 1)
     settings.method, settings.evaluations = own.method, own.evaluations
     _put_tolerance(settings, own.tolerance)
+    write_reference(settings, study.reference)
 
 
 def _put_tolerance(settings: bpy.types.PropertyGroup, own: pe.Tolerance) -> None:

@@ -61,6 +61,14 @@ def test_a_camera_that_nobody_has_becomes_the_file_s_own(axled, tmp_path):
     assert "eye" in own and scenes.study().rig["eye"].model.width == 3840
 
 
+def test_an_imported_study_brings_its_axles(axled, tmp_path):
+    path = tmp_path / "study.toml"
+    assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
+    axled.perception_entropy.axles_known = False
+    assert bpy.ops.pe.import_study(filepath=str(path)) == {"FINISHED"}
+    assert scenes.study().reference == AXLE
+
+
 def test_axles_are_found_by_wheels_and_refused_without(car):
     with pytest.raises(RuntimeError, match="parts named as wheels, front and rear"):
         bpy.ops.pe.guess_axles()

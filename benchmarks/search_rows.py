@@ -61,7 +61,7 @@ def candidates_in_processes() -> Timing:
     return Timing("the same, a process a processor", ours, peak_mb(), "one process", theirs)
 
 
-def _all_cast(sensor: pe.Sensor, directions: np.ndarray, vehicle: pe.Vehicle) -> KnownEnds:
+def _all_cast(sensor: pe.Sensor, beams: object, vehicle: pe.Vehicle) -> KnownEnds:
     """Return the ends of a LiDAR's beams the plain way."""
     return KnownEnds(pe.beam_field(sensor, vehicle).ends)
 

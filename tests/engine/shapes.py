@@ -5,10 +5,11 @@ import math
 import numpy as np
 
 import pe_core as pe
+from pe_core.kinds.lidar.beams import TurnedBeams
 from pe_core.kinds.lidar.ends import KnownEnds
 from pe_core.kinds.lidar.lattice import lattice_of
 from pe_core.kinds.lidar.points import PlacedLidar, VoxelPoints, count_through
-from pe_core.kinds.lidar.ties import position_in_voxels, without_zeros
+from pe_core.kinds.lidar.ties import position_in_voxels
 
 BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
@@ -70,7 +71,7 @@ def counted(sensor, space, index, vehicle=None, enough=None):
         lattice_of(sensor.model),
         position_in_voxels(sensor.pose.position, space.origin, space.interval),
         sensor.pose.ground_from_sensor,
-        without_zeros(field.directions),
+        TurnedBeams(sensor),
         KnownEnds(field.ends),
         space.interval,
     )

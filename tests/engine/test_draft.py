@@ -28,7 +28,7 @@ def rig_at(*places):
 def test_a_draft_stops_nearly_the_same_beams(place, rotation):
     sensor = shapes.lidar_on_roof(position=place, rotation=rotation)
     cast = pe.beam_field(sensor, CAR).ends
-    draft = BeamEnds(CAR).draft(sensor, TurnedBeams.of(sensor))
+    draft = BeamEnds(CAR).draft(sensor, TurnedBeams(sensor))
     stopped = cast < 200.0
     assert np.mean(stopped != (draft < 200.0)) < 0.01
     both = stopped & (draft < 200.0)

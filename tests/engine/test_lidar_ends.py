@@ -8,11 +8,12 @@ import pytest
 
 import pe_core as pe
 from pe_core.kinds.lidar import bracket, points
+from pe_core.kinds.lidar.beams import TurnedBeams
 from pe_core.kinds.lidar.ends import KnownEnds, LazyEnds
 from pe_core.kinds.lidar.lattice import lattice_of
 from pe_core.kinds.lidar.maybe import may_be_stopped
 from pe_core.kinds.lidar.points import PlacedLidar, VoxelPoints, count_through, count_unhidden
-from pe_core.kinds.lidar.ties import position_in_voxels, without_zeros
+from pe_core.kinds.lidar.ties import position_in_voxels
 from tests.engine import shapes
 
 CAR = shapes.box_car(3)
@@ -44,7 +45,7 @@ def lidar(pose, model=None):
 
 
 def lazy(sensor, vehicle):
-    return LazyEnds(sensor, pe.beam_field(sensor, None).directions, vehicle)
+    return LazyEnds(sensor, TurnedBeams(sensor), vehicle)
 
 
 def placed(sensor, ends):
@@ -52,7 +53,7 @@ def placed(sensor, ends):
         lattice_of(sensor.model),
         position_in_voxels(sensor.pose.position, SPACE.origin, SPACE.interval),
         sensor.pose.ground_from_sensor,
-        without_zeros(pe.beam_field(sensor, None).directions),
+        TurnedBeams(sensor),
         ends,
         SPACE.interval,
     )

@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...scene.geometry import dot
 from .model import Camera
 from .ties import IN_FRONT
 
@@ -49,7 +48,8 @@ def clipped_pixel_area(camera: Camera, axes: Floats, offsets: Floats, side: floa
 
 def in_sensor_frame(axes: Floats, offsets: Floats) -> SensorAxes:
     """Offsets (V, 3) along ground axes as the camera sees them."""
-    depth, left, up = (dot(offsets, axis) for axis in axes.T)
+    x, y, z = (offsets[:, k] for k in range(3))
+    depth, left, up = (x * a + y * b + z * c for a, b, c in axes.T)
     return depth, left, up
 
 

@@ -8,6 +8,7 @@ from functools import partial, reduce
 from operator import add
 from typing import cast
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ...metric.planes import SeenRows
@@ -46,6 +47,7 @@ class CameraSample(SampleKernel):
 
     def __init__(self, voxels: Voxels, vehicle: Vehicle | None) -> None:
         self._voxels, self._vehicle = voxels, vehicle
+        self._centers = np.asfortranarray(voxels.centers)  # worked on axis by axis
 
     def measure(self, sensor: Sensor, draft: bool) -> Measured:
         """Measure a camera; there are no drafts."""
@@ -59,7 +61,7 @@ class CameraSample(SampleKernel):
         camera, side = cast(Camera, sensor.model), self._voxels.space.interval
         seen = _seen(vehicle, sensor)
         areas = pixel_areas if camera.projection.is_straight else bent_pixel_areas
-        return areas(camera, sensor.pose, self._voxels.centers, side, seen)
+        return areas(camera, sensor.pose, self._centers, side, seen)
 
 
 def _areas(cameras: Sequence[ViewPlanes], planes: slice) -> SeenRows:

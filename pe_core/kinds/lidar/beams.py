@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ...scene.geometry import rotate
 from ...scene.raycast import Hits
 from ...scene.sensors import Sensor
 from ...scene.vehicle import Vehicle
@@ -19,6 +20,7 @@ from .model import Lidar
 from .ties import without_zeros
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 LARGEST_MAP_M2 = 200.0
 """A map of a larger vehicle (a lorry has 50 m2) takes seconds to draw; casting is as fast then."""
@@ -76,19 +78,40 @@ def stopped_beams(field: BeamField, vehicle: Vehicle | None) -> Stopped:
 
 @dataclass(frozen=True)
 class TurnedBeams:
-    """A LiDAR's beams at one orientation: kept while the sensor moves without turning.
+    """A LiDAR's beams at the orientation of `sensor`: kept while it moves without turning.
 
-    `directions` (B, 3) unit, ground frame; `without_zeros` the same as the kernels take them.
+    Few are turned when they are asked for; all at once where many are.
     """
 
-    directions: Floats
-    without_zeros: Floats
+    sensor: Sensor
 
-    @classmethod
-    def of(cls, sensor: Sensor) -> TurnedBeams:
-        """Turn the beams of a LiDAR."""
-        directions = beam_directions(sensor)
-        return cls(directions, without_zeros(directions))
+    @cached_property
+    def directions(self) -> Floats:
+        """(B, 3) unit directions, ground frame."""
+        return beam_directions(self.sensor)
+
+    @cached_property
+    def _without_zeros(self) -> list[Floats]:
+        return [np.ascontiguousarray(w) for w in without_zeros(self.directions).T]
+
+    def some(self, beams: Ints) -> Floats:
+        """(N, 3) directions of some beams."""
+        if self._all_are_worth_it(beams):
+            return self.directions[beams]
+        some = cast(Lidar, self.sensor.model).directions[beams]
+        return rotate(self.sensor.pose.ground_from_sensor, some)
+
+    def speeds(self, beams: Ints) -> list[Floats]:
+        """Return the directions of some beams as kernels take them: an (N,) array an axis."""
+        if self._all_are_worth_it(beams):
+            return [np.take(w, beams) for w in self._without_zeros]
+        x, y, z = np.ascontiguousarray(cast(Lidar, self.sensor.model).directions[beams].T)
+        axes = self.sensor.pose.ground_from_sensor
+        return [without_zeros(row[0] * x + row[1] * y + row[2] * z) for row in axes]
+
+    def _all_are_worth_it(self, beams: Ints) -> bool:
+        is_known = "directions" in vars(self)
+        return is_known or len(beams) > cast(Lidar, self.sensor.model).beam_count
 
     @cached_property
     def slants(self) -> Slants:

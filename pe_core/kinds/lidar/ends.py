@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...scene.raycast import Hits
 from ...scene.sensors import Sensor
 from ...scene.vehicle import Vehicle
-from .beams import BeamField
+from .beams import BeamField, TurnedBeams
 from .lattice import lattice_of
 from .maybe import may_be_stopped
 from .model import Lidar
@@ -54,19 +54,20 @@ class LazyEnds:
     Parameters
     ----------
     sensor : Sensor
-    directions : (B, 3) float
-        Unit directions of its beams, ground frame.
+    beams : TurnedBeams
+        Its beams, at its orientation.
     vehicle : Vehicle
     """
 
     farthest = np.inf
 
-    def __init__(self, sensor: Sensor, directions: Floats, vehicle: Vehicle) -> None:
+    def __init__(self, sensor: Sensor, beams: TurnedBeams, vehicle: Vehicle) -> None:
         model = cast(Lidar, sensor.model)
-        self._sensor, self._directions, self._vehicle = sensor, directions, vehicle
+        self._sensor, self._beams, self._vehicle = sensor, beams, vehicle
         self._seen = vehicle.seen_from(sensor.pose.position, model.sees_through_glass)
-        self._hits = Hits(np.full(len(directions), np.inf), np.full(len(directions), -1))
-        self._open = np.ones(len(directions), bool)
+        count = model.beam_count
+        self._hits = Hits(np.full(count, np.inf), np.full(count, -1))
+        self._open = np.ones(count, bool)
         self.longest = model.max_range
 
     @cached_property
@@ -91,10 +92,10 @@ class LazyEnds:
         """Return all beams, cast."""
         self._cast(np.flatnonzero(self._open))
         ends = np.minimum(self._hits.distance, self.longest)
-        return BeamField(self._directions, ends, self.longest, self._hits, self._vehicle)
+        return BeamField(self._beams.directions, ends, self.longest, self._hits, self._vehicle)
 
     def _cast(self, new: Ints) -> None:
-        found = self._seen.first_hit(self._directions[new])
+        found = self._seen.first_hit(self._beams.some(new))
         self._hits.distance[new], self._hits.face[new] = found.distance, found.face
         self._open[new] = False
 

@@ -43,7 +43,7 @@ class KnownBeams:
         known = self._turned.get(sensor.name)
         if known and known[0].model is sensor.model and known[0].pose.rpy == sensor.pose.rpy:
             return known[1]
-        beams = TurnedBeams.of(sensor)
+        beams = TurnedBeams(sensor)
         self._turned[sensor.name] = (sensor, beams)
         return beams
 
@@ -66,7 +66,7 @@ class KnownBeams:
             return CastBeams(sensor, KnownEnds(self._drafts.draft(sensor, beams)), True)
         if self._vehicle is None:
             return CastBeams(sensor, self.endless(sensor), False)
-        return CastBeams(sensor, LazyEnds(sensor, beams.directions, self._vehicle), False)
+        return CastBeams(sensor, LazyEnds(sensor, beams, self._vehicle), False)
 
     def forget_all_but(self, sensors: Collection[Sensor]) -> None:
         """Keep the beams of these sensors alone."""

@@ -67,7 +67,7 @@ class LidarSample(SampleKernel):
             lattice_of(cast(Lidar, sensor.model)),
             position_in_voxels(sensor.pose.position, self._space.origin, side),
             sensor.pose.ground_from_sensor,
-            self.known.turned(sensor).without_zeros,
+            self.known.turned(sensor),
             ends,
             side,
         )

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...scene.numbering import blocks
+from .beams import TurnedBeams
 from .bracket import Bracket, Singles, bracket
 from .ends import AnyEnds
 from .lattice import Lattice, windows_of
@@ -75,14 +76,14 @@ class PlacedLidar:
     """A LiDAR among the voxels of a grid: lengths in voxel sides.
 
     `position` (3,) is seen from the grid's lowest corner (`ties.position_in_voxels`),
-    `ground_from_sensor` (3, 3) how it is turned. `directions` (B, 3) are all beams of the lattice
-    in the ground frame, without zeros; `ends` where they end [m], `side` a voxel's side [m].
+    `ground_from_sensor` (3, 3) how it is turned, `beams` are its beams, turned so; `ends` where
+    they end [m], `side` a voxel's side [m].
     """
 
     lattice: Lattice
     position: Floats
     ground_from_sensor: Floats
-    directions: Floats
+    beams: TurnedBeams
     ends: AnyEnds
     side: float
 
@@ -231,13 +232,22 @@ def _one_by_one(
 
 def _holds_any(stopped: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> NDArray[np.bool_]:
     """Whether the windows of some voxels hold a stopped beam: four look-ups in a table of sums."""
-    channels, width = stopped.shape
-    sums = np.zeros((channels + 1, 2 * width + 1), np.int32)  # twice round, so no window wraps
-    np.cumsum(np.cumsum(np.tile(stopped, 2), axis=0, dtype=np.int32), axis=1, out=sums[1:, 1:])
+    width, sums = stopped.shape[1], _sums_twice_round(stopped)
     r0, c0 = bounds.row[voxels], bounds.column[voxels] % width
     r1, c1 = r0 + bounds.rows[voxels], c0 + bounds.columns[voxels]
     held: NDArray[np.bool_] = sums[r1, c1] - sums[r0, c1] > sums[r1, c0] - sums[r0, c0]
     return held
+
+
+def _sums_twice_round(stopped: NDArray[np.bool_]) -> Counts:
+    """(C + 1, 2 A + 1) numbers of flags in lower rows and columns; twice, so that none wraps."""
+    channels, width = stopped.shape
+    sums = np.zeros((channels + 1, 2 * width + 1), np.int32)
+    np.cumsum(stopped, axis=1, dtype=np.int32, out=sums[1:, 1 : width + 1])
+    for row, before in zip(sums[1:], sums, strict=False):
+        row += before  # five times as fast as a sum down the columns
+    np.add(sums[:, 1 : width + 1], sums[:, width : width + 1], out=sums[:, width + 1 :])
+    return sums
 
 
 def _count_pairs(
@@ -265,8 +275,8 @@ def _count_pairs(
 def _through(offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints) -> tuple[Ints, Floats]:
     """Pairs whose beam passes its cube in range, and where: `definition.cube_crossing` by axes."""
     enter, leave = np.zeros(len(voxel)), np.full(len(voxel), np.inf)
-    for axis in range(3):
-        step, center = lidar.directions[beam, axis], offsets[voxel, axis]
+    for axis, step in enumerate(lidar.beams.speeds(beam)):
+        center = offsets[voxel, axis]
         t0, t1 = (center - 0.5) / step, (center + 0.5) / step
         np.maximum(enter, np.minimum(t0, t1), out=enter)
         np.minimum(leave, np.maximum(t0, t1), out=leave)

@@ -56,16 +56,13 @@ class BinnedRays:
         self._sums = sums.reshape(-1)
 
     @classmethod
-    def within(cls, look: FaceLook, ends: Ends, d: Floats, size: Floats) -> BinnedRays | None:
+    def within(cls, look: FaceLook, ends: Ends, d: Floats, ray: Ints) -> BinnedRays | None:
         """Rays that pass a face within a rectangle; None where none does.
 
-        `d` (3, B) are the directions of all rays, `size` their absolute values.
+        `d` (3, B) are the directions of all rays, `ray` the numbers of those that pass the face.
         """
-        depth, u, v = look.face.split(d)
-        _, wide, high = look.face.split(size)
-        ray = np.flatnonzero((depth >= wide) & (depth >= high))
-        depth = depth[ray]
-        u, v = u[ray] / depth, v[ray] / depth
+        depth, u, v = (w[ray] for w in look.face.split(d))
+        u, v = u / depth, v / depth
         (u0, u1), (v0, v1) = ends
         some = np.flatnonzero((u >= u0) & (u <= u1) & (v >= v0) & (v <= v1))
         ray = ray[some]

@@ -71,14 +71,23 @@ class SeenTriangles:
         if not len(directions):
             return hits
         d = np.ascontiguousarray(directions.T)
-        size = np.abs(d)
-        for face in FACES:
+        passed = _faces_passed(d)
+        for number, face in enumerate(FACES):
+            ray = np.flatnonzero(passed == number)
             look = FaceLook(self.tree, self.origin, face)
-            ends = look.ends()
-            rays = None if ends is None else BinnedRays.within(look, ends, d, size)
+            ends = look.ends() if len(ray) else None
+            rays = None if ends is None else BinnedRays.within(look, ends, d, ray)
             if rays is not None:
                 _cast(look, rays, hits)
         return hits
+
+
+def _faces_passed(d: Floats) -> NDArray[np.int8]:
+    """(B,) which of `FACES` each of (3, B) directions passes; one of them at edges and corners."""
+    x, y, z = np.abs(d)
+    backward = (d < 0.0).astype(np.int8)
+    side = np.where(y >= z, backward[1] + np.int8(2), backward[2] + np.int8(4))
+    return np.where((x >= y) & (x >= z), backward[0], side)
 
 
 def _cast(look: FaceLook, rays: BinnedRays, hits: Hits) -> None:

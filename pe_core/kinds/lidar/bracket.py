@@ -36,8 +36,10 @@ BALL = np.float32(0.867)
 """Radius of a ball around a cube: how far one that the sensor's axis may touch reaches."""
 ON_AXIS = np.float32(1e-9)
 """Stands for the least distance from the sensor's axis of a cube that the axis may touch."""
-SLICE_WIDTHS = (1.0 - 1e-5, 0.97, 0.9)
-"""Widths of the inner window tried, of the slice's: narrower is higher where the cube is tilted."""
+LEAST_SHARE, MOST_SHARE = np.float32(0.85), np.float32(1.0 - 1e-5)
+"""Ends of the share of the slice's width that the inner window has."""
+WORTH_PICKING = 0.85
+"""Inner windows are worked out where the outer ones hold beams, if no more than this share do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +126,15 @@ class Silhouettes:
         up = half[:, 2]
         return cls(flat, z, middle, step, radial, sideways, up, deep, wide, np.abs(up).sum())
 
+    def some(self, which: NDArray[np.intp]) -> Silhouettes:
+        """Return those of some cubes."""
+        flat, z, middle, deep, wide = (
+            w[which] for w in (self.flat, self.z, self.middle, self.deep, self.wide)
+        )
+        radial, sideways = ([w[which] for w in side] for side in (self.radial, self.sideways))
+        step, up, tall = self.step, self.up, self.tall
+        return Silhouettes(flat, z, middle, step, radial, sideways, up, deep, wide, tall)
+
 
 def _bounds(seen: Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts, ...]:
     """Fields of a `Bracket`."""
@@ -140,10 +151,23 @@ def _bounds(seen: Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts,
     row = slopes.below[low]
     rows = np.maximum(slopes.upto[high] - row, 0)
     most = rows * columns
-    inner_rows, inner_columns = _inner(seen, slopes)
-    least = np.where(beside, np.minimum(inner_rows * inner_columns, most), 0)
+    least = _least(seen, slopes, most, beside)
     columns = np.where(beside, columns, np.int32(count))  # it surrounds the sensor's axis
     return least, rows * columns, row, rows, first.astype(np.int32), columns
+
+
+def _least(
+    seen: Silhouettes, slopes: SlopeBounds, most: Counts, beside: NDArray[np.bool_]
+) -> Counts:
+    """Beams of the inner windows, where there are any in the outer ones."""
+    some = np.flatnonzero(beside & (most > 0))
+    if len(some) > WORTH_PICKING * len(most):
+        rows, columns = _inner(seen, slopes)
+        return np.where(beside, np.minimum(rows * columns, most), 0)
+    least = np.zeros_like(most)
+    rows, columns = _inner(seen.some(some), slopes)
+    least[some] = np.minimum(rows * columns, most[some])
+    return least
 
 
 def _slope(up: Singles, over_if_above: Singles, over_if_below: Singles) -> Singles:
@@ -187,18 +211,16 @@ def slice_through(seen: Silhouettes) -> tuple[Singles, Singles, Singles]:
 
 
 def _rectangle(tilt: list[Singles], up: Singles) -> tuple[Singles, Singles]:
-    """Half width and half height of a rectangle in the slice, the larger of a few.
+    """Half width and half height of a rectangle in the slice.
 
-    The slice is where ``|s tilt_k + u up_k| <= 1/2`` for the three axes k of the cube.
+    The slice is where ``|s tilt_k + u up_k| <= 1/2`` for the three axes k of the cube. A tilted
+    one has no height at its full width, and about the cube's from the share ``1 - up_k`` of it on,
+    k being the second most upright axis.
     """
     half, none = np.float32(0.5), np.float32(1e-9)
     widest = half / np.maximum(np.maximum(np.maximum(tilt[0], tilt[1]), tilt[2]), none)
-    width = height = area = np.zeros_like(widest)
-    for share in SLICE_WIDTHS:
-        a = widest * np.float32(share)
-        rooms = [(half - a * t) / max(u, none) for t, u in zip(tilt, up, strict=True)]
-        b = np.minimum(np.minimum(rooms[0], rooms[1]), rooms[2])
-        better = a * b > area
-        width, height = np.where(better, a, width), np.where(better, b, height)
-        area = np.maximum(area, a * b)
-    return width, height
+    share = np.clip(np.float32(1.0) - np.sort(up)[1], LEAST_SHARE, MOST_SHARE)
+    width = widest * share
+    rooms = [(half - width * t) / max(u, none) for t, u in zip(tilt, up, strict=True)]
+    height = np.minimum(np.minimum(rooms[0], rooms[1]), rooms[2])
+    return width, np.maximum(height, 0)

@@ -55,7 +55,7 @@ def test_the_bracket_worked_by_hand_is_the_kernel_s(worked):
     assert outer.rows == list(range(int(kernel.row[0]), int(kernel.row[0] + kernel.rows[0])))
     first = int(kernel.column[0])
     assert outer.columns == list(range(first, first + int(kernel.columns[0])))
-    assert (inner.beams, outer.beams) == (kernel.least[0], kernel.most[0]) == (8, 20)
+    assert (inner.beams, outer.beams) == (kernel.least[0], kernel.most[0]) == (12, 20)
     assert inner.beams < worked.defined(worked.TILTED, worked.TILTED_CENTER) < outer.beams
 
 

@@ -26,7 +26,7 @@ def check_choosable(scene: bpy.types.Scene, study: pe.Study) -> None:
         else holds a sensor that is to be moved.
     """
     if not study.selection.choices:
-        expected = "a sensor with models to choose from (panel Which Sensors)"
+        expected = "a sensor with models to choose from (panel Sensor Choices)"
         raise pe.InputError("scene", "choices", expected, "none")
     try:
         study.designs()

@@ -201,7 +201,8 @@ class ChoiceJob(Job):
             for progress in job:
                 if progress.stage == job.SEARCHING:
                     fraction = progress.fraction
-                yield replace(progress, stage=stage, fraction=(number + fraction) / count)
+                done = (number + fraction) / count
+                yield Progress(stage, done, evaluations=progress.evaluations)
         except InputError as error:
             self._errors[picks] = error
             self._found.pop(picks, None)

@@ -101,7 +101,8 @@ def _of_boxes(low: Floats, high: Floats, axes: Floats, lattice: Lattice) -> Beam
     deep, wide, tall = (w * (1.0 + MARGIN) + LEAST_M for w in (deep, wide, tall))
     beside = flat > deep * 1.1
     room = np.where(beside, flat - deep, 1.0)
-    far = np.sqrt((flat + deep) ** 2 + wide * wide)
+    round_it = flat + np.sqrt(_sum(h * h for h in half)) * (1.0 + MARGIN) + LEAST_M
+    far = np.where(beside, np.sqrt((flat + deep) ** 2 + wide * wide), round_it)
     low_row, high_row = _rows(z - tall, z + tall, np.where(beside, room, 0.0), far, lattice)
     middle, reach = np.arctan2(y, x), np.where(beside, np.arctan2(wide, room), np.pi)
     return BeamWindows(low_row, high_row, *_columns(middle - reach, middle + reach, lattice))

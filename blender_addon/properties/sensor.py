@@ -94,8 +94,12 @@ class PE_ObjectSettings(SearchBounds, MountedSettings, OfferedModels, bpy.types.
     coverage: FloatProperty(
         name="Coverage", description="Share of the prior that this sensor sees, 0 to 1"
     )
-    beams: IntProperty(name="Beams", description="Beams of one revolution; 0 for a camera")
-    stopped: IntProperty(name="Stopped", description="Beams that the vehicle itself stops")
+    beams: IntProperty(
+        name="Beams", description="Beams of one revolution; places of a camera's picture"
+    )
+    stopped: IntProperty(
+        name="Stopped", description="Beams, or places of the picture, that the vehicle itself stops"
+    )
     stopped_text: StringProperty(
         name="Stopped By", description="Which parts of the vehicle stop how many beams"
     )

@@ -26,7 +26,8 @@ def summary(outcome: Outcome) -> str:
         x, y, z = sensor.pose.position
         roll, pitch, yaw = sensor.pose.rotation_deg
         own = scores[sensor.name]
-        stopped = f", {own.stopped / own.beams:.1%} of its beams stopped" if own.stopped else ""
+        what = "picture hidden" if sensor.kind == "camera" else "beams stopped"
+        stopped = f", {own.stopped / own.beams:.1%} of its {what}" if own.stopped else ""
         lines.append(
             f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
             f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"

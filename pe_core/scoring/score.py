@@ -34,11 +34,12 @@ class PartScore:
 
 @dataclass(frozen=True, slots=True)
 class SensorScore:
-    """One sensor: alone, missing, and how many of its beams the vehicle stops.
+    """One sensor: alone, missing, and how much of what it sees the vehicle stops.
 
     `entropy` and `coverage` are those of a rig of this sensor alone; `lost` is what the whole rig's
-    entropy rises by when the sensor fails. `beams` and `stopped` are 0 for cameras; `stopped_by`
-    counts stopped beams by vehicle part.
+    entropy rises by when the sensor fails. `beams` are a LiDAR's, or places spread evenly over a
+    camera's picture; `stopped` of them the vehicle stops, `stopped_by` part of it. 0 where a kind
+    does not tell.
     """
 
     entropy: float

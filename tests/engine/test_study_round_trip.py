@@ -92,7 +92,8 @@ def lidars(draw):
     )
     offsets = draw(st.one_of(st.none(), angles))
     steps, range_m = draw(st.integers(30, 4000)), draw(st.floats(0.5, 900))
-    return pe.Lidar(draw(NAMES), draw(angles), steps, range_m, offsets, fov)
+    least = draw(st.sampled_from([0.0, 0.1, 0.4]))
+    return pe.Lidar(draw(NAMES), draw(angles), steps, range_m, offsets, fov, least)
 
 
 CAMERAS = st.builds(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from functools import partial, reduce
 from operator import add
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +15,20 @@ from ...metric.planes import SeenRows
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import SeenMesh, Vehicle
-from ..kernels import GridKernel, Measured, Planes, SampleKernel, Voxels
+from ..kernels import GridKernel, Measured, Planes, SampleKernel, Stopped, Voxels
 from .bent_grid import BentPlanes
 from .bent_points import bent_pixel_areas
 from .grid import CameraPlanes
+from .hidden_part import hidden_places
 from .model import Camera
 from .points import pixel_areas
 
-ViewPlanes = CameraPlanes | BentPlanes
+
+class ReadyCamera(NamedTuple):
+    """A mounted camera, and what measures planes through its lens."""
+
+    sensor: Sensor
+    view: CameraPlanes | BentPlanes
 
 
 class CameraGrid(GridKernel):
@@ -31,13 +37,17 @@ class CameraGrid(GridKernel):
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None) -> None:
         self._space, self._vehicle = space, vehicle
 
-    def ready(self, sensor: Sensor) -> ViewPlanes:
+    def ready(self, sensor: Sensor) -> ReadyCamera:
         """Look at the vehicle from the camera."""
         camera, seen = cast(Camera, sensor.model), _seen(self._vehicle, sensor)
         kind = CameraPlanes if camera.projection.is_straight else BentPlanes
-        return kind(camera, sensor.pose, self._space, seen)
+        return ReadyCamera(sensor, kind(camera, sensor.pose, self._space, seen))
 
-    def planes(self, groups: Sequence[Sequence[ViewPlanes]], pool: Executor) -> list[Planes]:
+    def stopped(self, ready: ReadyCamera) -> Stopped:
+        """Count places of the picture that the vehicle hides."""
+        return hidden_places(ready.sensor, self._vehicle)
+
+    def planes(self, groups: Sequence[Sequence[ReadyCamera]], pool: Executor) -> list[Planes]:
         """Measure each group when its planes are asked for."""
         return [partial(_areas, cameras) for cameras in groups]
 
@@ -57,6 +67,10 @@ class CameraSample(SampleKernel):
         """Measure a camera as if there were no vehicle."""
         return self._pixels(sensor, None)
 
+    def stopped(self, measured: Measured) -> Stopped:
+        """Count places of the picture that the vehicle hides."""
+        return hidden_places(measured.sensor, self._vehicle)
+
     def _pixels(self, sensor: Sensor, vehicle: Vehicle | None) -> NDArray:
         camera, side = cast(Camera, sensor.model), self._voxels.space.interval
         seen = _seen(vehicle, sensor)
@@ -64,8 +78,8 @@ class CameraSample(SampleKernel):
         return areas(camera, sensor.pose, self._centers, side, seen)
 
 
-def _areas(cameras: Sequence[ViewPlanes], planes: slice) -> SeenRows:
-    return reduce(add, (camera.areas(planes) for camera in cameras))
+def _areas(cameras: Sequence[ReadyCamera], planes: slice) -> SeenRows:
+    return reduce(add, (camera.view.areas(planes) for camera in cameras))
 
 
 def _seen(vehicle: Vehicle | None, sensor: Sensor) -> SeenMesh | None:

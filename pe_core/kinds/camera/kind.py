@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
+
+import numpy as np
 
 from ...metric.entropy import RTM3D
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Voxels
-from ..kind import Kind
+from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind
 from . import table as tables
 from .definition import count_pixels
 from .kernels import CameraGrid, CameraSample
 from .model import Camera
 from .picture import picture_rays
+from .ranged import out_of_range
 from .words import brief, figures
 
 
@@ -50,6 +53,12 @@ class CameraKind(Kind):
     def rays(self, sensor: Sensor, most: int) -> Floats:
         """Look through pixels that are spread over the picture."""
         return picture_rays(sensor, most)
+
+    def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
+        """Out of range, or out of view."""
+        offset = np.asarray(center)[None] - np.asarray(sensor.pose.position)
+        out = out_of_range(cast(Camera, sensor.model), offset)[0]
+        return OUT_OF_RANGE if out else OUT_OF_VIEW
 
     def brief(self, model: Camera) -> str:
         """Picture and field of view."""

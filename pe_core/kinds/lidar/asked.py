@@ -31,8 +31,9 @@ def some_beams(sensor: Sensor, most: int) -> Floats:
 
 def beams_to(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:
     """(R, 3) directions of the beams that pass through a cube in range, (R,) where they enter."""
-    directions, enter = _through(sensor, center, side)
-    near = enter <= cast(Lidar, sensor.model).max_range / side
+    directions, enter, leave = _through(sensor, center, side)
+    lidar = cast(Lidar, sensor.model)
+    near = (enter <= lidar.max_range / side) & (leave >= lidar.min_range / side)
     return directions[near], enter[near] * side
 
 
@@ -48,13 +49,13 @@ def missed(sensor: Sensor, center: Floats, side: float) -> str:
     return BETWEEN_BEAMS if _in_view(lidar, sensor, offset, side) else OUT_OF_VIEW
 
 
-def _through(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:
-    """Beams through a cube and where they enter it, in sides, as the definition has them."""
+def _through(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats, Floats]:
+    """Beams through a cube, where they enter and leave it, in sides, as the definition has them."""
     directions = beam_directions(sensor)
     offset = offsets_in_voxels(center[None], sensor.pose.position, side)
     enter, leave = cube_crossing(np.broadcast_to(offset, directions.shape), directions)
     through = enter < leave
-    return directions[through], enter[through]
+    return directions[through], enter[through], leave[through]
 
 
 def _in_view(lidar: Lidar, sensor: Sensor, offset: Floats, side: float) -> bool:

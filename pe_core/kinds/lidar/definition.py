@@ -40,6 +40,7 @@ def beam_ends(sensor: Sensor, directions: Floats, vehicle: Vehicle | None) -> Fl
 def count_beams(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
     directions = beam_directions(sensor)
     ends = beam_ends(sensor, directions, vehicle) / side
+    nearest = cast(Lidar, sensor.model).min_range / side
     offsets = offsets_in_voxels(centers, sensor.pose.position, side)
     counts = np.zeros(len(centers))
     portion = max(1, BEAM_TESTS_AT_ONCE // len(directions))
@@ -48,6 +49,7 @@ def count_beams(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle |
         voxel, beam = _near_pairs(some, directions)
         enter, leave = cube_crossing(some[voxel], directions[beam])
         through = (enter < leave) & (enter <= ends[beam])
+        through &= np.minimum(leave, ends[beam]) >= nearest
         counts[start : start + portion] = np.bincount(voxel[through], minlength=len(some))
     return counts
 

@@ -41,12 +41,16 @@ ONE = np.uint16(1)
 
 @dataclass(frozen=True, slots=True)
 class Paths:
-    """Beams cut to the space, in voxels: `origin` (3,), `directions` (B, 3), `start`, `end`."""
+    """Beams cut to the space, in voxels: `origin` (3,), `directions` (B, 3), `start`, `end`.
+
+    None starts nearer than `first`.
+    """
 
     origin: Floats
     directions: Floats
     start: Floats
     end: Floats
+    first: float = 0.0
 
 
 class BeamGrid:
@@ -72,7 +76,9 @@ class BeamGrid:
             self._crowded.clear()
             self._padded.fill(0)
 
-    def add(self, origin: Sequence[float], directions: Floats, ends: Floats) -> None:
+    def add(
+        self, origin: Sequence[float], directions: Floats, ends: Floats, nearest: float = 0.0
+    ) -> None:
         """Add the beams of one sensor to those that are there.
 
         Parameters
@@ -83,10 +89,15 @@ class BeamGrid:
             Unit directions, ground frame.
         ends : (B,) float
             A voxel entered farther than this is not counted [m].
+        nearest : float
+            Nor one that is left nearer than this [m].
         """
-        paths = _cut_to_space(origin, directions, ends, self.space)
+        paths = _cut_to_space(origin, directions, ends, self.space, nearest)
         self._crowded.append(_around(paths.origin, self._padded.shape))
-        self._add_at_origin(paths)
+        if nearest > 0.0:
+            self._add_at_start(paths)
+        else:
+            self._add_at_origin(paths)
         for axis in range(3):
             for sign in (1, -1):
                 run = _Run.of(paths, self.space.shape, axis, sign)
@@ -99,6 +110,14 @@ class BeamGrid:
         if inside:
             here = tuple(np.floor(paths.origin).astype(int))
             self.counts[here] = min(int(self.counts[here]) + inside, MOST)
+
+    def _add_at_start(self, paths: Paths) -> None:
+        """Add the beams whose minimum range ends in the space to the voxels where it does."""
+        inside = paths.start == paths.first
+        at = np.floor(paths.origin + paths.directions[inside] * paths.first).astype(np.int64) + 1
+        flat = self._padded.reshape(-1)
+        cells, found = np.unique(at @ np.array(self._strides), return_counts=True)
+        flat[cells] = np.minimum(flat[cells] + found, MOST)
 
     def _add_held(self, run: _Run, axis: int, sign: int) -> None:
         """Add the entries of so few beams that they alone overflow no count; hold the sums."""
@@ -143,19 +162,24 @@ def _others(axis: int) -> tuple[int, int]:
 
 
 def _cut_to_space(
-    origin: Sequence[float], directions: Floats, ends: Floats, space: PerceptionSpace
+    origin: Sequence[float],
+    directions: Floats,
+    ends: Floats,
+    space: PerceptionSpace,
+    nearest: float,
 ) -> Paths:
     """Drop the beams that miss the space; say where the others are inside it, in voxels."""
     cells = position_in_voxels(origin, space.origin, space.interval)
     speeds = without_zeros(directions)
-    enter = np.zeros(len(directions))
+    first = nearest / space.interval
+    enter = np.full(len(directions), first)
     leave = np.asarray(ends, dtype=float) / space.interval
     for axis, size in enumerate(space.shape):
         t0, t1 = -cells[axis] / speeds[:, axis], (size - cells[axis]) / speeds[:, axis]
         enter = np.maximum(enter, np.minimum(t0, t1))
         leave = np.minimum(leave, np.maximum(t0, t1))
     keep = np.flatnonzero(enter <= leave)
-    return Paths(cells, speeds[keep], enter[keep], leave[keep])
+    return Paths(cells, speeds[keep], enter[keep], leave[keep], first)
 
 
 @dataclass(slots=True)
@@ -181,7 +205,8 @@ class _Run:
         first = max(first, 0) if sign > 0 else min(first, shape[axis])
         ahead = sign * (first - origin)
         room = shape[axis] - 1 - first if sign > 0 else first - 1
-        arrival = np.maximum(np.ceil(paths.start * speed - ahead - EARLY), 0.0)
+        early = np.where((paths.start > paths.first) | (paths.first == 0.0), EARLY, 0.0)
+        arrival = np.maximum(np.ceil(paths.start * speed - ahead - early), 0.0)
         last = np.minimum(np.floor(paths.end * speed - ahead), room)
         moving = np.flatnonzero((speed > 0.0) & (last >= arrival))
         order = moving[np.argsort(-last[moving], kind="stable")]

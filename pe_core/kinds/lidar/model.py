@@ -15,6 +15,7 @@ from ...scene.frozen import frozen
 from ...scene.sensors import SensorModel
 from ...text.degrees import all_as_in_file
 from ...text.values import A_NAME, Angle, Number, Whole, numbers, pair
+from ..ranges import NEAREST, checked_ranges
 
 Floats = NDArray[np.float64]
 
@@ -47,6 +48,8 @@ class Lidar(SensorModel):
         Added to the azimuth of each channel, counter-clockwise seen from above [rad].
     horizontal_fov : (low, high) float
         Azimuths the sensor scans, before the offsets [rad].
+    min_range : float
+        A beam counts in a voxel that it leaves no nearer than this [m].
 
     Angles are kept as a file's degrees give them back: one that is the `math.radians` of no float
     moves by a unit in its last place.
@@ -67,6 +70,7 @@ class Lidar(SensorModel):
     max_range: float
     azimuth_offsets: Floats = None  # type: ignore[assignment]  # zeros
     horizontal_fov: tuple[float, float] = FULL_CIRCLE
+    min_range: float = NEAREST
 
     def __post_init__(self) -> None:
         name = A_NAME.checked("lidar", "name", self.name)
@@ -81,11 +85,13 @@ class Lidar(SensorModel):
                 name, "azimuth_offsets", f"{len(elevations)}, one a channel", len(offsets)
             )
         fov = pair(name, "horizontal_fov", self.horizontal_fov, FOV, same=True)
+        nearest, farthest = checked_ranges(name, self.min_range, self.max_range, RANGE)
         checked = {
             "elevations": frozen(elevations),
             "azimuth_offsets": frozen(offsets),
             "azimuth_count": STEPS.checked(name, "azimuth_count", self.azimuth_count),
-            "max_range": RANGE.checked(name, "max_range", self.max_range),
+            "max_range": farthest,
+            "min_range": nearest,
             "horizontal_fov": fov,
         }
         for key, value in checked.items():
@@ -96,7 +102,9 @@ class Lidar(SensorModel):
             raise InputError(name, "elevations", f"at most {MAX_BEAMS} beams", self.beam_count)
 
     @classmethod
-    def from_directions(cls, name: str, directions: ArrayLike, max_range: float) -> Lidar:
+    def from_directions(
+        cls, name: str, directions: ArrayLike, max_range: float, min_range: float = NEAREST
+    ) -> Lidar:
         """Return a LiDAR of arbitrary beams (a rosette, a raster): every beam is a channel.
 
         Parameters
@@ -104,7 +112,7 @@ class Lidar(SensorModel):
         name : str
         directions : (B, 3) float
             Directions of a frame's beams in the sensor frame, of any length but zero.
-        max_range : float
+        max_range, min_range : float
             [m]
 
         Raises
@@ -121,7 +129,9 @@ class Lidar(SensorModel):
             raise InputError(name, "directions", "finite vectors that point somewhere", found)
         elevations = [math.atan2(z, math.hypot(x, y)) for x, y, z in beams.tolist()]
         azimuths = [math.atan2(y, x) for x, y, _ in beams.tolist()]
-        return cls(name, np.array(elevations), 1, max_range, np.array(azimuths))
+        return cls(
+            name, np.array(elevations), 1, max_range, np.array(azimuths), min_range=min_range
+        )
 
     @property
     def azimuth_step(self) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from ...scene.vehicle import Vehicle
 from ..kernels import BLOCK_PLANES, GridKernel, Planes, Stopped
 from .beams import BeamField, beam_field, stopped_beams
 from .grid import BeamGrid
+from .model import Lidar
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +53,9 @@ class LidarGrid(GridKernel):
         for sensors in groups:
             self._grid.clear()
             for own in sensors:
-                self._grid.add(own.sensor.pose.position, own.field.directions, own.field.ends)
+                nearest = cast(Lidar, own.sensor.model).min_range
+                place, field = own.sensor.pose.position, own.field
+                self._grid.add(place, field.directions, field.ends, nearest)
             counts = self._grid.counts
             kept = counts if len(groups) == 1 else compact(counts, self._enough, pool)
             found.append(kept.__getitem__)

@@ -15,6 +15,7 @@ from .ends import AnyEnds, LazyEnds
 from .known import KnownBeams, is_same
 from .lattice import lattice_of
 from .model import Lidar
+from .near import count_again_near
 from .points import PlacedLidar, Unhidden, VoxelPoints, count_through, count_unhidden
 from .ties import position_in_voxels
 
@@ -35,6 +36,7 @@ class LidarSample(SampleKernel):
         known = self._unhidden.get(sensor.name)
         unhidden = known[1] if known and is_same(known[0], sensor) else None
         counts = count_through(self._points, lidar, self._enough, unhidden)
+        counts = count_again_near(self._points, lidar, counts, _nearest(sensor))
         return Measured(sensor, counts, ended.is_draft, ended.ends)
 
     def unhidden(self, sensor: Sensor) -> NDArray:
@@ -42,7 +44,8 @@ class LidarSample(SampleKernel):
         lidar = self._placed(sensor, self.known.endless(sensor))
         found = count_unhidden(self._points, lidar, self._enough)
         self._unhidden[sensor.name] = sensor, found
-        return found.counts
+        nearest = _nearest(sensor)
+        return count_again_near(self._points, lidar, found.counts, nearest, is_free=True)
 
     def stopped(self, measured: Measured) -> Stopped:
         """Count the beams that the vehicle stops; those of a draft are cast for it."""
@@ -71,3 +74,8 @@ class LidarSample(SampleKernel):
             ends,
             side,
         )
+
+
+def _nearest(sensor: Sensor) -> float:
+    """Minimum range of a LiDAR [m]."""
+    return cast(Lidar, sensor.model).min_range

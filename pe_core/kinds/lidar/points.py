@@ -132,7 +132,7 @@ def count_through(
     if lattice.slope_bounds is None:
         offsets = voxels.offsets(lidar.position)
         windows = windows_of(offsets, 0.5, lidar.ground_from_sensor)
-        return _count_pairs(offsets, lidar, *lattice.candidates(windows))
+        return count_pairs(offsets, lidar, *lattice.candidates(windows))
     if _is_upright(lidar) and len(voxels):
         counts, unsure = _upright(voxels, lidar, lidar.stopped, lidar.ends.farthest / lidar.side)
         doubtful = np.flatnonzero(unsure)
@@ -150,7 +150,7 @@ def count_unhidden(voxels: VoxelPoints, lidar: PlacedLidar, enough: int | None =
         offsets = voxels.offsets(lidar.position)
         windows = windows_of(offsets, 0.5, lidar.ground_from_sensor)
         pairs = lattice.candidates(windows)
-        return Unhidden(_count_pairs(offsets, lidar, *pairs, is_free=True))
+        return Unhidden(count_pairs(offsets, lidar, *pairs, is_free=True))
     if not (_is_upright(lidar) and len(voxels)):
         return _bracketed(voxels, lidar, enough, slice(None))
     counts, unsure = _upright(voxels, lidar, np.zeros_like(lidar.stopped), 0.0)
@@ -227,7 +227,7 @@ def _one_by_one(
     """Count with each beam of the windows of some of some voxels tested."""
     where = which if isinstance(some, slice) else some[which]
     offsets = voxels.offsets(lidar.position, where)
-    return _count_pairs(offsets, lidar, *lidar.lattice.window_beams(bounds, which), is_free)
+    return count_pairs(offsets, lidar, *lidar.lattice.window_beams(bounds, which), is_free)
 
 
 def _holds_any(stopped: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> NDArray[np.bool_]:
@@ -250,7 +250,7 @@ def _sums_twice_round(stopped: NDArray[np.bool_]) -> Counts:
     return sums
 
 
-def _count_pairs(
+def count_pairs(
     offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints, is_free: bool = False
 ) -> Ints:
     """(V,) how many of the (voxel, beam) pairs are beams through their voxel.

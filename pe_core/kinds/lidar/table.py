@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import InputError, shown
 from ...text.degrees import degrees_in_file
 from ...text.values import A_PATH, Number, listed, vector
+from ..ranges import NEAREST
 from .angles import read_angles
 from .model import RANGE, STEPS, Lidar
 
@@ -22,6 +23,7 @@ KEYS = frozenset(
         "azimuth_count",
         "azimuth_step_deg",
         "max_range_m",
+        "min_range_m",
         "azimuth_offsets_deg",
         "horizontal_fov_deg",
     }
@@ -43,6 +45,7 @@ def read(name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
         RANGE.checked(name, "max_range_m", table.get("max_range_m")),
         offsets,  # type: ignore[arg-type]
         (low, high),
+        table.get("min_range_m", NEAREST),
     )
 
 
@@ -56,6 +59,8 @@ def write(model: Lidar) -> dict[str, Any]:
     }
     if any(offsets := model.azimuth_offsets.tolist()):
         table["azimuth_offsets_deg"] = [degrees_in_file(a) for a in offsets]
+    if model.min_range > NEAREST:
+        table["min_range_m"] = model.min_range
     return table
 
 

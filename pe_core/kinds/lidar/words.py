@@ -21,8 +21,14 @@ def figures(lidar: Lidar) -> list[str]:
         f"azimuths        {len(lidar.azimuth_steps)}, {left:g} to {right:g} deg, "
         f"every {math.degrees(lidar.azimuth_step):.4g} deg",
         f"beams a frame   {lidar.beam_count}",
-        f"range           {lidar.max_range:g} m",
+        f"range           {_range(lidar)}",
     ]
+
+
+def _range(lidar: Lidar) -> str:
+    """Maximum range, after the minimum if there is one."""
+    least = f"{lidar.min_range:g} to " if lidar.min_range > 0.0 else ""
+    return f"{least}{lidar.max_range:g} m"
 
 
 def brief(lidar: Lidar) -> str:

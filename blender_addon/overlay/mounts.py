@@ -48,10 +48,19 @@ def mounts(several: Sequence[MountFaces], boxes: Sequence[SearchBox]) -> LayerSh
 
 
 def lifted(triangles: Floats) -> Floats:
-    """Return triangles (F, 3, 3) twice, a little off the surface on either side (2 F, 3, 3)."""
-    normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    """Return triangles (F, 3, 3) twice, a little off the surface on either side (2 F, 3, 3).
+
+    Corners that are one are moved as one: between flat pieces the surface would be seen.
+    """
+    if not len(triangles):
+        return np.empty((0, 3, 3))
+    faces = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    corner = _corners(triangles).reshape(-1)
+    count = int(corner.max()) + 1
+    each = np.repeat(faces, 3, axis=0)
+    normal = np.stack([np.bincount(corner, each[:, k], count) for k in range(3)], axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-    away = LIFT_M * normal[:, None, :]
+    away = LIFT_M * normal[corner].reshape(-1, 3, 3)
     return np.concatenate([triangles + away, triangles - away])
 
 
@@ -59,15 +68,19 @@ def rim(triangles: Floats) -> Floats:
     """Return ends (2 E, 3) of the edges that belong to one triangle alone."""
     if not len(triangles):
         return np.empty((0, 3))
-    points = triangles.reshape(-1, 3)
-    _, where = np.unique(np.round(points, 5), axis=0, return_inverse=True)
-    corner = where.reshape(-1, 3)
+    corner = _corners(triangles)
     starts, ends = corner.reshape(-1), np.roll(corner, -1, axis=1).reshape(-1)
     pairs = np.sort(np.stack([starts, ends], axis=1), axis=1)
     _, first, count = np.unique(pairs, axis=0, return_index=True, return_counts=True)
     alone = first[count == 1]
     after = np.roll(triangles, -1, axis=1).reshape(-1, 3)
-    return np.stack([points[alone], after[alone]], axis=1).reshape(-1, 3)
+    return np.stack([triangles.reshape(-1, 3)[alone], after[alone]], axis=1).reshape(-1, 3)
+
+
+def _corners(triangles: Floats) -> NDArray[np.int64]:
+    """(F, 3) which corners of triangles are one, to 0.01 mm."""
+    points = np.round(triangles.reshape(-1, 3), 5) + 0.0
+    return np.unique(points, axis=0, return_inverse=True)[1].reshape(-1, 3)
 
 
 def outline(low: Sequence[float], high: Sequence[float]) -> Floats:

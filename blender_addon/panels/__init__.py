@@ -13,6 +13,7 @@ from . import (
     search,
     selection,
     sensor,
+    tolerance,
     variants,
 )
 
@@ -26,6 +27,7 @@ CLASSES = (
     *selection.CLASSES,
     *search.CLASSES,
     *mounts.CLASSES,
+    *tolerance.CLASSES,
     *focus.CLASSES,
     *advanced.CLASSES,
     *overlay.CLASSES,

@@ -28,7 +28,8 @@ class PE_UL_mounts(bpy.types.UIList):
         icon = SLOTS_ICON if item.kind == ON_SLOTS else ICONS[item.faces]
         name.prop(item, "name", text="", emboss=False, icon=icon)
         what.alignment = "RIGHT"
-        what.label(text=made_of(item), translate=False)
+        made = made_of(item)
+        what.label(text="" if made == item.name else made, translate=False)
 
 
 def made_of(mount: bpy.types.PropertyGroup) -> str:
@@ -99,12 +100,19 @@ class PE_PT_constraints(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
-        names = ("max_height", "max_width", "min_distance", "clear_housings")
-        draw_properties(self.layout, settings, names)
-        self.layout.operator("pe.add_no_go", icon="CUBE")
+        layout = self.layout
+        draw_properties(layout, settings, ())
+        for name in ("max_height", "max_width"):
+            row = layout.row(align=True)
+            row.prop(settings, name)
+            if not getattr(settings, name):
+                row.label(text="Any")
+        draw_properties(layout, settings, ("min_distance", "clear_housings"))
+        layout.operator("pe.add_no_go", icon="CUBE")
         obj = context.active_object
         if obj is not None and not obj.perception_entropy.is_sensor:
-            draw_properties(self.layout, obj.perception_entropy, ("is_no_go", "is_rack"))
+            layout.label(text=f"{obj.name}:", translate=False)
+            draw_properties(layout, obj.perception_entropy, ("is_no_go", "is_rack"))
 
 
 CLASSES = (PE_UL_mounts, PE_PT_mounts, PE_PT_constraints)

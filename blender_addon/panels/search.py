@@ -23,7 +23,7 @@ class PE_PT_search(Tab, bpy.types.Panel):
         row = self.layout.row(align=True)
         row.prop(settings, "evaluations")
         if not settings.evaluations:
-            row.label(text="Method's own")
+            row.label(text="All")
         self.layout.prop(settings, "seed")
         for name in ("search_samples", "score_samples"):
             draw_voxels(self.layout, settings, name)

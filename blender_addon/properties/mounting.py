@@ -163,7 +163,7 @@ class MountingSettings:
         unit="LENGTH",
     )
     clear_housings: BoolProperty(
-        name="Keep Housings Clear",
+        name="Clear Housings",
         description="No housing reaches into the body or into another one. Of sensors on a surface "
         "this always holds",
     )

@@ -6,6 +6,7 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
+from blender_addon.overlay import mounts
 from tests.addon import scenes
 
 CAN = "Velodyne VLP-16 Puck"
@@ -299,3 +300,15 @@ def test_a_mount_is_added_of_what_is_selected_or_painted(car):
     bpy.ops.object.mode_set(mode="OBJECT")
     row = car.perception_entropy.mounts[1]
     assert (row.name, row.faces, row.group) == ("painted", "GROUP", "painted")
+
+
+def test_the_tint_has_no_gaps_and_a_rim_of_edges_alone():
+    step = np.linspace(0.0, 1.0, 5)
+    x, y = np.meshgrid(step, step, indexing="ij")
+    points = np.stack([x, y, 1.0 - x**2 - y**2], axis=-1)
+    a, b, c, d = points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]
+    dome = np.concatenate([np.stack(t, axis=2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
+    assert len(mounts.rim(dome)) == 2 * 4 * 4
+    assert len(np.unique(mounts.lifted(dome).reshape(-1, 3).round(9), axis=0)) == 2 * 25
+    assert mounts.lifted(dome[:0]).shape == (0, 3, 3)
+    assert mounts.rim(dome[:0]).shape == (0, 3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..prior.prior import ClassDensity
+from ..scene.frozen import frozen
 from ..scene.space import PerceptionSpace
 from ..text.values import Whole
 from .sobol import scrambled_sobol
@@ -113,8 +115,12 @@ def _draw_column(ground: Floats, space: PerceptionSpace, u: Floats, v: Floats) -
     return i, j
 
 
+@lru_cache(maxsize=1)
 def _rings(space: PerceptionSpace) -> tuple[Ints, Ints]:
-    """Columns by ring, a voxel wide, round the origin, and by azimuth: rings and indices (N,)."""
+    """Columns by ring, a voxel wide, round the origin, and by azimuth: rings and indices (N,).
+
+    Kept, as a search draws samples of several sizes from one space.
+    """
     x, y = np.meshgrid(space.centers(0), space.centers(1), indexing="ij")
     x, y = x.reshape(-1), y.reshape(-1)
     ring = np.floor(np.sqrt(x * x + y * y) / space.interval).astype(np.int64)
@@ -122,7 +128,7 @@ def _rings(space: PerceptionSpace) -> tuple[Ints, Ints]:
     around = y / np.maximum(np.abs(x) + np.abs(y), np.finfo(float).tiny)
     around = np.where(x >= 0.0, around, np.where(y >= 0.0, 2.0, -2.0) - around)
     order = np.lexsort((around, ring))
-    return ring[order], order
+    return frozen(ring[order]), frozen(order)
 
 
 def _draw_height(densities: list[ClassDensity], i: Ints, j: Ints, w: Floats) -> tuple[Ints, Floats]:

@@ -94,24 +94,25 @@ class TurnedBeams:
     def _without_zeros(self) -> list[Floats]:
         return [np.ascontiguousarray(w) for w in without_zeros(self.directions).T]
 
+    def expect(self, count: int) -> None:
+        """Turn all beams now if more than there are will be asked for."""
+        if count > cast(Lidar, self.sensor.model).beam_count:
+            _ = self.directions
+
     def some(self, beams: Ints) -> Floats:
         """(N, 3) directions of some beams."""
-        if self._all_are_worth_it(beams):
+        if "directions" in vars(self):
             return self.directions[beams]
         some = cast(Lidar, self.sensor.model).directions[beams]
         return rotate(self.sensor.pose.ground_from_sensor, some)
 
     def speeds(self, beams: Ints) -> list[Floats]:
         """Return the directions of some beams as kernels take them: an (N,) array an axis."""
-        if self._all_are_worth_it(beams):
+        if "directions" in vars(self):
             return [np.take(w, beams) for w in self._without_zeros]
         x, y, z = np.ascontiguousarray(cast(Lidar, self.sensor.model).directions[beams].T)
         axes = self.sensor.pose.ground_from_sensor
         return [without_zeros(row[0] * x + row[1] * y + row[2] * z) for row in axes]
-
-    def _all_are_worth_it(self, beams: Ints) -> bool:
-        is_known = "directions" in vars(self)
-        return is_known or len(beams) > cast(Lidar, self.sensor.model).beam_count
 
     @cached_property
     def slants(self) -> Slants:

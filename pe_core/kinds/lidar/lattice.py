@@ -81,13 +81,12 @@ class Lattice:
     def window_beams(self, bounds: Bracket, voxels: Ints) -> tuple[Ints, Ints]:
         """(voxel, beam) pairs of the outer windows of some voxels, numbered as in `voxels`."""
         rows, columns = (n[voxels].astype(np.int64) for n in (bounds.rows, bounds.columns))
-        n = rows * columns
-        voxel = np.repeat(np.arange(len(voxels)), n)
-        step, wide = count_up(n), np.repeat(columns, n)
-        down = step // np.maximum(wide, 1)
-        row = np.repeat(bounds.row[voxels], n) + down
-        column = np.repeat(bounds.column[voxels], n) + (step - down * wide)
-        return voxel, self.channels[row] * self.width + column % self.count
+        item = np.repeat(np.arange(len(voxels)), rows)
+        row = np.repeat(bounds.row[voxels], rows) + count_up(rows)
+        n, first = columns[item], bounds.column[voxels].astype(np.int64) % self.count
+        column = np.repeat(first[item], n) + count_up(n)
+        column[column >= self.count] -= self.count
+        return np.repeat(item, n), np.repeat(self.channels[row] * self.width, n) + column
 
     def candidates(self, windows: Windows) -> tuple[Ints, Ints]:
         """(voxel, beam) pairs of the beams inside each voxel's window."""

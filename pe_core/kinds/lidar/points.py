@@ -258,6 +258,7 @@ def count_pairs(
     With `is_free` as if there were no vehicle.
     """
     counts, doubtful = np.zeros(len(offsets), np.int64), []
+    lidar.beams.expect(len(beam))
     for some in blocks(len(voxel), PAIRS_AT_ONCE):
         through, enter = _through(offsets, lidar, voxel[some], beam[some])
         pairs = voxel[some][through], beam[some][through]

@@ -51,7 +51,7 @@ def keep_front(scene: bpy.types.Scene, found: pe.TradeOff, surroundings: str) ->
         row.name, row.key = design.name, variant.key
         row.price, row.entropy = design.price, design.entropy
     looked, all_of = len(found.designs) + len(found.refused), found.is_complete
-    more = "all there are" if all_of else "by local search"
+    more = "all there are" if all_of else "of more"
     settings.front_told = f"{found.searched} searched of {looked} looked at, {more}"
     choose_variant(scene, began)
 

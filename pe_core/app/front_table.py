@@ -22,7 +22,8 @@ def front_summary(chosen: TradeOff) -> str:
 def told(chosen: TradeOff) -> Iterator[str]:
     """Yield what was done, in words."""
     count, searched = len(chosen.designs) + len(chosen.refused), chosen.searched
-    every = "all that the limits allow" if chosen.is_complete else "of more, by local search"
+    more = "of more" if chosen.stopped else "of more, by local search"
+    every = "all that the limits allow" if chosen.is_complete else more
     yield f"{len(chosen.front)} on the front; {searched} searched of {count} looked at ({every})"
     if not searched:
         yield "none was searched in full: entropies are those of a first look"

@@ -109,7 +109,7 @@ class ChoiceJob(Job):
         self._found: dict[Picks, Design] = {}
         self._errors: dict[Picks, InputError] = {}
         self._inner: _DesignJob | None = None
-        self._is_complete = False
+        self._possible: int | None = None
         self._evaluators: dict[int, Evaluator] = {}
 
     @property
@@ -127,7 +127,7 @@ class ChoiceJob(Job):
             tuple(ordered),
             tuple(able[k] for k in front),
             refused,
-            self._is_complete,
+            self._possible is not None and len(self._found) + len(self._errors) == self._possible,
             self.stopped,
             self.seconds,
         )
@@ -146,8 +146,9 @@ class ChoiceJob(Job):
 
     def __iter__(self) -> Iterator[Progress]:
         wanted = self._designs.first(ALL_SEARCHED_UP_TO + 1)
-        self._is_complete = len(wanted) <= ALL_SEARCHED_UP_TO
-        if not self._is_complete:
+        if len(wanted) <= ALL_SEARCHED_UP_TO:
+            self._possible = len(wanted)
+        else:
             yield from self._look()
             wanted = self._promising()
         for number, picks in enumerate(wanted):
@@ -161,6 +162,7 @@ class ChoiceJob(Job):
     def _look(self) -> Iterator[Progress]:
         """Look at designs with few candidates each."""
         search = DesignSearch(self._designs)
+        self._possible = search.most if search.is_complete else None
         while (asked := search.ask()) and not self.stopped:
             for picks in asked:
                 if self.stopped:
@@ -168,7 +170,6 @@ class ChoiceJob(Job):
                 done = (len(self._found) + len(self._errors)) / search.most
                 yield from self._glance(picks, Progress("looking at designs", done))
             search.tell({picks: design.entropy for picks, design in self._found.items()})
-        self._is_complete = search.is_complete
 
     def _promising(self) -> list[Picks]:
         """Return the designs that may be on the front, those nearest to it first."""

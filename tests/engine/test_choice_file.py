@@ -1,9 +1,12 @@
 """What a study file says of choices: read, written, and refused in one line each."""
 
+from pathlib import Path
+
 import pytest
 
 import pe_core as pe
 
+CHOICES = Path(__file__).parents[2] / "blend_assets" / "choices"
 LIDARS = [{"model": "Pandar64", "price": 9}, {"model": "HDL-64E", "price": 5}]
 ROOF = {"sensor": "roof", "option": LIDARS}
 
@@ -114,3 +117,10 @@ def test_the_second_of_a_pair_goes_with_the_first():
         pe.study_from_dict({**rest, "choice": [{"sensor": "right", "option": LIDARS}]})
     study = pe.study_from_dict({**rest, "choice": [{"sensor": "left", "option": LIDARS}]})
     assert [study.designs().price(picks) for picks in study.designs()] == [10.0, 18.0]
+
+
+@pytest.mark.parametrize(("name", "count"), [("roof_lidar", 8), ("bus_corners", 34)])
+def test_the_examples_have_the_designs_that_the_page_tells_of(name, count):
+    study = pe.load_study(CHOICES / f"{name}.toml")
+    assert len(list(study.designs())) == count
+    assert f"`{name}.toml`" in (CHOICES.parents[1] / "docs" / "study.md").read_text("utf-8")

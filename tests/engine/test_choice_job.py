@@ -8,6 +8,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.app import front_table
+from pe_core.search import pareto
 from pe_core.study import choice_job, design_study, front_dict, write_front
 from tests.engine import mounting
 
@@ -82,6 +83,19 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
     assert found.is_complete
 
 
+def test_of_many_designs_a_local_search_looks_at_some(monkeypatch):
+    monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 3)
+    monkeypatch.setattr(pareto, "ALL_UP_TO", 5)
+    eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
+    eyes = options(["Camera 30 deg", "Camera 60 deg", "Camera 120 deg"])
+    choices = [pe.Choice(options(), ["roof"], optional=True), pe.Choice(eyes, ["eye"])]
+    found = front_of(study(choices, mounting.can(), eye, free=()))
+    assert 5 < len(found.designs) <= 15
+    assert not found.is_complete
+    assert all(design.score is not None for design in found.front)
+    assert "looked at (of more, by local search)" in front_table.front_summary(found)
+
+
 def test_a_further_sensor_never_raises_the_entropy():
     """At places that stay: what a cheaper design may not beat by leaving a sensor out."""
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
@@ -111,7 +125,10 @@ def test_a_stop_keeps_the_front_so_far(after):
     assert found.stopped
     assert len(found.designs) < 4
     assert found.front
-    assert "stopped early" in front_table.front_summary(found)
+    assert not found.is_complete
+    told = front_table.front_summary(found)
+    assert "stopped early" in told
+    assert f"{after} searched of {after} looked at (of more)" in told
 
 
 def test_a_design_without_a_place_is_told_and_the_others_stay():

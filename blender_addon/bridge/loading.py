@@ -12,6 +12,7 @@ from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, kinds, pe, search, studies
 from .axles import write_reference
 from .loaded_body import make_body, paint_area, same_body
+from .offers import put_selection
 from .records import NO_BOUNDS, ZEROS, Record
 from .rig import stand_at, view_layer_of
 from .scene import study_from_scene, vehicle_of_scene
@@ -37,6 +38,7 @@ def load_into(scene: bpy.types.Scene, study: pe.Study) -> list[str]:
     _put_mounts(scene, study.search.mounting)
     _put_constraints(scene, study.search.mounting.constraints)
     stand(scene, records)
+    put_selection(scene, study)
     layer = view_layer_of(scene)
     layer.update()
     return differences(study, study_from_scene(scene, layer.depsgraph))

@@ -27,6 +27,33 @@ def selection_of(
     return pe.Selection(choices, price, sensors, {}, settings.currency.strip())
 
 
+def put_selection(scene: bpy.types.Scene, study: pe.Study) -> None:
+    """Have a scene's sensors be offered what a study's are, and its limits be the study's.
+
+    Sensors that choose together each get the models; limits by kind have no place in a scene.
+    """
+    settings, selection, on = scene.perception_entropy, study.selection, study.search.mounting.on
+    settings.max_price, settings.max_sensors = (
+        selection.max_price or 0.0,
+        selection.max_sensors or 0,
+    )
+    settings.currency = selection.currency
+    for sensor in study.rig:
+        own = scene.objects[sensor.name].perception_entropy
+        own.options.clear()
+        own.may_be_left_out = False
+        for choice in selection.choices:
+            if sensor.name in choice.sensors or choice.mount == on.get(sensor.name, ""):
+                _offer(own, choice)
+
+
+def _offer(own: bpy.types.PropertyGroup, choice: pe.Choice) -> None:
+    own.may_be_left_out = choice.optional
+    for option in choice.options:
+        row = own.options.add()
+        row.model, row.price = option.model.name, option.price
+
+
 def _choice(obj: bpy.types.Object) -> pe.Choice:
     own, who = obj.perception_entropy, f"sensor {obj.name!r}"
     try:

@@ -132,3 +132,26 @@ def test_the_command_leaves_the_front_and_a_scene_with_its_designs(offered, tmp_
     bpy.ops.wm.open_mainfile(filepath=str(out / "optimized.blend"))
     names = [row.name for row in bpy.context.scene.perception_entropy.front]
     assert names == data["front"]
+
+
+def test_a_study_s_choices_come_back_from_its_file(offered, tmp_path):
+    """Export and import: the same study; one without choices takes them away."""
+    offered.perception_entropy.max_sensors = 3
+    study = scenes.study()
+    pe.export_study(study, tmp_path / "car.toml")
+    offered.objects["roof"].perception_entropy.options.clear()
+    assert bpy.ops.pe.import_study(filepath=str(tmp_path / "car.toml")) == {"FINISHED"}
+    again = scenes.study()
+    assert pe.study_to_dict(again)["choice"] == pe.study_to_dict(study)["choice"]
+    assert pe.study_to_dict(again)["selection"] == {"max_sensors": 3, "currency": "EUR"}
+    pe.write_front(front_of(study), tmp_path)
+    design = next((tmp_path / "designs").glob("velodyne*.toml"))
+    assert bpy.ops.pe.import_study(filepath=str(design)) == {"FINISHED"}
+    assert not scenes.study().selection.choices
+    assert scenes.study().rig["roof"].model.name == CAN
+
+
+def front_of(study):
+    job = pe.ChoiceJob(study)
+    list(job)
+    return job.trade_off

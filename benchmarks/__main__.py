@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from .rows import ROWS, Timing
+from .searches_told import table_lines
 
 REPORT = Path(__file__).with_name("README.md")
 HEAD = ["work", "ours", "yardstick", "its time", "ratio", "our peak memory"]
@@ -62,6 +63,8 @@ def _report(rows: list[Timing]) -> str:
         f"| {' | '.join(HEAD)} |",
         f"|{' --- |' * len(HEAD)}",
         *(f"| {' | '.join(_cells(row))} |" for row in rows),
+        "",
+        *table_lines(),
         "",
         _machine(),
         "",

@@ -46,7 +46,9 @@ def search(
     """Run Algorithm 1 from a neutral start; score the result."""
     study = placed(with_prior(study_of(row), prior), ROW[row].starts[start])
     schedule = pe.Schedule(candidates=candidates)
-    how = replace(study.search, seed=seed, samples=search_samples, schedule=schedule)
+    how = replace(
+        study.search, method="random", seed=seed, samples=search_samples, schedule=schedule
+    )
     job = pe.OptimizeJob(replace(study, search=how, samples=samples), workers=1)
     for _ in job:
         pass

@@ -15,7 +15,7 @@ from typing import Any, NoReturn, TextIO
 from .. import catalog
 from ..errors import InputError
 from ..kinds import kind_of
-from ..study import METHODS, Study
+from ..study import METHODS, SCHEDULED_METHOD, Study
 from ..text.cells import quoted
 from .interrupts import FATAL
 from .status import BAD_INPUT, DONE, Answer
@@ -49,7 +49,7 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     if search:
         options = (
             ("--seed", LAST_SEED, "seed of the search"),
-            ("--candidates", MOST_VOXELS, "placements tried in a round"),
+            ("--candidates", MOST_VOXELS, "of the method random: placements tried in a round"),
             ("--samples", MOST_VOXELS, "voxels a candidate is judged on (0: all)"),
             ("--evaluations", MOST_VOXELS, "placements judged at most (0: as the method says)"),
         )
@@ -90,7 +90,8 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
             search = replace(search, **{name: value})
     if getattr(args, "candidates", None) is not None:
         schedule = replace(search.schedule, candidates=args.candidates)
-        search = replace(search, schedule=schedule)
+        method = args.method or SCHEDULED_METHOD  # the one that has candidates
+        search = replace(search, schedule=schedule, method=method)
     return replace(study, search=search)
 
 

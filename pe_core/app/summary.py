@@ -32,6 +32,8 @@ def summary(outcome: Outcome) -> str:
             f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
             f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"
         )
+    if outcome.kind == "optimize":
+        lines.append(searched(outcome))
     if outcome.stopped:
         lines.append("stopped early: this is the best placement found so far")
     return "\n".join([*lines, *warned(outcome)])
@@ -47,6 +49,15 @@ def _moves(found: Robustness | None) -> list[str]:
     if before.loss is not None and after.loss is not None:
         lines.append(f"one sensor lost  {before.loss:+.4f} -> {after.loss:+.4f} nats on average")
     return lines
+
+
+def searched(outcome: Outcome) -> str:
+    """Return how a search was made: method, seed, and the voxels candidates were judged on."""
+    search = outcome.start.search
+    levels = dict.fromkeys(f"{n:,}" if n else "all" for n in search.level_samples)
+    voxels = ", then ".join(levels)
+    count = f"{outcome.evaluations:,} placements"
+    return f"searched by {search.method}, seed {search.seed}: {count} judged on {voxels} voxels"
 
 
 def warned(outcome: Outcome) -> list[str]:

@@ -8,7 +8,7 @@ from .designs import DesignSpace, Picks
 from .domains import seat_of
 from .feasible import first_allowed
 from .journal import Journal, JudgedRig
-from .methods import DEFAULT_METHOD, METHODS, Method, checked_method
+from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .objective import Judgement, Objective
 from .optimize import Step, optimize
@@ -36,6 +36,7 @@ __all__ = [
     "METHODS",
     "PAPER_FREE",
     "POSITION_AXES",
+    "SCHEDULED_METHOD",
     "AnyMount",
     "Candidate",
     "Choice",

@@ -6,7 +6,7 @@ placement, and `allowed` says whether that may be scored.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..scene.geometry import Pose
@@ -43,6 +43,8 @@ class Coding:
     ----------
     unknowns : tuple of Unknown
         In the rig's order of sensors; of sensors that follow others there are none.
+    blocks : tuple of range
+        Where in the vector the unknowns of one sensor are, of each that has some.
     start : Candidate
         The rig as it is.
     rules : tuple of Rule
@@ -56,6 +58,7 @@ class Coding:
     """
 
     unknowns: tuple[Unknown, ...]
+    blocks: tuple[range, ...]
     start: Candidate
     rules: tuple[Rule, ...]
 
@@ -65,6 +68,7 @@ class Coding:
         follow = {tie.name for tie in self._followers}
         self._domains = _domains(rig, space, follow)
         self.unknowns = tuple(u for domain in self._domains.values() for u in domain.unknowns)
+        self.blocks = tuple(_blocks(self._domains.values()))
         vector = tuple(value for domain in self._domains.values() for value in domain.start)
         self.start = Candidate(rig, vector)
         self.rules = rules_of(rig, space, self._moving(), self._clear(), self._domains)
@@ -118,6 +122,16 @@ def _domains(rig: Rig, space: SearchSpace, follow: set[str]) -> dict[str, Domain
     """Return what the unknowns of each sensor mean that follows no other."""
     skins: dict[str, Skin] = {}
     return {s.name: _domain(s, space, skins) for s in rig if s.name not in follow}
+
+
+def _blocks(domains: Iterable[Domain]) -> Iterator[range]:
+    """Yield where in the vector the unknowns of each domain are that has some."""
+    at = 0
+    for domain in domains:
+        count = len(domain.unknowns)
+        if count:
+            yield range(at, at + count)
+        at += count
 
 
 def _domain(sensor: Sensor, space: SearchSpace, skins: dict[str, Skin]) -> Domain:

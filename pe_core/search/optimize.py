@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 
 from ..scene.sensors import Rig
+from .batch import judge_all
 from .coding import Candidate, Coding
 from .feasible import first_allowed
-from .methods import DEFAULT_METHOD, METHODS, Given, Question, checked_method
+from .methods import METHODS, Given, Question, checked_method
 from .methods.method import Answered, Asking
 from .objective import Judgement, Objective
 from .schedule import Schedule
@@ -18,6 +20,9 @@ from .search_space import SearchSpace
 
 BATCH = 16
 """Candidates that a method may ask for at once where several are judged at a time."""
+
+
+Hands = Callable[[], Executor | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +63,9 @@ def optimize(
     seed: int = 0,
     schedule: Schedule | None = None,
     *,
-    method: str = DEFAULT_METHOD,
+    method: str | None = None,
     evaluations: int = 0,
-    executor: Executor | None = None,
+    executor: Executor | Hands | None = None,
 ) -> Iterator[Step]:
     """Search for the placement of lowest perception entropy; yields a step a candidate.
 
@@ -78,13 +83,14 @@ def optimize(
     seed : int
         The same seed gives the same steps.
     schedule : Schedule, optional
-        The paper's by default: seven rounds of 1000 candidates.
-    method : str
-        A name of `METHODS`.
+        Of the method "random"; the paper's by default: seven rounds of 1000 candidates.
+    method : str, optional
+        A name of `METHODS`; "random" for who gives a schedule and no method.
     evaluations : int
         How many placements are judged at most; 0: as many as the method takes.
-    executor : concurrent.futures.Executor, optional
-        Judges several candidates at once. The steps do not depend on it.
+    executor : concurrent.futures.Executor, or callable, optional
+        Judges several candidates at once. The steps do not depend on it. A callable returns an
+        executor, or None as long as there is none; it is asked again and again.
 
     Raises
     ------
@@ -92,28 +98,31 @@ def optimize(
         When there is no such method, the search space does not fit the rig, or no placement keeps
         to all of its rules.
     """
-    chosen = METHODS[checked_method("optimize", method)]
+    chosen = METHODS[checked_method("optimize", method, schedule is not None)]
     levels = list(objective) if isinstance(objective, Sequence) else [objective]
     coding, schedule = Coding(rig, search_space), schedule or Schedule()
     start = first_allowed(coding, seed)
     first = Step(start.rig, levels[0].entropy(start.rig), 1, 0.0, 0, False)
     yield first
     if coding.unknowns:
+        hands = executor if callable(executor) else lambda: executor
         batch = 1 if executor is None else BATCH
         told = (seed, schedule, len(levels), batch, evaluations)
         given = Given(coding, start, first.entropy, *told)
-        yield from _steps(first, chosen.ask(given), levels, evaluations or sys.maxsize)
+        yield from _steps(first, chosen.ask(given), levels, evaluations or sys.maxsize, hands)
 
 
-def _steps(step: Step, asking: Asking, levels: Sequence[Objective], most: int) -> Iterator[Step]:
+def _steps(
+    step: Step, asking: Asking, levels: Sequence[Objective], most: int, hands: Hands
+) -> Iterator[Step]:
     """Answer a method's questions, one step a candidate, until it or the budget ends."""
     question, done = next(asking, None), 0
     while question is not None and step.evaluations < most:
         if question.level != step.level:
             yield (step := _judged_anew(step, levels[question.level], question))
         answers: Answered = []
-        for candidate in question.candidates:
-            answer = _judged(candidate, levels[question.level], question.below)
+        judged = _judged(question, levels[question.level], hands())
+        for candidate, answer in zip(question.candidates, judged, strict=True):
             answers.append(answer)
             done += 1
             fraction = max(done / question.total, (step.evaluations + 1) / most)
@@ -123,8 +132,15 @@ def _steps(step: Step, asking: Asking, levels: Sequence[Objective], most: int) -
         question = _next_question(asking, answers)
 
 
-def _judged(candidate: Candidate | None, objective: Objective, below: float) -> Judgement | None:
-    return None if candidate is None else objective.judge(candidate.rig, below=below)
+def _judged(
+    question: Question, objective: Objective, executor: Executor | None
+) -> Iterator[Judgement | None]:
+    """Yield the answers: all judged at once by an executor, or each when it is asked for."""
+    rigs = [c.rig for c in question.candidates if c is not None]
+    judge = partial(judge_all, objective, below=question.below, executor=executor)
+    told = iter(judge(rigs)) if executor else (judge([rig])[0] for rig in rigs)
+    for candidate in question.candidates:
+        yield None if candidate is None else next(told)
 
 
 def _judged_anew(step: Step, objective: Objective, question: Question) -> Step:

@@ -1,6 +1,6 @@
 """Studies: their files, the work on them, and the results it leaves."""
 
-from ..search import METHODS, Robustness
+from ..search import METHODS, SCHEDULED_METHOD, Robustness
 from .choice_job import ChoiceJob, Design, TradeOff
 from .designed import design_study
 from .exporting import export_study, study_writers
@@ -44,6 +44,7 @@ __all__ = [
     "OPTIMIZED",
     "RESULT",
     "REVIEW",
+    "SCHEDULED_METHOD",
     "SEARCH",
     "STUDY",
     "BegunSearch",

@@ -19,6 +19,7 @@ from ..search import (
     optimize,
     robustness,
 )
+from .helpers import Helpers
 from .job import Job, Progress, begun
 from .outcome import HistoryRow, Outcome
 from .study import DEFAULT_SEARCH_SAMPLES, Study
@@ -158,7 +159,7 @@ class OptimizeJob(Job):
 
     def _search(self) -> Iterator[Progress]:
         """Search in a thread, step by step: a candidate may take longer than a window waits."""
-        search = self.study.search
+        search, helpers = self.study.search, Helpers(self.workers)
         steps = optimize(
             self.journal.over(self._objectives),
             self.study.rig,
@@ -167,10 +168,14 @@ class OptimizeJob(Job):
             search.schedule,
             method=search.method,
             evaluations=search.evaluations,
+            executor=helpers,
         )
-        while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
-            self._note(step)
-            yield self._now()
+        try:
+            while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
+                self._note(step)
+                yield self._now()
+        finally:
+            helpers.end()
 
     def _now(self) -> Progress:
         return self._told

@@ -64,12 +64,23 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         },
         "mounts": mounts_told(outcome.study.rig, outcome.study.search.mounting),
         **_robustness(outcome),
+        **_searched(outcome),
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,
         "warnings": [each.to_dict() for each in outcome.warnings],
         "history": [_history_dict(row) for row in outcome.history],
         "inputs": outcome.inputs or inputs_of(outcome.start),
         "run": run_dict(outcome.seconds, host),
+    }
+
+
+def _searched(outcome: Outcome) -> dict[str, Any]:
+    """Return how a search was made; of a score, that there was none."""
+    search = outcome.start.search
+    found = outcome.kind == "optimize"
+    return {
+        "method": search.method if found else None,
+        "level_samples": list(search.level_samples) if found else [],
     }
 
 

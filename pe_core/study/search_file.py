@@ -11,11 +11,11 @@ from typing import Any
 from ..errors import InputError, shown
 from ..search import (
     AXES,
-    DEFAULT_METHOD,
     METHODS,
     POSITION_AXES,
     Schedule,
     checked_bounds,
+    checked_method,
 )
 from ..text.degrees import degrees_in_file
 from ..text.tables import Table
@@ -59,7 +59,7 @@ def read_search(
         table.whole("samples", DEFAULT_SEARCH_SAMPLES),
         _read_schedule(table),
         read_mounting(table, on, folder),
-        table.text("method", DEFAULT_METHOD, tuple(METHODS)),
+        _read_method(table),
         table.whole("evaluations", 0, EVALUATIONS),
         tolerance=read_tolerance(table),
     )
@@ -67,11 +67,21 @@ def read_search(
     return search
 
 
+def _read_method(table: Table) -> str:
+    """Return the method; a study with a schedule and none means the one that has schedules."""
+    scheduled = any(_key(field.name) in table for field in fields(Schedule))
+    return table.text("method", checked_method(table.source, None, scheduled), tuple(METHODS))
+
+
+def _key(name: str) -> str:
+    return name.replace("_rad", "_deg")
+
+
 def _read_schedule(table: Table) -> Schedule:
     """Return the schedule: each of its fields is a key, in degrees where it is in radians."""
     values: dict[str, Any] = {}
     for field in fields(Schedule):
-        key = field.name.replace("_rad", "_deg")
+        key = _key(field.name)
         if key in table:
             value = table.raw(key) if key == "candidates" else table.number(key)
             values[field.name] = value if key == field.name else math.radians(value)
@@ -79,7 +89,7 @@ def _read_schedule(table: Table) -> Schedule:
     try:
         return Schedule(**values)
     except InputError as error:
-        key = error.field.replace("_rad", "_deg")
+        key = _key(error.field)
         raise table.error(key, error.expected, error.found) from None
 
 
@@ -91,9 +101,7 @@ def search_table(search: Search) -> dict[str, Any]:
         "seed": search.seed,
         "samples": search.samples,
         **{
-            field.name.replace("_rad", "_deg"): in_file(
-                field.name, getattr(search.schedule, field.name)
-            )
+            _key(field.name): in_file(field.name, getattr(search.schedule, field.name))
             for field in fields(Schedule)
         },
         **tolerance_keys(search.tolerance),

@@ -26,7 +26,6 @@ from ..scoring.evaluator import Evaluator
 from ..scoring.sampling import samples_or_grid
 from ..search import (
     AXES,
-    DEFAULT_METHOD,
     METHODS,
     PAPER_FREE,
     Coding,
@@ -69,7 +68,7 @@ class Search:
     mounting : Mounting
         Mounts, pairs, groups and constraints.
     method : str
-        A name of `METHODS`.
+        A name of `METHODS`; without one the default, or "random" where a schedule is given.
     evaluations : int
         Placements judged at most; 0: as many as the method takes.
     tolerance : Tolerance
@@ -87,7 +86,7 @@ class Search:
     samples: int = DEFAULT_SEARCH_SAMPLES
     schedule: Schedule = field(default_factory=Schedule)
     mounting: Mounting = field(default_factory=Mounting)
-    method: str = DEFAULT_METHOD
+    method: str = ""
     evaluations: int = 0
     tolerance: Tolerance = field(default_factory=Tolerance)
 
@@ -103,7 +102,8 @@ class Search:
             raise InputError(who, "mounting", "a Mounting", type(self.mounting).__name__)
         if not isinstance(self.tolerance, Tolerance):
             raise InputError(who, "tolerance", "a Tolerance", type(self.tolerance).__name__)
-        checked_method(who, self.method)
+        known = checked_method(who, self.method or None, self.schedule != Schedule())
+        object.__setattr__(self, "method", known)
         budget = EVALUATIONS.checked(who, "evaluations", self.evaluations)
         object.__setattr__(self, "evaluations", budget)
 

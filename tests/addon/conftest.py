@@ -47,6 +47,7 @@ def scene(addon):
     settings = bpy.context.scene.perception_entropy
     settings.score_samples = settings.search_samples = 4096
     settings.candidates = 2
+    settings.method = "random"
     return bpy.context.scene
 
 

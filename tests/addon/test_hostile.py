@@ -41,6 +41,7 @@ def small(car, monkeypatch):
     car.objects["roof"].perception_entropy.model = "Velodyne VLP-16 Puck"
     settings = car.perception_entropy
     settings.score_samples, settings.search_samples, settings.candidates = 1024, 1024, 1
+    settings.method = "random"
     return car
 
 

@@ -25,6 +25,7 @@ def test_the_sedan_s_roof_lidar_optimized_on_the_painted_roof_stands_on_it(addon
     scene, roof = bpy.context.scene, bpy.data.objects["roof"]
     settings = scene.perception_entropy
     settings.score_samples, settings.search_samples, settings.candidates = 1024, 1024, 3
+    settings.method = "random"
     scenes.paint(roof, "painted", lambda co: float(abs(co.y) < 0.5 and -0.8 < co.x < 0.3))
     scenes.add_mount(scene, "roof", faces="GROUP", group="painted", standoff=BASE_M)
     assert bpy.ops.pe.mount_sensor(name="roof_lidar", mount="roof") == {"FINISHED"}

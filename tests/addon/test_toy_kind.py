@@ -96,6 +96,7 @@ def test_the_panel_shows_what_was_stored(ring_kind, ring):
 def test_the_search_moves_it(ring_kind, ring):
     ring_kind.objects["roof"].perception_entropy.free = (False,) * 6
     ring_kind.perception_entropy.candidates = 4
+    ring_kind.perception_entropy.method = "random"
     start = scenes.study().rig["bumper"].pose
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     settings = ring_kind.perception_entropy

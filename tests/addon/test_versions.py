@@ -82,6 +82,7 @@ def linked_car(tmp_path):
     settings = bpy.context.scene.perception_entropy
     settings.score_samples = settings.search_samples = 4096
     settings.candidates = 2
+    settings.method = "random"
     return expected, bpy.context.scene, bpy.data.collections["Car"]
 
 

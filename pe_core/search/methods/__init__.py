@@ -3,22 +3,40 @@
 from __future__ import annotations
 
 from ...text.values import choice
-from . import random_search
+from . import block_descent, cma_es, random_search
 from .method import Given, Method, Question
 
 METHODS: dict[str, Method] = {
+    "block-descent": Method(
+        "Block Descent",
+        "One sensor at a time by CMA-ES, from several starts, on ever more voxels",
+        block_descent.ask,
+        block_descent.samples,
+    ),
+    "cma-es": Method("CMA-ES", "Covariance matrix adaptation of all sensors at once", cma_es.ask),
     "random": Method(
         "Random",
         "Algorithm 1 of the paper: random search in a shrinking neighbourhood",
         random_search.ask,
     ),
 }
-DEFAULT_METHOD = "random"
+DEFAULT_METHOD, SCHEDULED_METHOD = "block-descent", "random"
+"""Of a search that says nothing, and of one that says no more than a schedule."""
 
 
-def checked_method(source: str, name: object) -> str:
-    """Return the name of a method, or raise `InputError`."""
+def checked_method(source: str, name: object, scheduled: bool = False) -> str:
+    """Return the name of a method, the default for None, or raise `InputError`."""
+    if name is None:
+        return SCHEDULED_METHOD if scheduled else DEFAULT_METHOD
     return choice(source, "method", name, tuple(METHODS))
 
 
-__all__ = ["DEFAULT_METHOD", "METHODS", "Given", "Method", "Question", "checked_method"]
+__all__ = [
+    "DEFAULT_METHOD",
+    "METHODS",
+    "SCHEDULED_METHOD",
+    "Given",
+    "Method",
+    "Question",
+    "checked_method",
+]

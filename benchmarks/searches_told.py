@@ -1,0 +1,91 @@
+"""What the runs of `searches` say: a summary, a table, and a plot of the best so far."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import pe_core as pe
+
+from .searches import EXPERIMENTS, SUMMARY
+
+PLOT = Path(__file__).resolve().parent.parent / "docs" / "images" / "searches.png"
+HEAD = ["experiment", "method", "seeds", "entropy on the grid", "lowest to highest", "time"]
+
+Json = dict[str, Any]
+
+
+def write_summary(runs: Path, path: Path) -> None:
+    """Put all runs of a folder into one file, and draw them."""
+    found = [json.loads(each.read_text("utf-8")) for each in sorted(runs.glob("*.json"))]
+    kept = [{k: v for k, v in run.items() if k != "placements"} for run in found]
+    path.write_text("[\n" + ",\n".join(json.dumps(run) for run in kept) + "\n]\n", "utf-8")
+    print("\n".join(table(kept)))
+    plot(kept, PLOT)
+
+
+def table_lines() -> list[str]:
+    """Return the table of the runs that are kept with the project; none: nothing."""
+    return table(json.loads(SUMMARY.read_text("utf-8"))) if SUMMARY.exists() else []
+
+
+def table(runs: list[Json]) -> list[str]:
+    """Return a table of medians over the seeds."""
+    lines = [
+        "Searches from the paper's placement (`python -m benchmarks.searches`), medians.",
+        "The time is that of a whole `pe optimize`, with the grid scores of start and result.",
+        "",
+        f"| {' | '.join(HEAD)} |",
+        f"|{' --- |' * len(HEAD)}",
+    ]
+    for (experiment, method), some in groups(runs).items():
+        ends = [run["entropy"] for run in some]
+        seconds = median(run["seconds"] for run in some)
+        cells = [EXPERIMENTS[experiment], method, str(len(some)), f"{median(ends):.3f}"]
+        cells += [f"{min(ends):.3f} to {max(ends):.3f}", f"{seconds:.0f} s"]
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+def groups(runs: list[Json]) -> dict[tuple[str, str], list[Json]]:
+    """Return the runs by experiment and method, in the order of both."""
+    keys = [(e, m) for e in EXPERIMENTS for m in pe.METHODS]
+    found = {key: [r for r in runs if (r["experiment"], r["method"]) == key] for key in keys}
+    return {key: some for key, some in found.items() if some}
+
+
+def middle(some: list[Json]) -> tuple[list[float], list[list[float]]]:
+    """Return times, and at each the entropies of all runs; a run that is over stays as it is."""
+    times = sorted({t for run in some for t, _ in run["curve"]})
+    curves = [[[e for t, e in run["curve"] if t <= time] for run in some] for time in times]
+    known = [(t, [c[-1] for c in at]) for t, at in zip(times, curves, strict=True) if all(at)]
+    return [t for t, _ in known], [values for _, values in known]
+
+
+def plot(runs: list[Json], path: Path) -> None:
+    """Draw the best so far against time: the median of the seeds, and from lowest to highest."""
+    from pe_report import style
+
+    looks = dict(zip(pe.METHODS, style.PALETTE, strict=False))
+
+    @style.style
+    def draw() -> None:
+        shown = [e for e in EXPERIMENTS if any(run["experiment"] == e for run in runs)]
+        figure, axes = style.plt.subplots(1, len(shown), figsize=(3.1 * len(shown), 3.0))
+        for axis, experiment in zip(list(getattr(axes, "flat", [axes])), shown, strict=True):
+            for (own, method), some in groups(runs).items():
+                if own == experiment:
+                    times, values = middle(some)
+                    low, high = [min(v) for v in values], [max(v) for v in values]
+                    axis.fill_between(times, low, high, color=looks[method], alpha=0.15, lw=0)
+                    axis.plot(times, list(map(median, values)), color=looks[method], label=method)
+            axis.set(xscale="log", title=f"Experiment {EXPERIMENTS[experiment]}", xlabel="time [s]")
+            style.finished(axis)
+        figure.axes[0].set_ylabel("perception entropy [nats]")
+        figure.axes[-1].legend(frameon=False)
+        figure.tight_layout()
+        style.save(figure, path)
+
+    draw()

@@ -1,0 +1,1 @@
+"""The class CMA of the package cmaes, see the folder above."""

@@ -1,0 +1,62 @@
+"""The default: one sensor at a time by CMA-ES, from several starts, on ever more voxels.
+
+Most of the budget goes where it counts: a few rounds on few voxels tell which start leads on, and
+the last ones are judged on as many as the study says. A search on a sample flatters itself, the
+more the fewer voxels it looks at.
+"""
+
+from __future__ import annotations
+
+from .descent import Descent
+from .method import Asking, Given
+from .phase import Asks, Phase
+from .starts import STARTS
+
+COARSER = 4
+"""The first level looks at a fourth of the voxels,"""
+LEAST = 2048
+"""but at this many at least."""
+BELOW_GRID = 65_536
+"""Where the last level is the grid, the first is as if that were so many voxels."""
+RACES = (0.075, 0.075)
+"""Shares of the budget for each start; after each race, the better half of them goes on."""
+START_EACH = 80
+"""Placements for each sensor that a start takes: where there are fewer, there are fewer starts."""
+COARSE = 0.5
+"""Share of the budget after which the first level is over."""
+EACH = 400
+"""Placements for each sensor that moves, where no budget is given."""
+FINEST = 0.003
+"""A search that is narrower than this on the last level is over: 3 mm and 0.1 deg."""
+
+
+def samples(last: int) -> tuple[int, ...]:
+    """Return how many voxels each level looks at."""
+    most = last or BELOW_GRID
+    return max(most // COARSER, min(LEAST, most)), last
+
+
+def ask(given: Given) -> Asking:
+    """Ask of several starts, then of the best of them, level by level."""
+    total = given.evaluations or EACH * len(given.coding.blocks)
+    best, done = yield from _raced(given, total)
+    if given.levels > 1:
+        yield from best.down(Phase(1, total), COARSE * total - done)
+        yield from best.again(Phase(2, total, 1))
+        done = max(done, COARSE * total)
+    yield from best.down(Phase(2, total, given.levels - 1), total - done, FINEST)
+
+
+def _raced(given: Given, total: int) -> Asks[tuple[Descent, float]]:
+    """Begin from several starts; return the one that came lowest, and what all of them took."""
+    race, count = Phase(0, total), total // (START_EACH * len(given.coding.blocks))
+    starts = []
+    for number in range(min(len(STARTS), count) or 1):
+        start, entropy = yield from STARTS[number](given, race)
+        starts.append(Descent(given, start, entropy, [given.seed, number]))
+    left = starts
+    for share in RACES:
+        for descent in left:
+            yield from descent.down(race, share * total)
+        left = sorted(left, key=lambda descent: descent.entropy)[: max(1, len(left) // 2)]
+    return left[0], float(sum(descent.count for descent in starts))

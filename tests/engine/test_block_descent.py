@@ -1,0 +1,116 @@
+"""The default method: it finds what others walk past, from afar, in slots, on several levels."""
+
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+
+import pytest
+
+import pe_core as pe
+from pe_core.search import Coding, pose_values
+from pe_core.search.methods import METHODS, block_descent
+from tests.engine import mounting
+from tests.engine.mounting import can
+from tests.engine.recording import Recorder, distance_to
+
+METHOD = METHODS["block-descent"]
+POSES = [(-1.0, 0.0, 1.6), (-0.5, 0.3, 1.6), (0.0, -0.3, 1.6), (0.5, 0.0, 1.6), (0.7, 0.5, 1.6)]
+
+
+def searched(landscape, rig, space, method="block-descent", evaluations=0, **options):
+    recorder = Recorder(landscape, **options)
+    steps = list(pe.optimize(recorder, rig, space, 1, method=method, evaluations=evaluations))
+    return recorder, steps
+
+
+@pytest.mark.parametrize("method", ["block-descent", "cma-es"])
+def test_a_smooth_valley_is_found_to_the_millimetre(method):
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
+    target = {"x": 0.71, "y": -0.33, "z": 1.9, "pitch": 0.1}
+    recorder, steps = searched(distance_to(target), rig, space, method, evaluations=800)
+    assert len(recorder.rigs) <= 800 and steps[-1].entropy < 2e-5 < steps[0].entropy / 1e4
+
+
+def test_lower_bounds_in_place_of_entropies_change_nothing():
+    rig, space = mounting.space(can())
+    runs = [
+        searched(distance_to({"x": 1.5, "y": 0.4}), rig, space, evaluations=200, bounds=bounds)[1]
+        for bounds in (False, True)
+    ]
+    told = [[(s.entropy, s.improved, s.evaluations) for s in steps] for steps in runs]
+    assert told[0] == told[1]
+
+
+def test_the_best_corner_is_found_from_the_opposite_one():
+    """Hollows in the car's corners, the deepest one far from the start: descent alone stays."""
+
+    def hollows(rig):
+        x, y, _ = rig["roof"].pose.position
+        return min(
+            depth + (x - cx) ** 2 + (y - cy) ** 2
+            for depth, cx, cy in ((1.0, -2.0, -0.8), (0.9, -2.0, 0.8), (0.0, 2.0, 0.8))
+        )
+
+    rig, space = mounting.space(can((-2.0, -0.8, 1.6)))
+    _, steps = searched(hollows, rig, space)
+    assert steps[-1].entropy < 0.01
+    _, steps = searched(hollows, rig, space, evaluations=90)  # too few for a second start
+    assert steps[-1].entropy > 0.8
+
+
+def test_sensors_on_a_rack_take_the_best_slots():
+    slots = [pe.Slot(f"s{k}", pe.Pose(place)) for k, place in enumerate(POSES)]
+    rig = pe.Rig([can(POSES[0]), can(POSES[1], "b")])
+    on = {"roof": "rack", "b": "rack"}
+    rack = pe.Mounting(mounts={"rack": pe.SlotMount(slots)}, on=on)
+    space = pe.SearchSpace.on_vehicle(rig, mounting.car(), mounting=rack)
+
+    def apart(rig):
+        one, other = (pose_values(sensor.pose)["x"] for sensor in rig)
+        return abs(one - 0.7) + abs(other + 0.5)
+
+    recorder, steps = searched(apart, rig, space)
+    assert steps[-1].entropy == pytest.approx(0.0)
+    assert len(recorder.rigs) < 100  # there are 20 placements
+    coding = Coding(rig, space)
+    assert not any(coding.broken(rig) for rig in recorder.rigs)
+
+
+def test_the_last_placements_are_judged_on_all_voxels_of_the_search():
+    assert METHOD.samples(65_536) == (16_384, 65_536)
+    assert METHOD.samples(4_096) == (2_048, 4_096)
+    assert METHOD.samples(1_024) == (1_024, 1_024)
+    assert METHOD.samples(0) == (16_384, 0)
+    rig, space = mounting.space(can())
+    both = [Recorder(distance_to({"x": 0.5})), Recorder(distance_to({"x": 0.6}))]
+    steps = list(pe.optimize(both, rig, space, method="block-descent", evaluations=300))
+    levels = [step.level for step in steps]
+    assert levels == sorted(levels)
+    coarse = 1.0 - sum(levels) / len(levels)
+    assert coarse == pytest.approx(block_descent.COARSE, abs=0.1)
+    assert pose_values(steps[-1].best["roof"].pose)["x"] == pytest.approx(0.6, abs=0.01)
+    for before, after in pairwise(steps):
+        assert after.entropy <= before.entropy or after.level > before.level
+
+
+def test_several_workers_take_the_same_steps():
+    rig, space = mounting.space(can())
+
+    def steps(executor):
+        found = pe.optimize(
+            Recorder(distance_to({"x": 0.5})),
+            rig,
+            space,
+            method="block-descent",
+            evaluations=90,
+            executor=executor,
+        )
+        return [(s.entropy, s.best["roof"].pose, s.evaluations) for s in found]
+
+    with ThreadPoolExecutor(2) as executor:
+        assert steps(executor) == steps(None) == steps(lambda: None)
+
+
+def test_a_schedule_and_no_method_means_the_one_that_has_schedules():
+    assert pe.Search().method == "block-descent"
+    assert pe.Search(schedule=pe.Schedule(candidates=3)).method == "random"
+    assert pe.Search(method="cma-es", schedule=pe.Schedule(candidates=3)).method == "cma-es"

@@ -15,6 +15,8 @@ FILM_MM = 36.0
 """Width of the picture in the camera; only its ratio to the focal length matters."""
 SHORTEST_MM = 1.0
 """Blender knows no shorter focal length: wider lenses get a wider film."""
+WIDEST = math.radians(150.0)
+"""A wider pinhole shows little but its own corners."""
 NEAR_M, FAR_M = 0.01, 1000.0
 SIZE_M = 0.1
 CAMERA_FROM_SENSOR = Matrix(((0, 0, -1, 0), (-1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
@@ -42,9 +44,24 @@ def make_view_camera(obj: bpy.types.Object, model: pe.Camera) -> bpy.types.Objec
     return view
 
 
+def shown_fov(model: pe.Camera) -> float:
+    """Horizontal field of view [rad] of the pinhole that shows a camera's whole view.
+
+    Blender's camera bends no lines: of a lens that does, and of one off the picture's centre, it is
+    the narrowest centred pinhole round the field, WIDEST at most.
+    """
+    if model.lens is None:
+        return float(model.hfov)
+    depth, left, up = abs(model.outline().T)
+    if model.outline()[:, 0].min() <= math.cos(WIDEST / 2.0):
+        return WIDEST
+    half = max((left / depth).max(), (up / depth).max() * model.width / model.height)
+    return min(2.0 * math.atan(half), WIDEST)
+
+
 def set_lens(camera: bpy.types.Camera, model: pe.Camera) -> None:
     """Give a camera a model's field of view; the principal point is the picture's centre."""
-    half = math.tan(model.hfov / 2.0)
+    half = math.tan(shown_fov(model) / 2.0)
     camera.type, camera.lens_unit, camera.sensor_fit = "PERSP", "MILLIMETERS", "HORIZONTAL"
     camera.sensor_width = max(FILM_MM, 2.0 * half * SHORTEST_MM)
     camera.sensor_height = camera.sensor_width * model.height / model.width
@@ -95,7 +112,7 @@ def tend_views(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> N
 def _follow(scene: bpy.types.Scene, view: bpy.types.Object, model: pe.Camera) -> None:
     """Set a lens when the model is another one than it is of."""
     size = model.width, model.height
-    if abs(view.data.angle_x - model.hfov) > 1e-5:
+    if abs(view.data.angle_x - shown_fov(model)) > 1e-5:
         set_lens(view.data, model)
     looking = scene.camera == view and scene.perception_entropy.before_look
     if looking and (scene.render.resolution_x, scene.render.resolution_y) != size:

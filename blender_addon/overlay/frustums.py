@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from . import bent
 from .colors import VIEWPORT, Palette, Rgba, with_alpha
 from .primitives import Primitives, fan, polyline
 
@@ -46,12 +47,16 @@ def frustum_points(sensor: pe.Sensor, length_m: float) -> Floats:
 
 def frustum_lines(sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
     """Edges of a camera's view: pyramid, picture, and a small triangle above that says: up."""
+    if sensor.model.lens is not None:
+        return bent.view_lines(sensor, length_m, palette)
     points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
     return Primitives.of(points, palette.camera)
 
 
 def frustum_faces(sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
     """Sides of a camera's view: four triangles from the pinhole."""
+    if sensor.model.lens is not None:
+        return bent.view_faces(sensor, length_m, palette)
     points = frustum_points(sensor, length_m)[np.array(FACE_CORNERS).ravel()]
     return Primitives.of(points, palette.camera_face)
 
@@ -64,6 +69,8 @@ def footprint(sensor: pe.Sensor, far_m: float) -> Floats:
     place = np.asarray(sensor.pose.position)
     if place[2] <= 0.0:
         return np.empty((0, 3))
+    if sensor.model.lens is not None:
+        return bent.ground_outline(sensor, far_m)
     angles = np.linspace(0.0, 2.0 * np.pi, ROUND_POINTS, endpoint=False)
     outline = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(ROUND_POINTS)]) * far_m
     outline[:, :2] += place[:2]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from . import frustums, rays
+from . import bent, frustums, rays
 from .beams import BeamChoice, Beams, shown_beams
 from .casts import cast
 from .colors import VIEWPORT, Palette, Rgba
@@ -92,6 +92,8 @@ class FrustumSketch:
 
     def points(self, length_m: float) -> Floats:
         """Its corners."""
+        if self.sensor.model.lens is not None:
+            return bent.outline(self.sensor, length_m)
         return frustums.frustum_points(self.sensor, length_m)
 
 

@@ -8,13 +8,14 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...scene.sensors import SensorModel
 from ...text.values import A_NAME, Angle, Number, Whole
 from ..ranges import NEAREST, checked_ranges
 from .lens import Lens, Pinhole
-from .lens.field import reaching
+from .lens.field import field_outline, reaching
 
 PIXELS = Whole(1, 1_000_000, "pixels")
 FOV = Angle(0.001, 180.0, below=True)
@@ -105,6 +106,13 @@ class Camera(SensorModel):
         if self.lens is None:
             return 2.0 * math.atan(self.height / (2.0 * self.focal_px))
         return self._across((self.lens.cx, self.lens.cx), (0.0, self.height))
+
+    def outline(self, places: int = 16) -> NDArray[np.float64]:
+        """(4 places, 3) unit directions, forward, left, up, round what the picture shows.
+
+        From the upper left corner clockwise, as the camera sees it.
+        """
+        return field_outline(self.projection, self.width, self.height, places)
 
     def _across(self, right: tuple[float, float], down: tuple[float, float]) -> float:
         """Sum of the angles from the axis to two places of the picture [rad]; or its edge."""

@@ -60,6 +60,23 @@ def edge_circle(lens: Lens, spokes: int = SPOKES) -> tuple[Floats, Floats]:
     return right[0], down[0]
 
 
+def field_outline(lens: Lens, width: int, height: int, places: int) -> Floats:
+    """(N, 3) unit directions, forward, left, up, round what a picture shows, clockwise as seen.
+
+    So many places along each side of the picture; where it shows nothing, the edge of the field.
+    """
+    share = np.arange(places) / places
+    none, all_ = np.zeros(places), np.ones(places)
+    right = np.concatenate([share, all_, 1.0 - share, none]) * width
+    down = np.concatenate([none, share, all_, 1.0 - share]) * height
+    found = lens.unproject(right, down)
+    x, y = (right - lens.cx) / lens.fx, (down - lens.cy) / lens.fy
+    away = np.maximum(np.hypot(x, y), 1e-12)
+    sine = math.sin(lens.edge)
+    edge = np.stack([np.full(len(x), math.cos(lens.edge)), -sine * x / away, -sine * y / away], 1)
+    return np.where(np.isnan(found[:, :1]), edge, found)
+
+
 def _rings(theta: Floats, spokes: int = SPOKES) -> tuple[Floats, Floats, Floats]:
     """Directions at angles from the axis, (R, spokes) each."""
     turn = np.linspace(0.0, 2.0 * math.pi, spokes, endpoint=False)

@@ -151,8 +151,9 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
     ``max_range_m``; optional ``azimuth_offsets_deg`` (counter-clockwise from above) and
     ``horizontal_fov_deg``. In place of elevations and offsets, ``angles``: a file that
     `read_angles` reads, relative to `folder`. Camera: ``kind = "camera"``, ``width``,
-    ``height``, ``hfov_deg``. Other kinds: the keys of their row. All: ``source``, ``note``, and
-    ``housing`` (see `read_housing`), which is no part of the sensor.
+    ``height``, ``hfov_deg``, or a lens: ``fx``, ``fy``, ``cx``, ``cy``, ``distortion``,
+    ``fov_deg``; optional ``min_range_m``, ``max_range_m``. Other kinds: the keys of their row.
+    All: ``source``, ``note``, and ``housing`` (see `read_housing`), which is no part of the sensor.
 
     Raises
     ------

@@ -10,6 +10,7 @@ import pe_core as pe
 
 from . import literal
 from .embree import Embree
+from .many_rows import full_score_of_four_lidars, full_score_of_many, time_against_sensors
 from .mesh_rows import read_glb, read_obj, read_ply
 from .problems import (
     ROOF_LIDAR,
@@ -212,5 +213,8 @@ ROWS: dict[str, Callable[[], Timing]] = {
         read_obj,
         read_ply,
         read_glb,
+        full_score_of_four_lidars,
+        full_score_of_many,
+        time_against_sensors,
     )
 }

@@ -74,6 +74,18 @@ class GridKernel(ABC):
         """Say what the vehicle stops of a sensor that is `ready`."""
         return Stopped()
 
+    def needs(
+        self, groups: Sequence[Sequence[Sensor]], space: PerceptionSpace, workers: int
+    ) -> int:
+        """Return about how many bytes measuring these groups takes, so many threads at work."""
+        return len(groups) * workers * block_voxels(space) * np.dtype(float).itemsize
+
+
+def block_voxels(space: PerceptionSpace) -> int:
+    """Return how many voxels a thread has at a time."""
+    nx, ny, nz = space.shape
+    return min(nx, BLOCK_PLANES) * ny * nz
+
 
 class SampleKernel(ABC):
     """Measures sensors of one kind on a fixed sample of voxels.

@@ -91,6 +91,16 @@ class PlaneFusion:
             found[rows] |= m > 0.0
         return found
 
+    def added(self, kind: str, m: NDArray) -> Floats:
+        """What m of a group adds to the 1 / sigma^2 of a blind one."""
+        if m.dtype.kind in "iu":
+            return np.take(self._by_count(kind), m, mode="clip")
+        return self._shown(kind, np.ascontiguousarray(m))
+
+    def alone(self, kind: str) -> Floats:
+        """Entropy of a lone group by its whole numbers."""
+        return self._alone(kind, 1)
+
     def _counted(self, counts: Sequence[Counted], blind: int, rows: slice) -> Floats:
         """1 / sigma^2 of so many blind groups and what whole numbers add, in some rows."""
         total = np.full(self._shape, blind * BLIND_PRECISION)[rows]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
+from functools import partial, reduce
+from operator import add
 from threading import Event, Lock
 from typing import Any, NamedTuple, TypeVar
 
@@ -15,24 +17,25 @@ from ..kinds import GridKernel, kind_of
 from ..kinds.kernels import BLOCK_PLANES, Planes
 from ..metric.entropy import H_BLIND
 from ..metric.fusion import Fusion
+from ..metric.members import MemberSums
 from ..metric.planes import Group, PlaneFusion
 from ..prior.prior import ClassDensity
-from ..scene.frozen import frozen
 from ..scene.numbering import blocks
 from ..scene.sensors import Rig, Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
+from .needs import Grouped, grid_bytes, require_room_for
 from .score import (
-    GroundMap,
     PartScore,
     Score,
     ScoreStopped,
     SensorScore,
     Watch,
+    ground_map,
     rounded,
     sensor_score,
 )
-from .subsets import Members, fused_early, parts_of
+from .subsets import Members, fused_early, members_of, parts_by_sums, parts_of
 from .weights import outside_masses
 from .zones import column_zones
 
@@ -103,6 +106,7 @@ class GridScorer:
 
     def entropy(self, rig: Rig) -> float:
         """Perception entropy alone."""
+        require_room_for(self._space, partial(self.needs, list(rig.groups.values())))
         with self._is_free, ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
             groups = self._measured(list(rig.groups.values()), ready, pool)
@@ -110,28 +114,38 @@ class GridScorer:
             def work(planes: slice) -> Floats:
                 fused = [[(kind, measure(planes)) for kind, measure in groups]]
                 each = self._weighed(fused, planes, coverage=False)
-                return np.sum([plane[0, 0].sum(axis=0) for plane in each], axis=0)
+                return np.sum([plane[0, 0].sum(axis=0) for plane, _ in each], axis=0)
 
             return self._mean(np.sum(list(pool.map(work, self._blocks())), axis=0))
 
     def score(self, rig: Rig, watch: Watch | None = None) -> Score:
         """Everything a grid score tells."""
-        parts, watched = parts_of(rig), _Watched(watch)
+        require_room_for(self._space, partial(self.needs, [[s] for s in rig]))
+        watched = _Watched(watch)
+        # By the literal formula a blind sensor votes: it counts where it sees nothing, too.
+        is_sparse = self._fusion.model.blind == "floor" and len(rig.sensors) > 1
+        parts = parts_of(rig)[: 1 if is_sparse else None]
         with self._is_free, ThreadPoolExecutor(self._workers) as pool:
             ready = self._ready(rig, pool)
             measured = self._measured([[s] for s in rig], ready, pool)
 
-            def work(planes: slice) -> tuple[Floats, Floats]:
+            def work(planes: slice) -> tuple[Floats, Floats, Floats]:
                 watched.check()
                 values = {s.name: m(planes) for s, (_, m) in zip(rig, measured, strict=True)}
                 fused = [fused_early(rig, values, members) for members in parts]
-                return self._reduced(fused, planes)
+                members = MemberSums(self._planes, members_of(rig, values)) if is_sparse else None
+                return self._reduced(fused, planes, members)
 
             found = watched.taken(pool.map(work, self._blocks()), len(self._blocks()))
-        sums = np.sum([by_part for by_part, _ in found], axis=0)
+        sums = np.sum([by_part for by_part, _, _ in found], axis=0)
         by_part = {members: Sums(*own) for members, own in zip(parts, sums, strict=True)}
-        columns = np.concatenate([columns for _, columns in found], axis=1)
+        columns = np.concatenate([columns for _, columns, _ in found], axis=1)
         whole = by_part[parts[0]]
+        if is_sparse:
+            by_sensor = np.sum([by_sensor for _, _, by_sensor in found], axis=0)
+            blind = H_BLIND * float(self._masses.sum())
+            more = parts_by_sums(rig, float(whole.entropy.sum()), blind, by_sensor)
+            by_part |= {members: Sums(*own) for members, own in more.items()}
         return Score(
             self._mean(whole.entropy),
             self._mean(whole.coverage),
@@ -140,13 +154,17 @@ class GridScorer:
             self._zones(columns),
             {s.name: self._sensor(s, rig, by_part, ready[s.name]) for s in rig},
             self._space.size,
-            _ground_map(columns),
+            ground_map(columns),
         )
+
+    def needs(self, groups: Grouped, space: PerceptionSpace) -> int:
+        """Return about how many bytes it takes to score groups of sensors in a space."""
+        kernels = {sensors[0].kind: self._kernel(sensors[0]) for sensors in groups}
+        vehicle, classes = self._vehicle, len(self._names)
+        return grid_bytes(space, groups, kernels, vehicle, classes, self._workers)
 
     def _ready(self, rig: Rig, pool: Executor) -> dict[str, Any]:
         """Every sensor, ready to be measured; by name."""
-        for sensor in rig:
-            self._kernel(sensor)
         ready = pool.map(lambda sensor: self._kernel(sensor).ready(sensor), rig)
         return dict(zip((s.name for s in rig), ready, strict=True))
 
@@ -177,34 +195,55 @@ class GridScorer:
 
     def _weighed(
         self, parts: Sequence[Sequence[Group]], planes: slice, *, coverage: bool
-    ) -> Iterator[Floats]:
+    ) -> Iterator[tuple[Floats, Floats]]:
         """Entropy of parts of a rig, and coverage if asked for, weighed by the prior, by plane.
 
-        Summed over height: (P, 1 or 2, ny, C).
+        Summed over height (P, 1 or 2, ny, C); with it the entropies (ny, nz) of the first part.
         """
         for i, ground in enumerate(self._grounds[planes]):
             outside = self._outside(planes.start + i)
             found = np.empty((len(parts), 1 + coverage, *ground.shape))
-            for groups, sums in zip(parts, found, strict=True):
-                self._over_height(self._planes.entropies(groups, i), outside, sums[0])
+            each = (self._planes.entropies(groups, i) for groups in parts)
+            first: Floats | None = None
+            for groups, entropies, sums in zip(parts, each, found, strict=True):
+                first = entropies if first is None else first
+                self._over_height(entropies, outside, sums[0])
                 if coverage:
                     seen = self._planes.seen(groups, i).astype(float)
                     self._over_height(seen, outside, sums[1])
             found *= ground
-            yield found
+            assert first is not None  # a rig has a part
+            yield found, first
 
-    def _reduced(self, parts: Sequence[Sequence[Group]], planes: slice) -> tuple[Floats, Floats]:
-        """Sums by class of every part of the rig (P, 2, C); and of the whole rig by column.
+    def _reduced(
+        self,
+        parts: Sequence[Sequence[Group]],
+        planes: slice,
+        members: MemberSums | None,
+    ) -> tuple[Floats, Floats, Floats]:
+        """Sums by class of every part of the rig (P, 2, C); of the whole rig by column; by sensor.
 
         The columns (3, n, ny) are entropy and coverage weighed by the prior, and the prior itself.
+        Sums by sensor (3, S) are those of `members`, if there are any.
         """
         by_class = np.zeros((len(parts), 2, len(self._names)))
         columns = np.empty((3, planes.stop - planes.start, self._grounds.shape[1]))
-        for i, weighed in enumerate(self._weighed(parts, planes, coverage=True)):
+        by_sensor: Floats = np.zeros(1)
+        for i, (weighed, entropies) in enumerate(self._weighed(parts, planes, coverage=True)):
             by_class += weighed.sum(axis=2)
             columns[:2, i] = weighed[0].sum(axis=-1)
             columns[2, i] = self._mass(planes.start + i).sum(axis=-1)
-        return by_class, columns
+            if members is not None:
+                weights = self._weights(planes.start + i)
+                by_sensor = by_sensor + members.of_plane(i, entropies, weights)
+        return by_class, columns, by_sensor
+
+    def _weights(self, plane: int) -> Floats:
+        """(ny, nz) the prior in the voxels of a plane, 0 inside the vehicle's volume."""
+        ground, outside = self._grounds[plane], self._outside(plane)
+        pairs = zip(ground.T, self._profiles.T, strict=True)
+        weights = reduce(add, (np.multiply.outer(*pair) for pair in pairs))
+        return weights if outside is None else weights * outside
 
     def _mass(self, plane: int) -> Floats:
         """(ny, C) the prior in the columns of a plane."""
@@ -257,9 +296,3 @@ class GridScorer:
         lost = rounded(failed - self._mean(whole.entropy))
         stopped = self._kernels[sensor.kind].stopped(ready)
         return sensor_score(self._mean(alone.entropy), self._mean(alone.coverage), lost, stopped)
-
-
-def _ground_map(columns: Floats) -> GroundMap:
-    entropy, coverage, mass = columns
-    safe = np.where(mass > 0.0, mass, np.nan)
-    return GroundMap(*map(frozen, (entropy / safe, coverage / safe, mass.copy())))

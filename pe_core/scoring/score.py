@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinds import Stopped
+from ..scene.frozen import frozen
 
 DECIMALS = 9
 """Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
@@ -73,6 +74,13 @@ class GroundMap:
         weighted = (np.nan_to_num(v) * self.mass for v in (self.entropy, self.coverage))
         entropy, coverage = (summed(v) / safe for v in weighted)
         return GroundMap(entropy, coverage, mass)
+
+
+def ground_map(columns: NDArray[np.float64]) -> GroundMap:
+    """Return the map of columns (3, nx, ny): entropy and coverage weighed by the prior, and it."""
+    entropy, coverage, mass = columns
+    safe = np.where(mass > 0.0, mass, np.nan)
+    return GroundMap(*map(frozen, (entropy / safe, coverage / safe, mass.copy())))
 
 
 @dataclass(frozen=True, slots=True)

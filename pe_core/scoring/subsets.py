@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..metric.fusion import group_sum
 from ..scene.sensors import Rig
 
@@ -32,3 +35,24 @@ def fused_early(
             kind = sensors[0].kind
             groups.append((kind, group_sum(present)))
     return groups
+
+
+def members_of(rig: Rig, measured: Mapping[str, Any]) -> list[list[tuple[str, Any]]]:
+    """(kind, measurement) of each sensor of each fusion group."""
+    return [[(s.kind, measured[s.name]) for s in group] for group in rig.groups.values()]
+
+
+def parts_by_sums(
+    rig: Rig, whole: float, blind: float, by_sensor: NDArray[np.float64]
+) -> dict[Members, NDArray[np.float64]]:
+    """Entropy and coverage, weighed (2, 1), of each sensor alone and of the rig without each.
+
+    `whole` and `blind` are the weighed entropies of the rig and of no sensor; `by_sensor` (3, S)
+    what `MemberSums` found. Coverage is left out (0) of what is no sensor alone.
+    """
+    names = tuple(s.name for s in rig)
+    order = [s.name for sensors in rig.groups.values() for s in sensors]
+    lost, gained, seen = (dict(zip(order, own, strict=True)) for own in by_sensor)
+    rest = {tuple(n for n in names if n != name): [whole + lost[name], 0.0] for name in names}
+    alone = {(name,): [blind + gained[name], seen[name]] for name in names}
+    return {part: np.array(sums)[:, None] for part, sums in (rest | alone).items()}

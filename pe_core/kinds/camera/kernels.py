@@ -15,13 +15,24 @@ from ...metric.planes import SeenRows
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import SeenMesh, Vehicle
-from ..kernels import GridKernel, Measured, Planes, SampleKernel, Stopped, Voxels
+from ..kernels import (
+    GridKernel,
+    Measured,
+    Planes,
+    SampleKernel,
+    Stopped,
+    Voxels,
+    block_voxels,
+)
 from .bent_grid import BentPlanes
 from .bent_points import bent_pixel_areas
 from .grid import CameraPlanes
 from .hidden_part import hidden_places
 from .model import Camera
 from .points import pixel_areas
+
+SEEN_BYTES = 2
+"""Of a voxel, seen or not: single precision where it is (measured)."""
 
 
 class ReadyCamera(NamedTuple):
@@ -46,6 +57,12 @@ class CameraGrid(GridKernel):
     def stopped(self, ready: ReadyCamera) -> Stopped:
         """Count places of the picture that the vehicle hides."""
         return hidden_places(ready.sensor, self._vehicle)
+
+    def needs(
+        self, groups: Sequence[Sequence[Sensor]], space: PerceptionSpace, workers: int
+    ) -> int:
+        """Return about how many bytes it takes: areas in the rows that each sees."""
+        return len(groups) * workers * block_voxels(space) * SEEN_BYTES
 
     def planes(self, groups: Sequence[Sequence[ReadyCamera]], pool: Executor) -> list[Planes]:
         """Measure each group when its planes are asked for."""

@@ -15,10 +15,17 @@ from ...scene.numbering import blocks
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
-from ..kernels import BLOCK_PLANES, GridKernel, Planes, Stopped
+from ..kernels import BLOCK_PLANES, GridKernel, Planes, Stopped, block_voxels
 from .beams import BeamField, beam_field, stopped_beams
 from .grid import BeamGrid
 from .model import Lidar
+
+MANY, HALF_BYTE = 2, 15
+"""More groups of LiDARs than this are kept in half bytes, where AP is saturated by that count."""
+
+
+BEAM_BYTES = 100
+"""Of a beam that is cast (measured): its direction, its end, what it meets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +34,42 @@ class CastLidar:
 
     sensor: Sensor
     field: BeamField
+
+
+@dataclass(frozen=True, slots=True)
+class HalfBytes:
+    """Counts (nx, ny, nz) of at most `HALF_BYTE`, two to a byte: of two rows half a side apart.
+
+    Half the memory of `compact`, for which they are unpacked whenever they are looked at.
+    """
+
+    packed: NDArray[np.uint8]
+    rows: int
+
+    @classmethod
+    def of(cls, counts: NDArray[np.uint16], enough: int, pool: Executor | None = None) -> HalfBytes:
+        """Pack counts, those beyond `enough` as that."""
+        nx, rows, nz = counts.shape
+        half = (rows + 1) // 2
+        packed = np.empty((nx, half, nz), np.uint8)
+
+        def work(planes: slice) -> None:
+            for i in range(planes.start, planes.stop):
+                small = np.minimum(counts[i], enough).astype(np.uint8)
+                packed[i] = small[:half]
+                packed[i, : rows - half] |= small[half:] << 4
+
+        list((pool.map if pool else map)(work, blocks(nx, BLOCK_PLANES)))
+        return cls(packed, rows)
+
+    def __getitem__(self, planes: slice) -> NDArray[np.uint8]:
+        """Counts of some planes, one to a byte."""
+        some = self.packed[planes]
+        n, half, nz = some.shape
+        counts = np.empty((n, self.rows, nz), np.uint8)
+        np.bitwise_and(some, HALF_BYTE, out=counts[:, :half])
+        np.right_shift(some[:, : self.rows - half], 4, out=counts[:, half:])
+        return counts
 
 
 class LidarGrid(GridKernel):
@@ -47,6 +90,19 @@ class LidarGrid(GridKernel):
         """Count the beams that the vehicle stops."""
         return stopped_beams(ready.field, self._vehicle)
 
+    def _in_half_bytes(self, groups: int) -> bool:
+        return groups > MANY and self._enough <= HALF_BYTE
+
+    def needs(
+        self, groups: Sequence[Sequence[Sensor]], space: PerceptionSpace, workers: int
+    ) -> int:
+        """Return about how many bytes it takes: the grid, what is kept of it, beams, threads."""
+        beams = sum(len(cast(Lidar, s.model).directions) for group in groups for s in group)
+        each = 0 if len(groups) == 1 else 1 if self._in_half_bytes(len(groups)) else 2
+        kept = space.size * each * len(groups) // 2
+        threads = workers * block_voxels(space) * len(groups)
+        return 2 * space.size + kept + beams * BEAM_BYTES + threads
+
     def planes(self, groups: Sequence[Sequence[CastLidar]], pool: Executor) -> list[Planes]:
         """Count each group's beams on the whole grid, now; several groups are kept small."""
         found: list[Planes] = []
@@ -57,8 +113,11 @@ class LidarGrid(GridKernel):
                 place, field = own.sensor.pose.position, own.field
                 self._grid.add(place, field.directions, field.ends, nearest)
             counts = self._grid.counts
-            kept = counts if len(groups) == 1 else compact(counts, self._enough, pool)
-            found.append(kept.__getitem__)
+            if self._in_half_bytes(len(groups)):
+                found.append(HalfBytes.of(counts, self._enough, pool).__getitem__)
+            else:
+                kept = counts if len(groups) == 1 else compact(counts, self._enough, pool)
+                found.append(kept.__getitem__)
         return found
 
 

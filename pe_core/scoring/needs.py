@@ -1,0 +1,89 @@
+"""The memory that a score takes, known before it begins; more than there is is refused in a line.
+
+Estimates are held to measured peaks by a test: neither is more than `FACTOR` times the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from ..errors import InputError
+from ..kinds import GridKernel
+from ..kinds.kernels import block_voxels
+from ..scene.sensors import Sensor
+from ..scene.space import PerceptionSpace
+from ..scene.vehicle import Vehicle
+from ..text.memory import available_bytes, size_text
+
+Grouped = Sequence[Sequence[Sensor]]
+"""Sensors whose measurements are summed, and kept, together."""
+
+FACTOR = 2.0
+"""How far an estimate may be off, either way."""
+COLUMN_BYTES = 10
+"""Of a column of the ground and a class: the density, a copy, and what is made of it."""
+TREE_BYTES = 300
+"""Of a triangle of the vehicle, once rays are cast (measured)."""
+PLANE_BYTES = 24
+"""Of a voxel of the planes that a thread works on: counts, sums, precision, entropy, weights."""
+SAMPLES = 262_144
+"""The voxels that are offered in place of the grid."""
+COARSER = (2, 4, 5, 10, 20)
+"""How many times as coarse a grid is offered."""
+
+
+def grid_bytes(
+    space: PerceptionSpace,
+    groups: Grouped,
+    kernels: Mapping[str, GridKernel],
+    vehicle: Vehicle | None,
+    classes: int,
+    workers: int,
+) -> int:
+    """Return what a grid score of groups of sensors takes; `kernels` by kind."""
+    total = columns_bytes(space, classes) + workers * block_voxels(space) * PLANE_BYTES
+    total += 0 if vehicle is None else len(vehicle.triangles) * TREE_BYTES
+    for kind, kernel in kernels.items():
+        ours = [sensors for sensors in groups if sensors[0].kind == kind]
+        total += kernel.needs(ours, space, workers)
+    return total
+
+
+def columns_bytes(space: PerceptionSpace, classes: int) -> int:
+    """Return what the prior takes on the ground of a space."""
+    nx, ny, _ = space.shape
+    return nx * ny * classes * COLUMN_BYTES
+
+
+def require_room_for(space: PerceptionSpace, needed: Callable[[PerceptionSpace], int]) -> None:
+    """Refuse a score of a grid that takes more memory than there is.
+
+    Parameters
+    ----------
+    space : PerceptionSpace
+    needed : function
+        What a score of a space takes [bytes].
+
+    Raises
+    ------
+    InputError
+        One line with how much it takes, how much there is, and what would fit.
+    """
+    there, amount = available_bytes(), needed(space)
+    if there is None or amount <= there:
+        return
+    fitting = next(
+        (f"interval = {s.interval:g}" for s in _coarser(space) if needed(s) <= there), ""
+    )
+    ways = " or ".join(filter(None, (f"samples = {SAMPLES}", fitting)))
+    expected = f"what fits in the {size_text(there)} of memory that are free; try {ways}"
+    raise InputError("score", "memory", expected, f"about {size_text(amount)}")
+
+
+def _coarser(space: PerceptionSpace) -> Iterator[PerceptionSpace]:
+    """Spaces of the same bounds, in larger voxels, where these fit."""
+    for times in COARSER:
+        try:
+            yield PerceptionSpace(space.x, space.y, space.z, space.interval * times)
+        except InputError:  # the bounds are no whole number of such voxels
+            continue

@@ -1,0 +1,77 @@
+"""Each sensor alone and failing, found in one pass, is what rigs of their own score."""
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.kinds.lidar.on_grid import HALF_BYTE, HalfBytes, compact
+from tests.engine import shapes
+
+SPACE = pe.PerceptionSpace((-12.0, 12.0), (-7.0, 7.5), (0.0, 2.5), 0.5)
+
+
+def sensors(groups):
+    """Two LiDARs and three cameras all round a car, in these fusion groups."""
+    lidar, camera = shapes.small_lidar(16, 180), pe.Camera("eye", 640, 480, 1.2)
+    placed = [
+        ("roof", lidar, (-0.4, 0.0, 1.7), 0.0),
+        ("nose", lidar, (2.0, 0.1, 0.9), 0.2),
+        ("ahead", camera, (0.9, 0.0, 1.5), 0.0),
+        ("left", camera, (0.0, 0.8, 1.4), 1.6),
+        ("back", camera, (-1.9, 0.0, 1.4), 3.1),
+    ]
+    rows = zip(placed, groups, strict=True)
+    return [pe.Sensor(n, m, pe.Pose(at, (0.0, 0.0, yaw)), g) for (n, m, at, yaw), g in rows]
+
+
+RIGS = {
+    "as usual": (None,) * 5,
+    "all late": ("a", "b", None, None, None),
+    "cameras early, too": (None, None, "eyes", "eyes", "eyes"),
+    "some of them": ("a", "b", "eyes", "eyes", None),
+}
+
+
+@pytest.mark.parametrize("groups", RIGS.values(), ids=RIGS)
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+@pytest.mark.parametrize("count", [5, 2])
+def test_alone_and_failing_are_scores_of_other_rigs(groups, blind, count):
+    """To the last digit that is kept: sums of the same values in another order are rounded away."""
+    model = pe.PerceptionModel(blind)
+    mounted = sensors(groups)[:count]
+    study = pe.Study(pe.Rig(mounted), shapes.box_car(), SPACE, model=model)
+    evaluator = study.evaluator(workers=2)
+    score = evaluator.score(study.rig)
+    assert score.entropy == evaluator.entropy(study.rig)
+    for sensor in mounted:
+        own = score.per_sensor[sensor.name]
+        alone = evaluator.score(pe.Rig([sensor]))
+        others = evaluator.entropy(pe.Rig([s for s in mounted if s is not sensor]))
+        assert own.coverage == pytest.approx(alone.coverage, abs=1.01e-9)
+        assert own.entropy == pytest.approx(alone.entropy, abs=1.01e-9)
+        assert own.lost == pytest.approx(others - score.entropy, abs=1.01e-9)
+        assert own.lost > 0.0 or blind == "literal"
+
+
+@pytest.mark.parametrize("rows", [1, 2, 7, 8])
+def test_counts_in_half_bytes_are_those_in_bytes(rows):
+    rng = np.random.default_rng(rows)
+    counts = rng.integers(0, 40, (70, rows, 5)).astype(np.uint16)
+    packed = HalfBytes.of(counts, 11)
+    assert packed.packed.nbytes == 70 * ((rows + 1) // 2) * 5
+    assert HALF_BYTE == 15
+    for planes in (slice(0, 32), slice(32, 64), slice(64, 70)):
+        np.testing.assert_array_equal(packed[planes], compact(counts, 11)[planes])
+
+
+def test_many_lidars_score_as_few_do():
+    """More groups than are kept in bytes: each is still what it is alone."""
+    lidar = shapes.small_lidar(16, 180)
+    mounted = [pe.Sensor(f"{k}", lidar, pe.Pose((k - 2.0, 0.0, 1.8))) for k in range(5)]
+    study = pe.Study(pe.Rig(mounted), shapes.box_car(), SPACE)
+    evaluator = study.evaluator()
+    score = evaluator.score(study.rig)
+    assert score.entropy == evaluator.entropy(study.rig)
+    for sensor in mounted:
+        alone = evaluator.entropy(pe.Rig([sensor]))
+        assert score.per_sensor[sensor.name].entropy == pytest.approx(alone, abs=1.01e-9)

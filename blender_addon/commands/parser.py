@@ -7,6 +7,7 @@ import argparse
 from ..engine import app, pe
 from .leaving import REVIEW
 from .scene_verbs import explain_study, export_study, run_job
+from .sweeping import sweep_scene
 from .variants import compare_variants, list_variants
 
 
@@ -38,6 +39,10 @@ def parser(prog: str) -> argparse.ArgumentParser:
     compare.add_argument("variants", nargs="*", metavar="NAME", help="of these (default: all)")
     app.add_compare_options(compare)
     compare.set_defaults(function=compare_variants)
+    sweep = verbs.add_parser("sweep", help="run the scene, or variants, with many changes")
+    sweep.add_argument("variants", nargs="*", metavar="NAME", help="variants (default: the scene)")
+    app.add_sweep_options(sweep)
+    sweep.set_defaults(function=sweep_scene)
     app.add_sensors_verb(verbs)
     return top
 

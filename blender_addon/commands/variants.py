@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 
 import bpy
 
@@ -33,13 +34,15 @@ def compare_variants(args: argparse.Namespace) -> app.Answer:
     """Score variants where they are kept, and put them side by side."""
     scene = opened_scene()
     names = args.variants or [row.name for row in scene.perception_entropy.variants]
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    studies = {}
-    with from_file():
-        for name in names:
-            row = bridge.variant_named(scene, name)
-            study = bridge.study_of_variant(scene, row, depsgraph)
-            studies[name] = app.with_options(study, args)
+    studies = {n: app.with_options(s, args) for n, s in studies_of(scene, names).items()}
     if not studies:
         raise pe.InputError(bpy.data.filepath, "variants", "at least one", "none")
     return app.compare(studies, args)
+
+
+def studies_of(scene: bpy.types.Scene, names: Sequence[str]) -> dict[str, pe.Study]:
+    """Return the studies of variants where they are kept, by name."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    with from_file():
+        rows = {name: bridge.variant_named(scene, name) for name in names}
+        return {n: bridge.study_of_variant(scene, row, depsgraph) for n, row in rows.items()}

@@ -8,6 +8,7 @@ from .interrupts import leave
 from .resuming import begun_search, job_and_folder
 from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
 from .summary import summary
+from .sweeping import add_sweep_options, sweep
 from .terminal import open_missing_streams, printable, show, tell
 from .work import More, carry_out, drive
 
@@ -24,6 +25,7 @@ __all__ = [
     "add_export_options",
     "add_run_options",
     "add_sensors_verb",
+    "add_sweep_options",
     "begun_search",
     "carry_out",
     "check_not_resumed",
@@ -41,6 +43,7 @@ __all__ = [
     "run",
     "show",
     "summary",
+    "sweep",
     "tell",
     "with_options",
 ]

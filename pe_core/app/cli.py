@@ -31,6 +31,7 @@ from .explaining import (
 )
 from .resuming import begun_search, job_and_folder
 from .status import Answer
+from .sweeping import add_sweep_options, sweep
 from .terminal import open_missing_streams, tell
 from .work import carry_out
 
@@ -87,6 +88,11 @@ def parser() -> argparse.ArgumentParser:
     verb = verbs.add_parser("import", help="make a study of another program's rig")
     add_import_options(verb)
     verb.set_defaults(function=import_study)
+    verb = verbs.add_parser("sweep", help="run many studies, or one with many changes")
+    verb.usage = f"{verb.prog} STUDY... [--set KEY=VALUE,...]... -o DIR [options]"
+    verb.add_argument("studies", nargs="+", metavar="STUDY", help="study file (TOML)")
+    add_sweep_options(verb)
+    verb.set_defaults(function=_sweep)
     add_sensors_verb(verbs)
     for other in entry_points(group=VERBS):
         other.load()(verbs)
@@ -138,6 +144,10 @@ def _compare(args: argparse.Namespace) -> Answer:
     files = named_by_file(args.studies)
     studies = {name: with_options(load_study(path), args) for name, path in files.items()}
     return compare(studies, args)
+
+
+def _sweep(args: argparse.Namespace) -> Answer:
+    return sweep(named_by_file(args.studies), args)
 
 
 def _refuse_to_replace(study: Path, output: Path) -> None:

@@ -47,24 +47,29 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     parser.add_argument("--json", action="store_true", help="print result.json on stdout")
     add_score_options(parser)
     if search:
-        options = (
-            ("--seed", LAST_SEED, "seed of the search"),
-            ("--candidates", MOST_VOXELS, "of the method random: placements tried in a round"),
-            ("--samples", MOST_VOXELS, "voxels a candidate is judged on (0: all)"),
-            ("--evaluations", MOST_VOXELS, "placements judged at most (0: as the method says)"),
-        )
-        about = f"how to search: one of {', '.join(METHODS)}"
-        parser.add_argument("--method", choices=METHODS, metavar="NAME", help=about)
-        for option, greatest, about in options:
-            parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
+        add_search_options(parser)
 
 
-def add_score_options(parser: argparse.ArgumentParser) -> None:
+def add_search_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of whatever searches to a parser."""
+    options = (
+        ("--seed", LAST_SEED, "seed of the search"),
+        ("--candidates", MOST_VOXELS, "of the method random: placements tried in a round"),
+        ("--samples", MOST_VOXELS, "voxels a candidate is judged on (0: all)"),
+        ("--evaluations", MOST_VOXELS, "placements judged at most (0: as the method says)"),
+    )
+    about = f"how to search: one of {', '.join(METHODS)}"
+    parser.add_argument("--method", choices=METHODS, metavar="NAME", help=about)
+    for option, greatest, about in options:
+        parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
+
+
+def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads") -> None:
     """Add the options of whatever scores a study to a parser."""
-    voxels, workers = count_up_to(MOST_VOXELS), count_up_to(MOST_WORKERS)
+    voxels, count = count_up_to(MOST_VOXELS), count_up_to(MOST_WORKERS)
     about = "voxels a score looks at (0: all)"
     parser.add_argument("--grid-samples", type=voxels, metavar="N", help=about)
-    parser.add_argument("--workers", type=workers, metavar="N", help="threads (default: all)")
+    parser.add_argument("--workers", type=count, metavar="N", help=f"{workers} (default: all)")
 
 
 def count_up_to(greatest: int) -> Callable[[str], int]:

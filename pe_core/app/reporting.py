@@ -122,6 +122,7 @@ class Bar:
         """Move it; a new stage has a bar, and a time, of its own."""
         if new_stage:
             self.clear()
+        if self._bar is None:
             self._bar = self._tqdm.tqdm(
                 total=1.0, file=self._stream, bar_format=BAR, leave=False, dynamic_ncols=True
             )
@@ -135,6 +136,7 @@ class Bar:
         """Take it away."""
         if self._bar is not None:
             self._bar.close()
+            self._bar = None
 
 
 def _words(progress: Progress) -> str:

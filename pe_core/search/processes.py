@@ -19,8 +19,11 @@ T = TypeVar("T")
 
 START_S = 60.0
 """Processes that are not up by then never will be."""
-ENDING = ("SIGINT", "SIGTERM", "SIGHUP")
-"""Signals that ask a process to end; Windows has no SIGHUP."""
+ENDING = ("SIGINT", "SIGHUP")
+"""Signals that a terminal sends to all processes at once; Windows has no SIGHUP.
+
+SIGTERM is not among them: by it a pool ends those that are left when one has died, and waits until
+they are gone."""
 
 BEGIN = """
 import sys, types

@@ -30,7 +30,7 @@ from .results import (
 )
 from .search_state import BegunSearch, SearchState, read_search
 from .study import Search, Study, vehicle_digest
-from .study_file import load_study, save_study, study_from_dict, study_to_dict
+from .study_file import load_study, load_study_data, save_study, study_from_dict, study_to_dict
 
 __all__ = [
     "AREAS",
@@ -70,6 +70,7 @@ __all__ = [
     "fingerprint",
     "front_dict",
     "load_study",
+    "load_study_data",
     "mounts_told",
     "placements",
     "prepare_folder",

@@ -26,6 +26,7 @@ from ..text.toml_reader import load_toml
 from ..text.toml_writer import dumps
 from ..text.values import A_NAME, A_PATH
 from .mesh_file import AXES_KEYS, MeshFile, axes_table, read_axes
+from .mounted import alike
 from .mounting_file import areas_of
 from .prior_file import prior_table, read_prior
 from .search_file import in_file, read_limits, read_search, search_table
@@ -45,8 +46,12 @@ def load_study(path: str | Path) -> Study:
         One line with the file, the field, what was expected and what was found.
     """
     path = Path(path)
-    data = load_toml(path, "study", decode_text(read_bytes(path)))
-    return study_from_dict(data, str(path), path.parent)
+    return study_from_dict(load_study_data(path), str(path), path.parent)
+
+
+def load_study_data(path: Path) -> dict[str, Any]:
+    """Read the plain data of a study's TOML file; `InputError` where it is none."""
+    return load_toml(path, "study", decode_text(read_bytes(path)))
 
 
 def save_study(study: Study, path: str | Path) -> None:
@@ -266,7 +271,7 @@ def _model_value(model: SensorModel, unnamed: str = OWN_MODEL) -> str | dict[str
     `unnamed` is what a model is called that is given no name.
     """
     entry = catalog.entries().get(model.name)
-    if entry is not None and entry.file != catalog.OWN and catalog.load(model.name) is model:
+    if entry is not None and entry.file != catalog.OWN and alike(catalog.load(model.name), model):
         return model.name
     name = {} if model.name == unnamed else {"name": model.name}
     return name | catalog.to_table(model)

@@ -33,13 +33,14 @@ ALLOWED = {
         *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
         *("formats", "scoring", "sight", "search", "catalog", "advice"),
     },
+    "sweep": {"errors", "version", "text", "scene", "study"},
     "public": {
         *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
         *("sight", "search", "catalog", "exchange", "advice", "study"),
     },
     "app": {
         *("errors", "version", "text", "scene", "kinds", "formats", "catalog", "exchange", "sight"),
-        *("advice", "study"),
+        *("advice", "search", "study", "sweep"),
     },
     "__main__": {"app"},
 }

@@ -1,6 +1,7 @@
 """A search goes on from the state in its folder, to the bits of one that was never broken off."""
 
 import json
+import pickle
 import signal
 import subprocess
 import sys
@@ -282,3 +283,12 @@ def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):
     ]
     prints = {fingerprint(other) for other in (study, *others)}
     assert len(prints) == len(others) + 1
+
+
+def test_a_study_that_has_been_to_a_worker_is_the_same():
+    """A model of the catalogue is written by its name, though it is another object then."""
+    rig = pe.Rig([replace(shapes.lidar_on_roof(), model=pe.catalog.load("Pandar64"))])
+    study = replace(a_study(), rig=rig)
+    back = pickle.loads(pickle.dumps(study))
+    assert back.rig["roof"].model is not rig["roof"].model
+    assert fingerprint(back) == fingerprint(study)

@@ -1,0 +1,37 @@
+"""Sweeps: many studies, or one with many changes, run by the workers of any executor."""
+
+from .grid import sweep_runs
+from .run import RunTask, SweepRun, carried_out
+from .runner import Workplace, run_all
+from .settings import TriedKey, read_settings
+from .table import (
+    DONE,
+    FAILED,
+    SWEEP_CSV,
+    SWEEP_JSON,
+    SweepRow,
+    row_of,
+    row_of_result,
+    table_lines,
+    write_table,
+)
+
+__all__ = [
+    "DONE",
+    "FAILED",
+    "SWEEP_CSV",
+    "SWEEP_JSON",
+    "RunTask",
+    "SweepRow",
+    "SweepRun",
+    "TriedKey",
+    "Workplace",
+    "carried_out",
+    "read_settings",
+    "row_of",
+    "row_of_result",
+    "run_all",
+    "sweep_runs",
+    "table_lines",
+    "write_table",
+]

@@ -1,0 +1,282 @@
+"""Sweeps: changes of a study, folders and tables, workers that die, and going on."""
+
+import csv
+import json
+import multiprocessing
+import os
+import signal
+import sys
+from concurrent.futures import BrokenExecutor, Executor, Future
+from dataclasses import replace
+
+import pytest
+
+import pe_core as pe
+from pe_core.app.cli import main
+from pe_core.app.workplaces import workplace
+from pe_core.study import Outcome
+from pe_core.sweep import RunTask, carried_out, read_settings, run_all, sweep_runs
+from pe_core.sweep.names import LONGEST, folder_names
+from tests.engine import shapes
+
+SEEDS = f"optimize.seed={','.join(map(str, range(10_001)))}"
+
+
+@pytest.fixture
+def study(tmp_path):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
+    schedule = pe.Schedule(candidates=2)
+    search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, schedule)
+    path = tmp_path / "car.toml"
+    pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    return path
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "out"
+
+
+def table(folder):
+    with (folder / "sweep.csv").open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_values_are_toml_or_else_texts():
+    texts = ("a.b=1,2.5,true", "c=HDL-64E,Velodyne VLP-16 Puck", 'd."e f".0=[1, 2],[3,4],"x,y"')
+    first, second, third = read_settings(texts)
+    assert (first.path, first.values) == (("a", "b"), (1, 2.5, True))
+    assert second.values == ("HDL-64E", "Velodyne VLP-16 Puck")
+    assert (third.path, third.values) == (("d", "e f", "0"), ([1, 2], [3, 4], "x,y"))
+
+
+def test_several_settings_make_every_combination(study):
+    settings = read_settings(
+        ("sensor.roof.model=Pandar64,HDL-64E", "optimize.seed=1,2", "sensor.0.position.2=1.9")
+    )
+    runs = sweep_runs({"car": study}, settings)
+    assert [(r.study.rig["roof"].model.name, r.study.search.seed) for r in runs] == [
+        *(("Pandar64", 1), ("Pandar64", 2), ("HDL-64E", 1), ("HDL-64E", 2))
+    ]
+    assert {run.study.rig["roof"].pose.position for run in runs} == {(-0.43, 0.0, 1.9)}
+    assert len({id(run.study.vehicle) for run in runs}) == 1, "a body is kept once"
+    assert runs[0].name == (
+        "car,sensor.roof.model=Pandar64,optimize.seed=1,sensor.0.position.2=1.9"
+    )
+
+
+@pytest.mark.parametrize(
+    ("setting", "complaint"),
+    [
+        ("sensr.roof.model=x", "{study} with sensr.roof.model=x: sensr: expected one of ap"),
+        ("sensor.rof.model=x", "{study}: sensor.rof.model: expected one of roof, found 'rof'"),
+        (
+            "sensor.roof.model=No",
+            "{study} with sensor.roof.model=No: sensor[0].model: expected",
+        ),
+        ("optimize.sed=1", "{study} with optimize.sed=1: optimize.sed: expected one of"),
+        ("samples=1.5", "{study} with samples=1.5: samples: expected a whole number"),
+        ("samples.x=1", "{study} with samples.x=1: samples: expected a whole number"),
+        ("space.x.0.y=1", "{study}: space.x.0.y: expected a table before the last dot, found -20"),
+        ("space.x.5=1", "{study}: space.x.5: expected one of 0 to 1, found '5'"),
+        ("samples=", "--set: samples: expected values with commas between them, found ''"),
+        ("samples=1,,2", "--set: samples: expected values with commas between them"),
+        ("samples=0,0", "--set: samples: expected each value once, found 0 twice"),
+        ("samples", "--set: text: expected KEY=VALUE,VALUE, the key as in a study"),
+        ("a..b=1", "--set: text: expected KEY=VALUE,VALUE"),
+        ("=1", "--set: text: expected KEY=VALUE,VALUE"),
+        (".".join("a" * 31) + "=1", "--set: text: expected keys of at most 30 parts"),
+    ],
+)
+def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, complaint, capsys):
+    assert main(["sweep", str(study), "--set", setting, "-o", str(out)]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"pe: {complaint.format(study=study)}"), line
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("more", "complaint"),
+    [
+        (["--set", "samples=0", "--set", "samples=2048"], "--set: samples: expected each key once"),
+        (["--scheduler", "foo"], "command line: scheduler: expected HOST:PORT or tcp://HOST:PORT"),
+        (
+            ["--scheduler", "tcp://127.0.0.1:1"],
+            "tcp://127.0.0.1:1: scheduler: expected a",
+        ),
+        (
+            ["--set", SEEDS],
+            "--set: runs: expected",
+        ),
+    ],
+)
+def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys, monkeypatch):
+    monkeypatch.setattr("pe_core.app.workplaces.CONNECT_S", 0.2)
+    assert main(["sweep", str(study), "-o", str(out), *more]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"pe: {complaint}"), line
+
+
+def test_a_cluster_without_its_package_says_what_to_install(study, out, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert main(["sweep", str(study), "-o", str(out), "--scheduler", "tcp://a:1"]) == 1
+    assert 'pip install "perception-entropy[cluster]"' in capsys.readouterr().err
+
+
+def test_files_of_somebody_s_own_are_refused_before_the_work(study, out, capsys):
+    (out / "car").mkdir(parents=True)
+    (out / "car" / "result.json").write_text("mine")
+    assert main(["sweep", str(study), "-o", str(out)]) == 1
+    assert f"pe: {out / 'car' / 'result.json'}: output: expected no file" in capsys.readouterr().err
+    (out / "sweep.csv").write_text("mine")
+    assert main(["sweep", str(study), "-o", str(out)]) == 1
+    assert f"pe: {out / 'sweep.csv'}: output" in capsys.readouterr().err
+    assert (out / "car" / "result.json").read_text() == "mine"
+
+
+def test_names_are_safe_short_and_of_one_run_each():
+    changes = [{"m": "a/b"}, {"m": "a b"}, {"m": "X"}, {"m": "x"}, {"m": "y" * 300}, {"m": "../é"}]
+    names = folder_names([("car", each) for each in changes])
+    names += folder_names([("con", {}), ("..", {}), ("plain", {})])
+    assert len({name.casefold() for name in names}) == len(names)
+    for name in names:
+        assert name.isascii() and not set(name) & set('/\\:*?"<>| ') and name[0] not in ".-"
+        assert len(name) <= LONGEST + 9 and name.casefold() != "con"
+    assert names[-1] == "plain" and names[0].startswith("car,m=a-b-")
+    assert folder_names([("car", {"m": "x"})]) == ["car,m=x"]
+
+
+def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
+    argv = ["sweep", str(study), "--set", "sensor.roof.position.2=1.7,1.9", "--optimize"]
+    assert main([*argv, "-o", str(out), "--workers", "1"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["sensor.roof.position.2", "start", "entropy", "coverage"]
+    assert sum("*" in line for line in lines[1:]) == 1 and len(lines) == 3
+    data = json.loads((out / "sweep.json").read_text())
+    for row, told in zip(table(out), data["runs"], strict=True):
+        result = json.loads((out / row["run"] / "result.json").read_text())
+        assert pe.study.files_of_other_runs(out / row["run"]) == []
+        assert float(row["entropy"]) == told["entropy"] == result["entropy"]
+        assert float(row["entropy_before"]) == result["before"]["entropy"]
+        assert row["sensor.roof.position.2"] == told["changes"]["sensor.roof.position.2"]
+        changed = pe.load_study(study)
+        lidar = changed.rig["roof"]
+        height = float(row["sensor.roof.position.2"])
+        placed = replace(lidar, pose=replace(lidar.pose, position=(-0.43, 0.0, height)))
+        job = pe.OptimizeJob(changed.with_rig(pe.Rig([placed])))
+        list(job)
+        assert job.outcome.after.entropy == result["entropy"]
+
+
+def test_a_sweep_goes_on_and_does_nothing_twice(study, out, capsys):
+    argv = ["sweep", str(study), "-o", str(out), "--workers", "1", "--set"]
+    assert main([*argv, "samples=1024,2048"]) == 0
+    before = {path: path.stat().st_mtime_ns for path in out.rglob("result.json")}
+    capsys.readouterr()
+    assert main([*argv, "samples=1024,2048,0"]) == 0
+    err = capsys.readouterr().err
+    assert "pe: 2 of 3 runs are done already" in err and "[3/3] car,samples=0" in err
+    assert all(path.stat().st_mtime_ns == time for path, time in before.items())
+    assert [row["samples"] for row in table(out)] == ["1024", "2048", "0"]
+    (out / "car,samples=0" / "study.toml").write_text("changed")  # not that of the result any more
+    (out / "car,samples=0" / "study.toml").unlink()
+    assert main([*argv, "samples=1024", "--seed", "9"]) == 0
+    assert "already" not in capsys.readouterr().err, "of another study"
+
+
+def test_a_run_that_fails_is_named_and_the_others_are_kept(study, out, capsys):
+    """No placement keeps to what the first one asks for; that shows only while it is searched."""
+    argv = ["sweep", str(study), "--optimize", "--set", "optimize.max_height=0.1,9.0"]
+    assert main([*argv, "-o", str(out), "--workers", "1"]) == 1
+    out_text, err = capsys.readouterr()
+    (line,) = [line for line in err.splitlines() if line.startswith("pe: ")]
+    assert line.startswith("pe: car,optimize.max_height=0.1: ")
+    assert [row["status"] for row in table(out)] == ["failed", "done"]
+    assert table(out)[0]["message"] and "failed" in out_text
+
+
+class Dying(Executor):
+    """An executor whose workers die with some tasks, and with all others handed out meanwhile."""
+
+    def __init__(self, deadly, deaths):
+        self.deadly, self.deaths, self.given = deadly, dict.fromkeys(deadly, deaths), []
+        self.open = []
+
+    def submit(self, fn, task):
+        self.given.append(task.study.search.seed)
+        future = Future()
+        seed = task.study.search.seed
+        self.open.append(future)
+        if self.deaths.get(seed, 0):
+            self.deaths[seed] -= 1
+            for each in self.open:
+                if not each.done():
+                    each.set_exception(BrokenExecutor("died"))
+        elif seed not in HELD or len(self.open) > 2:
+            future.set_result(fn(task))
+        return future
+
+
+HELD = {1}
+"""Not done yet when the next one is handed out."""
+
+
+class Place:
+    threads = 1
+
+    def __init__(self, executor, count):
+        self.executor, self.count = executor, count
+
+    def width(self):
+        return self.count
+
+    def check(self):
+        pass
+
+
+@pytest.mark.parametrize(("deaths", "named"), [(1, []), (2, ["run2"])])
+def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, named):
+    plain = replace(pe.load_study(study), samples=1024)
+    tasks = {
+        f"run{seed}": RunTask(replace(plain, search=replace(plain.search, seed=seed)), False, 1)
+        for seed in (1, 2, 3)
+    }
+    found, executor = {}, Dying({2}, deaths)
+
+    def take(name, what):
+        assert name not in found, "each once"
+        found[name] = what
+
+    run_all(tasks, Place(executor, 2), take)
+    assert sorted(found) == ["run1", "run2", "run3"]
+    failed = {name: str(what) for name, what in found.items() if isinstance(what, pe.InputError)}
+    assert list(failed) == named
+    for line in failed.values():
+        expected = "a worker that lives to its end, found two that died (BrokenExecutor)"
+        assert line == f"run2: worker: expected {expected}"
+    assert executor.given == [1, 2, 3, 1, 2], "what may be guilty is tried again, alone"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_real_processes_that_are_killed_are_replaced(study):
+    plain = replace(pe.load_study(study), samples=1024)
+    tasks, found = {name: RunTask(plain, False, 1) for name in "abcd"}, {}
+    with workplace(2, None) as place:
+        victims = [place.executor.submit(os.getpid).result()]
+        assert os.getpid() not in victims, "processes were to be had"
+
+        def take(name, what):
+            while victims:
+                os.kill(victims.pop(), signal.SIGKILL)
+            assert found.setdefault(name, what) is what, "each once"
+
+        run_all(tasks, place, take)
+    assert {name: type(what) for name, what in found.items()} == dict.fromkeys("abcd", Outcome)
+    for child in multiprocessing.active_children():
+        child.join(30)
+        assert not child.is_alive(), "one that outlives its pool keeps the program from ending"
+
+
+def test_another_version_in_a_worker_is_told(study):
+    found = carried_out(replace(RunTask(pe.load_study(study), False, 1), version="0.0.9"))
+    assert str(found).startswith("worker: version: expected 0.0.9, the version of the program")

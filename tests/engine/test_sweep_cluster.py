@@ -1,0 +1,149 @@
+"""A sweep by a real Dask scheduler with two workers on the loopback; one of them is killed."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+import pe_core as pe
+from pe_core.app import sweeping
+from pe_core.app.cli import main
+from tests.engine import shapes
+from tests.engine.processes import ROOT
+
+Client = pytest.importorskip("distributed").Client
+if sys.platform == "win32":
+    pytest.skip("POSIX signals", allow_module_level=True)
+GUARD_S = 30
+HEIGHTS = ("1.6", "1.8", "2.0", "2.1")
+WAITING = """
+import os, pathlib, time
+from pe_core.scoring.evaluator import Evaluator
+folder = pathlib.Path({folder!r})
+plain = Evaluator.plain = getattr(Evaluator, "plain", Evaluator.score)  # it is run twice
+def score(self, rig, **options):
+    (folder / f"busy-{{os.getpid()}}").touch()
+    while not (folder / "go").exists():
+        time.sleep(0.02)
+    return plain(self, rig, **options)
+Evaluator.score = score
+"""
+"""In a worker: every score says that it has begun, and waits until it may go on."""
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    path = tmp_path_factory.mktemp("sweep") / "car.toml"
+    pe.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space()), path)
+    return path
+
+
+class Cluster:
+    """A scheduler and two workers, processes of their own."""
+
+    def __init__(self, folder):
+        where, quiet = ("--scheduler-file", folder / "scheduler.json"), ("--no-dashboard",)
+        local = ("--host", "127.0.0.1")
+        self.scheduler = started("scheduler", *where, *quiet, *local, "--port", 0)
+        self.folder, script = folder, folder / "waiting.py"
+        script.write_text(WAITING.format(folder=str(folder)))
+        one = ("--nthreads", 1, "--no-nanny", "--death-timeout", GUARD_S, "--preload", script)
+        self.workers = [started("worker", *where, *quiet, *local, *one) for _ in range(2)]
+        self.address = self._address(folder / "scheduler.json")
+
+    def _address(self, file):
+        wait_until(lambda: file.exists() and file.read_text())
+        address = json.loads(file.read_text())["address"]
+        with Client(address) as client:
+            client.wait_for_workers(2, GUARD_S)
+        return address
+
+    def busy(self, worker):
+        return (self.folder / f"busy-{worker.pid}").exists()
+
+    def end(self):
+        for process in (*self.workers, self.scheduler):
+            process.kill()
+            process.wait()
+
+
+def wait_until(is_so):
+    """Wait for something that comes for certain, and give up where it does not."""
+    for _ in range(50 * GUARD_S):
+        if is_so():
+            return
+        time.sleep(0.02)
+
+
+def started(role, *arguments):
+    command = [sys.executable, "-m", f"distributed.cli.dask_{role}", *map(str, arguments)]
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(command, cwd=ROOT, env=env, stderr=subprocess.DEVNULL)
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    cluster = Cluster(tmp_path_factory.mktemp("cluster"))
+    yield cluster
+    cluster.end()
+
+
+def at_first_result(monkeypatch, do):
+    """Have something done when the first result has come; return the names of all that come."""
+    came, take = [], sweeping._Sweep._take
+
+    def watched(self, name, found):
+        if not came:
+            do()
+        came.append(name)
+        take(self, name, found)
+
+    monkeypatch.setattr(sweeping._Sweep, "_take", watched)
+    return came
+
+
+def kill_in_the_middle(cluster):
+    """Kill a worker once both are busy, and let the other one go on."""
+    wait_until(lambda: all(map(cluster.busy, cluster.workers)))
+    cluster.workers[0].send_signal(signal.SIGKILL)
+    cluster.workers[0].wait()
+    (cluster.folder / "go").touch()
+
+
+def test_a_worker_that_is_killed_costs_no_result(study, cluster, tmp_path, monkeypatch, capsys):
+    threading.Thread(target=kill_in_the_middle, args=(cluster,), daemon=True).start()
+    came = at_first_result(monkeypatch, lambda: None)
+    values, out = f"sensor.roof.position.2={','.join(HEIGHTS)}", tmp_path / "out"
+    argv = ["sweep", str(study), "--set", values, "-o", str(out), "--scheduler", cluster.address]
+    assert main(argv) == 0
+    assert len(came) == len(set(came)) == len(HEIGHTS), "each result once"
+    rows = json.loads((out / "sweep.json").read_text())["runs"]
+    base = pe.load_study(study)
+    for row, height in zip(rows, HEIGHTS, strict=True):
+        lidar = shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-0.43, 0, float(height)))
+        assert row["entropy"] == base.evaluator().score(pe.Rig([lidar])).entropy
+        result = json.loads((out / row["run"] / "result.json").read_text())
+        assert result["entropy"] == row["entropy"]
+    assert cluster.workers[0].poll() == -signal.SIGKILL
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkeypatch, capsys):
+    """What is done by then is kept, and the same command goes on."""
+    monkeypatch.setattr("pe_core.app.workplaces.CONNECT_S", 1.0)
+    came = at_first_result(monkeypatch, lambda: cluster.scheduler.send_signal(signal.SIGKILL))
+    values, out = f"sensor.roof.position.2={','.join(HEIGHTS)}", tmp_path / "out"
+    argv = ["sweep", str(study), "--set", values, "-o", str(out)]
+    assert main([*argv, "--scheduler", cluster.address]) == 1
+    *_, line = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"pe: {cluster.address}: scheduler: expected one that stays")
+    done = len(came)
+    assert 1 <= done < len(HEIGHTS)
+    assert main([*argv, "--workers", "1"]) == 0
+    assert f"pe: {done} of {len(HEIGHTS)} runs are done already" in capsys.readouterr().err

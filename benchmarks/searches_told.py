@@ -12,6 +12,7 @@ import pe_core as pe
 from .searches import EXPERIMENTS, SUMMARY
 
 PLOT = Path(__file__).resolve().parent.parent / "docs" / "images" / "searches.png"
+TICKS_S = (1, 3, 10, 30, 100)
 HEAD = ["experiment", "method", "seeds", "entropy on the grid", "lowest to highest", "time"]
 
 Json = dict[str, Any]
@@ -73,19 +74,28 @@ def plot(runs: list[Json], path: Path) -> None:
     @style.style
     def draw() -> None:
         shown = [e for e in EXPERIMENTS if any(run["experiment"] == e for run in runs)]
-        figure, axes = style.plt.subplots(1, len(shown), figsize=(3.1 * len(shown), 3.0))
+        figure, axes = style.plt.subplots(1, len(shown), figsize=(2.6 * len(shown), 3.0))
         for axis, experiment in zip(list(getattr(axes, "flat", [axes])), shown, strict=True):
             for (own, method), some in groups(runs).items():
                 if own == experiment:
-                    times, values = middle(some)
-                    low, high = [min(v) for v in values], [max(v) for v in values]
-                    axis.fill_between(times, low, high, color=looks[method], alpha=0.15, lw=0)
-                    axis.plot(times, list(map(median, values)), color=looks[method], label=method)
-            axis.set(xscale="log", title=f"Experiment {EXPERIMENTS[experiment]}", xlabel="time [s]")
+                    _curve(axis, some, looks[method], method)
+            number, what = EXPERIMENTS[experiment].split(", ", 1)
+            axis.set(xscale="log", title=f"Experiment {number}\n{what}", xlabel="time [s]")
+            axis.set_xticks(TICKS_S, map(str, TICKS_S), minor=False)
+            axis.minorticks_off()
             style.finished(axis)
         figure.axes[0].set_ylabel("perception entropy [nats]")
-        figure.axes[-1].legend(frameon=False)
-        figure.tight_layout()
+        handles = figure.axes[0].get_legend_handles_labels()
+        figure.legend(*handles, loc="lower center", ncols=len(handles[0]), frameon=False)
+        figure.tight_layout(rect=(0.0, 0.08, 1.0, 1.0))
         style.save(figure, path)
 
     draw()
+
+
+def _curve(axis: Any, some: list[Json], colour: str, label: str) -> None:
+    """Draw the median of some runs, and the band they are in."""
+    times, values = middle(some)
+    low, high = [min(v) for v in values], [max(v) for v in values]
+    axis.fill_between(times, low, high, step="post", color=colour, alpha=0.15, lw=0)
+    axis.step(times, list(map(median, values)), where="post", color=colour, label=label)

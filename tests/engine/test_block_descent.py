@@ -1,5 +1,6 @@
 """The default method: it finds what others walk past, from afar, in slots, on several levels."""
 
+import math
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
@@ -22,12 +23,13 @@ def searched(landscape, rig, space, method="block-descent", evaluations=0, **opt
     return recorder, steps
 
 
-@pytest.mark.parametrize("method", ["block-descent", "cma-es"])
-def test_a_smooth_valley_is_found_to_the_millimetre(method):
+@pytest.mark.parametrize(("method", "most_m"), [("block-descent", 0.01), ("cma-es", 0.004)])
+def test_a_smooth_valley_is_found(method, most_m):
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
     target = {"x": 0.71, "y": -0.33, "z": 1.9, "pitch": 0.1}
     recorder, steps = searched(distance_to(target), rig, space, method, evaluations=800)
-    assert len(recorder.rigs) <= 800 and steps[-1].entropy < 2e-5 < steps[0].entropy / 1e4
+    assert len(recorder.rigs) <= 800
+    assert math.sqrt(steps[-1].entropy) < most_m < math.sqrt(steps[0].entropy) / 100
 
 
 def test_lower_bounds_in_place_of_entropies_change_nothing():

@@ -24,10 +24,12 @@ START_EACH = 80
 """Placements for each sensor that a start takes: where there are fewer, there are fewer starts."""
 COARSE = 0.5
 """Share of the budget after which the first level is over."""
-EACH = 400
-"""Placements for each sensor that moves, where no budget is given."""
-FINEST = 0.003
-"""A search that is narrower than this on the last level is over: 3 mm and 0.1 deg."""
+EACH, EACH_OTHER = 300, 100
+"""Placements for each sensor that moves, and as many more for each that there is, where no budget
+is given: the more sensors, the more often each has to give way to the others."""
+NARROW = 0.02
+"""A descent that is narrower than this is over: 2 cm and 0.6 deg. Another one begins where it
+ended, with wide steps again."""
 
 
 def samples(last: int) -> tuple[int, ...]:
@@ -38,13 +40,25 @@ def samples(last: int) -> tuple[int, ...]:
 
 def ask(given: Given) -> Asking:
     """Ask of several starts, then of the best of them, level by level."""
-    total = given.evaluations or EACH * len(given.coding.blocks)
+    count = len(given.coding.blocks)
+    total = given.evaluations or (EACH + EACH_OTHER * count) * count
     best, done = yield from _raced(given, total)
     if given.levels > 1:
         yield from best.down(Phase(1, total), COARSE * total - done)
         yield from best.again(Phase(2, total, 1))
         done = max(done, COARSE * total)
-    yield from best.down(Phase(2, total, given.levels - 1), total - done, FINEST)
+    yield from _repeated(given, best, total, total - done)
+
+
+def _repeated(given: Given, best: Descent, total: int, left: float) -> Asks[None]:
+    """Descend on the last level, again and again, until the budget is spent."""
+    number = len(STARTS)
+    while left > 0.0:
+        best = Descent(given, best.best, best.entropy, [given.seed, number])
+        yield from best.down(Phase(2, total, given.levels - 1), left, NARROW)
+        if best.count == 0 or best.spread == 0.0:
+            return  # nothing can move, or all there is was tried
+        left, number = left - best.count, number + 1
 
 
 def _raced(given: Given, total: int) -> Asks[tuple[Descent, float]]:

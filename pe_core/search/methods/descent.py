@@ -44,11 +44,12 @@ class Descent:
     def down(self, phase: Phase, count: float, finest: float = 0.0) -> Asks[None]:
         """Go on for about so many placements, until it is narrow or nothing can become better."""
         first, last, fell = self.count, 0, True
-        while self.count < first + count - last / 2 and self.spread >= finest and fell:
+        while fell and self.count < first + count - last / 2:
             before = self.count, self.entropy
             yield from self.cycle(phase)
             last = self.count - before[0]
-            fell = last > 0 and (self.entropy < before[1] or self.spread > 0.0)
+            better = self.entropy < before[1] or self.spread > 0.0
+            fell = last > 0 and better and self.spread >= finest
 
     def cycle(self, phase: Phase) -> Asks[None]:
         """Give each sensor its turn."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..scene.facing import LONGER, across, front_by_names, wheel_center
-from ..scene.vehicle_size import USUAL_SECOND_M, car_factor, fitting_unit, is_usual
+from ..scene.vehicle_size import USUAL_SECOND_M, car_factor, fitting_units, is_usual
 from .advice import Advice
 from .bodywork import Bodywork
 from .figures import metres
@@ -44,8 +44,8 @@ def _size(body: Bodywork) -> Iterator[Advice]:
     if not longest:
         yield Advice(None, "size", "all of it is one point")
         return
-    if (fitting := fitting_unit(longest, second)) is not None:
-        unit, factor = fitting
+    if fitting := fitting_units(longest, second):
+        unit, factor = fitting[0]
         long, wide, high = (metres(factor * w) for w in (x, y, z))
         would = f"if these are {unit}, scale by {factor:g}: {long} x {wide} x {high}"
     else:

@@ -20,6 +20,8 @@ SMALLEST_M, LARGEST_M, WIDEST_M = 0.1, 60.0, 25.0
 """The longest side of a vehicle is from the first to the second, the next one up to the last."""
 CAR_M = 4.5
 """Length of a usual car: what a size is compared with."""
+TOLD_UNITS = 2
+"""Of the units in which a mesh would be a vehicle, how many are told."""
 USUAL_M = (0.4, 30.0)
 USUAL_SECOND_M = 10.0
 """What the longest and the second longest side of most vehicles are within."""
@@ -56,17 +58,14 @@ def require_vehicle_size(source: str, body: Meshed) -> None:
         raise InputError(source, "size", f"{longest}{wide}", f"{size_words(size)}; {_hint(size)}")
 
 
-def fitting_unit(longest: float, second: float) -> tuple[str, float] | None:
-    """Return the unit in which a body of these sides would be as large as vehicles usually are.
+def fitting_units(longest: float, second: float) -> list[tuple[str, float]]:
+    """Return units in which a body of these sides would be as large as vehicles usually are.
 
-    Of several, that in which it is nearest to a car; with the metres of one.
+    With the metres of each; first that in which it is nearest to a car.
     """
     units = SMALLER_UNITS if longest > USUAL_M[0] else LARGER_UNITS
-    fitting = {n: f for n, f in units.items() if is_usual(f * longest, f * second)}
-    if not fitting:
-        return None
-    unit = min(fitting, key=lambda n: abs(math.log(fitting[n] * longest / CAR_M)))
-    return unit, fitting[unit]
+    fitting = [(n, f) for n, f in units.items() if is_usual(f * longest, f * second)]
+    return sorted(fitting, key=lambda unit: abs(math.log(unit[1] * longest / CAR_M)))
 
 
 def is_usual(longest: float, second: float) -> bool:
@@ -95,8 +94,8 @@ def _hint(size: tuple[float, ...]) -> str:
     _, second, longest = sorted(size)
     if longest == 0.0:
         return "all of it is one point"
-    unit = fitting_unit(longest, second)
-    if unit is None:
+    units = fitting_units(longest, second)[:TOLD_UNITS]
+    if not units:
         return f"scale = {car_factor(longest):g} makes it as long as a car"
-    name, factor = unit
-    return f"if {name}, scale = {factor:g} makes it {factor * longest:.2f} m long"
+    told = (f"{factor:g} if {name} ({factor * longest:.2f} m)" for name, factor in units)
+    return f"scale = {', '.join(told)}"

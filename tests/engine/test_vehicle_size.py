@@ -46,13 +46,13 @@ def test_real_vehicles_of_all_sizes_are_taken(size):
 def test_other_units_are_told_with_their_factor(unit, metres, factor):
     with pytest.raises(pe.InputError) as caught:
         body(CAR / metres)
-    assert f"if {unit}, scale = {factor} makes it 4.50 m long" in str(caught.value)
+    assert f"; scale = {factor} if {unit} (4.50 m)" in str(caught.value)
     assert body(CAR / metres * float(factor)).vehicle is not None
 
 
 def test_too_small_too_large_and_too_wide():
     """The car of a unit cube, the suv of a hangar's size, and a body as wide as it is long."""
-    with pytest.raises(pe.InputError, match=r"found 0\.045 x .*scale = 100 makes it 4\.50"):
+    with pytest.raises(pe.InputError, match=r"0\.045 x .*scale = 100 if units of 100 m \(4\.5"):
         body(CAR / 100)
     with pytest.raises(pe.InputError, match=r"found 44\.00 x 84\.00 x 36\.00 m"):
         body(np.array([44.0, 84.0, 36.0]))

@@ -135,18 +135,26 @@ def records_of(variant: bpy.types.PropertyGroup) -> tuple[Record, ...]:
             tuple(row.bounded),
             tuple(row.bounds_low),
             tuple(row.bounds_high),
-            row.mirror_of,
-            row.mount,
-            row.rack,
+            *_ties_of(variant, row),
         )
         for row in variant.sensors
     )
     return tuple(sorted(found, key=lambda record: record.name))
 
 
+def _ties_of(
+    variant: bpy.types.PropertyGroup, row: bpy.types.PropertyGroup
+) -> tuple[str, str, str]:
+    """Mirror link, mount and rack of a variant's sensor; of an older one those that it has now."""
+    obj = None if variant.holds_ties else variant.id_data.objects.get(row.name)
+    own = row if obj is None else obj.perception_entropy
+    return own.mirror_of, own.mount, own.rack
+
+
 def write_records(variant: bpy.types.PropertyGroup, records: Sequence[Record]) -> None:
     """Have a variant hold these sensors."""
     variant.sensors.clear()
+    variant.holds_ties = True
     for record in records:
         row = variant.sensors.add()
         row.name, row.model, row.fusion = record.name, record.model, record.fusion

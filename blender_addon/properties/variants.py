@@ -70,6 +70,11 @@ class PE_Variant(bpy.types.PropertyGroup):
     )
     key: IntProperty(name="Key", description="Tells it from the others, whatever its name")
     note: StringProperty(name="Note", description="What is to be remembered of it")
+    holds_ties: BoolProperty(
+        name="Holds Ties",
+        description="It knows its sensors' mirror links, mounts and racks; older ones do not",
+        options={"HIDDEN"},
+    )
     sensors: CollectionProperty(
         type=PE_VariantSensor, name="Sensors", description="Where each sensor stands"
     )

@@ -186,7 +186,7 @@ def _at_place(
         reason = kind_of(sensor).missed(sensor, center[0], side)
     elif not m and vehicle is not None:
         part, reason = _part_in_the_way(sensor, center[0], side, vehicle), HIDDEN
-    ap = float(average_precision(m, model.curve(sensor.kind)))
+    ap = float(average_precision(m, sensor.curve or model.curve(sensor.kind)))
     return SensorAtPlace(sensor.name, sensor.kind, m, unhidden, ap, part, reason)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..advice import off_by
+from ..kinds import kind_of
 from ..study import Outcome, Robustness
 
 LEAST_SHOWN = 1e-4
@@ -26,7 +27,7 @@ def summary(outcome: Outcome) -> str:
         x, y, z = sensor.pose.position
         roll, pitch, yaw = sensor.pose.rotation_deg
         own = scores[sensor.name]
-        what = "picture hidden" if sensor.kind == "camera" else "beams stopped"
+        what = kind_of(sensor).loss
         stopped = f", {own.stopped / own.beams:.1%} of its {what}" if own.stopped else ""
         lines.append(
             f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "

@@ -8,6 +8,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from ..metric.entropy import ApCurve
+from ..metric.fusion import CurveOf
 from ..scene.sensors import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from .kernels import Measured, SampleKernel, Stopped, Voxels
@@ -33,12 +35,12 @@ class MeasuredByName:
         self,
         voxels: Voxels,
         vehicle: Vehicle | None,
-        enough: Callable[[str], int],
+        enough: Callable[[CurveOf], int],
         known: dict[str, Any] | None = None,
     ) -> None:
         self._voxels, self._vehicle, self._enough = voxels, vehicle, enough
         self._known = {} if known is None else known
-        self._kernels: dict[str, SampleKernel] = {}  # by kind: as many as there are
+        self._kernels: dict[tuple[str, ApCurve | None], SampleKernel] = {}  # as many as there are
         self._measured: dict[str, Measured] = {}  # by sensor name: those of the last rig
 
     @property
@@ -67,8 +69,11 @@ class MeasuredByName:
     def known(self, sensor: Sensor, draft: bool) -> Measured | None:
         """Return what is known of a sensor, unless it has moved or only a draft of it is kept."""
         known = self._measured.get(sensor.name)
-        fits = known and (draft or not known.draft) and known.sensor.model is sensor.model
-        return known if known and fits and known.sensor.pose == sensor.pose else None
+        if known is None or (known.draft and not draft):
+            return None
+        before = known.sensor
+        same = before.model is sensor.model and before.curve == sensor.curve
+        return known if same and before.pose == sensor.pose else None
 
     def unhidden(self, sensor: Sensor) -> NDArray:
         """Measure a sensor as if there were no vehicle; nothing of it is kept."""
@@ -80,10 +85,10 @@ class MeasuredByName:
 
     def _kernel(self, sensor: Sensor) -> SampleKernel:
         """Return what measures sensors of its kind."""
-        kind = kind_of(sensor)
-        if kind.name not in self._kernels:
-            enough = self._enough(kind.name)
+        kind, key = kind_of(sensor), (sensor.kind, sensor.curve)
+        if key not in self._kernels:
+            enough = self._enough(sensor.curve or kind.name)
             kernel = kind.on_sample(self._voxels, self._vehicle, enough)
             kernel.share(self._known.setdefault(kind.name, kernel.known))
-            self._kernels[kind.name] = kernel
-        return self._kernels[kind.name]
+            self._kernels[key] = kernel
+        return self._kernels[key]

@@ -44,6 +44,8 @@ class Kind(ABC):
         Keys of a sensor's table, but for those that every kind has.
     has_top : bool
         Whether it matters which side of a sensor is up, as it does for a picture.
+    loss : str
+        What the vehicle does to it: "12 % of its *beams stopped*".
     """
 
     name: str
@@ -54,6 +56,7 @@ class Kind(ABC):
     curve: ApCurve
     keys: frozenset[str]
     has_top: bool = False
+    loss: str = "beams stopped"
 
     @abstractmethod
     def measure(

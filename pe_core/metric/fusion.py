@@ -18,8 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of
 
 Floats = NDArray[np.float64]
-Measurement = tuple[str, NDArray]
-"""Kind of sensor ("lidar", "camera") and m of a group: whole numbers (beams) or not (pixels)."""
+CurveOf = str | ApCurve
+"""Whose AP curve: a kind's ("lidar", "camera"), or one of its own."""
+Measurement = tuple[CurveOf, NDArray]
+"""Curve and m of a group: whole numbers (beams) or not (pixels)."""
 
 LONGEST_TABLE = (1 << 16) - 1
 """Counts are kept in 16 bits."""
@@ -70,26 +72,30 @@ class Fusion:
 
     def __init__(self, model: Curves) -> None:
         self.model = model
-        self._known: dict[str, ByCount] = {}  # by kind: as many as there are
+        self._known: dict[CurveOf, ByCount] = {}  # by curve: as many as there are
 
-    def tables(self, kind: str) -> ByCount:
+    def curve(self, kind: CurveOf) -> ApCurve:
+        """Return the AP curve of a kind, or the one that it is."""
+        return kind if isinstance(kind, ApCurve) else self.model.curve(kind)
+
+    def tables(self, kind: CurveOf) -> ByCount:
         """Return what whole numbers of a kind are looked up in."""
         if kind not in self._known:
-            curve = self.model.curve(kind)
+            curve = self.curve(kind)
             precision = precision_of(np.arange(self.enough(kind) + 1), curve)
             entropy = entropy_of(late_fusion([precision], self.model.blind))
             self._known[kind] = ByCount(precision, entropy)
         return self._known[kind]
 
-    def enough(self, kind: str) -> int:
+    def enough(self, kind: CurveOf) -> int:
         """Whole m from which on AP is saturated: more changes nothing."""
-        return int(min(self.model.curve(kind).saturation, LONGEST_TABLE - 1)) + 1
+        return int(min(self.curve(kind).saturation, LONGEST_TABLE - 1)) + 1
 
-    def precision(self, m: NDArray, kind: str) -> Floats:
+    def precision(self, m: NDArray, kind: CurveOf) -> Floats:
         """1 / sigma^2 of a group's measurement."""
         if is_whole(m):
             return np.take(self.tables(kind).precision, m, mode="clip")
-        return precision_of(m, self.model.curve(kind))
+        return precision_of(m, self.curve(kind))
 
     def entropies(self, groups: Sequence[Measurement]) -> tuple[Floats, NDArray[np.bool_]]:
         """Entropy H of every voxel [nats] and whether any group sees it.

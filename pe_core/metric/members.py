@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .entropy import BLIND_PRECISION, H_BLIND, entropy_of
-from .fusion import group_sum
+from .fusion import CurveOf, group_sum
 from .planes import Group, PlaneFusion, SeenRows
 
 Floats = NDArray[np.float64]
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 class OnPlane(NamedTuple):
     """m of a sensor or a group on a plane, in some rows; it is 0 in all others."""
 
-    kind: str
+    kind: CurveOf
     rows: slice
     m: NDArray
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .entropy import BLIND_PRECISION, entropy_of
-from .fusion import Fusion
+from .fusion import CurveOf, Fusion
 
 Floats = NDArray[np.float64]
 
@@ -43,10 +43,10 @@ class SeenRows:
         return SeenRows(slice(start, stop), total)
 
 
-Group = tuple[str, NDArray | SeenRows]
-"""Kind of a fusion group, and its m on some x-planes: whole numbers (n, ny, nz), or seen rows."""
-Counted = tuple[str, NDArray]
-Shown = tuple[str, slice, NDArray[np.floating]]
+Group = tuple[CurveOf, NDArray | SeenRows]
+"""Curve of a fusion group, and its m on some x-planes: whole numbers (n, ny, nz), or seen rows."""
+Counted = tuple[CurveOf, NDArray]
+Shown = tuple[CurveOf, slice, NDArray[np.floating]]
 
 DIGITS = 11
 """Binary digits of a pixel area that are looked at: what is left out is below 1 part in 2048."""
@@ -60,7 +60,7 @@ class PlaneFusion:
 
     def __init__(self, fusion: Fusion, shape: tuple[int, int]) -> None:
         self._fusion, self._shape = fusion, shape
-        self._known: dict[tuple[str, str, int], Floats] = {}
+        self._known: dict[tuple[str, CurveOf, int], Floats] = {}
         """Tables by what they are of, kind and number of blind groups: two a kind, and one more for
         each number of groups that was asked for (by the floor rule, one)."""
 
@@ -91,13 +91,13 @@ class PlaneFusion:
             found[rows] |= m > 0.0
         return found
 
-    def added(self, kind: str, m: NDArray) -> Floats:
+    def added(self, kind: CurveOf, m: NDArray) -> Floats:
         """What m of a group adds to the 1 / sigma^2 of a blind one."""
         if m.dtype.kind in "iu":
             return np.take(self._by_count(kind), m, mode="clip")
         return self._shown(kind, np.ascontiguousarray(m))
 
-    def alone(self, kind: str) -> Floats:
+    def alone(self, kind: CurveOf) -> Floats:
         """Entropy of a lone group by its whole numbers."""
         return self._alone(kind, 1)
 
@@ -108,7 +108,7 @@ class PlaneFusion:
             total += np.take(self._by_count(kind), m[rows], mode="clip")
         return total
 
-    def _shown(self, kind: str, m: NDArray) -> Floats:
+    def _shown(self, kind: CurveOf, m: NDArray) -> Floats:
         """What m adds to 1 / sigma^2; for single precision by the digits of the number."""
         if m.dtype != np.float32:
             return np.where(m > 0.0, self._fusion.precision(m, kind) - BLIND_PRECISION, 0.0)
@@ -116,32 +116,32 @@ class PlaneFusion:
         code -= _CODES[0]
         return np.take(self._by_digits(kind), code, mode="clip")
 
-    def _by_count(self, kind: str) -> Floats:
+    def _by_count(self, kind: CurveOf) -> Floats:
         """What each whole number adds to 1 / sigma^2."""
         return self._kept(("count", kind, 0), lambda: self._added_by_counts(kind))
 
-    def _alone(self, kind: str, blind: int) -> Floats:
+    def _alone(self, kind: CurveOf, blind: int) -> Floats:
         """Entropy of a group by its whole numbers, among so many blind groups."""
         added = self._by_count(kind)
         return self._kept(
             ("alone", kind, blind), lambda: entropy_of(added + blind * BLIND_PRECISION)
         )
 
-    def _by_digits(self, kind: str) -> Floats:
+    def _by_digits(self, kind: CurveOf) -> Floats:
         """What each code of a number adds to 1 / sigma^2."""
         return self._kept(("digits", kind, 0), lambda: self._added_by_digits(kind))
 
-    def _added_by_counts(self, kind: str) -> Floats:
+    def _added_by_counts(self, kind: CurveOf) -> Floats:
         return self._fusion.tables(kind).precision - BLIND_PRECISION
 
-    def _added_by_digits(self, kind: str) -> Floats:
+    def _added_by_digits(self, kind: CurveOf) -> Floats:
         """In the middle of what each code stands for."""
         middle = (_CODES << SHIFT) + (1 << SHIFT - 1)
         added = self._fusion.precision(middle.view(np.float32), kind) - BLIND_PRECISION
         added[0] = 0.0
         return added
 
-    def _kept(self, key: tuple[str, str, int], make: Callable[[], Floats]) -> Floats:
+    def _kept(self, key: tuple[str, CurveOf, int], make: Callable[[], Floats]) -> Floats:
         if key not in self._known:
             self._known[key] = make()
         return self._known[key]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 from ..errors import InputError
+from ..metric.entropy import ApCurve
 from ..text.values import A_NAME
 from .geometry import Pose
 
@@ -39,6 +40,8 @@ class Sensor:
     fusion : str, optional
         Measurements inside one group are summed (early fusion, eq. 6). LiDARs share the group
         "lidar" unless told otherwise; a camera stands alone.
+    curve : ApCurve, optional
+        Eq. 4 of this sensor's detector, in place of its kind's; one for all of a fusion group.
 
     Raises
     ------
@@ -50,6 +53,7 @@ class Sensor:
     model: SensorModel
     pose: Pose = field(default_factory=lambda: Pose((0.0, 0.0, 0.0)))
     fusion: str | None = None
+    curve: ApCurve | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("sensor", "name", self.name))
@@ -60,6 +64,8 @@ class Sensor:
             raise InputError(who, "pose", "a Pose", type(self.pose).__name__)
         fusion = None if self.fusion in (None, "") else A_NAME.checked(who, "fusion", self.fusion)
         object.__setattr__(self, "fusion", fusion)
+        if not isinstance(self.curve, ApCurve | None):
+            raise InputError(who, "curve", "an ApCurve", type(self.curve).__name__)
 
     @property
     def kind(self) -> str:
@@ -88,7 +94,7 @@ class Rig:
     Raises
     ------
     InputError
-        When there is no sensor, two share a name, or a fusion group mixes kinds.
+        When there is no sensor, two share a name, or a fusion group mixes kinds or AP curves.
     """
 
     sensors: Sequence[Sensor]
@@ -107,6 +113,8 @@ class Rig:
         for group, members in self.groups.items():
             if len({s.kind for s in members}) > 1:
                 raise InputError("rig", f"fusion group {group!r}", "one kind of sensor", "two")
+            if len({s.curve for s in members}) > 1:
+                raise InputError("rig", f"fusion group {group!r}", "one AP curve", "two")
 
     def __iter__(self) -> Iterator[Sensor]:
         return iter(self.sensors)

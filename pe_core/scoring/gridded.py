@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from ..kinds import GridKernel, kind_of
 from ..kinds.kernels import BLOCK_PLANES, Planes
-from ..metric.entropy import H_BLIND
-from ..metric.fusion import Fusion
+from ..metric.entropy import H_BLIND, ApCurve
+from ..metric.fusion import CurveOf, Fusion
 from ..metric.members import MemberSums
 from ..metric.planes import Group, PlaneFusion
 from ..prior.prior import ClassDensity
@@ -41,8 +41,10 @@ from .zones import column_zones
 
 T = TypeVar("T")
 Floats = NDArray[np.float64]
-MeasuredGroup = tuple[str, Planes]
-"""The kind of some sensors, and what measures them on a run of x-planes."""
+KernelKey = tuple[str, ApCurve | None]
+"""A kind, and the AP curve of its own that a sensor may have."""
+MeasuredGroup = tuple[CurveOf, Planes]
+"""The AP curve of some sensors, and what measures them on a run of x-planes."""
 
 PRODUCT_AT_ONCE = 1 << 18
 """Multiplications BLAS is given at a time: for more it wakes threads, which are ours already."""
@@ -101,7 +103,7 @@ class GridScorer:
         self._tops = None if vehicle is None else vehicle.top(space)
         self._reached = np.isfinite(-np.inf if self._tops is None else self._tops.max(axis=1))
         self._masses = np.array(outside_masses(densities, space, self._tops))
-        self._kernels: dict[str, GridKernel] = {}  # by kind: as many as there are
+        self._kernels: dict[KernelKey, GridKernel] = {}  # as many as there are
         self._is_free = Lock()
 
     def entropy(self, rig: Rig) -> float:
@@ -159,7 +161,8 @@ class GridScorer:
 
     def needs(self, groups: Grouped, space: PerceptionSpace) -> int:
         """Return about how many bytes it takes to score groups of sensors in a space."""
-        kernels = {sensors[0].kind: self._kernel(sensors[0]) for sensors in groups}
+        firsts = [sensors[0] for sensors in groups]
+        kernels = {(s.kind, s.curve): self._kernel(s) for s in firsts}
         vehicle, classes = self._vehicle, len(self._names)
         return grid_bytes(space, groups, kernels, vehicle, classes, self._workers)
 
@@ -169,24 +172,24 @@ class GridScorer:
         return dict(zip((s.name for s in rig), ready, strict=True))
 
     def _kernel(self, sensor: Sensor) -> GridKernel:
-        """Return what measures sensors of its kind."""
-        kind = kind_of(sensor)
-        if kind.name not in self._kernels:
-            enough = self._fusion.enough(kind.name)
-            self._kernels[kind.name] = kind.on_grid(self._space, self._vehicle, enough)
-        return self._kernels[kind.name]
+        """Return what measures sensors of its kind and AP curve."""
+        kind, key = kind_of(sensor), (sensor.kind, sensor.curve)
+        if key not in self._kernels:
+            enough = self._fusion.enough(sensor.curve or kind.name)
+            self._kernels[key] = kind.on_grid(self._space, self._vehicle, enough)
+        return self._kernels[key]
 
     def _measured(
         self, groups: Sequence[Sequence[Sensor]], ready: Mapping[str, Any], pool: Executor
     ) -> list[MeasuredGroup]:
         """Sum the sensors of each group, which are of one kind."""
-        kinds = [sensors[0].kind for sensors in groups]
+        keys = [(sensors[0].kind, sensors[0].curve) for sensors in groups]
         found: dict[int, Planes] = {}
-        for kind in dict.fromkeys(kinds):
-            ours = [k for k, each in enumerate(kinds) if each == kind]
-            of_kind = [[ready[s.name] for s in groups[k]] for k in ours]
-            found |= zip(ours, self._kernels[kind].planes(of_kind, pool), strict=True)
-        return [(kind, found[k]) for k, kind in enumerate(kinds)]
+        for key in dict.fromkeys(keys):
+            ours = [k for k, each in enumerate(keys) if each == key]
+            of_key = [[ready[s.name] for s in groups[k]] for k in ours]
+            found |= zip(ours, self._kernels[key].planes(of_key, pool), strict=True)
+        return [(curve or kind, found[k]) for k, (kind, curve) in enumerate(keys)]
 
     def _blocks(self) -> list[slice]:
         """Runs of x-planes."""
@@ -294,5 +297,5 @@ class GridScorer:
         others = by_part.get(tuple(n for n in names if n != sensor.name))
         failed = H_BLIND if others is None else self._mean(others.entropy)
         lost = rounded(failed - self._mean(whole.entropy))
-        stopped = self._kernels[sensor.kind].stopped(ready)
+        stopped = self._kernel(sensor).stopped(ready)
         return sensor_score(self._mean(alone.entropy), self._mean(alone.coverage), lost, stopped)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from ..errors import InputError
 from ..kinds import GridKernel
 from ..kinds.kernels import block_voxels
+from ..metric.entropy import ApCurve
 from ..scene.sensors import Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
@@ -35,16 +36,16 @@ COARSER = (2, 4, 5, 10, 20)
 def grid_bytes(
     space: PerceptionSpace,
     groups: Grouped,
-    kernels: Mapping[str, GridKernel],
+    kernels: Mapping[tuple[str, ApCurve | None], GridKernel],
     vehicle: Vehicle | None,
     classes: int,
     workers: int,
 ) -> int:
-    """Return what a grid score of groups of sensors takes; `kernels` by kind."""
+    """Return what a grid score of groups of sensors takes; `kernels` by kind and own curve."""
     total = columns_bytes(space, classes) + workers * block_voxels(space) * PLANE_BYTES
     total += 0 if vehicle is None else len(vehicle.triangles) * TREE_BYTES
-    for kind, kernel in kernels.items():
-        ours = [sensors for sensors in groups if sensors[0].kind == kind]
+    for key, kernel in kernels.items():
+        ours = [some for some in groups if (some[0].kind, some[0].curve) == key]
         total += kernel.needs(ours, space, workers)
     return total
 

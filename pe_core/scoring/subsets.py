@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..metric.fusion import group_sum
+from ..metric.fusion import CurveOf, group_sum
 from ..scene.sensors import Rig
 
 Members = tuple[str, ...]
@@ -26,20 +26,19 @@ def parts_of(rig: Rig) -> list[Members]:
 
 def fused_early(
     rig: Rig, measured: Mapping[str, Any], members: Collection[str]
-) -> list[tuple[str, Any]]:
-    """Sum the members' measurements inside each fusion group, eq. 6: (kind, sum) of each."""
+) -> list[tuple[CurveOf, Any]]:
+    """Sum the members' measurements inside each fusion group, eq. 6: (AP curve, sum) of each."""
     groups = []
     for sensors in rig.groups.values():
         present = [measured[s.name] for s in sensors if s.name in members]
         if present:
-            kind = sensors[0].kind
-            groups.append((kind, group_sum(present)))
+            groups.append((sensors[0].curve or sensors[0].kind, group_sum(present)))
     return groups
 
 
-def members_of(rig: Rig, measured: Mapping[str, Any]) -> list[list[tuple[str, Any]]]:
-    """(kind, measurement) of each sensor of each fusion group."""
-    return [[(s.kind, measured[s.name]) for s in group] for group in rig.groups.values()]
+def members_of(rig: Rig, measured: Mapping[str, Any]) -> list[list[tuple[CurveOf, Any]]]:
+    """(AP curve, measurement) of each sensor of each fusion group."""
+    return [[(s.curve or s.kind, measured[s.name]) for s in group] for group in rig.groups.values()]
 
 
 def parts_by_sums(

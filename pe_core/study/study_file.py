@@ -221,7 +221,17 @@ def _read_sensor(table: Table, folder: Path) -> Sensor:
         if error.source == table.source:
             raise
         raise table.error(error.field, error.expected, error.found) from None
-    return Sensor(name, intrinsics, pose, fusion)
+    return Sensor(name, intrinsics, pose, fusion, _own_curve(table))
+
+
+def _own_curve(table: Table) -> ApCurve | None:
+    """Return the AP curve that a sensor has of its own."""
+    if "ap" not in table:
+        return None
+    own = table.table("ap")
+    curve = ApCurve(own.number("a"), own.number("b"))
+    own.finish()
+    return curve
 
 
 def _read_intrinsics(table: Table, sensor: str, folder: Path) -> SensorModel:
@@ -259,6 +269,7 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
         "position": list(sensor.pose.position),
         "rotation": list(sensor.pose.rotation_deg),
         "fusion": sensor.fusion,
+        "ap": None if sensor.curve is None else {"a": sensor.curve.a, "b": sensor.curve.b},
         "free": list(search.free.get(sensor.name, PAPER_FREE)),
         "bounds": limits or None,
         "mount": search.mounting.on.get(sensor.name),

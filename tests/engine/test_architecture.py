@@ -17,7 +17,7 @@ ALLOWED = {
     "version": set(),
     "text": {"errors"},
     "metric": {"errors", "text"},
-    "scene": {"errors", "text"},
+    "scene": {"errors", "text", "metric"},
     "prior": {"errors", "text", "scene"},
     "kinds": {"errors", "text", "metric", "scene"},
     "formats": {"errors", "text", "metric", "scene", "prior", "kinds"},

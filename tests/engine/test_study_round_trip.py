@@ -128,7 +128,9 @@ def rigs(draw):
         model = draw(st.one_of(CATALOGUE, lidars(), CAMERAS, lens_cameras()))
         group = draw(st.one_of(st.none(), NAMES))
         fusion = None if group is None else f"{model.kind} {group} shared"
-        sensors.append(pe.Sensor(name, model, draw(POSES), fusion))
+        curve = draw(st.one_of(st.none(), st.builds(pe.ApCurve, st.floats(0.01, 1), SMALL)))
+        shared = fusion or model.fuses_early  # a group has one curve
+        sensors.append(pe.Sensor(name, model, draw(POSES), fusion, None if shared else curve))
     return pe.Rig(sensors)
 
 

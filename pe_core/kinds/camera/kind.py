@@ -31,6 +31,7 @@ class CameraKind(Kind):
     curve = RTM3D
     keys = tables.KEYS
     has_top = True
+    loss = "picture hidden"
 
     def measure(
         self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None

@@ -19,6 +19,7 @@ from .needs import columns_bytes, require_room_for
 from .sampled import Judgement, SampledScorer
 from .sampling import CENTERED, samples_or_grid
 from .score import Glance, Score, Watch
+from .shared import shared_densities
 
 WORKERS = Whole(0, 1024, "threads")
 SHIFT = Number(0.0, 1.0, below=True)
@@ -70,11 +71,13 @@ class Evaluator:
         self._shift, self._model, self._workers = shift, model, workers
         classes = len(prior.class_names)
         require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
-        densities, fusion = prior.densities(space), Fusion(model or PerceptionModel())
+        fusion = Fusion(model or PerceptionModel())
         self._scorer: GridScorer | SampledScorer
         if samples == 0:
+            densities = prior.densities(space)
             self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
         else:
+            densities = self._densities = shared_densities(prior, space)
             self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
 
     def __reduce__(self) -> tuple[object, ...]:

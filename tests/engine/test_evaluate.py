@@ -1,5 +1,6 @@
 """Scores: grid against definition, sample against grid, and what must hold for any rig."""
 
+import gc
 from itertools import pairwise
 
 import numpy as np
@@ -204,3 +205,21 @@ def test_a_vehicle_that_fills_the_space_is_refused():
     everything = pe.Vehicle(shapes.box((-3, -3, 0), (3, 3, 3)))
     with pytest.raises(pe.InputError, match="outside the vehicle"):
         pe.Evaluator(space, ROAD, everything)
+
+
+def test_a_second_sample_of_a_study_is_made_from_what_the_first_knows(monkeypatch):
+    """The prior on the space, the vehicle's tree and the order of columns; to the same bits."""
+    prior, car, space = pe.Prior.road(), shapes.box_car(), shapes.small_space()
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), rotation=(0.0, 2.0, 0.0))])
+    expected = pe.Evaluator(space, prior, car, samples=2048).entropy(rig)
+    made, plain = [], pe.Prior.densities
+    monkeypatch.setattr(pe.Prior, "densities", lambda s, room: made.append(s) or plain(s, room))
+    first = pe.Evaluator(space, prior, car, samples=1024)
+    second = pe.Evaluator(space, pe.Prior.road(), car, samples=2048)
+    assert len(made) == 1 and second.entropy(rig) == expected != first.entropy(rig)
+    pe.Evaluator(space, pe.Prior.highway(), car, samples=1024)
+    assert len(made) == 2
+    del first, second
+    gc.collect()
+    pe.Evaluator(space, prior, car, samples=1024)
+    assert len(made) == 3

@@ -71,6 +71,7 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
 
 def test_the_method_and_the_budget_are_the_study_s(car):
     settings = car.perception_entropy
+    settings.property_unset("method")
     assert scenes.study().search.method == search.DEFAULT_METHOD
     for name in search.METHODS:
         settings.method = name

@@ -9,6 +9,7 @@ import bpy
 
 from ..choices import free_name
 from ..engine import catalog, pe
+from .lens_text import LENS_KEYS, lens_text, read_lens
 from .rig import sensor_objects
 from .typed import as_typed, pair_as_typed
 
@@ -46,9 +47,11 @@ def forget_own_sensors() -> None:
 def table_of(row: bpy.types.PropertyGroup) -> dict[str, Any]:
     """Return an own sensor's figures as the catalogue takes them."""
     if row.kind == "camera":
-        fov = as_typed(row.hfov)
-        return {"kind": "camera", "width": row.width, "height": row.height, "hfov_deg": fov}
-    return {
+        size = {"kind": "camera", "width": row.width, "height": row.height}
+        lens = read_lens(row.lens)
+        return size | ({} if LENS_KEYS & set(lens) else {"hfov_deg": as_typed(row.hfov)}) | lens
+    least = {"min_range_m": as_typed(row.min_range)} if row.min_range > 0.0 else {}
+    return least | {
         "kind": "lidar",
         "elevations_deg": _elevations(row),
         "azimuth_step_deg": as_typed(row.azimuth_step),
@@ -74,7 +77,9 @@ def add_own_sensor(scene: bpy.types.Scene, name: str, table: Mapping[str, Any]) 
 def _figures(table: Mapping[str, Any]) -> dict[str, Any]:
     """Return the properties of a row that has a table's figures."""
     if table["kind"] == "camera":
-        return {k: table[k] for k in ("width", "height")} | {"hfov": table["hfov_deg"]}
+        known = {k: table[k] for k in ("width", "height")}
+        known |= {"hfov": table["hfov_deg"]} if "hfov_deg" in table else {}
+        return known | {"lens": lens_text(table)}
     elevations = table["elevations_deg"]
     step = table.get("azimuth_step_deg") or 360.0 / table["azimuth_count"]
     return {
@@ -83,6 +88,7 @@ def _figures(table: Mapping[str, Any]) -> dict[str, Any]:
         "azimuths": tuple(table.get("horizontal_fov_deg", (-180.0, 180.0))),
         "azimuth_step": step,
         "max_range": table["max_range_m"],
+        "min_range": table.get("min_range_m", 0.0),
     }
 
 

@@ -10,8 +10,8 @@ from .layout import Tab, draw_properties
 
 WRAP = 38
 SCALARS = {
-    "lidar": ("channels", "elevations", "azimuths", "azimuth_step", "max_range"),
-    "camera": ("width", "height", "hfov"),
+    "lidar": ("channels", "elevations", "azimuths", "azimuth_step", "min_range", "max_range"),
+    "camera": ("width", "height", "hfov", "lens"),
 }
 """Figures of an own sensor by its kind."""
 KIND_LABELS = {"lidar": "LiDAR", "camera": "Camera"}

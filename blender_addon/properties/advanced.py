@@ -22,7 +22,7 @@ CLEARANCE_M = 0.02
 """As a study has it."""
 OWN_KINDS = (
     ("lidar", "LiDAR", "Beams of channels that are evenly spread"),
-    ("camera", "Camera", "A pinhole camera with square pixels"),
+    ("camera", "Camera", "A pinhole camera with square pixels, or one with a lens of its own"),
 )
 
 
@@ -99,6 +99,14 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
         unit="LENGTH",
         update=changed,
     )
+    min_range: FloatProperty(
+        name="From",
+        description="Nearest distance at which a beam counts",
+        default=0.0,
+        min=0.0,
+        unit="LENGTH",
+        update=changed,
+    )
     width: IntProperty(
         name="Width", description="Pixels across", default=1920, min=1, update=changed
     )
@@ -111,6 +119,12 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
         default=90.0,
         min=0.001,
         max=179.9,
+        update=changed,
+    )
+    lens: StringProperty(
+        name="Lens",
+        description="In place of the field of view, as in a study: fx = 930, cx = 965, cy = 530, "
+        'distortion = { model = "brown-conrady", k1 = -0.16 }. Also min_range_m and max_range_m',
         update=changed,
     )
     problem: StringProperty(name="Problem", description="Why it cannot be used, if so")

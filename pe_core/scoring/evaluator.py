@@ -15,7 +15,7 @@ from ..scene.vehicle import Vehicle
 from ..text.values import Number, Whole, vector
 from .cases import Cases, together
 from .gridded import GridScorer
-from .needs import columns_bytes, require_room_for
+from .needs import columns_bytes, require_room_for, require_room_for_samples
 from .sampled import Judgement, SampledScorer
 from .sampling import CENTERED, samples_or_grid
 from .score import Glance, Score, Watch
@@ -69,6 +69,7 @@ class Evaluator:
         shift = in_range[0], in_range[1], in_range[2]
         self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
         self._shift, self._model, self._workers = shift, model, workers
+        require_room_for_samples(samples)
         classes = len(prior.class_names)
         require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
         fusion = Fusion(model or PerceptionModel())

@@ -15,6 +15,7 @@ from ..scene.sensors import Sensor
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..text.memory import available_bytes, size_text
+from .sampling import MIN_SAMPLES
 
 Grouped = Sequence[Sequence[Sensor]]
 """Sensors whose measurements are summed, and kept, together."""
@@ -29,6 +30,8 @@ PLANE_BYTES = 24
 """Of a voxel of the planes that a thread works on: counts, sums, precision, entropy, weights."""
 SAMPLES = 262_144
 """The voxels that are offered in place of the grid."""
+SAMPLE_BYTES = 350
+"""Of a sampled voxel, with some sensors (measured: 290 while they are drawn, 430 with twelve)."""
 COARSER = (2, 4, 5, 10, 20)
 """How many times as coarse a grid is offered."""
 
@@ -78,6 +81,23 @@ def require_room_for(space: PerceptionSpace, needed: Callable[[PerceptionSpace],
     )
     ways = " or ".join(filter(None, (f"samples = {SAMPLES}", fitting)))
     expected = f"what fits in the {size_text(there)} of memory that are free; try {ways}"
+    raise InputError("score", "memory", expected, f"about {size_text(amount)}")
+
+
+def require_room_for_samples(samples: int) -> None:
+    """Refuse a sample that takes more memory than there is.
+
+    Raises
+    ------
+    InputError
+        One line with how much it takes, how much there is, and how many voxels would fit.
+    """
+    there, amount = available_bytes(), samples * SAMPLE_BYTES
+    if there is None or amount <= there:
+        return
+    fitting = 1 << max(0, (there // SAMPLE_BYTES).bit_length() - 1)
+    way = f"; try samples = {fitting}" if fitting >= MIN_SAMPLES else ""
+    expected = f"what fits in the {size_text(there)} of memory that are free{way}"
     raise InputError("score", "memory", expected, f"about {size_text(amount)}")
 
 

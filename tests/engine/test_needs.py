@@ -58,3 +58,12 @@ def test_where_nobody_tells_how_much_there_is_all_is_tried(monkeypatch):
     monkeypatch.setattr(needs, "available_bytes", lambda: None)
     ours = study(1, 0)
     assert ours.evaluator(0).entropy(ours.rig) > 0.0
+
+
+def test_too_large_a_sample_is_told_with_one_that_fits(monkeypatch):
+    ours = study(1, 0)
+    monkeypatch.setattr(needs, "available_bytes", lambda: 100_000_000)
+    words = r"score: memory: .*100\.0 MB .*try samples = 262144, found about 5\.8 GB"
+    with pytest.raises(pe.InputError, match=words):
+        ours.evaluator(16_777_216)
+    assert ours.evaluator(4096).entropy(ours.rig) > 0.0

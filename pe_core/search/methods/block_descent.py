@@ -18,18 +18,18 @@ LEAST = 2048
 """but at this many at least."""
 BELOW_GRID = 65_536
 """Where the last level is the grid, the first is as if that were so many voxels."""
-RACES = (0.075, 0.075)
+RACES = (0.05, 0.05)
 """Shares of the budget for each start; after each race, the better half of them goes on."""
 START_EACH = 80
 """Placements for each sensor that a start takes: where there are fewer, there are fewer starts."""
-COARSE = 0.5
+COARSE = 0.4
 """Share of the budget after which the first level is over."""
-EACH, EACH_OTHER = 300, 100
+EACH, EACH_OTHER = 250, 150
 """Placements for each sensor that moves, and as many more for each that there is, where no budget
 is given: the more sensors, the more often each has to give way to the others."""
-NARROW = 0.02
+WIDE, NARROW = 0.25, 0.02
 """A descent that is narrower than this is over: 2 cm and 0.6 deg. Another one begins where it
-ended, with wide steps again."""
+ended, with steps of 25 cm and 7.5 deg."""
 
 
 def samples(last: int) -> tuple[int, ...]:
@@ -54,7 +54,7 @@ def _repeated(given: Given, best: Descent, total: int, left: float) -> Asks[None
     """Descend on the last level, again and again, until the budget is spent."""
     number = len(STARTS)
     while left > 0.0:
-        best = Descent(given, best.best, best.entropy, [given.seed, number])
+        best = Descent(given, best.best, best.entropy, [given.seed, number], WIDE)
         yield from best.down(Phase(2, total, given.levels - 1), left, NARROW)
         if best.count == 0 or best.spread == 0.0:
             return  # nothing can move, or all there is was tried

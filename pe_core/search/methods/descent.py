@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from ..coding import Candidate
 from ..unknown import SHARE
-from .evolution import Evolution
+from .evolution import STEP, Evolution
 from .method import Given
 from .phase import Asks, Phase
 from .slot_turn import SlotTurn
@@ -30,10 +30,18 @@ class Descent:
         Placements that were judged.
     """
 
-    def __init__(self, given: Given, start: Candidate, entropy: float, seed: Sequence[int]) -> None:
+    def __init__(
+        self,
+        given: Given,
+        start: Candidate,
+        entropy: float,
+        seed: Sequence[int],
+        step: float = STEP,
+    ) -> None:
         self.best, self.entropy, self.count = start, entropy, 0
         self._turns = [
-            _turn(given, block, start, [*seed, k]) for k, block in enumerate(given.coding.blocks)
+            _turn(given, block, start, [*seed, k], step)
+            for k, block in enumerate(given.coding.blocks)
         ]
 
     @property
@@ -66,7 +74,9 @@ class Descent:
         [self.entropy] = yield from phase.asks([self.best])
 
 
-def _turn(given: Given, block: range, start: Candidate, seed: list[int]) -> Evolution | SlotTurn:
+def _turn(
+    given: Given, block: range, start: Candidate, seed: list[int], step: float
+) -> Evolution | SlotTurn:
     if given.coding.unknowns[block[0]].unit == SHARE:
         return SlotTurn(given, block[0], seed)
-    return Evolution(given, block, start, seed)
+    return Evolution(given, block, start, seed, step)

@@ -52,17 +52,24 @@ class Evolution:
         Which unknowns; of those with a range of one point nothing is asked.
     start : Candidate
     seed : sequence of int
+    step : float
+        First standard deviation: 1 is 1 m and 30 deg.
     """
 
     def __init__(
-        self, given: Given, free: Sequence[int], start: Candidate, seed: Sequence[int]
+        self,
+        given: Given,
+        free: Sequence[int],
+        start: Candidate,
+        seed: Sequence[int],
+        step: float = STEP,
     ) -> None:
         self._coding, unknowns = given.coding, given.coding.unknowns
         self._free = [k for k in free if unknowns[k].low < unknowns[k].high]
         self._scale = np.array([SCALE[unknowns[k].unit] for k in self._free])
         mean = np.array([start.vector[k] for k in self._free]) / self._scale
         own = int(np.random.default_rng(seed).integers(SEEDS))
-        self._cma = SymmetricCma(mean, STEP, seed=own) if self._free else None
+        self._cma = SymmetricCma(mean, step, seed=own) if self._free else None
 
     @property
     def spread(self) -> float:

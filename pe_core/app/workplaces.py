@@ -69,22 +69,31 @@ class DaskWorkers:
         self._address = address
         self._client = _client_of(address)
         self.executor: Executor = self._client.get_executor(pure=False)
-        if not self._client.nthreads():
-            tell(f"{address}: it has no workers yet; waiting for some")
+        self._alone = False
 
     def width(self) -> int:
         """Two for each thread, so that none waits for the next."""
-        try:
-            return 2 * max(1, sum(self._client.nthreads().values()))
-        except Exception:  # whatever a connection breaks with
-            self.check()
-            return 1
+        return 2 * max(1, self._count())
 
     def check(self) -> None:
-        """Raise `InputError` when the scheduler is gone."""
+        """Raise `InputError` when the scheduler is gone; tell, once, when it has no workers."""
         if self._client.status == "closed":
             found = "that it is gone; what is done is kept"
             raise InputError(self._address, "scheduler", "one that stays until the end", found)
+        alone = self._client.status == "running" and not self._count()
+        if alone and not self._alone:
+            need = "they need this version of perception-entropy"
+            tell(f"{self._address}: no workers; waiting for some ({need})")
+        self._alone = alone
+
+    def _count(self) -> int:
+        """How many threads its workers have."""
+        try:
+            return sum(self._client.nthreads().values())
+        except (
+            Exception
+        ):  # whatever a connection breaks with; a scheduler that is gone, `check` tells
+            return 1
 
     def close(self) -> None:
         """Leave the cluster; it goes on without us."""

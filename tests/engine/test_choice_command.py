@@ -27,7 +27,7 @@ def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path
     assert out[1].endswith(f"%  {mounting.CAN}")
     assert out[2].strip() == f"roof: {mounting.CAN}; (-0.43, 0, 1.478) m"
     count = len(data["front"])
-    assert out[-1] == f"{count} on the front; 4 searched of 4 looked at (all that the limits allow)"
+    assert out[-1] == f"{count} on the front; 3 searched of 3 looked at (all that the limits allow)"
     study = tmp_path / "out" / first["study"]
     assert cli.main(["score", str(study)]) == 0
     assert f"{first['entropy']:.4f}" in capsys.readouterr().out

@@ -13,7 +13,7 @@ from pe_core.study import choice_job, design_study, front_dict, write_front
 from tests.engine import mounting
 
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 3), 0.5)
-PRICES = {"Pandar64": 9.0, "Pandar40": 7.0, "Velodyne VLP-16 Puck": 2.0, "HDL-64E": 8.0}
+PRICES = {"Pandar64": 9.0, "Pandar40": 7.0, "Velodyne VLP-16 Puck": 2.0}
 
 
 def options(names=PRICES):
@@ -42,7 +42,7 @@ def front_of(study, workers=None):
     return job.trade_off
 
 
-def test_one_lidar_out_of_four_is_what_exhaustive_search_finds():
+def test_one_lidar_out_of_three_is_what_exhaustive_search_finds():
     """Every model put there by hand, searched by an ordinary job; what no other beats is left."""
     given = study([pe.Choice(options(), ["roof"])])
     found = front_of(given)
@@ -62,7 +62,7 @@ def test_one_lidar_out_of_four_is_what_exhaustive_search_finds():
     } == by_hand
     assert [d.name for d in found.front] == sorted(best, key=PRICES.get)
     assert found.is_complete
-    assert found.searched == 4
+    assert found.searched == 3
     assert len(best) > 1
 
 
@@ -71,14 +71,14 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
     choices = [
         pe.Choice(options(), ["roof"], optional=True),
-        pe.Choice(options(["Camera 60 deg", "Camera 120 deg"]), ["eye"], optional=True),
+        pe.Choice(options(["Camera 120 deg"]), ["eye"], optional=True),
     ]
     given = study(choices, mounting.can(), eye, free=())
     every = front_of(given)
     monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 5)
     found = front_of(given)
-    assert len(every.designs) == len(found.designs) == 14
-    assert found.searched < every.searched == 14
+    assert len(every.designs) == len(found.designs) == 7
+    assert found.searched < every.searched == 7
     assert [(d.name, d.entropy) for d in found.front] == [(d.name, d.entropy) for d in every.front]
     assert found.is_complete
 
@@ -87,10 +87,10 @@ def test_of_many_designs_a_local_search_looks_at_some(monkeypatch):
     monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 3)
     monkeypatch.setattr(pareto, "ALL_UP_TO", 5)
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
-    eyes = options(["Camera 30 deg", "Camera 60 deg", "Camera 120 deg"])
+    eyes = options(["Camera 30 deg", "Camera 60 deg"])
     choices = [pe.Choice(options(), ["roof"], optional=True), pe.Choice(eyes, ["eye"])]
     found = front_of(study(choices, mounting.can(), eye, free=()))
-    assert 5 < len(found.designs) <= 15
+    assert 5 < len(found.designs) <= 8
     assert not found.is_complete
     assert all(design.score is not None for design in found.front)
     assert "looked at (of more, by local search)" in front_table.front_summary(found)
@@ -123,7 +123,7 @@ def test_a_stop_keeps_the_front_so_far(after):
             job.stop()
     found = job.trade_off
     assert found.stopped
-    assert len(found.designs) < 4
+    assert len(found.designs) < 3
     assert found.front
     assert not found.is_complete
     told = front_table.front_summary(found)
@@ -145,7 +145,12 @@ def test_files_hold_every_design_of_the_front_as_a_study(tmp_path):
     """What is read back scores to the bit what front.json tells."""
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
     eyes = pe.Choice(options(["Camera 60 deg"]), ["eye"], optional=True)
-    given = study([pe.Choice(options(), ["roof"]), eyes], mounting.can(), eye, free=())
+    given = study(
+        [pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"]), eyes],
+        mounting.can(),
+        eye,
+        free=(),
+    )
     found = front_of(given)
     data = write_front(found, tmp_path)
     assert json.loads((tmp_path / "front.json").read_text()) == data

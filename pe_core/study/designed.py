@@ -72,10 +72,11 @@ def _kept(rig: Rig, models: Models) -> list[Sensor]:
 
 
 def _taken(sensor: Sensor, model: SensorModel | None) -> Sensor:
-    """Return a sensor of another model; one of another kind leaves its fusion group."""
+    """Return a sensor of another model; one of another kind leaves its group and AP curve."""
     assert model is not None
-    fusion = sensor.fusion if model.kind == sensor.kind else None
-    return replace(sensor, model=model, fusion=fusion)
+    if model.kind != sensor.kind:
+        return replace(sensor, model=model, fusion=None, curve=None)
+    return replace(sensor, model=model)
 
 
 def _mounting_of(mounting: Mounting, models: Models) -> Mounting:

@@ -64,7 +64,7 @@ class Sorter:
         per = np.float32(1.0) / np.maximum(distance, side)
         cosine, ball = depth * per, np.float32(BALL * ROOM) * side * per
         seen = self.lens.seen(cosine, depth, left, up, per)
-        reach = np.float32(self.lens.stretch) * ball + np.float32(ROOM_PX)
+        reach = seen.stretch * ball + np.float32(ROOM_PX)
         room = self._room(seen.right, seen.down)
         out = (cosine < np.float32(self._outer) - ball) | (room < -reach)
         plain = far & (room > reach) & ~out

@@ -21,23 +21,28 @@ Array = NDArray[np.floating]
 ENTRIES = 1 << 14
 BEYOND = 0.12
 """How far past what the picture shows a lens is tabulated [rad]."""
+NEAREST_RAD = 0.06
+"""A voxel that the tables are asked about reaches no farther round its centre."""
 BORDER_PLACES = 33
 """Places along each side of the picture, to find what is farthest from the axis in it."""
 
 
 class Imaged(NamedTuple):
-    """Voxels through a lens: image position right and down [px], and pixels a steradian."""
+    """Voxels through a lens: image position right and down [px], and pixels a steradian.
+
+    `stretch` is the most pixels a radian from the axis to a little beyond a voxel.
+    """
 
     right: Array
     down: Array
     density: Array
+    stretch: Array
 
 
 class QuickLens:
     """A camera's lens in tables.
 
-    `outer` is the greatest angle from the axis that the picture shows [rad], `stretch` the most
-    pixels a radian anywhere in it.
+    `outer` is the greatest angle from the axis that the picture shows [rad].
     """
 
     def __init__(self, camera: Camera) -> None:
@@ -50,8 +55,9 @@ class QuickLens:
         inside, sine = np.minimum(theta, lens.edge), np.sin(theta)
         slope = lens.slope(inside)
         around = (lens.radius(inside) + slope * (theta - inside)) / sine
-        most = max(float(around.max()), float(slope.max())) * max(lens.fx, lens.fy)
-        self.stretch = 1.1 * most
+        most = np.maximum.accumulate(np.maximum(around, slope)) * max(lens.fx, lens.fy)
+        farther = np.minimum(theta + NEAREST_RAD, theta[-1])
+        self._stretch = (1.1 * np.interp(farther, theta, most)).astype(np.float32)
         self._around = around.astype(np.float32)
         self._density = (lens.fx * lens.fy * around * slope).astype(np.float32)
         self._tilt = self._tilted(lens, inside) if isinstance(lens, BrownConrady) else None
@@ -79,7 +85,7 @@ class QuickLens:
             x, y = x + dx, y + dy
         focal = np.float32(lens.fx), np.float32(lens.fy)
         right, down = np.float32(lens.cx) + focal[0] * x, np.float32(lens.cy) + focal[1] * y
-        return Imaged(right, down, density)
+        return Imaged(right, down, density, np.take(self._stretch, entry, mode="clip"))
 
 
 def _shifts(lens: BrownConrady, depth: Array, left: Array, up: Array) -> tuple[Array, Array]:

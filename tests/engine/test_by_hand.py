@@ -199,7 +199,12 @@ SENSORS = {
         (2 * (H2 - H2_C) + 4 * (H1_1 - H1_1_C) + (H1 - H1_C)) / 47,
     ),
 }
-BEAMS = {"hood": (3, 1, {"mast": 1}), "roof": (2, 1, {"window": 1}), "eye": (0, 0, {})}
+BEAMS = {
+    "hood": (3, 1, {"mast": 1}),
+    "roof": (2, 1, {"window": 1}),
+    "eye": (100, 100, {"board": 100}),
+}
+"""The eye's picture is 10 x 10 pixels, 10.6 m wide where the board of 14 m stands: all of it."""
 
 
 def check_parts(found, expected, within):
@@ -322,7 +327,7 @@ def test_without_a_vehicle_nothing_is_hidden_and_nothing_left_out():
     assert {n: (s.beams, s.stopped) for n, s in score.per_sensor.items()} == {
         "hood": (3, 0),
         "roof": (2, 0),
-        "eye": (0, 0),
+        "eye": (100, 0),
     }
 
 

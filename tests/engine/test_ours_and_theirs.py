@@ -12,6 +12,7 @@ import pytest
 import pe_core as pe
 from pe_core.app.cli import main
 from pe_core.study import FileSet, files_of_other_runs
+from pe_core.study.names import SEARCH
 from tests.engine import shapes
 from tests.engine.processes import ROOT
 
@@ -125,7 +126,8 @@ def test_an_edited_study_in_a_result_folder_is_the_users(study, out, capsys):
 
 
 def make_it_0_1(folder):
-    """Leave a folder as 0.1.0 did: no list, no digests in result.json."""
+    """Leave a folder as 0.1.0 did: no list, no digests in result.json, no state of a search."""
+    (folder / SEARCH).unlink()
     (folder / LISTING).unlink()
     data = json.loads((folder / "result.json").read_text())
     del data["run"]["files"]

@@ -47,7 +47,10 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path):
         answer = run("blender_addon", blend, "optimize", *FAST[:-1], seed, "-o", out)
         assert answer.returncode == 0, answer.stderr
     named = json.loads((out / "result.json").read_text())["run"]["files"]
-    expected = ("history.csv", "optimized.blend", "review.png", "study.toml", "vehicle.npz")
+    expected = (
+        *("history.csv", "optimized.blend", "review.png"),
+        *("search.json", "study.toml", "vehicle.npz"),
+    )
     assert sorted(named) == list(expected)
     assert pe.study.files_of_other_runs(out) == []
 

@@ -149,7 +149,7 @@ def test_words_of_a_score(outcome):
     assert f"{outcome.after.coverage:.1%}" in words.detail
     rows = {row[0]: row for row in words.table[1:]}
     assert rows["front"][:5] == ("front", "Camera 60 deg", "2.30, 0.00, 1.20", "0.0°", "0.0°")
-    assert rows["front"][5] == "–"
+    assert rows["front"][5] == "0.0%", "it looks away from the body"
     assert rows["roof"][5].endswith("% (body)")
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinds.camera import Camera
+from ..kinds.camera import Camera, Pinhole
 from ..kinds.lidar import Lidar
 from ..scene.geometry import Pose
 from ..scene.sensors import Rig, Sensor
@@ -29,7 +29,8 @@ EVEN_RAD = 1e-4
 class Picture:
     """A camera's picture: focal lengths, principal point and size [px].
 
-    The size is None where a format does not say it.
+    The size is None where a format does not say it; `distortion` names what bends it, if anything
+    does: no format here has that.
     """
 
     fx: float
@@ -37,6 +38,13 @@ class Picture:
     cx: float
     cy: float
     size: tuple[int, int] | None = None
+    distortion: str = ""
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether its pixels are square and its principal point is in the middle."""
+        width, height = self.size or (0, 0)
+        return self.fx == self.fy and (2.0 * self.cx, 2.0 * self.cy) == (width, height)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,10 +131,24 @@ def uneven(sensors: Iterable[CarriedSensor], asking: str) -> list[str]:
     return lines
 
 
+def bent(sensors: Iterable[CarriedSensor], asking: str) -> list[str]:
+    """Return a line for each camera whose distortion is left out."""
+    told = "{0}: the distortion ({1}) of {2} is left out of {3}"
+    return [
+        told.format(s.name, s.picture.distortion, s.model, asking)
+        for s in sensors
+        if s.picture is not None and s.picture.distortion
+    ]
+
+
 def camera_of(name: str, p: Picture) -> Camera:
     """Return the camera of a picture; one without a size has its principal point in the middle."""
-    width, height = p.size or (round(2.0 * p.cx), round(2.0 * p.cy))
-    return Camera(name, width, height, 2.0 * math.atan(width / (2.0 * p.fx)))
+    if p.size is None:
+        p = replace(p, size=(round(2.0 * p.cx), round(2.0 * p.cy)))
+    width, height = p.size or (0, 0)
+    if p.is_plain:
+        return Camera(name, width, height, 2.0 * math.atan(width / (2.0 * p.fx)))
+    return Camera(name, width, height, lens=Pinhole(p.fx, p.fy, p.cx, p.cy))
 
 
 def lidar_of(name: str, scan: Scan) -> Lidar:
@@ -152,8 +174,8 @@ def _carried(sensor: Sensor) -> CarriedSensor:
 
 
 def _picture(model: Camera) -> Picture:
-    focal, size = model.focal_px, (model.width, model.height)
-    return Picture(focal, focal, model.width / 2.0, model.height / 2.0, size)
+    lens, size = model.projection, (model.width, model.height)
+    return Picture(lens.fx, lens.fy, lens.cx, lens.cy, size, "" if lens.is_straight else lens.model)
 
 
 def _scan(model: Lidar) -> Scan:

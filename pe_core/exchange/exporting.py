@@ -9,7 +9,7 @@ from ..errors import InputError
 from ..scene.reference import Reference
 from ..scene.sensors import Rig
 from ..text.files import write_bytes
-from .carried import carried
+from .carried import bent, carried
 from .frames import origin_in_ground, shifted
 from .table import rig_format
 
@@ -40,7 +40,9 @@ def rig_files(
     row = rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title)
     back = [-value for value in origin]
-    return row.write(tuple(s.moved(shifted(s.pose, back)) for s in carried(rig)))
+    sensors = tuple(s.moved(shifted(s.pose, back)) for s in carried(rig))
+    files, lines = row.write(sensors)
+    return files, [*lines, *(bent(sensors, row.title) if row.has_pictures else ())]
 
 
 def export_rig(

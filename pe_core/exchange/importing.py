@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -139,14 +138,11 @@ def _known(each: CarriedSensor) -> str | None:
 
 
 def _camera(name: str, p: Picture) -> tuple[SensorModel, str]:
-    """Return the camera of a picture, and what of it is lost."""
+    """Return the camera of a picture, and what was made up of it."""
     model = camera_of(name, p)
     size = f"{model.width} x {model.height} px"
-    if p.size is None:
-        return model, f"{name}: no size in the file; {size} has its middle there"
-    off = math.hypot(p.cx - model.width / 2.0, p.cy - model.height / 2.0)
-    line = f"{name}: its principal point is {off:.1f} px off the middle; taken there"
-    return model, line if off > 0.5 else ""
+    line = f"{name}: no size in the file; {size} has its middle there"
+    return model, line if p.size is None else ""
 
 
 __all__ = ["ImportedRig", "import_rig"]

@@ -44,6 +44,8 @@ class RigFormat:
         A path to sensors in the format's frame.
     settled : callable
         A sensor as it is once its model is known.
+    has_pictures : bool
+        Whether it has anything of a camera's picture.
     """
 
     name: str
@@ -53,6 +55,7 @@ class RigFormat:
     write: Callable[[Carried], tuple[Written, list[str]]]
     read: Callable[[Path], Carried]
     settled: Callable[[CarriedSensor], CarriedSensor] = lambda each: each
+    has_pictures: bool = True
 
 
 _ROWS = (
@@ -63,6 +66,7 @@ _ROWS = (
         (csv_table.FILE,),
         csv_table.write,
         csv_table.read,
+        has_pictures=False,
     ),
     RigFormat(
         "urdf",
@@ -79,6 +83,7 @@ _ROWS = (
         (ros_transforms.FILE,),
         ros_transforms.write,
         ros_transforms.read,
+        has_pictures=False,
     ),
     RigFormat(
         "autoware",
@@ -88,6 +93,7 @@ _ROWS = (
         autoware.write,
         autoware.read,
         autoware.lifted,
+        has_pictures=False,
     ),
     RigFormat(
         "nuscenes",

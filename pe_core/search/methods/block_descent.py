@@ -24,7 +24,7 @@ START_EACH = 80
 """Placements for each sensor that a start takes: where there are fewer, there are fewer starts."""
 COARSE = 0.4
 """Share of the budget after which the first level is over."""
-EACH, EACH_OTHER = 250, 150
+EACH, EACH_OTHER = 110, 100
 """Placements for each sensor that moves, and as many more for each that there is, where no budget
 is given: the more sensors, the more often each has to give way to the others."""
 WIDE, NARROW = 0.25, 0.02

@@ -101,9 +101,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.tolerance", description=__doc__)
     parser.add_argument("--seeds", type=int, nargs="+", default=[0])
     parser.add_argument("--method", choices=tuple(METHODS), default="block-descent")
-    parser.add_argument(
-        "--candidates", type=int, default=157, help="placements tried, over seven"
-    )
+    parser.add_argument("--candidates", type=int, default=157, help="placements tried, over seven")
     parser.add_argument("--draws", type=int, default=8, help="errors searched with")
     parser.add_argument("--samples", type=int, default=32_768, help="voxels searched on")
     told = parser.parse_args()

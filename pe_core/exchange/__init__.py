@@ -2,13 +2,12 @@
 
 from .exporting import export_rig, rig_files
 from .importing import ImportedRig, import_rig
-from .table import RIG_FORMATS, RigFormat, add_format, rig_format
+from .table import RIG_FORMATS, RigFormat, rig_format
 
 __all__ = [
     "RIG_FORMATS",
     "ImportedRig",
     "RigFormat",
-    "add_format",
     "export_rig",
     "import_rig",
     "rig_files",

@@ -143,6 +143,3 @@ def _camera(name: str, p: Picture) -> tuple[SensorModel, str]:
     size = f"{model.width} x {model.height} px"
     line = f"{name}: no size in the file; {size} has its middle there"
     return model, line if p.size is None else ""
-
-
-__all__ = ["ImportedRig", "import_rig"]

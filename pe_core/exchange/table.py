@@ -136,31 +136,25 @@ _ROWS = (
         driveworks.read,
     ),
 )
-_formats = {row.name: row for row in _ROWS}
-RIG_FORMATS = MappingProxyType(_formats)
+RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})
 """Formats by name."""
-
-
-def add_format(row: RigFormat) -> None:
-    """Add a format that needs more than the engine has."""
-    _formats[row.name] = row
 
 
 def rig_format(name: str) -> RigFormat:
     """Return the format of that name, or raise `InputError`."""
-    if name not in _formats:
-        raise InputError("exchange", "format", f"one of {', '.join(_formats)}", shown(name))
-    return _formats[name]
+    if name not in RIG_FORMATS:
+        raise InputError("exchange", "format", f"one of {', '.join(RIG_FORMATS)}", shown(name))
+    return RIG_FORMATS[name]
 
 
 def told_format(path: Path) -> RigFormat:
     """Return the format that a file's or a folder's names tell, or raise `InputError`."""
     names = {each.name for each in path.iterdir()} if path.is_dir() else {path.name}
-    for row in _formats.values():
+    for row in RIG_FORMATS.values():
         if names & set(row.files):
             return row
     ending = {".csv": "csv", ".urdf": "urdf", ".xacro": "urdf", ".sh": "ros", ".xml": "ros"}
     if path.suffix.lower() in ending:
-        return _formats[ending[path.suffix.lower()]]
-    expected = f"a name that tells its format, or the format said: {', '.join(_formats)}"
+        return RIG_FORMATS[ending[path.suffix.lower()]]
+    expected = f"a name that tells its format, or the format said: {', '.join(RIG_FORMATS)}"
     raise InputError(path, "format", expected, path.name)

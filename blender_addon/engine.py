@@ -1,6 +1,7 @@
-"""The one door to the engine: the copy packed into the extension, else the checkout's own.
+"""The one door to the engine and to the page of a review: the copies packed into the extension,
+else the checkout's.
 
-Everything else in the add-on takes the engine from here, so that there is never a second copy of
+Everything else in the add-on takes them from here, so that there is never a second copy of
 it in a running Blender.
 """
 
@@ -22,3 +23,6 @@ scoring = import_module(f"{_NAME}.scoring")
 sight = import_module(f"{_NAME}.sight")
 studies = import_module(f"{_NAME}.study")
 text = import_module(f"{_NAME}.text")
+
+_PACKED_PAGE = f"{__package__}.pe_review"
+page = import_module(_PACKED_PAGE if find_spec(_PACKED_PAGE) else "pe_review")

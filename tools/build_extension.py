@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Build the Blender extension: ``dist/perception_entropy-VERSION.zip``.
 
-``blender_addon/`` and a copy of ``pe_core/`` inside it are staged in a temporary folder, then
-validated and built by Blender's own tool. The same sources give the same bytes.
+``blender_addon/`` and copies of ``pe_core/`` and ``pe_review/`` inside it are staged in a temporary
+folder, then validated and built by Blender's own tool. The same sources give the same bytes.
 """
 
 import importlib.util
@@ -18,6 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "blender_addon"
 ENGINE = ROOT / "pe_core"
+REVIEW = ROOT / "pe_review"
 MANIFEST = ADDON / "blender_manifest.toml"
 
 # Of no use inside Blender, or in the way of the same bytes again.
@@ -54,11 +55,12 @@ def read(path: str | Path) -> str:
 
 
 def stage(target: Path) -> None:
-    """Copy add-on, engine and licence; links become files, which Blender's tool would drop."""
+    """Copy add-on, engine, page and licence; links become files: Blender's tool would drop them."""
     shutil.copytree(ADDON, target, ignore=LEFT_OUT)
-    # A developer's link to the engine may stand in the add-on's folder.
-    shutil.rmtree(target / ENGINE.name, ignore_errors=True)
-    shutil.copytree(ENGINE, target / ENGINE.name, ignore=LEFT_OUT)
+    for package in (ENGINE, REVIEW):
+        # A developer's link to it may stand in the add-on's folder.
+        shutil.rmtree(target / package.name, ignore_errors=True)
+        shutil.copytree(package, target / package.name, ignore=LEFT_OUT)
     shutil.copy(ROOT / "LICENSE", target / "LICENSE")
 
 
@@ -127,11 +129,12 @@ def build() -> Path:
 
 
 def check_contents(archive: Path) -> None:
-    """Make sure that the engine is in: Blender's tool leaves files out without a word."""
+    """Make sure that engine and page are in: Blender's tool leaves files out without a word."""
     with zipfile.ZipFile(archive) as packed:
         names = set(packed.namelist())
     presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("catalog/**/*.toml")}
     always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py"}
+    always |= {path.relative_to(ROOT).as_posix() for path in REVIEW.rglob("*.[cj]s*")}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}
     for wanted in sorted(always | presets | assets):
         if wanted not in names:

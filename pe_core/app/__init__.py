@@ -1,10 +1,27 @@
 """The command ``pe``, and what all command lines share."""
 
 from .choosing import check_not_resumed, choose, plots
-from .command import Parser, add_run_options, add_sensors_verb, count_up_to, run, with_options
+from .command import (
+    Parser,
+    add_run_options,
+    add_score_options,
+    add_sensors_verb,
+    count_up_to,
+    run,
+    with_options,
+)
 from .exchanging import add_export_options, export
-from .explaining import add_compare_options, add_explain_options, compare, explain
+from .explaining import (
+    add_compare_options,
+    add_explain_options,
+    compare,
+    explain,
+    named_by_file,
+    refuse_different,
+    scored,
+)
 from .interrupts import leave
+from .leaving import add_page_option, pages, with_pages
 from .resuming import begun_search, job_and_folder
 from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
 from .summary import summary
@@ -23,7 +40,9 @@ __all__ = [
     "add_compare_options",
     "add_explain_options",
     "add_export_options",
+    "add_page_option",
     "add_run_options",
+    "add_score_options",
     "add_sensors_verb",
     "add_sweep_options",
     "begun_search",
@@ -37,13 +56,18 @@ __all__ = [
     "export",
     "job_and_folder",
     "leave",
+    "named_by_file",
     "open_missing_streams",
+    "pages",
     "plots",
     "printable",
+    "refuse_different",
     "run",
+    "scored",
     "show",
     "summary",
     "sweep",
     "tell",
     "with_options",
+    "with_pages",
 ]

@@ -29,6 +29,7 @@ from .explaining import (
     explain,
     named_by_file,
 )
+from .leaving import add_page_option, with_pages
 from .resuming import begun_search, job_and_folder
 from .status import Answer
 from .sweeping import add_sweep_options, sweep
@@ -96,6 +97,7 @@ def parser() -> argparse.ArgumentParser:
     add_sensors_verb(verbs)
     for other in entry_points(group=VERBS):
         other.load()(verbs)
+    add_page_option(optimize)
     return top
 
 
@@ -110,13 +112,15 @@ def _run_job(args: argparse.Namespace) -> Answer:
     study = with_options(study, args)
     if args.kind == "optimize" and study.selection.choices:
         return _choose(study, args)
-    job, output = job_and_folder(study, args, begun)
+    (job, output), more = job_and_folder(study, args, begun), with_pages(args)
     if output is not None:
         if args.study is not None:
             _refuse_to_replace(Path(args.study), Path(output))
-        prepare_folder(output, result_names(study, args.kind))
+        more_names = more.names if more else ()
+        prepare_folder(output, [*result_names(study, args.kind), *more_names])
     _tell_of_boxes(study)
-    return carry_out(job, None if output is None else Path(output), as_json=args.json)
+    folder = None if output is None else Path(output)
+    return carry_out(job, folder, as_json=args.json, more=more)
 
 
 def _choose(study: Study, args: argparse.Namespace) -> Answer:

@@ -45,7 +45,7 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
         tell_vehicle(study)
         return _answer({"place": place.to_dict()}, place.text, args.json)
     name = advice.class_of(study.prior, args.class_name)
-    outcome = _scored(study, args)
+    outcome = scored(study, args.workers)
     seen = advice.outlook(study.sight(), study.rig, name)
     said = advice.words(outcome.after, study.rig, study.vehicle, seen)
     data = {
@@ -59,8 +59,8 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
 
 def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     """Score studies by name, and put them side by side."""
-    _refuse_different(studies)
-    scores = {name: _scored(study, args).after for name, study in studies.items()}
+    refuse_different(studies)
+    scores = {name: scored(study, args.workers).after for name, study in studies.items()}
     rows = advice.compare(scores)
     alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
     data = {
@@ -83,10 +83,10 @@ def named_by_file(paths: list[str]) -> dict[str, str]:
     return dict(zip(paths, paths, strict=False))
 
 
-def _scored(study: Study, args: argparse.Namespace) -> Outcome:
+def scored(study: Study, workers: int | None) -> Outcome:
     """Score a study, with progress; Ctrl-C ends it."""
     tell_vehicle(study)
-    job = ScoreJob(study, args.workers)
+    job = ScoreJob(study, workers)
     with stop_at_first(job.stop) as received:
         outcome = drive(job)
     if outcome is None:
@@ -94,7 +94,7 @@ def _scored(study: Study, args: argparse.Namespace) -> Outcome:
     return outcome
 
 
-def _refuse_different(studies: Mapping[str, Study]) -> None:
+def refuse_different(studies: Mapping[str, Study]) -> None:
     """Raise `InputError` for studies whose scores do not measure the same."""
     first, *others = studies.items()
     for name, study in others:

@@ -18,7 +18,7 @@ from .front_files import (
 from .job import Job, Progress
 from .jobs import OptimizeJob, ScoreJob
 from .mounted import mounts_told
-from .names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW, SEARCH, STUDY
+from .names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW, REVIEW_PAGE, SEARCH, STUDY
 from .outcome import HistoryRow, Outcome
 from .results import (
     add_to_result,
@@ -44,6 +44,7 @@ __all__ = [
     "OPTIMIZED",
     "RESULT",
     "REVIEW",
+    "REVIEW_PAGE",
     "SCHEDULED_METHOD",
     "SEARCH",
     "STUDY",

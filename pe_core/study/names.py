@@ -7,9 +7,11 @@ BOXES = "boxes.csv"
 """The name boxes get beside a study when they have no file of their own."""
 OPTIMIZED, REVIEW = "optimized.blend", "review.png"
 """What Blender adds."""
+REVIEW_PAGE = "review.html"
+"""What `pe_review` makes of it."""
 SEARCH = "search.json"
 """The state of a search: from it, it goes on."""
-BESIDE_RESULT = (STUDY, MESH, AREAS, BOXES, HISTORY, SEARCH, OPTIMIZED, REVIEW)
+BESIDE_RESULT = (STUDY, MESH, AREAS, BOXES, HISTORY, SEARCH, OPTIMIZED, REVIEW, REVIEW_PAGE)
 """All that belongs to a result.json."""
 SCHEMA = 1
 """Of result.json."""

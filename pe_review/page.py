@@ -1,0 +1,145 @@
+"""The page: sections put together to one file that asks for no other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from .engine import pe, studies
+from .markup import escaped, script_json
+from .reviewed import Reviewed, reviewed_together
+from .section import Section
+from .sections import SECTIONS, TOGETHER
+
+PAGE = studies.REVIEW_PAGE
+HERE = Path(__file__).parent
+STYLES = ("look.css", "parts.css", "paper.css")
+POLICY = (
+    "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+)
+"""The page asks nobody for anything: a browser holds it to that."""
+
+
+def page_bytes(each: Sequence[Reviewed]) -> bytes:
+    """Return the page of one study, or of several side by side.
+
+    Raises
+    ------
+    InputError
+        When there is no study, or more than a page has room for.
+    """
+    each = reviewed_together(each)
+    chapters = [*_of_all(each), *_of_each(each)]
+    return _document(each, chapters).encode("utf-8")
+
+
+def write_page(each: Sequence[Reviewed], folder: str | Path, *, replace: bool = False) -> Path:
+    """Write the page to a folder; return its path.
+
+    Parameters
+    ----------
+    each : sequence of Reviewed
+    folder : path
+    replace : bool
+        The user has agreed to replace the page that is there, whoever wrote it.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or a page is there that is not ours or was changed since.
+    """
+    folder = pe.prepare_folder(folder, () if replace else (PAGE,))
+    with studies.FileSet(folder, (PAGE,) if replace else ()) as files:
+        files.add(PAGE, page_bytes(each))
+    return folder / PAGE
+
+
+Chapter = list[tuple[Reviewed, Section]]
+"""A section of the page, as each study has it."""
+
+
+def _of_all(each: tuple[Reviewed, ...]) -> list[Chapter]:
+    """Sections of all studies at once; of a single one most have nothing to say."""
+    found = [(each[0], section(each)) for section in TOGETHER]
+    return [[(one, made)] for one, made in found if made.html]
+
+
+def _of_each(each: tuple[Reviewed, ...]) -> list[Chapter]:
+    """Sections that each study has, those of one kind together."""
+    chapters = [[(one, section(one)) for one in each] for section in SECTIONS]
+    kept = [[(one, made) for one, made in chapter if made.html] for chapter in chapters]
+    return [chapter for chapter in kept if chapter]
+
+
+def _document(each: tuple[Reviewed, ...], chapters: list[Chapter]) -> str:
+    made = [section for chapter in chapters for _, section in chapter]
+    title = f"Sensor review: {escaped(' and '.join(one.name for one in each))}"
+    styles = _once([*(_own(name) for name in STYLES), *(css for s in made for css in s.styles)])
+    scripts = _once(script for s in made for script in s.scripts)
+    return "\n".join(
+        [
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+            f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            f'<meta name="generator" content="perception-entropy {pe.__version__}">',
+            f"<title>{title}</title>",
+            *(f"<style>\n{css}\n</style>" for css in styles),
+            "</head>\n<body>",
+            '<a class="skip" href="#page">Skip to the review</a>',
+            _contents(chapters),
+            '<main id="page">',
+            *(_chapter(chapter, len(each)) for chapter in chapters),
+            "</main>",
+            *(_data(one, section) for chapter in chapters for one, section in chapter),
+            *(f"<script>\n{_closed(script)}\n</script>" for script in scripts),
+            "</body>\n</html>\n",
+        ]
+    )
+
+
+def _contents(chapters: list[Chapter]) -> str:
+    """Links to the sections."""
+    firsts = [chapter[0][1] for chapter in chapters]
+    links = "".join(f'<li><a href="#{s.anchor}">{escaped(s.title)}</a></li>' for s in firsts)
+    return f'<nav class="contents" aria-label="Contents"><ol>{links}</ol></nav>'
+
+
+def _chapter(chapter: Chapter, studies_there: int) -> str:
+    first = chapter[0][1]
+    several = len(chapter) > 1
+    inside = "".join(_part(one, section, several) for one, section in chapter)
+    count = f' style="--beside:{studies_there}"' if several else ""
+    css = ' class="beside"' if several else ""
+    heading = f'<h2 id="h-{first.anchor}">{escaped(first.title)}</h2>'
+    return (
+        f'<section id="{first.anchor}" aria-labelledby="h-{first.anchor}">{heading}'
+        f"<div{css}{count}>{inside}</div></section>"
+    )
+
+
+def _part(one: Reviewed, section: Section, several: bool) -> str:
+    name = f'<p class="whose whose-{one.key}">{escaped(one.name)}</p>' if several else ""
+    return (
+        f'<div class="part" data-section="{section.anchor}" data-key="{one.key}">'
+        f"{name}{section.html}</div>"
+    )
+
+
+def _data(one: Reviewed, section: Section) -> str:
+    if not section.data:
+        return ""
+    name = f"data-{section.anchor}-{one.key}"
+    return f'<script type="application/json" id="{name}">{script_json(section.data)}</script>'
+
+
+def _own(name: str) -> str:
+    return (HERE / name).read_text("utf-8")
+
+
+def _once(texts: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(texts))
+
+
+def _closed(script: str) -> str:
+    """A script in whose strings nothing ends it."""
+    return script.replace("</script", "<\\/script").replace("<!--", "<\\!--")

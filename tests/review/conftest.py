@@ -1,0 +1,87 @@
+"""One small study, scored and searched once for all tests of the page."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.catalog import load
+from pe_review import Reviewed, page_bytes
+
+NAMES = ("</script><b>roof", "front & left / 60°")
+"""Names that would end a script, and begin an element, if they were not escaped."""
+
+
+def box(low, high):
+    """(12, 3, 3) triangles of a box [m]."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    faces = [
+        *((0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)),
+        *((2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)),
+    ]
+    return (np.array(low) + corners * (np.array(high) - np.array(low)))[np.array(faces)]
+
+
+def small_study(shift=0.0):
+    """A car of a box, a LiDAR on its roof and a camera at its front: few voxels."""
+    space = pe.PerceptionSpace(x=(-20, 20), y=(-10, 10), z=(0, 2), interval=0.5)
+    rig = pe.Rig(
+        [
+            pe.Sensor(NAMES[0], load("Velodyne VLP-16 Puck"), pe.Pose((shift, 0.0, 1.8))),
+            pe.Sensor(NAMES[1], load("Camera 60 deg"), pe.Pose((2.3, 0.2, 1.2))),
+        ]
+    )
+    search = pe.Search(samples=1024, evaluations=24)
+    vehicle = pe.Vehicle(box((-2.2, -0.9, 0.2), (2.2, 0.9, 1.5)))
+    return pe.Study(rig, vehicle, space, search=search)
+
+
+def outcome_of(job):
+    """Drive a job to its end."""
+    for _ in job:
+        pass
+    return job.outcome
+
+
+@pytest.fixture(scope="session")
+def scored():
+    """The study scored as it stands."""
+    return Reviewed("a/b <i>c</i>", outcome_of(pe.ScoreJob(small_study())))
+
+
+@pytest.fixture(scope="session")
+def other():
+    """Another study, with the LiDAR farther back."""
+    return Reviewed("B & co", outcome_of(pe.ScoreJob(small_study(-1.5))))
+
+
+@pytest.fixture(scope="session")
+def searched():
+    """The study after a search."""
+    return Reviewed("searched", outcome_of(pe.OptimizeJob(small_study())))
+
+
+@pytest.fixture(scope="session")
+def bare():
+    """A study without a vehicle."""
+    study = dataclasses.replace(small_study(), vehicle=None)
+    return Reviewed("bare", outcome_of(pe.ScoreJob(study)))
+
+
+@pytest.fixture(scope="session")
+def page(scored):
+    """The page of the study that was scored, as text."""
+    return page_bytes([scored]).decode()
+
+
+@pytest.fixture(scope="session")
+def searched_page(searched):
+    """The page of the search, as text."""
+    return page_bytes([searched]).decode()
+
+
+@pytest.fixture(scope="session")
+def page_of_two(scored, other):
+    """The page of two studies, as text."""
+    return page_bytes([scored, other]).decode()

@@ -1,0 +1,116 @@
+"""The page as a file: whole, by itself, and safe whatever names are on it."""
+
+import json
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+import pe_core as pe
+from pe_review import PAGE, Section, page_bytes, write_page
+from pe_review.markup import escaped, script_json, table
+from tests.review.conftest import NAMES
+
+VOID = {"meta", "img", "br", "link", "input", "hr", "wbr", "path", "rect", "circle", "line"}
+
+
+class Elements(HTMLParser):
+    """Every element with its attributes, the ids, and what is left open."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.found, self.open, self.ids = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.found.append((tag, dict(attributes)))
+        self.ids += [value for name, value in attributes if name == "id"]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.found.append((tag, dict(attributes)))
+        self.ids += [value for name, value in attributes if name == "id"]
+
+    def handle_endtag(self, tag):
+        if tag not in VOID:
+            assert self.open.pop() == tag, (tag, self.open[-4:])
+
+
+PAGES = ["page", "searched_page", "page_of_two"]
+
+
+@pytest.mark.parametrize("which", PAGES)
+def test_elements_are_closed_and_ids_are_there_once(which, request):
+    found = Elements(request.getfixturevalue(which))
+    assert not found.open
+    assert len(found.ids) == len(set(found.ids))
+    links = [a["href"][1:] for tag, a in found.found if tag == "a" and "href" in a]
+    assert links and set(links) <= set(found.ids)
+
+
+@pytest.mark.parametrize("which", PAGES)
+def test_the_page_asks_for_no_other_file(which, request):
+    for tag, attributes in Elements(request.getfixturevalue(which)).found:
+        for name in ("src", "href", "data", "srcset", "poster"):
+            address = attributes.get(name) or "#"
+            assert address.startswith(("data:", "#")), (tag, address[:80])
+        assert not [name for name in attributes if name.startswith("on")], tag
+
+
+@pytest.mark.parametrize("which", PAGES)
+def test_pictures_are_described_and_tables_are_headed(which, request):
+    found = Elements(request.getfixturevalue(which)).found
+    assert all(a.get("alt") for tag, a in found if tag == "img")
+    assert all(a.get("scope") in ("col", "row") for tag, a in found if tag == "th")
+    count = [tag for tag, _ in found].count
+    assert count("table") == count("caption")
+
+
+def test_names_end_no_element_and_no_script(page):
+    assert escaped(NAMES[0]) in page
+    assert NAMES[0] not in page and "<i>c</i>" not in page
+
+
+def test_data_of_scripts_is_read_back_as_it_was():
+    data = {"name": "</script><!--\u2028&", "x": [1.5, None]}
+    text = script_json(data)
+    assert not set(text) & set("<>&\u2028") and json.loads(text) == data
+
+
+def test_what_does_not_print_is_written_out():
+    assert escaped("a\x1b[31m\u202eb\ud800") == "a\\x1b[31m\\u202eb\\ud800"
+    assert "<td>1 &lt; 2</td>" in table("t", ["a", "b"], [["x", "1 < 2"]])
+
+
+def test_scripts_and_styles_stand_once_and_data_by_study(scored, other, monkeypatch):
+    def section(one):
+        data, script = {"key": one.key}, "const a = '</script>';"
+        return Section("try", "Try", "<p>x</p>", data, (script,), ("p {}",))
+
+    monkeypatch.setattr("pe_review.page.SECTIONS", (section,))
+    text = page_bytes([scored, other]).decode()
+    assert text.count("const a = '<\\/script>';") == text.count("p {}\n</style>") == 1
+    found = dict(re.findall(r'id="data-try-(\w)">(.*?)</script>', text))
+    assert {key: json.loads(data)["key"] for key, data in found.items()} == {"a": "a", "b": "b"}
+
+
+def test_a_page_of_ours_is_replaced_another_is_not(scored, tmp_path):
+    path = write_page([scored], tmp_path)
+    assert path == tmp_path / PAGE and write_page([scored], tmp_path) == path
+    path.write_text("mine")
+    with pytest.raises(pe.InputError, match=r"review\.html: output: expected no file, or one"):
+        write_page([scored], tmp_path)
+    assert path.read_text() == "mine"
+    assert write_page([scored], tmp_path, replace=True).read_bytes() == page_bytes([scored])
+
+
+def test_a_folder_that_is_none_is_refused_in_one_line(scored, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(pe.InputError, match="expected a folder that can be written"):
+        write_page([scored], tmp_path / "file")
+
+
+def test_too_many_studies_are_refused(scored):
+    with pytest.raises(pe.InputError, match="expected 1 to 6, found 7"):
+        page_bytes([scored] * 7)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from ..errors import InputError
 from ..exchange import RIG_FORMATS, ImportedRig, export_rig, import_rig
 from ..formats import read_mesh
+from ..outputs import SCENE_OUTPUTS, export_scene
 from ..scene import Pose, Reference, Vehicle, guessed_reference
 from ..study import Study, save_study
 from ..text.cells import quoted
@@ -20,11 +22,14 @@ NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
 
 def add_export_options(parser: argparse.ArgumentParser, *, also_study: bool = False) -> None:
     """Add the options of ``export`` to a parser; `also_study`: without a format that is written."""
-    about = f"format: {', '.join(RIG_FORMATS)}" + (" (default: a study)" if also_study else "")
+    known = [*RIG_FORMATS, *SCENE_OUTPUTS]
+    about = f"format: {', '.join(known)}" + (" (default: a study)" if also_study else "")
     needed = not also_study
-    parser.add_argument("--to", required=needed, choices=RIG_FORMATS, metavar="FORMAT", help=about)
+    parser.add_argument("--to", required=needed, choices=known, metavar="FORMAT", help=about)
     about = "file, or folder for a format of several files"
     parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
+    about = f"of {', '.join(SCENE_OUTPUTS)}: how far sensors are drawn [m] (default: their own)"
+    parser.add_argument("--range", type=float, metavar="M", help=about)
     parser.add_argument("--replace", action="store_true", help="replace files that are there")
     _add_axle_options(parser)
 
@@ -56,9 +61,14 @@ def _add_axle_options(parser: argparse.ArgumentParser) -> None:
 
 
 def export(study: Study, args: argparse.Namespace) -> Answer:
-    """Write a study's rig for another program."""
+    """Write a study's rig, or its scene, for another program."""
     reference = _reference(args, study.reference, study.vehicle, args.to)
-    paths, lines = export_rig(study.rig, args.to, args.output, reference, replace=args.replace)
+    where, options = (args.to, args.output), {"replace": args.replace}
+    if args.to in SCENE_OUTPUTS:
+        study = replace(study, reference=reference)
+        paths, lines = export_scene(study, *where, args.range, **options)
+    else:
+        paths, lines = export_rig(study.rig, *where, reference, **options)
     for line in lines:
         tell(line)
     return "\n".join(f"wrote {path}" for path in paths), DONE

@@ -64,8 +64,17 @@ def export_rig(
         As `rig_files`, and when a file is there already or cannot be written.
     """
     files, lines = rig_files(rig, name, reference)
-    output = Path(output)
-    inside = output.is_dir() or len(files) > 1
+    return write_files(files, Path(output), inside=len(files) > 1, replace=replace), lines
+
+
+def write_files(
+    files: Mapping[str, bytes], output: Path, *, inside: bool, replace: bool
+) -> list[Path]:
+    """Write bytes by file name: one at `output` itself, several `inside` it; return their paths.
+
+    What is there stays unless `replace` says otherwise; then nothing is written.
+    """
+    inside = inside or output.is_dir()
     paths = {output / file if inside else output: data for file, data in files.items()}
     for path in paths:
         if path.exists() and not replace:
@@ -74,7 +83,7 @@ def export_rig(
         _make_folder(output)
     for path, data in paths.items():
         write_bytes(path, data)
-    return list(paths), lines
+    return list(paths)
 
 
 def _make_folder(folder: Path) -> None:

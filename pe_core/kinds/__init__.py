@@ -8,6 +8,7 @@ from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_pict
 from .measure import measure
 from .perception import BLIND_RULES, PerceptionModel
 from .table import KINDS, kind_named, kind_of, register, unregister
+from .view_patch import ViewPatch
 
 __all__ = [
     "BLIND_RULES",
@@ -28,6 +29,7 @@ __all__ = [
     "RangePicture",
     "SampleKernel",
     "Stopped",
+    "ViewPatch",
     "Voxels",
     "beam_field",
     "kind_named",

@@ -20,6 +20,7 @@ from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .defined import DefinedGrid, DefinedSample
 from .kernels import Floats, GridKernel, SampleKernel, Voxels
+from .view_patch import ViewPatch
 
 OUT_OF_VIEW, OUT_OF_RANGE, BETWEEN_BEAMS = "out of view", "out of range", "between beams"
 """Why a sensor misses a place that nothing hides."""
@@ -104,6 +105,10 @@ class Kind(ABC):
     def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
         """Say why a sensor that nothing is in the way of does not measure a cube (3,) [m]."""
         return OUT_OF_VIEW
+
+    def view(self, model: Any, step: float) -> ViewPatch | None:
+        """Return where a sensor looks, in triangles of about `step` [rad]; none by default."""
+        return None
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> GridKernel:
         """Return what measures sensors on all voxels of a space.

@@ -14,12 +14,14 @@ from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Voxels
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind
+from ..view_patch import ViewPatch
 from . import table as tables
 from .definition import count_pixels
 from .kernels import CameraGrid, CameraSample
 from .model import Camera
 from .picture import picture_rays
 from .ranged import out_of_range
+from .view import picture_patch
 from .words import brief, figures
 
 
@@ -64,6 +66,10 @@ class CameraKind(Kind):
     def brief(self, model: Camera) -> str:
         """Picture and field of view."""
         return brief(model)
+
+    def view(self, model: Camera, step: float) -> ViewPatch:
+        """Take what the picture shows."""
+        return picture_patch(model, step)
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> CameraGrid:
         """Fill columns of voxels between the sides of the picture."""

@@ -12,12 +12,14 @@ from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Voxels
 from ..kind import Kind
+from ..view_patch import ViewPatch
 from . import table as tables
 from .asked import beams_to, missed, some_beams
 from .definition import count_beams
 from .model import Lidar
 from .on_grid import LidarGrid
 from .on_sample import LidarSample
+from .view import beam_patch
 from .words import brief, channel_plot, figures
 
 
@@ -66,6 +68,10 @@ class LidarKind(Kind):
     def missed(self, sensor: Sensor, center: Floats, side: float) -> str:
         """Out of range, out of view, or between two beams."""
         return missed(sensor, center, side)
+
+    def view(self, model: Lidar, step: float) -> ViewPatch:
+        """Take all that lies between its beams."""
+        return beam_patch(model, step)
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> LidarGrid:
         """Sweep planes of the grid."""

@@ -47,7 +47,7 @@ class GlbScene:
     def add_material(self, name: str, color: Rgb, alpha: float = 1.0, **more: Any) -> int:
         """Add a rough material that is seen from both sides."""
         look = {"baseColorFactor": [*linear(color), alpha], "metallicFactor": 0.0}
-        row = {"name": name, "pbrMetallicRoughness": {**look, "roughnessFactor": 0.9}}
+        row: dict[str, Any] = {"name": name, "pbrMetallicRoughness": {**look, "roughnessFactor": 0.9}}
         row |= {"doubleSided": True, "alphaMode": "BLEND" if alpha < 1.0 else "OPAQUE"}
         self.materials.append(row | more)
         return len(self.materials) - 1

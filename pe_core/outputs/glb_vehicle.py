@@ -14,7 +14,7 @@ GLASS_ALPHA = 0.45
 
 
 def add_vehicle(scene: GlbScene, vehicle: Vehicle | None, reference: Reference | None) -> list[int]:
-    """Add the vehicle's parts and its rear axle, as far as they are known; return what holds them."""
+    """Add the vehicle's parts and rear axle, where they are known; return what holds them."""
     below = []
     if vehicle is not None:
         below.append(scene.add_node(STATIC, _parts(scene, vehicle)))

@@ -38,7 +38,7 @@ class OutputRequest:
             object.__setattr__(self, "range_m", checked)
 
     def reach(self, sensor: Sensor, most: float = NO_RANGE_M) -> float:
-        """Return how far a sensor is drawn [m]; without a range asked for, `most` where it has none."""
+        """Return how far a sensor is drawn [m]; `most` where neither it nor the wish says."""
         own = float(getattr(sensor.model, "max_range", math.inf))
         if self.range_m is not None:
             return min(own, self.range_m)

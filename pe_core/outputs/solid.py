@@ -50,7 +50,7 @@ def free_solid(name: str, view: MountedView) -> Solid:
 
 
 def hidden_solid(name: str, view: MountedView) -> Solid | None:
-    """Return what the vehicle takes of a field of view: behind it as seen from the sensor; or None."""
+    """Return what the vehicle takes of a field of view: what lies behind it; None if nothing."""
     stopped = view.ends < view.reach - NEAREST_M
     if not stopped[view.faces].any():
         return None

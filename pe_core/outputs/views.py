@@ -45,7 +45,7 @@ class MountedView:
 def mounted_view(
     sensor: Sensor, vehicle: Vehicle | None, reach: float, step: float
 ) -> MountedView | None:
-    """Cast a sensor's field of view, in triangles of about `step` [rad]; None if its kind has none."""
+    """Cast a field of view, in triangles of about `step` [rad]; None if its kind has none."""
     patch = kind_of(sensor).view(sensor.model, step)
     if patch is None:
         return None

@@ -33,6 +33,9 @@ ALLOWED = {
         *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
         *("formats", "scoring", "sight", "search", "catalog", "advice"),
     },
+    "outputs": {
+        *("errors", "version", "text", "scene", "kinds", "sight", "exchange", "study"),
+    },
     "sweep": {"errors", "version", "text", "scene", "study"},
     "public": {
         *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
@@ -40,7 +43,7 @@ ALLOWED = {
     },
     "app": {
         *("errors", "version", "text", "scene", "kinds", "formats", "catalog", "exchange", "sight"),
-        *("advice", "search", "study", "sweep"),
+        *("advice", "search", "study", "outputs", "sweep"),
     },
     "__main__": {"app"},
 }

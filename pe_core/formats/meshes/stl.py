@@ -59,7 +59,7 @@ def _read_binary(path: Path, data: bytes) -> Mesh:
 
 
 def _read_ascii(path: Path, lines: list[str]) -> Mesh:
-    scan = _Solids(str(path), path.stem)
+    scan = _SolidLines(str(path), path.stem)
     for number, line in enumerate(lines, 1):
         scan.take(number, line)
     scan.require(not scan.inside, len(lines), "endsolid", "the end of the file")
@@ -68,7 +68,7 @@ def _read_ascii(path: Path, lines: list[str]) -> Mesh:
 
 
 @dataclass(slots=True)
-class _Solids:
+class _SolidLines:
     """What the lines of an ASCII file said so far."""
 
     source: str

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from .colors import Rgb, linear
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Rows = list[dict[str, Any]]
 
 FLOAT, UNSIGNED = 5126, 5125
 ARRAY, ELEMENTS = 34962, 34963
@@ -32,24 +32,24 @@ def y_up(points: Floats) -> Floats:
     return np.stack([points[..., 0], points[..., 2], -points[..., 1]], axis=-1)
 
 
-@dataclass(slots=True)
 class GlbScene:
     """A glTF scene as it grows; what is added is told by its number."""
 
-    nodes: list[dict[str, Any]] = field(default_factory=list)
-    meshes: list[dict[str, Any]] = field(default_factory=list)
-    materials: list[dict[str, Any]] = field(default_factory=list)
-    cameras: list[dict[str, Any]] = field(default_factory=list)
-    accessors: list[dict[str, Any]] = field(default_factory=list)
-    views: list[dict[str, Any]] = field(default_factory=list)
-    data: bytearray = field(default_factory=bytearray)
+    def __init__(self) -> None:
+        self.nodes: Rows = []
+        self.meshes: Rows = []
+        self.materials: Rows = []
+        self.cameras: Rows = []
+        self.accessors: Rows = []
+        self.views: Rows = []
+        self.data = bytearray()
 
     def add_material(self, name: str, color: Rgb, alpha: float = 1.0, **more: Any) -> int:
         """Add a rough material that is seen from both sides."""
-        look = {"baseColorFactor": [*linear(color), alpha], "metallicFactor": 0.0}
-        row: dict[str, Any] = {"name": name, "pbrMetallicRoughness": {**look, "roughnessFactor": 0.9}}
-        row |= {"doubleSided": True, "alphaMode": "BLEND" if alpha < 1.0 else "OPAQUE"}
-        self.materials.append(row | more)
+        look: dict[str, Any] = {"baseColorFactor": [*linear(color), alpha], "metallicFactor": 0.0}
+        row = {"doubleSided": True, "alphaMode": "BLEND" if alpha < 1.0 else "OPAQUE"}
+        look["roughnessFactor"] = 0.9
+        self.materials.append({"name": name, "pbrMetallicRoughness": look, **row, **more})
         return len(self.materials) - 1
 
     def add_mesh(

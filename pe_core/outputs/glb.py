@@ -19,7 +19,7 @@ from .colors import Rgb, linear
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Rows = list[dict[str, Any]]
+Entries = list[dict[str, Any]]
 
 FLOAT, UNSIGNED = 5126, 5125
 ARRAY, ELEMENTS = 34962, 34963
@@ -36,12 +36,12 @@ class GlbScene:
     """A glTF scene as it grows; what is added is told by its number."""
 
     def __init__(self) -> None:
-        self.nodes: Rows = []
-        self.meshes: Rows = []
-        self.materials: Rows = []
-        self.cameras: Rows = []
-        self.accessors: Rows = []
-        self.views: Rows = []
+        self.nodes: Entries = []
+        self.meshes: Entries = []
+        self.materials: Entries = []
+        self.cameras: Entries = []
+        self.accessors: Entries = []
+        self.views: Entries = []
         self.data = bytearray()
 
     def add_material(self, name: str, color: Rgb, alpha: float = 1.0, **more: Any) -> int:

@@ -16,11 +16,13 @@ from .kinds import (
     Pinhole,
     beam_field,
     measure,
+    measure_objects,
 )
 from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import (
     Housing,
+    Objects,
     PerceptionSpace,
     Pose,
     Reference,
@@ -108,6 +110,7 @@ __all__ = [
     "NoGo",
     "ObjectClass",
     "Objective",
+    "Objects",
     "OptimizeJob",
     "Option",
     "Outcome",
@@ -149,6 +152,7 @@ __all__ = [
     "import_rig",
     "load_study",
     "measure",
+    "measure_objects",
     "optimize",
     "prepare_folder",
     "read_boxes",

@@ -84,7 +84,7 @@ class ListOf:
 
 
 @dataclass(frozen=True)
-class Object:
+class Keyed:
     """An object with these keys and no others."""
 
     keys: Mapping[str, Form]

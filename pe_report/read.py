@@ -12,7 +12,7 @@ from pe_core.text import dump_json, read_bytes
 
 from .claims import claims
 from .effort import FULL, QUICK, Effort, to_dict
-from .form import Amount, Each, Form, ListOf, Maybe, Object, Text, check_keys
+from .form import Amount, Each, Form, Keyed, ListOf, Maybe, Text, check_keys
 from .paper import CORNERS, PRIORS, ROW
 from .plan import names
 
@@ -22,18 +22,16 @@ ENTROPY, SHARE = Amount(-1e3, 1e3), Amount(0.0, 1.0)
 SEEN = Amount(1e-9, 1.0)
 """A share that something is divided by."""
 METRES, DEGREES = Amount(-100.0, 100.0), Amount(-360.0, 360.0)
-PLACE = Object({"position": ListOf(METRES, 3), "rotation": ListOf(DEGREES, 3)})
-SCORE = Object(
+PLACE = Keyed({"position": ListOf(METRES, 3), "rotation": ListOf(DEGREES, 3)})
+SCORE = Keyed(
     {"entropy": ENTROPY, "coverage": SEEN, "stderr": Amount(), "per_class": Each(ENTROPY)}
 )
 SHAPES: Mapping[str, Form] = {
     "printed": SCORE,
     "swapped": SCORE,
     "lidars": SCORE,
-    "pitch": Object(
-        {"entropy": ENTROPY, "alone": Object(dict.fromkeys(CORNERS["front"], ENTROPY))}
-    ),
-    "bound": Object(
+    "pitch": Keyed({"entropy": ENTROPY, "alone": Keyed(dict.fromkeys(CORNERS["front"], ENTROPY))}),
+    "bound": Keyed(
         {
             "in_view": SEEN,
             "least": ENTROPY,
@@ -43,8 +41,8 @@ SHAPES: Mapping[str, Form] = {
             "most_unseen": Amount(),
         }
     ),
-    "bound_curve": Object({"distance_m": ListOf(Amount(0.0)), "entropy": ListOf(ENTROPY)}),
-    "prior": Object(
+    "bound_curve": Keyed({"distance_m": ListOf(Amount(0.0)), "entropy": ListOf(ENTROPY)}),
+    "prior": Keyed(
         {
             "classes": ListOf(Text()),
             "ground": ListOf(ListOf(Amount(0.0))),
@@ -52,7 +50,7 @@ SHAPES: Mapping[str, Form] = {
             "height": ListOf(Amount(0.0)),
         }
     ),
-    "fit": Object(
+    "fit": Keyed(
         {
             **{key: Amount() for key in ("a", "b", "a_error", "b_error", "rms")},
             "m": ListOf(Amount(0.0)),
@@ -63,7 +61,7 @@ SHAPES: Mapping[str, Form] = {
     ),
 }
 """What a result looks like, by the first part of its name."""
-VARIED = (Object({"entropy": ENTROPY, "coverage": Maybe(SEEN)}), SCORE)
+VARIED = (Keyed({"entropy": ENTROPY, "coverage": Maybe(SEEN)}), SCORE)
 EVEN = (("fit", ("m", "ap", "n", "left_out")), ("prior", ("height_m", "height")))
 EVEN_CURVE = ("bound_curve", ("distance_m", "entropy"))
 """Lists of a result that are as long as each other."""
@@ -161,13 +159,13 @@ def _search_shape(path: Path, rest: str) -> Form:
     if row not in ROW or start.split("/")[0] not in PRIORS:
         raise InputError(path, "results", "searches of the paper's rows", ascii(rest[:60]))
     sensors = next(iter(ROW[row].starts.values()))
-    return Object(
+    return Keyed(
         {
             "entropy": ENTROPY,
             "coverage": SEEN,
             "start_entropy": ENTROPY,
             "evaluations": Amount(0.0),
-            "placements": Object(dict.fromkeys(sensors, PLACE)),
+            "placements": Keyed(dict.fromkeys(sensors, PLACE)),
         }
     )
 

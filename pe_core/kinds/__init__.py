@@ -6,6 +6,8 @@ from .kernels import GridKernel, Measured, SampleKernel, Stopped, Voxels
 from .kind import Kind
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
 from .measure import measure
+from .measure_objects import ObjectsByName, measure_objects
+from .object_kernel import ObjectKernel, ObjectView
 from .perception import BLIND_RULES, PerceptionModel
 from .table import KINDS, kind_named, kind_of, register, unregister
 from .view_patch import ViewPatch
@@ -24,6 +26,9 @@ __all__ = [
     "Lidar",
     "Measured",
     "MeasuredByName",
+    "ObjectKernel",
+    "ObjectView",
+    "ObjectsByName",
     "PerceptionModel",
     "Pinhole",
     "RangePicture",
@@ -35,6 +40,7 @@ __all__ = [
     "kind_named",
     "kind_of",
     "measure",
+    "measure_objects",
     "range_picture",
     "register",
     "unregister",

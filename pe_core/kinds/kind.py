@@ -13,13 +13,16 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import InputError
 from ..metric.entropy import ApCurve
 from ..scene.geometry import dot
+from ..scene.objects import Objects
 from ..scene.sensors import Sensor, SensorModel
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .defined import DefinedGrid, DefinedSample
 from .kernels import Floats, GridKernel, SampleKernel, Voxels
+from .object_kernel import DefinedObjects, ObjectKernel, ObjectView
 from .view_patch import ViewPatch
 
 OUT_OF_VIEW, OUT_OF_RANGE, BETWEEN_BEAMS = "out of view", "out of range", "between beams"
@@ -64,6 +67,19 @@ class Kind(ABC):
         self, sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None
     ) -> Floats:
         """m of cubes with centres (V, 3) [m] and that side [m], as it is defined: (V,)."""
+
+    def measure_objects(
+        self, sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
+    ) -> Floats:
+        """m of objects, as it is defined: (N,); with `traffic` those of a scene hide each other.
+
+        Raises
+        ------
+        InputError
+            When the kind measures voxels alone, as it does by default.
+        """
+        expected = "a kind of sensor that measures objects"
+        raise InputError(sensor.name, "kind", expected, repr(self.name))
 
     @abstractmethod
     def read(self, name: str, table: Mapping[str, Any], folder: Path) -> SensorModel:
@@ -120,3 +136,7 @@ class Kind(ABC):
     def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> SampleKernel:
         """Return what measures sensors on some voxels; `enough` as on the grid."""
         return DefinedSample(self.measure, voxels, vehicle)
+
+    def on_objects(self, view: ObjectView) -> ObjectKernel:
+        """Return what measures sensors on some objects."""
+        return DefinedObjects(self.measure_objects, view)

@@ -3,6 +3,7 @@ vehicle's body."""
 
 from .geometry import Pose, rotate, rotation_matrix, rpy_from_matrix
 from .housing import Housing, cuts_body
+from .objects import Objects
 from .reference import Reference, guessed_reference
 from .sensors import Rig, Sensor
 from .simplify import simplified
@@ -11,6 +12,7 @@ from .vehicle import Vehicle
 
 __all__ = [
     "Housing",
+    "Objects",
     "PerceptionSpace",
     "Pose",
     "Reference",

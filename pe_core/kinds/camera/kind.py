@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 
 from ...metric.entropy import RTM3D
+from ...scene.objects import Objects
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
@@ -19,6 +20,7 @@ from . import table as tables
 from .definition import count_pixels
 from .kernels import CameraGrid, CameraSample
 from .model import Camera
+from .object_definition import count_object_pixels
 from .picture import picture_rays
 from .ranged import out_of_range
 from .view import picture_patch
@@ -40,6 +42,12 @@ class CameraKind(Kind):
     ) -> Floats:
         """Measure the area of each cube's image."""
         return count_pixels(sensor, centers, side, vehicle)
+
+    def measure_objects(
+        self, sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
+    ) -> Floats:
+        """Measure what is seen of each object's image."""
+        return count_object_pixels(sensor, objects, vehicle, traffic)
 
     def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Camera:
         """Build a camera from its table."""

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...metric.entropy import POINTPILLARS
+from ...scene.objects import Objects
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
@@ -17,6 +18,7 @@ from . import table as tables
 from .asked import beams_to, missed, some_beams
 from .definition import count_beams
 from .model import Lidar
+from .object_definition import count_on_objects
 from .on_grid import LidarGrid
 from .on_sample import LidarSample
 from .view import beam_patch
@@ -36,6 +38,12 @@ class LidarKind(Kind):
     ) -> Floats:
         """Count the beams that pass through each cube before they end."""
         return count_beams(sensor, centers, side, vehicle)
+
+    def measure_objects(
+        self, sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
+    ) -> Floats:
+        """Count the beams that end on each object."""
+        return count_on_objects(sensor, objects, vehicle, traffic)
 
     def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
         """Build a LiDAR from its table."""

@@ -14,12 +14,7 @@ from mathutils import Matrix, Vector
 
 from .. import bridge
 from ..choices import free_name
-from ..engine import kinds, pe
-from ..overlay.beams import BeamChoice, ChannelMode
-from ..overlay.colors import VIEWPORT
-from ..overlay.frustums import ring_lines
-from ..overlay.kinds import drawing_of
-from ..overlay.primitives import Primitives
+from ..engine import graphics, kinds, pe
 from . import running
 from .add_sensor import is_part
 from .drafts import Drafts
@@ -28,10 +23,10 @@ from .pointing import MOST_M, Stance, ray_of, view_under
 from .preview import Preview
 from .surface import Spot, parts_of, spot_on_ray
 
-SHOWN = BeamChoice(96, ChannelMode.FEW)
+SHOWN = graphics.BeamChoice(96, graphics.ChannelMode.FEW)
 LENGTH_M, RING_M, ALOFT_M = 2.0, 0.12, 100.0
 STEM = (1.0, 1.0, 1.0, 0.8)
-IN_THE_AIR = replace(VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.0, 0.93, 0.55, 0.9))
+IN_THE_AIR = replace(graphics.VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.0, 0.93, 0.55, 0.9))
 """Lighter than sensors that are there."""
 POINT_AT = "Point at the vehicle"
 
@@ -117,7 +112,7 @@ class Placing:
     def _stand(self, spot: Spot | None) -> None:
         self._spot, self.matrix = spot, None
         if spot is None:
-            self._preview.show(Primitives.empty(), Primitives.empty())
+            self._preview.show(graphics.Primitives.empty(), graphics.Primitives.empty())
         else:
             self.matrix = self.stance.placed(spot, self.mount, self._middle)
             self._show(spot)
@@ -127,9 +122,9 @@ class Placing:
     def _show(self, spot: Spot) -> None:
         """Draw it on a spot, and have its score drafted."""
         pose = bridge.pose_of_matrix(np.array(self.matrix, dtype=float))
-        stem = Primitives.of([spot.point, pose.position], STEM)
+        stem = graphics.Primitives.of([spot.point, pose.position], STEM)
         lines = [placed_at(self._shape[0], pose), stem]
-        self._preview.show(Primitives.joined(lines), placed_at(self._shape[1], pose))
+        self._preview.show(graphics.Primitives.joined(lines), placed_at(self._shape[1], pose))
         if self._drafts is not None:
             self._drafts.ask(pose)
 
@@ -181,24 +176,24 @@ def end() -> None:
         ended.end()
 
 
-def shape_of(name: str, model: Any) -> tuple[Primitives, Primitives]:
+def shape_of(name: str, model: Any) -> tuple[graphics.Primitives, graphics.Primitives]:
     """Lines and faces of a sensor in its own frame: worked out once, not at each move.
 
     It is drawn high above the ground, on which its lines would end, and taken down again.
     """
     sensor = pe.Sensor(name, model, pe.Pose((0.0, 0.0, ALOFT_M)))
-    sketch = drawing_of(sensor.kind).sketch(sensor, None, SHOWN)
-    lines = [sketch.lines(LENGTH_M, IN_THE_AIR), ring_lines(sensor, RING_M, IN_THE_AIR)]
+    sketch = graphics.drawing_of(sensor.kind).sketch(sensor, None, SHOWN)
+    lines = [sketch.lines(LENGTH_M, IN_THE_AIR), graphics.ring_lines(sensor, RING_M, IN_THE_AIR)]
     low = np.array([0.0, 0.0, ALOFT_M], np.float32)
-    both = Primitives.joined(lines), sketch.faces(LENGTH_M, IN_THE_AIR)
-    found = [Primitives(each.points - low, each.colors) for each in both]
+    both = graphics.Primitives.joined(lines), sketch.faces(LENGTH_M, IN_THE_AIR)
+    found = [graphics.Primitives(each.points - low, each.colors) for each in both]
     return found[0], found[1]
 
 
-def placed_at(shape: Primitives, pose: pe.Pose) -> Primitives:
+def placed_at(shape: graphics.Primitives, pose: pe.Pose) -> graphics.Primitives:
     """A shape of a sensor's own frame where the sensor is."""
     turned = shape.points @ pose.ground_from_sensor.T.astype(np.float32)
-    return Primitives(turned + np.array(pose.position, np.float32), shape.colors)
+    return graphics.Primitives(turned + np.array(pose.position, np.float32), shape.colors)
 
 
 def middle_of(vehicle: bpy.types.Collection | None) -> Vector:

@@ -11,7 +11,7 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 
 from .. import redraw
-from ..overlay.primitives import Primitives
+from ..engine import graphics
 
 VIEW = bpy.types.SpaceView3D
 LINE_PX = 1.5
@@ -26,7 +26,7 @@ class Preview:
 
     def __init__(self) -> None:
         self._handles: list[object] = []
-        self._lines = self._faces = Primitives.empty()
+        self._lines = self._faces = graphics.Primitives.empty()
         self._text: tuple[str, ...] = ()
         self._mouse, self._region = (0, 0), 0
 
@@ -45,7 +45,7 @@ class Preview:
         """Write beside the mouse, in that view."""
         self._mouse, self._region = mouse, region.as_pointer()
 
-    def show(self, lines: Primitives, faces: Primitives) -> None:
+    def show(self, lines: graphics.Primitives, faces: graphics.Primitives) -> None:
         """Draw these from now on."""
         self._lines, self._faces = lines, faces
 
@@ -100,7 +100,7 @@ def _fill(low: tuple[float, float], high: tuple[float, float]) -> None:
     gpu.state.blend_set("NONE")
 
 
-def _draw_batch(name: str, kind: str, primitives: Primitives) -> None:
+def _draw_batch(name: str, kind: str, primitives: graphics.Primitives) -> None:
     if not len(primitives.points):
         return
     shader = gpu.shader.from_builtin(name)

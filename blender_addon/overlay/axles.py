@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .colors import VIEWPORT, Rgba, with_alpha
-from .primitives import LayerShape, Primitives, Tag
+from ..engine import graphics
 
 if TYPE_CHECKING:
     from ..engine import pe
@@ -15,12 +14,16 @@ if TYPE_CHECKING:
 USUAL_HALF_WIDTH_M, BEYOND_M = 0.9, 0.15
 """Half an axle where no vehicle is known, and how far it stands out of the body."""
 AXIS_M = 0.6
-AXES: tuple[Rgba, ...] = ((0.93, 0.3, 0.35, 1.0), (0.5, 0.8, 0.15, 1.0), (0.25, 0.55, 0.98, 1.0))
+AXES: tuple[graphics.Rgba, ...] = (
+    (0.93, 0.3, 0.35, 1.0),
+    (0.5, 0.8, 0.15, 1.0),
+    (0.25, 0.55, 0.98, 1.0),
+)
 """Blender's colours of x, y and z."""
 FAINT = 0.55
 
 
-def axles(reference: pe.Reference, half_width: float | None) -> LayerShape:
+def axles(reference: pe.Reference, half_width: float | None) -> graphics.LayerShape:
     """Return both axles as lines across, with axes on the ground under the middle of the rear one.
 
     `half_width` is the vehicle's [m]; lines go a little beyond it, and shine through the body.
@@ -32,10 +35,12 @@ def axles(reference: pe.Reference, half_width: float | None) -> LayerShape:
         lines.append(_across(x + reference.wheelbase, z, half))
     origin = np.array([x, 0.0, 0.0])
     for color, axis in zip(AXES, np.eye(3), strict=True):
-        lines.append(Primitives.of([origin, origin + AXIS_M * axis], color))
-    label = Tag("rear axle", (x, -half, z), VIEWPORT.words)
-    return LayerShape(through=Primitives.joined(lines), labels=(label,))
+        lines.append(graphics.Primitives.of([origin, origin + AXIS_M * axis], color))
+    label = graphics.Tag("rear axle", (x, -half, z), graphics.VIEWPORT.words)
+    return graphics.LayerShape(through=graphics.Primitives.joined(lines), labels=(label,))
 
 
-def _across(x: float, z: float, half: float) -> Primitives:
-    return Primitives.of([(x, -half, z), (x, half, z)], with_alpha(VIEWPORT.words, FAINT))
+def _across(x: float, z: float, half: float) -> graphics.Primitives:
+    return graphics.Primitives.of(
+        [(x, -half, z), (x, half, z)], graphics.with_alpha(graphics.VIEWPORT.words, FAINT)
+    )

@@ -8,7 +8,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from .primitives import GroundSheet, LayerShape, Primitives
+from ..engine import graphics
 
 THIN_PX = 1.0
 EDGE_PX, EDGE = 2.0, (0.05, 0.05, 0.05, 0.35)
@@ -20,7 +20,7 @@ _shaders: dict[str, gpu.types.GPUShader] = {}
 class Batches:
     """What one shape became: triangles, lines, and a sheet."""
 
-    shape: LayerShape
+    shape: graphics.LayerShape
     lines: gpu.types.GPUBatch | None
     through: gpu.types.GPUBatch | None
     thin: gpu.types.GPUBatch | None
@@ -28,7 +28,7 @@ class Batches:
     sheet: gpu.types.GPUBatch | None
 
     @classmethod
-    def of(cls, shape: LayerShape) -> Batches:
+    def of(cls, shape: graphics.LayerShape) -> Batches:
         """Upload a shape."""
         wide = shader("POLYLINE_SMOOTH_COLOR")
         several = (shape.lines, shape.through, shape.thin)
@@ -81,14 +81,16 @@ def forget_shaders() -> None:
     _shaders.clear()
 
 
-def _batch(of: gpu.types.GPUShader, kind: str, primitives: Primitives) -> gpu.types.GPUBatch | None:
+def _batch(
+    of: gpu.types.GPUShader, kind: str, primitives: graphics.Primitives
+) -> gpu.types.GPUBatch | None:
     if not len(primitives.points):
         return None
     arrays = {"pos": primitives.points, "color": primitives.colors}
     return batch_for_shader(of, kind, arrays)
 
 
-def _sheet(sheet: GroundSheet) -> gpu.types.GPUBatch:
+def _sheet(sheet: graphics.GroundSheet) -> gpu.types.GPUBatch:
     """Upload a sheet as triangles: a picture's colours are understood differently by versions."""
     points, colors, triangles = sheet.mesh
     arrays = {"pos": points, "color": colors}

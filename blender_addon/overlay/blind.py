@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .colors import VIEWPORT, Palette, Rgba, with_alpha
-from .primitives import ColorKey, LayerShape, Primitives, Tag, polyline
+from ..engine import graphics
 
 if TYPE_CHECKING:
     from ..engine import sight
@@ -29,17 +28,25 @@ TICK_M = 0.35
 
 
 def blind_ground(
-    found: sight.BlindGround, body: Box | None, height: float, palette: Palette = VIEWPORT
-) -> LayerShape:
+    found: sight.BlindGround,
+    body: Box | None,
+    height: float,
+    palette: graphics.Palette = graphics.VIEWPORT,
+) -> graphics.LayerShape:
     """Return outline, hatching and measures, on the ground.
 
     `body` are the vehicle's bounds; without one there is nothing to measure from.
     """
     color = palette.blind
     hatching = hatch(found.outlines, HATCH_M)
-    thin = Primitives.of(_flat(hatching), with_alpha(color, color[3] * HATCH_ALPHA))
-    lines = [Primitives.of(polyline(_flat(smooth(line))), color) for line in found.outlines]
-    labels: list[Tag] = []
+    thin = graphics.Primitives.of(
+        _flat(hatching), graphics.with_alpha(color, color[3] * HATCH_ALPHA)
+    )
+    lines = [
+        graphics.Primitives.of(graphics.polyline(_flat(smooth(line))), color)
+        for line in found.outlines
+    ]
+    labels: list[graphics.Tag] = []
     for side in SIDES if body is not None else ():
         measure = _measure(found, body, side, palette)
         if measure is not None:
@@ -47,9 +54,9 @@ def blind_ground(
             labels.append(measure[1])
     title = f"Blind to what is {height:g} m tall" if height else "Blind to what lies flat"
     text = f"{found.area:.0f} m² within {found.within:g} m"
-    legend = ColorKey(title, classes=((color, text),))
-    return LayerShape(
-        lines=Primitives.joined(lines), thin=thin, labels=tuple(labels), legend=legend
+    legend = graphics.ColorKey(title, classes=((color, text),))
+    return graphics.LayerShape(
+        lines=graphics.Primitives.joined(lines), thin=thin, labels=tuple(labels), legend=legend
     )
 
 
@@ -83,8 +90,8 @@ def hatch(outlines: Sequence[Floats], spacing_m: float) -> Floats:
 
 
 def _measure(
-    found: sight.BlindGround, body: Box, side: str, palette: Palette
-) -> tuple[Primitives, Tag] | None:
+    found: sight.BlindGround, body: Box, side: str, palette: graphics.Palette
+) -> tuple[graphics.Primitives, graphics.Tag] | None:
     """A line from the body to where blind ground begins or ends, and the metres beside it."""
     spot, zone = found.nearest[side], found.zone[side]
     if spot is None or (zone is not None and 0.0 < zone < LEAST_M):
@@ -102,17 +109,21 @@ def _measure(
     return _measured(end, axis, sign, distance, palette.words), _label(end, text, palette.words)
 
 
-def _measured(end: Floats, axis: int, sign: int, distance: float, color: Rgba) -> Primitives:
+def _measured(
+    end: Floats, axis: int, sign: int, distance: float, color: graphics.Rgba
+) -> graphics.Primitives:
     """A line as long as measured, with a bar across its end."""
     start, across = end.copy(), np.zeros(3)
     start[axis] -= sign * distance
     across[1 - axis] = TICK_M
-    return Primitives.of([start, end, end - across, end + across], with_alpha(color, 0.7))
+    return graphics.Primitives.of(
+        [start, end, end - across, end + across], graphics.with_alpha(color, 0.7)
+    )
 
 
-def _label(place: Floats, text: str, color: Rgba) -> Tag:
+def _label(place: Floats, text: str, color: graphics.Rgba) -> graphics.Tag:
     x, y, z = place.tolist()
-    return Tag(text, (x, y, z), color)
+    return graphics.Tag(text, (x, y, z), color)
 
 
 def _flat(points: Floats) -> Floats:

@@ -8,11 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .beams import BeamChoice
-from .colors import VIEWPORT, Palette, with_alpha
-from .frustums import ring_lines
-from .kinds import drawing_of
-from .primitives import ColorKey, LayerShape, Primitives, Tag
+from ..engine import graphics
 
 if TYPE_CHECKING:
     from ..engine import pe
@@ -23,7 +19,9 @@ FAINT, LINK = 0.5, 0.8
 SAME_M = 1e-4
 """Sensors nearer to each other than this stand in one place: there is no line between them."""
 PALE = (0.85, 0.85, 0.9)
-GHOSTS = replace(VIEWPORT, reach=with_alpha(PALE, 0.55), words=with_alpha(PALE, 0.75))
+GHOSTS = replace(
+    graphics.VIEWPORT, reach=graphics.with_alpha(PALE, 0.55), words=graphics.with_alpha(PALE, 0.75)
+)
 """Colours of another variant's reach."""
 VARIANT = "Other variant"
 
@@ -33,7 +31,7 @@ def ghosts(
     present: Sequence[pe.Sensor],
     name: str = "",
     title: str = VARIANT,
-) -> LayerShape:
+) -> graphics.LayerShape:
     """Return another variant's sensors, and lines to those of the same names that stand here.
 
     Parameters
@@ -48,28 +46,32 @@ def ghosts(
     here = {sensor.name: sensor for sensor in present}
     lines = [_outline(sensor) for sensor in others]
     lines += [_link(sensor, here[sensor.name]) for sensor in others if sensor.name in here]
-    color = with_alpha(PALE, LINK)
-    labels = tuple(Tag(s.name, s.pose.position, color) for s in others if _apart(s, here))
-    legend = ColorKey(title, classes=((color, name or "another one"),)) if others else None
-    return LayerShape(through=Primitives.joined(lines), labels=labels, legend=legend)
+    color = graphics.with_alpha(PALE, LINK)
+    labels = tuple(graphics.Tag(s.name, s.pose.position, color) for s in others if _apart(s, here))
+    legend = graphics.ColorKey(title, classes=((color, name or "another one"),)) if others else None
+    return graphics.LayerShape(
+        through=graphics.Primitives.joined(lines), labels=labels, legend=legend
+    )
 
 
-def _outline(sensor: pe.Sensor, palette: Palette = VIEWPORT) -> Primitives:
+def _outline(
+    sensor: pe.Sensor, palette: graphics.Palette = graphics.VIEWPORT
+) -> graphics.Primitives:
     """A camera's view, a ring for all else, in one pale colour."""
-    drawing = drawing_of(sensor.kind)
+    drawing = graphics.drawing_of(sensor.kind)
     if drawing.beams:
-        drawn = ring_lines(sensor, RING_M, palette)
+        drawn = graphics.ring_lines(sensor, RING_M, palette)
     else:
-        drawn = drawing.sketch(sensor, None, BeamChoice(1)).lines(VIEW_M, palette)
-    return Primitives.of(drawn.points, with_alpha(PALE, FAINT))
+        drawn = drawing.sketch(sensor, None, graphics.BeamChoice(1)).lines(VIEW_M, palette)
+    return graphics.Primitives.of(drawn.points, graphics.with_alpha(PALE, FAINT))
 
 
-def _link(other: pe.Sensor, here: pe.Sensor) -> Primitives:
+def _link(other: pe.Sensor, here: pe.Sensor) -> graphics.Primitives:
     """A line from where a sensor stands there to where it stands here; none where that is one."""
     ends = np.array([other.pose.position, here.pose.position])
     if np.abs(ends[0] - ends[1]).max() < SAME_M:
-        return Primitives.empty()
-    return Primitives.of(ends, with_alpha(PALE, LINK))
+        return graphics.Primitives.empty()
+    return graphics.Primitives.of(ends, graphics.with_alpha(PALE, LINK))
 
 
 def _apart(sensor: pe.Sensor, here: dict[str, pe.Sensor]) -> bool:

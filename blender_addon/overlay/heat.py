@@ -9,9 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from .casts import Cast
-from .colors import VIRIDIS, on_scale
-from .primitives import ColorKey, LayerShape, Primitives
+from ..engine import graphics
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,11 +27,11 @@ LEAST, MOST = 1.0, 100.0
 """Ends of the scale, which is logarithmic [beams a dm2]."""
 
 
-def heat(casts: Sequence[Cast], triangles: Floats) -> LayerShape:
+def heat(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.LayerShape:
     """Tiles where sensors' beams end on triangles (F, 3, 3); colours by all their hits together."""
     hits = [each.stopped for each in casts]
     if not any(stopped.any() for stopped in hits):
-        return LayerShape()
+        return graphics.LayerShape()
     pairs = list(zip(casts, hits, strict=True))
     points = np.concatenate([each.points[stopped] for each, stopped in pairs])
     looks = np.concatenate([each.directions[stopped] for each, stopped in pairs])
@@ -43,16 +41,20 @@ def heat(casts: Sequence[Cast], triangles: Floats) -> LayerShape:
     tiles = _Tiles.of(points, normals, weight)
     shares = np.log(np.maximum(tiles.density, LEAST) / LEAST) / np.log(MOST / LEAST)
     colors = np.concatenate(
-        [on_scale(shares, VIRIDIS), np.full((len(shares), 1), ALPHA, np.float32)], axis=1
+        [graphics.on_scale(shares, graphics.VIRIDIS), np.full((len(shares), 1), ALPHA, np.float32)],
+        axis=1,
     )
-    return LayerShape(
-        faces=Primitives.of(tiles.corners(), np.repeat(colors, 6, axis=0)), legend=LEGEND
+    return graphics.LayerShape(
+        faces=graphics.Primitives.of(tiles.corners(), np.repeat(colors, 6, axis=0)), legend=LEGEND
     )
 
 
-LEGEND = ColorKey(
+LEGEND = graphics.ColorKey(
     "Stopped beams per dm²",
-    scale=tuple((*map(float, c), 1.0) for c in on_scale(np.linspace(0.0, 1.0, 13), VIRIDIS)),
+    scale=tuple(
+        (*map(float, c), 1.0)
+        for c in graphics.on_scale(np.linspace(0.0, 1.0, 13), graphics.VIRIDIS)
+    ),
     ticks=("1", "10", "100"),
 )
 
@@ -121,7 +123,7 @@ class _HeatSquares:
         return total
 
 
-def _beams_for(found: Cast) -> float:
+def _beams_for(found: graphics.Cast) -> float:
     """How many beams of the sensor each one that was cast stands for."""
     return found.sensor.model.beam_count / max(len(found.ends), 1)
 

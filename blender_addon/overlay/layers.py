@@ -10,12 +10,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import pe
-from . import asked, axles, blind, frustums, ghosts, ground, heat, mounts, rays, reach
-from .beams import BeamChoice, ChannelMode, channels_of, shown_beams
-from .colors import VIEWPORT, VIRIDIS, Rgba, on_scale, sensor_color, with_alpha
-from .kinds import DRAWINGS, beam_budget, drawing_of
-from .primitives import ColorKey, LayerShape, Primitives, Tag
+from ..engine import graphics, pe
+from . import asked, axles, blind, ghosts, heat, mounts, reach
 from .tools import Tools
 from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, SELECTED, PictureWish, SceneSensor, ViewSettings
 
@@ -29,7 +25,7 @@ RING_ALPHA = 0.55
 GHOST = 0.35
 """How strong stopped beams are where the body hides them: of many nothing else is seen."""
 FRUSTUM_M, NOT_SELECTED = 1.0, 0.6
-WITH_BEAMS = frozenset(name for name, drawing in DRAWINGS.items() if drawing.beams)
+WITH_BEAMS = frozenset(name for name, drawing in graphics.DRAWINGS.items() if drawing.beams)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +41,7 @@ class Layer:
     name: str
     label: str
     keys: Callable[[PictureWish], dict[str, Hashable]]
-    shape: Callable[[PictureWish, Tools, str], LayerShape]
+    shape: Callable[[PictureWish, Tools, str], graphics.LayerShape]
     line_px: float = 1.2
     rough: bool = False
     on_ground: bool = False
@@ -77,20 +73,20 @@ def _ground_keys(wish: PictureWish) -> dict[str, Hashable]:
 def _as_scored(wish: PictureWish) -> pe.GroundMap | None:
     """The score's own map, where that is what is to be shown."""
     view = wish.view
-    averaged = view.ground_height is None and view.ground_quantity != ground.SENSORS
+    averaged = view.ground_height is None and view.ground_quantity != graphics.SENSORS
     return wish.scored if averaged else None
 
 
-def _ground(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
+def _ground(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
     view = wish.view
     if _as_scored(wish) is not None:
-        seen = ground.as_scored(wish.scored, wish.space, FINE_M)
-        return ground.ground_map(
-            seen, view.ground_quantity, view.ground_opacity, where=ground.AS_SCORED
+        seen = graphics.as_scored(wish.scored, wish.space, FINE_M)
+        return graphics.ground_map(
+            seen, view.ground_quantity, view.ground_opacity, where=graphics.AS_SCORED
         )
     step = _step(wish.space, moving=wish.moving)
     seen = tools.sight(wish).ground(_rig(wish), view.ground_height, step, draft=wish.moving)
-    return ground.ground_map(seen, view.ground_quantity, view.ground_opacity)
+    return graphics.ground_map(seen, view.ground_quantity, view.ground_opacity)
 
 
 def _step(space: pe.PerceptionSpace, *, moving: bool) -> float:
@@ -100,7 +96,7 @@ def _step(space: pe.PerceptionSpace, *, moving: bool) -> float:
     return max(least, math.sqrt((x1 - x0) * (y1 - y0) / most))
 
 
-def _blind(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
+def _blind(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
     step = 0.2 if wish.moving else 0.1
     height = wish.view.blind_height
     found = tools.sight(wish).blind(
@@ -116,7 +112,7 @@ def _reach_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {name: (key, chosen) for name, key in keys.items()}
 
 
-def _reach(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
+def _reach(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
     view = wish.view
     known = wish.prior.class_names
     of = view.reach_class if view.reach_class in known else known[0]
@@ -129,64 +125,68 @@ def _reach(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
     everyone = view.reach_of == ALL
     named = {e.sensor.name: e.number for e in wish.counted if everyone or e.selected}
     alone = reach.reach_of_sensors(found, named)
-    legend = ColorKey(whole.legend.title, classes=whole.legend.classes + alone.legend.classes)
-    return LayerShape(
-        Primitives.joined([alone.lines, whole.lines]), labels=whole.labels, legend=legend
+    legend = graphics.ColorKey(
+        whole.legend.title, classes=whole.legend.classes + alone.legend.classes
+    )
+    return graphics.LayerShape(
+        graphics.Primitives.joined([alone.lines, whole.lines]), labels=whole.labels, legend=legend
     )
 
 
 def _beam_keys(wish: PictureWish) -> dict[str, Hashable]:
     view, shown = wish.view, wish.of_beams(WITH_BEAMS)
-    budget = beam_budget([each.sensor for each in shown], view.beam_limit)
+    budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
     chosen = view.channels, view.channel, view.beam_colors, view.rings, view.beam_length, budget
     return {each.sensor.name: (each.key, wish.body_key, chosen) for each in shown}
 
 
-def _beams(wish: PictureWish, tools: Tools, name: str) -> LayerShape:
+def _beams(wish: PictureWish, tools: Tools, name: str) -> graphics.LayerShape:
     view, shown = wish.view, wish.of_beams(WITH_BEAMS)
     of = next(each for each in shown if each.sensor.name == name)
-    budget = beam_budget([each.sensor for each in shown], view.beam_limit)
-    choice = BeamChoice(budget, ChannelMode(view.channels), view.channel)
+    budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
+    choice = graphics.BeamChoice(budget, graphics.ChannelMode(view.channels), view.channel)
     found = tools.cast(wish, of)
-    beams = shown_beams(found, choice)
+    beams = graphics.shown_beams(found, choice)
     colors = _beam_colors(of, view, beams.channel, beams.stopped)
     around = None if wish.vehicle is None else wish.vehicle.bounds
-    parts = [rays.free_lines(of.sensor, beams, view.beam_length, colors, around)]
+    parts = [graphics.free_lines(of.sensor, beams, view.beam_length, colors, around)]
     if view.rings:
-        rows = channels_of(of.sensor.model, choice)
+        rows = graphics.channels_of(of.sensor.model, choice)
         whole = _beam_colors(of, view, rows, np.zeros(len(rows), bool))
         whole[:, 3] = RING_ALPHA
-        parts.append(rays.ground_rings(found, rows, whole))
-    stopped = rays.stopped_lines(of.sensor, beams, colors)
-    ghosts = Primitives.of(stopped.points, stopped.colors * [1.0, 1.0, 1.0, GHOST])
-    lines = Primitives.joined([*parts, stopped])
-    return LayerShape(lines=lines, through=ghosts, legend=_beam_legend(view))
+        parts.append(graphics.ground_rings(found, rows, whole))
+    stopped = graphics.stopped_lines(of.sensor, beams, colors)
+    ghosts = graphics.Primitives.of(stopped.points, stopped.colors * [1.0, 1.0, 1.0, GHOST])
+    lines = graphics.Primitives.joined([*parts, stopped])
+    return graphics.LayerShape(lines=lines, through=ghosts, legend=_beam_legend(view))
 
 
 def _beam_colors(
     of: SceneSensor, view: ViewSettings, channel: NDArray[np.int64], stopped: NDArray[np.bool_]
 ) -> NDArray[np.float32]:
     """(N, 4) colours of beams of these channels."""
-    free, hit = (np.float32(c) for c in (VIEWPORT.free, VIEWPORT.stopped))
+    free, hit = (np.float32(c) for c in (graphics.VIEWPORT.free, graphics.VIEWPORT.stopped))
     colors = np.where(stopped[:, None], hit, free)
     if view.beam_colors == BY_SENSOR:
-        colors[:, :3] = sensor_color(of.number)
+        colors[:, :3] = graphics.sensor_color(of.number)
     if view.beam_colors == BY_CHANNEL:
         rank = np.argsort(np.argsort(of.sensor.model.elevations, kind="stable"))
-        colors[:, :3] = on_scale(rank[channel] / max(len(rank) - 1, 1), VIRIDIS)
+        colors[:, :3] = graphics.on_scale(rank[channel] / max(len(rank) - 1, 1), graphics.VIRIDIS)
     return colors
 
 
-def _beam_legend(view: ViewSettings) -> ColorKey | None:
+def _beam_legend(view: ViewSettings) -> graphics.ColorKey | None:
     if view.beam_colors == BY_SENSOR:
         return None  # the labels have the colours
     if view.beam_colors == BY_CHANNEL:
-        row = on_scale(np.linspace(0.0, 1.0, ground.SWATCHES), VIRIDIS)
+        row = graphics.on_scale(np.linspace(0.0, 1.0, graphics.SWATCHES), graphics.VIRIDIS)
         swatches = tuple((*map(float, color), 1.0) for color in row)
-        return ColorKey("Channel", swatches, ("lowest", "highest"))
-    solid = tuple(with_alpha(c, 1.0) for c in (VIEWPORT.free, VIEWPORT.stopped))
+        return graphics.ColorKey("Channel", swatches, ("lowest", "highest"))
+    solid = tuple(
+        graphics.with_alpha(c, 1.0) for c in (graphics.VIEWPORT.free, graphics.VIEWPORT.stopped)
+    )
     names = ("free", "stopped by the vehicle")
-    return ColorKey("Beams", classes=tuple(zip(solid, names, strict=True)))
+    return graphics.ColorKey("Beams", classes=tuple(zip(solid, names, strict=True)))
 
 
 def _heat_keys(wish: PictureWish) -> dict[str, Hashable]:
@@ -194,7 +194,7 @@ def _heat_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {WHOLE_RIG: (who, wish.body_key)} if who and wish.vehicle is not None else {}
 
 
-def _heat(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
+def _heat(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
     found = [tools.cast(wish, each) for each in wish.of_beams(WITH_BEAMS)]
     return heat.heat(found, tools.body(wish).triangles)
 
@@ -205,18 +205,21 @@ def _view_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {e.sensor.name: (e.key, e.selected, view.footprints, view.view_range) for e in shown}
 
 
-def _views(wish: PictureWish, _tools: Tools, name: str) -> LayerShape:
+def _views(wish: PictureWish, _tools: Tools, name: str) -> graphics.LayerShape:
     of = next(each for each in wish.sensors if each.sensor.name == name)
-    drawing = drawing_of(of.sensor.kind)
-    sketch = drawing.sketch(of.sensor, None, BeamChoice(1))
-    lines, faces = [sketch.lines(FRUSTUM_M, VIEWPORT)], [sketch.faces(FRUSTUM_M, VIEWPORT)]
+    drawing = graphics.drawing_of(of.sensor.kind)
+    sketch = drawing.sketch(of.sensor, None, graphics.BeamChoice(1))
+    lines, faces = (
+        [sketch.lines(FRUSTUM_M, graphics.VIEWPORT)],
+        [sketch.faces(FRUSTUM_M, graphics.VIEWPORT)],
+    )
     if drawing.footprint is not None and wish.view.footprints:
         outline = drawing.footprint(of.sensor, wish.view.view_range)
-        lines.append(frustums.footprint_lines(outline, VIEWPORT.camera))
-        faces.append(frustums.footprint_faces(outline, VIEWPORT.camera_face))
-    shown = Primitives.joined(lines)
+        lines.append(graphics.footprint_lines(outline, graphics.VIEWPORT.camera))
+        faces.append(graphics.footprint_faces(outline, graphics.VIEWPORT.camera_face))
+    shown = graphics.Primitives.joined(lines)
     shown.colors[:, 3] *= 1.0 if of.selected else NOT_SELECTED
-    return LayerShape(shown, Primitives.joined(faces))
+    return graphics.LayerShape(shown, graphics.Primitives.joined(faces))
 
 
 def _label_keys(wish: PictureWish) -> dict[str, Hashable]:
@@ -224,11 +227,15 @@ def _label_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {e.sensor.name: (e.key, e.selected, colored) for e in wish.sensors if e.drawn}
 
 
-def _label(wish: PictureWish, _tools: Tools, name: str) -> LayerShape:
+def _label(wish: PictureWish, _tools: Tools, name: str) -> graphics.LayerShape:
     of = next(each for each in wish.sensors if each.sensor.name == name)
     by_sensor = wish.view.beam_colors == BY_SENSOR or wish.view.reach_of in (SELECTED, ALL)
-    color: Rgba = (*sensor_color(of.number), 1.0) if by_sensor else VIEWPORT.words
-    return LayerShape(labels=(Tag(name, of.sensor.pose.position, color, strong=of.selected),))
+    color: graphics.Rgba = (
+        (*graphics.sensor_color(of.number), 1.0) if by_sensor else graphics.VIEWPORT.words
+    )
+    return graphics.LayerShape(
+        labels=(graphics.Tag(name, of.sensor.pose.position, color, strong=of.selected),)
+    )
 
 
 def _ghost_keys(wish: PictureWish) -> dict[str, Hashable]:
@@ -241,7 +248,7 @@ def _ghost_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {WHOLE_RIG: (others, here, wish.ghosts_name, reached)}
 
 
-def _ghosts(wish: PictureWish, tools: Tools, _name: str) -> LayerShape:
+def _ghosts(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
     here, of = [e.sensor for e in wish.counted], "Search" if wish.searching else ghosts.VARIANT
     shape = ghosts.ghosts(wish.ghosts, here, wish.ghosts_name, of)
     if wish.searching:
@@ -263,7 +270,7 @@ def _place_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {WHOLE_RIG: (place.center, place.ap, told, here)}
 
 
-def _place(wish: PictureWish, _tools: Tools, _name: str) -> LayerShape:
+def _place(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape:
     return asked.asked_place(wish.place, [each.sensor for each in wish.counted])
 
 
@@ -273,7 +280,7 @@ def _mount_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {WHOLE_RIG: (tuple((each.key, each.strong) for each in wish.mounts), wish.boxes)}
 
 
-def _mounts(wish: PictureWish, _tools: Tools, _name: str) -> LayerShape:
+def _mounts(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape:
     return mounts.mounts(wish.mounts, wish.boxes)
 
 
@@ -281,7 +288,7 @@ def _axle_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {} if wish.reference is None else {WHOLE_RIG: (wish.reference, wish.body_key)}
 
 
-def _axles(wish: PictureWish, _tools: Tools, _name: str) -> LayerShape:
+def _axles(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape:
     half = None if wish.vehicle is None else float(wish.vehicle.bounds[1][1])
     return axles.axles(wish.reference, half)
 

@@ -9,42 +9,45 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .colors import Rgba, with_alpha
-from .primitives import ColorKey, LayerShape, Primitives
+from ..engine import graphics
 
 if TYPE_CHECKING:
     from .wish import MountFaces, SearchBox
 
 Floats = NDArray[np.float64]
 
-MOUNT: Rgba = (0.36, 0.80, 0.62, 1.0)
+MOUNT: graphics.Rgba = (0.36, 0.80, 0.62, 1.0)
 """A calm green, far from the beams' blue and orange: legible on white and on black."""
 TINT, STRONG, RIM = 0.34, 0.52, 0.95
 """How much of the body the tint hides: of a mount, and of the selected sensor's."""
-BOUNDS: Rgba = (0.92, 0.92, 0.96, 0.80)
-NO_GO: Rgba = (0.95, 0.45, 0.25, 0.95)
+BOUNDS: graphics.Rgba = (0.92, 0.92, 0.96, 0.80)
+NO_GO: graphics.Rgba = (0.95, 0.45, 0.25, 0.95)
 LIFT_M = 0.003
 """How far the tint stands off the surface, on both sides: it would flicker in it."""
 CORNERS = np.array(list(product((0, 1), repeat=3)), float)
 EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
 
 
-def mounts(several: Sequence[MountFaces], boxes: Sequence[SearchBox]) -> LayerShape:
+def mounts(several: Sequence[MountFaces], boxes: Sequence[SearchBox]) -> graphics.LayerShape:
     """Return the tint of surfaces with their rims, and boxes."""
     faces, lines, classes = [], [], []
     for each in several:
-        color = with_alpha(MOUNT, STRONG if each.strong else TINT)
-        faces.append(Primitives.of(lifted(each.triangles), color))
-        lines.append(Primitives.of(rim(each.triangles), with_alpha(MOUNT, RIM)))
+        color = graphics.with_alpha(MOUNT, STRONG if each.strong else TINT)
+        faces.append(graphics.Primitives.of(lifted(each.triangles), color))
+        lines.append(graphics.Primitives.of(rim(each.triangles), graphics.with_alpha(MOUNT, RIM)))
     if several:
         classes.append((MOUNT, "a sensor may sit here"))
     for forbidden, color, words in ((False, BOUNDS, "bounds"), (True, NO_GO, "no-go area")):
         chosen = [box for box in boxes if box.forbidden == forbidden]
-        lines += [Primitives.of(outline(box.low, box.high), color) for box in chosen]
+        lines += [graphics.Primitives.of(outline(box.low, box.high), color) for box in chosen]
         if chosen:
             classes.append((color, words))
-    legend = ColorKey("Mounts", classes=tuple(classes)) if classes else None
-    return LayerShape(lines=Primitives.joined(lines), faces=Primitives.joined(faces), legend=legend)
+    legend = graphics.ColorKey("Mounts", classes=tuple(classes)) if classes else None
+    return graphics.LayerShape(
+        lines=graphics.Primitives.joined(lines),
+        faces=graphics.Primitives.joined(faces),
+        legend=legend,
+    )
 
 
 def lifted(triangles: Floats) -> Floats:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .colors import VIEWPORT, Palette, Rgba, sensor_color, with_alpha
-from .primitives import ColorKey, LayerShape, Primitives, Tag, polyline
+from ..engine import graphics
 
 if TYPE_CHECKING:
     from ..engine import pe, sight
@@ -27,30 +26,34 @@ AT_LEAST_M = 0.5
 FAINT = 0.25
 
 
-def reach_of_rig(found: sight.Reach, palette: Palette = VIEWPORT, name: str = "") -> LayerShape:
+def reach_of_rig(
+    found: sight.Reach, palette: graphics.Palette = graphics.VIEWPORT, name: str = ""
+) -> graphics.LayerShape:
     """Return the rig's reach with metres at some bearings; `name` says which rig, of several."""
     color = palette.reach
     title = f"{found.class_name.capitalize()} found, AP ≥ {AP:g}"
-    legend = ColorKey(title, classes=((color, name or "rig"),))
-    return LayerShape(
+    legend = graphics.ColorKey(title, classes=((color, name or "rig"),))
+    return graphics.LayerShape(
         lines=reach_lines(found, found.distance, color),
         labels=tuple(_figures(found, palette.words)),
         legend=legend,
     )
 
 
-def reach_of_sensors(found: sight.Reach, numbers: dict[str, int]) -> LayerShape:
+def reach_of_sensors(found: sight.Reach, numbers: dict[str, int]) -> graphics.LayerShape:
     """Return the reach of sensors one by one, in their colours; `numbers` are their places."""
     lines, classes = [], []
     for name, number in numbers.items():
-        color = (*sensor_color(number), 0.75)
+        color = (*graphics.sensor_color(number), 0.75)
         lines.append(reach_lines(found, found.per_sensor[name], color))
         classes.append((color, name))
-    legend = ColorKey(f"{found.class_name.capitalize()} found, AP ≥ {AP:g}", classes=tuple(classes))
-    return LayerShape(lines=Primitives.joined(lines), legend=legend)
+    legend = graphics.ColorKey(
+        f"{found.class_name.capitalize()} found, AP ≥ {AP:g}", classes=tuple(classes)
+    )
+    return graphics.LayerShape(lines=graphics.Primitives.joined(lines), legend=legend)
 
 
-def reach_lines(found: sight.Reach, distance: Floats, color: Rgba) -> Primitives:
+def reach_lines(found: sight.Reach, distance: Floats, color: graphics.Rgba) -> graphics.Primitives:
     """A closed line on the ground; faint where the space ends before the reach does."""
     cut = _at_least(found, distance)
     distance = np.where(cut, distance, rounded(distance))
@@ -61,12 +64,16 @@ def reach_lines(found: sight.Reach, distance: Floats, color: Rgba) -> Primitives
     cut = cut[closed]
     colors = np.tile(np.float32(color), (len(closed) - 1, 2, 1))
     colors[cut[:-1] & cut[1:], :, 3] *= FAINT
-    return Primitives.of(polyline(points), colors)
+    return graphics.Primitives.of(graphics.polyline(points), colors)
 
 
 def rig_reach(
-    look: sight.Sight, rig: pe.Rig, class_name: str, palette: Palette = VIEWPORT, name: str = ""
-) -> LayerShape:
+    look: sight.Sight,
+    rig: pe.Rig,
+    class_name: str,
+    palette: graphics.Palette = graphics.VIEWPORT,
+    name: str = "",
+) -> graphics.LayerShape:
     """Work out and return any rig's reach for a class: another variant's beside the scene's."""
     return reach_of_rig(look.reach(rig, class_name, ap=AP, bearings=BEARINGS), palette, name)
 
@@ -80,7 +87,7 @@ def _at_least(found: sight.Reach, distance: Floats) -> NDArray[np.bool_]:
     return distance >= found.limit - AT_LEAST_M
 
 
-def _figures(found: sight.Reach, color: Rgba) -> Iterable[Tag]:
+def _figures(found: sight.Reach, color: graphics.Rgba) -> Iterable[graphics.Tag]:
     step = max(1, len(found.bearings) // FIGURES)
     cut = _at_least(found, found.distance)
     distance = np.where(cut, found.distance, rounded(found.distance))
@@ -89,4 +96,4 @@ def _figures(found: sight.Reach, color: Rgba) -> Iterable[Tag]:
         if metres >= LEAST_FIGURE_M:
             text = f"{'≥ ' if cut[at] else ''}{metres:.0f} m"
             place = (metres * float(np.cos(angle)), metres * float(np.sin(angle)), 0.0)
-            yield Tag(text, place, with_alpha(color, 1.0))
+            yield graphics.Tag(text, place, graphics.with_alpha(color, 1.0))

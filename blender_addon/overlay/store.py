@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass
 
-from .primitives import LayerShape
+from ..engine import graphics
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -13,7 +13,7 @@ class ShownLayer:
     """A shape, and what it was made from; `rough` while something moves."""
 
     key: Hashable
-    shape: LayerShape
+    shape: graphics.LayerShape
     rough: bool
 
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Any, TypeVar
 
-from ..engine import geometry, pe, sight
-from . import casts
-from .casts import Cast
+from ..engine import geometry, graphics, pe, sight
 from .wish import PictureWish, SceneSensor
 
 T = TypeVar("T")
@@ -24,11 +22,11 @@ class Tools:
     def __init__(self) -> None:
         self._kept: dict[str, dict[Hashable, Any]] = {}
 
-    def cast(self, wish: PictureWish, of: SceneSensor) -> Cast:
+    def cast(self, wish: PictureWish, of: SceneSensor) -> graphics.Cast:
         """Return where the beams of a LiDAR end; a few of them while something moves."""
-        most = casts.A_DRAFT if wish.moving else casts.MOST
+        most = graphics.A_DRAFT if wish.moving else graphics.MOST
         key = of.key, wish.body_key, most
-        return self._keep("casts", key, lambda: casts.cast(of.sensor, self.body(wish), most))
+        return self._keep("casts", key, lambda: graphics.cast(of.sensor, self.body(wish), most))
 
     def body(self, wish: PictureWish) -> pe.Vehicle | None:
         """Return the vehicle, simplified where it has very many triangles."""

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .beams import ChannelMode
-from .ground import SENSORS
+from ..engine import graphics
 
 if TYPE_CHECKING:
     from ..engine import advice, pe
@@ -25,14 +24,14 @@ class ViewSettings:
     """Settings of what is shown, by the names that the scene has them under."""
 
     layers: frozenset[str] = frozenset()
-    ground_quantity: str = SENSORS
+    ground_quantity: str = graphics.SENSORS
     ground_height: float | None = None
     ground_opacity: float = 0.5
     blind_height: float = 0.0
     reach_class: str = "pedestrian"
     reach_of: str = RIG
     beams_of: str = ALL
-    channels: str = ChannelMode.FEW
+    channels: str = graphics.ChannelMode.FEW
     channel: int = 1
     beam_colors: str = BY_STATE
     rings: bool = True

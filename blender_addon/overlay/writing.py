@@ -10,9 +10,8 @@ import gpu
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
+from ..engine import graphics
 from .batches import shader
-from .colors import Rgba
-from .primitives import ColorKey, Tag
 
 FONT = 0
 SIZE, STRONG_SIZE = 11.0, 12.5
@@ -21,13 +20,13 @@ MARGIN, GAP = 16.0, 12.0
 GIZMOS = 330.0
 """Room for Blender's own gizmos, from the top."""
 LEAST_WIDTH, BAR, ROW = 150.0, 10.0, 17.0
-INK: Rgba = (0.92, 0.92, 0.92, 1.0)
-FAINT_INK: Rgba = (0.72, 0.72, 0.72, 1.0)
-PLATE: Rgba = (0.10, 0.10, 0.10, 0.78)
-LABEL_PLATE: Rgba = (0.08, 0.08, 0.08, 0.55)
+INK: graphics.Rgba = (0.92, 0.92, 0.92, 1.0)
+FAINT_INK: graphics.Rgba = (0.72, 0.72, 0.72, 1.0)
+PLATE: graphics.Rgba = (0.10, 0.10, 0.10, 0.78)
+LABEL_PLATE: graphics.Rgba = (0.08, 0.08, 0.08, 0.55)
 
 
-def write_labels(context: bpy.types.Context, labels: Sequence[Tag]) -> None:
+def write_labels(context: bpy.types.Context, labels: Sequence[graphics.Tag]) -> None:
     """Write labels above their places; of those that overlap the later ones are left out."""
     scale, taken = _scale(), []
     for label in sorted(labels, key=lambda each: not each.strong):
@@ -46,7 +45,7 @@ def write_labels(context: bpy.types.Context, labels: Sequence[Tag]) -> None:
         _text(label.text, x, y, label.color)
 
 
-def write_legends(context: bpy.types.Context, legends: Sequence[ColorKey]) -> None:
+def write_legends(context: bpy.types.Context, legends: Sequence[graphics.ColorKey]) -> None:
     """Write legends one above the other in the lower right corner, beside the sidebar."""
     scale = _scale()
     if _is_a_side_view(context):
@@ -60,9 +59,11 @@ def write_legends(context: bpy.types.Context, legends: Sequence[ColorKey]) -> No
         bottom = _legend(legend, (right - width, right), bottom, scale) + GAP * scale / 2.0
 
 
-def _fitting(legends: Sequence[ColorKey], height: float, scale: float) -> list[ColorKey]:
+def _fitting(
+    legends: Sequence[graphics.ColorKey], height: float, scale: float
+) -> list[graphics.ColorKey]:
     """As many of the first legends as there is room for, one at least."""
-    found: list[ColorKey] = []
+    found: list[graphics.ColorKey] = []
     for legend in legends:
         height -= _height(legend, scale) + GAP * scale / 2.0
         if height >= 0.0 or not found:
@@ -70,19 +71,21 @@ def _fitting(legends: Sequence[ColorKey], height: float, scale: float) -> list[C
     return found
 
 
-def _height(legend: ColorKey, scale: float) -> float:
+def _height(legend: graphics.ColorKey, scale: float) -> float:
     rows = len(legend.classes) + (2 if legend.scale else 0)
     return (rows + 1) * ROW * scale + PADDING * 2.0 * scale
 
 
-def _width(legend: ColorKey, scale: float) -> float:
+def _width(legend: graphics.ColorKey, scale: float) -> float:
     """How wide a legend has to be for its words."""
     names = [blf.dimensions(FONT, name)[0] + 2.2 * BAR * scale for _, name in legend.classes]
     widest = max([blf.dimensions(FONT, legend.title)[0], *names])
     return max(LEAST_WIDTH * scale, widest + PADDING * 4.0 * scale)
 
 
-def _legend(legend: ColorKey, sides: tuple[float, float], bottom: float, scale: float) -> float:
+def _legend(
+    legend: graphics.ColorKey, sides: tuple[float, float], bottom: float, scale: float
+) -> float:
     """Write one legend between its sides, standing there; return its upper edge."""
     top = bottom + _height(legend, scale)
     pad, (left, right) = PADDING * 2.0 * scale, sides
@@ -102,7 +105,9 @@ def _legend(legend: ColorKey, sides: tuple[float, float], bottom: float, scale: 
     return top
 
 
-def _bar(colors: Sequence[Rgba], left: float, bottom: float, right: float, top: float) -> None:
+def _bar(
+    colors: Sequence[graphics.Rgba], left: float, bottom: float, right: float, top: float
+) -> None:
     """A row of colours that run into each other."""
     step = (right - left) / (len(colors) - 1)
     places = [(left + step * i, y) for i in range(len(colors)) for y in (bottom, top)]
@@ -121,13 +126,13 @@ def _ticks(ticks: Sequence[str], left: float, right: float, y: float) -> None:
         _text(tick, left + share * (right - left - width), y, FAINT_INK)
 
 
-def _text(text: str, x: float, y: float, color: Rgba) -> None:
+def _text(text: str, x: float, y: float, color: graphics.Rgba) -> None:
     blf.color(FONT, *color)
     blf.position(FONT, round(x), round(y), 0.0)
     blf.draw(FONT, text)
 
 
-def _fill(box: tuple[float, float, float, float], color: Rgba) -> None:
+def _fill(box: tuple[float, float, float, float], color: graphics.Rgba) -> None:
     left, bottom, right, top = box
     plain = shader("UNIFORM_COLOR")
     corners = ((left, bottom, 0.0), (right, bottom, 0.0), (right, top, 0.0), (left, top, 0.0))

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..overlay.colors import PAPER, Rgba
-from ..overlay.kinds import drawing_of
+from ..engine import graphics
 from .lettering import FAINT_INK, Lettering
 
 if TYPE_CHECKING:
@@ -16,8 +15,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-GHOST: Rgba = (0.30, 0.32, 0.35, 1.0)
-WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
+GHOST: graphics.Rgba = (0.30, 0.32, 0.35, 1.0)
+WHITE: graphics.Rgba = (1.0, 1.0, 1.0, 1.0)
 NAME, NAME_RISE, NAME_STEP, NAME_PADDING = 18, 46, 28, 8
 LETTER_WIDTH = 0.47
 """Mean width of a letter, in its size."""
@@ -33,7 +32,7 @@ def mark_sensors(pen: Lettering, rig: pe.Rig, moves: list[tuple[Floats, Floats]]
     places = pen.view.pixels(np.array([sensor.pose.position for sensor in rig]))
     taken = [_room_of_ring(pen, start) for start, _ in moves]
     for (x, y), sensor in sorted(zip(places.tolist(), rig, strict=True), key=lambda pair: pair[0]):
-        color = drawing_of(sensor.kind).color(PAPER)
+        color = graphics.drawing_of(sensor.kind).color(graphics.PAPER)
         pen.disc((x, y), 7.5 * scale, WHITE, layer=3)
         pen.disc((x, y), 5.5 * scale, (*color[:3], 1.0), layer=4)
         half = scale * (NAME * LETTER_WIDTH * len(sensor.name) / 2 + NAME_PADDING)
@@ -62,7 +61,7 @@ def mark_moves(pen: Lettering, moves: list[tuple[Floats, Floats]]) -> None:
         pen.ring(first, scale * 6.5, GHOST, layer=3)
 
 
-def mark_rings(pen: Lettering, radii_m: tuple[float, ...], color: Rgba) -> None:
+def mark_rings(pen: Lettering, radii_m: tuple[float, ...], color: graphics.Rgba) -> None:
     """Write a ring's distance where it can be read."""
     frame, scale = pen.view.frame, pen.view.frame.scale
     for radius in radii_m:

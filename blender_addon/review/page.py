@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..engine import kinds
-from ..overlay.colors import PAPER, Rgba
-from ..overlay.kinds import drawing_of
+from ..engine import graphics, kinds
 from .camera import DESIGN_HEIGHT, Frame
 from .caption import Caption
 from .lettering import FAINT_INK, Lettering
@@ -21,9 +19,9 @@ TEXT, ROW, STRIP_PADDING = 18, 27, 30
 COLUMNS = (0, 200, 400, 600, 690, 780, 1180)
 LETTER_WIDTH = 0.47
 """Mean width of a letter, in its size."""
-STRIP: Rgba = (1.0, 1.0, 1.0, 1.0)
+STRIP: graphics.Rgba = (1.0, 1.0, 1.0, 1.0)
 
-Legend = list[tuple[str, Rgba, str]]
+Legend = list[tuple[str, graphics.Rgba, str]]
 
 
 def frame_of(rows: int, size: tuple[int, int]) -> Frame:
@@ -39,10 +37,12 @@ def legend_of(rig: pe.Rig, *, stopped: bool, moved: bool) -> Legend:
     entries: Legend = []
     for kind in kinds.KINDS.values():
         if kind.name in present:
-            drawing = drawing_of(kind.name)
-            entries.append((drawing.look.legend or kind.label, drawing.color(PAPER), "line"))
+            drawing = graphics.drawing_of(kind.name)
+            entries.append(
+                (drawing.look.legend or kind.label, drawing.color(graphics.PAPER), "line")
+            )
             if drawing.beams and stopped:
-                entries.append(("stopped by the vehicle", PAPER.stopped, "line"))
+                entries.append(("stopped by the vehicle", graphics.PAPER.stopped, "line"))
     if moved:
         entries.append(("where it started", GHOST, "ring"))
     return entries

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..overlay.colors import Rgba
-from ..overlay.primitives import Primitives
+from ..engine import graphics
 from .camera import View
 
 Floats = NDArray[np.float64]
@@ -26,7 +25,7 @@ class Faces:
     colors: Floats
 
 
-def ribbons(lines: Primitives, view: View, width_px: float) -> Faces:
+def ribbons(lines: graphics.Primitives, view: View, width_px: float) -> Faces:
     """Lines as strips that face the camera and look equally wide at any distance."""
     ends, colors = _in_steps(lines)
     along = ends[:, 1] - ends[:, 0]
@@ -43,29 +42,31 @@ def ribbons(lines: Primitives, view: View, width_px: float) -> Faces:
     return Faces(np.stack([right[:, 0], left[:, 0], left[:, 1], right[:, 1]], axis=1), colors)
 
 
-def begun_later(lines: Primitives, distance_m: float) -> Primitives:
+def begun_later(lines: graphics.Primitives, distance_m: float) -> graphics.Primitives:
     """Lines that begin that much farther on, at most at their ends."""
     points = lines.points.reshape(-1, 2, 3).astype(float)
     along = points[:, 1] - points[:, 0]
     length = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
     points[:, 0] += along * np.minimum(distance_m / length, 1.0)
-    return Primitives(points.reshape(-1, 3).astype(np.float32), lines.colors)
+    return graphics.Primitives(points.reshape(-1, 3).astype(np.float32), lines.colors)
 
 
-def triangles(faces: Primitives) -> Faces:
+def triangles(faces: graphics.Primitives) -> Faces:
     """Translucent triangles in the colour of their first corner."""
     return Faces(faces.points.reshape(-1, 3, 3).astype(float), faces.colors[::3].astype(float))
 
 
-def ring(radius_m: float, color: Rgba) -> Primitives:
+def ring(radius_m: float, color: graphics.Rgba) -> graphics.Primitives:
     """Return a circle on the ground about the origin."""
     angles = np.linspace(0.0, 2.0 * np.pi, RING_POINTS + 1)
     circle = radius_m * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
     points = np.stack([circle[:-1], circle[1:]], axis=1).reshape(-1, 3)
-    return Primitives(points.astype(np.float32), np.tile(np.float32(color), (len(points), 1)))
+    return graphics.Primitives(
+        points.astype(np.float32), np.tile(np.float32(color), (len(points), 1))
+    )
 
 
-def _in_steps(lines: Primitives) -> tuple[Floats, Floats]:
+def _in_steps(lines: graphics.Primitives) -> tuple[Floats, Floats]:
     """Cut fading lines into pieces: ends (N, 2, 3) and the mean colour of each (N, 4)."""
     points = lines.points.reshape(-1, 2, 3).astype(float)
     colors = lines.colors.reshape(-1, 2, 4).astype(float)
@@ -78,7 +79,7 @@ def _in_steps(lines: Primitives) -> tuple[Floats, Floats]:
     return np.concatenate([pieces, points[~fades]]), np.concatenate([tints, colors[~fades, 0]])
 
 
-def shadow(low: Floats, high: Floats, color: Rgba, layers: int) -> Faces:
+def shadow(low: Floats, high: Floats, color: graphics.Rgba, layers: int) -> Faces:
     """Return a soft shadow on the ground under a box: layers of rounded rectangles, growing."""
     angles = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
@@ -90,5 +91,5 @@ def shadow(low: Floats, high: Floats, color: Rgba, layers: int) -> Faces:
     return _all_in(corners, color)
 
 
-def _all_in(corners: Floats, color: Rgba) -> Faces:
+def _all_in(corners: Floats, color: graphics.Rgba) -> Faces:
     return Faces(corners, np.tile(color, (len(corners), 1)))

@@ -11,9 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import bridge
-from ..overlay.beams import BeamChoice, ChannelMode
-from ..overlay.colors import PAPER, Rgba
-from ..overlay.kinds import Look, Sketch, beam_budget, drawing_of
+from ..engine import graphics
 from . import shapes
 from .camera import View
 from .shapes import Faces
@@ -28,11 +26,11 @@ BEAMS = 760
 """Beams drawn over all LiDARs, of a few channels each: a pattern, not a wall."""
 RING_PX = 1.2
 RINGS_M = (5.0, 10.0)
-RING: Rgba = (0.55, 0.58, 0.62, 0.5)
-RING_TEXT: Rgba = (0.45, 0.48, 0.52, 1.0)
-VEHICLE: Rgba = (0.72, 0.75, 0.78, 1.0)
+RING: graphics.Rgba = (0.55, 0.58, 0.62, 0.5)
+RING_TEXT: graphics.Rgba = (0.45, 0.48, 0.52, 1.0)
+VEHICLE: graphics.Rgba = (0.72, 0.75, 0.78, 1.0)
 SHADOW_LAYERS = 10
-SHADOW: Rgba = (0.0, 0.0, 0.0, 0.05)
+SHADOW: graphics.Rgba = (0.0, 0.0, 0.0, 0.05)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,15 +39,16 @@ class Subject:
 
     study: pe.Study
     start: pe.Rig | None
-    sketches: dict[str, Sketch]
+    sketches: dict[str, graphics.Sketch]
 
     @classmethod
     def of(cls, study: pe.Study, outcome: pe.Outcome) -> Subject:
         """Choose the beams to be shown."""
-        rig, budget = study.rig, beam_budget(list(study.rig), BEAMS)
-        choice = BeamChoice(budget, ChannelMode.FEW)
+        rig, budget = study.rig, graphics.beam_budget(list(study.rig), BEAMS)
+        choice = graphics.BeamChoice(budget, graphics.ChannelMode.FEW)
         sketches = {
-            each.name: drawing_of(each.kind).sketch(each, study.vehicle, choice) for each in rig
+            each.name: graphics.drawing_of(each.kind).sketch(each, study.vehicle, choice)
+            for each in rig
         }
         return cls(study, outcome.start.rig if outcome.kind == "optimize" else None, sketches)
 
@@ -97,18 +96,18 @@ class Subject:
     def _build_view(self, stage: Stage, view: View, sensor: pe.Sensor) -> None:
         """What one sensor sees."""
         sketch, look = self.sketches[sensor.name], _look(sensor)
-        lines = sketch.lines(look.length_m, PAPER)
+        lines = sketch.lines(look.length_m, graphics.PAPER)
         if look.clear_m:
             lines = shapes.begun_later(lines, look.clear_m)
         stage.add_faces("View", shapes.ribbons(lines, view, look.line_px), view)
-        stage.add_faces("View", shapes.triangles(sketch.faces(look.length_m, PAPER)))
+        stage.add_faces("View", shapes.triangles(sketch.faces(look.length_m, graphics.PAPER)))
 
     def _positions(self) -> Floats:
         return np.array([sensor.pose.position for sensor in self.study.rig])
 
 
-def _look(sensor: pe.Sensor) -> Look:
-    return drawing_of(sensor.kind).look
+def _look(sensor: pe.Sensor) -> graphics.Look:
+    return graphics.drawing_of(sensor.kind).look
 
 
 def vehicle_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:

@@ -8,8 +8,8 @@ import numpy as np
 from blender_addon import bridge
 from blender_addon.overlay import updating
 from blender_addon.overlay.layers import LAYERS
-from blender_addon.overlay.primitives import LayerShape
 from blender_addon.overlay.store import shown
+from pe_core.graphics import LayerShape
 
 ASSETS = Path(__file__).resolve().parents[2] / "blend_assets"
 

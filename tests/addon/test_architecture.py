@@ -15,9 +15,8 @@ PACKAGE = "blender_addon"
 ARRAYS = {
     f"overlay.{name}"
     for name in (
-        *("asked", "beams", "blind", "casts", "colors", "frustums", "ghosts", "ground", "heat"),
-        *("kinds", "layers", "mounts"),
-        *("primitives", "rays", "reach", "store", "tools", "wish"),
+        *("asked", "blind", "ghosts", "heat"),
+        *("layers", "mounts", "reach", "store", "tools", "wish"),
     )
 }
 """Modules that need neither a scene nor a GPU."""
@@ -50,10 +49,10 @@ ALLOWED = {
         *("changes", "engine", "overlay", "overlay.reading", "redraw", "roster", "worker"),
     },
     "overlay.handler": {"overlay", "overlay.updating"},
-    "review": {"bridge", "engine", "overlay"},
+    "review": {"bridge", "engine"},
     "operators": {
         *("asking", "body", "bridge", "changes", "choices", "engine", "explaining", "housing"),
-        *("live", "overlay", "properties", "redraw", "review", "roster", "searching", "stale"),
+        *("live", "properties", "redraw", "review", "roster", "searching", "stale"),
         "worker",
     },
     "panels": {"choices", "operators", "properties"},

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from blender_addon.bridge.view_camera import WIDEST, shown_fov
-from blender_addon.overlay import bent, frustums
 from pe_core import Camera, FTheta, KannalaBrandt, Pinhole, Pose, Sensor
+from pe_core.graphics import bent, frustums
 
 FISHEYE = Camera("fisheye", 1280, 966, lens=FTheta(1, 1, 640, 483, None, 339.7, -32.0, 48.3, -7.2))
 OFF = Camera("off", 1000, 1000, lens=Pinhole(500.0, 500.0, 400.0, 500.0))

@@ -7,8 +7,8 @@ import bpy
 import pytest
 
 from blender_addon import body, bridge, worker
-from blender_addon.engine import pe, sight
-from blender_addon.overlay import casts, handler, updating
+from blender_addon.engine import graphics, pe, sight
+from blender_addon.overlay import handler, updating
 from blender_addon.overlay.store import shown
 from tests.addon import scenes
 
@@ -76,7 +76,7 @@ def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypat
         *((pe.Vehicle, each) for each in ("first_hit", "seen_from")),
         *((sight.Sight, each) for each in ("ground", "blind", "reach")),
         (body.shared, "read"),
-        (casts, "cast"),
+        (graphics, "cast"),
         (worker.desk, "ask"),
         (updating, "update"),
     ):

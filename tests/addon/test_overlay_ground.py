@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from blender_addon.overlay import blind, heat, reach
+from pe_core.graphics import casts, colors, ground
 from pe_core.sight import BlindGround, BlindSpot, GroundSight, Reach
-from tests.addon.overlay_alone import box, car, lidar, load, mounted
-
-blind, casts, colors, ground, heat, reach = load(
-    "blind", "casts", "colors", "ground", "heat", "reach"
-)
+from tests.engine.drawn import box, car, lidar, mounted
 
 
 def seen(entropy=None, sensors=None, step=1.0, shape=(30, 20)):
@@ -157,7 +155,7 @@ def test_sensors_have_their_own_line_and_colour():
     shape = reach.reach_of_sensors(found_reach(30.0), {"roof": 2})
     np.testing.assert_allclose(np.linalg.norm(shape.lines.points, axis=1), 15.0, rtol=1e-6)
     assert shape.legend.classes[0][1] == "roof"
-    assert shape.legend.classes[0][0][:3] == colors.SENSORS[2]
+    assert shape.legend.classes[0][0][:3] == colors.SENSOR_COLORS[2]
 
 
 def test_another_rig_has_its_line_in_another_palette():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from blender_addon import body, bridge, changes
-from blender_addon.engine import sight
+from blender_addon.engine import graphics, sight
 from blender_addon.live import latest
 from blender_addon.overlay import handler, layers, updating
 from blender_addon.overlay.store import shown
@@ -146,7 +146,7 @@ def test_the_map_is_that_of_the_engine(rig, quantity, height):
     metres = None if height == "AVERAGE" else int(height[1:]) / 100.0
     look = sight.Sight(study.space, study.prior, study.vehicle)
     found = look.ground(study.rig, metres, layers.FINE_M)
-    expected = layers.ground.ground_map(found, quantity, 1.0, faded=True).sheet
+    expected = graphics.ground_map(found, quantity, 1.0, faded=True).sheet
     np.testing.assert_allclose(sheet.image, expected.image, atol=1e-6)
 
 
@@ -159,7 +159,7 @@ def test_after_a_score_its_own_map_is_shown_until_something_moves(rig):
     np.testing.assert_array_equal(shape.sheet.image[..., 3] == 0.0, np.isnan(expected).T)
     lowest, highest = np.nanargmin(expected), np.nanargmax(expected)
     rgb = shape.sheet.image[..., :3].transpose(1, 0, 2).reshape(-1, 3)
-    quantity = layers.ground.QUANTITIES["ENTROPY"]
+    quantity = graphics.QUANTITIES["ENTROPY"]
     for place in (lowest, highest):
         value = expected.ravel()[place]
         np.testing.assert_allclose(rgb[place], quantity.colors(value), atol=1e-6)

@@ -9,7 +9,7 @@ import pytest
 from mathutils import Vector
 
 from blender_addon import bridge, operators
-from blender_addon.engine import catalog, pe
+from blender_addon.engine import catalog, graphics, pe
 from blender_addon.operators import placing, pointing, preview
 from blender_addon.operators.surface import Spot
 from tests.addon import scenes
@@ -134,7 +134,7 @@ def test_the_shape_is_worked_out_in_the_sensor_s_own_frame(car):
     shape = placing.shape_of("it", model)[0]
     placed = placing.placed_at(shape, pose)
     sensor = pe.Sensor("it", model, pose)
-    sketch = placing.drawing_of("lidar").sketch(sensor, None, placing.SHOWN)
+    sketch = graphics.drawing_of("lidar").sketch(sensor, None, placing.SHOWN)
     expected = sketch.lines(placing.LENGTH_M, placing.IN_THE_AIR).points
     assert placed.points[: len(expected)] == pytest.approx(expected, abs=1e-3)
 

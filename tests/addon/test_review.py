@@ -11,9 +11,9 @@ bpy = pytest.importorskip("bpy")
 import blender_addon  # noqa: E402
 import pe_core as pe  # noqa: E402
 from blender_addon import bridge  # noqa: E402
-from blender_addon.overlay.colors import PAPER  # noqa: E402
 from blender_addon.review import caption, render_review  # noqa: E402
 from blender_addon.review.camera import Frame, look_at  # noqa: E402
+from pe_core.graphics import PAPER  # noqa: E402
 
 SIZE = (800, 450)
 

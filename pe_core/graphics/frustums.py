@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from ..scene import Sensor
 from . import bent
 from .colors import VIEWPORT, Palette, Rgba, with_alpha
+from .models import camera_of
 from .primitives import Primitives, fan, polyline
-
-if TYPE_CHECKING:
-    from ..engine import pe
 
 Floats = NDArray[np.float64]
 
@@ -28,7 +25,7 @@ FOOT_LINE, FOOT_FACE = 0.55, 0.9
 """How strong a footprint's edge and area are, beside the pyramid's edges and sides."""
 
 
-def frustum_points(sensor: pe.Sensor, length_m: float) -> Floats:
+def frustum_points(sensor: Sensor, length_m: float) -> Floats:
     """(8, 3) pinhole, picture corners and up mark of a camera, ground frame [m].
 
     Corners: upper left, upper right, lower right, lower left as the camera sees them, `length_m`
@@ -45,23 +42,23 @@ def frustum_points(sensor: pe.Sensor, length_m: float) -> Floats:
     return points @ sensor.pose.ground_from_sensor.T + np.asarray(sensor.pose.position)
 
 
-def frustum_lines(sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
+def frustum_lines(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
     """Edges of a camera's view: pyramid, picture, and a small triangle above that says: up."""
-    if sensor.model.lens is not None:
+    if camera_of(sensor).lens is not None:
         return bent.view_lines(sensor, length_m, palette)
     points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
     return Primitives.of(points, palette.camera)
 
 
-def frustum_faces(sensor: pe.Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
+def frustum_faces(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
     """Sides of a camera's view: four triangles from the pinhole."""
-    if sensor.model.lens is not None:
+    if camera_of(sensor).lens is not None:
         return bent.view_faces(sensor, length_m, palette)
     points = frustum_points(sensor, length_m)[np.array(FACE_CORNERS).ravel()]
     return Primitives.of(points, palette.camera_face)
 
 
-def footprint(sensor: pe.Sensor, far_m: float) -> Floats:
+def footprint(sensor: Sensor, far_m: float) -> Floats:
     """(N, 3) convex outline of the ground (z = 0) that a camera looks at, as far as `far_m` [m].
 
     What the vehicle hides is not taken away. Without points when it looks at no ground.
@@ -69,7 +66,7 @@ def footprint(sensor: pe.Sensor, far_m: float) -> Floats:
     place = np.asarray(sensor.pose.position)
     if place[2] <= 0.0:
         return np.empty((0, 3))
-    if sensor.model.lens is not None:
+    if camera_of(sensor).lens is not None:
         return bent.ground_outline(sensor, far_m)
     angles = np.linspace(0.0, 2.0 * np.pi, ROUND_POINTS, endpoint=False)
     outline = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(ROUND_POINTS)]) * far_m
@@ -92,7 +89,7 @@ def footprint_faces(outline: Floats, color: Rgba) -> Primitives:
     return Primitives.of(fan(outline), with_alpha(color, color[3] * FOOT_FACE))
 
 
-def ring_lines(sensor: pe.Sensor, radius_m: float, palette: Palette = VIEWPORT) -> Primitives:
+def ring_lines(sensor: Sensor, radius_m: float, palette: Palette = VIEWPORT) -> Primitives:
     """Ring around a sensor in its own level plane, and a tick where it looks ahead."""
     angles = np.linspace(0.0, 2.0 * np.pi, RING_POINTS + 1)
     ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
@@ -102,14 +99,14 @@ def ring_lines(sensor: pe.Sensor, radius_m: float, palette: Palette = VIEWPORT) 
     return Primitives.of(points, palette.other)
 
 
-def _half_picture(sensor: pe.Sensor) -> tuple[float, float]:
+def _half_picture(sensor: Sensor) -> tuple[float, float]:
     """Half width and half height of the picture one metre ahead [m]."""
-    camera = sensor.model
+    camera = camera_of(sensor)
     side = float(np.tan(camera.hfov / 2.0))
     return side, side * camera.height / camera.width
 
 
-def _inward(sensor: pe.Sensor) -> Floats:
+def _inward(sensor: Sensor) -> Floats:
     """(4, 3) normals of the pyramid's sides, ground frame: what they point to is inside."""
     side, up = _half_picture(sensor)
     normals = np.array([[side, -1.0, 0.0], [side, 1.0, 0.0], [up, 0.0, -1.0], [up, 0.0, 1.0]])

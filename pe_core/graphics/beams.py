@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kinds import Lidar
 from .casts import Cast, around, evenly
-
-if TYPE_CHECKING:
-    from ..engine import pe
+from .models import lidar_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -66,7 +64,7 @@ def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
 
     That share is the sensor's; of one channel, that channel's own.
     """
-    lidar, few = found.sensor.model, choice.channels == ChannelMode.FEW
+    lidar, few = lidar_of(found.sensor), choice.channels == ChannelMode.FEW
     rows = np.flatnonzero(np.isin(found.rows, channels_of(lidar, choice)))
     stopped = found.stopped
     meant = stopped.reshape(len(found.rows), -1)
@@ -78,7 +76,7 @@ def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
     return Beams(found.directions[chosen], found.ends[chosen], stopped[chosen], channel, share)
 
 
-def channels_of(lidar: pe.Lidar, choice: BeamChoice) -> Ints:
+def channels_of(lidar: Lidar, choice: BeamChoice) -> Ints:
     """(C,) numbers of the channels that are shown, ascending."""
     count = len(lidar.elevations)
     if choice.channels == ChannelMode.ALL or len(lidar.azimuth_steps) < FEWEST_AZIMUTHS:
@@ -102,7 +100,7 @@ def _fair(found: Cast, rows: Ints, share: float, budget: int) -> Ints:
     """Numbers within a cast: free beams in a regular pattern, and stopped ones by their share."""
     stopped, width = found.stopped, len(found.columns)
     columns = np.searchsorted(
-        found.columns, around(found.sensor.model, budget // max(len(rows), 1))
+        found.columns, around(lidar_of(found.sensor), budget // max(len(rows), 1))
     )
     columns = np.unique(np.minimum(columns, max(width - 1, 0)))
     pattern = (rows[:, None] * width + columns).ravel()

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from tests.addon.overlay_alone import load, mounted
-
-colors, frustums, kinds = load("colors", "frustums", "kinds")
+from pe_core.graphics import colors, frustums, kinds
+from tests.engine.drawn import mounted
 
 # A square picture with 90 degrees: its corners stand at one along each axis, sqrt(3) away.
 SQUARE = pe.Camera("square", 1000, 1000, math.pi / 2)

@@ -7,9 +7,9 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
-from tests.addon.overlay_alone import box, car, lidar, load, mounted
+from pe_core.graphics import beams, casts, rays
+from tests.engine.drawn import box, car, lidar, mounted
 
-beams, casts, rays = load("beams", "casts", "rays")
 ChannelMode, BeamChoice = beams.ChannelMode, beams.BeamChoice
 
 LENGTH_M = 15.0

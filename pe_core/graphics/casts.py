@@ -7,13 +7,13 @@ and the heat on the body are read off the same cast.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from ..engine import pe
+from ..kinds import Lidar
+from ..scene import Sensor, Vehicle
+from .models import lidar_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -31,7 +31,7 @@ class Cast:
     the maximum range [m]; `face` (R * K,) the triangle of the vehicle that stops it, else -1.
     """
 
-    sensor: pe.Sensor
+    sensor: Sensor
     rows: Ints
     columns: Ints
     directions: Floats
@@ -46,12 +46,13 @@ class Cast:
     @property
     def points(self) -> Floats:
         """(R * K, 3) where the beams end, ground frame [m]."""
-        return np.asarray(self.sensor.pose.position) + self.directions * self.ends[:, None]
+        ends: Floats = self.directions * self.ends[:, None]
+        return ends + np.asarray(self.sensor.pose.position)
 
 
-def cast(sensor: pe.Sensor, vehicle: pe.Vehicle | None, most: int = MOST) -> Cast:
+def cast(sensor: Sensor, vehicle: Vehicle | None, most: int = MOST) -> Cast:
     """Cast at most that many of a LiDAR's beams, evenly chosen, against the vehicle."""
-    lidar = sensor.model
+    lidar = lidar_of(sensor)
     rows, columns = grid(lidar, most)
     numbers = (rows[:, None] * len(lidar.azimuth_steps) + columns).ravel()
     directions = lidar.directions[numbers] @ sensor.pose.ground_from_sensor.T
@@ -64,13 +65,13 @@ def cast(sensor: pe.Sensor, vehicle: pe.Vehicle | None, most: int = MOST) -> Cas
     return Cast(sensor, rows, columns, directions, ends, np.where(met, hits.face, -1))
 
 
-def grid(lidar: pe.Lidar, most: int) -> tuple[Ints, Ints]:
+def grid(lidar: Lidar, most: int) -> tuple[Ints, Ints]:
     """Channels (R,) and azimuths (K,) of an even choice of at most `most` beams, both ascending."""
     rows = evenly(len(lidar.elevations), most)
     return rows, around(lidar, most // max(len(rows), 1))
 
 
-def around(lidar: pe.Lidar, count: int) -> Ints:
+def around(lidar: Lidar, count: int) -> Ints:
     """At most `count` of the azimuths, evenly spread; of a sector the first and the last, too."""
     azimuths = len(lidar.azimuth_steps)
     count = min(count, azimuths)

@@ -6,17 +6,14 @@ leaves the vehicle's surroundings, and fades to nothing from there.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from ..scene import Sensor
 from .beams import Beams
 from .casts import Cast
+from .models import lidar_of
 from .primitives import Primitives
-
-if TYPE_CHECKING:
-    from ..engine import pe
 
 Floats = NDArray[np.float64]
 Box = tuple[Floats, Floats]
@@ -33,7 +30,7 @@ RING_JUMP = 1.35
 
 
 def free_lines(
-    sensor: pe.Sensor, beams: Beams, length_m: float, colors: Floats, around: Box | None = None
+    sensor: Sensor, beams: Beams, length_m: float, colors: Floats, around: Box | None = None
 ) -> Primitives:
     """Lines of the beams that nothing stops, two pieces each, in (N, 4) colours.
 
@@ -48,14 +45,14 @@ def free_lines(
     points[:] = sensor.pose.position
     points[:, 1:3] += (directions * leave[:, None])[:, None]
     points[:, 3] += directions * ends[:, None]
-    shown = np.repeat(np.float32(colors[free])[:, None], 4, axis=1)
+    shown = np.repeat(np.asarray(colors[free], np.float32)[:, None], 4, axis=1)
     shown[:, 0, 3] *= OVER_THE_CAR
     shown[:, 1:3, 3] *= (1.0 - leave / length_m)[:, None]
     shown[:, 3, 3] *= 1.0 - ends / length_m
     return Primitives.of(points, shown)
 
 
-def stopped_lines(sensor: pe.Sensor, beams: Beams, colors: Floats) -> Primitives:
+def stopped_lines(sensor: Sensor, beams: Beams, colors: Floats) -> Primitives:
     """Lines of the beams that the vehicle stops, one piece each, in (N, 4) colours.
 
     One that ends at once is drawn `STUB_M` long: it would not be seen otherwise.
@@ -81,12 +78,12 @@ def ground_rings(found: Cast, rows: NDArray[np.int64], colors: Floats) -> Primit
     columns = np.unique(np.linspace(0, width - 1, min(RING_AZIMUTHS, width)).round().astype(int))
     beams = lines[:, None] * width + columns
     distance = ground_distance(found.sensor, found.directions[beams.ravel()]).reshape(beams.shape)
-    meets = (found.face[beams] < 0) & (distance <= found.sensor.model.max_range)
+    meets = (found.face[beams] < 0) & (distance <= lidar_of(found.sensor).max_range)
     far = np.where(meets, distance, np.inf)
     return _joined(found, beams, far, colors[kept])
 
 
-def ground_distance(sensor: pe.Sensor, directions: Floats) -> Floats:
+def ground_distance(sensor: Sensor, directions: Floats) -> Floats:
     """(N,) distance along each direction to z = 0 [m]; inf for a beam that never gets there."""
     height, down = sensor.pose.position[2], -directions[:, 2]
     if height <= 0.0:
@@ -97,7 +94,7 @@ def ground_distance(sensor: pe.Sensor, directions: Floats) -> Floats:
 
 def _joined(found: Cast, beams: NDArray[np.int64], far: Floats, colors: Floats) -> Primitives:
     """Join neighbours of each ring (R, K) that are near each other; the last and first, too."""
-    circle = len(found.sensor.model.azimuth_steps) == found.sensor.model.azimuth_count
+    circle = len(lidar_of(found.sensor).azimuth_steps) == lidar_of(found.sensor).azimuth_count
     after = np.roll(far, -1, axis=1)
     near = np.maximum(far, after) < RING_JUMP * np.minimum(far, after)
     near &= np.minimum(far, after) < RING_FAR_M
@@ -107,12 +104,12 @@ def _joined(found: Cast, beams: NDArray[np.int64], far: Floats, colors: Floats) 
     ends = np.stack([beams[row, column], beams[row, following]], axis=1)
     distance = np.stack([far[row, column], far[row, following]], axis=1)
     points = np.asarray(found.sensor.pose.position) + (found.directions[ends] * distance[..., None])
-    shown = np.repeat(np.float32(colors[row])[:, None], 2, axis=1)
+    shown = np.repeat(np.asarray(colors[row], np.float32)[:, None], 2, axis=1)
     shown[..., 3] *= np.clip(1.0 - distance / RING_FAR_M, 0.0, 1.0)
     return Primitives.of(points, shown)
 
 
-def _leaving(sensor: pe.Sensor, directions: Floats, around: Box | None) -> Floats:
+def _leaving(sensor: Sensor, directions: Floats, around: Box | None) -> Floats:
     """(N,) distance at which directions leave a box and its surroundings; 0 outside of it [m]."""
     if around is None or not len(directions):
         return np.zeros(len(directions))

@@ -54,7 +54,7 @@ PAPER = Palette(
 )
 """For a light page."""
 
-SENSORS: tuple[tuple[float, float, float], ...] = (
+SENSOR_COLORS: tuple[tuple[float, float, float], ...] = (
     (0.34, 0.71, 0.91),
     (0.90, 0.62, 0.0),
     (0.10, 0.75, 0.55),
@@ -99,4 +99,4 @@ def with_alpha(color: tuple[float, ...], alpha: float) -> Rgba:
 
 def sensor_color(number: int) -> tuple[float, float, float]:
     """Return the colour of a rig's sensor by its place."""
-    return SENSORS[number % len(SENSORS)]
+    return SENSOR_COLORS[number % len(SENSOR_COLORS)]

@@ -8,19 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..scene import Sensor, Vehicle
 from . import bent, frustums, rays
 from .beams import BeamChoice, Beams, shown_beams
 from .casts import cast
 from .colors import VIEWPORT, Palette, Rgba
+from .models import camera_of
 from .primitives import Primitives
-
-if TYPE_CHECKING:
-    from ..engine import pe
 
 Floats = NDArray[np.float64]
 
@@ -49,7 +48,7 @@ class Sketch(Protocol):
 class BeamSketch:
     """A LiDAR, and those of its beams that are shown."""
 
-    sensor: pe.Sensor
+    sensor: Sensor
     beams: Beams
 
     @property
@@ -79,7 +78,7 @@ class BeamSketch:
 class FrustumSketch:
     """A camera's view."""
 
-    sensor: pe.Sensor
+    sensor: Sensor
     stopped = False
 
     def lines(self, length_m: float, palette: Palette) -> Primitives:
@@ -92,7 +91,7 @@ class FrustumSketch:
 
     def points(self, length_m: float) -> Floats:
         """Its corners."""
-        if self.sensor.model.lens is not None:
+        if camera_of(self.sensor).lens is not None:
             return bent.outline(self.sensor, length_m)
         return frustums.frustum_points(self.sensor, length_m)
 
@@ -101,7 +100,7 @@ class FrustumSketch:
 class RingSketch:
     """A sensor of which no more is known than where it is and where it looks."""
 
-    sensor: pe.Sensor
+    sensor: Sensor
     stopped = False
 
     def lines(self, length_m: float, palette: Palette) -> Primitives:
@@ -140,22 +139,22 @@ class Drawing:
     returns the outline of the ground that a sensor looks at, as far as some metres.
     """
 
-    sketch: Callable[[pe.Sensor, pe.Vehicle | None, BeamChoice], Sketch]
+    sketch: Callable[[Sensor, Vehicle | None, BeamChoice], Sketch]
     color: Callable[[Palette], Rgba]
     look: Look
     beams: bool = False
-    footprint: Callable[[pe.Sensor, float], Floats] | None = None
+    footprint: Callable[[Sensor, float], Floats] | None = None
 
 
-def _lidar(sensor: pe.Sensor, vehicle: pe.Vehicle | None, choice: BeamChoice) -> BeamSketch:
+def _lidar(sensor: Sensor, vehicle: Vehicle | None, choice: BeamChoice) -> BeamSketch:
     return BeamSketch(sensor, shown_beams(cast(sensor, vehicle), choice))
 
 
-def _camera(sensor: pe.Sensor, *_: object) -> FrustumSketch:
+def _camera(sensor: Sensor, *_: object) -> FrustumSketch:
     return FrustumSketch(sensor)
 
 
-def _other(sensor: pe.Sensor, *_: object) -> RingSketch:
+def _other(sensor: Sensor, *_: object) -> RingSketch:
     return RingSketch(sensor)
 
 
@@ -182,7 +181,7 @@ def drawing_of(kind: str) -> Drawing:
     return DRAWINGS.get(kind, OTHER)
 
 
-def beam_budget(sensors: list[pe.Sensor], most: int) -> int:
+def beam_budget(sensors: list[Sensor], most: int) -> int:
     """Return how many beams each sensor that has some may show, at least one."""
     sharing = sum(drawing_of(sensor.kind).beams for sensor in sensors)
     return max(1, most // max(1, sharing))

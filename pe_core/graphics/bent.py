@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from ..scene import Sensor
 from .colors import Palette
+from .models import camera_of
 from .primitives import Primitives, polyline
-
-if TYPE_CHECKING:
-    from ..engine import pe
 
 Floats = NDArray[np.float64]
 
@@ -21,13 +18,13 @@ MARK_SIDE = 0.06
 """Half the width of the mark that says up, in lengths of the view."""
 
 
-def outline(sensor: pe.Sensor, length_m: float) -> Floats:
+def outline(sensor: Sensor, length_m: float) -> Floats:
     """(N, 3) points round a camera's view, `length_m` from it, ground frame [m]."""
-    rays = sensor.model.outline(PLACES) @ sensor.pose.ground_from_sensor.T
+    rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
     return rays * length_m + np.asarray(sensor.pose.position)
 
 
-def view_lines(sensor: pe.Sensor, length_m: float, palette: Palette) -> Primitives:
+def view_lines(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
     """Edges of a view: from the camera to the corners, the curved outline, and the mark for up."""
     points, place = outline(sensor, length_m), np.asarray(sensor.pose.position)
     spokes = np.stack([np.broadcast_to(place, (4, 3)), points[::PLACES]], axis=1).reshape(-1, 3)
@@ -36,7 +33,7 @@ def view_lines(sensor: pe.Sensor, length_m: float, palette: Palette) -> Primitiv
     return Primitives.of(lines, palette.camera)
 
 
-def view_faces(sensor: pe.Sensor, length_m: float, palette: Palette) -> Primitives:
+def view_faces(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
     """Sides of a view: triangles from the camera to its outline."""
     points = outline(sensor, length_m)
     place = np.broadcast_to(np.asarray(sensor.pose.position), points.shape)
@@ -44,13 +41,13 @@ def view_faces(sensor: pe.Sensor, length_m: float, palette: Palette) -> Primitiv
     return Primitives.of(sides.reshape(-1, 3), palette.camera_face)
 
 
-def ground_outline(sensor: pe.Sensor, far_m: float) -> Floats:
+def ground_outline(sensor: Sensor, far_m: float) -> Floats:
     """(N, 3) outline of the ground (z = 0) that a camera looks at, as far as `far_m` [m].
 
     What the vehicle hides is not taken away. Without points when it looks at no ground.
     """
     place = np.asarray(sensor.pose.position)
-    rays = sensor.model.outline(PLACES) @ sensor.pose.ground_from_sensor.T
+    rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
     flat = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 1e-9)
     steep = place[2] / far_m
     down = np.maximum(-rays[:, 2] / flat, steep)
@@ -61,7 +58,7 @@ def ground_outline(sensor: pe.Sensor, far_m: float) -> Floats:
     return points
 
 
-def _mark(sensor: pe.Sensor, top: Floats, length_m: float) -> Floats:
+def _mark(sensor: Sensor, top: Floats, length_m: float) -> Floats:
     """(6, 3) ends of the lines of a small triangle over the middle of the upper edge."""
     axes = sensor.pose.ground_from_sensor
     up, left = axes[:, 2], axes[:, 1] * length_m * MARK_SIDE

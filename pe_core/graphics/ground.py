@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..scene import PerceptionSpace
+from ..scoring import GroundMap
+from ..sight import GroundSight
 from .colors import CIVIDIS, COUNTS, VIRIDIS, Rgba, Scale, on_scale
 from .primitives import ColorKey, GroundSheet, LayerShape
-
-if TYPE_CHECKING:
-    from ..engine import pe, sight
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +43,7 @@ class Quantity:
     def swatches(self) -> tuple[Rgba, ...]:
         """Colours from the low end to the high one."""
         row = on_scale(np.linspace(0.0, 1.0, SWATCHES), self.scale)
-        return tuple((*map(float, color), 1.0) for color in row)
+        return tuple((float(r), float(g), float(b), 1.0) for r, g, b in row)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,7 +68,7 @@ QUANTITIES = {
 
 
 def ground_map(
-    seen: sight.GroundSight | AsScored,
+    seen: GroundSight | AsScored,
     quantity: str,
     opacity: float,
     *,
@@ -97,7 +96,7 @@ def ground_map(
     return LayerShape(sheet=_sheet(seen, image.transpose(1, 0, 2)), legend=legend)
 
 
-def as_scored(found: pe.GroundMap, space: pe.PerceptionSpace, step: float) -> AsScored:
+def as_scored(found: GroundMap, space: PerceptionSpace, step: float) -> AsScored:
     """Return the ground map of a score in squares of about `step` [m]."""
     columns = max(1, round(step / space.interval))
     coarse, side = found.coarser(columns), columns * space.interval
@@ -109,14 +108,14 @@ def as_scored(found: pe.GroundMap, space: pe.PerceptionSpace, step: float) -> As
     return AsScored(x, y, side, coarse.entropy, coarse.coverage, nobody)
 
 
-def _sheet(seen: sight.GroundSight | AsScored, image: NDArray[np.float32]) -> GroundSheet:
+def _sheet(seen: GroundSight | AsScored, image: NDArray[np.float32]) -> GroundSheet:
     half = seen.step / 2.0
     low = (float(seen.x[0]) - half, float(seen.y[0]) - half)
     high = (float(seen.x[-1]) + half, float(seen.y[-1]) + half)
     return GroundSheet(np.ascontiguousarray(image, np.float32), low, high).prepared()
 
 
-def _fading(seen: sight.GroundSight | AsScored) -> Floats:
+def _fading(seen: GroundSight | AsScored) -> Floats:
     """(NX, NY) 0 at the edges, 1 from `FADE_M` on."""
     x, y = (np.minimum(v - v[0], v[-1] - v) + seen.step / 2.0 for v in (seen.x, seen.y))
     edge = np.clip(np.minimum(x[:, None], y[None]) / FADE_M, 0.0, 1.0)

@@ -1,28 +1,8 @@
-"""The overlay's arrays loaded without the add-on around them: they need no Blender."""
-
-import importlib
-import importlib.util
-import sys
-from pathlib import Path
-from types import ModuleType
+"""A car that is a box, and sensors on it: what drawings of sensors are tried on."""
 
 import numpy as np
 
 import pe_core as pe
-
-OVERLAY = Path(__file__).resolve().parents[2] / "blender_addon" / "overlay"
-NAME = "overlay_alone"
-
-
-def load(*names: str) -> list[ModuleType]:
-    """Return modules of the overlay; the add-on's own package would ask for bpy."""
-    if NAME not in sys.modules:
-        spec = importlib.util.spec_from_file_location(
-            NAME, OVERLAY / "__init__.py", submodule_search_locations=[str(OVERLAY)]
-        )
-        sys.modules[NAME] = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(sys.modules[NAME])
-    return [importlib.import_module(f"{NAME}.{each}") for each in names]
 
 
 def box(low, high) -> pe.Vehicle:

@@ -1,0 +1,97 @@
+"""What is drawn of sensors and of what they see: plain arrays, colours and words.
+
+Blender's 3D view, the review's picture and the page draw the same ones, each in its own way. No
+scene of Blender's, no GPU.
+"""
+
+from .beams import BeamChoice, Beams, ChannelMode, channels_of, shown_beams
+from .bent import outline
+from .casts import A_DRAFT, MOST, Cast, cast
+from .colors import (
+    COUNTS,
+    PAPER,
+    VIEWPORT,
+    VIRIDIS,
+    Palette,
+    Rgba,
+    on_scale,
+    sensor_color,
+    with_alpha,
+)
+from .frustums import (
+    footprint,
+    footprint_faces,
+    footprint_lines,
+    frustum_faces,
+    frustum_lines,
+    frustum_points,
+    ring_lines,
+)
+from .ground import (
+    AS_SCORED,
+    COUNT_NAMES,
+    COVERAGE,
+    ENTROPY,
+    QUANTITIES,
+    SENSORS,
+    SWATCHES,
+    as_scored,
+    ground_map,
+)
+from .kinds import DRAWINGS, Look, Sketch, beam_budget, drawing_of
+from .primitives import ColorKey, GroundSheet, LayerShape, Primitives, Tag, fan, polyline
+from .rays import free_lines, ground_distance, ground_rings, stopped_lines
+
+__all__ = [
+    "AS_SCORED",
+    "A_DRAFT",
+    "COUNTS",
+    "COUNT_NAMES",
+    "COVERAGE",
+    "DRAWINGS",
+    "ENTROPY",
+    "MOST",
+    "PAPER",
+    "QUANTITIES",
+    "SENSORS",
+    "SWATCHES",
+    "VIEWPORT",
+    "VIRIDIS",
+    "BeamChoice",
+    "Beams",
+    "Cast",
+    "ChannelMode",
+    "ColorKey",
+    "GroundSheet",
+    "LayerShape",
+    "Look",
+    "Palette",
+    "Primitives",
+    "Rgba",
+    "Sketch",
+    "Tag",
+    "as_scored",
+    "beam_budget",
+    "cast",
+    "channels_of",
+    "drawing_of",
+    "fan",
+    "footprint",
+    "footprint_faces",
+    "footprint_lines",
+    "free_lines",
+    "frustum_faces",
+    "frustum_lines",
+    "frustum_points",
+    "ground_distance",
+    "ground_map",
+    "ground_rings",
+    "on_scale",
+    "outline",
+    "polyline",
+    "ring_lines",
+    "sensor_color",
+    "shown_beams",
+    "stopped_lines",
+    "with_alpha",
+]

@@ -37,11 +37,12 @@ class PE_OT_export_rig(ExportHelper, bpy.types.Operator):
         return super().invoke(context, event)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        scene, several = context.scene, len(exchange.rig_format(self.format).files) > 1
+        scene, row = context.scene, exchange.rig_format(self.format)
         try:
             path = chosen_file(self.filepath)
             study = bridge.study_from_scene(scene, context.evaluated_depsgraph_get())
-            replace = self.replace or not several  # of one file the dialog has asked
+            # Of one file the dialog has asked.
+            replace = self.replace or not (row.beside or len(row.files) > 1)
             wanted = (study.rig, self.format, path, study.reference)
             paths, lines = pe.export_rig(*wanted, replace=replace)
         except REFUSALS as error:

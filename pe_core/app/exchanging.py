@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..errors import InputError
-from ..exchange import RIG_FORMATS, ImportedRig, export_rig, import_rig
+from ..exchange import RIG_FORMATS, ImportedRig, export_rig, import_rig, read_vehicle_info
 from ..formats import read_mesh
 from ..outputs import SCENE_OUTPUTS, export_scene
 from ..scene import Pose, Reference, Vehicle, guessed_reference
@@ -56,6 +56,8 @@ def _add_axle_options(parser: argparse.ArgumentParser) -> None:
     where = parser.add_mutually_exclusive_group()
     about = "middle of the rear axle: forward of the origin, above the ground [m]"
     where.add_argument("--rear-axle", type=float, nargs=2, metavar=("X", "Z"), help=about)
+    about = "take it from Autoware's vehicle_info.param.yaml"
+    where.add_argument("--vehicle-info", metavar="FILE", help=about)
     about = "take it from parts that are named as wheels"
     where.add_argument("--guess-rear-axle", action="store_true", help=about)
 
@@ -104,6 +106,8 @@ def _reference(
     """Return where the axles are: as the options say, or else as the study does."""
     if args.rear_axle is not None:
         return Reference(*args.rear_axle)
+    if args.vehicle_info is not None:
+        return read_vehicle_info(args.vehicle_info)
     if not args.guess_rear_axle:
         return known
     guess = guessed_reference(vehicle)

@@ -1,7 +1,9 @@
 """Autoware's sensor kit: sensors_calibration.yaml and sensor_kit_calibration.yaml.
 
 base_link is the rear axle on the ground; metres, radians. A camera's frame is NAME/camera_link,
-with our axes; a LiDAR's is NAME_base_link, at the foot of its housing where that is known.
+with our axes; a LiDAR's is NAME_base_link, at the foot of its housing where that is known; a name
+that ends in _link is the frame's own. Written over a kit that is there, its structure stays: where
+the kit is, whose frames are in it and whose on base_link, their order, and what is no sensor.
 """
 
 from __future__ import annotations
@@ -14,14 +16,15 @@ from ..errors import InputError
 from ..scene.geometry import Pose
 from ..text.tables import Table
 from ..text.yaml_blocks import parse_yaml_blocks
+from .camera_info import info_files, with_info
 from .carried import CAMERA, LIDAR, CarriedSensor
 from .files import Written, named_numbers, plain_number, pose_from, text_of
 from .frame_names import with_legal_frames
-from .frames import composed
+from .frames import composed, pose_of, product, turned
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
-LENS_FRAME, FOOT_FRAME = "/camera_link", "_base_link"
+LENS_FRAME, FOOT_FRAME, OWN_FRAME = "/camera_link", "_base_link", "_link"
 PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
 FEET_M = {"VLP-16": 0.0377, "Pandar40P": 0.047}
 """From the foot of a housing up to the centre of the scan, as tier4's sensor_component_description
@@ -36,14 +39,35 @@ def foot_of(model: str | None) -> float:
 
 
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
-    """Return the kit's two files."""
-    named, lines = with_legal_frames(sensors)
-    kit = _kit(named)
-    frames = {each.name: _in_kit(each, kit) for each in named}
+    """Return the kit's two files, and its cameras' lenses."""
+    return _written(sensors, {KIT: _kit(sensors)}, {})
+
+
+def write_over(folder: Path, sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
+    """Return the files of a kit that is there, with the sensors of ours where they are now."""
+    base, kit = dict(_frames(folder / TO_KIT, BASE)), dict(_frames(folder / IN_KIT, KIT))
+    if KIT not in base:
+        raise InputError(folder / TO_KIT, BASE, KIT, ", ".join(base))
+    return _written(sensors, base, kit)
+
+
+def _written(
+    sensors: tuple[CarriedSensor, ...], base: Mapping[str, Pose], kit: Mapping[str, Pose]
+) -> tuple[Written, list[str]]:
+    """Return the files, from frames that stand on base_link and in the kit; others go into it."""
+    named, lines = with_legal_frames(sensors, slashes=True)
+    own = {_frame(each): each for each in named}
+    in_base = {f: (_seen_from(None, own[f]), _model(own[f])) for f in base if f in own}
+    movable = [f for f in (*kit, *own) if f in own and f not in base]
+    others = {f: _seen_from(base[KIT], own[f]) for f in movable}
+    in_kit = {f: (pose, _model(own[f])) for f, pose in others.items()}
+    kept = [f for f in (*base, *kit) if f not in own and f != KIT]
     files = {
-        TO_KIT: _yaml(BASE, {KIT: (kit, "")}),
-        IN_KIT: _yaml(KIT, {_frame(s): (frames[s.name], s.model or "") for s in named}),
+        TO_KIT: _yaml(BASE, {f: in_base.get(f, (pose, "")) for f, pose in base.items()}),
+        IN_KIT: _yaml(KIT, {f: (kit[f], "") for f in kit} | in_kit),
+        **info_files(named),
     }
+    lines += [f"{frame}: kept as it stood in the kit" for frame in kept]
     lines += [
         f"{s.name}: its frame is written at the centre of its scan; Autoware's description of "
         f"{s.model} may want the foot of the housing"
@@ -60,15 +84,28 @@ def _kit(sensors: Sequence[CarriedSensor]) -> Pose:
     return Pose((x, y, z))
 
 
-def _in_kit(each: CarriedSensor, kit: Pose) -> Pose:
+def _seen_from(kit: Pose | None, each: CarriedSensor) -> Pose:
+    """Return a sensor's frame in the kit, or on base_link."""
     frame = each.pose
-    if each.kind == LIDAR:
+    if each.kind == LIDAR and foot_of(each.model):
         frame = composed(frame, Pose((0.0, 0.0, -foot_of(each.model))))
-    x, y, z = (a - b for a, b in zip(frame.position, kit.position, strict=True))
-    return Pose((x, y, z), frame.rpy)
+    if kit is None:
+        return frame
+    apart = [a - b for a, b in zip(frame.position, kit.position, strict=True)]
+    if kit.rpy == (0.0, 0.0, 0.0):
+        x, y, z = apart
+        return Pose((x, y, z), frame.rpy)
+    back = kit.ground_from_sensor.T
+    return pose_of(product(back, frame.ground_from_sensor), turned(back, apart))
+
+
+def _model(each: CarriedSensor) -> str:
+    return each.model or ""
 
 
 def _frame(each: CarriedSensor) -> str:
+    if each.name.endswith(OWN_FRAME):
+        return each.name
     return each.name + {CAMERA: LENS_FRAME, LIDAR: FOOT_FRAME}.get(each.kind or "", "")
 
 
@@ -98,7 +135,8 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
         raise InputError(folder / TO_KIT, BASE, KIT, ", ".join(poses))
     kit = poses.pop(KIT)
     inside = {name: composed(kit, pose) for name, pose in _frames(folder / IN_KIT, KIT)}
-    return tuple(_sensor(name, pose) for name, pose in {**inside, **poses}.items())
+    found = [_sensor(name, pose) for name, pose in {**inside, **poses}.items()]
+    return with_info(folder, found)
 
 
 def _frames(path: Path, parent: str) -> Iterator[tuple[str, Pose]]:
@@ -119,8 +157,7 @@ def _sensor(frame: str, pose: Pose) -> CarriedSensor:
     if frame.endswith(LENS_FRAME):
         return CarriedSensor(frame.removesuffix(LENS_FRAME), pose, CAMERA)
     name = frame.removesuffix(FOOT_FRAME)
-    kind = LIDAR if name != frame and not {"imu", "gnss"} & set(name.split("_")) else None
-    return CarriedSensor(name, pose, kind)
+    return CarriedSensor(name, pose, LIDAR if name != frame else None)
 
 
 def lifted(each: CarriedSensor) -> CarriedSensor:

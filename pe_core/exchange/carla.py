@@ -10,8 +10,9 @@ from typing import Any
 from ..errors import InputError
 from ..text.tables import Table
 from ..text.values import Number, Whole
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture, Scan, uneven
+from .carried import CAMERA, LIDAR, CarriedSensor, Scan, uneven
 from .files import Written, json_bytes, json_of, json_rows, named_numbers, pose_from
+from .pictures import Picture, picture_of_fov
 
 FILE = "objects.json"
 TYPES = {CAMERA: "sensor.camera.rgb", LIDAR: "sensor.lidar.ray_cast"}
@@ -89,9 +90,8 @@ def _sensor(path: Path, row: Table) -> CarriedSensor:
 
 
 def _picture(row: Table) -> Picture:
-    width, height = row.whole("image_size_x"), row.whole("image_size_y")
-    focal = width / (2.0 * math.tan(math.radians(row.number("fov", rule=FOV)) / 2.0))
-    return Picture(focal, focal, width / 2.0, height / 2.0, (width, height))
+    size = row.whole("image_size_x"), row.whole("image_size_y")
+    return picture_of_fov(math.radians(row.number("fov", rule=FOV)), size)
 
 
 def _scan(row: Table) -> Scan:

@@ -11,10 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinds.camera import Camera, Pinhole
+from ..errors import InputError
+from ..kinds.camera import Camera, Lens
+from ..kinds.camera.lens.field import fold_angle
 from ..kinds.lidar import Lidar
 from ..scene.geometry import Pose
 from ..scene.sensors import Rig, Sensor
+from .pictures import KeptPicture, Picture, lost
 
 Floats = NDArray[np.float64]
 
@@ -23,28 +26,6 @@ CAMERA, LIDAR = Camera.kind, Lidar.kind
 
 EVEN_RAD = 1e-4
 """Channels nearer to even distances than this are even."""
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """A camera's picture: focal lengths, principal point and size [px].
-
-    The size is None where a format does not say it; `distortion` names what bends it, if anything
-    does: no format here has that.
-    """
-
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    size: tuple[int, int] | None = None
-    distortion: str = ""
-
-    @property
-    def is_plain(self) -> bool:
-        """Whether its pixels are square and its principal point is in the middle."""
-        width, height = self.size or (0, 0)
-        return self.fx == self.fy and (2.0 * self.cx, 2.0 * self.cy) == (width, height)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +68,8 @@ class CarriedSensor:
     picture : Picture or None
     scan : Scan or None
     fusion : str or None
+    told : str
+        What has to be known of how it was read, if anything.
     """
 
     name: str
@@ -96,6 +79,7 @@ class CarriedSensor:
     picture: Picture | None = None
     scan: Scan | None = None
     fusion: str | None = None
+    told: str = ""
 
     def moved(self, pose: Pose) -> CarriedSensor:
         """Return the same sensor elsewhere."""
@@ -131,24 +115,59 @@ def uneven(sensors: Iterable[CarriedSensor], asking: str) -> list[str]:
     return lines
 
 
-def bent(sensors: Iterable[CarriedSensor], asking: str) -> list[str]:
-    """Return a line for each camera whose distortion is left out."""
-    told = "{0}: the distortion ({1}) of {2} is left out of {3}"
-    return [
-        told.format(s.name, s.picture.distortion, s.model, asking)
-        for s in sensors
-        if s.picture is not None and s.picture.distortion
-    ]
+def with_pictures(
+    sensors: Iterable[CarriedSensor], kept: KeptPicture, asking: str
+) -> tuple[tuple[CarriedSensor, ...], list[str]]:
+    """Return sensors with what a format keeps of their pictures, and lines on what it leaves."""
+    done, lines = [], []
+    for each in sensors:
+        if each.picture is not None:
+            left = lost(each.picture, kept(each.picture))
+            lines += [f"{each.name}: the {what} of {each.model} is left out of {asking}"
+                      for what in left]  # fmt: skip
+            each = replace(each, picture=kept(each.picture))
+        done.append(each)
+    return tuple(done), lines
 
 
-def camera_of(name: str, p: Picture) -> Camera:
-    """Return the camera of a picture; one without a size has its principal point in the middle."""
-    if p.size is None:
-        p = replace(p, size=(round(2.0 * p.cx), round(2.0 * p.cy)))
-    width, height = p.size or (0, 0)
-    if p.is_plain:
-        return Camera(name, width, height, 2.0 * math.atan(width / (2.0 * p.fx)))
-    return Camera(name, width, height, lens=Pinhole(p.fx, p.fy, p.cx, p.cy))
+def picture_of(model: object) -> Picture | None:
+    """Return a camera's picture; None of what is no camera."""
+    if not isinstance(model, Camera):
+        return None
+    return Picture(model.projection, (model.width, model.height))
+
+
+def camera_of(name: str, p: Picture) -> tuple[Camera, str]:
+    """Return the camera of a picture, and a line on what was made up of it, or nothing.
+
+    One without a size has its principal point in the middle. A lens that folds inside the picture
+    sees as far as it does not.
+    """
+    if p.size is not None:
+        return _camera(name, p, p.size)
+    width, height = (round(2.0 * middle) for middle in p.center)
+    model, _ = _camera(name, p, (width, height))
+    return model, f"{name}: no size in the file; {width} x {height} px has its middle there"
+
+
+def _camera(name: str, p: Picture, size: tuple[int, int]) -> tuple[Camera, str]:
+    if replace(p, size=size).is_plain:
+        return Camera(name, *size, 2.0 * math.atan(size[0] / (2.0 * p.fx))), ""
+    try:
+        return Camera(name, *size, lens=p.lens), ""
+    except InputError:
+        if p.lens.fov is not None:
+            raise
+    cut = _unfolded(p.lens)
+    told = f"{name}: its lens folds inside the picture; what is farther than {{:g}} deg from the "
+    line = told.format(math.degrees(cut.fov or 0.0) / 2.0) + "axis is left out"
+    return Camera(name, *size, lens=cut), line
+
+
+def _unfolded(lens: Lens) -> Lens:
+    """Return a lens that sees as far as it can be inverted, to a tenth of a degree."""
+    degrees = math.floor(math.degrees(2.0 * fold_angle(lens)) * 10.0) / 10.0
+    return replace(lens, fov=math.radians(max(degrees, 0.1)))
 
 
 def lidar_of(name: str, scan: Scan) -> Lidar:
@@ -166,16 +185,11 @@ def _carried(sensor: Sensor) -> CarriedSensor:
     model = sensor.model
     figures: dict[str, Any] = {}
     if isinstance(model, Camera):
-        figures["picture"] = _picture(model)
+        figures["picture"] = picture_of(model)
     elif isinstance(model, Lidar):
         figures["scan"] = _scan(model)
     known = (sensor.name, sensor.pose, sensor.kind, model.name)
     return CarriedSensor(*known, fusion=sensor.fusion, **figures)
-
-
-def _picture(model: Camera) -> Picture:
-    lens, size = model.projection, (model.width, model.height)
-    return Picture(lens.fx, lens.fy, lens.cx, lens.cy, size, "" if lens.is_straight else lens.model)
 
 
 def _scan(model: Lidar) -> Scan:

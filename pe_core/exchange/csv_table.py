@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from pathlib import Path
 
 from ..errors import InputError, shown
+from ..kinds.camera.lens import LENSES
+from ..kinds.camera.lens.table import FOV_DEG
+from ..text.values import choice
 from .carried import CarriedSensor
 from .files import Written, plain_number, pose_from, text_of
+from .pictures import Picture
 
 FILE = "rig.csv"
 PLACE, TURN = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
-COLUMNS = ("name", "kind", "model", *PLACE, *TURN, "fusion")
+FIGURES = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
+LENS = (*FIGURES, "lens", "coefficients", "fov_deg")
+COLUMNS = ("name", "kind", "model", *PLACE, *TURN, "fusion", *LENS)
 HEAD = """\
 # Origin on the ground under the vehicle's centre; x forward, y left, z up; metres, degrees.
 # R = Rz(yaw) Ry(pitch) Rx(roll); positive pitch is nose down; a camera looks along its x axis.
+# Lenses: pinhole; brown-conrady k1 k2 p1 p2 k3 k4 k5 k6; kannala-brandt k1 k2 k3 k4;
+# f-theta k1 to k6.
 """
 
 
@@ -28,8 +37,28 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     for each in sensors:
         numbers = (*each.pose.position, *each.pose.rotation_deg)
         figures = [plain_number(v) for v in numbers]
-        table.writerow([each.name, each.kind, each.model, *figures, each.fusion or ""])
+        table.writerow(
+            [
+                each.name,
+                each.kind,
+                each.model,
+                *figures,
+                each.fusion or "",
+                *_lens_cells(each.picture),
+            ]
+        )
     return {FILE: out.getvalue().encode()}, []
+
+
+def _lens_cells(picture: Picture | None) -> list[str]:
+    """Return what the columns of a lens hold; they are empty for what is no camera."""
+    if picture is None or picture.size is None:
+        return [""] * len(LENS)
+    lens = picture.lens
+    figures = [plain_number(v) for v in (lens.fx, lens.fy, lens.cx, lens.cy)]
+    values = " ".join(plain_number(getattr(lens, key)) for key in lens.coefficients)
+    fov = "" if lens.fov is None else plain_number(math.degrees(lens.fov))
+    return [*map(str, picture.size), *figures, lens.model, values, fov]
 
 
 def read(path: Path) -> tuple[CarriedSensor, ...]:
@@ -46,13 +75,35 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
 
 
 def _read_row(path: Path, number: int, row: dict[str, str]) -> CarriedSensor:
-    numbers = []
-    for key in (*PLACE, *TURN):
-        try:
-            numbers.append(float(row[key]))
-        except (TypeError, ValueError):
-            field = f"row {number + 1}, {key}"
-            raise InputError(path, field, "a number", shown(row[key])) from None
+    numbers = [_number(path, number, row, key) for key in (*PLACE, *TURN)]
     pose = pose_from(path, f"row {number + 1}", numbers[:3], numbers[3:], degrees=True)
     kind, model, fusion = (row.get(key) or None for key in ("kind", "model", "fusion"))
-    return CarriedSensor(row["name"], pose, kind, model, fusion=fusion)
+    return CarriedSensor(row["name"], pose, kind, model, _picture(path, number, row), fusion=fusion)
+
+
+def _number(path: Path, number: int, row: dict[str, str], key: str) -> float:
+    try:
+        return float(row[key])
+    except (TypeError, ValueError):
+        field = f"row {number + 1}, {key}"
+        raise InputError(path, field, "a number", shown(row[key])) from None
+
+
+def _picture(path: Path, number: int, row: dict[str, str]) -> Picture | None:
+    """Return the lens of a row; None where its columns are empty."""
+    if not all(row.get(key) for key in FIGURES):
+        return None
+    width, height, *place = (_number(path, number, row, key) for key in FIGURES)
+    lens = LENSES[choice(path, f"row {number + 1}, lens", row.get("lens") or "pinhole", LENSES)]
+    words, field = (row.get("coefficients") or "").split(), f"row {number + 1}, coefficients"
+    if len(words) > len(lens.coefficients):
+        expected = f"at most {len(lens.coefficients)} of a {lens.model} lens"
+        raise InputError(path, field, expected, len(words))
+    values = [_number(path, number, {"coefficients": word}, "coefficients") for word in words]
+    fov = None
+    if row.get("fov_deg"):
+        degrees = _number(path, number, row, "fov_deg")
+        fov = math.radians(FOV_DEG.checked(path, f"row {number + 1}, fov_deg", degrees))
+    figures = dict(zip(lens.coefficients, values, strict=False))
+    fx, fy, cx, cy = place
+    return Picture(lens(fx, fy, cx, cy, fov, **figures), (int(width), int(height)))

@@ -5,16 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError, shown
+from ..errors import InputError
 from ..text.tables import Table
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture
-from .files import Written, json_bytes, json_of, json_rows, plain_number, pose_from
+from .carried import CAMERA, LIDAR, CarriedSensor
+from .driveworks_lens import read_properties, write_properties
+from .files import Written, json_bytes, json_of, json_rows, pose_from
 
 FILE = "rig.json"
 POSE, TURN, PLACE = "nominalSensor2Rig_FLU", "roll-pitch-yaw", "t"
 PROTOCOLS = {CAMERA: "camera.gmsl", LIDAR: "lidar.virtual"}
 """Protocols to write; kinds are read from the word before the dot."""
-LENS = ("fx", "fy", "cx", "cy")
 
 
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
@@ -25,12 +25,7 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
 
 
 def _row(each: CarriedSensor) -> dict[str, Any]:
-    properties: dict[str, str] = {}
-    p = each.picture
-    if p is not None and p.size is not None:
-        lens = zip(LENS, (p.fx, p.fy, p.cx, p.cy), strict=True)
-        properties = {"Model": "pinhole", "width": str(p.size[0]), "height": str(p.size[1])}
-        properties |= {key: plain_number(value) for key, value in lens}
+    properties = {} if each.picture is None else write_properties(each.picture)
     return {
         "name": each.name,
         "protocol": PROTOCOLS.get(each.kind or "", "virtual"),
@@ -56,21 +51,6 @@ def _sensor(path: Path, row: Table) -> CarriedSensor:
     kind = word if word in PROTOCOLS else None
     _, _, model = row.text("parameter", "").partition("model=")
     where = pose_from(path, pose.path, place, turn, degrees=True)
-    picture = _picture(row.table("properties")) if kind == CAMERA else None
-    return CarriedSensor(row.text("name"), where, kind, model.split(",")[0] or None, picture)
-
-
-def _picture(properties: Table) -> Picture | None:
-    """Return a pinhole's picture; another model's is left to be chosen."""
-    if not all(key in properties for key in (*LENS, "width", "height")):
-        return None
-    fx, fy, cx, cy, width, height = (_number(properties, key) for key in (*LENS, "width", "height"))
-    return Picture(fx, fy, cx, cy, (int(width), int(height)))
-
-
-def _number(properties: Table, key: str) -> float:
-    value = properties.raw(key)
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise properties.error(key, "a number", shown(value)) from None
+    found = read_properties(row.table("properties")) if kind == CAMERA else (None, "")
+    named = row.text("name"), where, kind, model.split(",")[0] or None
+    return CarriedSensor(*named, found[0], told=found[1])

@@ -9,9 +9,9 @@ from ..errors import InputError
 from ..scene.reference import Reference
 from ..scene.sensors import Rig
 from ..text.files import write_bytes
-from .carried import bent, carried
+from .carried import CarriedSensor, carried, with_pictures
 from .frames import origin_in_ground, shifted
-from .table import rig_format
+from .table import RigFormat, rig_format
 
 
 def rig_files(
@@ -38,11 +38,18 @@ def rig_files(
         When there is no such format, it needs the rear axle, or it has no room for the rig.
     """
     row = rig_format(name)
-    origin = origin_in_ground(row.origin, reference, row.title)
-    back = [-value for value in origin]
-    sensors = tuple(s.moved(shifted(s.pose, back)) for s in carried(rig))
+    sensors, left = _sensors(rig, row, reference)
     files, lines = row.write(sensors)
-    return files, [*lines, *(bent(sensors, row.title) if row.has_pictures else ())]
+    return files, [*lines, *left]
+
+
+def _sensors(
+    rig: Rig, row: RigFormat, reference: Reference | None
+) -> tuple[tuple[CarriedSensor, ...], list[str]]:
+    """Return sensors in a format's frame, as far as it keeps them, and what it leaves."""
+    back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
+    moved = [s.moved(shifted(s.pose, back)) for s in carried(rig)]
+    return with_pictures(moved, row.keeps, row.title)
 
 
 def export_rig(
@@ -56,31 +63,40 @@ def export_rig(
     """Write a rig in another program's format; return the files, and lines on what is missing.
 
     `output` is the file, or the folder where a format has several; what is there stays unless
-    `replace` says otherwise.
+    `replace` says otherwise. Of an Autoware kit that is replaced all but the sensors stays.
 
     Raises
     ------
     InputError
         As `rig_files`, and when a file is there already or cannot be written.
     """
+    row, output = rig_format(name), Path(output)
     files, lines = rig_files(rig, name, reference)
-    return write_files(files, Path(output), inside=len(files) > 1, replace=replace), lines
+    if replace and row.write_over and all((output / file).is_file() for file in row.files):
+        sensors, left = _sensors(rig, row, reference)
+        files, lines = row.write_over(output, sensors)
+        lines = [*lines, *left]
+    return write_files(files, output, inside=len(row.files) > 1, replace=replace), lines
 
 
 def write_files(
     files: Mapping[str, bytes], output: Path, *, inside: bool, replace: bool
 ) -> list[Path]:
-    """Write bytes by file name: one at `output` itself, several `inside` it; return their paths.
+    """Write bytes by file name, and return their paths.
 
-    What is there stays unless `replace` says otherwise; then nothing is written.
+    All `inside` a folder; or the first at `output` itself, and others beside it. What is there
+    stays unless `replace` says otherwise; then nothing is written.
     """
-    inside = inside or output.is_dir()
-    paths = {output / file if inside else output: data for file, data in files.items()}
+    folder = output if inside or output.is_dir() else output.parent
+    paths = {folder / file: data for file, data in files.items()}
+    if folder is not output:
+        first, *others = files
+        paths = {output: files[first]} | {folder / file: files[file] for file in others}
     for path in paths:
         if path.exists() and not replace:
             raise InputError(path, "file", "a new file, or a wish to replace it", "one is there")
-    if inside:
-        _make_folder(output)
+    for folder in {path.parent for path in paths}:
+        _make_folder(folder)
     for path, data in paths.items():
         write_bytes(path, data)
     return list(paths)

@@ -16,18 +16,21 @@ from .carried import (
     CAMERA,
     LIDAR,
     CarriedSensor,
-    Picture,
     camera_of,
     lidar_of,
     named_apart,
+    picture_of,
 )
 from .frames import composed, origin_in_ground, shifted
+from .pictures import KeptPicture, alike
 from .table import RigFormat, rig_format, told_format
 
 STAND_INS = {LIDAR: "Velodyne VLP-16 Puck", CAMERA: "nuScenes front"}
 """Models that stand in for those a file does not tell, until somebody chooses."""
 NO_WORD = re.compile("[^a-z0-9]+")
 CHOOSE = "choose its model"
+SEE_NOTHING = {"gnss", "gps", "imu", "ins"}
+"""Words in the names of what rigs have besides sensors that see."""
 LENS_WORDS = ("cam", "fisheye", "rgb", "image")
 """What the name of a camera has in it, where the file says no kind."""
 
@@ -82,7 +85,11 @@ def import_rig(
         raise InputError(path, "file", "an existing file or folder", "nothing of that name")
     row = told_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
-    found, models = row.read(path), models or {}
+    read, models = row.read(path), models or {}
+    found = [each for each in read if not _sees_nothing(each)]
+    blind = [f"{each.name}: no sensor that sees; left out" for each in read if each not in found]
+    if not found:
+        raise InputError(path, "sensors", "some that see", "; ".join(blind) or "none")
     names = named_apart([each.name for each in found])
     unknown = next((key for key in models if key not in names), None)
     if unknown is not None:
@@ -90,7 +97,8 @@ def import_rig(
     place = _placing(origin, placed)
     called = [each.called(n) for each, n in zip(found, names, strict=True)]
     done = [_sensor(each, models.get(each.name), row, place) for each in called]
-    lines = tuple(line for _, line in done if line)
+    noted = [f"{each.name}: {each.told}" for each in called if each.told]
+    lines = (*blind, *noted, *(line for _, line in done if line))
     to_choose = tuple(sensor.name for sensor, line in done if line.endswith(CHOOSE))
     return ImportedRig(Rig([sensor for sensor, _ in done]), to_choose, lines)
 
@@ -106,23 +114,28 @@ def _sensor(
 ) -> tuple[Sensor, str]:
     """Return a sensor with its model, and a line about it where there is something to tell."""
     each = replace(each, kind=each.kind or (CAMERA if _sounds_like_a_camera(each.name) else LIDAR))
-    model, line = _model(each, chosen)
+    model, line = _model(each, chosen, row.keeps)
     if not line.endswith(CHOOSE):
         each = row.settled(replace(each, model=model.name))
     return Sensor(each.name, model, place(each.pose), each.fusion), line
+
+
+def _sees_nothing(each: CarriedSensor) -> bool:
+    words = set(NO_WORD.sub(" ", each.name.lower()).split())
+    return each.model is None and each.picture is None and bool(words & SEE_NOTHING)
 
 
 def _sounds_like_a_camera(name: str) -> bool:
     return any(word in name.lower() for word in LENS_WORDS)
 
 
-def _model(each: CarriedSensor, chosen: str | None) -> tuple[SensorModel, str]:
+def _model(each: CarriedSensor, chosen: str | None, kept: KeptPicture) -> tuple[SensorModel, str]:
     if chosen is not None:
         return catalog.load(chosen), ""
     if (known := _known(each)) is not None:
-        return catalog.load(known), ""
+        return _known_or_own(each, catalog.load(known), kept)
     if each.kind == CAMERA and each.picture is not None:
-        return _camera(each.name, each.picture)
+        return camera_of(each.name, each.picture)
     if each.kind == LIDAR and each.scan is not None:
         return lidar_of(each.name, each.scan), ""
     stand_in = STAND_INS.get(each.kind or "", STAND_INS[LIDAR])
@@ -137,9 +150,13 @@ def _known(each: CarriedSensor) -> str | None:
     return names.get(wanted) if wanted else None
 
 
-def _camera(name: str, p: Picture) -> tuple[SensorModel, str]:
-    """Return the camera of a picture, and what was made up of it."""
-    model = camera_of(name, p)
-    size = f"{model.width} x {model.height} px"
-    line = f"{name}: no size in the file; {size} has its middle there"
-    return model, line if p.size is None else ""
+def _known_or_own(
+    each: CarriedSensor, model: SensorModel, kept: KeptPicture
+) -> tuple[SensorModel, str]:
+    """Return the catalogue's model, or the file's own lens where that is another one."""
+    picture = picture_of(model)
+    if picture is None or each.picture is None or alike(kept(picture), each.picture):
+        return model, ""
+    own, line = camera_of(each.name, each.picture)
+    told = f"{each.name}: its lens is not that of {model.name} in the catalogue, but the file's"
+    return own, line or told

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import InputError, shown
 from ..scene.geometry import Pose
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture, cameras, lidars
+from .carried import CAMERA, LIDAR, CarriedSensor, cameras, lidars
 from .files import Written, spaced, text_of
 from .frames import (
     BODY_FROM_OPTICAL,
@@ -21,6 +21,7 @@ from .frames import (
     product,
     turned,
 )
+from .pictures import pinhole_picture
 
 FILE, MOST_CAMERAS = "calib.txt", 4
 RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
@@ -57,13 +58,14 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
 
 def _projection(each: CarriedSensor, first: CarriedSensor, axes: Floats) -> Floats:
     """Return P of a camera: K [I | -t], t from the first camera in its optical frame."""
-    p = each.picture or Picture(1.0, 1.0, 0.0, 0.0)
+    p = each.picture or pinhole_picture(1.0, 1.0, 0.0, 0.0)
+    cx, cy = p.center
     apart = [a - b for a, b in zip(each.pose.position, first.pose.position, strict=True)]
     x, y, z = turned(axes.T, apart)
     return np.array(
         [
-            [p.fx, 0.0, p.cx, -(p.fx * x + p.cx * z)],
-            [0.0, p.fy, p.cy, -(p.fy * y + p.cy * z)],
+            [p.fx, 0.0, cx, -(p.fx * x + cx * z)],
+            [0.0, p.fy, cy, -(p.fy * y + cy * z)],
             [0.0, 0.0, 1.0, -z],
         ]
     )
@@ -93,7 +95,7 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
         place = (-(float(p[0, 3]) + cx * z) / fx, -(float(p[1, 3]) + cy * z) / fy, z)
         apart = [a - b for a, b in zip(place, shift, strict=True)]
         pose = pose_of(product(rotation.T, BODY_FROM_OPTICAL.T), turned(rotation.T, apart))
-        picture = Picture(fx, fy, cx, cy)
+        picture = pinhole_picture(fx, fy, cx, cy)
         found.append(CarriedSensor(f"camera_{key[1:]}", pose, CAMERA, None, picture))
     return tuple(found)
 

@@ -1,7 +1,7 @@
 """nuScenes: the tables sensor.json and calibrated_sensor.json.
 
 Ego frame: the rear axle on the ground. A camera's frame is optical; a LiDAR's has x to the right
-and y forward.
+and y forward. Distortion is nuImages' camera_distortion: k1, k2, p1, p2, k3.
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, shown
+from ..kinds.camera import BrownConrady
 from ..scene.geometry import METRES
 from ..text.tables import Table
 from ..text.values import numbers, vector
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture
+from .carried import CAMERA, LIDAR, CarriedSensor
 from .files import Written, json_bytes, json_of, json_rows
 from .frames import (
     BODY_FROM_OPTICAL,
@@ -25,8 +26,10 @@ from .frames import (
     product,
     quaternion,
 )
+from .pictures import Picture, pinhole_picture
 
 CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
+FIVE = ("k1", "k2", "p1", "p2", "k3")
 AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
 """A kind's axes there, in ours; other kinds have ours."""
 
@@ -51,14 +54,16 @@ def _calibrated(each: CarriedSensor) -> dict[str, Any]:
     if each.kind in AXES:
         rotation = product(rotation, AXES[each.kind])
     p = each.picture
-    intrinsic = [] if p is None else [[p.fx, 0.0, p.cx], [0.0, p.fy, p.cy], [0.0, 0.0, 1.0]]
-    return {
+    row = {
         "token": _token("calibrated", each.name),
         "sensor_token": _token("sensor", each.name),
         "translation": list(each.pose.position),
         "rotation": list(quaternion(rotation)),
-        "camera_intrinsic": intrinsic,
+        "camera_intrinsic": [] if p is None else p.matrix,
     }
+    if p is not None and isinstance(p.lens, BrownConrady):
+        row["camera_distortion"] = [getattr(p.lens, key) for key in FIVE]
+    return row
 
 
 def _token(table: str, name: str) -> str:
@@ -92,6 +97,8 @@ def _sensor(path: Path, row: Table, known: Table) -> CarriedSensor:
     if kind in AXES:
         rotation = product(rotation, AXES[kind].T)
     picture = _picture(path, row.field("camera_intrinsic"), row.raw("camera_intrinsic", []))
+    if picture is not None and row.raw("camera_distortion", []):
+        picture = _bent(path, row, picture)
     return CarriedSensor(name, pose_of(rotation, place), kind, None, picture)
 
 
@@ -102,4 +109,15 @@ def _picture(path: Path, field: str, value: Any) -> Picture | None:
     if matrix is None or matrix.shape != (3, 3):
         raise InputError(path, field, "a 3 x 3 matrix, or []", shown(value))
     fx, fy, cx, cy = (float(matrix[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
-    return Picture(fx, fy, cx, cy)
+    return pinhole_picture(fx, fy, cx, cy)
+
+
+def _bent(path: Path, row: Table, picture: Picture) -> Picture:
+    """Return a picture with nuImages' distortion; of six numbers the last is a fisheye's."""
+    field, values = row.field("camera_distortion"), row.raw("camera_distortion")
+    found = numbers(values)
+    if found is None or found.ndim != 1 or len(found) not in (4, 5):
+        raise InputError(path, field, "4 or 5 numbers: k1, k2, p1, p2, k3", shown(values))
+    lens = picture.lens
+    place = lens.fx, lens.fy, lens.cx, lens.cy
+    return Picture(BrownConrady(*place, None, *map(float, found)))

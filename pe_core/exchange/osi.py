@@ -17,8 +17,9 @@ from ..errors import InputError, shown
 from ..text.files import LABEL_BYTES
 from ..text.tables import Table
 from ..text.values import Number, numbers
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture, Scan
+from .carried import CAMERA, LIDAR, CarriedSensor, Scan
 from .files import Written, json_of, json_rows, pose_from
+from .pictures import picture_of_fov
 
 FILE = "sensor_view_configuration.json"
 LISTS = {kind: f"{kind}_sensor_view_configuration" for kind in (CAMERA, LIDAR)}
@@ -92,10 +93,9 @@ def _sensor(path: Path, row: Table, kind: str | None, number: int) -> CarriedSen
     )
     keys = ("number_of_pixels_horizontal", "number_of_pixels_vertical", "field_of_view_horizontal")
     if kind == CAMERA and all(key in row for key in keys):
-        width, height = row.whole(keys[0]), row.whole(keys[1])
-        focal = width / (2.0 * math.tan(row.number(keys[2], rule=FOV) / 2.0))
-        picture = Picture(focal, focal, width / 2.0, height / 2.0, (width, height))
-        return replace(where, picture=picture)
+        size, across = (row.whole(keys[0]), row.whole(keys[1])), row.number(keys[2], rule=FOV)
+        down = row.number("field_of_view_vertical", None, rule=FOV)
+        return replace(where, picture=picture_of_fov(across, size, down))
     if kind == LIDAR and "directions" in row and "range" in row:
         return replace(where, scan=_scan(path, row))
     return where

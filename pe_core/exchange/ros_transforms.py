@@ -1,5 +1,6 @@
 """ROS 2 static transforms: a launch file of tf2's static_transform_publisher.
 
+Lenses stand beside it, in camera_info.
 Read back from there, and from lines of a shell that call the publisher.
 """
 
@@ -12,6 +13,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ..errors import InputError, shown
 from ..scene.geometry import Pose
+from .camera_info import info_files, with_info
 from .carried import CAMERA, CarriedSensor
 from .files import Written, plain_number, pose_from, text_of
 from .frame_names import with_legal_frames
@@ -39,7 +41,7 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
             _publisher(launch, each.name, each.name + OPTICAL, optical)
     indent(launch)
     text = f"<!--{CONVENTIONS}-->\n{tostring(launch, 'unicode')}\n"
-    return {FILE: text.encode()}, lines
+    return {FILE: text.encode(), **info_files(named)}, lines
 
 
 def _publisher(launch: Element, parent: str, child: str, pose: Pose) -> None:
@@ -59,6 +61,7 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
     InputError
         When there is no call, a number is none, or frames have two roots or a circle.
     """
+    path = path / FILE if path.is_dir() else path
     text = re.sub("<!--.*?-->", "", text_of(path), flags=re.DOTALL)
     links: dict[str, tuple[str, Pose]] = {}
     for number, found in enumerate(ARGS.findall(text)):
@@ -72,7 +75,8 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
     optical = {name for name in links if name.endswith(OPTICAL)}
     cameras = {links[name][0] for name in optical}
     named = [name for name in links if name not in optical]
-    return tuple(CarriedSensor(n, poses[n], CAMERA if n in cameras else None) for n in named)
+    found = [CarriedSensor(n, poses[n], CAMERA if n in cameras else None) for n in named]
+    return with_info(path.parent, found)
 
 
 def placed(path: Path, links: dict[str, tuple[str, Pose]]) -> dict[str, Pose]:

@@ -22,6 +22,16 @@ from . import (
 from .carried import CarriedSensor
 from .files import Written
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
+from .pictures import (
+    KeptPicture,
+    centred,
+    f_theta_of_five,
+    opencv,
+    opencv_of_five,
+    square,
+    straight,
+    whole,
+)
 
 Carried = tuple[CarriedSensor, ...]
 
@@ -44,8 +54,12 @@ class RigFormat:
         A path to sensors in the format's frame.
     settled : callable
         A sensor as it is once its model is known.
-    has_pictures : bool
-        Whether it has anything of a camera's picture.
+    keeps : callable
+        What it keeps of a camera's picture.
+    beside : bool
+        Whether files stand beside the one: lenses of cameras.
+    write_over : callable, optional
+        As `write`, over what is in a folder: it keeps what is not ours.
     """
 
     name: str
@@ -55,7 +69,9 @@ class RigFormat:
     write: Callable[[Carried], tuple[Written, list[str]]]
     read: Callable[[Path], Carried]
     settled: Callable[[CarriedSensor], CarriedSensor] = lambda each: each
-    has_pictures: bool = True
+    keeps: KeptPicture = whole
+    beside: bool = False
+    write_over: Callable[[Path, Carried], tuple[Written, list[str]]] | None = None
 
 
 _ROWS = (
@@ -66,7 +82,6 @@ _ROWS = (
         (csv_table.FILE,),
         csv_table.write,
         csv_table.read,
-        has_pictures=False,
     ),
     RigFormat(
         "urdf",
@@ -75,6 +90,7 @@ _ROWS = (
         (urdf.FILE,),
         urdf.write,
         urdf.read,
+        keeps=opencv_of_five,
     ),
     RigFormat(
         "ros",
@@ -83,7 +99,8 @@ _ROWS = (
         (ros_transforms.FILE,),
         ros_transforms.write,
         ros_transforms.read,
-        has_pictures=False,
+        keeps=opencv,
+        beside=True,
     ),
     RigFormat(
         "autoware",
@@ -93,7 +110,9 @@ _ROWS = (
         autoware.write,
         autoware.read,
         autoware.lifted,
-        has_pictures=False,
+        keeps=opencv,
+        beside=True,
+        write_over=autoware.write_over,
     ),
     RigFormat(
         "nuscenes",
@@ -102,6 +121,7 @@ _ROWS = (
         (nuscenes.CALIBRATED, nuscenes.SENSORS),
         nuscenes.write,
         nuscenes.read,
+        keeps=opencv_of_five,
     ),
     RigFormat(
         "carla",
@@ -110,6 +130,7 @@ _ROWS = (
         (carla.FILE,),
         carla.write,
         carla.read,
+        keeps=square,
     ),
     RigFormat(
         "kitti",
@@ -118,6 +139,7 @@ _ROWS = (
         (kitti.FILE,),
         kitti.write,
         kitti.read,
+        keeps=straight,
     ),
     RigFormat(
         "osi",
@@ -126,6 +148,7 @@ _ROWS = (
         (osi.FILE,),
         osi.write,
         osi.read,
+        keeps=centred,
     ),
     RigFormat(
         "driveworks",
@@ -134,6 +157,7 @@ _ROWS = (
         (driveworks.FILE,),
         driveworks.write,
         driveworks.read,
+        keeps=f_theta_of_five,
     ),
 )
 RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})

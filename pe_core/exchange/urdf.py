@@ -6,7 +6,6 @@ them, where readers of URDF pass over what they do not know.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -15,10 +14,11 @@ from ..errors import InputError, shown
 from ..scene.geometry import Pose
 from ..text.files import read_bytes
 from ..text.xml_text import parse_xml
-from .carried import CAMERA, LIDAR, CarriedSensor, Picture, Scan, uneven
+from .carried import CAMERA, LIDAR, CarriedSensor, Scan, uneven
 from .files import Written, pose_from, spaced
 from .frame_names import with_legal_frames
 from .frames import OPTICAL_RPY, composed
+from .gazebo_camera import numbers_in, picture_in, write_picture
 
 FILE, ROOT, OPTICAL = "rig.urdf", "base_link", "_optical"
 CONVENTIONS = (
@@ -62,17 +62,9 @@ def _gazebo(robot: Element, each: CarriedSensor) -> None:
         return
     sensor = SubElement(block, "sensor", {"name": each.name, "type": kind})
     if each.picture is not None and each.picture.size is not None:
-        _camera(SubElement(sensor, CAMERA), each.picture, each.picture.size)
+        write_picture(SubElement(sensor, CAMERA), each.picture, each.picture.size)
     elif each.scan is not None:
         _lidar(SubElement(sensor, LIDAR), each.scan)
-
-
-def _camera(element: Element, picture: Picture, size: tuple[int, int]) -> None:
-    width, height = size
-    fov = 2.0 * math.atan(width / (2.0 * picture.fx))
-    SubElement(element, "horizontal_fov").text = repr(fov)
-    image = SubElement(element, "image")
-    SubElement(image, "width").text, SubElement(image, "height").text = str(width), str(height)
 
 
 def _lidar(element: Element, scan: Scan) -> None:
@@ -190,32 +182,14 @@ def _sensor(name: str, poses: dict[str, Pose], block: Element | None) -> Carried
         kind = next((k for word, k in KIND_WORDS.items() if word in words), kind)
     if own is not None:
         kind = own.get("kind") or kind
-    figures = (_picture(sensor), _scan(sensor))
+    figures = (picture_in(sensor), _scan(sensor))
     return CarriedSensor(name, poses[name], kind, model or None, *figures)
-
-
-def _numbers(sensor: Element | None, keys: tuple[str, ...]) -> list[float] | None:
-    """Return numbers inside a Gazebo sensor, by where they are; None unless all are there."""
-    try:
-        texts = [None if sensor is None else sensor.findtext(f".//{key}") for key in keys]
-        return [float(text or "") for text in texts]
-    except ValueError:
-        return None
-
-
-def _picture(sensor: Element | None) -> Picture | None:
-    numbers = _numbers(sensor, ("camera/horizontal_fov", "image/width", "image/height"))
-    if numbers is None or not 0.0 < numbers[0] < math.pi:
-        return None
-    fov, width, height = numbers
-    focal = width / (2.0 * math.tan(fov / 2.0))
-    return Picture(focal, focal, width / 2.0, height / 2.0, (int(width), int(height)))
 
 
 def _scan(sensor: Element | None) -> Scan | None:
     keys = ("samples", "min_angle", "max_angle")
     across, up = ([f"{way}/{key}" for key in keys] for way in ("horizontal", "vertical"))
-    numbers = _numbers(sensor, (*across, *up, "range/max"))
+    numbers = numbers_in(sensor, (*across, *up, "range/max"))
     if numbers is None:
         return None
     azimuths, left, right, channels, low, high, max_range = numbers

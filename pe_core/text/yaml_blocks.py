@@ -1,7 +1,7 @@
 """The part of YAML that calibrations are written in: nested mappings of plain values.
 
-No lists, anchors, tags or texts over several lines: a file that has them is refused with its line,
-not read wrong.
+No anchors, tags or texts over several lines, and lists of values only where they are asked for: a
+file that has them is refused with its line, not read wrong.
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ LINE = re.compile(
     rf"^(?P<blanks> *)(?P<key>{QUOTED}|[^\s'\"#\[{{&*!|>%@-][^:#]*?) *:(?P<rest>( .*)?)$"
 )
 PLAIN_REST = re.compile(rf"^ *(?P<value>{QUOTED}|[^\s'\"#\[{{&*!|>%@][^#]*?)? *( #.*)?$")
+LIST = re.compile(r"^ *\[(?P<values>[^\[\]{}\"'#&*!|>%@]*)\] *( #.*)?$")
 NUMBER = re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 WORDS = {"true": True, "false": False, "null": None, "~": None}
 
 
-def parse_yaml_blocks(source: str, text: str) -> dict[str, Any]:
-    """Return nested dicts of texts, numbers, booleans and None.
+def parse_yaml_blocks(source: str, text: str, *, lists: bool = False) -> dict[str, Any]:
+    """Return nested dicts of texts, numbers, booleans and None; of `lists` of them, too.
 
     Raises
     ------
@@ -36,7 +37,7 @@ def parse_yaml_blocks(source: str, text: str) -> dict[str, Any]:
         bare = line.strip()
         if not bare or bare.startswith(("#", "---", "%YAML")):
             continue
-        blanks, key, value, is_value = _parsed(source, number, line)
+        blanks, key, value, is_value = _parsed(source, number, line, lists)
         if opened is not None and blanks > opened[0]:
             fresh: dict[str, Any] = {}
             opened[1][opened[2]] = fresh
@@ -55,9 +56,12 @@ def parse_yaml_blocks(source: str, text: str) -> dict[str, Any]:
     return root
 
 
-def _parsed(source: str, number: int, line: str) -> tuple[int, str, Any, bool]:
+def _parsed(source: str, number: int, line: str, lists: bool) -> tuple[int, str, Any, bool]:
     """Return indent, key and value of a line, and whether there is a value."""
     found = LINE.match(line.rstrip())
+    if lists and found is not None and (listed := LIST.match(found["rest"])) is not None:
+        values = [_value(word.strip()) for word in listed["values"].split(",") if word.strip()]
+        return len(found["blanks"]), _unquoted(found["key"]), values, True
     rest = PLAIN_REST.match(found["rest"]) if found else None
     if found is None or rest is None:
         expected = "nested `key: value`, the part of YAML that calibrations use"

@@ -172,8 +172,9 @@ def test_an_autoware_kit(tmp_path):
     models = {"velodyne_top": PUCK, "velodyne_rear": PUCK}
     found = pe.import_rig(tmp_path, reference=pe.Reference(-1.4, 0.3), models=models)
     names = [each.name for each in found.rig]
-    assert names == ["camera0", "velodyne_top", "gnss_link", "velodyne_rear"]
-    assert found.to_choose == ("camera0", "gnss_link"), "never dropped, to be chosen"
+    assert names == ["camera0", "velodyne_top", "velodyne_rear"]
+    assert found.to_choose == ("camera0",), "never dropped, to be chosen"
+    assert found.lines[0] == "gnss_link: no sensor that sees; left out"
     top = found.rig["velodyne_top"].pose
     up = rotation_matrix(-0.001, 0.015, -0.0364)[:, 2]  # the kit's, 37.7 mm along it
     assert top.position == pytest.approx(tuple(np.array([-0.5, 0.0, 2.0]) + 0.0377 * up))

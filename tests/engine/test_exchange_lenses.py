@@ -1,0 +1,214 @@
+"""Lenses go out in the formats that can say them and come back; others say what they leave."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.exchange import RIG_FORMATS
+from pe_core.kinds.camera import BrownConrady, Camera, FTheta, KannalaBrandt, Pinhole
+
+AXLE = pe.Reference(-1.31, 0.33)
+PLACE = (929.8429, 930.0592, 972.1794, 508.0057)
+SIZE = (1920, 1080)
+PINHOLE = Pinhole(*PLACE)
+BROWN = BrownConrady(*PLACE, None, -0.165, 0.0099, -0.00075, 5.37e-05, 0.01)
+RATIONAL = BrownConrady(*PLACE, None, 0.3, 0.02, 1e-4, -2e-4, 1e-3, 0.5, 0.04, 2e-3)
+FISHEYE = KannalaBrandt(500.0, 501.0, 960.5, 540.5, None, 0.02, -0.003, 1e-4, -1e-5)
+BY_ANGLE = FTheta(1.0, 1.0, 960.5, 540.5, None, 560.0, -30.0, 40.0, -7.0)
+LENSES = {"pinhole": PINHOLE, "brown": BROWN, "rational": RATIONAL, "fisheye": FISHEYE,
+          "by_angle": BY_ANGLE}  # fmt: skip
+KEEPS = {
+    "csv": set(LENSES),
+    "urdf": {"pinhole", "brown"},
+    "ros": {"pinhole", "brown", "rational", "fisheye"},
+    "autoware": {"pinhole", "brown", "rational", "fisheye"},
+    "nuscenes": {"pinhole", "brown"},
+    "driveworks": {"pinhole", "by_angle"},
+    "carla": set(),
+    "osi": set(),
+}
+
+
+def camera(name, lens):
+    pose = pe.Pose.from_degrees((1.5, 0.1, 1.3), (0.3, 2.5, -0.4))
+    return pe.Sensor(name, Camera(f"own {name}", *SIZE, lens=lens), pose)
+
+
+def read_back(sensor, name, folder):
+    paths, lines = pe.export_rig(pe.Rig([sensor]), name, folder, AXLE)
+    file = folder if len(paths) > 1 else paths[0]
+    return next(iter(pe.import_rig(file, None, AXLE).rig)), lines
+
+
+@pytest.mark.parametrize("name", KEEPS)
+@pytest.mark.parametrize("key", LENSES)
+def test_a_lens_comes_back_or_is_told(name, key, tmp_path):
+    """Every figure within 1e-6; of a lens that a format cannot say the axis is right."""
+    ours, lines = LENSES[key], None
+    found, lines = read_back(camera("eye", ours), name, tmp_path)
+    theirs, left = found.model.projection, [line for line in lines if "left out" in line]
+    assert (key in KEEPS[name]) == (not left), left
+    assert all(line.startswith("eye: the ") and "own eye" in line for line in left)
+    if key in KEEPS[name]:
+        assert type(theirs) is type(ours)
+        for figure in ("fx", "fy", "cx", "cy", *ours.coefficients):
+            assert getattr(theirs, figure) == pytest.approx(getattr(ours, figure), abs=1e-6)
+    if name != "nuscenes":
+        assert (found.model.width, found.model.height) == SIZE
+    on_axis = ours.fx * float(ours.slope(np.zeros(1))[0])
+    assert theirs.fx * float(theirs.slope(np.zeros(1))[0]) == pytest.approx(on_axis, abs=1e-6)
+
+
+def test_kitti_s_projection_has_the_pinhole_alone(tmp_path):
+    lidar = pe.Sensor("top", pe.catalog.load("Velodyne VLP-16 Puck"), pe.Pose((0.0, 0.0, 2.0)))
+    rig = pe.Rig([lidar, camera("eye", BROWN)])
+    (path,), lines = pe.export_rig(rig, "kitti", tmp_path / "calib.txt")
+    assert "the distortion (brown-conrady) of own eye is left out of KITTI" in lines[-1]
+    theirs = pe.import_rig(path).rig["camera_0"].model.projection
+    assert (theirs.fx, theirs.fy, theirs.cx, theirs.cy) == pytest.approx(PLACE, abs=1e-6)
+
+
+def test_the_edge_of_an_image_stands_in_a_table_and_is_told_elsewhere(tmp_path):
+    own = camera("eye", KannalaBrandt(500.0, 500.0, 960.0, 540.0, math.radians(190.0)))
+    (tmp_path / "table").mkdir()
+    found, lines = read_back(own, "csv", tmp_path / "table")
+    assert math.degrees(found.model.projection.fov) == pytest.approx(190.0) and lines == []
+    _, lines = read_back(own, "ros", tmp_path)
+    assert lines == ["eye: the edge of its image, 190 deg across, of own eye is left out of "
+                     "ROS 2 static transforms"]  # fmt: skip
+
+
+def test_a_lens_of_the_catalogue_that_a_table_changes_is_the_table_s(tmp_path):
+    wide = pe.Sensor("eye", pe.catalog.load("PandaSet wide"), pe.Pose((0.0, 0.0, 2.0)))
+    (path,), _ = pe.export_rig(pe.Rig([wide]), "csv", tmp_path / "rig.csv")
+    assert pe.import_rig(path).rig["eye"].model is wide.model
+    path.write_text(path.read_text().replace(",929.8429,", ",940.0,"))
+    found = pe.import_rig(path)
+    assert found.rig["eye"].model.projection.fx == 940.0
+    assert found.lines == ("eye: its lens is not that of PandaSet wide in the catalogue, but the "
+                           "file's",)  # fmt: skip
+
+
+# --- files of other programs, by hand -------------------------------------------------------------
+
+LAUNCH = (
+    '<node exec="static_transform_publisher" args="--frame-id base_link --child-frame-id eye"/>'
+)
+INFO = """image_width: 640
+image_height: 480   # as camera_calibration writes it
+camera_name: narrow_stereo
+camera_matrix:
+  rows: 3
+  cols: 3
+  data: [400.0, 0.0, 320.0,
+         0.0, 410.0, 240.0,
+         0.0, 0.0, 1.0]
+distortion_model: {model}
+distortion_coefficients:
+  rows: 1
+  cols: 5
+  data: [{values}]
+"""
+
+
+def info_of(folder, model, values):
+    (folder / "rig.launch.xml").write_text(LAUNCH)
+    (folder / "camera_info").mkdir()
+    (folder / "camera_info" / "eye.yaml").write_text(INFO.format(model=model, values=values))
+    return folder / "rig.launch.xml"
+
+
+@pytest.mark.parametrize(
+    ("model", "values", "right"),
+    [
+        # 0.5 to the right: r^2 = 0.25, so 0.5 (1 - 0.1 / 4 + 0.02 / 16) = 0.488125
+        ("plumb_bob", "-0.1, 0.02, 0, 0, 0", 320 + 400 * 0.488125),
+        # and of a denominator 1 + 0.2 / 4 = 1.05
+        ("rational_polynomial", "-0.1, 0.02, 0, 0, 0, 0.2, 0, 0", 320 + 400 * 0.488125 / 1.05),
+        # theta = atan 0.5 = 0.4636476: theta (1 + 0.1 theta^2)
+        ("equidistant", "0.1, 0, 0, 0", 320 + 400 * 0.4636476090 * (1 + 0.1 * 0.2149691055)),
+    ],
+)
+def test_ros_intrinsics_are_read_right(model, values, right, tmp_path):
+    (eye,) = pe.import_rig(info_of(tmp_path, model, values)).rig
+    assert (eye.kind, eye.model.width, eye.model.height) == ("camera", 640, 480)
+    ahead = np.array([2.0]), np.array([-1.0]), np.array([0.0])
+    x, y = eye.model.projection.project(*ahead)
+    assert (x[0], y[0]) == (pytest.approx(right, abs=1e-6), 240.0)
+
+
+def test_a_lens_that_folds_sees_as_far_as_it_does_not(tmp_path):
+    """r (1 - 0.9 r^2) turns back where 1 = 2.7 r^2: r = 0.60858, 31.32 deg from the axis."""
+    found = pe.import_rig(info_of(tmp_path, "plumb_bob", "-0.9, 0, 0, 0, 0"))
+    fov = math.degrees(found.rig["eye"].model.projection.fov)
+    assert fov == pytest.approx(2.0 * math.degrees(math.atan(math.sqrt(1 / 2.7))), abs=0.3)
+    (line,) = found.lines
+    assert line.startswith("eye: its lens folds inside the picture; what is farther than 31.")
+
+
+@pytest.mark.parametrize(
+    ("model", "values", "words"),
+    [
+        ("fov", "0.9, 0, 0, 0", "distortion_model: expected one of plumb_bob"),
+        ("plumb_bob", "0.1, 0.2", "distortion_coefficients.data: expected 4 or 5 numbers"),
+        ("plumb_bob", "0.1, 0.2, 0, 0, 0, 0.5", "expected 4 or 5 numbers"),
+        ("plumb_bob", "0.1, a, 0, 0", "distortion_coefficients.data"),
+    ],
+)
+def test_bad_intrinsics_are_refused_in_one_line(model, values, words, tmp_path):
+    with pytest.raises(pe.InputError) as caught:
+        pe.import_rig(info_of(tmp_path, model, values))
+    line = str(caught.value)
+    assert words in line and "eye.yaml" in line and "\n" not in line
+
+
+def rig_json(folder, **properties):
+    common = {"Model": "ftheta", "cx": "960", "cy": "604", "width": "1920", "height": "1208"}
+    eye = {"name": "eye", "protocol": "camera.gmsl", "properties": common | properties}
+    eye["nominalSensor2Rig_FLU"] = {"roll-pitch-yaw": [0, 0, 0], "t": [1, 0, 1.5]}
+    path = folder / "rig.json"
+    path.write_text(json.dumps({"rig": {"sensors": [eye]}}))
+    return path
+
+
+@pytest.mark.parametrize(
+    "properties",
+    [
+        {"polynomial": "0 0.001 0 2e-10", "polynomial-type": "pixeldistance-to-angle"},
+        {"polynomial": "0 0.001 0 2e-10"},
+        {"bw-poly": "0 0.001 0 2e-10"},
+    ],
+)
+def test_driveworks_polynomial_of_pixels_is_turned_round(properties, tmp_path):
+    """500 px from the middle: 0.5 + 2e-10 * 500^3 = 0.525 rad from the axis."""
+    (eye,) = pe.import_rig(rig_json(tmp_path, **properties), reference=AXLE).rig
+    ahead = np.array([math.cos(0.525)]), np.array([0.0]), np.array([-math.sin(0.525)])
+    x, y = eye.model.projection.project(*ahead)
+    assert (x[0], y[0]) == (pytest.approx(960.0), pytest.approx(1104.0, abs=0.02))
+
+
+def test_a_polynomial_that_cannot_be_turned_round_well_says_how_far_it_is_off(tmp_path):
+    """A lens whose angle bends thrice on the way to the corner."""
+    bends = "0 1.117e-3 -1.118e-6 3.190e-9 -3.474e-12 1.368e-15"
+    (line,) = pe.import_rig(rig_json(tmp_path, polynomial=bends), reference=AXLE).lines
+    assert line.startswith("eye: its polynomial from pixels to angles is turned round to within")
+
+
+@pytest.mark.parametrize(
+    ("properties", "words"),
+    [
+        ({"polynomial": "3 500"}, "the first of them 0"),
+        ({"polynomial": "0 500", "linear-c": "1.2"}, "linear-c: expected 1, within 0.01"),
+        ({"polynomial": "0 500", "polynomial-type": "x"}, "polynomial-type"),
+    ],
+)
+def test_driveworks_lenses_of_no_kind_are_refused(properties, words, tmp_path):
+    with pytest.raises(pe.InputError, match=words):
+        pe.import_rig(rig_json(tmp_path, **properties), reference=AXLE)
+
+
+def test_every_format_says_what_it_keeps():
+    assert set(KEEPS) | {"kitti"} == set(RIG_FORMATS)

@@ -84,8 +84,9 @@ def _document(each: tuple[Reviewed, ...], chapters: list[Chapter]) -> str:
             f'<meta name="generator" content="perception-entropy {pe.__version__}">',
             f"<title>{title}</title>",
             *(f"<style>\n{css}\n</style>" for css in styles),
-            "</head>\n<body>",
+            f'</head>\n<body class="{"several" if len(each) > 1 else "single"}">',
             '<a class="skip" href="#page">Skip to the review</a>',
+            _masthead(each),
             _contents(chapters),
             '<main id="page">',
             *(_chapter(chapter, len(each)) for chapter in chapters),
@@ -95,6 +96,12 @@ def _document(each: tuple[Reviewed, ...], chapters: list[Chapter]) -> str:
             "</body>\n</html>\n",
         ]
     )
+
+
+def _masthead(each: tuple[Reviewed, ...]) -> str:
+    kicker = "Review of sensors on a vehicle" if len(each) == 1 else "Sensors side by side"
+    names = " <small>and</small> ".join(escaped(one.name) for one in each)
+    return f'<header class="masthead"><p class="kicker">{kicker}</p><h1>{names}</h1></header>'
 
 
 def _contents(chapters: list[Chapter]) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from string import ascii_lowercase
+from typing import Any, TypeVar
 
-from .engine import pe, scene, search, studies
+from .engine import advice, pe, scene, search, studies
 
+T = TypeVar("T")
 MOST_TRIANGLES = 200_000
 """Of the vehicle as the page shows it."""
 MOST_STUDIES = 6
@@ -33,6 +34,8 @@ class Reviewed:
         The command line that makes this page again; empty where there is none.
     versions : mapping of str
         Programs besides the engine's that it was made with.
+    known : dict
+        What was worked out of it `once`: the same study on another page shares it.
     """
 
     name: str
@@ -41,6 +44,7 @@ class Reviewed:
     picture: bytes | None = None
     command: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
+    known: dict[str, Any] = field(default_factory=dict, repr=False)
 
     @property
     def searched(self) -> bool:
@@ -92,17 +96,30 @@ class Reviewed:
         """The vehicle that beams are cast at: all its triangles."""
         return self.found.vehicle
 
-    @cached_property
+    @property
     def shown_vehicle(self) -> tuple[pe.Vehicle | None, float]:
         """The vehicle as the page draws it, and how far its surface moved for that [m]."""
-        if self.vehicle is None:
+        vehicle = self.vehicle
+        if vehicle is None:
             return None, 0.0
-        return scene.simplified(self.vehicle, MOST_TRIANGLES)
+        return self.once("vehicle", lambda: scene.simplified(vehicle, MOST_TRIANGLES))
 
-    @cached_property
+    @property
     def sight(self) -> pe.Sight:
         """What tells the places that rigs of this study see; it remembers what was measured."""
-        return self.found.sight()
+        return self.once("sight", self.found.sight)
+
+    @property
+    def outlook(self) -> advice.Outlook:
+        """How far and how well the sensors see."""
+        return self.once("outlook", lambda: advice.outlook(self.sight, self.rig))
+
+    def once(self, what: str, work: Callable[[], T]) -> T:
+        """Return what was worked out under a name, the first time by doing so."""
+        if what not in self.known:
+            self.known[what] = work()
+        found: T = self.known[what]
+        return found
 
     def evaluator(self, samples: int | None = None) -> pe.Evaluator:
         """Return the evaluator of this study; `samples` replaces the study's own."""

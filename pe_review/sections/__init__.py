@@ -6,11 +6,17 @@ from collections.abc import Callable
 
 from ..reviewed import Reviewed
 from ..section import Section
+from .again import again
+from .failing import failing
 from .head import head
+from .parts import parts
+from .search import searching
+from .told import told
+from .versus import versus
 
-SECTIONS: tuple[Callable[[Reviewed], Section], ...] = ()
-"""What every study has; of several they stand side by side. One whose html is empty is left out."""
-TOGETHER: tuple[Callable[[tuple[Reviewed, ...]], Section], ...] = (head,)
+TOGETHER: tuple[Callable[[tuple[Reviewed, ...]], Section], ...] = (head, versus)
 """What is told of all studies at once, above them; of a single one, too."""
+SECTIONS: tuple[Callable[[Reviewed], Section], ...] = (parts, failing, searching, told, again)
+"""What every study has; of several they stand side by side. One whose html is empty is left out."""
 
 __all__ = ["SECTIONS", "TOGETHER"]

@@ -25,10 +25,11 @@ def box(low, high):
 
 def small_study(shift=0.0):
     """A car of a box, a LiDAR on its roof and a camera at its front: few voxels."""
-    space = pe.PerceptionSpace(x=(-20, 20), y=(-10, 10), z=(0, 2), interval=0.5)
+    space = pe.PerceptionSpace(x=(-14, 14), y=(-12, 12), z=(0, 2), interval=0.5)
+    lidar = pe.Lidar("small LiDAR", np.radians([-20.0, -10.0, -3.0, 2.0]), 120, 100.0)
     rig = pe.Rig(
         [
-            pe.Sensor(NAMES[0], load("Velodyne VLP-16 Puck"), pe.Pose((shift, 0.0, 1.8))),
+            pe.Sensor(NAMES[0], lidar, pe.Pose((shift, 0.0, 1.8))),
             pe.Sensor(NAMES[1], load("Camera 60 deg"), pe.Pose((2.3, 0.2, 1.2))),
         ]
     )

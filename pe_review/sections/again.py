@@ -1,0 +1,85 @@
+"""Everything needed to run it again."""
+
+from __future__ import annotations
+
+import platform
+
+import numpy as np
+
+from ..engine import pe, studies
+from ..markup import Markup, escaped, table
+from ..reviewed import Reviewed
+from ..section import Section
+
+COPY = """
+for (const button of document.querySelectorAll("button[data-copies]")) {
+  button.hidden = false;
+  button.addEventListener("click", async () => {
+    const text = document.getElementById(button.dataset.copies);
+    const range = document.createRange();
+    range.selectNodeContents(text);
+    const chosen = window.getSelection();
+    chosen.removeAllRanges();
+    chosen.addRange(range);
+    try { await navigator.clipboard.writeText(text.textContent); button.textContent = "Copied"; }
+    catch { button.textContent = document.execCommand("copy") ? "Copied" : "Selected"; }
+  });
+}
+"""
+
+
+def again(one: Reviewed) -> Section:
+    """Return command line, versions, digests and the study itself."""
+    return Section(
+        "again", "Run it again", f"{_command(one)}{_facts(one)}{_study(one)}", {}, (COPY,)
+    )
+
+
+def _command(one: Reviewed) -> str:
+    lines = one.command or (
+        "pe optimize study.toml -o DIR" if one.searched else "pe score study.toml"
+    )
+    return (
+        f"<p>With the study below and the files it names beside it:</p><pre>{escaped(lines)}</pre>"
+    )
+
+
+def _facts(one: Reviewed) -> str:
+    found = one.found
+    rows = [
+        ["perception-entropy", pe.__version__],
+        ["Python, NumPy", f"{platform.python_version()}, {np.__version__}"],
+        *([name, version] for name, version in one.versions.items()),
+        ["Voxels scored", _voxels(one)],
+        *([["Seed", str(one.asked.search.seed)]] if one.searched else []),
+        ["Study, SHA-256", _digest(studies.fingerprint(found))],
+        ["Vehicle", found.vehicle_line or "none: nothing hides anything"],
+        ["Vehicle, SHA-256", _digest(studies.vehicle_digest(one.vehicle) or "")],
+    ]
+    return table("What it was made with", ("what", "which"), rows, css="words")
+
+
+def _voxels(one: Reviewed) -> str:
+    score, space = one.after, one.found.space
+    every = "all " if not score.stderr else "a sample of "
+    error = f", standard error {score.stderr:.4f} nats" if score.stderr else ""
+    return f"{every}{score.voxels:,}, of {space.interval:g} m{error}"
+
+
+def _digest(text: str) -> str | Markup:
+    return Markup(f"<code>{escaped(text)}</code>") if text else "none"
+
+
+def _study(one: Reviewed) -> str:
+    text = studies.study_writers(one.found, studies.STUDY)[studies.STUDY]
+    assert isinstance(text, bytes)
+    name = f"study-{one.key}"
+    return (
+        f'<h3>The study</h3><button type="button" data-copies="{name}" hidden>Copy</button>'
+        f'<pre id="{name}" tabindex="0">{escaped_lines(text.decode())}</pre>'
+    )
+
+
+def escaped_lines(text: str) -> str:
+    """Return a text of several lines as HTML."""
+    return "\n".join(escaped(line) for line in text.split("\n"))

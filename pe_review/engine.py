@@ -7,7 +7,19 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pe_core as pe
-    from pe_core import advice, app, catalog, kinds, metric, scene, scoring, search, sight, text
+    from pe_core import (
+        advice,
+        app,
+        catalog,
+        graphics,
+        kinds,
+        metric,
+        scene,
+        scoring,
+        search,
+        sight,
+        text,
+    )
     from pe_core import study as studies
 else:
     _HOME = __package__.rpartition(".")[0]
@@ -17,6 +29,7 @@ else:
     advice = import_module(f"{_NAME}.advice")
     app = import_module(f"{_NAME}.app")
     catalog = import_module(f"{_NAME}.catalog")
+    graphics = import_module(f"{_NAME}.graphics")
     kinds = import_module(f"{_NAME}.kinds")
     metric = import_module(f"{_NAME}.metric")
     scene = import_module(f"{_NAME}.scene")
@@ -30,6 +43,7 @@ __all__ = [
     "advice",
     "app",
     "catalog",
+    "graphics",
     "kinds",
     "metric",
     "pe",

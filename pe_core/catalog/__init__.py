@@ -28,6 +28,23 @@ from .rigs import KnownSensor as KnownSensor
 from .rigs import known_rig as known_rig
 from .rigs import known_rigs as known_rigs
 
+__all__ = [
+    "Entry",
+    "KnownRig",
+    "KnownSensor",
+    "add",
+    "entries",
+    "from_table",
+    "housing",
+    "known_rig",
+    "known_rigs",
+    "load",
+    "matching",
+    "names",
+    "remove",
+    "to_table",
+]
+
 PAPER_FILE = "paper.toml"
 """The paper's own sensors come first in lists."""
 OWN = "own"

@@ -8,6 +8,7 @@ from .beams import BeamChoice, Beams, ChannelMode, channels_of, shown_beams
 from .bent import outline
 from .casts import A_DRAFT, MOST, Cast, cast
 from .colors import (
+    CIVIDIS,
     COUNTS,
     PAPER,
     VIEWPORT,
@@ -39,12 +40,14 @@ from .ground import (
     ground_map,
 )
 from .kinds import DRAWINGS, Look, Sketch, beam_budget, drawing_of
+from .png import as_bytes, png_bytes
 from .primitives import ColorKey, GroundSheet, LayerShape, Primitives, Tag, fan, polyline
 from .rays import free_lines, ground_distance, ground_rings, stopped_lines
 
 __all__ = [
     "AS_SCORED",
     "A_DRAFT",
+    "CIVIDIS",
     "COUNTS",
     "COUNT_NAMES",
     "COVERAGE",
@@ -70,6 +73,7 @@ __all__ = [
     "Rgba",
     "Sketch",
     "Tag",
+    "as_bytes",
     "as_scored",
     "beam_budget",
     "cast",
@@ -88,6 +92,7 @@ __all__ = [
     "ground_rings",
     "on_scale",
     "outline",
+    "png_bytes",
     "polyline",
     "ring_lines",
     "sensor_color",

@@ -23,7 +23,7 @@ ALLOWED = {
     "formats": {"errors", "text", "metric", "scene", "prior", "kinds"},
     "scoring": {"errors", "text", "metric", "scene", "prior", "kinds"},
     "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
-    "graphics": {"scene", "kinds", "scoring", "sight"},
+    "graphics": {"errors", "scene", "kinds", "scoring", "sight"},
     "search": {"errors", "text", "scene", "scoring"},
     "catalog": {"errors", "text", "scene", "kinds"},
     "exchange": {"errors", "text", "scene", "kinds", "catalog"},

@@ -1,0 +1,114 @@
+"""Pictures cast by the engine: what is where in them, and the same bytes each time."""
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.catalog import load
+from pe_review.pictures.drawing import drawn
+from pe_review.pictures.normals import corner_normals
+from pe_review.pictures.painted import Paint, PaintedBody, painted_vehicle
+from pe_review.pictures.still import still, usual_view
+from pe_review.pictures.tableau import GROUND, SKY, Tableau
+from pe_review.pictures.viewpoint import Viewpoint
+from tests.engine.test_png import decoded
+from tests.review.conftest import box
+
+SIZE = (96, 54)
+RED, BLUE = Paint((0.6, 0.0, 0.0)), Paint((0.0, 0.0, 0.6))
+
+
+@pytest.fixture(scope="module")
+def car():
+    """A box 4 m long, and sensors of two kinds at its roof, left and right."""
+    vehicle = pe.Vehicle(box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.5)))
+    rig = pe.Rig(
+        [
+            pe.Sensor("left", load("Velodyne VLP-16 Puck"), pe.Pose((0.0, 0.8, 1.6))),
+            pe.Sensor("right", load("Camera 60 deg"), pe.Pose((0.0, -0.8, 1.6))),
+        ]
+    )
+    return vehicle, rig
+
+
+def test_a_view_projects_where_it_looks():
+    """Its rays and its projection are each other's inverse; left of the eye is left."""
+    view = Viewpoint((-10.0, 0.0, 2.0), (0.0, 0.0, 1.0), 40.0)
+    shot = view.shot(*SIZE)
+    right, down = np.array([3.5, 48.0, 90.0]), np.array([5.0, 27.0, 50.5])
+    points = np.array(view.eye) + 7.0 * shot.look(right, down)
+    found = view.project(points, *SIZE)
+    np.testing.assert_allclose(found, (right, down), atol=1e-9)
+    (x,), (y,) = view.project(np.array([[5.0, 2.0, 3.0]]), *SIZE)
+    assert x < SIZE[0] / 2 and y < SIZE[1] / 2  # what is left and higher
+
+
+def test_what_stands_left_is_drawn_left():
+    boxes = [box((4.0, y - 0.5, 0.0), (5.0, y + 0.5, 1.5)) for y in (2.0, -2.0)]
+    pair = [PaintedBody(pe.Vehicle(b), (p,)) for b, p in zip(boxes, (RED, BLUE), strict=True)]
+    stage = Tableau(pair, has_vehicle=False)
+    shot = Viewpoint((-8.0, 0.0, 2.0), (4.0, 0.0, 0.8), 40.0).shot(*SIZE)
+    seen = stage.seen(shot.eye, shot.directions())
+    what = seen.what.reshape(SIZE[1], SIZE[0])
+    columns = [np.nonzero(what == number)[1] for number in (1, 2)]
+    assert columns[0].max() < SIZE[0] / 2 < columns[1].min()
+    assert (what[0] == SKY).all() and (what[-1] == GROUND).all()
+
+
+def test_a_shadow_lies_away_from_the_sun():
+    """Straight above, with a sun from the left, the ground right of the box is dark."""
+    stage = Tableau([PaintedBody(pe.Vehicle(box((-1, -1, 0), (1, 1, 1))), (RED,))])
+    floor = np.array([[0.0, -1.3, 0.0], [0.0, 1.3, 0.0], [0.0, -9.0, 0.0]])
+    lit = stage.lit(np.array([0.0, 50.0, 50.0]), floor)
+    assert lit.tolist() == [False, True, True]
+
+
+def test_corners_of_a_box_are_sharp_and_of_a_sheet_smooth():
+    faces = box((-1, -1, -1), (1, 1, 1))
+    normals = corner_normals(faces)
+    flat = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
+    np.testing.assert_allclose(normals, np.repeat(flat[:, None], 3, axis=1), atol=1e-12)
+    bend = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0], [-1, 0, 0.2]]])
+    met = corner_normals(bend.astype(float))
+    np.testing.assert_allclose(met[0, 0], met[1, 0], atol=1e-12)
+
+
+def test_a_still_shows_the_vehicle_and_is_the_same_each_time(car):
+    png = still(*car, SIZE)
+    assert png == still(*car, SIZE)
+    pixels = decoded(png).astype(int)
+    assert pixels.shape == (54, 96, 3)
+    assert abs(pixels[0, 0] - pixels[0, -1]).max() <= 1  # paper in the corners
+    middle = pixels[20:34, 40:56].reshape(-1, 3)
+    assert (pixels[0, 0] - middle).max(axis=1).mean() > 15  # the body is darker
+    assert decoded(still(None, car[1], SIZE)).shape == (54, 96, 3)
+
+
+def test_all_of_a_vehicle_is_in_the_usual_view(car):
+    view = usual_view(*car)
+    low, high = car[0].bounds
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, 8).T
+    right, down = view.project(corners, 960, 540)
+    assert right.min() > 0 and right.max() < 960 and down.min() > 0 and down.max() < 540
+    assert right.max() - right.min() > 400 or down.max() - down.min() > 300
+
+
+def test_glass_is_looked_through_by_a_camera_alone():
+    """A camera behind a pane sees the wall; a viewer sees the pane."""
+    pane, wall = (box((x, -2, 0), (x + 0.1, 2, 3)) for x in (1.0, 4.0))
+    parts = np.repeat([0, 1], [len(pane), len(wall)])
+    vehicle = pe.Vehicle(np.concatenate([pane, wall]), parts, ["window", "wall"], ["window"])
+    stage = Tableau([painted_vehicle(vehicle)])
+    ahead, eye = np.array([[1.0, 0.0, 0.0]]), np.array([0.0, 0.0, 1.0])
+    assert stage.seen(eye, ahead).part.tolist() == [0]
+    assert stage.seen(eye, ahead, from_sensor=True).part.tolist() == [1]
+
+
+def test_every_pixel_has_a_colour(car):
+    stage = Tableau([painted_vehicle(car[0])])
+    from pe_review.pictures.still import _studio
+
+    picture = drawn(usual_view(*car).shot(33, 21), stage, _studio(car[0].bounds))
+    assert picture.shape == (21, 33, 3) and np.isfinite(picture).all()
+    assert picture.min() >= 0.0 and picture.max() <= 1.0

@@ -1,22 +1,29 @@
-"""Pixel area of boxes' images, clipped to the picture: exact through a pinhole.
+"""Boxes' images: their pixel area, clipped to the picture, and the rectangle that holds them.
 
 As of a cube (`camera.area`) the image is the union of the faces on the camera's side, and what of a
-face lies in the picture is found by Green's theorem, edge by edge. A face that reaches behind the
-camera is cut where it passes the camera's plane.
+face lies in the picture is found by Green's theorem, edge by edge. A face that reaches behind a
+pinhole is cut where it passes its plane. Through a lens that bends edges are taken for straight
+pieces; a face that lies right behind it has the outline of all that is not its image.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
+from ...scene.geometry import dot
 from ..placed_boxes import PlacedBoxes
-from .aperture import aperture_of
+from .aperture import ImagePoints, aperture_of
 from .area import QUAD, ROUNDING_PX, clamped_integral
 from .model import Camera
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Faces = tuple[Ints, Floats, ImagePoints]
+"""Boxes (P,), the area (P,) of a face of each, and places (P, K) that its image is held by [px]."""
 
 NEAREST_M = 1e-3
 """A face is cut so far in front of the camera's plane [m]."""
@@ -25,8 +32,20 @@ PIECES = ((3.0, 32), (12.0, 8), (np.inf, 3))
 away, and farther."""
 
 
-def box_area(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> Floats:
-    """(N,) pixels covered by boxes; 0 of one that the camera is in.
+@dataclass(frozen=True, slots=True)
+class BoxImages:
+    """Images of boxes: `area` (N,) in the picture [px], and upright rectangles that hold that.
+
+    `low` and `high` (N, 2) are corners of the rectangles, right and down [px].
+    """
+
+    area: Floats
+    low: Floats
+    high: Floats
+
+
+def box_images(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> BoxImages:
+    """Return boxes' images; without area of a box that the camera is in.
 
     Parameters
     ----------
@@ -35,13 +54,19 @@ def box_area(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> Floats:
         Rotation from the camera's frame to the ground frame (`ties.axes_of`).
     boxes : PlacedBoxes
     """
-    exact = _straight_area if camera.projection.is_straight else _bent_area
-    area = np.zeros(len(boxes.offsets))
-    for k in range(3):
-        toward = np.flatnonzero(np.abs(boxes.offsets[:, k]) > boxes.halves[:, k])
-        if len(toward):
-            area[toward] += exact(camera, axes, boxes, toward, k)
-    return np.where(area > ROUNDING_PX, area, 0.0)
+    faces = _straight_faces if camera.projection.is_straight else _bent_faces
+    count, size = len(boxes.offsets), np.array([camera.width, camera.height], dtype=float)
+    images = BoxImages(np.zeros(count), np.full((count, 2), np.inf), np.full((count, 2), -np.inf))
+    for axis in range(3):
+        toward = np.flatnonzero(np.abs(boxes.offsets[:, axis]) > boxes.halves[:, axis])
+        for which, area, places in faces(camera, axes, boxes, toward, axis):
+            images.area[which] += area
+            held = [np.clip(w, 0.0, most) for w, most in zip(places, size, strict=True)]
+            low, high = (np.stack([f(w, axis=1) for w in held], 1) for f in (np.min, np.max))
+            images.low[which] = np.minimum(images.low[which], low)
+            images.high[which] = np.maximum(images.high[which], high)
+    images.area[images.area <= ROUNDING_PX] = 0.0
+    return images
 
 
 def along_camera(axes: Floats, boxes: PlacedBoxes, which: Ints, points: Floats) -> Floats:
@@ -67,20 +92,19 @@ def face_points(boxes: PlacedBoxes, which: Ints, axis: int, places: Floats) -> F
     return points
 
 
-def _straight_area(
+def _straight_faces(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int
-) -> Floats:
+) -> Iterator[Faces]:
+    """Faces through a pinhole: those in front, and those that are cut."""
     corners = face_points(boxes, which, axis, np.array(QUAD))
     corners = along_camera(axes, boxes, which, corners)
     front = corners[..., 0] > NEAREST_M
-    area, whole = np.zeros(len(which)), front.all(axis=1)
-    cut = ~whole & front.any(axis=1)
-    if whole.any():
-        ends = np.roll(corners[whole], -1, axis=1)
-        area[whole] = _between(camera, corners[whole], ends)
-    if cut.any():
-        area[cut] = _between(camera, *_in_front(corners[cut], front[cut]))
-    return area
+    whole, cut = (np.flatnonzero(w) for w in (front.all(axis=1), front.any(axis=1)))
+    cut = np.setdiff1d(cut, whole, assume_unique=True)
+    if len(whole):
+        yield which[whole], *_between(camera, corners[whole], np.roll(corners[whole], -1, axis=1))
+    if len(cut):
+        yield which[cut], *_between(camera, *_in_front(corners[cut], front[cut]))
 
 
 def _in_front(corners: Floats, front: NDArray[np.bool_]) -> tuple[Floats, Floats]:
@@ -99,41 +123,47 @@ def _in_front(corners: Floats, front: NDArray[np.bool_]) -> tuple[Floats, Floats
     return np.concatenate([starts, exit_], axis=1), np.concatenate([ends, entry], axis=1)
 
 
-def _between(camera: Camera, starts: Floats, ends: Floats) -> Floats:
-    """(P,) area inside the picture of outlines of edges (P, K, 3), through a pinhole."""
+def _between(camera: Camera, starts: Floats, ends: Floats) -> tuple[Floats, ImagePoints]:
+    """Area (P,) inside the picture of outlines of edges (P, K, 3), and where these begin."""
     lens = camera.projection
     (x0, y0), (x1, y1) = (
         (lens.cx - p[..., 1] * lens.fx / p[..., 0], lens.cy - p[..., 2] * lens.fy / p[..., 0])
         for p in (starts, ends)
     )
     parts = clamped_integral(x0, y0, x1, y1, float(camera.width), float(camera.height))
-    return np.asarray(np.abs(parts.sum(axis=1)))
+    return np.asarray(np.abs(parts.sum(axis=1))), (x0, y0)
 
 
-def _bent_area(camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int) -> Floats:
-    area = np.zeros(len(which))
+def _bent_faces(
+    camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int
+) -> Iterator[Faces]:
+    """Faces through a lens that bends: near ones of more pieces an edge than far ones."""
     offsets, halves = boxes.offsets[which], boxes.halves[which]
-    ratio = np.sqrt((offsets**2).sum(axis=1) / (halves**2).sum(axis=1))
+    ratio = np.sqrt(dot(offsets, offsets) / dot(halves, halves))
     nearer = 0.0
     for farther, pieces in PIECES:
-        some = np.flatnonzero((ratio >= nearer) & (ratio < farther))
+        some = which[(ratio >= nearer) & (ratio < farther)]
         if len(some):
-            area[some] = _outline_area(camera, axes, boxes, which[some], axis, pieces)
+            yield some, *_outlined(camera, axes, boxes, some, axis, pieces)
         nearer = farther
-    return area
 
 
-def _outline_area(
+def _outlined(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int, pieces: int
-) -> Floats:
-    """Area of faces, of edges in so many pieces, inside the picture and the lens's field."""
+) -> tuple[Floats, ImagePoints]:
+    """Area of faces, of edges in so many pieces, in the picture and the field; their outlines."""
     aperture = aperture_of(camera)
     outline = face_points(boxes, which, axis, _round_a_face(pieces))
     depth, left, up = np.moveaxis(along_camera(axes, boxes, which, outline), -1, 0)
-    area = aperture.area(camera.projection.project(depth, left, up))
+    places = camera.projection.project(depth, left, up)
+    area = aperture.area(places)
     behind = _holds_behind(axes, boxes, which, axis)
-    whole = aperture.area(_picture(camera))[0]
-    return np.where(behind, whole - area, area)
+    if behind.any():
+        picture = _picture(camera, places[0].shape[1])
+        area[behind] = aperture.area(picture)[0] - area[behind]
+        for own, all_ in zip(places, picture, strict=True):
+            own[behind] = all_
+    return area, places
 
 
 def _round_a_face(pieces: int) -> Floats:
@@ -145,7 +175,7 @@ def _round_a_face(pieces: int) -> Floats:
 
 
 def _holds_behind(axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int) -> NDArray[np.bool_]:
-    """Whether the direction right behind the camera meets faces: what is outlined is the rest."""
+    """Whether the direction right behind the camera meets faces."""
     back = np.broadcast_to(-axes[:, 0], (len(which), 3))
     speed = np.stack(boxes.along(which, back), axis=1)
     offsets, halves = boxes.offsets[which], boxes.halves[which]
@@ -157,7 +187,9 @@ def _holds_behind(axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int) -> N
     return runs & aside.all(axis=1)
 
 
-def _picture(camera: Camera) -> tuple[Floats, Floats]:
-    """Outline of the picture [px]."""
+def _picture(camera: Camera, count: int) -> ImagePoints:
+    """Outline (1, count) of the picture [px], its last corner several times."""
     wide, high = float(camera.width), float(camera.height)
-    return np.array([[0.0, wide, wide, 0.0]]), np.array([[0.0, 0.0, high, high]])
+    x, y = np.zeros((1, count)), np.full((1, count), high)
+    x[0, 1:3], y[0, :2] = wide, 0.0
+    return x, y

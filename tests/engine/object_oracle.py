@@ -1,0 +1,98 @@
+"""Objects by brute force, written on its own: boxes are triangles, rays meet all of them.
+
+Beams and pixels alike are rays from the sensor; of all triangles, the vehicle's, the object's and,
+in traffic, those of the others of its scene, the nearest one that is met takes the ray.
+"""
+
+import math
+
+import numpy as np
+
+from tests.engine import oracle
+
+FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+
+
+def corners(objects, item):
+    """(8, 3) of one object."""
+    own = np.array(list(np.ndindex(2, 2, 2))) - 0.5
+    turn = oracle.rotation(0.0, 0.0, objects.yaws[item])
+    return objects.centers[item] + (own * objects.sizes[item]) @ turn.T
+
+
+def box_triangles(objects, item):
+    """(12, 3, 3) of one object."""
+    points = corners(objects, item)
+    return [points[[f[0], f[k], f[k + 1]]] for f in FACES for k in (1, 2)]
+
+
+def taken(origin, directions, objects, vehicle, traffic):
+    """Rays that end on each object: (item, distances) of those that take any."""
+    blocked = np.full(len(directions), np.inf)
+    if vehicle is not None:
+        blocked = oracle.first_hits(origin, directions, vehicle.triangles)[0]
+    met = [
+        oracle.first_hits(origin, directions, box_triangles(objects, i))[0]
+        for i in range(len(objects))
+    ]
+    for item, distance in enumerate(met):
+        nearest = blocked
+        if traffic:
+            for other in np.flatnonzero(objects.scenes == objects.scenes[item]):
+                if other != item:
+                    nearest = np.minimum(nearest, met[other])
+        yield item, distance[np.isfinite(distance) & (distance <= nearest)]
+
+
+def beams(sensor, azimuths, objects, vehicle, traffic):
+    """(N,) beams that end on each object within the range."""
+    lidar, origin = sensor.model, np.array(sensor.pose.position)
+    directions = oracle.beam_directions(lidar.elevations, azimuths, sensor.pose.rpy)
+    counts = np.zeros(len(objects))
+    for item, distance in taken(origin, directions, objects, vehicle, traffic):
+        counts[item] = ((distance >= lidar.min_range) & (distance <= lidar.max_range)).sum()
+    return counts
+
+
+def pixels(sensor, ray_of, finer, objects, vehicle, traffic):
+    """(N,) pixels that each object takes, by `finer` by `finer` rays a pixel.
+
+    `ray_of` gives the directions (P, 3), forward, left, up, of places in the picture; NaN of none.
+    """
+    camera = sensor.model
+    across, down = (
+        (np.arange(size * finer) + 0.5) / finer for size in (camera.width, camera.height)
+    )
+    right, below = (w.ravel() for w in np.meshgrid(across, down))
+    rays = ray_of(right, below)
+    rays = rays[~np.isnan(rays[:, 0])] @ oracle.rotation(*sensor.pose.rpy).T
+    counts = np.zeros(len(objects))
+    for item, distance in taken(np.array(sensor.pose.position), rays, objects, vehicle, traffic):
+        counts[item] = len(distance) / finer**2
+    return counts
+
+
+def pinhole_rays(camera):
+    """Rays of an ideal camera."""
+    focal = camera.width / (2.0 * math.tan(camera.hfov / 2.0))
+
+    def ray_of(right, below):
+        y, z = (camera.width / 2.0 - right) / focal, (camera.height / 2.0 - below) / focal
+        ray = np.stack([np.ones_like(y), y, z], axis=1)
+        return ray / np.linalg.norm(ray, axis=1)[:, None]
+
+    return ray_of
+
+
+def equidistant_rays(lens, edge):
+    """Rays of a fisheye whose radius is the angle times the focal length, up to an edge [rad]."""
+
+    def ray_of(right, below):
+        x, y = (right - lens.cx) / lens.fx, (below - lens.cy) / lens.fy
+        theta = np.hypot(x, y)
+        scale = np.sin(theta) / np.where(theta > 0.0, theta, 1.0)
+        ray = np.stack([np.cos(theta), -x * scale, -y * scale], axis=1)
+        ray[theta > edge] = np.nan
+        return ray
+
+    return ray_of

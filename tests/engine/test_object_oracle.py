@@ -1,0 +1,93 @@
+"""The definition of m on objects against an oracle that shares no code with it."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from tests.engine import object_oracle, shapes
+from tests.engine.test_oracle import LIDARS, azimuths_of, random_pose
+
+SIZES = np.array([(4.6, 1.9, 1.7), (0.8, 0.7, 1.75), (1.76, 0.65, 1.74), (7.5, 2.55, 3.0)])
+VIEWS = {
+    "free": (False, False),
+    "traffic": (False, True),
+    "car": (True, False),
+    "both": (True, True),
+}
+
+
+def random_objects(rng, count=12, per_scene=6, nearest=7.2, farthest=14.0):
+    """Boxes about the origin, none of which reaches a sensor; they may overlap."""
+    turn, away = rng.uniform(-math.pi, math.pi, count), rng.uniform(nearest, farthest, count)
+    labels = rng.integers(0, len(SIZES), count)
+    sizes = SIZES[labels] * rng.uniform(0.8, 1.2, (count, 1))
+    centers = np.stack([away * np.cos(turn), away * np.sin(turn), sizes[:, 2] / 2.0], axis=1)
+    yaws = rng.uniform(-math.pi, math.pi, count)
+    scenes = np.arange(count) // per_scene
+    return pe.Objects(centers, sizes, yaws, labels, tuple("abcd"), rng.permutation(scenes))
+
+
+@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("kind", LIDARS)
+def test_beams_equal_brute_force(kind, view):
+    rng = np.random.default_rng([sorted(LIDARS).index(kind), sorted(VIEWS).index(view)])
+    on_car, traffic = VIEWS[view]
+    vehicle = shapes.box_car() if on_car else None
+    lidar, met = shapes.small_lidar(12, 120, **LIDARS[kind] | options(kind)), 0
+    for steep in (True, False):
+        sensor = pe.Sensor("s", lidar, random_pose(rng, steep))
+        some = random_objects(rng)
+        counted = pe.measure_objects(sensor, some, vehicle, traffic)
+        expected = object_oracle.beams(sensor, azimuths_of(lidar), some, vehicle, traffic)
+        assert counted.tolist() == expected.tolist()
+        met += np.count_nonzero(counted)
+    assert met > 2
+
+
+def options(kind):
+    """What else a LiDAR of the oracle's test has here."""
+    if kind == "offsets":
+        return {"azimuth_offsets": np.radians(np.linspace(-5, 5, 12))}
+    return {"min_range": 5.0, "max_range": 11.0} if kind == "short" else {}
+
+
+def small_camera(hfov_deg, width=200, height=130):
+    return pe.Camera("small", width, height, math.radians(hfov_deg))
+
+
+def fisheye():
+    return pe.Camera("fish", 200, 180, None, pe.KannalaBrandt(60.0, 60.0, 100.0, 90.0))
+
+
+CAMERAS = {"60 deg": small_camera(60.0), "120 deg": small_camera(120.0), "fisheye": fisheye()}
+
+
+def rays_of(camera):
+    if camera.lens is None:
+        return object_oracle.pinhole_rays(camera)
+    return object_oracle.equidistant_rays(camera.lens, math.radians(100.0))
+
+
+@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("name", CAMERAS)
+def test_pixels_are_those_of_dense_rays(name, view):
+    """Within what counting pixels leaves open, and 4 % of what would be seen if nothing hid it."""
+    rng = np.random.default_rng([sorted(CAMERAS).index(name), sorted(VIEWS).index(view)])
+    (on_car, traffic), camera = VIEWS[view], CAMERAS[name]
+    vehicle, seen = shapes.box_car() if on_car else None, 0
+    for _ in range(2):
+        pose = pe.Pose.from_degrees(
+            rng.uniform((-2.5, -1.2, 1.6), (2.5, 1.2, 2.3)), rng.uniform(-1, 1, 3) * (15, 15, 180)
+        )
+        sensor, some = pe.Sensor("s", camera, pose), random_objects(rng)
+        m, whole = (
+            pe.measure_objects(sensor, some, v, t) for v, t in ((vehicle, traffic), (None, False))
+        )
+        counted = object_oracle.pixels(sensor, rays_of(camera), 1, some, vehicle, traffic)
+        hidden = 0.04 * whole if on_car or traffic else 0.0
+        open_ = 1.5 + 0.25 * np.sqrt(whole)
+        assert (np.abs(m - counted) <= open_ + hidden).all()
+        seen += np.count_nonzero(m)
+    assert seen > 2

@@ -72,6 +72,18 @@ def pixels(sensor, ray_of, finer, objects, vehicle, traffic):
     return counts
 
 
+def hull_area(sensor, objects, item):
+    """Area of the clipped convex hull of a box's image, None where a corner is not in front."""
+    camera, points = sensor.model, []
+    focal = camera.width / (2.0 * math.tan(camera.hfov / 2.0))
+    seen = (corners(objects, item) - sensor.pose.position) @ oracle.rotation(*sensor.pose.rpy)
+    for x, y, z in seen:
+        if x <= 0.01:
+            return None
+        points.append((camera.width / 2.0 - focal * y / x, camera.height / 2.0 - focal * z / x))
+    return oracle.outline_area(points, camera.width, camera.height)
+
+
 def pinhole_rays(camera):
     """Rays of an ideal camera."""
     focal = camera.width / (2.0 * math.tan(camera.hfov / 2.0))

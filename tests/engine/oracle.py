@@ -76,6 +76,11 @@ def pixel_area(camera_size, hfov, origin, rpy, center, side):
         if x <= IN_FRONT * side:
             return 0.0
         points.append((width / 2 - focal * y / x, height / 2 - focal * z / x))
+    return outline_area(points, width, height)
+
+
+def outline_area(points, width, height):
+    """Area of the convex hull of places, clipped to the picture."""
     return _area(_clip(_hull(points), width, height))
 
 

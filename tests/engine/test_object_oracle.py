@@ -87,7 +87,42 @@ def test_pixels_are_those_of_dense_rays(name, view):
         )
         counted = object_oracle.pixels(sensor, rays_of(camera), 1, some, vehicle, traffic)
         hidden = 0.04 * whole if on_car or traffic else 0.0
-        open_ = 1.5 + 0.25 * np.sqrt(whole)
+        open_ = 1.5 + 0.6 * np.sqrt(whole)
         assert (np.abs(m - counted) <= open_ + hidden).all()
         seen += np.count_nonzero(m)
     assert seen > 2
+
+
+@pytest.mark.parametrize("name", ["60 deg", "120 deg"])
+def test_areas_through_a_pinhole_equal_the_clipped_hull(name):
+    rng, camera = np.random.default_rng(5), CAMERAS[name]
+    some = random_objects(rng, 120, farthest=40.0)
+    for yaw in (0.0, 100.0, 200.0):
+        sensor = pe.Sensor("s", camera, pe.Pose.from_degrees((0.3, 0.1, 1.5), (7.0, -4.0, yaw)))
+        m = pe.measure_objects(sensor, some)
+        hull = [object_oracle.hull_area(sensor, some, item) for item in range(len(some))]
+        front = np.array([area is not None for area in hull])
+        expected = [area for area in hull if area is not None]
+        np.testing.assert_allclose(m[front], expected, rtol=1e-6, atol=1e-4)
+        assert np.count_nonzero(expected) > 10
+        assert not front.all()
+
+
+def test_what_reaches_behind_a_camera_is_seen_in_front_of_it():
+    """A lorry beside the camera: through a pinhole what is in front is a wall to its left."""
+    lorry = pe.Objects([[0.0, 3.0, 1.5]], [[12.0, 2.5, 3.0]], [0.0], [0], ("lorry",))
+    sensor = pe.Sensor("s", small_camera(90.0, 300, 200), pe.Pose((0.0, 0.0, 1.5)))
+    (dense,) = object_oracle.pixels(sensor, rays_of(sensor.model), 2, lorry, None, False)
+    assert pe.measure_objects(sensor, lorry)[0] == pytest.approx(dense, rel=0.01)
+    assert dense > 5000
+    behind = sensor.moved(pe.Pose.from_degrees((0.0, 0.0, 1.5), (0.0, 0.0, 180.0)))
+    assert pe.measure_objects(behind, lorry)[0] == pytest.approx(dense, rel=0.01)
+
+
+def test_a_wall_right_behind_a_fisheye_shows_beyond_its_shoulders():
+    """The outline of what is right behind goes round the whole picture."""
+    wall = pe.Objects([[-0.6, 0.5, 1.0]], [[1.0, 30.0, 20.0]], [0.0], [0], ("wall",))
+    sensor = pe.Sensor("s", CAMERAS["fisheye"], pe.Pose((0.0, 0.0, 1.5)))
+    (dense,) = object_oracle.pixels(sensor, rays_of(sensor.model), 2, wall, None, False)
+    assert pe.measure_objects(sensor, wall)[0] == pytest.approx(dense, rel=0.05)
+    assert 100 < dense < 30_000

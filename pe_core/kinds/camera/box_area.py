@@ -22,7 +22,7 @@ from .model import Camera
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Faces = tuple[Ints, Floats, ImagePoints]
+ImagedFaces = tuple[Ints, Floats, ImagePoints]
 """Boxes (P,), the area (P,) of a face of each, and places (P, K) that its image is held by [px]."""
 
 NEAREST_M = 1e-3
@@ -94,8 +94,8 @@ def face_points(boxes: PlacedBoxes, which: Ints, axis: int, places: Floats) -> F
 
 def _straight_faces(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int
-) -> Iterator[Faces]:
-    """Faces through a pinhole: those in front, and those that are cut."""
+) -> Iterator[ImagedFaces]:
+    """ImagedFaces through a pinhole: those in front, and those that are cut."""
     corners = face_points(boxes, which, axis, np.array(QUAD))
     corners = along_camera(axes, boxes, which, corners)
     front = corners[..., 0] > NEAREST_M
@@ -136,8 +136,8 @@ def _between(camera: Camera, starts: Floats, ends: Floats) -> tuple[Floats, Imag
 
 def _bent_faces(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int
-) -> Iterator[Faces]:
-    """Faces through a lens that bends: near ones of more pieces an edge than far ones."""
+) -> Iterator[ImagedFaces]:
+    """ImagedFaces through a lens that bends: near ones of more pieces an edge than far ones."""
     offsets, halves = boxes.offsets[which], boxes.halves[which]
     ratio = np.sqrt(dot(offsets, offsets) / dot(halves, halves))
     nearer = 0.0

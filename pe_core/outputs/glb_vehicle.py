@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from ..scene import Reference, Vehicle
@@ -13,11 +15,19 @@ REAR_AXLE = "Grp_Rear_Axle_Center"
 GLASS_ALPHA = 0.45
 
 
-def add_vehicle(scene: GlbScene, vehicle: Vehicle | None, reference: Reference | None) -> list[int]:
-    """Add the vehicle's parts and rear axle, where they are known; return what holds them."""
+def add_vehicle(
+    scene: GlbScene,
+    vehicle: Vehicle | None,
+    reference: Reference | None,
+    taken: Collection[str] = (),
+) -> list[int]:
+    """Add the vehicle's parts and rear axle, where they are known; return what holds them.
+
+    A part whose name is `taken` is called so with more.
+    """
     below = []
     if vehicle is not None:
-        below.append(scene.add_node(STATIC, _parts(scene, vehicle)))
+        below.append(scene.add_node(STATIC, _parts(scene, vehicle, taken)))
     if reference is not None:
         place = np.array([reference.rear_axle_x, 0.0, reference.rear_axle_z])
         axle = scene.add_node(REAR_AXLE, translation=y_up(place).tolist())
@@ -25,7 +35,7 @@ def add_vehicle(scene: GlbScene, vehicle: Vehicle | None, reference: Reference |
     return [scene.add_node(EXTERIOR, below)] if below else []
 
 
-def _parts(scene: GlbScene, vehicle: Vehicle) -> list[int]:
+def _parts(scene: GlbScene, vehicle: Vehicle, taken: Collection[str]) -> list[int]:
     looks = (scene.add_material("body", BODY), scene.add_material("glass", GLASS, GLASS_ALPHA))
     nodes = []
     for number, name in enumerate(vehicle.part_names):
@@ -34,5 +44,5 @@ def _parts(scene: GlbScene, vehicle: Vehicle) -> list[int]:
             points, index = np.unique(corners, axis=0, return_inverse=True)
             look = looks[name in vehicle.glass]
             mesh = scene.add_mesh(name, points, index.reshape(-1, 3), look)
-            nodes.append(scene.add_node(name, mesh=mesh))
+            nodes.append(scene.add_node(f"{name} (body)" if name in taken else name, mesh=mesh))
     return nodes

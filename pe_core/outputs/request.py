@@ -37,9 +37,13 @@ class OutputRequest:
             checked = LENGTH.checked("export", "range", self.range_m)
             object.__setattr__(self, "range_m", checked)
 
-    def reach(self, sensor: Sensor, most: float = NO_RANGE_M) -> float:
-        """Return how far a sensor is drawn [m]; `most` where neither it nor the wish says."""
+    def reach(self, sensor: Sensor, most: float | None = None) -> float:
+        """Return how far a sensor is drawn [m]: its own range, or what was asked for if nearer.
+
+        Where nothing was asked for, `most`; or `NO_RANGE_M` for one that has no range.
+        """
         own = float(getattr(sensor.model, "max_range", math.inf))
-        if self.range_m is not None:
-            return min(own, self.range_m)
-        return own if math.isfinite(own) else most
+        asked = self.range_m if self.range_m is not None else most
+        if asked is None:
+            return own if math.isfinite(own) else NO_RANGE_M
+        return min(own, asked)

@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from ..errors import InputError, shown
 from ..exchange import Written
-from . import solids
+from . import scene_gltf, solids, svg
 from .request import OutputRequest
 
 
@@ -40,6 +40,8 @@ class SceneOutput:
 
 _ROWS = (
     SceneOutput("solids", "fields of view as solids (glTF, STL)", "solids", solids.write, True),
+    SceneOutput("footprints", "footprints on the ground (SVG)", svg.FILE, svg.write),
+    SceneOutput("gltf", "whole scene (glTF)", scene_gltf.FILE, scene_gltf.write),
 )
 SCENE_OUTPUTS = MappingProxyType({row.name: row for row in _ROWS})
 """Outputs by name."""

@@ -54,7 +54,7 @@ def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats
     xs, ys = _widened(x), _widened(y)
     starts, ends = _segments(field)
     points = _EdgePoints(field, xs, ys)
-    rings = [points.at(ring) for ring in _chained(starts, ends)]
+    rings = [points.at(ring) for ring in chained(starts, ends)]
     return tuple(sorted(rings, key=len, reverse=True))
 
 
@@ -88,7 +88,7 @@ def _edge(i: Ints, j: Ints, side: int, shape: tuple[int, ...]) -> Ints:
     return 2 * (i * shape[1] + j) + (side in (LEFT, RIGHT))
 
 
-def _chained(starts: Ints, ends: Ints) -> list[list[int]]:
+def chained(starts: Ints, ends: Ints) -> list[list[int]]:
     """Put pieces together to rings of edges; every edge is entered once and left once."""
     following = dict(zip(starts.tolist(), ends.tolist(), strict=True))
     rings = []

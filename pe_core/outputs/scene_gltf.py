@@ -1,0 +1,94 @@
+"""The whole scene as glTF: the vehicle, sensors as nodes with their poses, what they see.
+
+A sensor's node has its axes as glTF has them: x to where it looks, y up, z to its right; imported
+where z is up, that is x forward, y left, z up again. Cameras hang below, looking along their -z.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..exchange import Written
+from ..exchange.carried import CarriedSensor, bent, carried
+from ..exchange.frames import quaternion
+from ..scene import Sensor, rotate
+from .colors import sensor_color
+from .glb import GlbScene, y_up
+from .glb_vehicle import add_vehicle
+from .request import OutputRequest
+from .solid import free_solid
+from .views import mounted_view
+
+FILE, TITLE = "scene.glb", "glTF"
+ROOT = "Grp_Root"
+STEP = math.radians(1.0)
+REACH_M = 4.0
+"""How far fields of view go unless told."""
+VIEW_ALPHA = 0.18
+LOOKING_ALONG_X = [0.0, -math.sqrt(0.5), 0.0, math.sqrt(0.5)]
+"""Quaternion (x, y, z, w) that turns -z of a glTF camera to a sensor's x."""
+NEAR_M, FAR_M = 0.1, 1000.0
+
+
+def write(wanted: OutputRequest) -> tuple[Written, list[str]]:
+    """Return the scene in one file, and lines on what is not in it."""
+    study, scene = wanted.study, GlbScene()
+    sensors = carried(study.rig)
+    names = {sensor.name for sensor in study.rig}
+    below = add_vehicle(scene, study.vehicle, study.reference, names)
+    for number, (sensor, known) in enumerate(zip(study.rig, sensors, strict=True)):
+        parts = [*_camera(scene, known), *_view(scene, wanted, sensor, number)]
+        place = y_up(np.asarray(sensor.pose.position)).tolist()
+        about = {"kind": sensor.kind, "model": sensor.model.name}
+        turn = _turn(sensor)
+        node = scene.add_node(sensor.name, parts, translation=place, rotation=turn, extras=about)
+        below.append(node)
+    lines = [] if study.vehicle is not None else ["no vehicle: sensors alone"]
+    lines += [*bent(sensors, TITLE), *_shifted(sensors)]
+    return {FILE: scene.encoded(scene.add_node(ROOT, below))}, lines
+
+
+def _turn(sensor: Sensor) -> list[float]:
+    """Return a sensor's rotation as a quaternion (x, y, z, w) between axes of glTF."""
+    w, x, y, z = quaternion(sensor.pose.ground_from_sensor)
+    return [x, z, -y, w]
+
+
+def _camera(scene: GlbScene, known: CarriedSensor) -> list[int]:
+    """Add the node of what takes a picture, below its sensor's."""
+    picture = known.picture
+    if picture is None or picture.size is None:
+        return []
+    wide, high = picture.size[0] / picture.fx, picture.size[1] / picture.fy
+    seen: dict[str, Any] = {"yfov": 2.0 * math.atan(high / 2.0), "aspectRatio": wide / high}
+    seen |= {"znear": NEAR_M, "zfar": FAR_M}
+    scene.cameras.append({"name": known.name, "type": "perspective", "perspective": seen})
+    number = len(scene.cameras) - 1
+    return [scene.add_node(f"{known.name} view", rotation=LOOKING_ALONG_X, camera=number)]
+
+
+def _view(scene: GlbScene, wanted: OutputRequest, sensor: Sensor, number: int) -> list[int]:
+    """Add what a sensor sees up to the vehicle, in its own axes."""
+    view = mounted_view(sensor, wanted.study.vehicle, wanted.reach(sensor, REACH_M), STEP)
+    if view is None:
+        return []
+    name = f"{sensor.name} field of view"
+    solid = free_solid(name, view)
+    points = rotate(sensor.pose.ground_from_sensor.T, solid.points - view.origin)
+    look = scene.add_material(name, sensor_color(number), VIEW_ALPHA)
+    return [scene.add_node(name, mesh=scene.add_mesh(name, points, solid.faces, look))]
+
+
+def _shifted(sensors: tuple[CarriedSensor, ...]) -> list[str]:
+    told = "{0}: a picture whose middle is not its principal point is centred in glTF"
+    return [told.format(s.name) for s in sensors if s.picture is not None and _is_off(s)]
+
+
+def _is_off(each: CarriedSensor) -> bool:
+    picture = each.picture
+    if picture is None or picture.size is None:
+        return False
+    return (2.0 * picture.cx, 2.0 * picture.cy) != picture.size

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from ..exchange import Written
-from ..exchange.carried import CarriedSensor, bent, carried
+from ..exchange.carried import CarriedSensor, carried, with_pictures
 from ..exchange.frames import quaternion
+from ..exchange.pictures import centred
 from ..scene import Sensor, rotate
 from .colors import sensor_color
 from .glb import GlbScene, y_up
@@ -36,7 +37,7 @@ NEAR_M, FAR_M = 0.1, 1000.0
 def write(wanted: OutputRequest) -> tuple[Written, list[str]]:
     """Return the scene in one file, and lines on what is not in it."""
     study, scene = wanted.study, GlbScene()
-    sensors = carried(study.rig)
+    sensors, left_out = with_pictures(carried(study.rig), centred, TITLE)
     names = {sensor.name for sensor in study.rig}
     below = add_vehicle(scene, study.vehicle, study.reference, names)
     for number, (sensor, known) in enumerate(zip(study.rig, sensors, strict=True)):
@@ -47,8 +48,7 @@ def write(wanted: OutputRequest) -> tuple[Written, list[str]]:
         node = scene.add_node(sensor.name, parts, translation=place, rotation=turn, extras=about)
         below.append(node)
     lines = [] if study.vehicle is not None else ["no vehicle: sensors alone"]
-    lines += [*bent(sensors, TITLE), *_shifted(sensors)]
-    return {FILE: scene.encoded(scene.add_node(ROOT, below))}, lines
+    return {FILE: scene.encoded(scene.add_node(ROOT, below))}, lines + left_out
 
 
 def _turn(sensor: Sensor) -> list[float]:
@@ -80,15 +80,3 @@ def _view(scene: GlbScene, wanted: OutputRequest, sensor: Sensor, number: int) -
     points = rotate(sensor.pose.ground_from_sensor.T, solid.points - view.origin)
     look = scene.add_material(name, sensor_color(number), VIEW_ALPHA)
     return [scene.add_node(name, mesh=scene.add_mesh(name, points, solid.faces, look))]
-
-
-def _shifted(sensors: tuple[CarriedSensor, ...]) -> list[str]:
-    told = "{0}: a picture whose middle is not its principal point is centred in glTF"
-    return [told.format(s.name) for s in sensors if s.picture is not None and _is_off(s)]
-
-
-def _is_off(each: CarriedSensor) -> bool:
-    picture = each.picture
-    if picture is None or picture.size is None:
-        return False
-    return (2.0 * picture.cx, 2.0 * picture.cy) != picture.size

@@ -22,6 +22,7 @@ from .oddities import missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
 from .own_sensors import add_own_sensor, forget_own_sensors, sync_own_sensors, table_of
 from .placeable import check_placeable
+from .plain_objects import plain_objects, put_objects, sensors_of_objects
 from .prior import prior_from_scene, prior_key
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
 from .rig import (
@@ -110,11 +111,13 @@ __all__ = [
     "perception_of",
     "place_poses",
     "place_rig",
+    "plain_objects",
     "pose_of",
     "pose_of_matrix",
     "possible_sensors",
     "prior_from_scene",
     "prior_key",
+    "put_objects",
     "put_variant",
     "records_of",
     "records_of_scene",
@@ -128,6 +131,7 @@ __all__ = [
     "sensor_from_object",
     "sensor_objects",
     "sensors_collection",
+    "sensors_of_objects",
     "shown_collection",
     "signature",
     "space_of",

@@ -6,6 +6,7 @@ import argparse
 
 from ..engine import app, pe
 from .leaving import REVIEW
+from .plain_objects import OBJECTS, add_objects_options
 from .scene_verbs import explain_study, export_study, run_job
 from .sweeping import sweep_scene
 from .variants import compare_variants, list_variants
@@ -25,9 +26,11 @@ def parser(prog: str) -> argparse.ArgumentParser:
         verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
     about = "write the scene as a study with its mesh, or its rig for another program"
     export = verbs.add_parser("export", help=about)
-    app.add_export_options(export, also_study=True)
+    app.add_export_options(export, also_study=True, more=[OBJECTS])
     add_variant_option(export)
     export.set_defaults(function=export_study)
+    about = "write a study of the scene, with its own cameras and empties as the sensors"
+    add_objects_options(verbs.add_parser("import", help=about))
     explain = verbs.add_parser("explain", help="the score in words, or one place of it")
     app.add_explain_options(explain)
     add_variant_option(explain)

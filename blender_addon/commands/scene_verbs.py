@@ -11,6 +11,7 @@ from .. import bridge
 from ..engine import app, pe, studies
 from .leaving import OPTIMIZED, REVIEW, leave_front, leave_scene
 from .opened import from_file, opened_study
+from .plain_objects import OBJECTS, export_objects
 from .streams import quiet_blender
 
 
@@ -61,6 +62,8 @@ def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
 def export_study(args: argparse.Namespace) -> app.Answer:
     """Write the scene as a study file, with the vehicle's mesh; or for another program."""
     study = opened_study(args.variant)
+    if args.to == OBJECTS:
+        return export_objects(study, args)
     if args.to is not None:
         return app.export(study, args)
     path = pe.prepare_folder(args.output) / studies.STUDY

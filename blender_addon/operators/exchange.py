@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from .. import bridge, changes
+from .. import bridge
 from ..engine import catalog, exchange, pe
-from .known_rigs import record_of
+from .file_sensors import stand_sensors
 from .reports import REFUSALS, chosen_file, refuse, tell
-from .variants import stand_as_variant
 
 _ROWS = tuple((row.name, row.title, "", k) for k, row in enumerate(exchange.RIG_FORMATS.values()))
 TOLD = ("TOLD", "By Name", "As the file's name tells", len(_ROWS))
@@ -64,25 +64,93 @@ class PE_OT_import_rig(ImportHelper, bpy.types.Operator):
 
     filter_glob: StringProperty(default="*", options={"HIDDEN"})
     format: EnumProperty(items=(*_ROWS, TOLD), name="Format", default="TOLD")
+    ask: BoolProperty(
+        name="Ask for Models",
+        description="Ask for the models that the file does not tell; else usual ones stand in",
+        default=True,
+    )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        scene = context.scene
         try:
             path = chosen_file(self.filepath)
-            reference = bridge.reference_of(scene.perception_entropy)
-            name = None if self.format == "TOLD" else self.format
-            found = pe.import_rig(_kit_of(path), name, reference)
-            before = bridge.records_of_scene(scene)
-            records = tuple(record_of(_of_file(scene, sensor)) for sensor in found.rig)
-            note = f"Read from {path}. {' '.join(found.lines)}"
-            title = stand_as_variant(scene, path.stem or path.parent.name, records, note, before)
+            found = read_rig(context.scene, path, self.format, {})
+            if self.ask and found.to_choose and not bpy.app.background:
+                wanted = {"filepath": str(path), "format": self.format}
+                return bpy.ops.pe.choose_models("INVOKE_DEFAULT", True, **wanted)
+            return bring(self, context.scene, path, found)
         except REFUSALS as error:
             return refuse(self, error)
-        changes.study.tell()
-        for line in found.lines:
-            tell(self, "WARNING", line)
-        tell(self, "INFO", f"Added {title}: {len(records)} sensors")
-        return {"FINISHED"}
+
+
+class PE_ModelChoice(bpy.types.PropertyGroup):
+    """A sensor of a file, and the model that it is to have."""
+
+    sensor: StringProperty(name="Sensor")
+    kind: StringProperty(name="Kind")
+    model: StringProperty(
+        name="Model",
+        description="Name of the sensor in the catalogue",
+        search=lambda row, _context, typed: (
+            catalog.matching(typed, row.kind) or catalog.names(row.kind)
+        ),
+        search_options=set(),
+    )
+
+
+class PE_OT_choose_models(bpy.types.Operator):
+    """Say which models the sensors of a rig are that its file does not tell"""
+
+    bl_idname = "pe.choose_models"
+    bl_label = "Choose Models"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN"})
+    format: EnumProperty(items=(*_ROWS, TOLD), default="TOLD", options={"HIDDEN"})
+    rows: CollectionProperty(type=PE_ModelChoice)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        try:
+            found = read_rig(context.scene, chosen_file(self.filepath), self.format, {})
+        except REFUSALS as error:
+            return refuse(self, error)
+        self.rows.clear()
+        for name in found.to_choose:
+            row, sensor = self.rows.add(), found.rig[name]
+            row.sensor, row.kind, row.model = name, sensor.kind, sensor.model.name
+        return context.window_manager.invoke_props_dialog(self, width=480)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        self.layout.label(text="The file does not tell these models:")
+        for row in self.rows:
+            split = self.layout.split(factor=0.4)
+            split.label(text=row.sensor)
+            split.prop(row, "model", text="")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            path = chosen_file(self.filepath)
+            chosen = {row.sensor: row.model for row in self.rows}
+            return bring(
+                self, context.scene, path, read_rig(context.scene, path, self.format, chosen)
+            )
+        except REFUSALS as error:
+            return refuse(self, error)
+
+
+def read_rig(
+    scene: bpy.types.Scene, path: Path, name: str, chosen: Mapping[str, str]
+) -> exchange.ImportedRig:
+    """Return the rig of a file, with models that were chosen by the sensors' names."""
+    reference = bridge.reference_of(scene.perception_entropy)
+    return pe.import_rig(_kit_of(path), None if name == "TOLD" else name, reference, chosen)
+
+
+def bring(
+    operator: bpy.types.Operator, scene: bpy.types.Scene, path: Path, found: exchange.ImportedRig
+) -> set[str]:
+    """Have a rig of a file stand in the scene, as a variant, and tell what has to be known."""
+    title = path.stem or path.parent.name
+    return stand_sensors(operator, scene, title, tuple(found.rig), found.lines, f"Read from {path}")
 
 
 def _kit_of(path: Path) -> Path:
@@ -91,12 +159,4 @@ def _kit_of(path: Path) -> Path:
     return path.parent if any(path.name in files for files in several) else path
 
 
-def _of_file(scene: bpy.types.Scene, sensor: pe.Sensor) -> catalog.KnownSensor:
-    """Return a sensor as known rigs have them; a model that nobody has becomes the file's own."""
-    name = sensor.model.name
-    if name not in catalog.entries() or catalog.load(name) is not sensor.model:
-        name = bridge.add_own_sensor(scene, name, catalog.to_table(sensor.model))
-    return catalog.KnownSensor(sensor.name, name, sensor.pose)
-
-
-CLASSES = (PE_OT_export_rig, PE_OT_import_rig)
+CLASSES = (PE_OT_export_rig, PE_OT_import_rig, PE_ModelChoice, PE_OT_choose_models)

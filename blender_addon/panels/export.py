@@ -25,6 +25,9 @@ class PE_PT_export(Tab, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("pe.export_rig", text="Export Rig", icon="FILE_TICK")
         row.operator("pe.import_rig", text="Import Rig", icon="FILE_FOLDER")
+        row = layout.row(align=True)
+        row.operator("pe.sensors_to_objects", text="To Objects", icon="OUTLINER_OB_CAMERA")
+        row.operator("pe.sensors_from_objects", text="From Objects", icon="OUTLINER_OB_EMPTY")
         draw_axles(layout, context.scene.perception_entropy)
 
 
@@ -40,11 +43,15 @@ def draw_axles(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) ->
 def draw_export(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """File > Export."""
     menu.layout.operator("pe.export_rig", text="Rig of Sensors (Perception Entropy)")
+    text = "Sensors as Cameras and Empties (Perception Entropy)"
+    menu.layout.operator("pe.sensors_to_objects", text=text)
 
 
 def draw_import(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """File > Import."""
     menu.layout.operator("pe.import_rig", text="Rig of Sensors (Perception Entropy)")
+    text = "Cameras and Empties as Sensors (Perception Entropy)"
+    menu.layout.operator("pe.sensors_from_objects", text=text)
 
 
 def register() -> None:

@@ -10,7 +10,7 @@ from .command import (
     run,
     with_options,
 )
-from .exchanging import add_export_options, export
+from .exchanging import add_export_options, chosen_models, export
 from .explaining import (
     add_compare_options,
     add_explain_options,
@@ -49,6 +49,7 @@ __all__ = [
     "carry_out",
     "check_not_resumed",
     "choose",
+    "chosen_models",
     "compare",
     "count_up_to",
     "drive",

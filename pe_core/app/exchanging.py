@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,9 +21,14 @@ POSE = ("X", "Y", "Z", "ROLL", "PITCH", "YAW")
 NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
 
 
-def add_export_options(parser: argparse.ArgumentParser, *, also_study: bool = False) -> None:
-    """Add the options of ``export`` to a parser; `also_study`: without a format that is written."""
-    known = [*RIG_FORMATS, *SCENE_OUTPUTS]
+def add_export_options(
+    parser: argparse.ArgumentParser, *, also_study: bool = False, more: Sequence[str] = ()
+) -> None:
+    """Add the options of ``export`` to a parser; `also_study`: without a format that is written.
+
+    `more` names formats of whoever asks.
+    """
+    known = [*RIG_FORMATS, *SCENE_OUTPUTS, *more]
     about = f"format: {', '.join(known)}" + (" (default: a study)" if also_study else "")
     needed = not also_study
     parser.add_argument("--to", required=needed, choices=known, metavar="FORMAT", help=about)
@@ -87,7 +93,7 @@ def import_study(args: argparse.Namespace) -> Answer:
         vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
     reference = _reference(args, None, vehicle, args.format or args.file)
     placed = None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
-    models = dict(_model(text) for text in args.model)
+    models = chosen_models(args.model)
     found = import_rig(args.file, args.format, reference, models, placed)
     save_study(Study(found.rig, vehicle, mesh=args.mesh, reference=reference), output)
     return "\n".join(_told(found, output)), DONE
@@ -115,6 +121,11 @@ def _reference(
         raise InputError(asking, "rear axle", NO_GUESS, "none")
     tell(f"rear axle guessed from its wheels: x {guess.rear_axle_x:g}, z {guess.rear_axle_z:g} m")
     return guess
+
+
+def chosen_models(texts: Sequence[str]) -> dict[str, str]:
+    """Return models by the names of sensors, from texts NAME=MODEL."""
+    return dict(_model(text) for text in texts)
 
 
 def _model(text: str) -> tuple[str, str]:

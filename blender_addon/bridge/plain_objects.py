@@ -1,0 +1,190 @@
+"""Blender's own cameras and empties as sensors, and sensors as cameras and empties of Blender's.
+
+A sensor's name and model stand in the object's custom properties, a picture's size in the camera's:
+a scene has one size of pictures, a rig has many.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ..engine import catalog, exchange, pe
+from .rig import pose_of_matrix
+from .view_camera import CAMERA_FROM_SENSOR, FAR_M, FILM_MM, SHORTEST_MM
+
+NAME, MODEL, SIZE, ASPECT = "sensor", "model", "image_size", "pixel_aspect"
+COLLECTION = "Rig"
+CLIPS = (0.1, 1000.0)
+"""Where Blender's cameras begin and end to see unless told: no ranges of a sensor."""
+LEFT_OUT = "{0}: Blender's camera has no distortion ({1}); its axis is right"
+ALIKE_PX = 0.01
+DIGITS_PX, DIGITS_M = 4, 6
+"""What single precision leaves of a focal length and a range."""
+
+
+def plain_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Return those that are cameras or empties, and no sensors or parts of one."""
+    kinds = {"CAMERA", "EMPTY"}
+    mine = (each for each in objects if each.type in kinds and not _is_ours(each))
+    return [each for each in mine if each.instance_collection is None]
+
+
+def _is_ours(obj: bpy.types.Object) -> bool:
+    own = obj.perception_entropy
+    return own.is_sensor or own.is_view
+
+
+def sensors_of_objects(
+    scene: bpy.types.Scene,
+    objects: Iterable[bpy.types.Object],
+    models: Mapping[str, str],
+    stand_in: str,
+) -> tuple[list[pe.Sensor], list[str]]:
+    """Return cameras and empties as sensors, and a line for each that another model stands in for.
+
+    `models` are those chosen by the sensors' names; an empty that says none has the `stand_in`.
+
+    Raises
+    ------
+    InputError
+        When there is none, or a camera has no perspective or no possible lens.
+    """
+    found, lines = [], []
+    for obj in plain_objects(objects):
+        name = str(obj.get(NAME, obj.name))
+        chosen = models.get(name) or _model_of(obj)
+        if obj.type == "EMPTY" and chosen is None:
+            lines.append(f"{name}: no model on the empty; {stand_in} stands in: choose its model")
+        model = _camera(scene, obj, name, chosen) if obj.type == "CAMERA" else None
+        found.append(pe.Sensor(name, model or catalog.load(chosen or stand_in), _pose(obj)))
+    if not found:
+        raise pe.InputError("scene", "objects", "cameras or empties", "none")
+    return found, lines
+
+
+def _model_of(obj: bpy.types.Object) -> str | None:
+    """Return what an object says of its model, if the catalogue has it."""
+    said = str(obj.get(MODEL, ""))
+    return said if said in catalog.entries() else None
+
+
+def _pose(obj: bpy.types.Object) -> pe.Pose:
+    matrix = np.array(obj.matrix_world, dtype=float)
+    matrix[:3, :3] /= np.sqrt((matrix[:3, :3] ** 2).sum(axis=0))
+    if obj.type == "CAMERA":
+        matrix = matrix @ np.linalg.inv(np.array(CAMERA_FROM_SENSOR))
+    return pose_of_matrix(matrix)
+
+
+def _camera(
+    scene: bpy.types.Scene, obj: bpy.types.Object, name: str, chosen: str | None
+) -> pe.Camera:
+    """Return a camera's model: the chosen one while the lens is its, else the lens's own."""
+    camera = obj.data
+    if camera.type != "PERSP":
+        raise pe.InputError("scene", f"camera {name!r}", "a perspective lens", camera.type)
+    table = _table(scene, camera)
+    if chosen is not None:
+        model = catalog.load(chosen)
+        picture = exchange.picture_of(model)
+        if picture is None or _is_of(picture, table):
+            return model
+    return catalog.from_table(name, table)
+
+
+def _table(scene: bpy.types.Scene, camera: bpy.types.Camera) -> dict[str, object]:
+    """Return a camera's figures with the keys of a study.
+
+    Blender measures the film along the picture's longer side, unless the fit says which one.
+    """
+    width, height, aspect = _picture(scene, camera)
+    fit = camera.sensor_fit
+    across = fit == "HORIZONTAL" or (fit == "AUTO" and width >= height * aspect)
+    film = camera.sensor_height if fit == "VERTICAL" else camera.sensor_width
+    length = width if across else height * aspect
+    fx = camera.lens * length / film
+    cx = width / 2.0 - camera.shift_x * length
+    cy = height / 2.0 + camera.shift_y * length / aspect
+    values = {"fx": fx, "fy": fx / aspect, "cx": cx, "cy": cy}
+    table: dict[str, object] = {"kind": "camera", "width": width, "height": height}
+    table |= {key: round(value, DIGITS_PX) for key, value in values.items()}
+    clips = [round(clip, DIGITS_M) for clip in (camera.clip_start, camera.clip_end)]
+    keys = zip(("min_range_m", "max_range_m"), clips, CLIPS, strict=True)
+    return table | {key: clip for key, clip, usual in keys if clip != usual}
+
+
+def _picture(scene: bpy.types.Scene, camera: bpy.types.Camera) -> tuple[int, int, float]:
+    """Return width and height [px] and a pixel's height over its width: its own, or the scene's."""
+    render = scene.render
+    share = render.resolution_percentage / 100.0
+    size = camera.get(SIZE) or [
+        int(render.resolution_x * share),
+        int(render.resolution_y * share),
+    ]
+    aspect = render.pixel_aspect_y / render.pixel_aspect_x
+    return int(size[0]), int(size[1]), float(camera.get(ASPECT, 1.0 if SIZE in camera else aspect))
+
+
+def _is_of(picture: exchange.Picture, table: Mapping[str, object]) -> bool:
+    """Whether a camera's figures are those of a picture, on its axis."""
+    figures = (*(picture.size or ()), picture.fx, picture.fy, *picture.center)
+    keys = ("width", "height", "fx", "fy", "cx", "cy")
+    return all(
+        abs(float(table[k]) - v) < ALIKE_PX  # type: ignore[arg-type]
+        for k, v in zip(keys, figures, strict=True)
+    )
+
+
+def put_objects(scene: bpy.types.Scene, rig: pe.Rig) -> tuple[list[bpy.types.Object], list[str]]:
+    """Add a rig's cameras and empties to a scene, in a collection of their own; return them.
+
+    The lines say what Blender's cameras cannot show.
+    """
+    collection = bpy.data.collections.new(COLLECTION)
+    scene.collection.children.link(collection)
+    made, lines = [], []
+    for sensor in rig:
+        picture = exchange.picture_of(sensor.model)
+        data = None if picture is None else _camera_data(sensor, picture)
+        obj = bpy.data.objects.new(sensor.name, data)
+        obj[NAME], obj[MODEL] = sensor.name, sensor.model.name
+        obj.matrix_world = _matrix(sensor.pose, data is not None)
+        if data is None:
+            obj.empty_display_type = "ARROWS"
+        elif not picture.lens.is_straight:
+            lines.append(LEFT_OUT.format(sensor.name, picture.lens.model))
+        collection.objects.link(obj)
+        made.append(obj)
+    return made, lines
+
+
+def _matrix(pose: pe.Pose, is_camera: bool) -> Matrix:
+    ground_from_sensor = np.eye(4)
+    ground_from_sensor[:3, :3], ground_from_sensor[:3, 3] = pose.ground_from_sensor, pose.position
+    if is_camera:
+        ground_from_sensor = ground_from_sensor @ np.array(CAMERA_FROM_SENSOR)
+    return Matrix(ground_from_sensor.tolist())
+
+
+def _camera_data(sensor: pe.Sensor, picture: exchange.Picture) -> bpy.types.Camera:
+    """Return a camera with a picture's lens, size and range."""
+    camera = bpy.data.cameras.new(sensor.name)
+    width, height = picture.size
+    aspect = picture.fx / picture.fy
+    camera.lens_unit, camera.sensor_fit = "MILLIMETERS", "HORIZONTAL"
+    camera.sensor_width = max(FILM_MM, SHORTEST_MM * width / picture.fx)
+    camera.sensor_height = camera.sensor_width * height * aspect / width
+    camera.lens = picture.fx * camera.sensor_width / width
+    cx, cy = picture.center
+    camera.shift_x = (width / 2.0 - cx) / width
+    camera.shift_y = (cy - height / 2.0) * aspect / width
+    least, most = sensor.model.min_range, sensor.model.max_range
+    camera.clip_start = least or CLIPS[0]
+    camera.clip_end = most if math.isfinite(most) else FAR_M
+    camera[SIZE], camera[ASPECT] = (width, height), aspect
+    return camera

@@ -28,6 +28,9 @@ class PE_PT_export(Tab, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("pe.sensors_to_objects", text="To Objects", icon="OUTLINER_OB_CAMERA")
         row.operator("pe.sensors_from_objects", text="From Objects", icon="OUTLINER_OB_EMPTY")
+        layout.operator_menu_enum(
+            "pe.export_scene", "output", text="Export Scene", icon="SCENE_DATA"
+        )
         draw_axles(layout, context.scene.perception_entropy)
 
 
@@ -45,6 +48,8 @@ def draw_export(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.operator("pe.export_rig", text="Rig of Sensors (Perception Entropy)")
     text = "Sensors as Cameras and Empties (Perception Entropy)"
     menu.layout.operator("pe.sensors_to_objects", text=text)
+    text = "Fields of View and Scene (Perception Entropy)"
+    menu.layout.operator_menu_enum("pe.export_scene", "output", text=text)
 
 
 def draw_import(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:

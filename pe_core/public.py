@@ -32,7 +32,15 @@ from .scene import (
     cuts_body,
     guessed_reference,
 )
-from .scoring import Evaluator, Glance, GroundMap, PartScore, Score, SensorScore
+from .scoring import (
+    Evaluator,
+    Glance,
+    GroundMap,
+    ObjectScore,
+    PartScore,
+    Score,
+    SensorScore,
+)
 from .search import (
     METHODS,
     Choice,
@@ -75,6 +83,7 @@ from .study import (
     write_front,
     write_outcome,
 )
+from .targets import ObjectEvaluator, Targets
 from .version import __version__
 
 __all__ = [
@@ -109,6 +118,8 @@ __all__ = [
     "Mounting",
     "NoGo",
     "ObjectClass",
+    "ObjectEvaluator",
+    "ObjectScore",
     "Objective",
     "Objects",
     "OptimizeJob",
@@ -138,6 +149,7 @@ __all__ = [
     "Step",
     "Study",
     "SurfaceMount",
+    "Targets",
     "Tolerance",
     "TradeOff",
     "Vehicle",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,10 +19,13 @@ Floats = NDArray[np.float64]
 Shape = tuple[Floats, Floats]
 """Density over the ground (nx, ny) and profile over height (nz,), each summing to 1."""
 
+SPREAD = Number(0.0, cap=1e9, unit="m", noun="length")
 RULES = {
     **dict.fromkeys(("height_spread", "decay_x", "laplace_y", "gauss_y"), LENGTH),
     "laplace_share": SHARE,
     "share": WEIGHT,
+    **dict.fromkeys(("length_spread", "width_spread"), SPREAD),
+    "any_heading": SHARE,
 }
 LANE = Number(cap=1e9, unit="m")
 
@@ -49,6 +53,10 @@ class ObjectClass:
         y of the middle of each lane [m]; one named twice counts twice.
     share : float
         Mass beside the other classes', before focus weights; the paper has them all alike.
+    length_spread, width_spread : float
+        Standard deviations of the length and the width of drawn objects [m]; voxels have the mean.
+    any_heading : float
+        Share of drawn objects that face anywhere, 0 to 1; the others stand along x.
 
     Raises
     ------
@@ -65,6 +73,9 @@ class ObjectClass:
     laplace_share: float
     lanes: tuple[float, ...] = (0.0,)
     share: float = 1.0
+    length_spread: float = 0.0
+    width_spread: float = 0.0
+    any_heading: float = 0.0
 
     def __post_init__(self) -> None:
         who = f"prior class {A_NAME.checked('prior class', 'name', self.name)!r}"
@@ -84,17 +95,29 @@ def _lanes(who: str, values: Any) -> tuple[float, ...]:
 FIELDS = tuple(field.name for field in fields(ObjectClass))
 
 
+def _met(
+    name: str,
+    size: tuple[float, float, float],
+    height_spread: float,
+    place: tuple[float, float, float, float],
+    spread: tuple[float, float],
+    any_heading: float = 0.0,
+) -> ObjectClass:
+    """Return a class of the road; place as decay, scales and share of the density."""
+    return ObjectClass(name, size, height_spread, *place, (0.0,), 1.0, *spread, any_heading)
+
+
 ROAD_CLASSES = (
-    ObjectClass("car", (4.6, 1.9, 1.7), 0.195, 39.4, 12.82, 20.03, 0.533),
-    ObjectClass("pedestrian", (0.8, 0.7, 1.75), 0.120, 32.2, 659.55, 16.15, 0.171),
-    ObjectClass("cyclist", (1.76, 0.65, 1.74), 0.267, 28.7, 170.45, 14.89, 0.033),
-    ObjectClass("truck", (7.5, 2.55, 3.0), 0.785, 58.5, 20.1, 22.33, 0.365),
-    ObjectClass("cone", (0.4, 0.4, 0.9), 0.232, 14.8, 34.25, 10.05, 0.024),
+    _met("car", (4.6, 1.9, 1.7), 0.195, (39.4, 12.82, 20.03, 0.533), (0.362, 0.115)),
+    _met("pedestrian", (0.8, 0.7, 1.75), 0.120, (32.2, 659.55, 16.15, 0.171), (0.102, 0.059), 1.0),
+    _met("cyclist", (1.76, 0.65, 1.74), 0.267, (28.7, 170.45, 14.89, 0.033), (0.265, 0.122)),
+    _met("truck", (7.5, 2.55, 3.0), 0.785, (58.5, 20.1, 22.33, 0.365), (3.470, 0.441)),
+    _met("cone", (0.4, 0.4, 0.9), 0.232, (14.8, 34.25, 10.05, 0.024), (0.092, 0.075), 1.0),
 )
 """Positions: fitted by maximum likelihood to the boxes with a score of 0.4 and more that
 CenterPoint finds in the 150 scenes of nuScenes val (boxes from the public AB3DMOT repository).
-Height spreads: the same boxes. Sizes: rounded between the means of nuScenes, Argoverse 2 and
-Waymo's anchor boxes."""
+Spreads: the same boxes. Sizes: rounded between the means of nuScenes, Argoverse 2 and Waymo's
+anchor boxes. Headings: a choice; who walks and what is set down faces anywhere."""
 
 LANE_M = 3.75
 """Width of a motorway's lane: Germany's RAA; an Interstate's is 12 ft (3.66 m)."""
@@ -115,24 +138,25 @@ def _on_lanes(
     height_spread: float,
     decay_x: float,
     share: float,
+    spread: tuple[float, float],
     off_lanes: float = OFF_LANES,
     lanes: tuple[float, ...] = LANES,
 ) -> ObjectClass:
     spread_y = (OFF_LANES_M, IN_LANE_M, off_lanes)
-    return ObjectClass(name, size, height_spread, decay_x, *spread_y, lanes, share)
+    return ObjectClass(name, size, height_spread, decay_x, *spread_y, lanes, share, *spread)
 
 
 HIGHWAY_CLASSES = (
-    _on_lanes("car", (4.6, 1.9, 1.7), 0.195, 58.1, 0.4),
-    _on_lanes("truck", (10.8, 2.7, 3.5), 0.327, 59.5, 0.4),
-    _on_lanes("cyclist", (2.11, 0.77, 1.74), 0.267, 45.4, 0.1),
-    _on_lanes("cone", (0.4, 0.4, 0.9), 0.232, 21.7, 0.1, 0.0, LANE_EDGES),
+    _on_lanes("car", (4.6, 1.9, 1.7), 0.195, 58.1, 0.4, (0.362, 0.115)),
+    _on_lanes("truck", (10.8, 2.7, 3.5), 0.327, 59.5, 0.4, (5.287, 0.235)),
+    _on_lanes("cyclist", (2.11, 0.77, 1.74), 0.267, 45.4, 0.1, (0.265, 0.122)),
+    _on_lanes("cone", (0.4, 0.4, 0.9), 0.232, 21.7, 0.1, (0.092, 0.075), 0.0, LANE_EDGES),
 )
 """Cars, trucks, motorcyclists (by the name of cyclists) and the cones of road works.
 
 Decays: maximum likelihood fits of exp(-|x| / L) to labels that are not cut by a detector's range,
 KITTI tracking for trucks (1606 boxes), five logs of Argoverse 2 for the others. Trucks' box:
-KITTI tracking's mean and spread; motorcyclists': nuScenes' mean, as high as a cyclist; the others
+KITTI tracking's mean and spreads; motorcyclists': nuScenes' mean, as high as a cyclist; the others
 as on the road. Lanes and shares are choices, not data."""
 
 SHIPPED = {"road": ROAD_CLASSES, "highway": HIGHWAY_CLASSES}
@@ -155,6 +179,50 @@ def class_shape(cls: ObjectClass, space: PerceptionSpace) -> Shape:
         [1.0 - _normal_cdf((z - height) / cls.height_spread) for z in space.centers(2).tolist()]
     )
     return normed(ground, profile)
+
+
+def met_in(cls: ObjectClass, space: PerceptionSpace) -> float:
+    """Mass of a class's centres in a space, but for a constant of the class."""
+    along = _exponential_mass(space.x[1], cls.decay_x) - _exponential_mass(space.x[0], cls.decay_x)
+    return along * (_lateral_mass(space.y[1], cls) - _lateral_mass(space.y[0], cls))
+
+
+def places(cls: ObjectClass, space: PerceptionSpace, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+    """Send numbers in [0, 1) to centres x and y [m] of a class's objects in a space, (N,) each.
+
+    Where the class is not met at all, all of them come to one place.
+    """
+    x, y = _masses(cls, space.x, space.y)
+    return _inverted(x, space.x, u), _inverted(y, space.y, v)
+
+
+CELLS = 2048
+"""Of a table of masses along an axis: the paper's space in steps of 8 and 4 cm."""
+
+
+@lru_cache(maxsize=16)
+def _masses(
+    cls: ObjectClass, x: tuple[float, float], y: tuple[float, float]
+) -> tuple[Floats, Floats]:
+    """Tabulate the cumulative masses of a class's centres along both axes between bounds."""
+    xs = [_exponential_mass(edge, cls.decay_x) for edge in _edges(x).tolist()]
+    ys = [_lateral_mass(edge, cls) for edge in _edges(y).tolist()]
+    return np.array(xs), np.array(ys)
+
+
+def _edges(bounds: tuple[float, float]) -> Floats:
+    low, high = bounds
+    return np.asarray(low + (high - low) * (np.arange(CELLS + 1) / CELLS))
+
+
+def _inverted(masses: Floats, bounds: tuple[float, float], u: Floats) -> Floats:
+    """Invert a cumulative mass between bounds, straight between the entries of its table."""
+    edges = _edges(bounds)
+    wanted = masses[0] + u * (masses[-1] - masses[0])
+    at = np.clip(np.searchsorted(masses, wanted, side="right") - 1, 0, CELLS - 1)
+    step = masses[at + 1] - masses[at]
+    inside = np.where(step > 0.0, (wanted - masses[at]) / np.where(step > 0.0, step, 1.0), 0.0)
+    return edges[at] + np.clip(inside, 0.0, 1.0) * (edges[at + 1] - edges[at])
 
 
 def normed(ground: NDArray[Any], profile: NDArray[Any]) -> Shape:

@@ -29,6 +29,7 @@ from .classes import (
     class_shape,
     uniform_shape,
 )
+from .traffic import Densities, checked_densities, density_of, share_in
 
 __all__ = ["HIGHWAY_CLASSES", "ROAD_CLASSES", "ClassDensity", "Focus", "ObjectClass", "Prior"]
 
@@ -84,8 +85,10 @@ class ClassDensity:
 
 @dataclass(frozen=True, slots=True)
 class Prior:
-    """A prior: a model's name, its classes or boxes, and the focus.
+    """A prior: a model's name, its classes or boxes, the focus, and how dense the traffic is.
 
+    `density` has how many objects of a class stand round the vehicle at once, by name: a mapping,
+    or pairs.
     Use `road`, `highway`, `uniform` or `from_boxes`. Classes of one's own:
     ``Prior("road", classes=(...))``.
     """
@@ -94,6 +97,7 @@ class Prior:
     classes: tuple[ObjectClass, ...] = ()
     focus: tuple[Focus, ...] = ()
     boxes: Boxes | None = None
+    density: Densities = ()
 
     def __post_init__(self) -> None:
         choice("prior", "model", self.model, MODELS)
@@ -109,6 +113,7 @@ class Prior:
         for i, name in enumerate(names):
             if name in names[:i]:
                 raise InputError("prior", "classes", "each name once", f"{name!r} twice")
+        object.__setattr__(self, "density", checked_densities(self.density, names))
         for focus in self.focus:
             for name in focus.classes or ():
                 if name not in names:
@@ -153,6 +158,31 @@ class Prior:
         if self.boxes is not None:
             return self.boxes.classes
         return tuple(c.name for c in self.classes) or ("any",)
+
+    def objects_at_once(self, space: PerceptionSpace) -> dict[str, float]:
+        """How many objects of each class stand in a space at once, on average.
+
+        Raises
+        ------
+        InputError
+            When neither the study nor a documented figure tells of a class, or there are none.
+        """
+        if self.model == UNIFORM:
+            raise InputError("prior", "model", "one with classes, to have objects", UNIFORM)
+        known = {name: density_of(name, self.density) for name in self.class_names}
+        shares = {c.name: share_in(c, space) for c in self.classes}
+        return {name: count * shares.get(name, 1.0) for name, count in known.items()}
+
+    def focus_at(self, name: str, x: Floats, y: Floats) -> Floats:
+        """w(s, c) of a class at places (N,) [m]: the product of the factors there."""
+        weights = np.ones(len(x))
+        for focus in self.focus:
+            if focus.classes is None or name in focus.classes:
+                inside = (x > focus.x[0]) & (x < focus.x[1])
+                inside &= (y > focus.y[0]) & (y < focus.y[1])
+                with np.errstate(over="ignore"):
+                    weights[inside] *= focus.factor
+        return weights
 
     def report(self, space: PerceptionSpace) -> BoxReport | None:
         """How many boxes the prior is made of in a space; None for a prior without boxes."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..kinds import Stopped
 from ..scene.frozen import frozen
+from .object_score import ObjectScore
 
 DECIMALS = 9
 """Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
@@ -121,6 +122,9 @@ class Score:
         None for a sampled score.
     draft : bool
         Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+    objects : ObjectScore or None
+        Of a score on objects: entropy, coverage and the rest are then means over objects, by their
+        weights, and no voxel was looked at.
     """
 
     entropy: float
@@ -132,6 +136,7 @@ class Score:
     voxels: int
     ground_map: GroundMap | None = None
     draft: bool = False
+    objects: ObjectScore | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Return the score as plain JSON data, without the ground map."""
@@ -145,6 +150,7 @@ class Score:
             "per_class": {name: asdict(part) for name, part in self.per_class.items()},
             "per_zone": {name: asdict(part) for name, part in self.per_zone.items()},
             "per_sensor": {name: asdict(own) for name, own in self.per_sensor.items()},
+            **({} if self.objects is None else {"objects": self.objects.to_dict()}),
         }
 
 

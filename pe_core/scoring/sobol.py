@@ -1,4 +1,4 @@
-"""The first three dimensions of the Sobol' sequence, scrambled: integers only, so no bit differs.
+"""The first dimensions of the Sobol' sequence, scrambled: integers only, so no bit differs.
 
 The scrambling is Owen's, by hashing (Laine and Karras 2011; the constants are Vegdahl's, as in
 Burley 2020, "Practical Hash-based Owen Scrambling"). It takes away the regularity that a pattern of
@@ -17,17 +17,25 @@ Words = NDArray[np.uint32]
 
 BITS = 32
 WORD = (1 << BITS) - 1
-SECOND, THIRD = (1,), (1, 3)
-"""First direction numbers m (Joe and Kuo 2008) for the polynomials x + 1 and x^2 + x + 1; the first
-dimension is the van der Corput sequence."""
+PRIMITIVE = (
+    (0, (1,)),
+    (1, (1, 3)),
+    (1, (1, 3, 1)),
+    (2, (1, 1, 1)),
+    (1, (1, 1, 3, 3)),
+    (4, (1, 3, 5, 13)),
+)
+"""Of each dimension but the first, which is the van der Corput sequence: the inner coefficients of
+a primitive polynomial as a number, and first direction numbers m (Joe and Kuo 2008)."""
+DIMENSIONS = 1 + len(PRIMITIVE)
 MASKS = ((0x55555555, 1), (0x33333333, 2), (0x0F0F0F0F, 4), (0x00FF00FF, 8), (0x0000FFFF, 16))
 ODDS = (0x9E3779B9, 0x85EBCA6B, 0xC2B2AE35)
 """Tell the dimensions' seeds apart; and mix them (the last two are MurmurHash3's)."""
 
 
 def scrambled_sobol(count: int, shift: Sequence[float]) -> Floats:
-    """(count, 3) points in [0, 1), scrambled by three numbers in [0, 1)."""
-    columns = [_sobol(count, dimension) for dimension in range(3)]
+    """(count, D) points in [0, 1), scrambled by D numbers in [0, 1); D is 7 at most."""
+    columns = [_sobol(count, dimension) for dimension in range(len(shift))]
     scrambled = [
         _scrambled(c, _seed(s, d)) for d, (c, s) in enumerate(zip(columns, shift, strict=True))
     ]
@@ -47,13 +55,13 @@ def _directions(dimension: int) -> list[int]:
     """Direction numbers of a dimension: what each bit of a point's number adds."""
     if dimension == 0:
         return [1 << (BITS - 1 - bit) for bit in range(BITS)]
-    odd = (SECOND, THIRD)[dimension - 1]
+    inner, odd = PRIMITIVE[dimension - 1]
     degree = len(odd)
     words = [m << (BITS - 1 - bit) for bit, m in enumerate(odd)]
     for bit in range(degree, BITS):
         word = words[bit - degree] ^ (words[bit - degree] >> degree)
         for back in range(1, degree):
-            word ^= words[bit - back]
+            word ^= words[bit - back] * (inner >> (degree - 1 - back) & 1)
         words.append(word)
     return words
 

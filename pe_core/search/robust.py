@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from ..scene.sensors import Rig
+from ..scoring import RigJudge
 from ..scoring.cases import together
-from ..scoring.evaluator import Evaluator
 from .objective import Judgement, Objective
 from .tolerance import Tolerance
 
@@ -16,13 +16,13 @@ class RobustObjective:
 
     Parameters
     ----------
-    evaluator : Evaluator
+    evaluator : RigJudge
     tolerance : Tolerance
     seed : int
         Of the mounting errors, which are the same for every rig.
     """
 
-    def __init__(self, evaluator: Evaluator, tolerance: Tolerance, seed: int = 0) -> None:
+    def __init__(self, evaluator: RigJudge, tolerance: Tolerance, seed: int = 0) -> None:
         self._evaluator, self._tolerance, self._seed = evaluator, tolerance, seed
 
     def entropy(self, rig: Rig) -> float:
@@ -40,6 +40,6 @@ class RobustObjective:
         return self._evaluator.judge_together(cases, below, self._tolerance.worst)
 
 
-def objective_of(evaluator: Evaluator, tolerance: Tolerance, seed: int = 0) -> Objective:
+def objective_of(evaluator: RigJudge, tolerance: Tolerance, seed: int = 0) -> Objective:
     """Return what a search minimises: the evaluator, or all cases of a tolerance that is on."""
     return RobustObjective(evaluator, tolerance, seed) if tolerance.is_on else evaluator

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..scene.sensors import Rig
-from ..scoring.evaluator import Evaluator
+from ..scoring import RigJudge
 from ..scoring.score import rounded
 from ..text.degrees import degrees_in_file
 from .tolerance import FRESH, Tolerance, mounted_off, without_each
@@ -87,13 +87,13 @@ class Robustness:
 
 
 def robustness(
-    evaluator: Evaluator, before: Rig, after: Rig, tolerance: Tolerance, seed: int = 0
+    evaluator: RigJudge, before: Rig, after: Rig, tolerance: Tolerance, seed: int = 0
 ) -> Robustness:
     """Tell how far the entropy of two placements moves.
 
     Parameters
     ----------
-    evaluator : Evaluator
+    evaluator : RigJudge
         On a sample: every sensor is measured once for each draw.
     before, after : Rig
     tolerance : Tolerance
@@ -107,7 +107,7 @@ def robustness(
     return Robustness(errors, evaluator.samples, first, last)
 
 
-def _stands(evaluator: Evaluator, rig: Rig, errors: Tolerance, seed: int) -> Stands:
+def _stands(evaluator: RigJudge, rig: Rig, errors: Tolerance, seed: int) -> Stands:
     off = evaluator.entropies(mounted_off(rig, errors, seed, FRESH))
     lost = without_each(rig) if len(rig) > 1 else []
     entropy, *failed = evaluator.entropies([rig, *lost])

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from ..advice import Advice
 from ..errors import InputError
-from ..scoring.evaluator import Evaluator
+from ..scoring import RigJudge
 from ..scoring.score import Score
 from ..search import DesignSearch, Picks, above_front, pareto_front
 from .designed import Models, design_names, design_study
@@ -110,7 +110,7 @@ class ChoiceJob(Job):
         self._errors: dict[Picks, InputError] = {}
         self._inner: _DesignJob | None = None
         self._possible: int | None = None
-        self._evaluators: dict[int, Evaluator] = {}
+        self._evaluators: dict[int, RigJudge] = {}
 
     @property
     def trade_off(self) -> TradeOff | None:
@@ -227,13 +227,14 @@ class ChoiceJob(Job):
     def _job_of(self, picks: Picks) -> _DesignJob:
         return _DesignJob(design_study(self.study, self._designs.models(picks)), self)
 
-    def evaluator_of(self, samples: int) -> Evaluator:
+    def evaluator_of(self, samples: int) -> RigJudge:
         """What judges on so many voxels: designs differ in their rigs alone, so they share it."""
-        if samples == self.study.samples:
+        looked_at = self.study.looks_at(samples)
+        if looked_at == self.study.looks_at(self.study.samples):
             return self._evaluator
-        if samples not in self._evaluators:
-            self._evaluators[samples] = self.study.evaluator(samples, self.workers)
-        return self._evaluators[samples]
+        if looked_at not in self._evaluators:
+            self._evaluators[looked_at] = self.study.evaluator(samples, self.workers)
+        return self._evaluators[looked_at]
 
 
 class _DesignJob(OptimizeJob):
@@ -246,10 +247,10 @@ class _DesignJob(OptimizeJob):
         self._parent = parent
 
     @property
-    def _evaluator(self) -> Evaluator:  # type: ignore[override]
+    def _evaluator(self) -> RigJudge:  # type: ignore[override]
         return self._parent.evaluator_of(self.study.samples)
 
-    def _evaluator_of(self, samples: int) -> Evaluator:
+    def _evaluator_of(self, samples: int) -> RigJudge:
         return self._parent.evaluator_of(samples)
 
     def look(self) -> Iterator[Progress]:

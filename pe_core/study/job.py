@@ -17,7 +17,7 @@ from typing import TypeVar
 
 from ..advice import Advice, warnings
 from ..scene.sensors import Rig
-from ..scoring.evaluator import Evaluator
+from ..scoring import RigJudge
 from ..scoring.score import Score, ScoreStopped
 from .outcome import Outcome
 from .study import Study
@@ -70,7 +70,7 @@ class Job:
         return time.monotonic() - self._started
 
     @cached_property
-    def _evaluator(self) -> Evaluator:
+    def _evaluator(self) -> RigJudge:
         """What judges the study's rig, and the search's: the two differ in nothing else."""
         return self.study.evaluator(workers=self.workers)
 

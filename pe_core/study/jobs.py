@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from ..advice import Advice, fragile
-from ..scoring.evaluator import Evaluator
+from ..scoring import RigJudge
 from ..scoring.score import Score
 from ..search import (
     Journal,
@@ -74,12 +74,12 @@ class OptimizeJob(Job):
         return [objective_of(each, search.tolerance, search.seed) for each in self._evaluators]
 
     @cached_property
-    def _evaluators(self) -> list[Evaluator]:
+    def _evaluators(self) -> list[RigJudge]:
         """Those of the method's levels."""
         return [self._evaluator_of(samples) for samples in self.study.search.level_samples]
 
-    def _evaluator_of(self, samples: int) -> Evaluator:
-        if samples == self.study.samples:
+    def _evaluator_of(self, samples: int) -> RigJudge:
+        if self.study.looks_at(samples) == self.study.looks_at(self.study.samples):
             return self._evaluator
         return self.study.evaluator(samples, self.workers)
 

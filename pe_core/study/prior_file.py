@@ -13,12 +13,17 @@ from ..formats.boxes import read_boxes
 from ..prior.boxes import ORIGIN
 from ..prior.classes import FIELDS, SHIPPED, ObjectClass
 from ..prior.prior import FROM_BOXES, MODELS, Focus, Prior
+from ..prior.traffic import Densities, checked_densities
 from ..text.tables import REQUIRED, Table
 from ..text.values import A_NAME, A_PATH, vector
 from .names import BOXES
 
 DEFAULT_MODEL = "road"
-OPTIONAL = {"lanes": (0.0,), "share": 1.0}
+OPTIONAL = {
+    "lanes": (0.0,),
+    "share": 1.0,
+    **dict.fromkeys(("length_spread", "width_spread", "any_heading"), 0.0),
+}
 """What a class of one's own need not say."""
 
 
@@ -26,6 +31,8 @@ def read_prior(table: Table, folder: Path) -> Prior:
     """Read a prior; the path of its boxes is relative to `folder`."""
     prior = _read_boxes(table, folder) if FROM_BOXES in table else _read_model(table)
     prior = replace(prior, focus=tuple(_read_focus(t) for t in table.tables("focus")))
+    if "density" in table:
+        prior = replace(prior, density=_read_density(table.table("density"), prior))
     table.finish()
     return prior
 
@@ -36,7 +43,7 @@ def prior_table(prior: Prior) -> dict[str, Any]:
     if prior.boxes is not None:
         named, origin = prior.boxes.file or BOXES, prior.boxes.origin
         where = {FROM_BOXES: named, "origin": None if origin is None else list(origin)}
-        return {**where, "focus": focus or None}
+        return {**where, "focus": focus or None, "density": dict(prior.density) or None}
     shipped = SHIPPED.get(prior.model, ())
     tables = [t for c in prior.classes if len(t := _class_table(c, shipped)) > 1]
     names = list(prior.class_names)
@@ -46,7 +53,16 @@ def prior_table(prior: Prior) -> dict[str, Any]:
         "classes": None if in_order else names,
         "class": tables or None,
         "focus": focus or None,
+        "density": dict(prior.density) or None,
     }
+
+
+def _read_density(table: Table, prior: Prior) -> Densities:
+    """Return how many of each class stand round the vehicle at once."""
+    names = [name for name in prior.class_names if name in table]
+    counts = tuple((name, table.number(name)) for name in names)
+    table.finish()
+    return checked_densities(counts, prior.class_names)
 
 
 def _read_boxes(table: Table, folder: Path) -> Prior:

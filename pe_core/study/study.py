@@ -22,7 +22,7 @@ from ..scene.sensors import Rig
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_size import require_vehicle_size
-from ..scoring.evaluator import Evaluator
+from ..scoring import Evaluator, RigJudge
 from ..scoring.sampling import samples_or_grid
 from ..search import (
     AXES,
@@ -40,6 +40,7 @@ from ..search import (
     checked_method,
 )
 from ..sight import Sight
+from ..targets import ObjectEvaluator, Targets
 from ..text.fixed import FixedDict
 from ..text.values import A_NAME, A_PATH, Whole
 from .mounted import check_pairs, housings_of
@@ -47,6 +48,8 @@ from .mounted import check_pairs, housings_of
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
 """What a TOML file can hold."""
+FEW_SCENES = 32
+"""A search's coarsest level still has so many, where there are."""
 EVALUATIONS = Whole(0, 1_000_000_000)
 
 
@@ -122,7 +125,7 @@ class Study:
     `samples` is the number of voxels a score looks at, 0: all; `reference` says where the vehicle's
     axles are, for exports. Of `search`, what concerns the rig's sensors is kept; one that it does
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
-    `rig`, and what they cost.
+    `rig`, and what they cost. `targets` says whether voxels or objects are judged.
 
     Raises
     ------
@@ -142,6 +145,7 @@ class Study:
     faces: str = ""
     reference: Reference | None = None
     selection: Selection = field(default_factory=Selection)
+    targets: Targets = field(default_factory=Targets)
 
     def __post_init__(self) -> None:
         for name, kind in FIELDS.items():
@@ -167,17 +171,30 @@ class Study:
             return None
         return f"{self.mesh or 'vehicle'}: {vehicle_line(self.vehicle, self.faces)}"
 
-    def evaluator(self, samples: int | None = None, workers: int | None = None) -> Evaluator:
-        """Return the evaluator of this study; `samples` replaces the study's own."""
+    def evaluator(self, samples: int | None = None, workers: int | None = None) -> RigJudge:
+        """Return the evaluator of this study; `samples` replaces the study's own.
+
+        Objects stand in fewer scenes for a search's coarser levels, else in all of them.
+        """
+        samples = self.samples if samples is None else samples
+        problem = self.space, self.prior, self.vehicle
         with self._naming_vehicle():
-            return Evaluator(
-                self.space,
-                self.prior,
-                self.vehicle,
-                samples=self.samples if samples is None else samples,
-                model=self.model,
-                workers=workers,
-            )
+            if self.targets.are_objects:
+                targets = replace(self.targets, scenes=self.looks_at(samples))
+                return ObjectEvaluator(*problem, targets=targets, model=self.model)
+            return Evaluator(*problem, samples=samples, model=self.model, workers=workers)
+
+    def looks_at(self, samples: int) -> int:
+        """Return at how many voxels (0: all), or scenes, so many samples are a look."""
+        if not self.targets.are_objects:
+            return samples
+        share = samples / self.search.samples if 0 < samples < self.search.samples else 1.0
+        scenes = self.targets.scenes
+        return (
+            scenes
+            if samples == self.samples
+            else max(min(scenes, FEW_SCENES), round(scenes * share))
+        )
 
     def sight(self) -> Sight:
         """Return what tells the places that rigs of this study see."""
@@ -228,6 +245,7 @@ FIELDS: dict[str, type] = {
     "search": Search,
     "axes": MeshAxes,
     "selection": Selection,
+    "targets": Targets,
 }
 
 

@@ -11,7 +11,6 @@ from typing import Any
 from .. import catalog
 from ..errors import InputError, shown
 from ..formats.meshes import read_mesh
-from ..kinds import BLIND_RULES, KINDS, PerceptionModel
 from ..metric.entropy import ApCurve
 from ..scene.geometry import Pose
 from ..scene.reference import Reference
@@ -26,6 +25,7 @@ from ..text.toml_reader import load_toml
 from ..text.toml_writer import dumps
 from ..text.values import A_NAME, A_PATH
 from .mesh_file import AXES_KEYS, MeshFile, axes_table, read_axes
+from .metric_file import curves_table, read_model, read_targets, targets_table
 from .mounted import alike
 from .mounting_file import areas_of
 from .prior_file import prior_table, read_prior
@@ -101,7 +101,8 @@ def study_to_dict(study: Study) -> dict[str, Any]:
             "interval": study.space.interval,
         },
         "prior": prior_table(study.prior),
-        "ap": {kind: {"a": c.a, "b": c.b} for kind, c in study.model.curves.items()},
+        "metric": targets_table(study.targets),
+        "ap": curves_table(study.model),
         "fusion": {"blind": study.model.blind},
         "vehicle": _vehicle_table(study),
         "reference": None if study.reference is None else asdict(study.reference),
@@ -144,12 +145,13 @@ def _read_study(table: Table, folder: Path) -> Study:
         vehicle,
         _read_space(table.table("space")),
         read_prior(table.table("prior"), folder),
-        _read_model(table.table("ap"), table.table("fusion")),
+        read_model(table.table("ap"), table.table("fusion")),
         read_search(search, free, limits, on, folder),
         table.whole("samples", 0),
         *file,
         _read_reference(table),
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
+        read_targets(table.table("metric")),
     )
     study.designs()
     study.coding()  # bounds that do not hold their start are bad input, not a late surprise
@@ -164,21 +166,6 @@ def _read_space(table: Table) -> PerceptionSpace:
     space = PerceptionSpace(x, y, z, table.number("interval", default.interval))
     table.finish()
     return space
-
-
-def _read_model(curves: Table, fusion: Table) -> PerceptionModel:
-    default = PerceptionModel()
-    own = {kind: _read_curve(curves.table(kind), default.curve(kind)) for kind in KINDS}
-    model = PerceptionModel(fusion.text("blind", default.blind, BLIND_RULES), **own)
-    curves.finish()
-    fusion.finish()
-    return model
-
-
-def _read_curve(table: Table, default: ApCurve) -> ApCurve:
-    curve = ApCurve(table.number("a", default.a), table.number("b", default.b))
-    table.finish()
-    return curve
 
 
 def _read_reference(table: Table) -> Reference | None:

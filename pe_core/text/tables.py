@@ -34,6 +34,11 @@ class Table:
     def __contains__(self, key: str) -> bool:
         return key in self._data
 
+    @property
+    def names(self) -> list[str]:
+        """Its keys, in the file's order."""
+        return list(self._data)
+
     def field(self, key: str) -> str:
         """Full name of a key, for messages."""
         return f"{self.path}.{key}" if self.path else key

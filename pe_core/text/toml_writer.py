@@ -37,7 +37,7 @@ def _is_section(value: object) -> bool:
 
 def _key(key: str) -> str:
     plain = key and all(c.isascii() and (c.isalnum() or c in "-_") for c in key)
-    return key if plain else json.dumps(key)
+    return key if plain else _value(key)
 
 
 def _value(value: object) -> str:

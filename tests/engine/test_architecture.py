@@ -22,6 +22,7 @@ ALLOWED = {
     "kinds": {"errors", "text", "metric", "scene"},
     "formats": {"errors", "text", "metric", "scene", "prior", "kinds"},
     "scoring": {"errors", "text", "metric", "scene", "prior", "kinds"},
+    "targets": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
     "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
     "graphics": {"errors", "scene", "kinds", "scoring", "sight"},
     "search": {"errors", "text", "scene", "scoring"},
@@ -32,7 +33,7 @@ ALLOWED = {
     },
     "study": {
         *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
-        *("formats", "scoring", "sight", "search", "catalog", "advice"),
+        *("formats", "scoring", "targets", "sight", "search", "catalog", "advice"),
     },
     "outputs": {
         *("errors", "version", "text", "scene", "kinds", "sight", "exchange", "study"),
@@ -40,7 +41,7 @@ ALLOWED = {
     "sweep": {"errors", "version", "text", "scene", "study"},
     "public": {
         *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
-        *("sight", "search", "catalog", "exchange", "advice", "study"),
+        *("targets", "sight", "search", "catalog", "exchange", "advice", "study"),
     },
     "app": {
         *("errors", "version", "text", "scene", "kinds", "formats", "catalog", "exchange", "sight"),

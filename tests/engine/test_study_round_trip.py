@@ -56,7 +56,7 @@ def children(a, b):
     if is_dataclass(a):
         return [{f.name: getattr(v, f.name) for f in fields(v)} for v in (a, b)]
     if isinstance(a, pe.PerceptionModel):
-        return [{"blind": v.blind, **v.curves} for v in (a, b)]
+        return [{"blind": v.blind, "objects": v.objects, **v.curves} for v in (a, b)]
     if isinstance(a, dict):
         return [a, b]
     if isinstance(a, (list, tuple)):
@@ -209,7 +209,8 @@ def object_classes(draw):
     lanes = tuple(draw(st.lists(METRES, min_size=1, max_size=3)))
     scales = [draw(SIZES) for _ in range(4)]
     size = tuple(draw(SIZES) for _ in range(3))
-    return pe.ObjectClass(draw(NAMES), size, *scales, share, lanes, draw(st.floats(0, 9)))
+    spreads = (draw(st.floats(0, 9)), draw(st.floats(0, 9)), draw(st.floats(0, 1)))
+    return pe.ObjectClass(draw(NAMES), size, *scales, share, lanes, draw(st.floats(0, 9)), *spreads)
 
 
 @st.composite
@@ -231,9 +232,9 @@ def priors(draw, folder):
     edges = st.one_of(st.just((-math.inf, math.inf)), pairs(METRES).filter(lambda p: p[0] < p[1]))
     some = st.lists(st.sampled_from(prior.class_names), unique=True).map(tuple)
     one = st.builds(pe.Focus, st.floats(0, 9), edges, edges, st.one_of(st.none(), some))
-    return type(prior)(
-        prior.model, prior.classes, tuple(draw(st.lists(one, max_size=2))), prior.boxes
-    )
+    focus = tuple(draw(st.lists(one, max_size=2)))
+    dense = draw(st.dictionaries(st.sampled_from(prior.class_names), st.floats(0, 99)))
+    return type(prior)(prior.model, prior.classes, focus, prior.boxes, dense)
 
 
 SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
@@ -283,22 +284,31 @@ def selections(draw, rig):
     return pe.Selection(choices, price, draw(count), kinds, draw(st.one_of(st.just(""), NAMES)))
 
 
+CURVES = st.builds(pe.ApCurve, st.floats(1e-3, 9), st.floats(-9, 9))
+OBJECTS = st.builds(pe.Targets, st.just("objects"), st.booleans(), st.integers(8, 10**6))
+TARGETS = st.one_of(st.builds(pe.Targets, scenes=st.integers(8, 999)), OBJECTS)
+
+
 @st.composite
 def studies(draw, folder):
     rig = draw(rigs())
     vehicle = draw(st.one_of(st.none(), vehicles()))
-    lidar, camera = [pe.ApCurve(draw(st.floats(1e-3, 9)), draw(st.floats(-9, 9))) for _ in range(2)]
+    lidar, camera = draw(CURVES), draw(CURVES)
+    classes = st.dictionaries(NAMES, CURVES, max_size=2)
+    objects = {kind: own for kind in ("lidar", "camera") if (own := draw(classes))}
+    blind = draw(st.sampled_from(["floor", "literal"]))
     return pe.Study(
         rig,
         vehicle,
         draw(spaces()),
         draw(priors(folder)),
-        pe.PerceptionModel(draw(st.sampled_from(["floor", "literal"])), lidar=lidar, camera=camera),
+        pe.PerceptionModel(blind, objects=objects, lidar=lidar, camera=camera),
         draw(searches(rig, vehicle)),
         draw(st.sampled_from([0, 1024, 10_007])),
         *((None,) if vehicle is None else ("body.npz", draw(mesh_axes()))),
         reference=draw(st.one_of(st.none(), REFERENCES)),
         selection=draw(selections(rig)),
+        targets=draw(TARGETS),
     )
 
 

@@ -38,6 +38,7 @@ from .scoring import (
     GroundMap,
     ObjectScore,
     PartScore,
+    RigJudge,
     Score,
     SensorScore,
 )
@@ -135,6 +136,7 @@ __all__ = [
     "Reach",
     "Reference",
     "Rig",
+    "RigJudge",
     "Schedule",
     "Score",
     "ScoreJob",

@@ -49,7 +49,7 @@ def _failures(one: Reviewed) -> tuple[Failure, ...]:
     return tuple(sorted(found, key=lambda failure: -failure.rise))
 
 
-def _failure(one: Reviewed, name: str, evaluator: pe.Evaluator, whole: pe.Glance) -> Failure:
+def _failure(one: Reviewed, name: str, evaluator: pe.RigJudge, whole: pe.Glance) -> Failure:
     left = evaluator.glance(pe.Rig([sensor for sensor in one.rig if sensor.name != name]))
     rises = {
         zone: part.entropy - whole.per_zone[zone].entropy for zone, part in left.per_zone.items()

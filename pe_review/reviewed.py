@@ -121,7 +121,7 @@ class Reviewed:
         found: T = self.known[what]
         return found
 
-    def evaluator(self, samples: int | None = None) -> pe.Evaluator:
+    def evaluator(self, samples: int | None = None) -> pe.RigJudge:
         """Return the evaluator of this study; `samples` replaces the study's own."""
         return self.found.evaluator(samples)
 

@@ -19,11 +19,9 @@ from ..text.values import A_NAME, A_PATH, vector
 from .names import BOXES
 
 DEFAULT_MODEL = "road"
-OPTIONAL = {
-    "lanes": (0.0,),
-    "share": 1.0,
-    **dict.fromkeys(("length_spread", "width_spread", "any_heading"), 0.0),
-}
+OF_OBJECTS = dict.fromkeys(("length_spread", "width_spread", "any_heading"), 0.0)
+"""What of a class matters to objects alone; told where it is not this."""
+OPTIONAL = {"lanes": (0.0,), "share": 1.0, **OF_OBJECTS}
 """What a class of one's own need not say."""
 
 
@@ -123,7 +121,7 @@ def _read_lanes(table: Table, default: tuple[float, ...]) -> tuple[float, ...]:
 def _class_table(cls: ObjectClass, shipped: Sequence[ObjectClass]) -> dict[str, Any]:
     """Return the name of a class, and what a file has to say of it."""
     base = next((c for c in shipped if c.name == cls.name), None)
-    told = [f for f in FIELDS if base is None or getattr(cls, f) != getattr(base, f)]
+    told = [f for f in FIELDS if getattr(cls, f) != getattr(base, f, OF_OBJECTS.get(f))]
     values = {f: getattr(cls, f) for f in ("name", *told)}
     return {f: list(v) if isinstance(v, tuple) else v for f, v in values.items()}
 

@@ -58,7 +58,7 @@ class ModelBoxes(BoxSource):
         spreads = (cls.length_spread, cls.width_spread, cls.height_spread)
         by_axis = zip((LENGTH, WIDTH, HEIGHT), cls.size, spreads, strict=True)
         sizes = [_scattered(u[:, axis], mean, spread) for axis, mean, spread in by_axis]
-        self._sizes = np.round(np.stack(sizes, axis=1), DECIMALS)
+        self._sizes = np.asarray(np.round(np.stack(sizes, axis=1), DECIMALS), dtype=np.float64)
         turned = u[:, ANY] < cls.any_heading
         facing = np.round(np.pi * (u[:, HEADING] - 0.5), DECIMALS)
         self._yaws: Floats = np.where(turned, facing, 0.0).astype(np.float64)

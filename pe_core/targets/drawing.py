@@ -132,7 +132,8 @@ def _in_scenes(
     labels = np.repeat([list(known).index(n) for n in counts], list(counts.values()))
     lots = [_lots(count, targets.scenes, shifts[n]) for n, count in counts.items()]
     scenes = np.concatenate(lots)
-    boxes = placed(sources, labels, scenes, kept_free(vehicle), list(known))
+    ground = (space.x[1] - space.x[0]) * (space.y[1] - space.y[0])
+    boxes = placed(sources, labels, scenes, kept_free(vehicle), ground, list(known))
     order = np.argsort(scenes, kind="stable")
     return boxes.some(order), labels[order], scenes[order]
 

@@ -36,6 +36,7 @@ def placed(
     labels: Ints,
     scenes: Ints,
     free: Rectangles,
+    ground_m2: float,
     names: Sequence[str],
 ) -> StandingBoxes:
     """Set objects in scenes, one after the other in each, each drawn anew until it has room.
@@ -48,6 +49,8 @@ def placed(
         Class and scene of each. In a scene they are set in the order in which they stand here.
     free : Rectangles
         What is to stay free.
+    ground_m2 : float
+        How much ground there is.
     names : sequence of str
         What classes are called.
 
@@ -64,6 +67,10 @@ def placed(
         return boxes, rectangles(boxes.centers[:, :2], boxes.sizes, boxes.yaws)
 
     found = StandingBoxes(*(values.copy() for values in drawn(0)[0]))
+    areas = found.sizes[:, 0] * found.sizes[:, 1]
+    most = int(np.bincount(scenes, areas).argmax())
+    if np.bincount(scenes, areas)[most] > ground_m2:
+        _complain(f"{np.bincount(scenes)[most]:,} in a scene, larger than the space together")
     turns = _turns(scenes)
     taken = nowhere((int(scenes.max()) + 1, int(turns.max()) + 1))
     for turn in range(int(turns.max()) + 1):
@@ -81,7 +88,8 @@ def placed(
             if not len(waiting):
                 break
         else:
-            _complain(names[labels[waiting[0]]], np.bincount(scenes).max())
+            count, name = np.bincount(scenes).max(), names[labels[waiting[0]]]
+            _complain(f"{count:,} in a scene, and no room for a {name} in {ATTEMPTS} places")
     return found
 
 
@@ -94,7 +102,6 @@ def _turns(scenes: Ints) -> Ints:
     return turns
 
 
-def _complain(name: str, most: int) -> None:
+def _complain(found: str) -> None:
     expected = "objects that find room in the space without overlap"
-    found = f"{most:,} in a scene, and no room for a {name} in {ATTEMPTS} places"
     raise InputError("prior", "density", expected, found)

@@ -1,0 +1,257 @@
+"""The score on objects: by hand, against the equations, with and without traffic."""
+
+import math
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.formats import read_ap_table
+from pe_core.kinds import measure_objects
+from pe_core.kinds.object_curves import SHIPPED, SIZES, carried_over
+from pe_core.metric import fit_ap_curve
+from pe_core.study import study_from_dict
+from pe_core.targets.rings import SECTORS
+from pe_core.targets.rings import _reach as reach_of
+from tests.engine import shapes
+
+SPACE = pe.PerceptionSpace()
+FEW = pe.Targets("objects", scenes=16)
+ROAD = pe.Prior.road()
+SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
+
+
+def rig(*more):
+    return pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(32, 360)), *more])
+
+
+def judge(prior=ROAD, targets=FEW, **more):
+    return pe.ObjectEvaluator(SPACE, prior, None, targets=targets, **more)
+
+
+@pytest.fixture(scope="module")
+def whole():
+    """An evaluator, and the score of a LiDAR and a camera on it."""
+    evaluator = judge()
+    return evaluator, evaluator.score(rig(shapes.camera()))
+
+
+def entropy_by_hand(a, b, m):
+    """Equations 4, 5 and 8 of one group."""
+    ap = min(max(a * math.log(m) + b, 0.001), 0.999)
+    return 2.0 * math.log(1.0 / ap - 1.0) + 1.0 + math.log(2.0 * math.pi)
+
+
+def test_two_boxes_by_hand():
+    """A wall of 2 by 2 m that ends 10 m ahead meets beams at +-5.7 deg; one behind meets none."""
+    elevations = np.radians([-4.0, -2.0, 0.0, 2.0, 4.0])
+    ahead = pe.Lidar("ahead", elevations, 360, 50.0, None, (-math.pi / 2, math.pi / 2))
+    boxes = [("car", 11.0, 0.0, 1.0, 2.0, 2.0, 2.0, 0.0), ("car", -9.0, 0.0, 1.0, 2.0, 2.0, 2.0, 0)]
+    one = pe.Rig([pe.Sensor("eye", ahead, pe.Pose((0.0, 0.0, 1.0)))])
+    score = judge(pe.Prior.from_boxes(boxes)).score(one)
+    m = 5 * 11  # channels times azimuths from -5 to 5 deg
+    seen = entropy_by_hand(0.237, -0.516, m)
+    assert score.entropy == pytest.approx((seen + 16.651) / 2, abs=1e-3)
+    assert score.coverage == 0.5 and score.voxels == 0
+    car = score.objects.per_class["car"]
+    assert car.ap == pytest.approx((0.237 * math.log(m) - 0.516 + 0.001) / 2, abs=1e-6)
+    assert car.points == {1: 0.5, 5: 0.5, 20: 0.5} and car.objects == 2
+    assert score.per_zone["front"].entropy == pytest.approx(seen, abs=1e-6)
+    assert 8.0 < car.reach["front"] < 10.0 and car.reach["rear"] == 0.0
+
+
+def test_a_score_is_the_equations_on_every_object(whole):
+    """Against eqs. 4 to 9 written out, from m by its definition."""
+    evaluator, score = whole
+    objects, weights = evaluator.drawn.objects, evaluator.drawn.weights
+    both = rig(shapes.camera())
+    m = {s.kind: measure_objects(s, objects) for s in both}
+    floor = 999.0**-2
+    total = 0.0
+    for k, label in enumerate(objects.labels.tolist()):
+        precision = floor
+        for kind, counted in m.items():
+            curve = SHIPPED[kind][objects.class_names[label]]
+            value = counted[k]
+            ap = min(max(curve.a * math.log(value) + curve.b, 1e-3), 0.999) if value else 1e-3
+            precision += (1.0 / ap - 1.0) ** -2 - floor
+        total += weights[k] * (1.0 + math.log(2.0 * math.pi) - math.log(precision))
+    assert score.entropy == pytest.approx(total, abs=1e-8)
+    assert score.coverage == pytest.approx(weights[(m["lidar"] > 0) | (m["camera"] > 0)].sum())
+
+
+def test_what_is_told_of_sensors_is_that_of_rigs_with_and_without_them(whole):
+    evaluator, score = whole
+    lidar, camera = rig(shapes.camera())
+    alone = evaluator.score(pe.Rig([lidar]))
+    assert score.per_sensor["roof"].entropy == alone.entropy
+    assert score.per_sensor["camera"].lost == pytest.approx(alone.entropy - score.entropy)
+    assert alone.per_sensor["roof"].lost == pytest.approx(16.6508 - alone.entropy, abs=1e-3)
+    blind = evaluator.score(pe.Rig([camera])).objects.per_class["car"]
+    assert blind.points == {} and blind.ap < score.objects.per_class["car"].ap
+
+
+def test_parts_add_up(whole):
+    _, score = whole
+    parts = score.per_class.values()
+    assert sum(p.share for p in parts) == pytest.approx(1.0)
+    assert sum(p.share * p.entropy for p in parts) == pytest.approx(score.entropy, abs=1e-6)
+    halves = [score.per_zone[z] for z in ("front", "rear")]
+    assert sum(p.share * p.entropy for p in halves) == pytest.approx(score.entropy, abs=1e-6)
+    found = score.objects
+    assert sum(c.share * c.ap for c in found.per_class.values()) == pytest.approx(found.ap)
+    assert found.objects == sum(c.objects for c in found.per_class.values())
+    for one in found.per_class.values():
+        assert list(one.reach) == list(SECTORS)
+        assert 1.0 >= one.points[1] >= one.points[5] >= one.points[20] >= 0.0
+
+
+def test_every_way_of_asking_gives_the_same_bits(whole):
+    evaluator, score = whole
+    both = rig(shapes.camera())
+    moved = both.with_poses([pe.Pose((0.5, 0.0, 1.8)), both["camera"].pose])
+    assert evaluator.entropy(both) == evaluator.glance(both).entropy == score.entropy
+    assert evaluator.judge(both, -99.0) == (score.entropy, False)
+    together = evaluator.entropies([both, moved, pe.Rig([both["roof"]])])
+    assert together == [judge().entropy(r) for r in (both, moved, pe.Rig([both["roof"]]))]
+    again = pickle.loads(pickle.dumps(evaluator))
+    assert again.score(both).to_dict() == score.to_dict()
+
+
+def test_traffic_hides_and_a_lone_object_is_hidden_by_none():
+    """One object a scene: with traffic as without. Many: what traffic takes is never given."""
+    alone = pe.Prior("road", ROAD.classes[:1], density={"car": 1.0})
+    scores = [judge(alone, replace(FEW, traffic=t)).score(rig()).to_dict() for t in (False, True)]
+    assert [s["objects"].pop("traffic") for s in scores] == [False, True]
+    assert scores[0] == scores[1]
+    free, hidden = (judge(targets=replace(FEW, traffic=t)).score(rig()) for t in (False, True))
+    assert hidden.entropy > free.entropy and hidden.objects.ap < free.objects.ap
+    for name, own in hidden.objects.per_class.items():
+        assert own.ap <= free.objects.per_class[name].ap
+        assert own.reach == free.objects.per_class[name].reach
+
+
+def test_the_standard_error_is_honest():
+    """It is not below the scatter of other scrambles, and not three times as large."""
+    evaluators = [judge(shift=k / 12 + 0.02) for k in range(12)]
+    found = [e.glance(rig()) for e in evaluators]
+    scatter = np.std([each.entropy for each in found], ddof=1)
+    told = np.mean([each.stderr for each in found])
+    assert scatter / 1.5 < told < 3.0 * scatter
+
+
+def test_a_golden_case():
+    """Figures of November 2026; they move only where a definition does."""
+    score = judge(targets=replace(FEW, traffic=True)).score(rig(shapes.camera()))
+    assert (score.entropy, score.objects.ap) == pytest.approx(GOLDEN, abs=1e-8)
+
+
+GOLDEN = (7.291807526, 0.273934322)
+
+
+def test_objects_that_are_all_alike_leave_something_to_doubt():
+    behind = pe.Rig([pe.Sensor("eye", shapes.small_lidar(max_range=0.5), pe.Pose((0, 0, 2)))])
+    score = judge().score(behind)
+    assert score.entropy == pytest.approx(16.651, abs=1e-3) and score.coverage == 0.0
+    assert 0.0 < score.stderr < 0.2
+    assert set(score.objects.per_class["car"].reach.values()) == {0.0}
+
+
+def test_reach_ends_where_the_mean_ap_falls_below_a_half():
+    found = [1.0, 1.0, 0.75, 0.25, 0.9, *[0.0] * 11]
+    assert reach_of(found) == 5.0 * 3.0  # half way between the middles at 12.5 and 17.5 m
+    assert reach_of([0.0, *found[:-1]]) == 5.0 * 4.0  # blind at first
+    assert reach_of([0.4] * 16) == 0.0 and reach_of([0.5] * 16) == 80.0
+
+
+# --- curves -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["car", "pedestrian", "cyclist"])
+def test_shipped_curves_are_those_that_fit_finds(name):
+    curve = fit_ap_curve(read_ap_table(f"docs/objects/{name}.csv")).curve
+    shipped = SHIPPED["lidar"][name]
+    assert (shipped.a, shipped.b) == pytest.approx((curve.a, curve.b), abs=6e-4)
+
+
+def test_a_curve_carried_over_is_the_voxel_s_where_the_object_has_its_share():
+    """A car's silhouette is 552.5 times a voxel's, so m = 552.5 k has the AP of k on a voxel."""
+    voxel, car = pe.ApCurve(0.055, 0.155), SHIPPED["camera"]["car"]
+    for k in (2.0, 30.0):
+        ap = car.a * math.log(552.5 * k) + car.b
+        assert ap == pytest.approx(voxel.a * math.log(k) + voxel.b)
+    assert carried_over(voxel, (0.1, 0.1, 0.1)) == voxel
+    assert {c.name: c.size for c in ROAD.classes} == SIZES
+
+
+TRAM = pe.ObjectClass("tram", (15.0, 2.5, 3.6), 0.3, 50.0, 5.0, 2.0, 0.5)
+
+
+def test_a_class_without_a_curve_is_told_unless_it_weighs_nothing():
+    with_tram = pe.Prior("road", (*ROAD.classes, TRAM), density={"tram": 1})
+    told = r"\[ap\.lidar\.objects\.tram\]: expected a and b of 'tram' as an object"
+    with pytest.raises(pe.InputError, match=told):
+        judge(with_tram).score(rig())
+    unweighed = replace(with_tram, focus=(pe.Focus(0.0, classes=["tram"]),))
+    assert "tram" not in judge(unweighed).score(rig()).objects.per_class
+    own = pe.PerceptionModel(objects={"lidar": {"tram": pe.ApCurve(0.2, -0.4)}})
+    assert judge(with_tram, model=own).score(rig()).objects.per_class["tram"].ap > 0.0
+
+
+def test_a_sensor_s_own_curve_is_of_voxels():
+    own = replace(shapes.lidar_on_roof(), curve=pe.ApCurve(0.2, 0.5))
+    with pytest.raises(pe.InputError, match=r"sensor 'roof': ap: expected none: objects have"):
+        judge().entropy(pe.Rig([own]))
+
+
+# --- studies --------------------------------------------------------------------------------------
+
+
+def test_a_study_s_keys_make_its_evaluator():
+    metric = {"targets": "objects", "traffic": True, "scenes": 8}
+    curves = {"lidar": {"objects": {"car": {"a": 0.3, "b": -0.5}}}}
+    density = {"density": {"car": 2}, "classes": ["car"]}
+    data = {"sensor": [SENSOR], "metric": metric, "ap": curves, "prior": density}
+    study = study_from_dict(data)
+    assert study.targets == pe.Targets("objects", True, 8)
+    assert study.model.object_curve("lidar", "car") == pe.ApCurve(0.3, -0.5)
+    evaluator = study.evaluator()
+    assert len(evaluator.drawn.objects) == 16 and evaluator.targets.traffic
+    assert study.looks_at(0) == study.looks_at(65_536) == 8
+
+
+def test_a_search_s_coarser_levels_have_fewer_scenes():
+    study = study_from_dict({"sensor": [SENSOR], "metric": {"targets": "objects"}})
+    assert [study.looks_at(n) for n in (0, 65_536, 16_384, 1024)] == [256, 256, 64, 32]
+    assert study.evaluator(16_384).targets.scenes == 64
+
+
+@pytest.mark.parametrize(
+    ("metric", "told"),
+    [
+        ({"targets": "boxes"}, r"metric\.targets: expected one of voxels, objects"),
+        ({"traffic": True}, r"metric\.traffic: expected targets = 'objects' beside it"),
+        ({"targets": "objects", "traffic": 1}, r"metric\.traffic: expected true or false"),
+        ({"scenes": 2}, r"metric\.scenes: expected a whole number of scenes >= 8|metric"),
+        ({"objects": 2}, r"metric\.objects: expected one of scenes, targets, traffic"),
+    ],
+)
+def test_bad_keys_are_told(metric, told):
+    with pytest.raises(pe.InputError, match=told):
+        study_from_dict({"sensor": [SENSOR], "metric": metric})
+
+
+def test_a_search_finds_better_places_for_objects():
+    """The method, the levels and the voxels' rules are those of any search."""
+    space = pe.PerceptionSpace(x=(-40, 40), y=(-20, 20))
+    search = pe.Search(method="random", schedule=pe.Schedule(6, decay=0.3), seed=1)
+    low = shapes.lidar_on_roof(shapes.small_lidar(16, 90), (0.0, 0.0, 0.5))
+    targets = pe.Targets("objects", True, 8)
+    study = pe.Study(pe.Rig([low]), space=space, search=search, targets=targets)
+    job = pe.OptimizeJob(study)
+    for _ in job:
+        pass
+    assert job.outcome.after.entropy < job.outcome.before.entropy - 0.1
+    assert job.outcome.after.objects.traffic

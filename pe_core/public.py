@@ -84,7 +84,7 @@ from .study import (
     write_front,
     write_outcome,
 )
-from .targets import ObjectEvaluator, Targets
+from .targets import ObjectEvaluator, TargetRule
 from .version import __version__
 
 __all__ = [
@@ -151,7 +151,7 @@ __all__ = [
     "Step",
     "Study",
     "SurfaceMount",
-    "Targets",
+    "TargetRule",
     "Tolerance",
     "TradeOff",
     "Vehicle",

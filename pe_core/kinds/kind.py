@@ -9,6 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,11 @@ class Kind(ABC):
         Eq. 4 of its detector, unless a study has another.
     keys : frozenset of str
         Keys of a sensor's table, but for those that every kind has.
+    object_curves : mapping of str to ApCurve
+        Eq. 4 of whole objects by class, m counted on the object, unless a study has another; a
+        class that is not in it cannot be found.
+    counts_points : bool
+        Whether what it counts on an object are points on it.
     has_top : bool
         Whether it matters which side of a sensor is up, as it does for a picture.
     loss : str
@@ -59,6 +65,8 @@ class Kind(ABC):
     model: type[SensorModel]
     curve: ApCurve
     keys: frozenset[str]
+    object_curves: Mapping[str, ApCurve] = MappingProxyType({})
+    counts_points: bool = False
     has_top: bool = False
     loss: str = "beams stopped"
 

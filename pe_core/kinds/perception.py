@@ -8,7 +8,7 @@ from ..errors import InputError, shown
 from ..metric.entropy import ApCurve
 from ..text.fixed import FixedDict
 from ..text.values import A_NAME, choice
-from .object_curves import SHIPPED, ClassCurves
+from .object_curves import ClassCurves
 from .table import KINDS, kind_named
 
 BLIND_RULES = ("floor", "literal")
@@ -71,7 +71,8 @@ class PerceptionModel:
         InputError
             When there is none.
         """
-        found = self.objects.get(kind, {}).get(name) or SHIPPED.get(kind, {}).get(name)
+        shipped = kind_named(kind, "perception model").object_curves
+        found = self.objects.get(kind, {}).get(name) or shipped.get(name)
         if found is None:
             field = f"[ap.{kind}.objects.{name}]"
             expected = f"a and b of {name!r} as an object (pe fit finds them)"

@@ -7,16 +7,16 @@ from typing import Any
 from ..errors import InputError
 from ..kinds import BLIND_RULES, KINDS, PerceptionModel
 from ..metric.entropy import ApCurve
-from ..targets import TARGETS, Targets
+from ..targets import TARGETS, TargetRule
 from ..text.tables import Table
 
 CLASSES = "objects"
 """The table of a kind's curves by class, in [ap.KIND]."""
 
 
-def read_targets(table: Table) -> Targets:
+def read_targets(table: Table) -> TargetRule:
     """Return what is judged."""
-    default = Targets()
+    default = TargetRule()
     values = (
         table.text("targets", default.targets, TARGETS),
         table.raw("traffic", default.traffic),
@@ -24,14 +24,14 @@ def read_targets(table: Table) -> Targets:
     )
     table.finish()
     try:
-        return Targets(*values)
+        return TargetRule(*values)
     except InputError as error:
         raise table.error(error.field, error.expected, error.found) from None
 
 
-def targets_table(targets: Targets) -> dict[str, Any] | None:
+def targets_table(targets: TargetRule) -> dict[str, Any] | None:
     """Return the table of what is judged; none for the paper's voxels."""
-    if targets == Targets():
+    if targets == TargetRule():
         return None
     return {"targets": targets.targets, "traffic": targets.traffic, "scenes": targets.scenes}
 

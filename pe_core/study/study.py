@@ -40,7 +40,7 @@ from ..search import (
     checked_method,
 )
 from ..sight import Sight
-from ..targets import ObjectEvaluator, Targets
+from ..targets import ObjectEvaluator, TargetRule
 from ..text.fixed import FixedDict
 from ..text.values import A_NAME, A_PATH, Whole
 from .mounted import check_pairs, housings_of
@@ -145,7 +145,7 @@ class Study:
     faces: str = ""
     reference: Reference | None = None
     selection: Selection = field(default_factory=Selection)
-    targets: Targets = field(default_factory=Targets)
+    targets: TargetRule = field(default_factory=TargetRule)
 
     def __post_init__(self) -> None:
         for name, kind in FIELDS.items():
@@ -245,7 +245,7 @@ FIELDS: dict[str, type] = {
     "search": Search,
     "axes": MeshAxes,
     "selection": Selection,
-    "targets": Targets,
+    "targets": TargetRule,
 }
 
 

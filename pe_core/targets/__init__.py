@@ -2,7 +2,7 @@
 
 from .drawing import DrawnObjects, drawn_objects
 from .evaluator import ObjectEvaluator
-from .targets import OBJECTS, TARGETS, VOXELS, Targets
+from .rule import OBJECTS, TARGETS, VOXELS, TargetRule
 
 __all__ = [
     "OBJECTS",
@@ -10,6 +10,6 @@ __all__ = [
     "VOXELS",
     "DrawnObjects",
     "ObjectEvaluator",
-    "Targets",
+    "TargetRule",
     "drawn_objects",
 ]

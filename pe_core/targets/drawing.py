@@ -19,7 +19,7 @@ from ..text.memory import require_memory
 from .boxes import BoxSource, LabelledBoxes, ModelBoxes, StandingBoxes, labelled
 from .footprints import overlap, rectangles
 from .placing import kept_free, placed
-from .targets import Targets
+from .rule import TargetRule
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -60,7 +60,7 @@ def drawn_objects(
     prior: Prior,
     space: PerceptionSpace,
     vehicle: Vehicle | None,
-    targets: Targets,
+    targets: TargetRule,
     shift: float = CENTERED,
 ) -> DrawnObjects:
     """Draw the objects of a study.
@@ -75,7 +75,7 @@ def drawn_objects(
         Centres of objects are in it, seen from above.
     vehicle : Vehicle, optional
         No object overlaps the rectangle round it.
-    targets : Targets
+    targets : TargetRule
     shift : float
         A number in [0, 1); another one draws another sample as good.
 
@@ -115,7 +115,7 @@ def _beside(boxes: StandingBoxes, vehicle: Vehicle | None) -> StandingBoxes:
 
 
 def _in_scenes(
-    prior: Prior, space: PerceptionSpace, vehicle: Vehicle | None, targets: Targets, shift: float
+    prior: Prior, space: PerceptionSpace, vehicle: Vehicle | None, targets: TargetRule, shift: float
 ) -> tuple[StandingBoxes, Ints, Ints]:
     """Return boxes, their classes and scenes: (N, ...), scene after scene."""
     known = prior.objects_at_once(space)
@@ -138,7 +138,7 @@ def _in_scenes(
     return boxes.some(order), labels[order], scenes[order]
 
 
-def _counts(known: Mapping[str, float], targets: Targets) -> dict[str, int]:
+def _counts(known: Mapping[str, float], targets: TargetRule) -> dict[str, int]:
     """Return how many objects of each class there are in all scenes together."""
     counts = {name: round(count * targets.scenes) for name, count in known.items()}
     total = sum(counts.values())

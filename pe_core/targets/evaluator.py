@@ -10,7 +10,7 @@ from threading import RLock
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinds import ObjectsByName, PerceptionModel
+from ..kinds import ObjectsByName, PerceptionModel, kind_of
 from ..metric.entropy import H_BLIND
 from ..prior.prior import Prior
 from ..scene.sensors import Rig
@@ -23,8 +23,8 @@ from ..scoring.score import Glance, Score, ScoreStopped, SensorScore, Watch, rou
 from .drawing import CENTERED, DrawnObjects, drawn_objects
 from .fusing import FusedObjects
 from .rings import RingObjects, ring_objects
+from .rule import OBJECTS, TargetRule
 from .sums import ObjectSums
-from .targets import OBJECTS, Targets
 
 Floats = NDArray[np.float64]
 MByName = Mapping[str, Floats]
@@ -42,7 +42,7 @@ class ObjectEvaluator:
     prior : Prior
     vehicle : Vehicle, optional
         None: nothing but other objects hides anything, and the room of a car is left free.
-    targets : Targets, optional
+    targets : TargetRule, optional
         Without them objects that do not hide each other.
     model : PerceptionModel, optional
         AP curves by class and kind, and the fusion rule.
@@ -61,12 +61,12 @@ class ObjectEvaluator:
         prior: Prior,
         vehicle: Vehicle | None = None,
         *,
-        targets: Targets | None = None,
+        targets: TargetRule | None = None,
         model: PerceptionModel | None = None,
         shift: float = CENTERED,
     ) -> None:
         self.space, self.prior, self.vehicle = space, prior, vehicle
-        self.targets = targets or Targets(OBJECTS)
+        self.targets = targets or TargetRule(OBJECTS)
         self._model, self._shift = model or PerceptionModel(), shift
         self.drawn: DrawnObjects = drawn_objects(prior, space, vehicle, self.targets, shift)
         self.samples = len(self.drawn.objects)
@@ -158,7 +158,7 @@ class ObjectEvaluator:
 
     def _told(self, rig: Rig, m: MByName) -> ObjectScore:
         entropies, _ = self._fused.entropies(rig, m)
-        points = [m[s.name] for s in rig if s.kind == "lidar"]
+        points = [m[s.name] for s in rig if kind_of(s).counts_points]
         rings, fused, sensors = self._rings
         far, _ = fused.entropies(rig, sensors.measure(rig))
         return self._sums.told(entropies, points, rings, far, self.targets.traffic)
@@ -174,7 +174,7 @@ def _again(
     space: PerceptionSpace,
     prior: Prior,
     vehicle: Vehicle | None,
-    targets: Targets,
+    targets: TargetRule,
     model: PerceptionModel,
     shift: float,
 ) -> ObjectEvaluator:

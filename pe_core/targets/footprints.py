@@ -1,4 +1,4 @@
-"""Rectangles on the ground, and whether two of them overlap."""
+"""GroundRectangles on the ground, and whether two of them overlap."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 
-class Rectangles(NamedTuple):
+class GroundRectangles(NamedTuple):
     """Rectangles of any shape (...): middles, heading's cosine and sine, half length and width."""
 
     x: Floats
@@ -21,34 +21,36 @@ class Rectangles(NamedTuple):
     along: Floats
     across: Floats
 
-    def at(self, which: Any) -> Rectangles:
+    def at(self, which: Any) -> GroundRectangles:
         """Return some of them."""
-        return Rectangles(*(values[which] for values in self))
+        return GroundRectangles(*(values[which] for values in self))
 
-    def put(self, which: Any, others: Rectangles) -> None:
+    def put(self, which: Any, others: GroundRectangles) -> None:
         """Replace some of them."""
         for values, new in zip(self, others, strict=True):
             values[which] = new
 
-    def among(self) -> Rectangles:
+    def among(self) -> GroundRectangles:
         """Return them with one more axis, to be held against several each."""
-        return Rectangles(*(values[..., None] for values in self))
+        return GroundRectangles(*(values[..., None] for values in self))
 
 
-def rectangles(places: Floats, sizes: Floats, yaws: Floats) -> Rectangles:
+def rectangles(places: Floats, sizes: Floats, yaws: Floats) -> GroundRectangles:
     """Return what boxes at (N, 2), with sizes (N, 3) and headings (N,), cover of the ground."""
     turns = yaws.tolist()
     cos, sin = (np.array([f(a) for a in turns]) for f in (math.cos, math.sin))
-    return Rectangles(places[:, 0], places[:, 1], cos, sin, sizes[:, 0] / 2.0, sizes[:, 1] / 2.0)
+    return GroundRectangles(
+        places[:, 0], places[:, 1], cos, sin, sizes[:, 0] / 2.0, sizes[:, 1] / 2.0
+    )
 
 
-def nowhere(shape: tuple[int, ...]) -> Rectangles:
+def nowhere(shape: tuple[int, ...]) -> GroundRectangles:
     """Return rectangles that overlap with none: infinitely far away."""
     zeros = [np.zeros(shape) for _ in range(4)]
-    return Rectangles(np.full(shape, np.inf), np.zeros(shape), *zeros)
+    return GroundRectangles(np.full(shape, np.inf), np.zeros(shape), *zeros)
 
 
-def overlap(a: Rectangles, b: Rectangles) -> NDArray[np.bool_]:
+def overlap(a: GroundRectangles, b: GroundRectangles) -> NDArray[np.bool_]:
     """Whether rectangles, broadcast together, have ground in common: no axis separates them.
 
     The axes that may are the sides' of either; rectangles that touch do not overlap.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..scene.vehicle import Vehicle
 from .boxes import BoxSource, StandingBoxes
-from .footprints import Rectangles, nowhere, overlap, rectangles
+from .footprints import GroundRectangles, nowhere, overlap, rectangles
 
 Ints = NDArray[np.int64]
 
@@ -21,7 +21,7 @@ A_CAR_M = (4.6, 1.9)
 """Where there is no mesh of the vehicle, the room of a car is left free."""
 
 
-def kept_free(vehicle: Vehicle | None) -> Rectangles:
+def kept_free(vehicle: Vehicle | None) -> GroundRectangles:
     """Return the rectangle (1,) round the vehicle, seen from above."""
     if vehicle is None:
         (length, width), x, y = A_CAR_M, 0.0, 0.0
@@ -35,7 +35,7 @@ def placed(
     sources: Sequence[BoxSource],
     labels: Ints,
     scenes: Ints,
-    free: Rectangles,
+    free: GroundRectangles,
     ground_m2: float,
     names: Sequence[str],
 ) -> StandingBoxes:
@@ -47,7 +47,7 @@ def placed(
         Of every class: their boxes, one class after the other, are the N objects.
     labels, scenes : (N,) int
         Class and scene of each. In a scene they are set in the order in which they stand here.
-    free : Rectangles
+    free : GroundRectangles
         What is to stay free.
     ground_m2 : float
         How much ground there is.
@@ -61,7 +61,7 @@ def placed(
     """
 
     @cache
-    def drawn(attempt: int) -> tuple[StandingBoxes, Rectangles]:
+    def drawn(attempt: int) -> tuple[StandingBoxes, GroundRectangles]:
         each = [source.drawn(attempt) for source in sources]
         boxes = StandingBoxes(*(np.concatenate(parts) for parts in zip(*each, strict=True)))
         return boxes, rectangles(boxes.centers[:, :2], boxes.sizes, boxes.yaws)

@@ -8,13 +8,13 @@ import pytest
 import pe_core as pe
 from pe_core.prior.classes import class_shape
 from pe_core.scoring.sobol import DIMENSIONS, scrambled_sobol
-from pe_core.targets import Targets, drawn_objects
+from pe_core.targets import TargetRule, drawn_objects
 from pe_core.targets.footprints import overlap, rectangles
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace()
 ROAD = pe.Prior.road()
-FEW = Targets("objects", True, 64)
+FEW = TargetRule("objects", True, 64)
 
 
 def drawn(prior=ROAD, vehicle=None, targets=FEW, space=SPACE, **more):
@@ -28,7 +28,7 @@ def own(found, name):
 
 @pytest.fixture(scope="module")
 def many():
-    return drawn(targets=Targets("objects", True, 512))
+    return drawn(targets=TargetRule("objects", True, 512))
 
 
 def test_each_dimension_of_the_sequence_visits_every_interval_once():
@@ -57,7 +57,7 @@ def test_the_same_study_has_the_same_objects_to_the_bit():
 def test_no_two_of_a_scene_overlap_and_none_the_vehicle():
     car = shapes.box_car()
     dense = pe.Prior("road", ROAD.classes, density={"car": 60, "truck": 30})
-    found = drawn(dense, car, Targets("objects", True, 8)).objects
+    found = drawn(dense, car, TargetRule("objects", True, 8)).objects
     body = rectangles(np.zeros((1, 2)), np.array([[4.6, 1.8, 1.0]]), np.zeros(1))
     for scene in range(8):
         there = np.flatnonzero(found.scenes == scene)
@@ -137,7 +137,7 @@ BOXES = [
 
 def test_labelled_boxes_are_taken_as_they_are_each_once():
     """But for the one in the vehicle's place, and the one outside the space."""
-    found = drawn(pe.Prior.from_boxes(BOXES), targets=Targets("objects")).objects
+    found = drawn(pe.Prior.from_boxes(BOXES), targets=TargetRule("objects")).objects
     assert found.class_names == ("car", "pedestrian", "tram") and found.labels.tolist() == [0, 0, 1]
     assert found.centers.tolist() == [[10, 1, 0.8], [-20, 3, 0.8], [5, -3, 0.9]]
     assert found.yaws == pytest.approx([0.3, 0.0, 1.0]) and found.scenes.tolist() == [0, 1, 2]
@@ -147,7 +147,7 @@ def test_labelled_boxes_are_taken_as_they_are_each_once():
 def test_scenes_of_labelled_boxes_are_drawn_from_them():
     boxes = [row for row in BOXES if row[0] != "tram"]
     prior = pe.Prior("boxes", boxes=pe.Boxes.of(boxes), density={"car": 1.5, "pedestrian": 0.5})
-    found = drawn(prior, targets=Targets("objects", True, 16)).objects
+    found = drawn(prior, targets=TargetRule("objects", True, 16)).objects
     assert np.bincount(found.labels).tolist() == [24, 8]
     assert set(map(tuple, found.centers.tolist())) == {(10, 1, 0.8), (-20, 3, 0.8), (5, -3, 0.9)}
     assert len({(s, *c) for s, c in zip(found.scenes, found.centers.tolist(), strict=True)}) == 32
@@ -167,15 +167,16 @@ def test_what_cannot_stand_is_told_in_one_line(prior, told, monkeypatch):
     if isinstance(prior, dict):
         prior = pe.Prior("road", ROAD.classes, density=prior)
     with pytest.raises(pe.InputError, match=told) as error:
-        drawn(prior, targets=Targets("objects", True, 8))
+        drawn(prior, targets=TargetRule("objects", True, 8))
     assert "\n" not in str(error.value)
 
 
 def test_a_space_too_small_for_its_objects_is_told():
     yard = pe.PerceptionSpace(x=(-6, 6), y=(-6, 6))
-    crowded = pe.Prior("road", ROAD.classes, density=dict.fromkeys(ROAD.class_names, 110.0))
+    share = ROAD.objects_at_once(yard)["car"] / 8.2
+    crowded = pe.Prior("road", ROAD.classes[:1], density={"car": 15 / share})
     with pytest.raises(pe.InputError, match="in a scene, and no room for a"):
-        drawn(crowded, targets=Targets("objects", True, 8), space=yard)
+        drawn(crowded, targets=TargetRule("objects", True, 8), space=yard)
 
 
 def test_a_prior_without_weight_on_the_objects_is_told():

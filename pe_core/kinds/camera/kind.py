@@ -15,6 +15,7 @@ from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Voxels
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind
+from ..object_curves import all_carried_over
 from ..view_patch import ViewPatch
 from . import table as tables
 from .definition import count_pixels
@@ -33,6 +34,7 @@ class CameraKind(Kind):
     name, label, plural, unit = "camera", "Camera", "Cameras", "pixels"
     model = Camera
     curve = RTM3D
+    object_curves = all_carried_over(RTM3D)
     keys = tables.KEYS
     has_top = True
     loss = "picture hidden"

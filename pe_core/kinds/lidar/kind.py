@@ -17,6 +17,7 @@ from ..view_patch import ViewPatch
 from . import table as tables
 from .asked import beams_to, missed, some_beams
 from .definition import count_beams
+from .detectors import OBJECT_CURVES
 from .model import Lidar
 from .object_definition import count_on_objects
 from .on_grid import LidarGrid
@@ -31,6 +32,8 @@ class LidarKind(Kind):
     name, label, plural, unit = "lidar", "LiDAR", "LiDARs", "beams"
     model = Lidar
     curve = POINTPILLARS
+    object_curves = OBJECT_CURVES
+    counts_points = True
     keys = tables.KEYS
 
     def measure(

@@ -15,7 +15,7 @@ COUNT = Whole(8, 1_000_000, "scenes")
 
 
 @dataclass(frozen=True, slots=True)
-class Targets:
+class TargetRule:
     """What is judged, and how.
 
     Parameters

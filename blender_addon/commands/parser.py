@@ -47,6 +47,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     app.add_sweep_options(sweep)
     sweep.set_defaults(function=sweep_scene)
     app.add_sensors_verb(verbs)
+    app.add_rigs_verb(verbs)
     return top
 
 

@@ -23,6 +23,7 @@ from .explaining import (
 from .interrupts import leave
 from .leaving import add_page_option, pages, with_pages
 from .resuming import begun_search, job_and_folder
+from .rigs import add_rigs_verb
 from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
 from .summary import summary
 from .sweeping import add_sweep_options, sweep
@@ -41,6 +42,7 @@ __all__ = [
     "add_explain_options",
     "add_export_options",
     "add_page_option",
+    "add_rigs_verb",
     "add_run_options",
     "add_score_options",
     "add_sensors_verb",

@@ -31,6 +31,7 @@ from .explaining import (
 )
 from .leaving import add_page_option, with_pages
 from .resuming import begun_search, job_and_folder
+from .rigs import add_rigs_verb
 from .status import Answer
 from .sweeping import add_sweep_options, sweep
 from .terminal import open_missing_streams, tell
@@ -95,6 +96,7 @@ def parser() -> argparse.ArgumentParser:
     add_sweep_options(verb)
     verb.set_defaults(function=_sweep)
     add_sensors_verb(verbs)
+    add_rigs_verb(verbs)
     for other in entry_points(group=VERBS):
         other.load()(verbs)
     add_page_option(optimize)

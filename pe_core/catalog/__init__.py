@@ -1,6 +1,6 @@
 """Sensor presets, one TOML file a maker; each says where its figures come from.
 
-Two have no document behind them and say so (Waymo's cameras: general knowledge); three are no
+Three have no document behind them and say so (Waymo's: general knowledge); three are no
 product, but cameras to compare with.
 """
 

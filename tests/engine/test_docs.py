@@ -105,9 +105,10 @@ def test_functions_that_the_table_of_equations_names_are_there():
         assert f"\ndef {function}(" in (room / path).read_text("utf-8"), function
 
 
-def test_entries_of_the_catalogue_without_a_source_are_the_two_it_tells_of():
+def test_entries_of_the_catalogue_without_a_source_are_the_three_it_tells_of():
     unknown = [e.name for e in pe.catalog.entries().values() if "general knowledge" in e.source]
-    assert unknown == ["Waymo front", "Waymo side"]
+    short = "Waymo short-range lidar (even raster)"
+    assert unknown == ["Waymo front", "Waymo side", short]
     assert all(e.source not in ("", "same") for e in pe.catalog.entries().values())
     no_product = [e.name for e in pe.catalog.entries().values() if "no product" in e.source]
     assert len(no_product) == 3

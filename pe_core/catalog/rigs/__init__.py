@@ -18,6 +18,8 @@ from ...errors import InputError, shown
 from ...scene.geometry import Pose
 
 Sides = tuple[float, float, float]
+PAPER = "paper_"
+"""What the names of the paper's rigs begin with."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +96,12 @@ def _shipped() -> Mapping[str, KnownRig]:
         _from_table(f.name.removesuffix(".toml"), tomllib.loads(f.read_text("utf-8")))
         for f in files
     )
-    return MappingProxyType({rig.key: rig for rig in sorted(rigs, key=lambda rig: rig.title)})
+    return MappingProxyType({rig.key: rig for rig in sorted(rigs, key=_order)})
+
+
+def _order(rig: KnownRig) -> tuple[bool, str]:
+    """Rigs of vehicles that drive come first, then the paper's; by their titles."""
+    return rig.key.startswith(PAPER), rig.title.lower()
 
 
 def _from_table(key: str, table: Mapping[str, Any]) -> KnownRig:

@@ -1,0 +1,20 @@
+"""What a real Blender exports by its defaults scores as the scene, whichever version it is."""
+
+import re
+import subprocess
+import sys
+
+from tests.blender.conftest import ROOT
+from tests.blender.runner import output_of
+
+FORMATS = {"glb", "obj", "ply", "stl"}
+"""Those that every Blender has."""
+
+
+def test_exports_have_the_scene_s_entropy_to_six_digits(blender):
+    command = [sys.executable, ROOT / "tools" / "exports" / "compare.py", blender.command]
+    answer = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert answer.returncode == 0, output_of(answer)
+    scored = re.findall(r"^  \S.*? (\w+) +(-?\d+\.\d{9})", answer.stdout, re.MULTILINE)
+    assert set(FORMATS) <= {ending for ending, _ in scored}, output_of(answer)
+    assert len(scored) >= 2 * len(FORMATS), "the sedan and the bus"

@@ -2,32 +2,18 @@
 
 from __future__ import annotations
 
-import math
-
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import redraw
-from ..engine import kinds, pe
+from ..engine import graphics, kinds, pe
 from ..worker import desk
 
 TOPIC = "ranges"
 LEGEND = "near is bright, far is dark by metres; orange: stopped by the vehicle; grey: nothing"
 PIXELS_PER_DEG = 3
 """So that a full circle fits into the editor that is made of the 3D view."""
-NEAREST_M = 0.5
-"""All that is nearer has the brightest colour."""
-COLORS = (
-    *((0.993, 0.906, 0.144), (0.565, 0.843, 0.263), (0.206, 0.719, 0.473), (0.128, 0.565, 0.551)),
-    *((0.173, 0.427, 0.556), (0.247, 0.275, 0.533), (0.267, 0.005, 0.329)),
-)
-"""From near to far: Viridis (van der Walt and Smith, 2015), even to the eye and safe for colour
-vision of any kind; sRGB."""
-NOTHING = (0.16, 0.16, 0.17)
-BODY_NEAR, BODY_FAR = (1.0, 0.62, 0.20), (0.72, 0.28, 0.0)
-"""Vermillion, as stopped beams are drawn: nearer parts are lighter."""
-BODY_FAR_M = 5.0
 SPLIT = 0.34
 """How much of the 3D view's height the picture takes."""
 
@@ -51,15 +37,9 @@ def ask(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> None:
 
 def painted(picture: kinds.RangePicture, far_m: float) -> NDArray[np.float32]:
     """(H, W, 4) sRGB, the top row first: a degree is as wide as it is high."""
-    rows = _resampled(np.degrees(picture.elevations))
-    columns = _resampled(np.degrees(picture.azimuths))
-    distance = picture.distance[np.ix_(rows, columns)]
-    stopped = picture.stopped[np.ix_(rows, columns)]
-    finite = np.where(np.isfinite(distance), np.maximum(distance, NEAREST_M), far_m)
-    share = np.log(finite / NEAREST_M) / math.log(max(far_m, 2.0 * NEAREST_M) / NEAREST_M)
-    colors = _between(COLORS, share)
-    colors[~np.isfinite(distance)] = NOTHING
-    colors[stopped] = _between((BODY_NEAR, BODY_FAR), finite[stopped] / BODY_FAR_M)
+    angles = picture.elevations, picture.azimuths
+    rows, columns = (graphics.even_angles(each, PIXELS_PER_DEG) for each in angles)
+    colors = graphics.range_colors(picture, far_m)[np.ix_(rows, columns)]
     return np.concatenate([colors, np.ones((*colors.shape[:2], 1))], axis=2).astype(np.float32)
 
 
@@ -112,18 +92,3 @@ def _new_area(window: bpy.types.Window) -> bpy.types.Area | None:
         if bpy.ops.wm.window_new() == {"FINISHED"}:
             return bpy.context.window_manager.windows[-1].screen.areas[0]
     return None
-
-
-def _resampled(degrees: NDArray[np.float64]) -> NDArray[np.int64]:
-    """(P,) for each pixel of an axis the beam that is nearest to it, of descending angles."""
-    high, low = float(degrees[0]), float(degrees[-1])
-    count = max(1, round((high - low) * PIXELS_PER_DEG))
-    angles = high - (np.arange(count) + 0.5) * (high - low) / count
-    between = (degrees[1:] + degrees[:-1]) / 2.0
-    return np.searchsorted(-between, -angles)
-
-
-def _between(colors: tuple[tuple[float, ...], ...], share: NDArray[np.float64]) -> NDArray:
-    """(..., 3) colours at shares from 0 to 1 of a row of colours."""
-    steps = np.linspace(0.0, 1.0, len(colors))
-    return np.stack([np.interp(share, steps, channel) for channel in zip(*colors, strict=True)], -1)

@@ -42,6 +42,8 @@ from .ground import (
 from .kinds import DRAWINGS, Look, Sketch, beam_budget, drawing_of
 from .png import as_bytes, png_bytes
 from .primitives import ColorKey, GroundSheet, LayerShape, Primitives, Tag, fan, polyline
+from .range_image import NOTHING as NO_ECHO
+from .range_image import even_angles, range_colors, range_share
 from .rays import free_lines, ground_distance, ground_rings, stopped_lines
 
 __all__ = [
@@ -54,6 +56,7 @@ __all__ = [
     "DRAWINGS",
     "ENTROPY",
     "MOST",
+    "NO_ECHO",
     "PAPER",
     "QUANTITIES",
     "SENSORS",
@@ -79,6 +82,7 @@ __all__ = [
     "cast",
     "channels_of",
     "drawing_of",
+    "even_angles",
     "fan",
     "footprint",
     "footprint_faces",
@@ -94,6 +98,8 @@ __all__ = [
     "outline",
     "png_bytes",
     "polyline",
+    "range_colors",
+    "range_share",
     "ring_lines",
     "sensor_color",
     "shown_beams",

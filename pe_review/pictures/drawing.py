@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .light import skylight, sun_place, sunlight
 from .shading import Surroundings, shaded
 from .tableau import Met, Tableau
-from .viewpoint import Shot
+from .viewpoint import Viewshot
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -21,7 +21,7 @@ STEP = 0.06
 """A distance that jumps by this share has an edge."""
 
 
-def drawn(shot: Shot, stage: Tableau, setting: Surroundings) -> Floats:
+def drawn(shot: Viewshot, stage: Tableau, setting: Surroundings) -> Floats:
     """(H, W, 3) sRGB, 0 to 1: the picture of a stage."""
     directions = shot.directions()
     seen = stage.seen(shot.eye, directions, from_sensor=shot.from_sensor)
@@ -35,7 +35,7 @@ def drawn(shot: Shot, stage: Tableau, setting: Surroundings) -> Floats:
 
 
 def _again(
-    shot: Shot,
+    shot: Viewshot,
     stage: Tableau,
     setting: Surroundings,
     edges: NDArray[np.int64],

@@ -16,7 +16,7 @@ where nothing is shown."""
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class Viewshot:
     """A picture to be taken.
 
     Attributes
@@ -62,7 +62,7 @@ class Viewpoint:
         right = right / max(math.sqrt(float(right @ right)), 1e-9)
         return np.stack([ahead, right, np.cross(right, ahead)])
 
-    def shot(self, width: int, height: int) -> Shot:
+    def shot(self, width: int, height: int) -> Viewshot:
         """Return the picture of that size; the field of view is its width."""
         ahead, right, up = self.axes
         focal = self.focal_px(width)
@@ -72,7 +72,7 @@ class Viewpoint:
             rays = ahead + x[:, None] * right + y[:, None] * up
             return rays / np.sqrt((rays * rays).sum(axis=1))[:, None]
 
-        return Shot(np.array(self.eye), width, height, look, 1.0 / focal)
+        return Viewshot(np.array(self.eye), width, height, look, 1.0 / focal)
 
     def focal_px(self, width: int) -> float:
         """Focal length of a picture so wide [px]."""

@@ -8,8 +8,7 @@ import pytest
 from mathutils import Vector
 
 from blender_addon import bridge, upkeep
-from blender_addon.engine import catalog, kinds, pe
-from blender_addon.operators import range_image
+from blender_addon.engine import catalog, graphics, kinds, pe
 from tests.addon import scenes
 
 
@@ -138,7 +137,7 @@ def test_a_lidar_s_picture_is_in_its_image(car):
     assert picture.stopped.any()
     orange = (pixels[..., 0] > 0.7) & (pixels[..., 2] < 0.25) & (pixels[..., 1] < 0.65)
     assert orange.mean() == pytest.approx(_share(picture), abs=0.05)
-    assert pixels[0, 0, :3] == pytest.approx(range_image.NOTHING, abs=0.01)  # 15 degrees up: sky
+    assert pixels[0, 0, :3] == pytest.approx(graphics.NO_ECHO, abs=0.01)  # 15 degrees up: sky
 
 
 def _share(picture):

@@ -7,6 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
+from pe_core.graphics import range_colors
 from pe_core.kinds import range_picture
 
 WALL = pe.Vehicle(
@@ -69,3 +70,38 @@ def test_each_pixel_is_its_beam_s_first_hit(model):
         assert picture.stopped[row, column] == (body <= ground and expected < math.inf)
         seen.add((bool(picture.stopped[row, column]), expected < math.inf))
     assert (True, True) in seen  # some met the wall
+
+
+def test_nearer_than_its_least_range_nothing_comes_back():
+    """The wall 2 m ahead stops the beam all the same; the ground sqrt 2 away is not seen."""
+    table = {"kind": "lidar", "elevations_deg": [0, -45], "azimuth_count": 4, "max_range_m": 50.0}
+    near = catalog.from_table("toy", table | {"min_range_m": 2.5})
+    picture = range_picture(pe.Sensor("toy", near, pe.Pose((0.0, 0.0, 1.0))), WALL)
+    assert np.isinf(picture.distance).all()
+    assert picture.stopped.tolist() == [[False, False, True, False], [False] * 4]
+    colors = range_colors(picture, 50.0)
+    silent, nothing = colors[0, 2], colors[0, 0]
+    assert silent[0] > silent[2] + 0.3 and np.ptp(nothing) < 0.02  # brown, and grey
+
+
+def test_things_end_beams_unless_something_is_before_them():
+    """A box ahead of the wall, one behind it, and one on the left, 5 m away."""
+    boxes = [WALL.triangles + np.array([dx, 0.0, 0.0]) for dx in (-1.0, 1.0)]
+    left = WALL.triangles[..., [1, 0, 2]] + np.array([0.0, 3.0, 0.0])
+    parts = np.repeat([0, 1, 2], 2)
+    things = pe.Vehicle(np.concatenate([*boxes, left]), parts, ["before", "behind", "left"])
+    sensor = pe.Sensor("toy", lidar([0, -45]), pe.Pose((0.0, 0.0, 1.0)))
+    picture = range_picture(sensor, WALL, things)
+    assert picture.things[0].tolist() == [-1, 2, 0, -1]  # behind, left, ahead, right
+    assert picture.distance[0] == pytest.approx([math.inf, 5.0, 1.0, math.inf])
+    assert not picture.stopped.any()
+    assert range_picture(sensor, WALL, pe.Vehicle(boxes[1])).stopped[0].tolist()[2]
+
+
+def test_colours_run_from_bright_to_dark_and_are_the_body_s_own_hue():
+    sensor = pe.Sensor("toy", lidar([-2, -10, -45]), pe.Pose((0.0, 0.0, 1.0)))
+    colors = range_colors(range_picture(sensor, WALL), 50.0)
+    lightness = colors[1:, 0] @ [0.2126, 0.7152, 0.0722]  # behind: the ground, 6 and 1.4 m away
+    assert lightness[1] > lightness[0] + 0.1
+    red, green, blue = colors[0, 2]  # ahead: the wall
+    assert red > green > blue

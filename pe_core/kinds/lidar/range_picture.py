@@ -26,10 +26,12 @@ class RangePicture:
     Attributes
     ----------
     distance : (C, A) float
-        Where each beam ends, on the vehicle or on the ground (z = 0) [m]; inf where on neither
-        within its range.
+        Where each beam ends, on the vehicle, on a thing or on the ground (z = 0) [m]; inf where on
+        none between its least and its greatest range: nothing comes back.
     stopped : (C, A) bool
-        Whether it is the vehicle that ends it.
+        Whether it is the vehicle that ends it, be it nearer than the least range.
+    things : (C, A) int
+        Which part of `things` ends it; -1 where none does, or nothing comes back.
     elevations : (C,) float
         Of the rows, descending [rad].
     azimuths : (A,) float
@@ -38,11 +40,14 @@ class RangePicture:
 
     distance: Floats
     stopped: NDArray[np.bool_]
+    things: NDArray[np.int64]
     elevations: Floats
     azimuths: Floats
 
 
-def range_picture(sensor: Sensor, vehicle: Vehicle | None) -> RangePicture:
+def range_picture(
+    sensor: Sensor, vehicle: Vehicle | None, things: Vehicle | None = None
+) -> RangePicture:
     """Return how far a mounted LiDAR's beams go, as a picture of its surroundings.
 
     Parameters
@@ -51,15 +56,21 @@ def range_picture(sensor: Sensor, vehicle: Vehicle | None) -> RangePicture:
         A LiDAR.
     vehicle : Vehicle or None
         What stops beams, besides the ground.
+    things : Vehicle, optional
+        What else stands there, part by part.
     """
-    lidar = cast(Lidar, sensor.model)
+    lidar, position = cast(Lidar, sensor.model), sensor.pose.position
     directions = rotate(sensor.pose.ground_from_sensor, lidar.directions)
+    ground = _to_ground(position[2], directions[:, 2])
     body = np.full(len(directions), np.inf)
     if vehicle is not None:
-        body = vehicle.first_hit(sensor.pose.position, directions).distance
-    ground = _to_ground(sensor.pose.position[2], directions[:, 2])
-    distance = np.minimum(body, ground)
-    beyond = distance > lidar.max_range
+        body = vehicle.first_hit(position, directions).distance
+    thing, which = _to_things(things, np.asarray(position), directions)
+    others = np.minimum(ground, thing)
+    distance = np.minimum(body, others)
+    silent = (distance > lidar.max_range) | (distance < lidar.min_range)
+    met = (which >= 0) & (thing < np.minimum(body, ground)) & ~silent
+    stopped = (body <= others) & (body <= lidar.max_range)
     rows = np.argsort(-lidar.elevations, kind="stable")
     columns = np.argsort(-_around(lidar), kind="stable")
 
@@ -67,11 +78,23 @@ def range_picture(sensor: Sensor, vehicle: Vehicle | None) -> RangePicture:
         return values.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
 
     return RangePicture(
-        laid_out(np.where(beyond, np.inf, distance)),
-        laid_out((body <= ground) & ~beyond & np.isfinite(body)),
+        laid_out(np.where(silent, np.inf, distance)),
+        laid_out(stopped),
+        laid_out(np.where(met, which, -1)),
         lidar.elevations[rows],
         _around(lidar)[columns],
     )
+
+
+def _to_things(
+    things: Vehicle | None, origin: Floats, directions: Floats
+) -> tuple[Floats, NDArray[np.int64]]:
+    """(B,) distance to what stands there, and (B,) which part of it, -1 for none."""
+    if things is None:
+        return np.full(len(directions), np.inf), np.full(len(directions), -1)
+    hits = things.first_hit_from(origin, directions)
+    parts = np.asarray(things.parts)[hits.face]
+    return hits.distance, np.where(hits.face >= 0, parts, -1).astype(np.int64)
 
 
 def _to_ground(height: float, up: Floats) -> Floats:

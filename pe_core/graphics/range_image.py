@@ -1,0 +1,51 @@
+"""A LiDAR's ranges in colours: near is bright, far is dark, the vehicle's own body in another hue."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinds import RangePicture
+from .colors import VIRIDIS, Scale, on_scale
+
+NEAREST_M = 0.5
+"""All that is nearer has the brightest colour."""
+NOTHING = (0.16, 0.16, 0.17)
+BODY_NEAR, BODY_FAR = (1.0, 0.62, 0.20), (0.72, 0.28, 0.0)
+"""Vermillion, as stopped beams are drawn: nearer parts are lighter."""
+BODY_SILENT = (0.42, 0.17, 0.0)
+"""Stopped so near that nothing comes back."""
+BODY_FAR_M = 5.0
+RANGES: Scale = VIRIDIS[::-2]
+"""From near to far."""
+
+
+def range_colors(picture: RangePicture, far_m: float) -> NDArray[np.float32]:
+    """(C, A, 3) sRGB of a LiDAR's beams; the scale is logarithmic, up to `far_m`."""
+    heard = np.isfinite(picture.distance)
+    distance = np.where(heard, np.maximum(picture.distance, NEAREST_M), far_m)
+    colors = on_scale(range_share(distance, far_m), RANGES)
+    colors[~heard] = NOTHING
+    colors[picture.stopped & ~heard] = BODY_SILENT
+    own = picture.stopped & heard
+    colors[own] = on_scale(distance[own] / BODY_FAR_M, (BODY_NEAR, BODY_FAR))
+    return colors
+
+
+def range_share(distance: NDArray[np.float64], far_m: float) -> NDArray[np.float64]:
+    """Place on the scale of distances [m]: 0 near, 1 at `far_m`."""
+    far = max(far_m, 2.0 * NEAREST_M)
+    share = np.log(np.maximum(distance, NEAREST_M) / NEAREST_M) / math.log(far / NEAREST_M)
+    return np.asarray(share)
+
+
+def even_angles(angles: NDArray[np.float64], pixels_per_deg: float) -> NDArray[np.int64]:
+    """(P,) for each pixel of an axis the beam that is nearest to it, of descending angles [rad]."""
+    degrees = np.degrees(angles)
+    high, low = float(degrees[0]), float(degrees[-1])
+    count = max(1, round((high - low) * pixels_per_deg))
+    places = high - (np.arange(count) + 0.5) * (high - low) / count
+    between = (degrees[1:] + degrees[:-1]) / 2.0
+    return np.searchsorted(-between, -places)

@@ -1,4 +1,4 @@
-"""A LiDAR's ranges in colours: near is bright, far is dark, the vehicle's own body in another hue."""
+"""A LiDAR's ranges in colours: near is bright, far is dark, the own body in another hue."""
 
 from __future__ import annotations
 

@@ -2,8 +2,18 @@
 
 from .blind import BlindGround, BlindSpot
 from .ground import GroundSight
+from .outline import outlines
 from .reach import Reach
 from .shares import SeenShares
 from .sight import Sight, expected_ap
 
-__all__ = ["BlindGround", "BlindSpot", "GroundSight", "Reach", "SeenShares", "Sight", "expected_ap"]
+__all__ = [
+    "BlindGround",
+    "BlindSpot",
+    "GroundSight",
+    "Reach",
+    "SeenShares",
+    "Sight",
+    "expected_ap",
+    "outlines",
+]

@@ -40,9 +40,7 @@ class Companion:
         return f"{self.distance:g} m"
 
 
-def company(
-    sensor: pe.Sensor, half_view: float, vehicle: pe.Vehicle | None
-) -> list[Companion]:
+def company(sensor: pe.Sensor, half_view: float, vehicle: pe.Vehicle | None) -> list[Companion]:
     """Return people on the left and cars on the right of where a sensor looks.
 
     `half_view` is half its horizontal field of view [rad]; who has no room in it, or would stand in

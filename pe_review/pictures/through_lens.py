@@ -25,6 +25,7 @@ SUN = np.array([-0.35, 0.5, 1.0])
 """In the sensor's heading: from behind, on the left."""
 RING_M = 0.05
 """Half the width of a ring's line."""
+THINNEST_PX = 0.6
 FADED_M = (30.0, 160.0)
 """From where to where the ground fades into the horizon."""
 
@@ -49,7 +50,7 @@ def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Marked:
     vehicle : Vehicle or None
     """
     shot, scale = camera_shot(sensor)
-    others = company(sensor, sensor.model.hfov / 2.0, vehicle)
+    others = company(sensor, _camera_of(sensor).hfov / 2.0, vehicle)
     solids = [] if vehicle is None else [painted_vehicle(vehicle)]
     tableau = Tableau([*solids, *(each.body for each in others)], vehicle is not None)
     picture = drawn(shot, tableau, _road(sensor))
@@ -59,8 +60,7 @@ def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Marked:
 
 def camera_shot(sensor: pe.Sensor) -> tuple[Viewshot, float]:
     """Return a camera's own picture to be taken, no larger than a page has room for; its scale."""
-    camera = sensor.model
-    assert isinstance(camera, kinds.Camera)
+    camera = _camera_of(sensor)
     scale = min(1.0, MOST_WIDE / camera.width, MOST_HIGH / camera.height)
     width, height = (max(1, round(n * scale)) for n in (camera.width, camera.height))
     across, down = camera.width / width, camera.height / height
@@ -77,8 +77,7 @@ def _marks(
     sensor: pe.Sensor, others: list[Companion], shot: Viewshot, scale: float
 ) -> tuple[tuple[float, float, str], ...]:
     """Distances above heads and roofs, where these are in the picture."""
-    camera, found = sensor.model, []
-    assert isinstance(camera, kinds.Camera)
+    camera, found = _camera_of(sensor), []
     for each in others:
         way = scene.rotate(
             sensor.pose.ground_from_sensor.T, np.subtract(each.top, sensor.pose.position)[None]
@@ -91,6 +90,11 @@ def _marks(
     return tuple(found)
 
 
+def _camera_of(sensor: pe.Sensor) -> kinds.Camera:
+    assert isinstance(sensor.model, kinds.Camera)
+    return sensor.model
+
+
 def _road(sensor: pe.Sensor) -> Surroundings:
     """A road with rings round the sensor's foot, under a clear sky."""
     foot = np.array(sensor.pose.position[:2])
@@ -101,12 +105,11 @@ def _road(sensor: pe.Sensor) -> Surroundings:
 
     def ground(points: Floats, pixel_m: Floats) -> Floats:
         away = np.hypot(points[:, 0] - foot[0], points[:, 1] - foot[1])
-        line = np.zeros(len(points))
+        half, line = np.maximum(RING_M, THINNEST_PX / 2.0 * pixel_m), np.zeros(len(points))
         for radius in DISTANCES:
-            near = RING_M + pixel_m / 2.0 - np.abs(away - radius)
-            part = np.clip(near / np.maximum(pixel_m, 1e-6), 0.0, 1.0)
-            line = np.maximum(line, part * np.minimum(2.0 * RING_M / np.maximum(pixel_m, 1e-6), 1.0))
-        return ROAD + 0.75 * line[:, None] * (RING - ROAD)
+            inside = half + pixel_m / 2.0 - np.abs(away - radius)
+            line = np.maximum(line, np.clip(inside / np.maximum(pixel_m, 1e-6), 0.0, 1.0))
+        return np.asarray(ROAD + 0.75 * line[:, None] * (RING - ROAD))
 
     def sky(rays: Floats) -> Floats:
         up = np.clip(rays[:, 2], 0.0, 1.0)[:, None] ** 0.6
@@ -114,6 +117,7 @@ def _road(sensor: pe.Sensor) -> Surroundings:
 
     def haze(points: Floats) -> Floats:
         away = np.hypot(points[:, 0] - foot[0], points[:, 1] - foot[1])
-        return np.clip((away - FADED_M[0]) / (FADED_M[1] - FADED_M[0]), 0.0, 1.0) ** 0.7
+        part = np.clip((away - FADED_M[0]) / (FADED_M[1] - FADED_M[0]), 0.0, 1.0)
+        return np.asarray(part**0.7)
 
     return Surroundings(ground, sky, sun, haze)

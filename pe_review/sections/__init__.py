@@ -9,6 +9,7 @@ from ..section import Section
 from .again import again
 from .failing import failing
 from .head import head
+from .maps import maps
 from .parts import parts
 from .search import searching
 from .told import told
@@ -16,7 +17,7 @@ from .versus import versus
 
 TOGETHER: tuple[Callable[[tuple[Reviewed, ...]], Section], ...] = (head, versus)
 """What is told of all studies at once, above them; of a single one, too."""
-SECTIONS: tuple[Callable[[Reviewed], Section], ...] = (parts, failing, searching, told, again)
+SECTIONS: tuple[Callable[[Reviewed], Section], ...] = (parts, maps, failing, searching, told, again)
 """What every study has; of several they stand side by side. One whose html is empty is left out."""
 
 __all__ = ["SECTIONS", "TOGETHER"]

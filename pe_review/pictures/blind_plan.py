@@ -1,0 +1,81 @@
+"""Blind ground round the vehicle, as a plan with metres to each side."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..engine import pe, sight
+from ..markup import Markup
+from .plan import GroundPlan
+
+BLIND = "#d55e00"
+SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
+"""By side: the axis that leads there, and which way."""
+LEAST_M = 0.3
+"""Less is a strip along the body that is not measured."""
+WIDE = 330.0
+
+
+def blind_plan(found: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -> Markup:
+    """Return a plan of blind ground and, to each side, where the nearest of it begins or ends."""
+    plan = GroundPlan(_bounds(found, vehicle), alt, wide=WIDE)
+    lines = [plan.at(line) for line in found.outlines]
+    style: dict[str, Any] = {
+        "fill": BLIND,
+        "fill_opacity": "0.32",
+        "stroke": BLIND,
+        "stroke_width": 1.0,
+    }
+    if lines:
+        plan.canvas.path(lines, fill_rule="evenodd", **style)
+    plan.vehicle(vehicle)
+    if vehicle is not None:
+        for side in SIDES:
+            _measure(plan, found, vehicle, side)
+    plan.frame()
+    return plan.canvas.svg()
+
+
+def side_words(found: sight.BlindGround, side: str) -> str:
+    """Say in figures how blind a side is: where it begins, and how far it goes from the body."""
+    spot, zone = found.nearest[side], found.zone[side]
+    if spot is None:
+        return "none"
+    if zone is None:
+        return f"at the body, beyond {found.within:g} m"
+    if zone > 0.0:
+        return f"at the body, to {zone:.1f} m"
+    return f"at {spot.distance:.1f} m"
+
+
+def _measure(plan: GroundPlan, found: sight.BlindGround, vehicle: pe.Vehicle, side: str) -> None:
+    spot, zone = found.nearest[side], found.zone[side]
+    if spot is None or (zone is not None and 0.0 < zone < LEAST_M):
+        return
+    axis, sign = SIDES[side]
+    away = found.within if zone is None else (zone or spot.distance)
+    edge = float(vehicle.bounds[1 if sign > 0 else 0][axis])
+    start, end = list(spot.point), list(spot.point)
+    start[axis], end[axis] = edge, edge + sign * away
+    (x0, y0), (x1, y1) = plan.place(*start), plan.place(*end)
+    cross = "v6m0 -12v12" if axis == 0 else "h6m-12 0h12"
+    line = f"M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}m0 0{cross}"
+    plan.canvas.add("path", d=line, fill="none", stroke="#1b1f24", stroke_width=1.0)
+    words = f"> {away:g} m" if zone is None else f"{away:.1f} m"
+    x, y, anchor = _beside(axis, sign, x1, y1)
+    plan.canvas.text(x, y, words, text_anchor=anchor, css="strong halo")
+
+
+def _beside(axis: int, sign: int, x: float, y: float) -> tuple[float, float, str]:
+    """Return where a text stands beside the end of a measure."""
+    if axis == 1:
+        return x + 8.0, y + 4.0, "start"
+    return x + sign * 8.0, y + 4.0, "start" if sign > 0 else "end"
+
+
+def _bounds(
+    found: sight.BlindGround, vehicle: pe.Vehicle | None
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    low, high = ((-1.0, -1.0), (1.0, 1.0)) if vehicle is None else vehicle.bounds
+    x, y = ((float(low[k]) - found.within, float(high[k]) + found.within) for k in (0, 1))
+    return x, y

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..engine import pe, sight
 from ..markup import Markup
-from .plan import GroundPlan
+from .plan import PlanDrawing
 
 BLIND = "#d55e00"
 SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
@@ -18,7 +18,7 @@ WIDE = 330.0
 
 def blind_plan(found: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -> Markup:
     """Return a plan of blind ground and, to each side, where the nearest of it begins or ends."""
-    plan = GroundPlan(_bounds(found, vehicle), alt, wide=WIDE)
+    plan = PlanDrawing(_bounds(found, vehicle), alt, wide=WIDE)
     lines = [plan.at(line) for line in found.outlines]
     style: dict[str, Any] = {
         "fill": BLIND,
@@ -48,7 +48,7 @@ def side_words(found: sight.BlindGround, side: str) -> str:
     return f"at {spot.distance:.1f} m"
 
 
-def _measure(plan: GroundPlan, found: sight.BlindGround, vehicle: pe.Vehicle, side: str) -> None:
+def _measure(plan: PlanDrawing, found: sight.BlindGround, vehicle: pe.Vehicle, side: str) -> None:
     spot, zone = found.nearest[side], found.zone[side]
     if spot is None or (zone is not None and 0.0 < zone < LEAST_M):
         return

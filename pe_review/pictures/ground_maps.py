@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..engine import graphics, pe, sight
 from ..markup import Markup
-from .plan import GroundPlan
+from .plan import PlanDrawing
 from .svg import Canvas, hexadecimal
 
 Floats = NDArray[np.float64]
@@ -125,7 +125,7 @@ def _drawn(
 ) -> Markup:
     half = seen.step / 2.0
     bounds = tuple((float(w[0]) - half, float(w[-1]) + half) for w in (seen.x, seen.y))
-    plan = GroundPlan((bounds[0], bounds[1]), alt, KEY_HIGH)
+    plan = PlanDrawing((bounds[0], bounds[1]), alt, KEY_HIGH)
     rgba = np.concatenate([colors[..., :3], known[..., None]], axis=-1)
     plan.cells(graphics.png_bytes(graphics.as_bytes(rgba.transpose(1, 0, 2)[::-1])))
     for radius in RINGS:

@@ -24,7 +24,7 @@ TICKS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
 FIGURES_ACROSS = 9
 
 
-class GroundPlan:
+class PlanDrawing:
     """A drawing of a part of the ground [m], `below` units of room under it for a key."""
 
     def __init__(self, bounds: PlanEdges, alt: str, below: float = 0.0, wide: float = WIDE) -> None:
@@ -49,7 +49,7 @@ class GroundPlan:
 
     def cells(self, png: bytes) -> None:
         """Lay a picture of all of the ground, a pixel a cell."""
-        self.canvas.picture(png, self.left, TOP, self.wide, self.high)
+        self.canvas.picture(png, (self.left, TOP, self.wide, self.high), "cells")
 
     def frame(self) -> None:
         """Draw the border and metres along it."""

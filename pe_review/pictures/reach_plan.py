@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..engine import graphics, pe, sight
 from ..markup import Markup
-from .plan import GroundPlan, PlanEdges
+from .plan import PlanDrawing, PlanEdges
 from .svg import hexadecimal
 
 Floats = NDArray[np.float64]
@@ -34,7 +34,7 @@ def reach_plan(
     alt: str,
 ) -> Markup:
     """Return a plan of a rig's reach, of each sensor's alone, and of the rig's before a search."""
-    plan = GroundPlan(bounds, alt, KEY_HIGH)
+    plan = PlanDrawing(bounds, alt, KEY_HIGH)
     for radius in (20.0, 40.0, 60.0, 80.0):
         plan.ring(radius, color=GRID)
     size: dict[str, Any] = {"fill": "none", "stroke_linejoin": "round"}
@@ -78,7 +78,7 @@ def _closed(found: sight.Reach, distance: Floats) -> Floats:
     return np.stack([away * np.cos(found.bearings), away * np.sin(found.bearings)], axis=1)
 
 
-def _figures(plan: GroundPlan, found: sight.Reach) -> None:
+def _figures(plan: PlanDrawing, found: sight.Reach) -> None:
     line = _closed(found, found.distance)
     for k in range(0, len(line), max(1, len(line) // FIGURES)):
         distance = float(found.distance[k])
@@ -96,7 +96,7 @@ def _ends_with_space(found: sight.Reach, k: int) -> bool:
     return bool(found.distance[k] >= found.limit[k] - AT_LEAST_M)
 
 
-def _key(plan: GroundPlan, has_before: bool) -> None:
+def _key(plan: PlanDrawing, has_before: bool) -> None:
     lines: Mapping[str, dict[str, object]] = {
         "the rig": {"stroke": RIG, "stroke_width": 2.2},
         **({"before": {"stroke": BEFORE, "stroke_dasharray": "5 4"}} if has_before else {}),

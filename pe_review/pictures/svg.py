@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from ..markup import Markup, escaped
 
 Floats = NDArray[np.float64]
-Rgb = Sequence[float]
+PictureBox = tuple[float, float, float, float]
+"""Left, top, width and height."""
+
 
 STYLE = Path(__file__).with_name("drawn.css").read_text("utf-8")
 """CSS of drawings and of the grids they stand in."""
@@ -37,11 +39,11 @@ class Canvas:
         place = _attributes({"x": x, "y": y, **attributes})
         self.parts.append(f"<text{place}>{escaped(words)}</text>")
 
-    def picture(self, png: bytes, x: float, y: float, width: float, height: float) -> None:
-        """Add a picture, stretched to a size."""
+    def picture(self, png: bytes, box: PictureBox, css: str = "shot") -> None:
+        """Add a picture, stretched to a box; one of class ``cells`` keeps its pixels' edges."""
         source = f"data:image/png;base64,{base64.b64encode(png).decode()}"
-        size = {"x": x, "y": y, "width": width, "height": height}
-        self.add("image", href=source, preserveAspectRatio="none", **size)
+        size = dict(zip(("x", "y", "width", "height"), map(float, box), strict=True))
+        self.add("image", href=source, preserveAspectRatio="none", css=css, **size)
 
     def path(self, lines: Iterable[Floats], closed: bool = True, **attributes: object) -> None:
         """Add lines (N, 2) as one path."""
@@ -82,7 +84,7 @@ def grid(figures: Iterable[Markup], least_rem: float = 21.0) -> Markup:
     return Markup(f'<div class="maps" style="--least:{least_rem:g}rem">{"".join(figures)}</div>')
 
 
-def hexadecimal(rgb: Rgb) -> str:
+def hexadecimal(rgb: Sequence[float]) -> str:
     """Return a colour, 0 to 1, as "#0072b2"."""
     return "#" + "".join(f"{round(255.0 * min(max(float(c), 0.0), 1.0)):02x}" for c in rgb[:3])
 

@@ -113,7 +113,7 @@ def _road(sensor: pe.Sensor) -> Surroundings:
 
     def sky(rays: Floats) -> Floats:
         up = np.clip(rays[:, 2], 0.0, 1.0)[:, None] ** 0.6
-        return HORIZON * (1.0 - up) + ZENITH * up
+        return np.asarray(HORIZON * (1.0 - up) + ZENITH * up)
 
     def haze(points: Floats) -> Floats:
         away = np.hypot(points[:, 0] - foot[0], points[:, 1] - foot[1])

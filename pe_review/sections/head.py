@@ -5,6 +5,8 @@ from __future__ import annotations
 from ..engine import advice, kinds, metric
 from ..figures import ARROW, change, count, joined, number, percent, percent_points, up_first
 from ..markup import Markup, escaped, picture
+from ..pictures.named_still import named_still
+from ..pictures.svg import STYLE
 from ..reviewed import Reviewed
 from ..section import Section
 
@@ -19,7 +21,7 @@ def head(each: tuple[Reviewed, ...]) -> Section:
     lines = (("Asked", asked(one)), ("Found", found(one)), ("Mind", to_mind(one)))
     brief = "".join(f"<li><b>{what}:</b> {line}</li>" for what, line in lines if line)
     inside = f'<ul class="brief">{brief}</ul>{_tiles(one)}{_picture(one)}{_scale()}'
-    return Section("summary", "Summary", inside)
+    return Section("summary", "Summary", inside, styles=(STYLE,))
 
 
 def asked(one: Reviewed) -> Markup:
@@ -162,7 +164,7 @@ def _worst_loss(one: Reviewed) -> tuple[str, str, str]:
 
 def _picture(one: Reviewed) -> str:
     if one.picture is None:
-        return ""
+        return named_still(one.shown_vehicle[0], one.rig, f"The vehicle with {_sensors(one)}")
     return picture(one.picture, f"The vehicle with {_sensors(one)} and what they see")
 
 

@@ -6,6 +6,7 @@ import pytest
 import pe_core as pe
 from pe_core.catalog import load
 from pe_review.pictures.drawing import drawn
+from pe_review.pictures.named_still import RADIUS, named_still, spread
 from pe_review.pictures.normals import corner_normals
 from pe_review.pictures.painted import Paint, PaintedBody, painted_vehicle
 from pe_review.pictures.still import still, usual_view
@@ -112,3 +113,20 @@ def test_every_pixel_has_a_colour(car):
     picture = drawn(usual_view(*car).shot(33, 21), stage, _studio(car[0].bounds))
     assert picture.shape == (21, 33, 3) and np.isfinite(picture).all()
     assert picture.min() >= 0.0 and picture.max() <= 1.0
+
+
+def test_numbers_stand_apart_and_in_the_picture():
+    places = np.array([[480.0, 270.0]] * 4 + [[-50.0, 600.0], [485.0, 280.0]])
+    found = spread(places)
+    apart = np.sqrt(((found[:, None] - found[None]) ** 2).sum(axis=2))[np.triu_indices(6, 1)]
+    assert apart.min() > 2 * RADIUS
+    assert found.min() > 0 and (found < [960, 540]).all()
+
+
+def test_a_sensor_behind_the_body_is_told_apart(car):
+    """From ahead on the right: the one behind the box is dashed; names are escaped."""
+    vehicle, rig = car
+    behind = pe.Sensor("a <b>", rig["right"].model, pe.Pose((-2.3, 0.5, 0.6)))
+    text = named_still(vehicle, pe.Rig([rig["right"], behind]), "alt")
+    assert text.count('stroke-dasharray="4 4"') == 1 and text.count("<circle") == 3
+    assert "a &lt;b&gt;" in text and "2 a" in text

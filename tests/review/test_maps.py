@@ -1,0 +1,129 @@
+"""Plans and maps: what is ahead is right, what is left is up, colours mean what the key says."""
+
+import base64
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import graphics
+from pe_core.sight import GroundSight
+from pe_review.pictures.blind_plan import side_words
+from pe_review.pictures.ground_maps import (
+    BETTER,
+    COVERAGE,
+    ENTROPY,
+    SENSORS,
+    WORSE,
+    difference_map,
+    ground_map,
+)
+from pe_review.pictures.plan import PlanDrawing, outline_of
+from pe_review.pictures.reach_plan import reach_to
+from pe_review.pictures.svg import Canvas, hexadecimal, path_of
+from pe_review.sections.maps import maps
+from tests.engine.test_png import decoded
+from tests.review.conftest import box
+
+
+def seen(entropy, sensors=None):
+    """A map of 1 m cells round the origin; where the entropy is NaN the vehicle is."""
+    nx, ny = entropy.shape
+    x, y = ((np.arange(n) + 0.5 - n / 2) for n in (nx, ny))
+    number = np.where(np.isfinite(entropy), 1, -1) if sensors is None else sensors
+    coverage = np.where(np.isfinite(entropy), 0.5, np.nan)
+    return GroundSight(x, y, 1.0, None, entropy, coverage, number, number)
+
+
+def pixels_of(svg):
+    """The picture inside a drawing."""
+    return decoded(base64.b64decode(re.search('base64,([^"]+)', svg)[1]))
+
+
+def test_a_map_has_ahead_right_and_left_up():
+    """One good place, ahead on the left, and the vehicle in the middle."""
+    entropy = np.full((6, 4), 16.651)
+    entropy[5, 3], entropy[2:4, 1:3] = -10.976, np.nan
+    pixels = pixels_of(ground_map(seen(entropy), ENTROPY, None, "alt"))
+    assert pixels.shape == (4, 6, 4)
+    best, worst = (graphics.as_bytes(graphics.VIRIDIS[k]) for k in (-1, 0))
+    assert abs(pixels[0, 5, :3].astype(int) - best).max() <= 1
+    assert abs(pixels[3, 0, :3].astype(int) - worst).max() <= 1
+    assert (pixels[1:3, 2:4, 3] == 0).all() and pixels[..., 3].sum() == 255 * 20
+
+
+def test_the_key_has_the_colours_of_the_map():
+    entropy, sensors = np.zeros((4, 2)), np.array([[0, 1], [2, 3], [4, 0], [1, 2]])
+    svg = ground_map(seen(entropy, sensors), SENSORS, None, "alt")
+    pixels = pixels_of(svg)
+    for (i, j), number in np.ndenumerate(sensors):
+        color = hexadecimal(graphics.COUNTS[min(number, 3)])
+        assert hexadecimal(pixels[1 - j, i] / 255.0) == color
+        assert f'fill="{color}"' in svg
+    assert [t for t in ("none", "3 or more") if t in svg] == ["none", "3 or more"]
+
+
+def test_the_same_value_has_the_same_colour_on_every_map():
+    one, two = np.array([[0.0, 5.0]]), np.array([[5.0, -10.0]])
+    first, second = (pixels_of(ground_map(seen(e), ENTROPY, None, "alt")) for e in (one, two))
+    np.testing.assert_array_equal(first[0, 0], second[1, 0])
+    assert (pixels_of(ground_map(seen(one), COVERAGE, None, "alt"))[0, 0] == first[0, 0]).sum() < 4
+
+
+def test_a_difference_is_blue_where_the_second_is_better():
+    one, two = np.array([[0.0, 0.0, 0.0]]), np.array([[-20.0, 0.0, 20.0]])
+    pixels = pixels_of(difference_map(seen(one), seen(two), None, "alt", ("better", "worse")))
+    right, middle, left = (pixels[k, 0, :3] for k in (2, 1, 0))
+    assert right.tolist() == graphics.as_bytes(BETTER).tolist()
+    assert left.tolist() == graphics.as_bytes(WORSE).tolist() and middle.min() > 235
+
+
+def test_a_plan_has_metres_where_they_are():
+    plan = PlanDrawing(((-80.0, 80.0), (-40.0, 40.0)), "alt")
+    corners = plan.at(np.array([[-80.0, 40.0], [80.0, -40.0], [0.0, 0.0]]))
+    assert corners[0, 0] < corners[1, 0] and corners[0, 1] < corners[1, 1]
+    np.testing.assert_allclose(corners[2], corners[:2].mean(axis=0))
+    plan.frame()
+    texts = {e.text: float(e.get("x")) for e in ET.fromstring(plan.canvas.svg()).iter("text")}
+    assert {"80 m", "0", "\N{MINUS SIGN}40"} <= set(texts)
+    assert texts["80 m"] == pytest.approx(corners[1, 0], abs=0.1)
+
+
+def test_the_outline_of_a_box_is_its_rectangle():
+    (line,) = outline_of(pe.Vehicle(box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.5))))
+    np.testing.assert_allclose(line.min(axis=0), [-2.0, -0.9], atol=0.05)
+    np.testing.assert_allclose(line.max(axis=0), [2.0, 0.9], atol=0.05)
+
+
+def test_points_on_the_way_are_left_out_of_a_path():
+    square = np.array([[0, 0], [1, 0], [2, 0], [2, 2], [0, 2], [0, 1], [0, 0]], float)
+    assert path_of(square, closed=True) == "M0 0 2 0 2 2 0 2z"
+    assert path_of(square[:3], closed=False) == "M0 0 2 0"
+    assert path_of(np.empty((0, 2)), closed=True) == ""
+
+
+def test_what_stands_in_a_drawing_is_escaped():
+    canvas = Canvas(10.0, 10.0, '<alt "1">')
+    canvas.text(1.0, 2.0, "a <b> & c", text_anchor="end", css="strong")
+    element = ET.fromstring(canvas.svg())
+    (text,) = element
+    assert element.get("aria-label") == '<alt "1">' and text.text == "a <b> & c"
+    assert text.get("text-anchor") == "end" and text.get("class") == "strong"
+
+
+def test_the_section_tells_what_the_engine_found(scored):
+    section = maps(scored)
+    assert section.html.count("<svg") == 9  # four maps, three heights, two classes
+    ET.fromstring(f"<div>{section.html}</div>")
+    blind = scored.sight.blind(scored.rig, 0.5)
+    for side in ("front", "left"):
+        assert f"<td>{side_words(blind, side)}</td>" in section.html
+    reach = scored.sight.reach(scored.rig, "pedestrian")
+    assert f"<td>{reach_to(reach, 0.0)}</td>" in section.html
+
+
+def test_a_search_shows_before_and_what_changed(searched, bare):
+    assert maps(searched).html.count("<svg") == 12
+    assert maps(bare).html.count("<svg") == 9  # also without a vehicle

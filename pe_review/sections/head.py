@@ -164,7 +164,8 @@ def _worst_loss(one: Reviewed) -> tuple[str, str, str]:
 
 def _picture(one: Reviewed) -> str:
     if one.picture is None:
-        return named_still(one.shown_vehicle[0], one.rig, f"The vehicle with {_sensors(one)}")
+        alt = f"The vehicle with {_sensors(one)}"
+        return one.once("still", lambda: named_still(one.shown_vehicle[0], one.rig, alt))
     return picture(one.picture, f"The vehicle with {_sensors(one)} and what they see")
 
 

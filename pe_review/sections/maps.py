@@ -25,7 +25,7 @@ WAYS["ahead right"] = 315.0
 
 def maps(one: Reviewed) -> Section:
     """Return the maps of a study."""
-    inside = f"{_ground(one)}{_blind(one)}{_reach(one)}"
+    inside = one.once("maps", lambda: f"{_ground(one)}{_blind(one)}{_reach(one)}")
     return Section("maps", "What is seen where", inside, styles=(STYLE,))
 
 

@@ -42,7 +42,7 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 	@touch $@
 
 .venv/dev.stamp: .venv/run.stamp
-	@tools/make_venv.sh blender,test,report,meshes,dev
+	@tools/make_venv.sh blender,test,report,meshes,cad,rerun,argoverse,dev
 	@touch $@
 
 clean:  ## remove the environment and everything made

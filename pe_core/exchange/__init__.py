@@ -1,25 +1,29 @@
 """Rigs in and out of other programs' files."""
 
-from .carried import picture_of
+from .carried import CarriedSensor, carried, picture_of, with_pictures
 from .exporting import export_rig, rig_files, write_files
 from .files import Written
 from .importing import STAND_INS, ImportedRig, import_rig
-from .pictures import Picture
+from .pictures import Picture, straight
 from .table import RIG_FORMATS, RigFormat, rig_format
 from .vehicle_info import read_vehicle_info
 
 __all__ = [
     "RIG_FORMATS",
     "STAND_INS",
+    "CarriedSensor",
     "ImportedRig",
     "Picture",
     "RigFormat",
     "Written",
+    "carried",
     "export_rig",
     "import_rig",
     "picture_of",
     "read_vehicle_info",
     "rig_files",
     "rig_format",
+    "straight",
+    "with_pictures",
     "write_files",
 ]

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from ..errors import InputError, shown
 from . import (
+    argoverse2,
     autoware,
     carla,
     csv_table,
@@ -122,6 +123,15 @@ _ROWS = (
         nuscenes.write,
         nuscenes.read,
         keeps=opencv_of_five,
+    ),
+    RigFormat(
+        "argoverse2",
+        argoverse2.TITLE,
+        REAR_AXLE,
+        (argoverse2.POSES, argoverse2.INTRINSICS),
+        argoverse2.write,
+        argoverse2.read,
+        keeps=straight,
     ),
     RigFormat(
         "carla",

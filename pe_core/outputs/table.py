@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from ..errors import InputError, shown
 from ..exchange import Written
-from . import scene_gltf, solids, svg
+from . import libraries, scene_gltf, solids, svg
 from .request import OutputRequest
 
 
@@ -41,7 +41,11 @@ class SceneOutput:
 _ROWS = (
     SceneOutput("solids", "fields of view as solids (glTF, STL)", "solids", solids.write, True),
     SceneOutput("footprints", "footprints on the ground (SVG)", svg.FILE, svg.write),
+    SceneOutput(
+        "footprints-dxf", "footprints on the ground (DXF)", libraries.DXF, libraries.write_dxf
+    ),
     SceneOutput("gltf", "whole scene (glTF)", scene_gltf.FILE, scene_gltf.write),
+    SceneOutput("rerun", "Rerun recording", libraries.RECORDING, libraries.write_recording),
 )
 SCENE_OUTPUTS = MappingProxyType({row.name: row for row in _ROWS})
 """Outputs by name."""

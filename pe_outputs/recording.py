@@ -1,0 +1,176 @@
+"""The scene as a recording of Rerun's: vehicle, sensors, what they see, beams and ground maps.
+
+Nothing in it moves: all is logged as static. The world has our axes; a camera's picture is below
+its sensor, in the sensor's axes (forward, left, up).
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+
+from pe_core import Sensor
+from pe_core.exchange import Picture, carried, straight, with_pictures
+from pe_core.graphics import COVERAGE, ENTROPY, drawing_of, ground_map
+from pe_core.kinds import kind_of
+from pe_core.outputs import (
+    BLIND,
+    BODY,
+    GLASS,
+    OutputRequest,
+    Rgb,
+    blind_volume,
+    free_solid,
+    mounted_view,
+    plain_names,
+    sensor_color,
+)
+from pe_core.scene import rotate
+
+APPLICATION = "perception_entropy"
+WORLD, VEHICLE, SENSORS, BEAMS, GROUND = "world", "vehicle", "sensors", "beams", "ground"
+STEP = math.radians(1.0)
+REACH_M, BEAM_M = 4.0, 40.0
+"""How far fields of view and beams go unless told."""
+MOST_BEAMS = 2000
+VIEW_ALPHA, GLASS_ALPHA, BLIND_ALPHA, MAP_ALPHA = 45, 110, 90, 0.8
+FREE, STOPPED = (0, 115, 178, 70), (214, 94, 0, 255)
+BEAM_RADIUS_M = 0.004
+PICTURE_M = 0.6
+"""How far from its sensor a camera's picture is drawn."""
+MAPS = {"coverage": COVERAGE, "entropy": ENTROPY}
+
+
+def recording_bytes(wanted: OutputRequest) -> tuple[bytes, list[str]]:
+    """Return a recording, and lines on what is not in it."""
+    study, stream = wanted.study, rr.RecordingStream(APPLICATION)
+    lines = [] if study.vehicle is not None else ["no vehicle: nothing is hidden or blind near it"]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "scene.rrd"
+        stream.save(path, default_blueprint=_blueprint())
+        stream.log("/", rr.ViewCoordinates.FLU, static=True)
+        _log_vehicle(stream, wanted)
+        names, _ = plain_names([sensor.name for sensor in study.rig])
+        known, left_out = with_pictures(carried(study.rig), straight, "Rerun")
+        for number, (sensor, one) in enumerate(zip(study.rig, known, strict=True)):
+            own = [SENSORS, names[sensor.name]]
+            _log_sensor(stream, wanted, sensor, own, sensor_color(number))
+            if one.picture is not None:
+                _log(stream, [*own, "picture"], _pinhole(one.picture))
+            if drawing_of(sensor.kind).beams:
+                _log(stream, [BEAMS, names[sensor.name]], _beams(wanted, sensor))
+        _log_ground(stream, wanted)
+        stream.disconnect()
+        return path.read_bytes(), lines + left_out
+
+
+def _blueprint() -> Any:
+    """Return the whole scene in one view; of the maps the coverage, the entropy switched off."""
+    hidden = {f"/{WORLD}/{GROUND}/entropy": [rrb.EntityBehavior(visible=False)]}
+    view = rrb.Spatial3DView(origin="/", name="Scene", overrides=hidden)
+    return rrb.Blueprint(view, collapse_panels=True)
+
+
+def _log(stream: Any, parts: list[str], what: Any) -> None:
+    """Log at an entity whose parts may have blanks and other letters."""
+    stream.log([WORLD, *parts], what, static=True)
+
+
+def _log_vehicle(stream: Any, wanted: OutputRequest) -> None:
+    vehicle, rig = wanted.study.vehicle, wanted.study.rig
+    if vehicle is None:
+        return
+    for number, name in enumerate(vehicle.part_names):
+        corners = vehicle.triangles[vehicle.parts == number].reshape(-1, 3)
+        if len(corners):
+            points, index = np.unique(corners, axis=0, return_inverse=True)
+            glass = name in vehicle.glass
+            color = _rgba(GLASS, GLASS_ALPHA) if glass else _rgba(BODY, 255)
+            _log(stream, [VEHICLE, name], _mesh(points, index.reshape(-1, 3), color))
+    blind = blind_volume("blind_volume", rig, vehicle)
+    if blind is not None:
+        _log(stream, [blind.name], _mesh(blind.points, blind.faces, _rgba(BLIND, BLIND_ALPHA)))
+
+
+def _log_sensor(
+    stream: Any, wanted: OutputRequest, sensor: Sensor, own: list[str], color: Rgb
+) -> None:
+    """Log a sensor's pose, what it is, and its field of view in its own axes."""
+    pose, turn = sensor.pose, sensor.pose.ground_from_sensor
+    _log(stream, own, rr.Transform3D(translation=pose.position, mat3x3=turn, axis_length=0.3))
+    about = {"name": sensor.name, "kind": sensor.kind, "model": sensor.model.name}
+    _log(stream, own, rr.AnyValues(**about))
+    view = mounted_view(sensor, wanted.study.vehicle, wanted.reach(sensor, REACH_M), STEP)
+    if view is not None:
+        solid = free_solid("view", view)
+        points = rotate(turn.T, solid.points - view.origin)
+        _log(stream, [*own, "view"], _mesh(points, solid.faces, _rgba(color, VIEW_ALPHA)))
+
+
+def _pinhole(picture: Picture) -> Any:
+    return rr.Pinhole(
+        image_from_camera=picture.matrix,
+        resolution=picture.size,
+        camera_xyz=rr.ViewCoordinates.FLU,
+        image_plane_distance=PICTURE_M,
+    )
+
+
+def _beams(wanted: OutputRequest, sensor: Sensor) -> Any:
+    """Return a fair sample of a sensor's beams: to the vehicle, the ground or its range."""
+    directions = kind_of(sensor).rays(sensor, MOST_BEAMS)
+    place, ends = np.asarray(sensor.pose.position), wanted.reach(sensor, BEAM_M)
+    reach = np.full(len(directions), ends)
+    falling = (directions[:, 2] < 0.0) & (place[2] > 0.0)
+    reach[falling] = np.minimum(ends, place[2] / -directions[falling, 2])
+    met = np.full(len(directions), np.inf)
+    if wanted.study.vehicle is not None:
+        met = wanted.study.vehicle.first_hit(place.tolist(), directions).distance
+    stopped = met < reach
+    points = place + directions * np.minimum(met, reach)[:, None]
+    strips = np.stack([np.broadcast_to(place, points.shape), points], axis=1)
+    colors = np.where(stopped[:, None], STOPPED, FREE).astype(np.uint8)
+    return rr.LineStrips3D(strips, colors=colors, radii=BEAM_RADIUS_M)
+
+
+def _log_ground(stream: Any, wanted: OutputRequest) -> None:
+    """Log maps of the ground as the 3D view has them: coverage, and entropy under it."""
+    seen = wanted.study.sight().ground(wanted.study.rig)
+    for name, quantity in MAPS.items():
+        sheet = ground_map(seen, quantity, MAP_ALPHA).sheet
+        if sheet is not None:
+            points, colors, faces = sheet.mesh
+            rgba = np.rint(colors * 255.0).astype(np.uint8)
+            mesh = rr.Mesh3D(vertex_positions=points, triangle_indices=faces, vertex_colors=rgba)
+            _log(stream, [GROUND, name], mesh)
+
+
+def _mesh(points: Any, faces: Any, color: list[int]) -> Any:
+    normals = _normals(points, faces)
+    return rr.Mesh3D(
+        vertex_positions=points,
+        triangle_indices=faces,
+        vertex_normals=normals,
+        albedo_factor=color,
+    )
+
+
+def _normals(points: Any, faces: Any) -> Any:
+    """Return the mean normal of the triangles at each point, weighted by their areas."""
+    corners = points[faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    total = np.zeros_like(points)
+    for k in range(3):
+        np.add.at(total, faces[:, k], across)
+    length = np.sqrt((total**2).sum(axis=1, keepdims=True))
+    return total / np.where(length > 0.0, length, 1.0)
+
+
+def _rgba(color: Rgb, alpha: int) -> list[int]:
+    return [*(round(255 * value) for value in color), alpha]

@@ -24,11 +24,8 @@ from .pictures import Picture, pinhole_picture
 POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
 TITLE, NAME = "Argoverse 2", "sensor_name"
 TURN, PLACE = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
-LENS, BENT, SIZE = (
-    ("fx_px", "fy_px", "cx_px", "cy_px"),
-    ("k1", "k2", "k3"),
-    ("height_px", "width_px"),
-)
+LENS, BENT = ("fx_px", "fy_px", "cx_px", "cy_px"), ("k1", "k2", "k3")
+SIZE = ("height_px", "width_px")
 CONVENTIONS = {
     "frame": "middle of the rear axle at its height; x forward, y left, z up; metres",
     "rotation": "egovehicle from sensor, unit quaternion; cameras: z forward, x right, y down",

@@ -80,7 +80,7 @@ def logged(recording, entity, component):
     return value
 
 
-@pytest.mark.parametrize(("sensor", "entity"), zip(RIG, ("roof_top", "eye"), strict=True))
+@pytest.mark.parametrize(("sensor", "entity"), [*zip(RIG, ("roof_top", "eye"), strict=True)])
 def test_a_recorded_sensor_stands_and_looks_as_the_sensor(recording, sensor, entity):
     own = f"/world/sensors/{entity}"
     (place,) = logged(recording, own, "Translation3D")

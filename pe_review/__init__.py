@@ -10,12 +10,16 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .cli import add_page, add_review_options
+
 if TYPE_CHECKING:
+    from .making import review_studies
     from .page import PAGE, page_bytes, write_page
     from .reviewed import Reviewed, reviewed_together
     from .section import Section
 
 _PLACES = {
+    "review_studies": "making",
     "PAGE": "page",
     "page_bytes": "page",
     "write_page": "page",
@@ -24,7 +28,17 @@ _PLACES = {
     "Section": "section",
 }
 
-__all__ = ["PAGE", "Reviewed", "Section", "page_bytes", "reviewed_together", "write_page"]
+__all__ = [
+    "PAGE",
+    "Reviewed",
+    "Section",
+    "add_page",
+    "add_review_options",
+    "page_bytes",
+    "review_studies",
+    "reviewed_together",
+    "write_page",
+]
 
 
 def __getattr__(name: str) -> Any:

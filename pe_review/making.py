@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,17 +11,44 @@ from .engine import app, pe, studies
 from .page import PAGE, page_bytes, write_page
 from .reviewed import MOST_STUDIES, Reviewed
 
+TOLD = ("perception-entropy", "numpy", "python")
+"""Programs that the page tells the versions of by itself."""
+
 
 def review(args: argparse.Namespace) -> app.Answer:
     """Score studies and write their page; Ctrl-C ends it, and then nothing is written."""
     files = app.named_by_file(args.studies)
-    if len(files) > MOST_STUDIES:
-        expected = f"{MOST_STUDIES} studies at most"
-        raise pe.InputError("command line", "STUDY", expected, len(files))
+    _check_number(len(files))
+    return review_studies({name: _study(path) for name, path in files.items()}, args)
+
+
+def review_studies(
+    asked: Mapping[str, pe.Study],
+    args: argparse.Namespace,
+    picture: Callable[[pe.Outcome], bytes] | None = None,
+    versions: Mapping[str, str] | None = None,
+) -> app.Answer:
+    """Score studies by name and write their page.
+
+    Parameters
+    ----------
+    asked : mapping of name to Study
+    args : Namespace
+        Of `add_review_options` and of the score's options.
+    picture : callable, optional
+        Renders a picture (PNG) of what was found.
+    versions : mapping of str, optional
+        Programs besides the engine's.
+    """
+    _check_number(len(asked))
     pe.prepare_folder(args.output, () if args.replace else (PAGE,))
-    asked = {name: app.with_options(_study(path), args) for name, path in files.items()}
-    app.refuse_different(asked)
-    each = [Reviewed(n, app.scored(study, args.workers)) for n, study in asked.items()]
+    changed = {name: app.with_options(study, args) for name, study in asked.items()}
+    app.refuse_different(changed)
+    each = []
+    for name, study in changed.items():
+        outcome = app.scored(study, args.workers)
+        shown = None if picture is None else picture(outcome)
+        each.append(Reviewed(name, outcome, picture=shown, versions=versions or {}))
     return str(write_page(each, args.output, replace=args.replace)), app.DONE
 
 
@@ -28,8 +56,15 @@ def leave(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -> None:
     """Write the page of a search beside its results; a picture rendered there is on it."""
     there = data["run"].get("files", {})
     picture = (folder / studies.REVIEW).read_bytes() if studies.REVIEW in there else None
-    one = Reviewed(folder.resolve().name, outcome, picture=picture)
+    host = {k: v for k, v in data["run"]["versions"].items() if k not in TOLD}
+    one = Reviewed(folder.resolve().name, outcome, picture=picture, versions=host)
     studies.add_to_result(data, folder, {PAGE: page_bytes([one])})
+
+
+def _check_number(of_studies: int) -> None:
+    """Raise `InputError` for more studies than a page has room for, before any is scored."""
+    if of_studies > MOST_STUDIES:
+        raise pe.InputError("command line", "STUDY", f"{MOST_STUDIES} at most", of_studies)
 
 
 def _study(path: str) -> pe.Study:

@@ -39,7 +39,7 @@ def table(
 ) -> str:
     """Return a table of plain texts: the first column heads its row, figures stand to the right.
 
-    A cell that is `Markup` is taken as it is.
+    A cell that is `Markup` is taken as it is. A row of one cell heads the rows below it.
     """
     top = "".join(f'<th scope="col">{_cell(head)}</th>' for head in heads)
     body = "".join(_row(row) for row in rows)
@@ -57,6 +57,8 @@ class Markup(str):
 
 def _row(row: Sequence[object]) -> str:
     first, *rest = row
+    if not rest:
+        return f'<tr class="head"><th scope="rowgroup" colspan="99">{_cell(first)}</th></tr>'
     return f'<tr><th scope="row">{_cell(first)}</th>{"".join(map(_figure, rest))}</tr>'
 
 

@@ -33,13 +33,16 @@ def page_bytes(each: Sequence[Reviewed]) -> bytes:
     return _document(each, chapters).encode("utf-8")
 
 
-def write_page(each: Sequence[Reviewed], folder: str | Path, *, replace: bool = False) -> Path:
+def write_page(
+    each: Sequence[Reviewed], folder: str | Path, *, name: str = PAGE, replace: bool = False
+) -> Path:
     """Write the page to a folder; return its path.
 
     Parameters
     ----------
     each : sequence of Reviewed
     folder : path
+    name : str
     replace : bool
         The user has agreed to replace the page that is there, whoever wrote it.
 
@@ -48,10 +51,10 @@ def write_page(each: Sequence[Reviewed], folder: str | Path, *, replace: bool = 
     InputError
         The folder cannot be written, or a page is there that is not ours or was changed since.
     """
-    folder = pe.prepare_folder(folder, () if replace else (PAGE,))
-    with studies.FileSet(folder, (PAGE,) if replace else ()) as files:
-        files.add(PAGE, page_bytes(each))
-    return folder / PAGE
+    folder = pe.prepare_folder(folder, () if replace else (name,))
+    with studies.FileSet(folder, (name,) if replace else ()) as files:
+        files.add(name, page_bytes(each))
+    return folder / name
 
 
 Chapter = list[tuple[Reviewed, Section]]

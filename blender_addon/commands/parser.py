@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 
-from ..engine import app, pe
+from ..engine import app, page, pe
 from .leaving import REVIEW
 from .plain_objects import OBJECTS, add_objects_options
+from .reviewing import review_scene
 from .scene_verbs import explain_study, export_study, run_job
 from .sweeping import sweep_scene
 from .variants import compare_variants, list_variants
@@ -24,6 +25,8 @@ def parser(prog: str) -> argparse.ArgumentParser:
         verb.add_argument("--no-render", action="store_false", dest="render", help=f"no {REVIEW}")
         add_variant_option(verb)
         verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
+    page.add_page()
+    app.add_page_option(optimize)
     about = "write the scene as a study with its mesh, or its rig for another program"
     export = verbs.add_parser("export", help=about)
     app.add_export_options(export, also_study=True, more=[OBJECTS])
@@ -42,6 +45,16 @@ def parser(prog: str) -> argparse.ArgumentParser:
     compare.add_argument("variants", nargs="*", metavar="NAME", help="of these (default: all)")
     app.add_compare_options(compare)
     compare.set_defaults(function=compare_variants)
+    about = "write a page to hand on: what the sensors see"
+    review = verbs.add_parser("review", help=about)
+    about = "variants side by side (default: what stands in the scene)"
+    review.add_argument("variants", nargs="*", metavar="NAME", help=about)
+    page.add_review_options(review)
+    app.add_score_options(review)
+    review.add_argument(
+        "--no-render", action="store_false", dest="render", help="no rendered picture"
+    )
+    review.set_defaults(function=review_scene)
     sweep = verbs.add_parser("sweep", help="run the scene, or variants, with many changes")
     sweep.add_argument("variants", nargs="*", metavar="NAME", help="variants (default: the scene)")
     app.add_sweep_options(sweep)

@@ -25,20 +25,21 @@ def run_job(args: argparse.Namespace) -> app.Answer:
             bridge.check_placeable(bpy.context.scene, study)
     job, output = app.job_and_folder(study, args, app.begun_search(args))
     ours = [OPTIMIZED] * (kind == "optimize") + [REVIEW] * args.render
-    if output is not None:
-        output = pe.prepare_folder(output, [*ours, *studies.result_names(study, kind)])
 
     def leave(outcome: pe.Outcome, data: dict, folder: Path) -> None:
         with quiet_blender():
             leave_scene(outcome, data, folder, render=args.render)
 
+    more = app.with_pages(args, app.More(ours, leave))
+    if output is not None:
+        output = pe.prepare_folder(output, [*more.names, *studies.result_names(study, kind)])
     job.notes = bridge.missing_pieces(bpy.context.scene)
     return app.carry_out(
         job,
         output,
         as_json=args.json,
         host=bridge.blender_version(),
-        more=app.More(ours, leave),
+        more=more,
     )
 
 

@@ -1,4 +1,4 @@
-"""Render the review picture: the vehicle, its sensors, their beams and their score."""
+"""The review: the picture of vehicle, sensors, beams and score, and the page to hand on."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import bpy
-from bpy.props import StringProperty
+from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from .. import bridge
-from ..engine import pe
+from ..engine import page, pe
 from .reports import REFUSALS, chosen_file, refuse, tell
 
 
@@ -30,6 +30,14 @@ def waiting(context: bpy.types.Context) -> Iterator[Callable[[float], None]]:
         manager.progress_end()
 
 
+def scored(context: bpy.types.Context, show: Callable[[float], None]) -> pe.Outcome:
+    """Score the sensors where they are, on the scene's own voxels."""
+    job = pe.ScoreJob(bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get()))
+    for progress in job:
+        show(progress.fraction)
+    return job.outcome
+
+
 class PE_OT_render_review(ExportHelper, bpy.types.Operator):
     """Score the sensors where they are and render a picture of what they see (.png)"""
 
@@ -45,15 +53,44 @@ class PE_OT_render_review(ExportHelper, bpy.types.Operator):
         try:
             path = chosen_file(self.filepath)
             with waiting(context) as show:
-                study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-                job = pe.ScoreJob(study)
-                for progress in job:
-                    show(progress.fraction)
-                review.render_review(context.scene, study, job.outcome, path)
+                outcome = scored(context, show)
+                review.render_review(context.scene, outcome.study, outcome, path)
         except REFUSALS as error:
             return refuse(self, error)
         tell(self, "INFO", f"Wrote {path}")
         return {"FINISHED"}
 
 
-CLASSES = (PE_OT_render_review,)
+class PE_OT_export_review(ExportHelper, bpy.types.Operator):
+    """Score the sensors where they are and write a page to hand on (.html), with all they see"""
+
+    bl_idname = "pe.export_review"
+    bl_label = "Export Review"
+
+    filename_ext = ".html"
+    filter_glob: StringProperty(default="*.html", options={"HIDDEN"})
+    render: BoolProperty(
+        name="Rendered Picture",
+        description="Have Blender render the picture at the head of the page",
+        default=True,
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        from .. import review  # only who wants a page pays for it
+
+        try:
+            path = chosen_file(self.filepath)
+            with waiting(context) as show:
+                outcome = scored(context, show)
+                picture = review.picture_of(context.scene, outcome) if self.render else None
+                versions = bridge.blender_version()
+                one = page.Reviewed(path.stem, outcome, picture=picture, versions=versions)
+                # The file dialog has asked whether to replace it.
+                page.write_page([one], path.parent, name=path.name, replace=True)
+        except REFUSALS as error:
+            return refuse(self, error)
+        tell(self, "INFO", f"Wrote {path}")
+        return {"FINISHED"}
+
+
+CLASSES = (PE_OT_render_review, PE_OT_export_review)

@@ -22,6 +22,7 @@ class PE_PT_export(Tab, bpy.types.Panel):
         layout.operator("pe.export_study", icon="EXPORT")
         layout.operator("pe.import_study", icon="IMPORT")
         layout.operator("pe.render_review", icon="RENDER_STILL")
+        layout.operator("pe.export_review", icon="DOCUMENTS")
         row = layout.row(align=True)
         row.operator("pe.export_rig", text="Export Rig", icon="FILE_TICK")
         row.operator("pe.import_rig", text="Import Rig", icon="FILE_FOLDER")

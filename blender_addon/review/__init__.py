@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,7 @@ from .subject import RING_TEXT, RINGS_M, Subject
 if TYPE_CHECKING:
     from ..engine import pe
 
-__all__ = ["render_review"]
+__all__ = ["picture_of", "render_review"]
 
 DEFAULT_SIZE = (1600, 900)
 
@@ -66,3 +67,10 @@ def render_review(
         mark_sensors(pen, study.rig, subject.moves())
         on.render(Path(path))
     return Path(path)
+
+
+def picture_of(scene: bpy.types.Scene, outcome: pe.Outcome) -> bytes:
+    """Return the review picture of an outcome as the bytes of a PNG, with the same errors."""
+    with tempfile.TemporaryDirectory(prefix="perception-entropy-") as folder:
+        path = Path(folder, "review.png")
+        return render_review(scene, outcome.study, outcome, path).read_bytes()

@@ -79,7 +79,8 @@ def _dearest(one: Reviewed) -> str:
     if len(scores) < 2:
         return "it is the only sensor, so nothing is seen when it fails"
     name = max(scores, key=lambda name: scores[name].lost)
-    return f"most is lost with {escaped(name)}: {change(scores[name].lost)} nats"
+    lost = number(scores[name].lost)
+    return f"when <b>{escaped(name)}</b> fails most is lost, {lost} nats"
 
 
 def _warned(one: Reviewed) -> str:
@@ -91,10 +92,10 @@ def _warned(one: Reviewed) -> str:
 def _sensors(one: Reviewed) -> str:
     """Return "2 LiDARs and 1 camera", by the rig's kinds."""
     of_kind = [kinds.kind_of(sensor) for sensor in one.rig]
-    named = [
-        f"{of_kind.count(kind)} {kind.label if of_kind.count(kind) == 1 else kind.plural}"
-        for kind in dict.fromkeys(of_kind)
-    ]
+    named = []
+    for kind in dict.fromkeys(of_kind):
+        word = kind.label if of_kind.count(kind) == 1 else kind.plural
+        named.append(f"{of_kind.count(kind)} {word.lower() if word.istitle() else word}")
     return escaped(joined(named))
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ..engine import advice
-from ..figures import change, joined, number, percent
+from ..figures import change, joined, number, percent, up_first
 from ..markup import Markup, escaped, table
 from ..reviewed import Reviewed
 from ..section import Section
 from ..winning import CloseRow, close_rows, leads
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
-GROUPS = {"rig": "Overall", "zone": "By zone", "class": "By class"}
+GROUPS = {"rig": "", "zone": "By zone", "class": "By class"}
 
 
 def versus(each: tuple[Reviewed, ...]) -> Section:
@@ -68,13 +68,13 @@ def _heads(each: Sequence[Reviewed], first: str) -> list[str | Markup]:
 
 
 def _table(each: Sequence[Reviewed], rows: Sequence[CloseRow], measure: str, title: str) -> str:
-    body = []
-    for row in rows:
-        if row.measure == measure:
-            name = "Overall" if row.group == "rig" else advice.WHERE.get(row.name, row.name)
-            body.append(
-                [name[:1].upper() + name[1:], *(_cell(each, row, k) for k in range(len(each)))]
-            )
+    body: list[list[str | Markup]] = []
+    for group, heading in GROUPS.items():
+        inside = [row for row in rows if (row.group, row.measure) == (group, measure)]
+        body += [[heading]] if heading and inside else []
+        for row in inside:
+            name = up_first(advice.WHERE.get(row.name, row.name)) or "Overall"
+            body.append([name, *(_cell(each, row, k) for k in range(len(each)))])
     return table(title, _heads(each, ""), body)
 
 
@@ -95,10 +95,7 @@ def _cell(each: Sequence[Reviewed], row: CloseRow, k: int) -> str | Markup:
 
 def _blind(each: Sequence[Reviewed]) -> str:
     """How far what is half a metre tall is hidden from the body on."""
-    rows = [
-        [words[:1].upper() + words[1:], *(_end(one, side) for one in each)]
-        for side, words in SIDES.items()
-    ]
+    rows = [[up_first(words), *(_end(one, side) for one in each)] for side, words in SIDES.items()]
     height = max(one.outlook.blind.height for one in each)
     title = f"Blind ground at the body, for what is {height:g} m tall: how far it reaches"
     return table(title, _heads(each, ""), rows)

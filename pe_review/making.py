@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from .engine import app, pe, studies
+from .folder import outcome_of_folder
 from .page import PAGE, page_bytes, write_page
 from .reviewed import MOST_STUDIES, Reviewed
 
@@ -17,9 +18,17 @@ TOLD = ("perception-entropy", "numpy", "python")
 
 def review(args: argparse.Namespace) -> app.Answer:
     """Score studies and write their page; Ctrl-C ends it, and then nothing is written."""
-    files = app.named_by_file(args.studies)
-    _check_number(len(files))
-    return review_studies({name: _study(path) for name, path in files.items()}, args)
+    paths = [str(Path(each).resolve()) if Path(each).is_dir() else each for each in args.studies]
+    files = app.named_by_file(paths)
+    _check(len(files), args)
+    read = {name: _study(path) for name, path in files.items()}
+    changed = {name: app.with_options(study, args) for name, study in read.items()}
+    app.refuse_different(changed)
+    each = []
+    for name, study in changed.items():
+        outcome = _searched(files[name], args) or app.scored(study, args.workers)
+        each.append(Reviewed(name, outcome))
+    return _written(each, args)
 
 
 def review_studies(
@@ -40,8 +49,7 @@ def review_studies(
     versions : mapping of str, optional
         Programs besides the engine's.
     """
-    _check_number(len(asked))
-    pe.prepare_folder(args.output, () if args.replace else (PAGE,))
+    _check(len(asked), args)
     changed = {name: app.with_options(study, args) for name, study in asked.items()}
     app.refuse_different(changed)
     each = []
@@ -49,7 +57,7 @@ def review_studies(
         outcome = app.scored(study, args.workers)
         shown = None if picture is None else picture(outcome)
         each.append(Reviewed(name, outcome, picture=shown, versions=versions or {}))
-    return str(write_page(each, args.output, replace=args.replace)), app.DONE
+    return _written(each, args)
 
 
 def leave(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -> None:
@@ -61,12 +69,26 @@ def leave(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -> None:
     studies.add_to_result(data, folder, {PAGE: page_bytes([one])})
 
 
-def _check_number(of_studies: int) -> None:
-    """Raise `InputError` for more studies than a page has room for, before any is scored."""
+def _check(of_studies: int, args: argparse.Namespace) -> None:
+    """Refuse what could not be written, or has no room on a page, before any is scored."""
     if of_studies > MOST_STUDIES:
         raise pe.InputError("command line", "STUDY", f"{MOST_STUDIES} at most", of_studies)
+    pe.prepare_folder(args.output, () if args.replace else (PAGE,))
+
+
+def _written(each: Sequence[Reviewed], args: argparse.Namespace) -> app.Answer:
+    return str(write_page(each, args.output, replace=args.replace)), app.DONE
 
 
 def _study(path: str) -> pe.Study:
     """Read a study, or the one in a folder of results."""
     return pe.load_study(Path(path) / studies.STUDY if Path(path).is_dir() else path)
+
+
+def _searched(path: str, args: argparse.Namespace) -> pe.Outcome | None:
+    """Return the outcome of a folder's search; None where the path is no such folder."""
+
+    def score(study: pe.Study) -> pe.Outcome:
+        return app.scored(app.with_options(study, args), args.workers)
+
+    return outcome_of_folder(Path(path), score) if Path(path).is_dir() else None

@@ -88,13 +88,23 @@ def test_optimize_and_export_agree_with_the_engine(blend, tmp_path):
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     before = blend.read_bytes()
     answer = run(
-        *("blender_addon", blend, "optimize", *FAST, "-o", inside, "--no-render", "--json")
+        *(
+            "blender_addon",
+            blend,
+            "optimize",
+            "--no-review",
+            *FAST,
+            "-o",
+            inside,
+            "--no-render",
+            "--json",
+        )
     )
     assert answer.returncode == 0, answer.stderr
     assert json.loads(answer.stdout)["run"]["versions"]["blender"] == bpy.app.version_string
     assert blend.read_bytes() == before
     assert run("blender_addon", blend, "export", "-o", study).returncode == 0
-    answer = run("pe_core", "optimize", study / "study.toml", *FAST, "-o", outside)
+    answer = run("pe_core", "optimize", "--no-review", study / "study.toml", *FAST, "-o", outside)
     assert answer.returncode == 0, answer.stderr
     assert without_run(inside / "result.json") == without_run(outside / "result.json")
     for name in ("history.csv", "study.toml"):
@@ -130,7 +140,9 @@ def check_resumed(blend: Path, folder: Path) -> None:
     whole, begun = without_run(folder / "result.json"), studies.read_search(folder)
     state = studies.SearchState(begun.study, begun.inputs)
     state.save(folder, begun.study, begun.judged[:5])
-    answer = run("blender_addon", blend, "optimize", *FAST, "--resume", folder, "--no-render")
+    answer = run(
+        "blender_addon", blend, "optimize", "--no-review", *FAST, "--resume", folder, "--no-render"
+    )
     assert answer.returncode == 0, answer.stderr
     assert complaints(answer) == ["pe: going on after 5 placements"]
     assert without_run(folder / "result.json") == whole
@@ -190,7 +202,7 @@ def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
     arguments = (*FAST[:4], "--candidates", 100_000, "-o", folder, "--no-render")
     with (tmp_path / "log").open("w+") as log:
         process = subprocess.Popen(
-            command("blender_addon", blend, "optimize", *arguments),
+            command("blender_addon", blend, "optimize", "--no-review", *arguments),
             cwd=ROOT,
             stdout=subprocess.DEVNULL,
             stderr=log,

@@ -62,10 +62,22 @@ def test_the_four_corners_of_the_file_and_of_the_study_are_one(addon, tmp_path):
     for one, other in zip(here.rig, there.rig, strict=True):
         assert (one.name, one.model.name, one.pose) == (other.name, other.model.name, other.pose)
     out = tmp_path / "blender"
-    assert main(["optimize", "-o", str(out), "--no-render", *FAST], "pe", io.StringIO()) == 0
+    assert (
+        main(["optimize", "--no-review", "-o", str(out), "--no-render", *FAST], "pe", io.StringIO())
+        == 0
+    )
     with contextlib.redirect_stdout(io.StringIO()):
         assert (
-            pe_main(["optimize", str(CORNERS / "study.toml"), "-o", str(tmp_path / "pe"), *FAST])
+            pe_main(
+                [
+                    "optimize",
+                    "--no-review",
+                    str(CORNERS / "study.toml"),
+                    "-o",
+                    str(tmp_path / "pe"),
+                    *FAST,
+                ]
+            )
             == 0
         )
     inside, outside = (result(tmp_path / name) for name in ("blender", "pe"))

@@ -43,12 +43,12 @@ def test_a_users_own_file_is_refused_before_the_work(blend, tmp_path, name):
 
 def test_the_same_folder_again_is_one_set(blend, tmp_path):
     out = tmp_path / "out"
-    for seed in ("3", "4"):
-        answer = run("blender_addon", blend, "optimize", *FAST[:-1], seed, "-o", out)
+    for seed, *options in (("3", "--no-review"), ("4",)):
+        answer = run("blender_addon", blend, "optimize", *FAST[:-1], seed, *options, "-o", out)
         assert answer.returncode == 0, answer.stderr
     named = json.loads((out / "result.json").read_text())["run"]["files"]
     expected = (
-        *("history.csv", "optimized.blend", "review.png"),
+        *("history.csv", "optimized.blend", "review.html", "review.png"),
         *("search.json", "study.toml", "vehicle.npz"),
     )
     assert sorted(named) == list(expected)
@@ -60,7 +60,7 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     arguments = (*FAST[:4], "--candidates", 100_000, "-o", out, "--no-render")
     with log.open("w") as stderr:
         process = subprocess.Popen(
-            command("blender_addon", blend, "optimize", *arguments),
+            command("blender_addon", blend, "optimize", "--no-review", *arguments),
             cwd=ROOT,
             stdout=subprocess.DEVNULL,
             stderr=stderr,
@@ -93,7 +93,7 @@ def test_a_scene_that_does_not_fit_on_the_disk_leaves_the_old_one(blend, tmp_pat
 
     out, elsewhere = tmp_path / "out", tmp_path / "tmp"
     elsewhere.mkdir()
-    optimize = ("blender_addon", blend, "optimize", *FAST, "-o", out, "--no-render")
+    optimize = ("blender_addon", blend, "optimize", "--no-review", *FAST, "-o", out, "--no-render")
     assert run(*optimize).returncode == 0
     before = (out / "optimized.blend").read_bytes()
     assert len(before) > 50_000 > len((out / "result.json").read_bytes())

@@ -78,7 +78,7 @@ def test_an_unknown_variant_is_told(blend):
 def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blend, tmp_path):
     fast = (*FEW, "--samples", "4096", "--candidates", "2")
     out = tmp_path / "out"
-    answer = run("blender_addon", blend, "optimize", *fast, "--no-render", "-o", out)
+    answer = run("blender_addon", blend, "optimize", "--no-review", *fast, "--no-render", "-o", out)
     assert answer.returncode == 0, answer.stderr
     bpy.ops.wm.open_mainfile(filepath=str(out / "optimized.blend"))
     rows = bpy.context.scene.perception_entropy.variants

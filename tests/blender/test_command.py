@@ -43,7 +43,7 @@ def test_optimize_does_not_worsen(installed, sedan, tmp_path):
     assert answer.returncode == 0, output_of(answer)
     result = read(tmp_path / "result.json")
     assert result["entropy"] <= result["before"]["entropy"]
-    for name in ("optimized.blend", "review.png", "history.csv"):
+    for name in ("optimized.blend", "review.png", "review.html", "history.csv"):
         assert (tmp_path / name).stat().st_size > 0, name
 
 

@@ -42,7 +42,22 @@ def test_json_is_one_document_and_nothing_else(study, capsys):
 
 def test_optimize_leaves_its_results(study, tmp_path, capsys):
     out = tmp_path / "out"
-    assert main(["optimize", str(study), "-o", str(out), "--seed", "5", "--candidates", "4"]) == 0
+    assert (
+        main(
+            [
+                "optimize",
+                "--no-review",
+                str(study),
+                "-o",
+                str(out),
+                "--seed",
+                "5",
+                "--candidates",
+                "4",
+            ]
+        )
+        == 0
+    )
     data = json.loads((out / "result.json").read_text())
     assert data["seed"] == 5 and data["evaluations"] == 29
     assert data["after"]["entropy"] <= data["before"]["entropy"]
@@ -88,14 +103,23 @@ def test_exit_status(argv, status, message, capsys):
 
 def test_an_output_that_cannot_be_written_is_told_at_once(study, tmp_path, capsys):
     (tmp_path / "file").touch()
-    assert main(["optimize", str(study), "-o", str(tmp_path / "file" / "out")]) == 1
+    assert main(["optimize", "--no-review", str(study), "-o", str(tmp_path / "file" / "out")]) == 1
     assert "output: expected a folder that can be written" in capsys.readouterr().err
 
 
 def test_interrupt_keeps_the_best_so_far(study, tmp_path):
     """A real process, a real SIGINT in the middle of a search."""
     out = tmp_path / "out"
-    command = [sys.executable, "-m", "pe_core", "optimize", str(study), "-o", str(out)]
+    command = [
+        sys.executable,
+        "-m",
+        "pe_core",
+        "optimize",
+        "--no-review",
+        str(study),
+        "-o",
+        str(out),
+    ]
     process = subprocess.Popen(
         [*command, "--candidates", "100000"], cwd=ROOT, stderr=subprocess.PIPE, text=True
     )

@@ -125,7 +125,15 @@ def sedan(tmp_path_factory):
     (folder / "sedan.npz").write_bytes((ROOT / "blend_assets" / "sedan.npz").read_bytes())
     (folder / "study.toml").write_text(SEDAN, "utf-8")
     out = folder / "out"
-    arguments = ["optimize", str(folder / "study.toml"), "-o", str(out), "--grid-samples", "1024"]
+    arguments = [
+        "optimize",
+        "--no-review",
+        str(folder / "study.toml"),
+        "-o",
+        str(out),
+        "--grid-samples",
+        "1024",
+    ]
     assert main([*arguments, "--workers", "1"]) == 0
     return out, pe.load_study(out / "study.toml")
 

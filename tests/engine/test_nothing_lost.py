@@ -66,7 +66,7 @@ SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 @pytest.mark.parametrize("signum", SIGNALS)
 def test_the_first_signal_judges_and_keeps_the_best(study, out, signum):
-    with Command("optimize", study, "-o", out, *ENDLESS) as command:
+    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
         command.wait_for_better()
         command.send(signum)
         assert command.end() == SIGNALS[signum]
@@ -76,7 +76,7 @@ def test_the_first_signal_judges_and_keeps_the_best(study, out, signum):
 
 @pytest.mark.parametrize("signum", SIGNALS)
 def test_the_second_signal_ends_at_once_with_the_best_kept(study, out, signum):
-    with Command("optimize", study, "-o", out, *ENDLESS, hang_in_score=2) as command:
+    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS, hang_in_score=2) as command:
         command.wait_for_better()
         command.send(signal.SIGINT)
         command.wait_for_stage("scoring the result")  # it would wait there for ever
@@ -103,7 +103,9 @@ def test_nohup_means_it(study, out):
     def ignore_hangups():
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
-    with Command("optimize", study, "-o", out, *ENDLESS, preexec_fn=ignore_hangups) as command:
+    with Command(
+        "optimize", "--no-review", study, "-o", out, *ENDLESS, preexec_fn=ignore_hangups
+    ) as command:
         command.wait_for_better()
         command.send(signal.SIGHUP)
         command.send(signal.SIGTERM)
@@ -140,7 +142,7 @@ def test_ctrl_c_while_loading_is_one_line(module):
 def test_a_full_stderr_ends_nothing(study, out):
     with (
         open("/dev/full", "w") as full,
-        Command("optimize", study, "-o", out, *SHORT, stderr=full) as command,
+        Command("optimize", "--no-review", study, "-o", out, *SHORT, stderr=full) as command,
     ):
         text = command.process.stdout.read()
         assert command.end() == 0
@@ -154,7 +156,7 @@ def test_closed_streams_end_nothing(study, out, closed):
         for number in closed:
             os.close(number)
 
-    with Command("optimize", study, "-o", out, *SHORT, preexec_fn=close) as command:
+    with Command("optimize", "--no-review", study, "-o", out, *SHORT, preexec_fn=close) as command:
         assert command.end() == 0
     assert not result(out)["stopped"]
 
@@ -162,7 +164,9 @@ def test_closed_streams_end_nothing(study, out, closed):
 def test_a_reader_that_goes_away_ends_nothing(study, out):
     """``pe optimize ... 2>&1 | head -1``"""
     read, write = os.pipe()
-    with Command("optimize", study, "-o", out, *SHORT, stdout=write, stderr=write) as command:
+    with Command(
+        "optimize", "--no-review", study, "-o", out, *SHORT, stdout=write, stderr=write
+    ) as command:
         os.close(write)
         assert os.read(read, 1)
         os.close(read)
@@ -173,7 +177,9 @@ def test_a_reader_that_goes_away_ends_nothing(study, out):
 def test_an_answer_that_cannot_be_printed_is_kept(study, out, elsewhere):
     with open("/dev/full", "w") as full:
         options = {"stdout": full, "env": environment(elsewhere)}
-        with Command("optimize", study, "-o", out, *SHORT, "--json", **options) as command:
+        with Command(
+            "optimize", "--no-review", study, "-o", out, *SHORT, "--json", **options
+        ) as command:
             assert command.end() == 1
     (line,) = command.complaints
     (kept,) = elsewhere.rglob("output.txt")
@@ -182,7 +188,7 @@ def test_an_answer_that_cannot_be_printed_is_kept(study, out, elsewhere):
 
 
 def test_a_folder_that_vanishes_is_made_again(study, out):
-    with Command("optimize", study, "-o", out, *ENDLESS) as command:
+    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
         command.wait_for_better()
         shutil.rmtree(out)
         command.send(signal.SIGTERM)
@@ -191,7 +197,9 @@ def test_a_folder_that_vanishes_is_made_again(study, out):
 
 
 def test_results_that_cannot_be_written_go_elsewhere(study, out, elsewhere):
-    with Command("optimize", study, "-o", out, *ENDLESS, env=environment(elsewhere)) as command:
+    with Command(
+        "optimize", "--no-review", study, "-o", out, *ENDLESS, env=environment(elsewhere)
+    ) as command:
         command.wait_for_better()
         shutil.rmtree(out)
         out.write_text("in the way")
@@ -205,7 +213,7 @@ def test_results_that_cannot_be_written_go_elsewhere(study, out, elsewhere):
 
 def test_the_best_goes_elsewhere_at_the_second_signal_too(study, out, elsewhere):
     options = {"env": environment(elsewhere), "hang_in_score": 2}
-    with Command("optimize", study, "-o", out, *ENDLESS, **options) as command:
+    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS, **options) as command:
         command.wait_for_better()
         shutil.rmtree(out)
         out.write_text("in the way")
@@ -220,7 +228,9 @@ def test_the_best_goes_elsewhere_at_the_second_signal_too(study, out, elsewhere)
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
 def test_a_folder_that_may_not_be_written_any_more(study, out, elsewhere):
-    with Command("optimize", study, "-o", out, *ENDLESS, env=environment(elsewhere)) as command:
+    with Command(
+        "optimize", "--no-review", study, "-o", out, *ENDLESS, env=environment(elsewhere)
+    ) as command:
         command.wait_for_better()
         out.chmod(0o500)
         command.send(signal.SIGINT)
@@ -237,11 +247,13 @@ def test_a_full_disk_leaves_the_old_set_whole(study, out, elsewhere):
     def quota():
         resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 
-    with Command("optimize", study, "-o", out, *SHORT) as command:
+    with Command("optimize", "--no-review", study, "-o", out, *SHORT) as command:
         assert command.end() == 0
     before = {p.name: p.read_bytes() for p in out.iterdir()}
     options = {"env": environment(elsewhere), "preexec_fn": quota}
-    with Command("optimize", study, "-o", out, *SHORT, "--seed", 9, **options) as command:
+    with Command(
+        "optimize", "--no-review", study, "-o", out, *SHORT, "--seed", 9, **options
+    ) as command:
         text = command.process.stdout.read()
         assert command.end() == 1
     assert {p.name: p.read_bytes() for p in out.iterdir()} == before
@@ -251,7 +263,9 @@ def test_a_full_disk_leaves_the_old_set_whole(study, out, elsewhere):
 
 
 def test_a_file_that_appears_meanwhile_is_not_written_over(study, out, elsewhere):
-    with Command("optimize", study, "-o", out, *ENDLESS, env=environment(elsewhere)) as command:
+    with Command(
+        "optimize", "--no-review", study, "-o", out, *ENDLESS, env=environment(elsewhere)
+    ) as command:
         command.wait_for_better()
         (out / "history.csv").write_text("mine")
         command.send(signal.SIGTERM)

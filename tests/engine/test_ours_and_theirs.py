@@ -58,7 +58,7 @@ def no_work(monkeypatch):
 
 
 def optimize(study, out, *options):
-    return main(["optimize", str(study), "-o", str(out), *SHORT, *options])
+    return main(["optimize", "--no-review", str(study), "-o", str(out), *SHORT, *options])
 
 
 def contents(folder):

@@ -122,14 +122,14 @@ def test_a_journal_of_other_placements_is_refused():
 
 def test_a_resumed_search_leaves_the_same_files(path, tmp_path, capsys):
     """Broken off by a kill between two rounds; gone on with, with and without naming the study."""
-    assert main(["optimize", str(path), "-o", str(tmp_path / "whole")]) == 0
+    assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
     for number, named in enumerate(([], [str(path)])):
         out = tmp_path / f"out{number}"
         study = pe.load_study(path)
         job = pe.OptimizeJob(study)
         outcome_of(job, 30)
         SearchState(study).save(out, job.best, job.journal.entries)
-        assert main(["optimize", *named, "--resume", str(out)]) == 0
+        assert main(["optimize", "--no-review", *named, "--resume", str(out)]) == 0
         assert result(out) == result(tmp_path / "whole")
     assert "going on after" in capsys.readouterr().err
 
@@ -169,23 +169,23 @@ def broken_off(signum, moment, *arguments):
 
 
 def test_a_kill_at_any_moment_loses_at_most_a_round(path, tmp_path, out):
-    assert main(["optimize", str(path), "-o", str(tmp_path / "whole")]) == 0
+    assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
     begin = (path, "-o", out)
     for moment in (("told", 20), ("replaced", 2), ("told", 71)):
-        told = broken_off(signal.SIGKILL, moment, "optimize", *begin)
+        told = broken_off(signal.SIGKILL, moment, "optimize", "--no-review", *begin)
         kept = len(read_search(out).judged)
         assert kept >= told - CANDIDATES - 1, "a round, and the candidate that had been judged"
         begin = ("--resume", out)
-    assert main(["optimize", "--resume", str(out)]) == 0
+    assert main(["optimize", "--no-review", "--resume", str(out)]) == 0
     assert result(out) == result(tmp_path / "whole")
 
 
 def test_a_search_that_ctrl_c_stopped_goes_on(path, tmp_path, out):
-    assert main(["optimize", str(path), "-o", str(tmp_path / "whole")]) == 0
-    told = broken_off(signal.SIGINT, ("told", 31), "optimize", path, "-o", out)
+    assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
+    told = broken_off(signal.SIGINT, ("told", 31), "optimize", "--no-review", path, "-o", out)
     assert json.loads((out / "result.json").read_text("utf-8"))["stopped"]
     assert 31 <= told <= len(read_search(out).judged) < 40, "all is kept, not just whole rounds"
-    assert main(["optimize", "--resume", str(out)]) == 0
+    assert main(["optimize", "--no-review", "--resume", str(out)]) == 0
     assert result(out) == result(tmp_path / "whole")
 
 

@@ -111,7 +111,7 @@ def test_a_study_holds_it_and_its_curve(ring_kind, tmp_path):
 def test_the_command_scores_searches_and_leaves_results(ring_kind, tmp_path, capsys):
     path = tmp_path / "study.toml"
     path.write_text(STUDY)
-    assert main(["optimize", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
+    assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert result == json.loads((tmp_path / "out" / "result.json").read_text())
     bumper = result["after"]["per_sensor"]["bumper"]

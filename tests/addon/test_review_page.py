@@ -1,0 +1,62 @@
+"""The page to hand on, from the panel and from headless Blender: the engine's, with a picture."""
+
+import base64
+import functools
+import io
+import re
+
+import bpy
+
+import pe_core as pe
+from blender_addon import commands, review
+from blender_addon.engine import page
+from tests.addon import scenes
+
+PICTURE = re.compile(r'src="data:image/png;base64,([^"]+)" alt="The vehicle with 1 LiDAR')
+
+
+def test_the_panel_s_page_has_blender_s_picture(car, tmp_path, monkeypatch):
+    small = functools.partial(review.render_review, size=(320, 180))
+    monkeypatch.setattr(review, "render_review", small)
+    car.perception_entropy.score_samples = 1024
+    path = tmp_path / "for <all>.html"
+    path.write_text("mine")  # the file dialog has asked
+    assert bpy.ops.pe.export_review(filepath=str(path)) == {"FINISHED"}
+    text = path.read_text("utf-8")
+    assert "for &lt;all&gt;" in text
+    (picture,) = PICTURE.findall(text)
+    assert base64.b64decode(picture).startswith(b"\x89PNG")
+
+
+def test_a_page_that_cannot_be_written_is_one_line(car, tmp_path):
+    (tmp_path / "file").touch()
+    try:
+        bpy.ops.pe.export_review(filepath=str(tmp_path / "file" / "a.html"), render=False)
+    except RuntimeError as error:
+        assert "a folder that can be written" in str(error)
+    else:
+        raise AssertionError("it was written")
+
+
+def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path):
+    scenes.add_sensor("front", model="Camera 60 deg")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "study.blend"))
+    bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml"))
+    arguments = ["--grid-samples", "1024", "-o", str(tmp_path / "inside"), "--no-render"]
+    said = io.StringIO()
+    assert commands.main(["review", *arguments], "pe", said) == 0
+    inside = (tmp_path / "inside" / page.PAGE).read_text("utf-8")
+    assert said.getvalue() == f"{tmp_path / 'inside' / page.PAGE}\n"
+    from pe_core.app.cli import main
+
+    outside = [str(tmp_path / "study.toml"), *arguments[:2], "-o", str(tmp_path / "outside")]
+    assert main(["review", *outside]) == 0
+    written = (tmp_path / "outside" / page.PAGE).read_text("utf-8")
+    assert without_hosts(inside) == without_hosts(written)
+    assert pe.__version__ in written
+
+
+def without_hosts(text):
+    """A page without the programs it was made with, and the mesh's name."""
+    text = re.sub(r'<tr><th scope="row">blender</th>.*?</tr>', "", text)
+    return text.replace("study.npz", "vehicle.npz")

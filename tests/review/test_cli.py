@@ -1,0 +1,76 @@
+"""The verb, and the page beside a search's results, as a user runs them."""
+
+import pytest
+
+import pe_core as pe
+from pe_core.app.cli import main
+from pe_review import PAGE
+from tests.review.conftest import small_study
+
+NAMED = "a <b> & c"
+"""A file's name that a page must escape."""
+
+
+@pytest.fixture
+def study(tmp_path):
+    """A study file with its mesh, its name full of HTML and spaces."""
+    path = tmp_path / f"{NAMED}.toml"
+    pe.export_study(small_study(), path)
+    return path
+
+
+def test_a_study_s_page_is_written_and_its_path_printed(study, tmp_path, capsys):
+    assert main(["review", str(study), "-o", str(tmp_path / "new" / "out")]) == 0
+    path = tmp_path / "new" / "out" / PAGE
+    assert capsys.readouterr().out == f"{path}\n"
+    text = path.read_text("utf-8")
+    assert "a &lt;b&gt; &amp; c" in text and NAMED not in text
+    assert [each.name for each in path.parent.glob("*.html")] == [PAGE]
+
+
+def test_a_page_of_somebody_s_own_is_refused_before_the_work(study, tmp_path, capsys):
+    (tmp_path / PAGE).write_text("mine")
+    for verb in ("review", "optimize"):
+        assert main([verb, str(study), "-o", str(tmp_path)]) == 1
+        said = capsys.readouterr().err
+        assert said.count("\n") == 1 and f"{PAGE}: output: expected no file, or one" in said
+    assert (tmp_path / PAGE).read_text() == "mine"
+    assert main(["review", str(study), "-o", str(tmp_path), "--replace"]) == 0
+    assert (tmp_path / PAGE).read_text().startswith("<!DOCTYPE html>")
+
+
+def test_a_folder_that_cannot_be_is_one_line(study, capsys):
+    assert main(["review", str(study), "-o", str(study)]) == 1
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "expected a folder that can be written" in said
+
+
+def test_studies_of_different_spaces_are_not_put_side_by_side(study, tmp_path, capsys):
+    other = tmp_path / "other.toml"
+    other.write_text(study.read_text("utf-8").replace("interval = 0.5", "interval = 1.0"))
+    assert main(["review", str(study), str(other), "-o", str(tmp_path / "out")]) == 1
+    assert "space: expected the same as in" in capsys.readouterr().err
+    assert not (tmp_path / "out" / PAGE).exists()
+
+
+def test_a_search_leaves_its_page_unless_it_is_not_wanted(study, tmp_path, capsys):
+    for options, left in (["--no-review"], False), ([], True):
+        out = tmp_path / f"out {left}"
+        assert main(["optimize", str(study), "-o", str(out), *options]) == 0
+        assert (out / PAGE).exists() == left
+    text = (out / PAGE).read_text("utf-8")
+    assert "What was moved" in text
+    assert pe.study.files_of_other_runs(out) == []
+    assert main(["score", str(study), "-o", str(out)]) == 0
+    assert not (out / PAGE).exists(), "it told of the search"
+
+
+def test_a_folder_of_results_is_reviewed_as_the_search_it_was(study, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["optimize", str(study), "-o", str(out)]) == 0
+    left = (out / PAGE).read_text("utf-8").replace("a &lt;b&gt; &amp; c.npz", "vehicle.npz")
+    assert main(["review", str(out), "-o", str(tmp_path / "again")]) == 0
+    assert (tmp_path / "again" / PAGE).read_text("utf-8") == left
+    (out / "result.json").write_text("{}")
+    assert main(["review", str(out), "-o", str(tmp_path / "again")]) == 1
+    assert "result.json: file: expected what a search" in capsys.readouterr().err

@@ -76,10 +76,18 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
         study = replace(study, reference=reference)
         paths, lines = export_scene(study, *where, args.range, **options)
     else:
+        _refuse_range(args)
         paths, lines = export_rig(study.rig, *where, reference, **options)
     for line in lines:
         tell(line)
     return "\n".join(f"wrote {path}" for path in paths), DONE
+
+
+def _refuse_range(args: argparse.Namespace) -> None:
+    """Raise `InputError` for a range where no field of view is drawn."""
+    if args.range is not None:
+        expected = f"one of {', '.join(SCENE_OUTPUTS)}"
+        raise InputError("--range", "option", expected, args.to)
 
 
 def import_study(args: argparse.Namespace) -> Answer:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.outputs import SCENE_OUTPUTS, export_scene, scene_files
+from pe_core.app.cli import main
+from pe_core.outputs import export_scene, scene_files
 from pe_core.outputs.solid import free_solid, hidden_solid, whole_solid
 from pe_core.outputs.views import mounted_view
 from pe_core.outputs.voxel_surface import joined, voxel_solid
@@ -94,7 +95,8 @@ def test_cubes_that_touch_along_an_edge_are_joined_by_a_third():
 
 
 def a_study(*sensors, vehicle=None):
-    return pe.Study(pe.Rig(sensors), vehicle, reference=pe.Reference(-1.3, 0.3))
+    space = pe.PerceptionSpace((-16, 16), (-16, 16), (0, 3), 0.5)
+    return pe.Study(pe.Rig(sensors), vehicle, space, reference=pe.Reference(-1.3, 0.3))
 
 
 @pytest.fixture(scope="module")
@@ -153,10 +155,37 @@ def test_a_range_that_is_none_is_refused_in_a_line(range_m):
         scene_files(a_study(camera()), "solids", range_m)
 
 
-@pytest.mark.parametrize("name", SCENE_OUTPUTS)
+@pytest.mark.parametrize("name", ["gltf", "solids"])
 def test_nothing_is_replaced_unasked(name, tmp_path):
     study = a_study(camera(), vehicle=box_car())
     paths, _ = export_scene(study, name, tmp_path / "out", 5.0)
     with pytest.raises(pe.InputError, match="one is there"):
         export_scene(study, name, tmp_path / "out", 5.0)
     assert export_scene(study, name, tmp_path / "out", 5.0, replace=True)[0] == paths
+
+
+def test_the_check_for_closed_surfaces_sees_a_hole_a_fold_and_a_turned_triangle():
+    closed = box((0, 0, 0), (1, 2, 3))
+    turned = np.concatenate([closed[:-1], closed[-1:, ::-1]])
+    assert is_watertight(closed)
+    assert not any(map(is_watertight, (closed[1:], turned, np.concatenate([closed, closed]))))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--to", "solids", "--range", "0"], "export: range: expected a length above 0 m"),
+        (["--to", "solids", "-o", "taken"], "taken: folder: expected a place to write to"),
+        (["--to", "gltf", "-o", "taken/scene.glb"], "expected a place to write to"),
+        (["--to", "gltf", "-o", "taken"], "taken: file: expected a new file"),
+        (["--to", "csv", "--range", "5"], "--range: option: expected one of solids"),
+    ],
+)
+def test_what_cannot_be_written_is_told_in_a_line(options, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    pe.save_study(a_study(camera()), "study.toml")
+    (tmp_path / "taken").write_text("mine")
+    assert main(["export", "study.toml", "-o", "out", *options]) == 1
+    told = capsys.readouterr().err
+    assert words in told and told.count("\n") == 1
+    assert (tmp_path / "taken").read_text() == "mine" and not (tmp_path / "out").exists()

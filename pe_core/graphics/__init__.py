@@ -39,12 +39,13 @@ from .ground import (
     as_scored,
     ground_map,
 )
+from .hidden import hidden_lines
 from .kinds import DRAWINGS, Look, Sketch, beam_budget, drawing_of
 from .png import as_bytes, png_bytes
 from .primitives import ColorKey, GroundSheet, LayerShape, Primitives, Tag, fan, polyline
 from .range_image import NOTHING as NO_ECHO
 from .range_image import even_angles, range_colors, range_share
-from .rays import free_lines, ground_distance, ground_rings, stopped_lines
+from .rays import RING_FAR_M, free_lines, ground_distance, ground_rings, stopped_lines
 
 __all__ = [
     "AS_SCORED",
@@ -59,6 +60,7 @@ __all__ = [
     "NO_ECHO",
     "PAPER",
     "QUANTITIES",
+    "RING_FAR_M",
     "SENSORS",
     "SWATCHES",
     "VIEWPORT",
@@ -94,6 +96,7 @@ __all__ = [
     "ground_distance",
     "ground_map",
     "ground_rings",
+    "hidden_lines",
     "on_scale",
     "outline",
     "png_bytes",

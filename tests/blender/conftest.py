@@ -11,16 +11,10 @@ import pytest
 from tests.blender.runner import Blender, Installed, output_of
 from tests.blender.stage import Stage
 from tests.blender.window import TOOLS, Window
+from tests.needed import unavailable
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
-
-
-def unavailable(reason: str):
-    """Skip, or fail where everything is meant to be there: nobody reads the skips of a CI run."""
-    if os.environ.get("CI") == "true":
-        pytest.fail(f"CI=true, and {reason}", pytrace=False)
-    pytest.skip(reason)
 
 
 @pytest.fixture(scope="session")

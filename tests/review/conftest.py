@@ -86,3 +86,15 @@ def searched_page(searched):
 def page_of_two(scored, other):
     """The page of two studies, as text."""
     return page_bytes([scored, other]).decode()
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """A headless Chromium for all tests of pages."""
+    sync_api = pytest.importorskip("playwright.sync_api")
+    from tests.review.browser import launched
+
+    with sync_api.sync_playwright() as playwright:
+        browser = launched(playwright)
+        yield browser
+        browser.close()

@@ -1,0 +1,42 @@
+/* The view on paper: drawn anew when the page is printed, into a canvas that can be. */
+
+const PAPER_SIZE = [1600, 900];
+
+function write(context, text, x, y, css) {
+  context.font = css;
+  context.lineWidth = 6;
+  context.strokeStyle = "#fff";
+  context.strokeText(text, x, y);
+  context.fillStyle = "#1b1f24";
+  context.fillText(text, x, y);
+}
+
+function writeNames(view, context, width, height) {
+  context.textAlign = "center";
+  const rows = [];
+  for (const { sensor } of view.sensors) {
+    const place = onScreen(new T.Vector3(...sensor.at), view.camera, width, height);
+    if (!place.seen || view.from) continue;
+    let y = place.y - 22;
+    while (rows.some((row) => Math.abs(row.x - place.x) < 130 && Math.abs(row.y - y) < 26)) y -= 6;
+    rows.push({ x: place.x, y });
+    write(context, sensor.name, place.x, y, "600 22px system-ui, sans-serif");
+  }
+}
+
+function drawOnPaper(view) {
+  const [width, height] = PAPER_SIZE;
+  view.size(width, height, 1.6);
+  view.renderer.render(view.scene, view.camera);
+  view.paper.width = width;
+  view.paper.height = height;
+  const context = view.paper.getContext("2d");
+  context.drawImage(view.canvas, 0, 0, width, height);
+  writeNames(view, context, width, height);
+  view.fit();
+}
+
+function listenToPaper(view) {
+  window.addEventListener("beforeprint", () => drawOnPaper(view));
+  window.addEventListener("afterprint", () => view.draw());
+}

@@ -1,0 +1,68 @@
+"""A headless Chromium, and pages of ours opened in it; Debian's package, driven by Playwright."""
+
+import shutil
+from contextlib import contextmanager
+
+from playwright.sync_api import Browser, Page, Playwright
+
+from tests.needed import unavailable
+
+PACKAGE = "chromium"
+FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+"""WebGL in software: the same picture on every machine."""
+DESKTOP, PHONE = (1280, 900), (390, 844)
+WITHOUT_WEBGL = """
+  const real = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+    return kind.startsWith("webgl") ? null : real.call(this, kind, ...more);
+  };"""
+SETTLED = """() => new Promise((done) =>
+  requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))"""
+
+
+def launched(playwright: Playwright) -> Browser:
+    """Start Chromium, or skip where there is none."""
+    program = shutil.which(PACKAGE)
+    if program is None:
+        unavailable(f"there is no {PACKAGE}: install Debian's package of that name")
+    return playwright.chromium.launch(executable_path=program, args=list(FLAGS))
+
+
+class Heard:
+    """What a page complained of, and whom it asked."""
+
+    def __init__(self, page: Page) -> None:
+        self.complaints: list[str] = []
+        self.asked: list[str] = []
+        page.on("console", lambda message: self._said(message.type, message.text))
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("request", lambda request: self.asked.append(request.url))
+
+    def _said(self, kind: str, text: str) -> None:
+        if kind in ("error", "warning"):
+            self.complaints.append(text)
+
+
+@contextmanager
+def opened(browser: Browser, path, size=DESKTOP, script: str | None = None):
+    """Open a file as a reader would; yield the page and what was heard of it."""
+    phone = size == PHONE
+    width, height = size
+    context = browser.new_context(
+        viewport={"width": width, "height": height}, has_touch=phone, is_mobile=phone
+    )
+    try:
+        page = context.new_page()
+        if script:
+            page.add_init_script(script)
+        heard = Heard(page)
+        page.goto(path.as_uri())
+        settle(page)
+        yield page, heard
+    finally:
+        context.close()
+
+
+def settle(page: Page) -> None:
+    """Wait until what was asked for has been drawn."""
+    page.evaluate(SETTLED)

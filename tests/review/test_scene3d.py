@@ -1,0 +1,126 @@
+"""The 3-D view's data: places as they are, triangles of every part, colours, and not too much."""
+
+import base64
+import hashlib
+import json
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import graphics
+from pe_review.scene3d import SCRIPTS, THREE, scene_data, view3d
+from pe_review.scene3d.body import vehicle_data
+from pe_review.scene3d.packing import places, primitives
+
+THREE_SHA256 = "3e322f986588f7ebb331c039f732ec0f5284e86a643f09eade7be1cd4eba5fd8"
+"""Of what tools/vendor_three.sh makes of the versions that it names."""
+
+
+def numbers(text, kind):
+    return np.frombuffer(base64.b64decode(text), f"<{kind}")
+
+
+def points(data):
+    """(N, 3) places, as the page's script makes them."""
+    return np.array(data["low"]) + numbers(data["at"], "u2").reshape(-1, 3) * data["step"]
+
+
+@pytest.fixture(scope="module")
+def data(scored):
+    return scene_data(scored)
+
+
+def test_places_come_back_within_half_a_step():
+    some = np.random.default_rng(1).uniform((-3, 2, 0), (5, 3, 1), (500, 3))
+    packed = places(some)
+    assert packed["step"] == pytest.approx(np.ptp(some[:, 0]) / 65535)
+    np.testing.assert_allclose(points(packed), some, atol=0.51 * packed["step"], rtol=0.0)
+
+
+@pytest.mark.parametrize("some", [np.empty((0, 3)), np.full((1, 3), 7.0)])
+def test_no_point_and_a_single_one(some):
+    np.testing.assert_allclose(points(places(some)), some)
+
+
+def test_colors_are_bytes():
+    packed = primitives(graphics.Primitives.of([(0, 0, 0), (1, 0, 0)], (1.0, 0.5, 0.0, 0.25)))
+    np.testing.assert_array_equal(numbers(packed["colors"], "u1"), [255, 128, 0, 64] * 2)
+
+
+def test_the_vehicle_has_all_triangles_by_part(scored):
+    vehicle = pe.Vehicle(
+        scored.vehicle.triangles,
+        np.array([1, 0] * 6),
+        ("body", "Windshield", "nothing"),
+        glass=("Windshield",),
+    )
+    found = vehicle_data(vehicle)
+    drawn = points(found)[numbers(found["triangles"], "u2")].reshape(-1, 3, 3)
+    expected = np.concatenate([vehicle.triangles[1::2], vehicle.triangles[::2]])
+    np.testing.assert_allclose(drawn, expected, atol=1e-4)
+    assert found["parts"] == [
+        {"name": "body", "look": "body", "first": 0, "count": 6},
+        {"name": "Windshield", "look": "glass", "first": 6, "count": 6},
+    ]
+    assert len(points(found)) == 8, "corners that meet are one"
+
+
+def test_a_large_vehicle_is_simplified_and_that_is_said(scored, monkeypatch):
+    monkeypatch.setattr("pe_review.scene3d.body.MOST_TRIANGLES", 1000)
+    around = np.linspace(0.0, 2.0 * np.pi, 1001)
+    rim = np.stack([np.cos(around), np.sin(around), np.ones(1001)], axis=1)
+    cone = np.stack([rim[:-1], rim[1:], np.zeros((1000, 3))], axis=1)
+    found = vehicle_data(pe.Vehicle(np.concatenate([cone, cone + (0, 0, 1e-3)])))
+    assert found["all"] == 2000 and found["shown"] <= 1000 and found["error"] > 0.0
+
+
+def test_sensors_stand_where_they_do_with_their_layers(data, scored):
+    for sensor, found in zip(scored.rig, data["sensors"], strict=True):
+        assert found["name"] == sensor.name and found["at"] == list(sensor.pose.position)
+        np.testing.assert_array_equal(found["axes"], sensor.pose.ground_from_sensor)
+    lidar, camera = data["sensors"]
+    assert lidar["field"] is None and camera["field"][0] == pytest.approx(60.0)
+    assert lidar["sees"] == "beams" and camera["sees"] == "view"
+    assert lidar["housing"]["shape"] == "cylinder"
+    start = points(lidar["layers"]["sees"]["lines"])[::4]
+    np.testing.assert_allclose(start, np.tile(lidar["at"], (len(start), 1)), atol=1e-3)
+    ground = points(lidar["layers"]["ground"]["lines"])
+    np.testing.assert_allclose(ground[:, 2], 0.0, atol=1e-3)
+
+
+def test_maps_are_those_of_the_engine(data, scored):
+    seen = scored.sight.ground(scored.rig, step=1.0)
+    for found, name in zip(data["maps"], graphics.QUANTITIES, strict=False):
+        sheet = graphics.ground_map(seen, name, 1.0).sheet
+        image = numbers(found["colors"], "u1").reshape(sheet.image.shape)
+        np.testing.assert_allclose(image / 255.0, sheet.image, atol=0.002)
+        assert found["low"] == [-20.0, -10.0] and found["high"] == [20.0, 10.0]
+
+
+def test_a_camera_s_own_vehicle_is_drawn_where_it_sees_it(scored):
+    """From behind the car, looking ahead: all that is stopped ends on its rear face, x = -2.2."""
+    behind = pe.Sensor("eye", scored.rig.sensors[1].model, pe.Pose((-6.0, 0.0, 0.9)))
+    lines = graphics.hidden_lines(behind, scored.vehicle, graphics.PAPER.stopped)
+    ends = lines.points[1::2]
+    np.testing.assert_allclose(ends[:, 0], -2.2, atol=1e-5)
+    assert np.abs(ends[:, 1]).max() <= 0.9 and len(ends) > 20
+    assert not len(graphics.hidden_lines(behind, None, graphics.PAPER.stopped).points)
+
+
+def test_without_a_vehicle_sensors_are_drawn_alone(bare):
+    found = scene_data(bare)
+    assert found["vehicle"] is None and "See through" not in view3d(bare).html
+    assert "lines" not in found["sensors"][0]["layers"]["stopped"]
+
+
+def test_it_is_small_and_a_whole_program(scored):
+    section = view3d(scored)
+    assert len(json.dumps(section.data)) < 5e5 and sum(map(len, section.scripts)) < 1e6
+    files = {path.stem for path in THREE.parent.parent.glob("*.js")}
+    assert files == set(SCRIPTS)
+
+
+def test_three_js_is_as_it_was_made():
+    assert hashlib.sha256(THREE.read_bytes()).hexdigest() == THREE_SHA256
+    assert "MIT" in (THREE.parent / "LICENSE").read_text("utf-8")

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..markup import escaped, picture
+from ..pictures.still import still
 from ..reviewed import Reviewed
 from ..section import Section
 from .body import vehicle_data
@@ -57,10 +58,9 @@ def _scripts() -> tuple[str, ...]:
 
 def _still(one: Reviewed) -> str:
     """The picture for a browser that cannot turn the view."""
-    if one.picture is None:
-        return ""
     names = ", ".join(sensor.name for sensor in one.rig)
-    return picture(one.picture, f"The vehicle with its sensors: {names}")
+    shown = one.picture or still(one.shown_vehicle[0], one.rig)
+    return picture(shown, f"The vehicle with its sensors: {names}")
 
 
 def _left_out(data: dict[str, Any]) -> str:

@@ -68,7 +68,8 @@ def _table(sensors: Sequence[Mapping[str, Any]]) -> str:
     )
     every = f'<tr><th scope="row">All</th>{all_of}</tr>' if len(sensors) > 1 else ""
     return (
-        f'<table class="v3-table"><thead><tr><th scope="col">Look from</th>{heads}</tr></thead>'
+        '<table class="v3-table"><caption class="hidden">What is shown of each sensor</caption>'
+        f'<thead><tr><th scope="col">Look from</th>{heads}</tr></thead>'
         f"<tbody>{every}{rows}</tbody></table>"
     )
 

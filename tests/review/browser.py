@@ -10,6 +10,8 @@ from tests.needed import unavailable
 PACKAGE = "chromium"
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 """WebGL in software: the same picture on every machine."""
+PATIENCE_MS = 10_000
+"""For a browser that hangs."""
 DESKTOP, PHONE = (1280, 900), (390, 844)
 WITHOUT_WEBGL = """
   const real = HTMLCanvasElement.prototype.getContext;
@@ -52,6 +54,7 @@ def opened(browser: Browser, path, size=DESKTOP, script: str | None = None):
         viewport={"width": width, "height": height}, has_touch=phone, is_mobile=phone
     )
     try:
+        context.set_default_timeout(PATIENCE_MS)
         page = context.new_page()
         if script:
             page.add_init_script(script)

@@ -4,9 +4,9 @@ import re
 
 import pytest
 
-from tests.review.browser import DESKTOP, PHONE, WITHOUT_WEBGL, opened, settle
+from tests.review.browser import DESKTOP, PHONE, WITHOUT_WEBGL, opened
 
-ON_PAPER = """() => {
+PRINTED = """() => {
   window.dispatchEvent(new Event("beforeprint"));
   const paper = document.querySelector(".v3-paper");
   const { data } = paper.getContext("2d").getImageData(0, 0, paper.width, paper.height);
@@ -15,8 +15,14 @@ ON_PAPER = """() => {
     const color = (data[i] << 16) + (data[i + 1] << 8) + data[i + 2];
     colors.set(color, (colors.get(color) || 0) + 1);
   }
-  return { width: paper.width, colors: colors.size, most: 4 * Math.max(...colors.values()) / data.length };
+  const most = Math.max(...colors.values());
+  return { width: paper.width, colors: colors.size, most: 4 * most / data.length };
 }"""
+DRAWN = """() => new Promise((done) => {
+  window.dispatchEvent(new Event("afterprint"));  // has the view drawn once more
+  requestAnimationFrame(() => done(document.querySelector(".v3-canvas").toDataURL()));
+})"""
+"""Pixels of a view can be read in the moment after they are drawn."""
 SIDEWAYS = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
 UNDRAWN = """() => [...document.images].filter((image) => image.offsetParent)
   .filter((image) => !(image.complete && image.naturalWidth > 0)).map((image) => image.alt)"""
@@ -39,18 +45,19 @@ def desktop(chromium, file):
 
 @pytest.fixture
 def view(desktop):
-    """The desktop's page, as it was when it was opened."""
+    """The desktop's page, its view as it was when it was opened."""
     page, _ = desktop
-    page.reload()
-    settle(page)
+    page.select_option("select[data-map]", "")
+    for layer, on in (("sees", True), ("stopped", True), ("ground", False)):
+        page.locator(f"input[data-all='{layer}']").set_checked(on)
+    page.click(".v3-views [data-view='quarter']")
+    page.evaluate("() => document.body.dispatchEvent(new Event('pointerdown', {bubbles: true}))")
     return page
 
 
-def picture(page):
+def pixels(page):
     """What the view shows, without the names over it."""
-    settle(page)
-    page.add_style_tag(content=".v3-labels { visibility: hidden }")
-    return page.locator(".v3-stage").screenshot()
+    return page.evaluate(DRAWN)
 
 
 def test_it_complains_of_nothing_and_asks_nobody(desktop):
@@ -61,24 +68,24 @@ def test_it_complains_of_nothing_and_asks_nobody(desktop):
 
 
 def test_the_view_is_drawn(view):
-    found = view.evaluate(ON_PAPER)
+    found = view.evaluate(PRINTED)
     assert view.locator(".v3-live").is_visible() and view.locator(".v3-still").is_hidden()
     assert found["width"] == 1600 and found["colors"] > 200 and found["most"] < 0.9
 
 
 def test_a_view_at_rest_is_drawn_the_same_again(view):
     """Else the tests below would pass whatever a switch does."""
-    assert picture(view) == picture(view)
+    assert pixels(view) == pixels(view)
 
 
 @pytest.mark.parametrize("layer", ["sees", "ground"])
 def test_a_sensor_s_switch_shows_and_hides(view, layer):
-    before, box = picture(view), view.locator(f"input[data-sensor='0'][data-layer='{layer}']")
+    before, box = pixels(view), view.locator(f"input[data-sensor='0'][data-layer='{layer}']")
     box.click()
-    changed = picture(view)
+    changed = pixels(view)
     assert changed != before
     box.click()
-    assert picture(view) == before
+    assert pixels(view) == before
 
 
 def test_the_switch_of_all_is_that_of_each(view):
@@ -91,49 +98,49 @@ def test_the_switch_of_all_is_that_of_each(view):
 
 
 def test_maps_lie_on_the_ground_with_a_legend(view):
-    seen = {picture(view)}
+    seen = {pixels(view)}
     legend = view.locator(".v3-legend")
     assert legend.is_hidden()
     for name, word in (("entropy", "nats"), ("coverage", "%"), ("sensors", "nobody")):
         view.select_option("select[data-map]", name)
-        seen.add(picture(view))
+        seen.add(pixels(view))
         assert word in legend.inner_text()
     assert len(seen) == 4
 
 
 def test_views_and_looking_from_a_sensor_and_back(view):
-    start = picture(view)
+    start = pixels(view)
     view.click("[data-view='above']")
-    above = picture(view)
+    above = pixels(view)
     view.click("[data-look='1']")
     assert view.locator(".v3-caption").inner_text().startswith("From front & left / 60°")
-    assert len({start, above, picture(view)}) == 3
+    assert len({start, above, pixels(view)}) == 3
     view.locator(".v3-caption button").click()
-    assert picture(view) == start and view.locator(".v3-caption").is_hidden()
+    assert pixels(view) == start and view.locator(".v3-caption").is_hidden()
 
 
 def test_it_is_turned_by_mouse_and_keys_and_reset(view):
-    start = picture(view)
+    start = pixels(view)
     view.locator(".v3-stage").focus()
     view.keyboard.press("ArrowLeft")
-    turned = picture(view)
+    turned = pixels(view)
     assert turned != start
     view.keyboard.press("0")
-    assert picture(view) == start
+    assert pixels(view) == start
     box = view.locator(".v3-canvas").bounding_box()
     view.mouse.move(box["x"] + 200, box["y"] + 60)
     view.mouse.down()
     view.mouse.move(box["x"] + 320, box["y"] + 90)
     view.mouse.up()
-    assert picture(view) not in (start, turned)
+    assert pixels(view) not in (start, turned)
 
 
 def test_the_wheel_scrolls_the_page_until_the_view_was_pressed(view):
     view.locator(".v3-canvas").hover()
-    before, top = picture(view), view.evaluate("scrollY")
+    before, top = pixels(view), view.evaluate("scrollY")
     view.mouse.wheel(0, 120)
     view.wait_for_function("top => scrollY > top", arg=top)
-    assert picture(view) == before
+    assert pixels(view) == before
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])

@@ -3,6 +3,7 @@
 from .advice import FRAGILE, Advice
 from .fragile import fragile, off_by
 from .mounting import stopped_shares
+from .object_words import object_words, objects_looked_at
 from .outlook import Outlook, class_of, outlook
 from .phrases import WHERE, sensor_words, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
@@ -22,6 +23,8 @@ __all__ = [
     "class_of",
     "compare",
     "fragile",
+    "object_words",
+    "objects_looked_at",
     "off_by",
     "outlook",
     "sensor_words",

@@ -92,8 +92,11 @@ def class_of(prior: Prior, name: str | None) -> str:
     return name
 
 
-def outlook_words(found: Outlook) -> Iterator[str]:
-    """Yield what an outlook tells, in short lines."""
+def outlook_words(found: Outlook, of_voxels: bool = True) -> Iterator[str]:
+    """Yield what an outlook tells, in short lines; AP and reach are of voxels."""
+    if not of_voxels:
+        yield _blind_words(found.blind)
+        return
     each = [f"{name} {ap:.2f}" for name, ap in found.expected_ap.items()]
     more = ["..."] if len(each) > CLASSES_NAMED else []
     yield f"expected AP: {', '.join(each[:CLASSES_NAMED] + more)}"

@@ -11,6 +11,7 @@ from ..scoring.score import PartScore, Score, SensorScore
 from ..scoring.zones import FAR_M, NEAR_M
 from .figures import percent
 from .mounting import stopped_shares
+from .object_words import object_words, objects_looked_at
 from .outlook import Outlook, outlook_words
 
 WHERE = {
@@ -57,11 +58,13 @@ def _lines(
 ) -> Iterator[str]:
     yield _coverage(score, seen)
     yield from _zones(score.per_zone)
+    if score.objects is not None:
+        yield from object_words(score.objects)
     if seen is not None:
-        yield from outlook_words(seen)
+        yield from outlook_words(seen, of_voxels=score.objects is None)
     for name, own in score.per_sensor.items():
         sensor = None if rig is None else rig[name]
-        zones = None if seen is None else seen.shares.zones[name]
+        zones = None if seen is None or score.objects else seen.shares.zones[name]
         alone = len(score.per_sensor) == 1
         first, *more = sensor_words(own, sensor, vehicle, zones, alone=alone)
         yield f"{name}: {first}"
@@ -97,6 +100,9 @@ def sensor_words(
 
 
 def _coverage(score: Score, seen: Outlook | None) -> str:
+    if score.objects is not None:
+        looked_at = objects_looked_at(score.objects)
+        return f"{percent(score.coverage)} of the objects are seen, by weight ({looked_at})"
     line = f"{percent(score.coverage)} of where objects are is seen"
     if seen is None or len(seen.shares.by_number) < 3:
         return line

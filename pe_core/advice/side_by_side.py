@@ -8,7 +8,9 @@ from typing import Any
 
 from ..scoring.score import PartScore, Score
 
-ENTROPY, COVERAGE = "entropy", "coverage"
+ENTROPY, COVERAGE, AP, REACH = "entropy", "coverage", "ap", "reach"
+AHEAD = "front"
+"""The direction whose reach is put side by side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,8 +22,9 @@ class ComparedRow:
     group : {"rig", "zone", "class"}
     name : str
         Which zone or class; empty for the rig itself.
-    measure : {"entropy", "coverage"}
-        Entropy [nats], lower is better; or coverage, 0 to 1, higher is better.
+    measure : {"entropy", "coverage", "ap", "reach"}
+        Entropy [nats], lower is better. Higher is better of coverage, 0 to 1, and of scores on
+        objects of expected AP, 0 to 1, and of reach ahead [m].
     values : tuple of float or None
         In the order of the scores; None where one has no such zone or class.
     differences : tuple of float or None
@@ -58,6 +61,21 @@ def _rows(scores: list[Score]) -> Iterator[ComparedRow]:
         yield _row("rig", "", measure, [getattr(score, measure) for score in scores])
     yield from _parts("zone", scores, lambda score: score.per_zone)
     yield from _parts("class", scores, lambda score: score.per_class)
+    yield from _found(scores)
+
+
+def _found(scores: list[Score]) -> Iterator[ComparedRow]:
+    """Yield expected AP of all and each class, and the reach ahead, where objects were scored."""
+    objects = [score.objects for score in scores]
+    each = [{} if found is None else found.per_class for found in objects]
+    names = dict.fromkeys(name for own in each for name in own)
+    if names:
+        yield _row("rig", "", AP, [None if found is None else found.ap for found in objects])
+    for name in names:
+        yield _row("class", name, AP, [own[name].ap if name in own else None for own in each])
+    for name in names:
+        ahead = [own[name].reach[AHEAD] if name in own else None for own in each]
+        yield _row("class", name, REACH, ahead)
 
 
 def _parts(

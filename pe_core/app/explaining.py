@@ -98,7 +98,7 @@ def refuse_different(studies: Mapping[str, Study]) -> None:
     """Raise `InputError` for studies whose scores do not measure the same."""
     first, *others = studies.items()
     for name, study in others:
-        for field in ("space", "prior", "model"):
+        for field in ("space", "prior", "model", "targets"):
             if getattr(study, field) != getattr(first[1], field):
                 field = "AP curves and fusion" if field == "model" else field
                 expected = f"the same as in {first[0]}, to be compared with it"
@@ -107,6 +107,8 @@ def refuse_different(studies: Mapping[str, Study]) -> None:
 
 def _entropy(outcome: Outcome) -> str:
     score = outcome.after
+    if score.objects is not None:
+        return f"object entropy {with_error(score.entropy, score.stderr)}; lower is better"
     return f"perception entropy {with_error(score.entropy, score.stderr)}; lower is better"
 
 

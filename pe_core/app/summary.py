@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..advice import off_by
+from ..advice import object_words, objects_looked_at, off_by
 from ..kinds import kind_of
 from ..study import Outcome, Robustness
 
@@ -22,6 +22,9 @@ def summary(outcome: Outcome) -> str:
             f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
             *_moves(outcome.robustness),
         ]
+    if outcome.after.objects is not None:
+        found = outcome.after.objects
+        lines += [*object_words(found), f"on {objects_looked_at(found)}"]
     scores = outcome.after.per_sensor
     for sensor in outcome.study.rig:
         x, y, z = sensor.pose.position
@@ -54,11 +57,12 @@ def _moves(found: Robustness | None) -> list[str]:
 
 def searched(outcome: Outcome) -> str:
     """Return how a search was made: method, seed, and the voxels candidates were judged on."""
-    search = outcome.start.search
-    levels = dict.fromkeys(f"{n:,}" if n else "all" for n in search.level_samples)
-    voxels = ", then ".join(levels)
+    study, search = outcome.start, outcome.start.search
+    looks = [study.looks_at(samples) for samples in search.level_samples]
+    levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
+    what = "scenes of objects" if study.targets.are_objects else "voxels"
     count = f"{outcome.evaluations:,} placements"
-    return f"searched by {search.method}, seed {search.seed}: {count} judged on {voxels} voxels"
+    return f"searched by {search.method}, seed {search.seed}: {count} judged on {levels} {what}"
 
 
 def warned(outcome: Outcome) -> list[str]:

@@ -1,0 +1,52 @@
+"""A score on objects in words: what is found of each class, and how far."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..scoring.object_score import FoundClass, ObjectScore
+from .figures import percent
+from .outlook import SIDES
+
+NEAREST_M = 0.5
+"""A reach below this is told as nowhere."""
+
+
+def object_words(found: ObjectScore) -> tuple[str, ...]:
+    """Return what a score on objects tells in lines: expected AP, points, and reach by class."""
+    return tuple(_lines(found))
+
+
+def objects_looked_at(found: ObjectScore) -> str:
+    """Return how many objects were looked at, and how they stood."""
+    if found.traffic:
+        return f"{found.objects:,} objects in {found.scenes:,} scenes, in traffic"
+    return f"{found.objects:,} objects, none hides another"
+
+
+def _lines(found: ObjectScore) -> Iterator[str]:
+    each = found.per_class
+    whole = f"expected AP {found.ap:.2f} +- {max(found.ap_stderr, 0.001):.3f}"
+    yield f"{whole}: {', '.join(f'{name} {own.ap:.2f}' for name, own in each.items())}"
+    for name, own in each.items():
+        yield f"{name}: {_points(own)}AP 0.5 {reach_words(own)}"
+
+
+def _points(own: FoundClass) -> str:
+    """Say how many get so many points of LiDARs, with a blank behind; nothing without LiDARs."""
+    if not own.points:
+        return ""
+    shares = ", ".join(map(percent, own.points.values()))
+    return f"{shares} get {', '.join(map(str, own.points))} points or more; "
+
+
+def reach_words(own: FoundClass) -> str:
+    """Return how far a class is found to four sides."""
+    if all(own.reach[way] < NEAREST_M for way in SIDES):
+        return "nowhere ahead, behind, left or right"
+    ways = (f"{_metres(own.reach[way])} {words}" for way, words in SIDES.items())
+    return f"up to {', '.join(ways)}"
+
+
+def _metres(reach: float) -> str:
+    return "nowhere" if reach < NEAREST_M else f"{reach:.0f} m"

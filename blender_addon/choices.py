@@ -36,6 +36,23 @@ PRIORS = (
 """As Blender wants a menu; the numbers are what a .blend file holds."""
 
 
+VOXELS, OBJECTS = "voxels", "objects"
+TARGETS = (
+    (
+        VOXELS,
+        "Voxels",
+        "How well each cube is measured: perception entropy, as in the paper",
+        0,
+    ),
+    (
+        OBJECTS,
+        "Objects",
+        "How well objects of the prior are found: expected AP, and how far",
+        1,
+    ),
+)
+
+
 @dataclass(frozen=True)
 class Region:
     """A part of the ground that a focus can be chosen for; several areas where it is not one."""

@@ -40,6 +40,7 @@ from .rig import (
 from .scene import check_scene, study_from_scene, study_of_rig, vehicle_of_scene
 from .selection import check_choosable, keep_front
 from .standing import sensors_collection, shown_collection, stand
+from .targets import targets_of
 from .variants import (
     active_variant,
     add_variant,
@@ -145,6 +146,7 @@ __all__ = [
     "sync_own_sensors",
     "table_of",
     "take_scene_s_score",
+    "targets_of",
     "tend_views",
     "unlink_doubles",
     "unlink_mirror",

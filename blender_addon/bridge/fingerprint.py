@@ -14,6 +14,7 @@ from .advanced import advanced_signature
 from .own_sensors import own_sensors_signature
 from .prior import prior_signature
 from .rig import held_pose, pose_of_matrix, sensor_objects, view_layer_of
+from .targets import targets_signature
 
 Standing = tuple[object, ...]
 """Model, fusion group and placement of a sensor that counts; none for one that does not."""
@@ -57,6 +58,7 @@ def fingerprint(
     objects = sensor_objects(scene) if sensors is None else sensors
     standing = {obj.name: _standing(obj, obj.visible_get(view_layer=layer)) for obj in objects}
     more = [*advanced_signature(settings), *own_sensors_signature(scene)]
+    more += targets_signature(settings)
     rest = (prior_signature(scene), settings.score_samples, shape, *([more] if more else []))
     return Fingerprint(standing, repr(rest))
 

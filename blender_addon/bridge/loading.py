@@ -17,6 +17,7 @@ from .records import NO_BOUNDS, ZEROS, Record
 from .rig import stand_at, view_layer_of
 from .scene import study_from_scene, vehicle_of_scene
 from .standing import stand
+from .targets import put_targets
 
 RACK = "rack {}"
 FAR_M = 1e4
@@ -145,6 +146,7 @@ def _put_settings(settings: bpy.types.PropertyGroup, study: pe.Study) -> None:
     settings.space_interval = study.space.interval
     with contextlib.suppress(TypeError):  # a model of boxes: told as a difference
         settings.prior = study.prior.model
+    put_targets(settings, study.targets)
     settings.focus.clear()
     settings.curves.clear()
     usual = pe.PerceptionModel()

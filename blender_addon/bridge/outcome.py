@@ -10,6 +10,7 @@ import bpy
 from ..engine import advice, pe
 from .oddities import DRIVER, MISSING
 from .rig import sensor_objects
+from .targets import store_found
 from .tolerance import store_robustness
 
 PARTS_NAMED = 3
@@ -48,6 +49,7 @@ def store_outcome(
         obj.perception_entropy.result_run = signature
     store_words(scene, outcome.study, outcome.after)
     _store_breakdown(settings, outcome.after)
+    store_found(settings, outcome.after.objects)
     settings.result_stale = False
     settings.has_result = True
 

@@ -15,6 +15,7 @@ from .mounting import mounting_of
 from .offers import selection_of
 from .prior import prior_from_scene
 from .rig import rig_from_objects, sensor_objects
+from .targets import targets_of
 from .tolerance import tolerance_of
 from .vehicle import vehicle_from_collection
 
@@ -78,6 +79,7 @@ def study_of_rig(
         samples=settings.score_samples,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
         reference=reference_of(settings),
+        targets=targets_of(settings),
     )
 
 

@@ -73,7 +73,9 @@ def score_from_dict(figures: dict) -> pe.Score:
         for which in ("per_class", "per_zone")
     )
     whole = (figures["entropy"], figures["coverage"], figures["stderr"])
-    return pe.Score(*whole, by_class, by_zone, {}, figures["voxels"])
+    objects = figures.get("objects")
+    found = None if objects is None else pe.ObjectScore.from_dict(objects)
+    return pe.Score(*whole, by_class, by_zone, {}, figures["voxels"], objects=found)
 
 
 def _words_of(result_json: str) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import bpy
@@ -20,7 +20,9 @@ MOST_TRIANGLES = 400_000
 """A body of more is made simpler, once, and how far that moved it is told: a live score is to
 follow the hand. Score takes the body as it is."""
 
-DEFAULT_SPACE = pe.PerceptionSpace()
+DEFAULT_SPACE, VOXELS = pe.PerceptionSpace(), pe.TargetRule()
+MOST_SCENES = 64
+"""Scenes of objects a live score looks at, for the same reason."""
 
 
 class Problem(NamedTuple):
@@ -31,6 +33,7 @@ class Problem(NamedTuple):
     vehicle: pe.Vehicle | None
     space: pe.PerceptionSpace = DEFAULT_SPACE
     model: pe.PerceptionModel | None = None
+    targets: pe.TargetRule = VOXELS
 
 
 @dataclass(frozen=True)
@@ -82,15 +85,16 @@ def read(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool)
         vehicle = bridge.vehicle_from_collection(collection, depsgraph)  # says what is wrong
     own = scene.perception_entropy
     space, model = bridge.space_of(own), bridge.perception_of(own)
-    problem = Problem((settings, key, space, model), prior, vehicle, space, model)
-    return ScoreWish(problem, rig, draft, (settings, space, model))
+    targets = bridge.targets_of(own)
+    problem = Problem((settings, key, space, model, targets), prior, vehicle, space, model, targets)
+    return ScoreWish(problem, rig, draft, (settings, space, model, targets))
 
 
 class MadeFor(NamedTuple):
     """An evaluator, what it was made for, and how far its body was moved to be simpler [m]."""
 
     key: Hashable
-    evaluator: pe.Evaluator
+    evaluator: pe.RigJudge
     moved_m: float
 
 
@@ -121,10 +125,19 @@ class EvaluatorStore:
         if known is None or known.key != problem.key:
             self._kept.pop(scene_name, None)  # two of them need not fit in memory
             vehicle, moved_m = light(problem.vehicle)
-            space, prior = problem.space, problem.prior
-            made = pe.Evaluator(space, prior, vehicle, samples=SAMPLES, model=problem.model)
+            made = judge_of(problem, vehicle)
             known = self._kept[scene_name] = MadeFor(problem.key, made, moved_m)
         return known
+
+
+def judge_of(problem: Problem, vehicle: pe.Vehicle | None) -> pe.RigJudge:
+    """Return what scores a problem quickly: on a sample of voxels, or few scenes of objects."""
+    asked = problem.space, problem.prior, vehicle
+    rule = problem.targets
+    if not rule.are_objects:
+        return pe.Evaluator(*asked, samples=SAMPLES, model=problem.model)
+    few = replace(rule, scenes=min(rule.scenes, MOST_SCENES))
+    return pe.ObjectEvaluator(*asked, targets=few, model=problem.model)
 
 
 def light(vehicle: pe.Vehicle | None) -> tuple[pe.Vehicle | None, float]:

@@ -28,7 +28,8 @@ def words_of(reading: Reading) -> ReadoutText:
     """Put a reading into words."""
     now, before = reading.glance, reading.before
     change, sense = change_of(now.entropy, before.entropy) if before else ("", SAME)
-    seen = f"{now.coverage:.1%} of where objects are is seen{points(now, before)}"
+    what = "of where objects are is seen" if now.voxels else "of the objects are seen"
+    seen = f"{now.coverage:.1%} {what}{points(now, before)}"
     lines = (seen, *zone_lines(now, before))
     state = "at rest" if reading.rested else "draft while it moves"
     if reading.moved_m:

@@ -14,7 +14,11 @@ from .reports import tell
 
 LABEL_PX, COLUMN_PX = 190, 140
 MOST_COLUMNS = 8
-TITLES = {"entropy": "Entropy [nats], lower is better", "coverage": "Seen of where objects are"}
+TITLES = {
+    "entropy": "Entropy [nats], lower is better",
+    "coverage": "Seen of where objects are",
+    "ap": "Expected AP",
+}
 WHOLE = "Everywhere"
 
 
@@ -182,6 +186,8 @@ def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[l
     """Return the table by columns, the first one that of the rows' names."""
     columns: list[list[TableCell]] = [[("", False)], *[[(name, False)] for name in names]]
     for measure, title in TITLES.items():
+        if not any(row.measure == measure for row in rows):
+            continue
         _add(columns, [(title, False)])
         group = "rig"
         for row in rows:

@@ -43,7 +43,7 @@ class Drafts:
     def __init__(self, study: pe.Study, name: str, tell: Callable[[str], None]) -> None:
         self._study, self._name, self._tell = study, name, tell
         self._others = [each for each in study.rig if each.name != name]
-        self._evaluator: pe.Evaluator | None = None
+        self._evaluator: pe.RigJudge | None = None
         self._before: float | None = None
 
     def ask(self, pose: pe.Pose) -> None:

@@ -6,7 +6,7 @@ import bpy
 
 from .layout import Tab
 
-NAME_SHARE = 0.5
+NAME_SHARE, NARROW_SHARE = 0.5, 0.28
 
 
 class PE_PT_breakdown(Tab, bpy.types.Panel):
@@ -27,24 +27,26 @@ class PE_PT_breakdown(Tab, bpy.types.Panel):
         column = self.layout.box().column(align=True)
         column.active = not settings.result_stale
         for is_class, title in ((False, "Zone"), (True, "Class")):
-            draw_row(column, title, "nats", "seen", header=True)
+            found = is_class and bool(settings.result_ap)
+            more = ("AP", "ahead") if found else ()
+            draw_row(column, title, "nats", "seen", *more, header=True)
             for part in settings.result_parts:
                 if part.is_class == is_class:
-                    draw_row(column, part.name, f"{part.entropy:.2f}", f"{part.coverage:.1%}")
+                    more = (part.ap, part.reach) if found else ()
+                    figures = f"{part.entropy:.2f}", f"{part.coverage:.1%}"
+                    draw_row(column, part.name, *figures, *more)
             if not is_class:
                 column.separator()
 
 
-def draw_row(
-    layout: bpy.types.UILayout, name: str, entropy: str, seen: str, *, header: bool = False
-) -> None:
+def draw_row(layout: bpy.types.UILayout, name: str, *figures: str, header: bool = False) -> None:
     """Draw a row of the table; figures stand to the right."""
-    split = layout.split(factor=NAME_SHARE)
+    split = layout.split(factor=NAME_SHARE if len(figures) == 2 else NARROW_SHARE)
     split.active = not header
     split.label(text=name, translate=False)
-    figures = split.row()
-    for text in (entropy, seen):
-        cell = figures.row()
+    row = split.row()
+    for text in figures:
+        cell = row.row()
         cell.alignment = "RIGHT"
         cell.label(text=text, translate=False)
 

@@ -33,6 +33,8 @@ def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         gain = settings.result_entropy - settings.result_before
         draw_figure(column, "Before", f"{settings.result_before:.4f}  ({gain:+.4f})")
     draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
+    if settings.result_ap:
+        draw_figure(column, "Expected AP", settings.result_ap)
     for name in ("mounted_off", "sensor_lost"):
         if told := getattr(settings, f"result_{name}"):
             draw_figure(column, name.replace("_", " ").title(), told)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..choices import FROM_BOXES
+from ..choices import FROM_BOXES, OBJECTS
 from .layout import Tab, draw_properties
 
 
@@ -19,13 +19,17 @@ class PE_PT_search(Tab, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
         boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
-        draw_properties(self.layout, settings, ("prior", *boxes, "method", "candidates"))
+        draw_properties(self.layout, settings, ("prior", *boxes, "targets"))
+        objects = settings.targets == OBJECTS
+        if objects:
+            draw_properties(self.layout, settings, ("traffic", "scenes"))
+        draw_properties(self.layout, settings, ("method", "candidates"))
         row = self.layout.row(align=True)
         row.prop(settings, "evaluations")
         if not settings.evaluations:
             row.label(text="All")
         self.layout.prop(settings, "seed")
-        for name in ("search_samples", "score_samples"):
+        for name in () if objects else ("search_samples", "score_samples"):
             draw_voxels(self.layout, settings, name)
 
 

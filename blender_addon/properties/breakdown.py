@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty
+from bpy.props import BoolProperty, FloatProperty, StringProperty
 
 
 class PE_ResultPart(bpy.types.PropertyGroup):
@@ -13,4 +13,8 @@ class PE_ResultPart(bpy.types.PropertyGroup):
     entropy: FloatProperty(name="Entropy", description="Perception entropy in it [nats]")
     coverage: FloatProperty(
         name="Coverage", description="Share of where its objects are that is seen, 0 to 1"
+    )
+    ap: StringProperty(name="Expected AP", description="Of a class, where objects were scored")
+    reach: StringProperty(
+        name="Reach", description="How far ahead a class is found with an AP of 0.5"
     )

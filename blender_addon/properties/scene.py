@@ -25,6 +25,7 @@ from .focus import PE_FocusSettings
 from .live import PE_LiveSettings
 from .mounting import MountingSettings
 from .selection import SelectionSettings
+from .targets import TargetSettings
 from .tolerance import ToleranceSettings
 from .variants import PE_Variant
 from .view import PE_ViewSettings
@@ -47,6 +48,7 @@ class PE_SceneSettings(
     AxleSettings,
     MountingSettings,
     SelectionSettings,
+    TargetSettings,
     ToleranceSettings,
     bpy.types.PropertyGroup,
 ):

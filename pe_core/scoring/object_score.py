@@ -67,7 +67,18 @@ class ObjectScore:
     traffic: bool
     per_class: dict[str, FoundClass]
 
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> ObjectScore:
+        """Return what `to_dict` has written down."""
+        found = {name: _found(own) for name, own in data["per_class"].items()}
+        return cls(**{**data, "per_class": found})
+
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""
         found = {name: own.to_dict() for name, own in self.per_class.items()}
         return {**asdict(self), "per_class": found}
+
+
+def _found(data: Mapping[str, Any]) -> FoundClass:
+    points = {int(number): share for number, share in data["points"].items()}
+    return FoundClass(**{**data, "points": points})

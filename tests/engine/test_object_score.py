@@ -3,6 +3,7 @@
 import math
 import pickle
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from pe_core.targets.rings import SECTORS
 from pe_core.targets.rings import _reach as reach_of
 from tests.engine import shapes
 
+TABLES = Path(__file__).parents[2] / "docs" / "objects"
 SPACE = pe.PerceptionSpace()
 FEW = pe.TargetRule("objects", scenes=16)
 ROAD = pe.Prior.road()
@@ -171,7 +173,7 @@ def test_reach_ends_where_the_mean_ap_falls_below_a_half():
 
 @pytest.mark.parametrize("name", ["car", "pedestrian", "cyclist"])
 def test_shipped_curves_are_those_that_fit_finds(name):
-    curve = fit_ap_curve(read_ap_table(f"docs/objects/{name}.csv")).curve
+    curve = fit_ap_curve(read_ap_table(TABLES / f"{name}.csv")).curve
     shipped = KINDS["lidar"].object_curves[name]
     assert (shipped.a, shipped.b) == pytest.approx((curve.a, curve.b), abs=6e-4)
 

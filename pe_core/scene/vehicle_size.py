@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ..errors import LONGEST_FOUND, InputError
 from .body_shape import BodyShape, corner_bounds
 
 SMALLEST_M, LARGEST_M, WIDEST_M = 0.1, 60.0, 25.0
@@ -55,7 +55,9 @@ def require_vehicle_size(source: str, body: Meshed) -> None:
     if not _is_possible(size):
         longest = f"a vehicle, {SMALLEST_M:g} to {LARGEST_M:g} m long"
         wide = f" and up to {WIDEST_M:g} m wide" if max(size) <= LARGEST_M else ""
-        raise InputError(source, "size", f"{longest}{wide}", f"{size_words(size)}; {_hint(size)}")
+        told = (f"{size_words(size)}; {_hint(size, units)}" for units in range(TOLD_UNITS, 0, -1))
+        found = next((each for each in told if len(each) <= LONGEST_FOUND), "")
+        raise InputError(source, "size", f"{longest}{wide}", found or size_words(size))
 
 
 def fitting_units(longest: float, second: float) -> list[tuple[str, float]]:
@@ -90,11 +92,11 @@ def _is_possible(size: tuple[float, ...]) -> bool:
     return SMALLEST_M <= longest <= LARGEST_M and second <= WIDEST_M
 
 
-def _hint(size: tuple[float, ...]) -> str:
+def _hint(size: tuple[float, ...], most: int) -> str:
     _, second, longest = sorted(size)
     if longest == 0.0:
         return "all of it is one point"
-    units = fitting_units(longest, second)[:TOLD_UNITS]
+    units = fitting_units(longest, second)[:most]
     if not units:
         return f"scale = {car_factor(longest):g} makes it as long as a car"
     told = (f"{factor:g} if {name} ({factor * longest:.2f} m)" for name, factor in units)

@@ -87,6 +87,8 @@ def test_without_names_the_shape_says_up_and_along(tmp_path, turn):
     assert is_upright(mesh)
     up = "+y" if turn.endswith("Y up") else "+z"
     assert f"up is {up} (shape)" in mesh.axes
+    top = mesh.triangles.reshape(-1, 3)[mesh.triangles.reshape(-1, 3)[:, 2] > 1.4]
+    assert top[:, 0].mean() < 0.0, "the cabin is nearer to its rear: its hood tells so"
     stl = read(tmp_path, "car.stl", stl_binary(triangles=triangles_of(turn)))
     assert is_upright(stl) and stl.axes == mesh.axes
 
@@ -205,3 +207,33 @@ def test_impossible_keys_are_told_in_one_line(tmp_path, keys, words):
 def test_the_keys_need_a_mesh():
     with pytest.raises(pe.InputError, match=r"vehicle\.mesh"):
         study_from_dict({"sensor": [SENSOR], "vehicle": {"up": "+y"}})
+
+
+def slab(low, high):
+    return corners(np.array((low, high)))
+
+
+def outline_car(heights, width):
+    """Boxes side by side along y, as high as they say; z is up, forward along y."""
+    length = 4.0 / len(heights)
+    boxes = [
+        slab((-width / 2, -2.0 + k * length, 0.0), (width / 2, -2.0 + (k + 1) * length, height))
+        for k, height in enumerate(heights)
+    ]
+    points = np.concatenate(boxes)
+    quads = np.concatenate([np.array(QUADS) + 8 * k for k in range(len(boxes))])
+    return obj_bytes(points, quads)
+
+
+@pytest.mark.parametrize(
+    ("heights", "width", "told"),
+    [
+        ((1.4, 1.5, 1.5, 0.9), 1.8, "faces +y (shape)"),  # a hatchback: its hood is at +y
+        ((0.9, 1.5, 1.5, 1.4), 1.8, "faces -y (shape)"),
+        ((1.1, 1.5, 1.5, 0.9), 1.8, "faces -y (shape)"),  # too even to tell: Blender's front
+        ((2.6, 2.6, 2.6, 1.2), 2.5, "faces -y (shape)"),  # a lorry may be low at its rear
+    ],
+)
+def test_a_car_s_hood_tells_its_front_and_a_lorry_s_load_does_not(tmp_path, heights, width, told):
+    mesh = read(tmp_path, "car.obj", outline_car(heights, width))
+    assert told in mesh.axes

@@ -17,6 +17,7 @@ from ...errors import InputError, shown
 from ...scene.body_shape import BodyShape
 from ...scene.facing import along, front_by_names, up_of
 from ...scene.geometry import ROTATION_DEG, Pose, rotate
+from ...scene.hood import hood_end
 from ...text.values import Number, choice, vector
 from .mesh import Mesh
 
@@ -154,6 +155,8 @@ def _guessed_forward(shape: BodyShape, said: SaidAxes) -> tuple[str, str]:
     axis = along(shape, up)
     if axis is None or "xyz"[axis] == said.forward[1]:
         return said.forward, said.forward_by
+    if (end := hood_end(shape, axis, up)) is not None:
+        return f"{'+' if end > 0.0 else '-'}{'xyz'[axis]}", "shape"
     lies_along_y = axis == 1 and said.up[1] == "z"
     return (BLENDER_S_FRONT if lies_along_y else f"+{'xyz'[axis]}"), "shape"
 

@@ -13,6 +13,7 @@ from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Voxels
 from ..kind import Kind
+from ..object_kernel import ObjectView
 from ..view_patch import ViewPatch
 from . import table as tables
 from .asked import beams_to, missed, some_beams
@@ -21,6 +22,7 @@ from .detectors import OBJECT_CURVES
 from .model import Lidar
 from .object_definition import count_on_objects
 from .on_grid import LidarGrid
+from .on_objects import LidarObjects
 from .on_sample import LidarSample
 from .view import beam_patch
 from .words import brief, channel_plot, figures
@@ -91,6 +93,10 @@ class LidarKind(Kind):
     def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> LidarSample:
         """Look beams up by direction."""
         return LidarSample(voxels, vehicle, enough)
+
+    def on_objects(self, view: ObjectView) -> LidarObjects:
+        """Take runs of channels, azimuth by azimuth."""
+        return LidarObjects(view)
 
 
 LIDAR = LidarKind()

@@ -43,13 +43,13 @@ from .hidden import hidden_lines
 from .kinds import DRAWINGS, Look, Sketch, beam_budget, drawing_of
 from .png import as_bytes, png_bytes
 from .primitives import ColorKey, GroundSheet, LayerShape, Primitives, Tag, fan, polyline
-from .range_image import NOTHING as NO_ECHO
-from .range_image import even_angles, range_colors, range_share
+from .range_image import BODY_NEAR, NO_ECHO, RANGES, even_angles, range_colors, range_share
 from .rays import RING_FAR_M, free_lines, ground_distance, ground_rings, stopped_lines
 
 __all__ = [
     "AS_SCORED",
     "A_DRAFT",
+    "BODY_NEAR",
     "CIVIDIS",
     "COUNTS",
     "COUNT_NAMES",
@@ -60,6 +60,7 @@ __all__ = [
     "NO_ECHO",
     "PAPER",
     "QUANTITIES",
+    "RANGES",
     "RING_FAR_M",
     "SENSORS",
     "SWATCHES",

@@ -12,7 +12,7 @@ from .colors import VIRIDIS, Scale, on_scale
 
 NEAREST_M = 0.5
 """All that is nearer has the brightest colour."""
-NOTHING = (0.16, 0.16, 0.17)
+NO_ECHO = (0.16, 0.16, 0.17)
 BODY_NEAR, BODY_FAR = (1.0, 0.62, 0.20), (0.72, 0.28, 0.0)
 """Vermillion, as stopped beams are drawn: nearer parts are lighter."""
 BODY_SILENT = (0.42, 0.17, 0.0)
@@ -27,7 +27,7 @@ def range_colors(picture: RangePicture, far_m: float) -> NDArray[np.float32]:
     heard = np.isfinite(picture.distance)
     distance = np.where(heard, np.maximum(picture.distance, NEAREST_M), far_m)
     colors = on_scale(range_share(distance, far_m), RANGES)
-    colors[~heard] = NOTHING
+    colors[~heard] = NO_ECHO
     colors[picture.stopped & ~heard] = BODY_SILENT
     own = picture.stopped & heard
     colors[own] = on_scale(distance[own] / BODY_FAR_M, (BODY_NEAR, BODY_FAR))

@@ -8,18 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import graphics, kinds, pe
+from ..figures import change
 from .company import Companion, company
-from .through_lens import Marked
+from .marked import MarkedPicture
 
 Floats = NDArray[np.float64]
 
 WIDE, LEAST_HIGH, MOST_ROW = 720, 144, 12
 """Pixels of a full circle, of the rows together at least, and of a row at most."""
+SIDES = {"behind": -180.0, "right": -90.0, "ahead": 0.0, "left": 90.0, "behind ": 180.0}
+"""Of a circle, and where they are [deg]; behind is at both ends."""
 VIEW_RAD = math.radians(80.0)
 """Half the view that people and cars are spread over."""
 
 
-def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Marked:
+def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> MarkedPicture:
     """Return a LiDAR's ranges all round, people and cars of known size before it.
 
     Parameters
@@ -39,7 +42,8 @@ def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Marked:
     colors = graphics.range_colors(picture, lidar.max_range)[np.ix_(rows, columns)]
     png = graphics.png_bytes(graphics.as_bytes(colors))
     marks = _marks(picture, others, columns, high)
-    return Marked(png, len(columns), len(rows), marks)
+    edges = _around(picture, len(columns)), _up(picture, len(rows))
+    return MarkedPicture(png, len(columns), len(rows), marks, *edges)
 
 
 def _together(others: list[Companion]) -> pe.Vehicle | None:
@@ -80,3 +84,19 @@ def _marks(
         if len(rows):
             found.append((float(np.median(across)) + 0.5, float(rows.min() * high), each.label))
     return tuple(found)
+
+
+def _around(picture: kinds.RangePicture, wide: int) -> tuple[tuple[float, str], ...]:
+    """Where sides are, along a picture so wide."""
+    high, low = np.degrees(picture.azimuths[[0, -1]]).tolist()
+    if high <= low:
+        return ()
+    places = {words: (high - at) / (high - low) * wide for words, at in SIDES.items()}
+    return tuple((round(x, 1), words) for words, x in places.items() if -1.0 < x < wide + 1.0)
+
+
+def _up(picture: kinds.RangePicture, high: int) -> tuple[tuple[float, str], ...]:
+    """Elevations of the uppermost and the lowest channel."""
+    top, bottom = np.degrees(picture.elevations[[0, -1]]).tolist()
+    texts = ((0.0, f"{change(top, 0)}°"), (float(high), f"{change(bottom, 0)}°"))
+    return texts if len(picture.elevations) > 1 else texts[:1]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from ..engine import graphics, kinds, pe, scene
 from .company import DISTANCES, Companion, company
 from .drawing import drawn
+from .marked import MarkedPicture
 from .painted import painted_vehicle
 from .shading import Surroundings, from_srgb
 from .tableau import Tableau
@@ -30,17 +30,7 @@ FADED_M = (30.0, 160.0)
 """From where to where the ground fades into the horizon."""
 
 
-@dataclass(frozen=True, slots=True)
-class Marked:
-    """A picture, PNG, of a size [px], and texts at places (right, down) in it [px]."""
-
-    png: bytes
-    width: int
-    height: int
-    marks: tuple[tuple[float, float, str], ...]
-
-
-def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Marked:
+def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> MarkedPicture:
     """Return what a camera on a vehicle sees, people and cars of known size before it.
 
     Parameters
@@ -55,7 +45,7 @@ def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Marked:
     tableau = Tableau([*solids, *(each.body for each in others)], vehicle is not None)
     picture = drawn(shot, tableau, _road(sensor))
     png = graphics.png_bytes(graphics.as_bytes(picture))
-    return Marked(png, shot.width, shot.height, _marks(sensor, others, shot, scale))
+    return MarkedPicture(png, shot.width, shot.height, _marks(sensor, others, shot, scale))
 
 
 def camera_shot(sensor: pe.Sensor) -> tuple[Viewshot, float]:

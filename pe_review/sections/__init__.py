@@ -13,13 +13,14 @@ from .head import head
 from .maps import maps
 from .parts import parts
 from .search import searching
+from .sensors import sensors
 from .told import told
 from .versus import versus
 
 TOGETHER: tuple[Callable[[tuple[Reviewed, ...]], Section], ...] = (head, versus)
 """What is told of all studies at once, above them; of a single one, too."""
 SECTIONS: tuple[Callable[[Reviewed], Section], ...] = (
-    *(view3d, parts, maps, failing, searching, told, again),
+    *(view3d, parts, maps, sensors, failing, searching, told, again),
 )
 """What every study has; of several they stand side by side. One whose html is empty is left out."""
 

@@ -1,0 +1,157 @@
+"""What sensors see: left is left, through the camera's own lens, sizes as they are."""
+
+import dataclasses
+import math
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import graphics
+from pe_core.catalog import load
+from pe_core.kinds import Camera, KannalaBrandt, range_picture
+from pe_review.pictures.all_round import lidar_picture
+from pe_review.pictures.company import company, looks_to
+from pe_review.pictures.marked import MarkedPicture, lifted
+from pe_review.pictures.props import CAR_M, PERSON_M, car, person
+from pe_review.pictures.through_lens import camera_picture, camera_shot
+from pe_review.sections.sensors import places_of, sensors
+from tests.engine.test_png import decoded
+from tests.review.conftest import box
+
+SMALL = Camera("small", 128, 72, math.radians(60.0))
+FISHEYE = Camera("fish", 96, 96, lens=KannalaBrandt(30.0, 30.0, 48.0, 48.0, fov=math.radians(170)))
+
+
+def mounted(model, yaw_deg=0.0, at=(0.0, 0.0, 1.4), pitch_deg=0.0):
+    return pe.Sensor("eye", model, pe.Pose.from_degrees(at, (0.0, pitch_deg, yaw_deg)))
+
+
+@pytest.mark.parametrize(("make", "size"), [(person, PERSON_M), (car, CAR_M)])
+def test_people_and_cars_are_as_large_as_told(make, size):
+    low, high = make(0.0, 0.0, 0.0).body.bounds
+    assert high[2] == pytest.approx(size[2], abs=0.01) and low[2] == pytest.approx(0.0, abs=0.01)
+    assert (high - low)[1] <= size[1] + 0.1 and (high - low)[0] <= size[0] + 0.1
+
+
+@pytest.mark.parametrize("yaw", [0.0, 90.0, 200.0])
+def test_they_stand_where_it_looks_people_left_cars_right(yaw):
+    sensor = mounted(SMALL, yaw)
+    found = company(sensor, math.radians(60.0), None)
+    assert [(c.name, c.distance) for c in found if c.name == "person"] == [
+        ("person", d) for d in (40.0, 20.0, 10.0, 5.0)
+    ]
+    for each in found:
+        way = sensor.pose.ground_from_sensor.T @ (np.array(each.top) - sensor.pose.position)
+        assert way[0] > 0 and (way[1] > 0) == (each.name == "person")
+        corners = each.body.body.triangles.reshape(-1, 3)[:, :2]
+        nearest = np.hypot(*corners.T).min()
+        assert nearest == pytest.approx(each.distance, abs=0.3)
+
+
+def test_nobody_stands_in_the_vehicle_or_outside_the_view():
+    lorry = pe.Vehicle(box((-6.0, -3.0, 0.4), (8.0, 3.0, 3.5)))
+    found = {c.distance for c in company(mounted(SMALL), math.radians(25.0), lorry)}
+    assert found == {10.0, 20.0, 40.0}
+    narrow = company(mounted(SMALL), math.radians(10.0), None)
+    assert not [c for c in narrow if c.name == "car" and c.distance == 5.0]
+
+
+def test_one_that_looks_down_has_its_view_where_its_picture_s_top_is():
+    down = mounted(SMALL, 90.0, pitch_deg=90.0)
+    assert looks_to(down) == pytest.approx(math.radians(90.0))
+
+
+@pytest.mark.parametrize("model", [SMALL, FISHEYE])
+def test_a_camera_s_picture_has_people_left_and_cars_right(model):
+    """Coats are amber, cars are blue; what is left of ahead is in the left half."""
+    found = camera_picture(mounted(model), None)
+    pixels = decoded(found.png).astype(int)
+    assert pixels.shape == (model.height, model.width, 3)
+    amber = (pixels[..., 0] > pixels[..., 2] + 90) & (pixels[..., 1] > 80)
+    blue = (pixels[..., 2] > pixels[..., 0] + 60) & (pixels[..., 2] > pixels[..., 1] + 30)
+    middle = model.width / 2
+    assert amber.any() and np.nonzero(amber)[1].max() < middle + 1
+    assert blue.any() and np.nonzero(blue)[1].min() > middle - 2
+    assert len(found.png) < 150_000 and found == camera_picture(mounted(model), None)
+
+
+def test_each_pixel_looks_where_the_lens_says():
+    """A picture that is made smaller has the lens of the large one."""
+    large = dataclasses.replace(SMALL, width=1920, height=1080)
+    sensor = mounted(large, 30.0, pitch_deg=5.0)
+    shot, scale = camera_shot(sensor)
+    assert (shot.width, shot.height) == (640, 360) and scale == pytest.approx(1 / 3)
+    found = shot.look(np.array([100.0, 320.0]), np.array([50.0, 180.0]))
+    turned = sensor.pose.ground_from_sensor
+    rays = large.projection.unproject(np.array([300.0, 960.0]), np.array([150.0, 540.0]))
+    np.testing.assert_allclose(found, rays @ turned.T, atol=1e-12)
+
+
+def test_the_own_body_is_in_the_picture_where_it_stops_rays():
+    """A wall on the left half of the view."""
+    wall = pe.Vehicle(box((1.0, 0.0, 0.0), (1.2, 3.0, 3.0)))
+    free = decoded(camera_picture(mounted(SMALL), None).png).astype(int)
+    with_wall = decoded(camera_picture(mounted(SMALL), wall).png).astype(int)
+    changed = np.abs(with_wall - free).max(axis=2) > 20
+    assert changed[:, :60].mean() > 0.9 and changed[:20, 70:].mean() < 0.05
+
+
+def test_outside_the_image_circle_nothing_is_shown():
+    pixels = decoded(camera_picture(mounted(FISHEYE), None).png)
+    assert pixels[0, 0].max() < 40 and pixels[9, 48].max() > 100
+
+
+def test_a_lidar_s_picture_has_left_on_the_left():
+    """A wall on the left is orange in the left half; marks of people are left of the cars'."""
+    model = load("Velodyne VLP-16 Puck")
+    wall = pe.Vehicle(box((-1.0, 1.0, 0.0), (1.0, 1.2, 3.0)))
+    found = lidar_picture(mounted(model), wall)
+    pixels = decoded(found.png).astype(int)
+    assert pixels.shape == (found.height, found.width, 3) and found.width == 720
+    orange = (pixels[..., 0] > 170) & (pixels[..., 2] < 80) & (pixels[..., 1] < 170)
+    assert orange[:, 150:210].all() and not orange[:, 300:].any()
+    places = {words: x for x, words in found.below}
+    assert places["left"] == pytest.approx(180, abs=2) and places["ahead"] == pytest.approx(
+        360, abs=2
+    )
+    for distance in ("5 m", "10 m"):
+        x = sorted(x for x, _, words in found.marks if words == distance)
+        assert len(x) == 2 and x[0] < 360 < x[1]
+
+
+def test_a_lidar_s_picture_has_the_colours_of_its_ranges():
+    """Rows are channels, top first, each as high; columns the nearest azimuth."""
+    sensor = mounted(load("Velodyne VLP-16 Puck"))
+    pixels = decoded(lidar_picture(sensor, None).png)
+    picture = range_picture(sensor, None)
+    high = len(pixels) // len(picture.elevations)
+    colors = graphics.as_bytes(graphics.range_colors(picture, sensor.model.max_range))
+    for row in range(len(picture.elevations)):
+        np.testing.assert_array_equal(pixels[row * high, 0], colors[row, 0])
+        np.testing.assert_array_equal(pixels[row * high + high - 1, -1], colors[row, -1])
+
+
+def test_words_that_would_lie_on_each_other_are_lifted():
+    ups = lifted(((100.0, 50.0, "5 m"), (110.0, 50.0, "10 m"), (300.0, 50.0, "20 m")))
+    assert ups[0] == ups[2] and ups[1] <= ups[0] - 17.0
+    drawing = MarkedPicture(b"", 640, 100, ((5.0, 3.0, "<5> m"),), ((0.0, "behind"),)).svg("alt")
+    texts = {e.text for e in ET.fromstring(drawing).iter("text")}
+    assert texts == {"<5> m", "behind"}
+
+
+def test_the_section_tells_where_and_how_much(scored):
+    section = sensors(scored)
+    ET.fromstring(f"<div>{section.html}</div>")
+    assert section.html.count("<svg") == 3  # a LiDAR with its key, and a camera
+    for name, score in scored.after.per_sensor.items():
+        assert f"<td>{score.coverage * 100:.1f} %</td>" in section.html, name
+    assert "no [reference]" in section.html
+
+
+def test_places_are_told_from_the_rear_axle_where_it_is_known(scored):
+    study = dataclasses.replace(scored.found, reference=pe.Reference(-1.4, 0.33))
+    outcome = dataclasses.replace(scored.outcome, study=study)
+    html = places_of(dataclasses.replace(scored, outcome=outcome))
+    assert "<td>3.700</td>" in html and "<td>0.870</td>" in html  # 2.3 + 1.4, and 1.2 - 0.33

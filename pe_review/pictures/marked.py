@@ -17,7 +17,7 @@ HEAD = 42.0
 """Room above for marks."""
 KEY_WIDE = 190.0
 
-Word = tuple[float, float, str]
+MarkWord = tuple[float, float, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class MarkedPicture:
     png: bytes
     width: int
     height: int
-    marks: tuple[Word, ...]
+    marks: tuple[MarkWord, ...]
     below: tuple[tuple[float, str], ...] = ()
     beside: tuple[tuple[float, str], ...] = ()
 
@@ -74,7 +74,7 @@ class MarkedPicture:
             canvas.text(across, up, words, text_anchor="middle", css=css)
 
 
-def lifted(marks: tuple[Word, ...], head: float = 0.0) -> list[float]:
+def lifted(marks: tuple[MarkWord, ...], head: float = 0.0) -> list[float]:
     """Return how far down each text stands: above its place, higher where another is there."""
     placed: list[tuple[float, float, float]] = []
     for x, y, words in marks:

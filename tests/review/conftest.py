@@ -8,9 +8,19 @@ import pytest
 import pe_core as pe
 from pe_core.catalog import load
 from pe_review import Reviewed, page_bytes
+from pe_review.pictures import named_still, through_lens
 
 NAMES = ("</script><b>roof", "front & left / 60°")
 """Names that would end a script, and begin an element, if they were not escaped."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def small_pictures():
+    """Pictures of few pixels: what is in them does not depend on their size."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(named_still, "SIZE", (192, 108))
+        patch.setattr(through_lens, "MOST_WIDE", 128)
+        yield
 
 
 def box(low, high):

@@ -5,8 +5,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.catalog import load
+from pe_review.pictures import named_still
 from pe_review.pictures.drawing import drawn
-from pe_review.pictures.named_still import RADIUS, named_still, spread
+from pe_review.pictures.named_still import RADIUS, spread
 from pe_review.pictures.normals import corner_normals
 from pe_review.pictures.painted import Paint, PaintedBody, painted_vehicle
 from pe_review.pictures.still import still, usual_view
@@ -116,17 +117,17 @@ def test_every_pixel_has_a_colour(car):
 
 
 def test_numbers_stand_apart_and_in_the_picture():
-    places = np.array([[480.0, 270.0]] * 4 + [[-50.0, 600.0], [485.0, 280.0]])
+    places = np.array([[96.0, 54.0]] * 4 + [[-50.0, 160.0], [99.0, 58.0]])
     found = spread(places)
     apart = np.sqrt(((found[:, None] - found[None]) ** 2).sum(axis=2))[np.triu_indices(6, 1)]
     assert apart.min() > 2 * RADIUS
-    assert found.min() > 0 and (found < [960, 540]).all()
+    assert found.min() > 0 and (found < named_still.SIZE).all()
 
 
 def test_a_sensor_behind_the_body_is_told_apart(car):
     """From ahead on the right: the one behind the box is dashed; names are escaped."""
     vehicle, rig = car
     behind = pe.Sensor("a <b>", rig["right"].model, pe.Pose((-2.3, 0.5, 0.6)))
-    text = named_still(vehicle, pe.Rig([rig["right"], behind]), "alt")
+    text = named_still.named_still(vehicle, pe.Rig([rig["right"], behind]), "alt")
     assert text.count('stroke-dasharray="4 4"') == 1 and text.count("<circle") == 3
     assert "a &lt;b&gt;" in text and "2 a" in text

@@ -5,16 +5,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .bins import Raster, RowSpans, Spans
-from .looking import Ends, FaceLook
+from .bins import Raster, RowSpans, Spans, row_spans
+from .following import RayBoxes
+from .looking import Ends, FaceLook, SeenBoxes
+from .numbering import count_up
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 MOST_BINS = 1024
 """Bins along a side at most."""
-FINER = 8.0
-"""Bins along a side for each ray along it, where triangles are many: most then hold no ray."""
+FINER = 2.0
+"""Bins along a side for each ray along it at most, where triangles are many."""
 RADIX_BINS = 1 << 16
 """Bins that fit 16 bits, which NumPy sorts by radix."""
 WORTH_SORTING = 0.8
@@ -85,11 +87,27 @@ class BinnedRays:
         held = self._sums[bottom + right] - self._sums[top + right]
         held -= self._sums[bottom + left]
         held += self._sums[top + left]
-        return held
+        return np.where(self.raster.touches(u, v), held, 0)
 
     def any_in(self, u: Spans, v: Spans) -> NDArray[np.bool_]:
         """Whether some ray's bin is touched by each rectangle."""
-        return (self.count_in(u, v) > 0) & self.raster.touches(u, v)
+        return self.count_in(u, v) > 0
+
+    def ray_boxes(self, boxes: SeenBoxes, distance: Floats) -> RayBoxes:
+        """Boxes and the rays that pass their rectangles, but for rays (B,) stopped nearer [m]."""
+        (u0, u1), (v0, v1) = boxes.u, boxes.v
+        every = np.zeros(len(u0), np.bool_)
+        first, count = self.in_bins(
+            spans := row_spans(self.raster, (boxes.u, boxes.v), [], u0, every)
+        )
+        which = np.repeat(spans.item, count)
+        at = np.repeat(first, count) + count_up(count)
+        u, v, ray = self.u[at], self.v[at], self.ray[at]
+        passed = (u0[which] <= u) & (u <= u1[which]) & (v0[which] <= v) & (v <= v1[which])
+        passed &= boxes.near[which] <= distance[ray]
+        some = np.flatnonzero(passed)
+        which = which[some]
+        return RayBoxes(boxes.number[which], ray[some], boxes.near[which].astype(np.float32))
 
     def in_bins(self, spans: RowSpans) -> tuple[Ints, Ints]:
         """First ray of each run of bins, and how many there are."""

@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Chosen = Callable[[Spans, Spans], NDArray[np.bool_]]
 """Tells which of some rectangles of a face are worth a look."""
+Held = Callable[[Spans, Spans], Ints]
+"""Tells how many rays pass by some rectangles of a face, bin by bin."""
 
 Ends = tuple[tuple[float, float], tuple[float, float]]
 
@@ -64,6 +66,34 @@ class FaceLook:
             boxes = boxes[np.flatnonzero(chosen(boxes.u, boxes.v))]
             if level == 0:
                 return boxes[np.argsort(boxes.near, kind="stable")]
+            boxes = self._shown(self.tree.below(boxes.number, level), level - 1)
+            level -= 1
+
+    def largest(self, held: Held, enough: int) -> tuple[int, SeenBoxes]:
+        """Boxes with rays of the highest level that has `enough`, nearest first; and the level."""
+        level = len(self.tree.boxes) - 1
+        boxes = self._shown(np.arange(len(self.tree.boxes[level])), level)
+        while True:
+            boxes = boxes[np.flatnonzero(held(boxes.u, boxes.v))]
+            if level == 0 or len(boxes.number) >= enough:
+                return level, boxes[np.argsort(boxes.near, kind="stable")]
+            boxes = self._shown(self.tree.below(boxes.number, level), level - 1)
+            level -= 1
+
+    def opened(
+        self, boxes: SeenBoxes, level: int, held: Held, few: int
+    ) -> tuple[list[SeenBoxes], SeenBoxes]:
+        """Open boxes of a level that hold more than `few` rays, and so on downwards.
+
+        Returns those that do not, of each level, the lowest first; and the lowest that do.
+        """
+        ends: list[SeenBoxes] = []
+        while True:
+            number = held(boxes.u, boxes.v)
+            ends.insert(0, boxes[np.flatnonzero((number > 0) & (number <= few))])
+            boxes = boxes[np.flatnonzero(number > few)]
+            if level == 0:
+                return ends, boxes[np.argsort(boxes.near, kind="stable")]
             boxes = self._shown(self.tree.below(boxes.number, level), level - 1)
             level -= 1
 

@@ -41,19 +41,26 @@ class TriangleTree:
         Which of the mesh's triangles each of them is.
     boxes : list of (N, 2, 3) float
         Lowest and highest corners: of runs of BRANCH triangles first, at most BRANCH boxes last.
+    rows : list of (N, ...) float
+        What each box holds, in one row, boxes of the lowest level first: the corners of BRANCH
+        triangles, then of BRANCH boxes. The last of all fills up the last row.
     """
 
     def __init__(self, triangles: Floats) -> None:
         self.number = _in_space(triangles)
-        self.triangles = triangles[self.number]
+        filled = _filled(triangles[self.number])
+        self.triangles = filled[: len(triangles)]
         self.boxes: list[Floats] = []
+        self.rows = [filled.reshape(-1, 9 * BRANCH)]
         if len(triangles):
             low, high = _least(self.triangles), _greatest(self.triangles)
             while not self.boxes or len(low) > BRANCH:
                 starts = np.arange(0, len(low), BRANCH)
                 low = np.minimum.reduceat(low, starts, axis=0)
                 high = np.maximum.reduceat(high, starts, axis=0)
-                self.boxes.append(np.stack([low, high], axis=1))
+                filled = _filled(np.stack([low, high], axis=1))
+                self.boxes.append(filled[: len(low)])
+                self.rows.append(filled.reshape(-1, 6 * BRANCH))
 
     @cached_property
     def edges(self) -> MeshEdges:
@@ -106,6 +113,11 @@ def _spread(cells: NDArray[np.uint64]) -> NDArray[np.uint64]:
     ):
         cells = (cells | (cells << np.uint64(shift))) & np.uint64(mask)
     return cells
+
+
+def _filled(values: Floats) -> Floats:
+    """Repeat the last until their number is a multiple of BRANCH."""
+    return np.concatenate([values, np.repeat(values[-1:], -len(values) % BRANCH, axis=0)])
 
 
 def _least(triangles: Floats) -> Floats:

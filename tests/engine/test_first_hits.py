@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scene import raycast
+from pe_core.scene import following, raycast
 from pe_core.scene.geometry import cross, dot
 from pe_core.scene.raycast import SeenTriangles
 from pe_core.scene.triangle_tree import TriangleTree
@@ -114,9 +114,36 @@ def test_hits_do_not_depend_on_how_much_is_looked_at_at_once(mesh, monkeypatch):
     monkeypatch.setattr(raycast, "FIRST_BOXES", 1)
     monkeypatch.setattr(raycast, "MOST_BOXES", 2)
     monkeypatch.setattr(raycast, "PAIRS_AT_ONCE", 16)
+    monkeypatch.setattr(raycast, "RAYS_AT_ONCE", 700)
     rng = np.random.default_rng(9)
     triangles = MESHES[mesh](rng)
     assert_same(triangles, rays_at(triangles, rng, 200))
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+@pytest.mark.parametrize("few", [3, 10**9])
+def test_rays_followed_by_themselves_hit_the_same(mesh, few, monkeypatch):
+    """Some of the rays into some of the boxes, and all into all; many at once and one by one."""
+    monkeypatch.setattr(raycast, "FINE", 0)
+    monkeypatch.setattr(raycast, "FEW_RAYS", few)
+    monkeypatch.setattr(raycast, "ENOUGH_BOXES", 2)
+    monkeypatch.setattr(following, "PAIRS_AT_ONCE", 100 if few == 3 else 1 << 11)
+    rng = np.random.default_rng(4)
+    triangles = MESHES[mesh](rng)[:283]  # no multiple of what a box holds
+    hits = assert_same(triangles, rays_at(triangles, rng, 300))
+    assert np.count_nonzero(hits.face >= 0) > 50
+
+
+@pytest.mark.parametrize("distance", [0.03, 80.0])
+def test_followed_rays_leave_no_gap_in_a_fine_mesh(distance):
+    """More than ten triangles a ray: rays to corners and along edges, from near and from afar."""
+    rng = np.random.default_rng(6)
+    triangles = shapes.refined(shapes.box((-2.0, -1.0, 0.0), (2.0, 1.0, 1.5)), 5)
+    seen = triangles - [0.3, 0.1, 1.5 + distance]
+    directions = rays_at(seen, rng, 60)
+    assert len(triangles) > raycast.FINE * len(directions)
+    hits = assert_same(seen, directions)
+    assert np.count_nonzero(hits.face >= 0) > 100
 
 
 def test_triangles_whose_area_is_rounding_stop_what_they_did():

@@ -48,7 +48,7 @@ class TriangleTree:
 
     def __init__(self, triangles: Floats) -> None:
         self.number = _in_space(triangles)
-        filled = _filled(triangles[self.number])
+        filled = triangles[_filled(self.number)]
         self.triangles = filled[: len(triangles)]
         self.boxes: list[Floats] = []
         self.rows = [filled.reshape(-1, 9 * BRANCH)]
@@ -115,7 +115,7 @@ def _spread(cells: NDArray[np.uint64]) -> NDArray[np.uint64]:
     return cells
 
 
-def _filled(values: Floats) -> Floats:
+def _filled(values: NDArray) -> NDArray:
     """Repeat the last until their number is a multiple of BRANCH."""
     return np.concatenate([values, np.repeat(values[-1:], -len(values) % BRANCH, axis=0)])
 

@@ -136,14 +136,15 @@ def test_rays_followed_by_themselves_hit_the_same(mesh, few, monkeypatch):
 
 @pytest.mark.parametrize("distance", [0.03, 80.0])
 def test_followed_rays_leave_no_gap_in_a_fine_mesh(distance):
-    """More than ten triangles a ray: rays to corners and along edges, from near and from afar."""
+    """More than ten triangles a ray; straight down is a corner, between boxes that end there."""
     rng = np.random.default_rng(6)
     triangles = shapes.refined(shapes.box((-2.0, -1.0, 0.0), (2.0, 1.0, 1.5)), 5)
-    seen = triangles - [0.3, 0.1, 1.5 + distance]
+    seen = triangles - [0.5, 0.25, 1.5 + distance]
     directions = rays_at(seen, rng, 60)
     assert len(triangles) > raycast.FINE * len(directions)
     hits = assert_same(seen, directions)
     assert np.count_nonzero(hits.face >= 0) > 100
+    assert np.isfinite(hits.distance[(directions == [0.0, 0.0, -1.0]).all(axis=1)]).all()
 
 
 def test_triangles_whose_area_is_rounding_stop_what_they_did():

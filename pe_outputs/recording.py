@@ -26,22 +26,24 @@ from pe_core.outputs import (
     OutputRequest,
     Rgb,
     blind_volume,
-    free_solid,
     mounted_view,
     plain_names,
     sensor_color,
+    view_wires,
 )
 from pe_core.scene import rotate
 
 APPLICATION = "perception_entropy"
 WORLD, VEHICLE, SENSORS, BEAMS, GROUND = "world", "vehicle", "sensors", "beams", "ground"
+BLIND_VOLUME = "blind_volume"
 STEP = math.radians(1.0)
-REACH_M, BEAM_M = 4.0, 40.0
+REACH_M, BEAM_M = 4.0, 25.0
 """How far fields of view and beams go unless told."""
 MOST_BEAMS = 2000
-VIEW_ALPHA, GLASS_ALPHA, BLIND_ALPHA, MAP_ALPHA = 45, 110, 90, 0.8
+MAP_M, MAP_STEP_M = 25.0, 0.5
+"""Maps of the ground reach so far from the origin, in squares of this side."""
 FREE, STOPPED = (0, 115, 178, 70), (214, 94, 0, 255)
-BEAM_RADIUS_M = 0.004
+BEAM_RADIUS_M, WIRE_RADIUS_M = 0.006, 0.02
 PICTURE_M = 0.6
 """How far from its sensor a camera's picture is drawn."""
 MAPS = {"coverage": COVERAGE, "entropy": ENTROPY}
@@ -53,7 +55,8 @@ def recording_bytes(wanted: OutputRequest) -> tuple[bytes, list[str]]:
     lines = [] if study.vehicle is not None else ["no vehicle: nothing is hidden or blind near it"]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.rrd"
-        stream.save(path, default_blueprint=_blueprint())
+        stream.save(path)
+        stream.send_blueprint(_blueprint())
         stream.log("/", rr.ViewCoordinates.FLU, static=True)
         _log_vehicle(stream, wanted)
         names, _ = plain_names([sensor.name for sensor in study.rig])
@@ -71,10 +74,18 @@ def recording_bytes(wanted: OutputRequest) -> tuple[bytes, list[str]]:
 
 
 def _blueprint() -> Any:
-    """Return the whole scene in one view; of the maps the coverage, the entropy switched off."""
-    hidden = {f"/{WORLD}/{GROUND}/entropy": [rrb.EntityBehavior(visible=False)]}
-    view = rrb.Spatial3DView(origin="/", name="Scene", overrides=hidden)
-    return rrb.Blueprint(view, collapse_panels=True)
+    """Return views of the scene to choose from: what would hide the rest has its own."""
+    blind, entropy, coverage = BLIND_VOLUME, f"{GROUND}/entropy", f"{GROUND}/coverage"
+    without = {
+        "Coverage": (blind, entropy),
+        "Entropy": (blind, coverage),
+        "Blind volume": (coverage, entropy),
+    }
+    views = [
+        rrb.Spatial3DView(name=name, contents=["$origin/**", *(f"- /{WORLD}/{e}" for e in left)])
+        for name, left in without.items()
+    ]
+    return rrb.Blueprint(rrb.Tabs(*views), collapse_panels=True)
 
 
 def _log(stream: Any, parts: list[str], what: Any) -> None:
@@ -90,12 +101,11 @@ def _log_vehicle(stream: Any, wanted: OutputRequest) -> None:
         corners = vehicle.triangles[vehicle.parts == number].reshape(-1, 3)
         if len(corners):
             points, index = np.unique(corners, axis=0, return_inverse=True)
-            glass = name in vehicle.glass
-            color = _rgba(GLASS, GLASS_ALPHA) if glass else _rgba(BODY, 255)
+            color = _rgba(GLASS if name in vehicle.glass else BODY)
             _log(stream, [VEHICLE, name], _mesh(points, index.reshape(-1, 3), color))
-    blind = blind_volume("blind_volume", rig, vehicle)
+    blind = blind_volume(BLIND_VOLUME, rig, vehicle)
     if blind is not None:
-        _log(stream, [blind.name], _mesh(blind.points, blind.faces, _rgba(BLIND, BLIND_ALPHA)))
+        _log(stream, [blind.name], _mesh(blind.points, blind.faces, _rgba(BLIND)))
 
 
 def _log_sensor(
@@ -108,9 +118,9 @@ def _log_sensor(
     _log(stream, own, rr.AnyValues(**about))
     view = mounted_view(sensor, wanted.study.vehicle, wanted.reach(sensor, REACH_M), STEP)
     if view is not None:
-        solid = free_solid("view", view)
-        points = rotate(turn.T, solid.points - view.origin)
-        _log(stream, [*own, "view"], _mesh(points, solid.faces, _rgba(color, VIEW_ALPHA)))
+        lines = [rotate(turn.T, line - view.origin) for line in view_wires(view)]
+        strips = rr.LineStrips3D(lines, colors=_rgba(color), radii=WIRE_RADIUS_M)
+        _log(stream, [*own, "view"], strips)
 
 
 def _pinhole(picture: Picture) -> Any:
@@ -141,9 +151,9 @@ def _beams(wanted: OutputRequest, sensor: Sensor) -> Any:
 
 def _log_ground(stream: Any, wanted: OutputRequest) -> None:
     """Log maps of the ground as the 3D view has them: coverage, and entropy under it."""
-    seen = wanted.study.sight().ground(wanted.study.rig)
+    seen = wanted.study.sight().ground(wanted.study.rig, step=MAP_STEP_M, within=MAP_M)
     for name, quantity in MAPS.items():
-        sheet = ground_map(seen, quantity, MAP_ALPHA).sheet
+        sheet = ground_map(seen, quantity, 1.0, faded=False).sheet
         if sheet is not None:
             points, colors, faces = sheet.mesh
             rgba = np.rint(colors * 255.0).astype(np.uint8)
@@ -172,5 +182,6 @@ def _normals(points: Any, faces: Any) -> Any:
     return total / np.where(length > 0.0, length, 1.0)
 
 
-def _rgba(color: Rgb, alpha: int) -> list[int]:
-    return [*(round(255 * value) for value in color), alpha]
+def _rgba(color: Rgb) -> list[int]:
+    """Return an opaque colour: Rerun 0.23 draws meshes so, whatever their alpha."""
+    return [*(round(255 * value) for value in color), 255]

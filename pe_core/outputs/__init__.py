@@ -6,9 +6,10 @@ from .exporting import export_scene, scene_files
 from .footprints import GroundPlan, SeenGround
 from .names import plain_names
 from .request import OutputRequest
-from .solid import Solid, free_solid
+from .solid import Solid
 from .table import SCENE_OUTPUTS, SceneOutput, scene_output
 from .views import mounted_view
+from .wires import view_wires
 
 __all__ = [
     "BLIND",
@@ -23,11 +24,11 @@ __all__ = [
     "Solid",
     "blind_volume",
     "export_scene",
-    "free_solid",
     "hex_color",
     "mounted_view",
     "plain_names",
     "scene_files",
     "scene_output",
     "sensor_color",
+    "view_wires",
 ]

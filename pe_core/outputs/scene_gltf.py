@@ -17,11 +17,12 @@ from ..exchange.frames import quaternion
 from ..exchange.pictures import centred
 from ..scene import Sensor, rotate
 from .colors import sensor_color
-from .glb import GlbScene, y_up
+from .glb import LINES, GlbScene, y_up
 from .glb_vehicle import add_vehicle
 from .request import OutputRequest
-from .solid import free_solid
+from .solid import Floats, free_solid
 from .views import mounted_view
+from .wires import view_wires
 
 FILE, TITLE = "scene.glb", "glTF"
 ROOT = "Grp_Root"
@@ -71,12 +72,25 @@ def _camera(scene: GlbScene, known: CarriedSensor) -> list[int]:
 
 
 def _view(scene: GlbScene, wanted: OutputRequest, sensor: Sensor, number: int) -> list[int]:
-    """Add what a sensor sees up to the vehicle, in its own axes."""
+    """Add what a sensor sees up to the vehicle, in its own axes: its sides, and their edges."""
     view = mounted_view(sensor, wanted.study.vehicle, wanted.reach(sensor, REACH_M), STEP)
     if view is None:
         return []
-    name = f"{sensor.name} field of view"
+    name, color = f"{sensor.name} field of view", sensor_color(number)
     solid = free_solid(name, view)
-    points = rotate(sensor.pose.ground_from_sensor.T, solid.points - view.origin)
-    look = scene.add_material(name, sensor_color(number), VIEW_ALPHA)
-    return [scene.add_node(name, mesh=scene.add_mesh(name, points, solid.faces, look))]
+    lines = view_wires(view)
+    ends = np.cumsum([len(line) for line in lines])
+    steps = np.delete(np.arange(ends[-1] - 1), ends[:-1] - 1)
+    look = scene.add_material(name, color, VIEW_ALPHA)
+    sides = scene.add_mesh(name, _own(sensor, solid.points), solid.faces, look)
+    drawn = np.stack([steps, steps + 1], axis=1), scene.add_material(f"{name}, edges", color)
+    edges = scene.add_mesh(f"{name}, edges", _own(sensor, np.vstack(lines)), *drawn, LINES)
+    return [
+        scene.add_node(name, mesh=sides),
+        scene.add_node(f"{sensor.name} edges", mesh=edges),
+    ]
+
+
+def _own(sensor: Sensor, points: Floats) -> Floats:
+    """Return points of the ground frame in a sensor's own axes."""
+    return rotate(sensor.pose.ground_from_sensor.T, points - np.asarray(sensor.pose.position))

@@ -101,6 +101,17 @@ def test_a_recorded_camera_is_a_pinhole_in_our_axes(recording):
     assert logged(recording, picture, "Resolution") == [[1920.0, 1080.0]]
 
 
+def test_edges_of_a_recorded_view_run_from_the_camera_to_the_corners_of_its_picture(recording):
+    """In the sensor's own axes: a spoke leaves along each corner, whatever stops it."""
+    border, *spokes = logged(recording, "/world/sensors/eye/view", "LineStrip3D")
+    assert border[0] == border[-1] and len(spokes) == 8
+    half = math.tan(math.radians(35.0))
+    corners = {(y, z) for y in (half, -half) for z in (half * 1080 / 1920, -half * 1080 / 1920)}
+    ends = np.array([end for start, end in spokes if np.allclose(start, 0.0)])
+    for corner in corners:
+        assert np.abs(ends[:, 1:] / ends[:, :1] - corner).max(axis=1).min() < 1e-5
+
+
 def test_the_recording_has_vehicle_beams_maps_and_what_is_blind(recording):
     paths = {column.entity_path for column in recording.schema().component_columns()}
     wanted = "vehicle/body", "vehicle/cabin", "beams/roof_top", "ground/coverage"

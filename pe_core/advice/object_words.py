@@ -42,11 +42,9 @@ def _points(own: FoundClass) -> str:
 
 def reach_words(own: FoundClass) -> str:
     """Return how far a class is found to four sides."""
-    if all(own.reach[way] < NEAREST_M for way in SIDES):
+    found = {words: own.reach[way] for way, words in SIDES.items() if own.reach[way] >= NEAREST_M}
+    if not found:
         return "nowhere ahead, behind, left or right"
-    ways = (f"{_metres(own.reach[way])} {words}" for way, words in SIDES.items())
-    return f"up to {', '.join(ways)}"
-
-
-def _metres(reach: float) -> str:
-    return "nowhere" if reach < NEAREST_M else f"{reach:.0f} m"
+    missing = ", ".join(words for words in SIDES.values() if words not in found)
+    ways = ", ".join(f"{reach:.0f} m {words}" for words, reach in found.items())
+    return f"up to {ways}{f'; not {missing}' if missing else ''}"

@@ -11,6 +11,7 @@ from .again import again
 from .failing import failing
 from .head import head
 from .maps import maps
+from .objects import objects
 from .parts import parts
 from .search import searching
 from .sensors import sensors
@@ -20,7 +21,7 @@ from .versus import versus
 TOGETHER: tuple[Callable[[tuple[Reviewed, ...]], Section], ...] = (head, versus)
 """What is told of all studies at once, above them; of a single one, too."""
 SECTIONS: tuple[Callable[[Reviewed], Section], ...] = (
-    *(view3d, parts, maps, sensors, failing, searching, told, again),
+    *(view3d, parts, objects, maps, sensors, failing, searching, told, again),
 )
 """What every study has; of several they stand side by side. One whose html is empty is left out."""
 

@@ -6,7 +6,7 @@ import platform
 
 import numpy as np
 
-from ..engine import pe, studies
+from ..engine import advice, pe, studies
 from ..markup import Markup, escaped, table
 from ..reviewed import Reviewed
 from ..section import Section
@@ -50,7 +50,7 @@ def _facts(one: Reviewed) -> str:
         ["perception-entropy", pe.__version__],
         ["Python, NumPy", f"{platform.python_version()}, {np.__version__}"],
         *([name, version] for name, version in one.versions.items()),
-        ["Voxels scored", _voxels(one)],
+        ["Scored on", _looked_at(one)],
         *([["Seed", str(one.asked.search.seed)]] if one.searched else []),
         ["Study, SHA-256", _digest(studies.fingerprint(found))],
         ["Vehicle", found.vehicle_line or "none: nothing hides anything"],
@@ -59,11 +59,14 @@ def _facts(one: Reviewed) -> str:
     return table("What it was made with", ("what", "which"), rows, css="words")
 
 
-def _voxels(one: Reviewed) -> str:
+def _looked_at(one: Reviewed) -> str:
     score, space = one.after, one.found.space
+    if score.objects is not None:
+        looked = advice.objects_looked_at(score.objects)
+        return f"{looked}, standard error {score.stderr:.4f} nats"
     every = "all " if not score.stderr else "a sample of "
     error = f", standard error {score.stderr:.4f} nats" if score.stderr else ""
-    return f"{every}{score.voxels:,}, of {space.interval:g} m{error}"
+    return f"{every}{score.voxels:,} voxels, of {space.interval:g} m{error}"
 
 
 def _digest(text: str) -> str | Markup:

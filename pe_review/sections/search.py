@@ -26,12 +26,14 @@ def searching(one: Reviewed) -> Section:
 
 def _how(one: Reviewed) -> str:
     asked = one.asked.search
-    voxels = [f"{n:,}" if n else "all" for n in dict.fromkeys(asked.level_samples)]
+    looks = dict.fromkeys(map(one.asked.looks_at, asked.level_samples))
+    levels = [f"{n:,}" if n else "all" for n in looks]
+    what = "scenes of objects" if one.asked.targets.are_objects else "voxels"
     stopped = " It was stopped early." if one.outcome.stopped else ""
     return (
         f"Searched by {escaped(asked.method)} with seed {asked.seed}: "
-        f"{count(one.outcome.evaluations, 'placement')} judged on {', then '.join(voxels)} "
-        f"voxels.{stopped}"
+        f"{count(one.outcome.evaluations, 'placement')} judged on {', then '.join(levels)} "
+        f"{what}.{stopped}"
     )
 
 
@@ -42,7 +44,7 @@ def _curve(one: Reviewed) -> str:
     drawn = step_curve(points, one.outcome.evaluations, "placements judged", "nats")
     first, last = points[0][1], points[-1][1]
     way = f"from {number(first)} to {number(last)} nats"
-    words = f"Best entropy so far: {way}, on the search's own voxels."
+    words = f"Best entropy so far: {way}, by what the search judged on."
     alt = f"Curve of the search. {words}"
     return (
         f'<figure class="curve keep" role="img" aria-label="{escaped(alt)}">{drawn}'
@@ -99,7 +101,8 @@ def _robustness(one: Reviewed) -> str:
     if found.after.failed is not None:
         rows.append(["One sensor lost, mean", *_of_both(found, "failed")])
         rows.append([_worst_lost(found), *_of_both(found, "failed_worst")])
-    title = f"What it tolerates: entropy in nats, on {found.samples:,} voxels"
+    what = "objects" if one.after.objects else "voxels"
+    title = f"What it tolerates: entropy in nats, on {found.samples:,} {what}"
     return table(title, ("", "before", "after", "change"), rows)
 
 

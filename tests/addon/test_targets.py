@@ -30,9 +30,8 @@ def test_a_scene_is_judged_on_voxels_until_told_otherwise(car):
     assert scenes.study().targets == pe.TargetRule("objects", traffic=True)
 
 
-def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path, monkeypatch):
+def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path):
     """To the bit, and what is found of each class is there for the panel to show."""
-    monkeypatch.setattr("pe_core.targets.rings.EACH", 1)  # fewer objects in rings
     path = tmp_path / "study.toml"
     assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
     job = ScoreJob(pe.load_study(path))

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..markup import escaped, picture
-from ..pictures.still import still
+from ..pictures.named_still import named_still
 from ..reviewed import Reviewed
 from ..section import Section
 from .body import vehicle_data
@@ -43,7 +43,10 @@ def scene_data(one: Reviewed) -> dict[str, Any]:
     scores = one.after.per_sensor
     return {
         "vehicle": vehicle_data(one.vehicle),
-        "sensors": [sensor_data(s, scores.get(s.name), one.vehicle) for s in one.rig],
+        "sensors": [
+            sensor_data(number, sensor, scores.get(sensor.name), one.vehicle)
+            for number, sensor in enumerate(one.rig)
+        ],
         "maps": maps_data(one.sight, one.rig),
     }
 
@@ -59,8 +62,10 @@ def _scripts() -> tuple[str, ...]:
 def _still(one: Reviewed) -> str:
     """The picture for a browser that cannot turn the view."""
     names = ", ".join(sensor.name for sensor in one.rig)
-    shown = one.picture or still(one.shown_vehicle[0], one.rig)
-    return picture(shown, f"The vehicle with its sensors: {names}")
+    alt = f"The vehicle with its sensors: {names}"
+    if one.picture is not None:
+        return picture(one.picture, alt)
+    return one.once("still", lambda: named_still(one.shown_vehicle[0], one.rig, alt))
 
 
 def _left_out(data: dict[str, Any]) -> str:

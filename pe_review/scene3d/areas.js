@@ -38,10 +38,10 @@ const DOT_FRAGMENT = `
   void main() {
     float away = 2.0 * distance(gl_PointCoord, vec2(0.5));
     if (away > 1.0) discard;
-    gl_FragColor = vec4(away > 1.0 - edge ? vec3(1.0) : color, 1.0);
+    gl_FragColor = vec4(away > 1.0 - edge ? vec3(0.11, 0.12, 0.14) : color, 1.0);
   }`;
 
-/* `look`: size [px], edge (share that is white), through, order. */
+/* `look`: size [px], edge (share that is dark), through, order. */
 function dotsOf(points, color, look) {
   const geometry = new T.BufferGeometry();
   geometry.setAttribute("position", new T.BufferAttribute(points, 3));

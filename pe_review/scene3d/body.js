@@ -8,7 +8,8 @@ const LOOKS = {
   "rear-light": { color: 0xa8514d },
   plate: { color: 0xf4f4f1 },
 };
-const SEE_THROUGH = 0.22;
+const SEE_THROUGH = 0.42;
+const OVER_THE_GROUND = 2;
 const CREASE = 0.6;
 
 function partsByLook(parts) {
@@ -39,7 +40,7 @@ function partMesh(look, corners) {
   });
   const mesh = new T.Mesh(T.toCreasedNormals(geometry, CREASE), material);
   mesh.userData.opacity = opacity;
-  mesh.renderOrder = opacity < 1 ? 2 : 0;
+  mesh.renderOrder = opacity < 1 ? OVER_THE_GROUND : 0;
   return mesh;
 }
 
@@ -59,6 +60,7 @@ function makeSeeThrough(group, wanted) {
     mesh.material.opacity = wanted ? SEE_THROUGH * own : own;
     mesh.material.transparent = mesh.material.opacity < 1;
     mesh.material.depthWrite = !wanted;
+    mesh.renderOrder = mesh.material.transparent ? OVER_THE_GROUND : 0;
     mesh.material.needsUpdate = true;
   }
 }

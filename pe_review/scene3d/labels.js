@@ -5,6 +5,7 @@ const RISE = 26, GAP = 3;
 function sensorLabel(sensor, onClick) {
   const label = element("button", "v3-label", sensor.name);
   label.type = "button";
+  label.tabIndex = -1;  // its like in the table is reached by keys
   label.style.setProperty("--tint", sensor.color);
   label.title = `Look from ${sensor.name}`;
   label.addEventListener("click", onClick);

@@ -1,6 +1,7 @@
 /* The switches beside the view. */
 
 function setLayer(view, number, layer, on) {
+  if (view.from && ALONE.includes(layer)) view.kept[number][layer] = on;
   view.sensors[number].layers[layer].visible = on;
 }
 

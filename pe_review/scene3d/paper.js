@@ -33,6 +33,7 @@ function drawOnPaper(view) {
   const context = view.paper.getContext("2d");
   context.drawImage(view.canvas, 0, 0, width, height);
   writeNames(view, context, width, height);
+  view.paperWords.replaceChildren(view.legend.cloneNode(true), view.key.cloneNode(true));
   view.fit();
 }
 

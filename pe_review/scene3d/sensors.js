@@ -56,7 +56,7 @@ function sensorOf(sensor) {
   for (const name of Object.keys(STYLES)) layers[name] = layerOf(sensor.layers[name] || {}, STYLES[name]);
   const body = housingOf(sensor);
   const dot = dotsOf(new Float32Array(sensor.at), plainColor(sensor.color), {
-    size: 11, edge: 0.36, through: true, order: 6,
+    size: 12, edge: 0.2, through: true, order: 6,
   });
   const group = new T.Group();
   group.add(body, dot, ...Object.values(layers));

@@ -26,15 +26,17 @@ RING = graphics.with_alpha(PALETTE.free, 0.8)
 NOTHING = graphics.Primitives.empty()
 
 
-def sensor_data(sensor: pe.Sensor, one_score: Any, vehicle: pe.Vehicle | None) -> dict[str, Any]:
-    """Return one sensor; `one_score` is its row of the score, or None."""
+def sensor_data(
+    number: int, sensor: pe.Sensor, one_score: Any, vehicle: pe.Vehicle | None
+) -> dict[str, Any]:
+    """Return one sensor of a rig by its number; `one_score` is its row of the score, or None."""
     drawing = graphics.drawing_of(sensor.kind)
     layers = _of_beams(sensor, vehicle) if drawing.beams else _of_view(sensor, vehicle)
     return {
         "name": sensor.name,
         "kind": kinds.kind_of(sensor.model).label,
         "model": sensor.model.name,
-        "color": css(drawing.color(PALETTE)),
+        "color": css(graphics.with_alpha(graphics.sensor_color(number), 1.0)),
         "at": list(sensor.pose.position),
         "turned": list(sensor.pose.rotation_deg),
         "axes": sensor.pose.ground_from_sensor.tolist(),

@@ -40,6 +40,7 @@ def stage(data: Mapping[str, Any], still: str) -> str:
         '<p class="v3-hint">Tap to turn</p><div class="v3-legend" hidden></div></div>'
         f'<div class="v3-panel">{_panel(data)}</div></div>'
         '<canvas class="v3-paper" aria-hidden="true" width="1" height="1"></canvas>'
+        '<div class="v3-paper-words" aria-hidden="true"></div>'
     )
 
 
@@ -129,4 +130,4 @@ def _key(data: Mapping[str, Any]) -> str:
         for name, (color, style, words) in entries.items()
         if name in there
     )
-    return f'<ul class="v3-key">{rows}<li>Lines on the ground every metre and 5 metres.</li></ul>'
+    return f'<ul class="v3-key">{rows}<li>Grid of 1 m, darker every 5 m.</li></ul>'

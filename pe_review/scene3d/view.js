@@ -1,6 +1,7 @@
 /* A view in its section of the page. Drawn when something changed, and not otherwise. */
 
 const SKY = 0xf4f6f8, FARTHEST = 400;
+const ALONE = ["sees", "stopped"];
 
 function hasWebGL() {
   try {
@@ -16,6 +17,7 @@ class View {
     Object.assign(this, { root, data, from: null, waiting: false });
     Object.assign(this, { stage: find("stage"), canvas: find("canvas"), legend: find("legend") });
     Object.assign(this, { names: find("labels"), caption: find("caption"), paper: find("paper") });
+    Object.assign(this, { key: find("key"), paperWords: find("paper-words") });
     this.renderer = new T.WebGLRenderer({ canvas: this.canvas, antialias: true });
     this.renderer.setClearColor(SKY);
     this.scene = new T.Scene();
@@ -52,8 +54,7 @@ class View {
     this.leave();
     this.from = this.sensors[number];
     this.from.body.visible = this.from.dot.visible = false;
-    this.from.kept = this.from.layers.sees.visible;
-    if (this.from.sensor.field) this.from.layers.sees.visible = true;
+    this.hideOthers();
     this.labels[number].off = true;
     lookFrom(this, this.from.sensor);
     this.caption.hidden = false;
@@ -61,12 +62,24 @@ class View {
     this.draw();
   }
 
+  /* Through a sensor's eye what others see would only be in the way. */
+  hideOthers() {
+    this.kept = this.sensors.map(({ layers }) =>
+      Object.fromEntries(ALONE.map((name) => [name, layers[name].visible])));
+    for (const each of this.sensors.filter((sensor) => sensor !== this.from)) {
+      for (const name of ALONE) each.layers[name].visible = false;
+    }
+    this.from.layers.sees.visible = Boolean(this.from.sensor.field);
+  }
+
   /* Back to where the rig is seen from outside. */
   leave() {
     this.caption.hidden = true;
     if (!this.from) return;
     this.from.body.visible = this.from.dot.visible = true;
-    this.from.layers.sees.visible = this.from.kept;
+    this.sensors.forEach(({ layers }, i) => {
+      for (const name of ALONE) layers[name].visible = this.kept[i][name];
+    });
     this.labels[this.sensors.indexOf(this.from)].off = false;
     this.from = null;
   }

@@ -109,7 +109,7 @@ def test_the_switch_of_all_is_that_of_each(view):
 
 def test_maps_lie_on_the_ground_with_a_legend(view):
     seen = {pixels(view)}
-    legend = view.locator(".v3-legend")
+    legend = view.locator(".v3-stage .v3-legend")
     assert legend.is_hidden()
     for name, word in (("entropy", "nats"), ("coverage", "%"), ("sensors", "nobody")):
         view.select_option("select[data-map]", name)

@@ -1,0 +1,1 @@
+"""``pe validate``: the scores held against what trained detectors were published to reach."""

@@ -1,0 +1,177 @@
+"""Scores against AP: rank correlations, and how far chance would get."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from .choices import BASE, Variant
+from .published import CLEAN, READINGS, Paper, papers
+from .ranks import (
+    Floats,
+    agreement,
+    exact_p,
+    exact_p_of_mean,
+    holm,
+    spearman,
+    under_chance,
+)
+from .scores import CANDIDATES, Candidate, candidates_of
+
+Values = Mapping[str, Any]
+Json = dict[str, Any]
+
+ALL, LEVEL = "all", "none rolled"
+SETS = (ALL, LEVEL)
+"""Rolled placements in, or out."""
+MAIN_CLASS = "car"
+"""The class of the one test over both papers; the others are shown."""
+CEILING = 0.5
+"""Detectors that agree less than this rank placements too differently to be predicted."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a score is asked: to rank a paper's placements as AP of a class does.
+
+    Attributes
+    ----------
+    paper : Paper
+    condition : str
+        "clean", or a corruption of the point clouds.
+    cls : str
+    reading : str
+        How printed rolls are read.
+    placed : str
+        One of `SETS`.
+    """
+
+    paper: Paper
+    condition: str
+    cls: str
+    reading: str
+    placed: str
+
+    @property
+    def placements(self) -> list[str]:
+        """Names of the placements that are ranked."""
+        every = self.paper.placements
+        return [n for n in every if self.placed == ALL or not self.paper.rolled(n)]
+
+    @property
+    def aims(self) -> dict[str, list[float]]:
+        """AP of the placements, by detector."""
+        by_detector = self.paper.ap[self.condition]
+        return {
+            detector: [by_class[self.cls][n] for n in self.placements]
+            for detector, by_class in by_detector.items()
+        }
+
+    def ranked(self, candidate: Candidate, values: Values, variant: Variant = BASE) -> list[float]:
+        """Return a score's values of the placements, higher for better."""
+        return [
+            candidate.ranked(self.paper, n, self._reading(n), self.cls, variant, values)
+            for n in self.placements
+        ]
+
+    def _reading(self, placement: str) -> str:
+        return self.reading if self.paper.rolled(placement) else READINGS[0]
+
+
+def questions(paper: Paper) -> list[Question]:
+    """Return all that a paper's table lets us ask."""
+    found = []
+    for condition, by_detector in paper.ap.items():
+        classes = [cls for cls in paper.classes if all(cls in row for row in by_detector.values())]
+        for cls in classes:
+            found += [Question(paper, condition, cls, *how) for how in _ways(paper)]
+    return found
+
+
+def _ways(paper: Paper) -> list[tuple[str, str]]:
+    if not any(map(paper.rolled, paper.placements)):
+        return [(READINGS[0], ALL)]
+    return [*((reading, ALL) for reading in READINGS), (READINGS[0], LEVEL)]
+
+
+def correlations(values: Values, tried: list[Variant]) -> list[Json]:
+    """Return a row for each paper, condition, class, reading, set of placements and score."""
+    return [
+        _row(question, candidate, values, tried)
+        for paper in papers()
+        for question in questions(paper)
+        for candidate in candidates_of(paper)
+    ]
+
+
+def _row(question: Question, candidate: Candidate, values: Values, tried: list[Variant]) -> Json:
+    aims = question.aims
+    score = question.ranked(candidate, values)
+    by_detector = {detector: spearman(score, aim) for detector, aim in aims.items()}
+    chance = _chance(tuple(score), tuple(map(tuple, aims.values())))
+    mean = _mean_rho(score, aims)
+    others = [_mean_rho(question.ranked(candidate, values, way), aims) for way in tried]
+    known = [rho for rho in (mean, *others) if rho is not None]
+    return {
+        "paper": question.paper.id,
+        "condition": question.condition,
+        "class": question.cls,
+        "reading": question.reading,
+        "placements": question.placed,
+        "count": len(question.placements),
+        "score": candidate.name,
+        "values": score,
+        "by_detector": by_detector,
+        "mean": mean,
+        "p": None if chance is None or mean is None else exact_p(mean, chance),
+        "lowest": min(known, default=None),
+        "highest": max(known, default=None),
+        "agreement": agreement(list(aims.values())),
+    }
+
+
+def _mean_rho(score: list[float], aims: Mapping[str, list[float]]) -> float | None:
+    found = [spearman(score, aim) for aim in aims.values()]
+    return None if None in found else float(np.mean([rho for rho in found if rho is not None]))
+
+
+@cache
+def _chance(score: tuple[float, ...], aims: tuple[tuple[float, ...], ...]) -> Floats | None:
+    return under_chance(score, aims)
+
+
+def over_papers(values: Values, cls: str = MAIN_CLASS) -> list[Json]:
+    """Return, for each score of ours, its mean rho over the papers, clean results, and Holm's p.
+
+    A row for each way to take the first paper's rolled placements; the papers count alike, and in
+    each of them all placements are shuffled.
+    """
+    rows: list[Json] = []
+    first, second = papers()
+    for reading, placed in _ways(first):
+        asked = (
+            Question(first, CLEAN, cls, reading, placed),
+            Question(second, CLEAN, cls, READINGS[0], ALL),
+        )
+        found = [_over_both(candidate, asked, values) for candidate in CANDIDATES]
+        for row, adjusted in zip(found, holm([row["p"] for row in found]), strict=True):
+            rows.append({**row, "holm": adjusted, "reading": reading, "placements": placed})
+    return rows
+
+
+def _over_both(candidate: Candidate, asked: tuple[Question, Question], values: Values) -> Json:
+    rho, chance = [], []
+    for question in asked:
+        score, aims = question.ranked(candidate, values), question.aims
+        rho.append(_mean_rho(score, aims))
+        chance.append(_chance(tuple(score), tuple(map(tuple, aims.values()))))
+    row: Json = {"score": candidate.name, "rho": rho, "mean": None, "p": 1.0}
+    if rho[0] is not None and rho[1] is not None:
+        assert chance[0] is not None and chance[1] is not None
+        row["mean"] = (rho[0] + rho[1]) / 2.0
+        row["p"] = exact_p_of_mean(row["mean"], chance[0], chance[1])
+    return row

@@ -10,7 +10,7 @@ from pe_core.text import dump_json
 
 from .effort import from_dict
 from .plan import scores_and_figures
-from .tasks import FUNCTIONS
+from .tasks import function_of
 
 
 def differences(data: Mapping[str, Any], tell: Callable[[str], None]) -> tuple[int, list[str]]:
@@ -26,7 +26,7 @@ def differences(data: Mapping[str, Any], tell: Callable[[str], None]) -> tuple[i
     tasks = scores_and_figures(from_dict(data["made"]["effort"]))
     unlike = []
     for done, task in enumerate(tasks, 1):
-        value = json.loads(dump_json(FUNCTIONS[task.function](**task.arguments)))
+        value = json.loads(dump_json(function_of(task.function)(**task.arguments)))
         same = value == data["results"][task.name]["value"]
         tell(f"[{done}/{len(tasks)}] {task.name}  {'equal' if same else 'NOT EQUAL'}")
         if not same:

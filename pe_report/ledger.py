@@ -8,6 +8,8 @@ import os
 import platform
 import re
 import subprocess
+from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +18,11 @@ import numpy as np
 import pe_core as pe
 from pe_core.text import dump_json, write_bytes
 
-from .effort import Effort, to_dict
 from .read import SCHEMA, checked_results, read_json
 
 RESULTS = "results.json"
 LONGEST_COMMIT = 40
+Checked = Callable[[Path, Any], dict[str, dict[str, Any]]]
 
 
 class Ledger:
@@ -30,9 +32,12 @@ class Ledger:
     ----------
     folder : Path
         Where results.json is, or will be.
-    effort : Effort
+    effort : dataclass
         Results of another effort, commit or NumPy are not gone on with: they are kept under a name
         of their own.
+    checked : callable, optional
+        Takes the file and its results, and returns them when they are whole: those of ``pe
+        reproduce`` by default.
 
     Attributes
     ----------
@@ -47,7 +52,7 @@ class Ledger:
         When the file is no JSON, or one of this run that is damaged.
     """
 
-    def __init__(self, folder: Path, effort: Effort) -> None:
+    def __init__(self, folder: Path, effort: Any, checked: Checked = checked_results) -> None:
         self.path = folder / RESULTS
         self.made = made_by(effort)
         self.results: dict[str, dict[str, Any]] = {}
@@ -55,7 +60,7 @@ class Ledger:
         if self.path.exists():
             before = read_json(self.path)
             if before.get("schema") == SCHEMA and before.get("made") == self.made:
-                self.results = checked_results(self.path, before.get("results"))
+                self.results = checked(self.path, before.get("results"))
             else:
                 self.aside = _free_name(folder, before.get("made"))
         self.found = len(self.results)
@@ -81,7 +86,7 @@ class Ledger:
         return data
 
 
-def made_by(effort: Effort) -> dict[str, Any]:
+def made_by(effort: Any) -> dict[str, Any]:
     """Say what makes the results: commit, versions, machine, effort."""
     data: dict[str, Any] = json.loads(
         dump_json(
@@ -91,7 +96,7 @@ def made_by(effort: Effort) -> dict[str, Any]:
                 "numpy": np.__version__,
                 "python": platform.python_version(),
                 "machine": f"{_processor()}, {os.cpu_count()} processors",
-                "effort": to_dict(effort),
+                "effort": asdict(effort),
             }
         )
     )

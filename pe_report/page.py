@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,12 @@ TITLE = "# The paper's experiments, reproduced"
 WIDTH = 100
 
 
-def check_ours(folder: Path) -> None:
+def check_ours(folder: Path, title: str = TITLE, verb: str = "pe reproduce") -> None:
     """Raise `InputError` when a page of somebody else's is where ours would be."""
     path = folder / PAGE
-    if path.is_file() and not read_bytes(path).startswith(TITLE.encode()):
+    if path.is_file() and not read_bytes(path).startswith(title.encode()):
         found = "another; it stays as it is, choose another folder"
-        raise InputError(path, "output", "no file, or a page of pe reproduce", found)
+        raise InputError(path, "output", f"no file, or a page of {verb}", found)
 
 
 def write_page(data: Mapping[str, Any], folder: Path) -> None:
@@ -33,7 +33,12 @@ def write_page(data: Mapping[str, Any], folder: Path) -> None:
 
 def page(facts: Facts) -> str:
     """Return the page as Markdown."""
-    blocks = (block for part in SECTIONS for block in part(facts).strip().split("\n\n"))
+    return put_together(part(facts) for part in SECTIONS)
+
+
+def put_together(sections: Iterable[str]) -> str:
+    """Return sections of Markdown as one page, in lines of even width."""
+    blocks = (block for part in sections for block in part.strip().split("\n\n"))
     return "\n\n".join(map(_wrapped, blocks)) + "\n"
 
 

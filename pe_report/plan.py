@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,12 +17,15 @@ LIDAR_ROWS = ("1_pandar64", "1_hdl64e")
 QUICK_SETTINGS = ("as shipped", "voxels of 0.4 m (space 4.8 m high)")
 
 
+Function = Callable[..., dict[str, Any]]
+
+
 @dataclass(frozen=True)
 class Task:
-    """A function of `tasks`, its arguments, and the name its result goes by."""
+    """A function (of `tasks` by its name), its arguments, and the name its result goes by."""
 
     name: str
-    function: str
+    function: Function | str
     arguments: dict[str, Any] = field(default_factory=dict)
 
 

@@ -16,12 +16,11 @@ from pe_core import InputError
 from pe_core.search import live_as_long_as_the_parent
 
 from . import tasks
-from .effort import Effort
 from .ledger import Ledger
-from .plan import Task, plan
+from .plan import Function, Task, plan
 
 Tell = Callable[[str], None]
-Plan = Callable[[Effort, Mapping[str, Any]], list[Task]]
+Plan = Callable[[Any, Mapping[str, Any]], list[Task]]
 ENDING = ("SIGINT", "SIGTERM", "SIGHUP")
 """Signals that ask a process to end; Windows has no SIGHUP."""
 
@@ -35,13 +34,14 @@ class Ended(KeyboardInterrupt):
 
 
 def run_all(
-    effort: Effort, ledger: Ledger, workers: int | None, tell: Tell, tasks_now: Plan = plan
+    effort: Any, ledger: Ledger, workers: int | None, tell: Tell, tasks_now: Plan = plan
 ) -> None:
     """Run every task that the ledger does not know yet.
 
     Parameters
     ----------
-    effort : Effort
+    effort : dataclass
+        How much is computed: what `tasks_now` takes.
     ledger : Ledger
     workers : int or None
         Processes, no more than there are processors; None or 0 for as many.
@@ -128,7 +128,7 @@ def _end(signum: int, _frame: object) -> None:
     raise Ended(signum)
 
 
-def _run(function: str, arguments: dict[str, Any]) -> tuple[dict[str, Any], float]:
+def _run(function: Function | str, arguments: dict[str, Any]) -> tuple[dict[str, Any], float]:
     started = time.perf_counter()
-    value = tasks.FUNCTIONS[function](**arguments)
+    value = tasks.function_of(function)(**arguments)
     return value, time.perf_counter() - started

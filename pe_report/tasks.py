@@ -19,6 +19,7 @@ from .bound import farthest_at, least_entropy, least_unseen
 from .expected import expected_entropy
 from .fitting import fit_data
 from .paper import PITCH_HEIGHT_M, ROW
+from .plan import Function
 from .problems import pitched, placed, study_of, with_prior, without_cameras
 from .settings import EXPECTED, SETTINGS
 
@@ -139,6 +140,12 @@ def fit(table: str) -> Json:
 FUNCTIONS: Mapping[str, Any] = {
     f.__name__: f for f in (score, search, pitch, vary, bound, bound_curve, prior_map, fit)
 }
+
+
+def function_of(given: Function | str) -> Function:
+    """Return what a task runs: a function, or the one of that name."""
+    found: Function = FUNCTIONS[given] if isinstance(given, str) else given
+    return found
 
 
 def _scored(study: pe.Study) -> Json:

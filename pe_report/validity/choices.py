@@ -67,8 +67,8 @@ def body_of(name: str) -> pe.Vehicle | None:
     if name == "sedan":
         mesh = pe.read_mesh(STUDIES.parent / "sedan.npz")
         return pe.Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
-    length, width, height = BODY_M
-    return pe.Vehicle(box_triangles((0.0, 0.0, height / 2.0), BODY_M, 0.0))
+    half = BODY_M[2] / 2.0
+    return pe.Vehicle(box_triangles((0.0, 0.0, half), BODY_M, 0.0))
 
 
 def box_triangles(

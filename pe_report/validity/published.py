@@ -95,8 +95,8 @@ class Paper:
 
 
 def _camera(row: Mapping[str, Any]) -> pe.Camera:
-    name, hfov = f"camera of {row['hfov_deg']} deg", math.radians(row["hfov_deg"])
-    return pe.Camera(name, *row["image"], hfov)
+    (width, height), hfov_deg = row["image"], row["hfov_deg"]
+    return pe.Camera(f"camera of {hfov_deg} deg", width, height, math.radians(hfov_deg))
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The verbs ``fit``, ``front`` and ``reproduce`` of the command ``pe``: their options alone.
+"""The verbs ``fit``, ``front``, ``reproduce`` and ``validate`` of the command ``pe``: their options alone.
 
 What they do is imported when they are called, so that the other verbs start without it.
 """
@@ -14,6 +14,7 @@ from pe_core.app import Answer, count_up_to, plots
 from pe_core.metric import SATURATION
 
 FOLDER, QUICK_FOLDER = "docs/reproduction", "reproduction-quick"
+VALIDITY_FOLDER, QUICK_VALIDITY_FOLDER = "docs/validity", "validity-quick"
 SNIPPET, PLOT = "ap.toml", "ap.png"
 MOST_WORKERS = 1024
 
@@ -23,6 +24,7 @@ def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
     _add_fit(verbs)
     _add_front(verbs)
     _add_reproduce(verbs)
+    _add_validate(verbs)
     if _draw_front not in plots:
         plots.append(_draw_front)
 
@@ -53,32 +55,37 @@ def _add_front(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
 
 def _add_reproduce(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     reproduce = verbs.add_parser("reproduce", help="run the paper's experiments and report on them")
-    reproduce.add_argument(
-        "-o",
-        "--output",
-        metavar="DIR",
-        help=f"folder for page, plots and results.json (default {FOLDER}, or {QUICK_FOLDER})",
-    )
-    reproduce.add_argument("--quick", action="store_true", help="check all orderings in a minute")
-    instead = reproduce.add_mutually_exclusive_group()
-    instead.add_argument(
-        "--page-only",
-        action="store_true",
-        help="write page and plots of the results that are there",
-    )
+    instead = _add_page_options(reproduce, FOLDER, QUICK_FOLDER, "check all orderings in a minute")
     instead.add_argument(
         "--check",
         action="store_true",
         help="compute again what needs no search, compare with the results that are there",
     )
-    reproduce.add_argument("--json", action="store_true", help="print results.json on stdout")
-    reproduce.add_argument(
-        "--workers",
-        type=count_up_to(MOST_WORKERS),
-        metavar="N",
-        help="processes (default, and at most: all)",
-    )
     reproduce.set_defaults(function=_reproduce)
+
+
+def _add_validate(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    about = "hold the scores against published results of detectors"
+    validate = verbs.add_parser("validate", help=about)
+    quick = "on few voxels and objects, in a minute"
+    _add_page_options(validate, VALIDITY_FOLDER, QUICK_VALIDITY_FOLDER, quick)
+    validate.set_defaults(function=_validate)
+
+
+def _add_page_options(
+    parser: argparse.ArgumentParser, folder: str, quick_folder: str, quick: str
+) -> argparse._MutuallyExclusiveGroup:
+    """Add what verbs share that write a page; return the group of what they do instead."""
+    about = f"folder for page, plots and results.json (default {folder}, or {quick_folder})"
+    parser.add_argument("-o", "--output", metavar="DIR", help=about)
+    parser.add_argument("--quick", action="store_true", help=quick)
+    instead = parser.add_mutually_exclusive_group()
+    about = "write page and plots of the results that are there"
+    instead.add_argument("--page-only", action="store_true", help=about)
+    parser.add_argument("--json", action="store_true", help="print results.json on stdout")
+    about = "processes (default, and at most: all)"
+    parser.add_argument("--workers", type=count_up_to(MOST_WORKERS), metavar="N", help=about)
+    return instead
 
 
 def _fit(args: argparse.Namespace) -> Answer:
@@ -105,3 +112,9 @@ def _reproduce(args: argparse.Namespace) -> Answer:
     from .reproduce import reproduce
 
     return reproduce(args)
+
+
+def _validate(args: argparse.Namespace) -> Answer:
+    from .validity.validate import validate
+
+    return validate(args)

@@ -35,6 +35,11 @@ def front_figure() -> Any:
     return _drawing_module("front")
 
 
+def validity_figures() -> Any:
+    """Return the module of the plots of ``pe validate``; the same error."""
+    return _drawing_module("validity.figures")
+
+
 def _drawing_module(name: str) -> Any:
     try:
         return import_module(f".{name}", __package__)

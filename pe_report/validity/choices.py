@@ -6,14 +6,18 @@ time, they are only shown. All of it stood here before the first score was corre
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 import pe_core as pe
+from pe_core.kinds import carried_over
+from pe_core.metric import POINTPILLARS
 
 from ..problems import STUDIES
+
+Floats3 = Sequence[float] | np.ndarray
 
 BODY_M = (4.902, 2.128, 1.511)
 """Length, width, height of the simulated Lincoln MKZ 2017, as the repositories have them."""
@@ -22,6 +26,9 @@ BODIES = ("box", "none", "sedan")
 """What hides: a box of `BODY_M`; nothing; the sedan that comes with the project."""
 DENSITIES = (1.0, 0.5, 2.0)
 """Factor on how many objects stand round the vehicle at once."""
+CURVES = ("fitted", "carried over")
+"""AP curves of objects: those of the project; or, for LiDARs too, the paper's curve of a voxel
+carried over to the size of a class."""
 PARTS = ("own class", "all classes")
 """Which part of a score is held against a class's AP: its own, or that of the whole rig."""
 
@@ -32,6 +39,7 @@ class Variant:
 
     body: str = BODIES[0]
     density: float = DENSITIES[0]
+    curves: str = CURVES[0]
     part: str = PARTS[0]
 
     @property
@@ -43,6 +51,8 @@ class Variant:
             said.append(f"body: {self.body}")
         if self.density != first.density:
             said.append(f"{self.density:g} times the traffic")
+        if self.curves != first.curves:
+            said.append("the paper's curves for objects")
         if self.part != first.part:
             said.append(self.part)
         return ", ".join(said)
@@ -57,6 +67,7 @@ def variants(every: bool) -> Iterator[Variant]:
     if every:
         yield from (replace(BASE, body=body) for body in BODIES[1:])
         yield from (replace(BASE, density=factor) for factor in DENSITIES[1:])
+        yield from (replace(BASE, curves=curves) for curves in CURVES[1:])
         yield from (replace(BASE, part=part) for part in PARTS[1:])
 
 
@@ -71,9 +82,21 @@ def body_of(name: str) -> pe.Vehicle | None:
     return pe.Vehicle(box_triangles((0.0, 0.0, half), BODY_M, 0.0))
 
 
-def box_triangles(
-    center: tuple[float, float, float], size: tuple[float, float, float], yaw: float
-) -> np.ndarray:
+def prior_of(density: float) -> pe.Prior:
+    """Return the road prior, with so many times the documented number of objects at once."""
+    road = pe.Prior.road()
+    at_once = road.objects_at_once(pe.PerceptionSpace())
+    return replace(road, density={name: count * density for name, count in at_once.items()})
+
+
+def curves_of(name: str) -> dict[str, dict[str, pe.ApCurve]]:
+    """Return the AP curves of objects that differ from the project's own."""
+    if name == CURVES[0]:
+        return {}
+    return {"lidar": {c.name: carried_over(POINTPILLARS, c.size) for c in pe.Prior.road().classes}}
+
+
+def box_triangles(center: Floats3, size: Floats3, yaw: float) -> np.ndarray:
     """Return the (12, 3, 3) triangles of an upright box [m, rad], outward."""
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
     corners = signs * np.asarray(size) / 2.0

@@ -13,21 +13,23 @@ class ValidityEffort:
     ----------
     samples : int
         Voxels a score looks at; 0: all.
+    variant_samples : int
+        The same where what had to be chosen is varied.
     traffic_samples, traffic_scenes : int
         Voxels and scenes of the voxel scores in traffic.
-    objects, scenes : int
-        Objects standing alone, and scenes of traffic, that the object scores look at.
+    scenes : int
+        Scenes of objects, about 19 in each, that the object scores look at.
     all_variants : bool
         Whether what had to be chosen is varied.
     """
 
     samples: int
+    variant_samples: int
     traffic_samples: int
     traffic_scenes: int
-    objects: int
     scenes: int
     all_variants: bool
 
 
-FULL = ValidityEffort(0, 32_768, 32, 20_000, 400, True)
-QUICK = ValidityEffort(8_192, 4_096, 1, 512, 8, False)
+FULL = ValidityEffort(0, 262_144, 32_768, 32, 1_000, True)
+QUICK = ValidityEffort(8_192, 8_192, 4_096, 1, 8, False)

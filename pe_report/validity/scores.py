@@ -11,10 +11,8 @@ from typing import Any
 
 from .choices import PARTS, Variant
 from .published import Paper
-from .tasks import object_name, voxel_name
+from .tasks import ALONE, TRAFFIC, object_name, voxel_name
 
-ALONE, TRAFFIC = "alone", "traffic"
-CAMERAS_PRIOR, UNIFORM = "road", "uniform"
 Values = Mapping[str, Any]
 Ranked = Callable[[Paper, str, str, str, Variant, Values], float]
 """From paper, placement, reading, class, variant and what was computed to a number."""

@@ -1,4 +1,4 @@
-"""The verbs ``fit``, ``front``, ``reproduce`` and ``validate`` of the command ``pe``: their options alone.
+"""The verbs ``fit``, ``front``, ``reproduce``, ``validate`` of ``pe``: their options alone.
 
 What they do is imported when they are called, so that the other verbs start without it.
 """

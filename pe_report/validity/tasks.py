@@ -7,9 +7,9 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from pe_core.targets import DrawnObjects, ObjectEvaluator, Targets, drawn_objects
 
 import pe_core as pe
-from pe_core.targets import DrawnObjects, ObjectEvaluator, Targets, drawn_objects
 
 from .choices import Variant, body_of, box_triangles, curves_of, prior_of
 from .published import paper_of

@@ -6,8 +6,8 @@ from .each import by_class, by_condition, ranges
 from .evidence import evidence
 from .head import head
 from .made import made
-from .settle import settle
 from .one_test import one_test
+from .settle import settle
 
 SECTIONS = (
     head,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -25,9 +25,10 @@ from .scores import CANDIDATES, Candidate, candidates_of
 Values = Mapping[str, Any]
 Json = dict[str, Any]
 
-ALL, LEVEL = "all", "none rolled"
-SETS = (ALL, LEVEL)
-"""Rolled placements in, or out."""
+ALL, LEVEL, LAYOUTS = "all", "none rolled", "LiDAR layouts"
+"""Rolled placements in, or out; or those that differ in their cameras alone taken as one."""
+WAYS = ((READINGS[0], ALL), (READINGS[1], ALL), (READINGS[0], LEVEL), (READINGS[0], LAYOUTS))
+"""How doubtful placements are taken in the one test: the first way is that of all other tables."""
 MAIN_CLASS = "car"
 """The class of the one test over both papers; the others are shown."""
 CEILING = 0.5
@@ -47,7 +48,7 @@ class Question:
     reading : str
         How printed rolls are read.
     placed : str
-        One of `SETS`.
+        `ALL`, `LEVEL` or `LAYOUTS`.
     """
 
     paper: Paper
@@ -57,29 +58,45 @@ class Question:
     placed: str
 
     @property
-    def placements(self) -> list[str]:
-        """Names of the placements that are ranked."""
+    def placements(self) -> list[tuple[str, ...]]:
+        """Names of the placements that are ranked, those that count as one together."""
         every = self.paper.placements
-        return [n for n in every if self.placed == ALL or not self.paper.rolled(n)]
+        if self.placed == LEVEL:
+            return [(n,) for n in every if not self.paper.rolled(n)]
+        if self.placed == ALL:
+            return [(n,) for n in every]
+        layouts = dict.fromkeys(map(_layout, every))
+        return [tuple(n for n in every if _layout(n) == layout) for layout in layouts]
 
     @property
     def aims(self) -> dict[str, list[float]]:
         """AP of the placements, by detector."""
         by_detector = self.paper.ap[self.condition]
         return {
-            detector: [by_class[self.cls][n] for n in self.placements]
+            detector: [_mean(by_class[self.cls][n] for n in names) for names in self.placements]
             for detector, by_class in by_detector.items()
         }
 
     def ranked(self, candidate: Candidate, values: Values, variant: Variant = BASE) -> list[float]:
         """Return a score's values of the placements, higher for better."""
-        return [
-            candidate.ranked(self.paper, n, self._reading(n), self.cls, variant, values)
-            for n in self.placements
-        ]
+
+        def of(name: str) -> float:
+            how = self._reading(name), self.cls, variant, values
+            return candidate.ranked(self.paper, name, *how)
+
+        return [_mean(map(of, names)) for names in self.placements]
 
     def _reading(self, placement: str) -> str:
         return self.reading if self.paper.rolled(placement) else READINGS[0]
+
+
+def _layout(placement: str) -> str:
+    """Name of a placement's LiDAR layout: what follows the name of its cameras, if it has any."""
+    return placement.rpartition("+")[2]
+
+
+def _mean(values: Iterable[float]) -> float:
+    return float(np.mean(list(values)))
 
 
 def questions(paper: Paper) -> list[Question]:
@@ -93,9 +110,10 @@ def questions(paper: Paper) -> list[Question]:
 
 
 def _ways(paper: Paper) -> list[tuple[str, str]]:
+    """Return how a paper's own placements may be taken."""
     if not any(map(paper.rolled, paper.placements)):
-        return [(READINGS[0], ALL)]
-    return [*((reading, ALL) for reading in READINGS), (READINGS[0], LEVEL)]
+        return [WAYS[0], WAYS[3]] if any("+" in n for n in paper.placements) else [WAYS[0]]
+    return list(WAYS[:3])
 
 
 def correlations(values: Values, tried: list[Variant]) -> list[Json]:
@@ -147,15 +165,15 @@ def _chance(score: tuple[float, ...], aims: tuple[tuple[float, ...], ...]) -> Fl
 def over_papers(values: Values, cls: str = MAIN_CLASS) -> list[Json]:
     """Return, for each score of ours, its mean rho over the papers, clean results, and Holm's p.
 
-    A row for each way to take the first paper's rolled placements; the papers count alike, and in
-    each of them all placements are shuffled.
+    A row for each of `WAYS` and each score; the papers count alike, and in each of them all
+    placements are shuffled.
     """
     rows: list[Json] = []
     first, second = papers()
-    for reading, placed in _ways(first):
+    for reading, placed in WAYS:
         asked = (
             Question(first, CLEAN, cls, reading, placed),
-            Question(second, CLEAN, cls, READINGS[0], ALL),
+            Question(second, CLEAN, cls, READINGS[0], LAYOUTS if placed == LAYOUTS else ALL),
         )
         found = [_over_both(candidate, asked, values) for candidate in CANDIDATES]
         for row, adjusted in zip(found, holm([row["p"] for row in found]), strict=True):

@@ -18,8 +18,11 @@ from matplotlib.lines import Line2D
 from ..style import BLUE, GREY, ORANGE, finished, save, style
 from .facts import MAIN_CLASS, ValidityFacts, least_told_apart
 from .published import CLEAN, Paper, papers
+from .sections.one_test import signed
 
 PAPER_COLORS = (BLUE, ORANGE)
+DARK = 0.7
+"""Beyond it a cell is too dark for black letters."""
 FAINT = "#dddddd"
 NEAR = 0.13
 """Dots of the two papers stand this far above and below their line."""
@@ -125,8 +128,8 @@ def by_class(path: Path, facts: ValidityFacts) -> None:
 
 
 def _cell(axes: Axes, x: int, y: int, rho: float | None, greyed: bool) -> None:
-    told = "-" if rho is None else f"{rho + 0.0:+.2f}"
+    told = signed(rho)
     color = FAINT if greyed or rho is None else plt.get_cmap("PuOr")(0.5 - 0.42 * rho)
     axes.add_patch(plt.Rectangle((x - 0.48, y - 0.46), 0.96, 0.92, color=color, lw=0))
-    ink = GREY if greyed else "black"
+    ink = GREY if greyed else "white" if abs(rho or 0.0) > DARK else "black"
     axes.text(x, y, told, ha="center", va="center", fontsize=8.5, color=ink)

@@ -9,7 +9,7 @@ from typing import Any
 from pe_core import InputError
 from pe_core.text import dump_json
 
-from ..form import Amount, Each, Object, Text, check_keys
+from ..form import Amount, Each, Keyed, Text, check_keys
 from ..read import ENTROPY, MADE, SCHEMA, SHARE, read_json
 from .choices import BASE, variants
 from .correlated import correlations, over_papers
@@ -19,8 +19,8 @@ from .plan import names
 VOXEL_PART = {"entropy": ENTROPY, "coverage": SHARE}
 OBJECT_PART = {"entropy": ENTROPY, "stderr": Amount(0.0), "ap": SHARE}
 SHAPES = {
-    "voxels": Each(Object({**VOXEL_PART, "per_class": Each(Object(VOXEL_PART))})),
-    "objects": Object({**OBJECT_PART, "per_class": Each(Object(OBJECT_PART))}),
+    "voxels": Each(Keyed({**VOXEL_PART, "per_class": Each(Keyed(VOXEL_PART))})),
+    "objects": Keyed({**OBJECT_PART, "per_class": Each(Keyed(OBJECT_PART))}),
 }
 """What a result looks like, by the first part of its name."""
 KEYS = ("schema", "made", "correlations", "over_papers", "results")

@@ -68,9 +68,7 @@ def _height(
 def _with_traffic(name: str, about: str, made: Callable[[str], Ranked]) -> list[Candidate]:
     return [
         Candidate(name, about, made(ALONE)),
-        Candidate(
-            f"{name}, in traffic", f"the same among other road users: {about}", made(TRAFFIC)
-        ),
+        Candidate(f"{name}, in traffic", "the same among other road users", made(TRAFFIC)),
     ]
 
 
@@ -82,7 +80,7 @@ CANDIDATES = (
     ),
     *_with_traffic(
         "perception entropy, uniform prior",
-        "the same with every voxel counted alike",
+        "the paper's score with every voxel counted alike",
         lambda traffic: _voxels("uniform", "entropy", traffic, -1.0),
     ),
     *_with_traffic(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...words import table
-from ..correlated import LEVEL
+from ..correlated import LAYOUTS, LEVEL
 from ..facts import LEVEL_5, MAIN_CLASS, Row, ValidityFacts
 from ..published import papers
 
@@ -38,6 +38,8 @@ def way_text(way: tuple[str, str]) -> str:
     reading, placed = way
     if placed == LEVEL:
         return "Without the rolled placements"
+    if placed == LAYOUTS:
+        return "The second paper's four LiDAR layouts, cameras averaged"
     return f"All placements, rolls in {reading}"
 
 
@@ -52,4 +54,4 @@ def _line(facts: ValidityFacts, way: tuple[str, str], row: Row) -> list[str]:
 
 def signed(value: float | None) -> str:
     """Return a rho as it is shown; a dash where a score has one value for all."""
-    return "-" if value is None else f"{value + 0.0:+.2f}"
+    return "-" if value is None else f"{round(value, 2) + 0.0:+.2f}"

@@ -7,6 +7,7 @@ from .kind import Kind
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
 from .measure import measure
 from .measure_objects import ObjectsByName, measure_objects
+from .object_curves import all_carried_over
 from .object_kernel import ObjectKernel, ObjectView
 from .perception import BLIND_RULES, PerceptionModel
 from .table import KINDS, kind_named, kind_of, register, unregister
@@ -36,6 +37,7 @@ __all__ = [
     "Stopped",
     "ViewPatch",
     "Voxels",
+    "all_carried_over",
     "beam_field",
     "kind_named",
     "kind_of",

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import pe_core as pe
-from pe_core.kinds import carried_over
+from pe_core.kinds import all_carried_over
 from pe_core.metric import POINTPILLARS
 
 from ..problems import STUDIES
@@ -86,14 +86,14 @@ def prior_of(density: float) -> pe.Prior:
     """Return the road prior, with so many times the documented number of objects at once."""
     road = pe.Prior.road()
     at_once = road.objects_at_once(pe.PerceptionSpace())
-    return replace(road, density={name: count * density for name, count in at_once.items()})
+    return replace(road, density=tuple((name, count * density) for name, count in at_once.items()))
 
 
 def curves_of(name: str) -> dict[str, dict[str, pe.ApCurve]]:
     """Return the AP curves of objects that differ from the project's own."""
     if name == CURVES[0]:
         return {}
-    return {"lidar": {c.name: carried_over(POINTPILLARS, c.size) for c in pe.Prior.road().classes}}
+    return {"lidar": all_carried_over(POINTPILLARS)}
 
 
 def box_triangles(center: Floats3, size: Floats3, yaw: float) -> np.ndarray:

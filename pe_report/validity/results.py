@@ -9,7 +9,7 @@ from typing import Any
 from pe_core import InputError
 from pe_core.text import dump_json
 
-from ..form import Amount, Each, Keyed, Text, check_keys
+from ..form import Amount, Each, Form, Keyed, Text, check_keys
 from ..read import ENTROPY, MADE, SCHEMA, SHARE, read_json
 from .choices import BASE, variants
 from .correlated import correlations, over_papers
@@ -18,7 +18,7 @@ from .plan import names
 
 VOXEL_PART = {"entropy": ENTROPY, "coverage": SHARE}
 OBJECT_PART = {"entropy": ENTROPY, "stderr": Amount(0.0), "ap": SHARE}
-SHAPES = {
+SHAPES: dict[str, Form] = {
     "voxels": Each(Keyed({**VOXEL_PART, "per_class": Each(Keyed(VOXEL_PART))})),
     "objects": Keyed({**OBJECT_PART, "per_class": Each(Keyed(OBJECT_PART))}),
 }

@@ -7,9 +7,9 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from pe_core.targets import DrawnObjects, ObjectEvaluator, Targets, drawn_objects
 
 import pe_core as pe
+from pe_core.targets import DrawnObjects, ObjectEvaluator, TargetRule, drawn_objects
 
 from .choices import Variant, body_of, box_triangles, curves_of, prior_of
 from .published import paper_of
@@ -95,7 +95,7 @@ def _evaluator(prior: str, body: str, samples: int) -> pe.Evaluator:
 def _object_evaluator(
     body: str, density: float, curves: str, traffic: bool, scenes: int
 ) -> ObjectEvaluator:
-    targets = Targets("objects", traffic, scenes)
+    targets = TargetRule("objects", traffic, scenes)
     model = pe.PerceptionModel(objects=curves_of(curves))
     vehicle = body_of(body)
     return ObjectEvaluator(SPACE, prior_of(density), vehicle, targets=targets, model=model)
@@ -106,7 +106,7 @@ def _among_others(
     prior: str, body: str, density: float, samples: int, scenes: int
 ) -> list[pe.Evaluator]:
     """Return an evaluator a scene: what stands there is part of what hides."""
-    targets = Targets("objects", True, max(scenes, LEAST_SCENES))
+    targets = TargetRule("objects", True, max(scenes, LEAST_SCENES))
     drawn = drawn_objects(prior_of(density), SPACE, body_of(body), targets)
     own = body_of(body)
     bodies = [] if own is None else [own.triangles]

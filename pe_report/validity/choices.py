@@ -34,7 +34,7 @@ PARTS = ("own class", "all classes")
 
 
 @dataclass(frozen=True)
-class Variant:
+class Setting:
     """One way to choose what had to be chosen."""
 
     body: str = BODIES[0]
@@ -58,10 +58,10 @@ class Variant:
         return ", ".join(said)
 
 
-BASE = Variant()
+BASE = Setting()
 
 
-def variants(every: bool) -> Iterator[Variant]:
+def variants(every: bool) -> Iterator[Setting]:
     """Yield the first choice, then, if asked, all that differ from it in one thing."""
     yield BASE
     if every:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .choices import BASE, Variant
+from .choices import BASE, Setting
 from .published import CLEAN, READINGS, Paper, papers
 from .ranks import (
     Floats,
@@ -20,7 +20,7 @@ from .ranks import (
     spearman,
     under_chance,
 )
-from .scores import CANDIDATES, Candidate, candidates_of
+from .scores import CANDIDATES, RankedScore, candidates_of
 
 Values = Mapping[str, Any]
 Json = dict[str, Any]
@@ -36,7 +36,7 @@ CEILING = 0.5
 
 
 @dataclass(frozen=True)
-class Question:
+class RankQuestion:
     """What a score is asked: to rank a paper's placements as AP of a class does.
 
     Attributes
@@ -77,14 +77,16 @@ class Question:
             for detector, by_class in by_detector.items()
         }
 
-    def ranked(self, candidate: Candidate, values: Values, variant: Variant = BASE) -> list[float]:
+    def ranked(
+        self, candidate: RankedScore, values: Values, variant: Setting = BASE
+    ) -> list[float]:
         """Return a score's values of the placements, higher for better."""
 
-        def of(name: str) -> float:
+        def value(name: str) -> float:
             how = self._reading(name), self.cls, variant, values
             return candidate.ranked(self.paper, name, *how)
 
-        return [_mean(map(of, names)) for names in self.placements]
+        return [_mean(map(value, names)) for names in self.placements]
 
     def _reading(self, placement: str) -> str:
         return self.reading if self.paper.rolled(placement) else READINGS[0]
@@ -99,13 +101,13 @@ def _mean(values: Iterable[float]) -> float:
     return float(np.mean(list(values)))
 
 
-def questions(paper: Paper) -> list[Question]:
+def questions(paper: Paper) -> list[RankQuestion]:
     """Return all that a paper's table lets us ask."""
     found = []
     for condition, by_detector in paper.ap.items():
         classes = [cls for cls in paper.classes if all(cls in row for row in by_detector.values())]
         for cls in classes:
-            found += [Question(paper, condition, cls, *how) for how in _ways(paper)]
+            found += [RankQuestion(paper, condition, cls, *how) for how in _ways(paper)]
     return found
 
 
@@ -116,7 +118,7 @@ def _ways(paper: Paper) -> list[tuple[str, str]]:
     return list(WAYS[:3])
 
 
-def correlations(values: Values, tried: list[Variant]) -> list[Json]:
+def correlations(values: Values, tried: list[Setting]) -> list[Json]:
     """Return a row for each paper, condition, class, reading, set of placements and score."""
     return [
         _row(question, candidate, values, tried)
@@ -126,7 +128,9 @@ def correlations(values: Values, tried: list[Variant]) -> list[Json]:
     ]
 
 
-def _row(question: Question, candidate: Candidate, values: Values, tried: list[Variant]) -> Json:
+def _row(
+    question: RankQuestion, candidate: RankedScore, values: Values, tried: list[Setting]
+) -> Json:
     aims = question.aims
     score = question.ranked(candidate, values)
     by_detector = {detector: spearman(score, aim) for detector, aim in aims.items()}
@@ -172,8 +176,8 @@ def over_papers(values: Values, cls: str = MAIN_CLASS) -> list[Json]:
     first, second = papers()
     for reading, placed in WAYS:
         asked = (
-            Question(first, CLEAN, cls, reading, placed),
-            Question(second, CLEAN, cls, READINGS[0], LAYOUTS if placed == LAYOUTS else ALL),
+            RankQuestion(first, CLEAN, cls, reading, placed),
+            RankQuestion(second, CLEAN, cls, READINGS[0], LAYOUTS if placed == LAYOUTS else ALL),
         )
         found = [_over_both(candidate, asked, values) for candidate in CANDIDATES]
         for row, adjusted in zip(found, holm([row["p"] for row in found]), strict=True):
@@ -181,7 +185,9 @@ def over_papers(values: Values, cls: str = MAIN_CLASS) -> list[Json]:
     return rows
 
 
-def _over_both(candidate: Candidate, asked: tuple[Question, Question], values: Values) -> Json:
+def _over_both(
+    candidate: RankedScore, asked: tuple[RankQuestion, RankQuestion], values: Values
+) -> Json:
     rho, chance = [], []
     for question in asked:
         score, aims = question.ranked(candidate, values), question.aims

@@ -11,7 +11,7 @@ from .effort import ValidityEffort
 from .published import CLEAN, Paper, papers
 from .ranks import exact_p, under_chance
 
-Row = Mapping[str, Any]
+Figures = Mapping[str, Any]
 LEVEL_5 = 0.05
 """What is called told from chance."""
 
@@ -22,8 +22,8 @@ class ValidityFacts:
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.made: Mapping[str, Any] = data["made"]
         self.effort = ValidityEffort(**self.made["effort"])
-        self.rows: list[Row] = data["correlations"]
-        self.tests: list[Row] = data["over_papers"]
+        self.rows: list[Figures] = data["correlations"]
+        self.tests: list[Figures] = data["over_papers"]
         self.seconds = {name: entry["seconds"] for name, entry in data["results"].items()}
         self.said: dict[str, str] = {}
 
@@ -37,18 +37,18 @@ class ValidityFacts:
         """How rolled placements were taken: reading, and which placements; the main way first."""
         return list(dict.fromkeys((row["reading"], row["placements"]) for row in self.tests))
 
-    def tested(self, way: tuple[str, str]) -> list[Row]:
+    def tested(self, way: tuple[str, str]) -> list[Figures]:
         """Return the scores' tests over both papers."""
         return [row for row in self.tests if (row["reading"], row["placements"]) == way]
 
-    def correlated(self, paper: Paper, cls: str, condition: str = CLEAN) -> list[Row]:
+    def correlated(self, paper: Paper, cls: str, condition: str = CLEAN) -> list[Figures]:
         """Return the scores' correlations in one paper, rolls read the main way, all placements."""
         reading, placed = self.ways[0]
         wanted = (paper.id, condition, cls, reading, placed)
         keys = ("paper", "condition", "class", "reading", "placements")
         return [row for row in self.rows if tuple(row[key] for key in keys) == wanted]
 
-    def rho(self, paper: Paper, cls: str, score: str) -> Row:
+    def rho(self, paper: Paper, cls: str, score: str) -> Figures:
         """Return one of them."""
         return next(row for row in self.correlated(paper, cls) if row["score"] == score)
 
@@ -71,7 +71,7 @@ class ValidityFacts:
             if None not in row["rho"] and row["rho"][0] * row["rho"][1] < 0.0
         ]
 
-    def greyed(self, row: Row) -> bool:
+    def greyed(self, row: Figures) -> bool:
         """Whether the detectors disagree so much that nothing can be held against them."""
         agreed = row["agreement"]
         return agreed is None or agreed < CEILING

@@ -9,17 +9,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .choices import PARTS, Variant
+from .choices import PARTS, Setting
 from .published import Paper
 from .tasks import ALONE, TRAFFIC, object_name, voxel_name
 
 Values = Mapping[str, Any]
-Ranked = Callable[[Paper, str, str, str, Variant, Values], float]
+Ranked = Callable[[Paper, str, str, str, Setting, Values], float]
 """From paper, placement, reading, class, variant and what was computed to a number."""
 
 
 @dataclass(frozen=True)
-class Candidate:
+class RankedScore:
     """A score that is compared with AP.
 
     Attributes
@@ -38,7 +38,7 @@ class Candidate:
 
 def _voxels(prior: str, key: str, traffic: str, sign: float) -> Ranked:
     def ranked(
-        paper: Paper, placement: str, reading: str, cls: str, variant: Variant, values: Values
+        paper: Paper, placement: str, reading: str, cls: str, variant: Setting, values: Values
     ) -> float:
         found = values[voxel_name(paper.id, placement, reading, traffic, variant)][prior]
         own = found["per_class"].get(cls, found)  # the uniform prior knows no classes
@@ -50,7 +50,7 @@ def _voxels(prior: str, key: str, traffic: str, sign: float) -> Ranked:
 
 def _objects(key: str, traffic: str, sign: float) -> Ranked:
     def ranked(
-        paper: Paper, placement: str, reading: str, cls: str, variant: Variant, values: Values
+        paper: Paper, placement: str, reading: str, cls: str, variant: Setting, values: Values
     ) -> float:
         found = values[object_name(paper.id, placement, reading, traffic, variant)]
         part = found["per_class"][cls] if variant.part == PARTS[0] else found
@@ -60,15 +60,15 @@ def _objects(key: str, traffic: str, sign: float) -> Ranked:
 
 
 def _height(
-    paper: Paper, placement: str, reading: str, cls: str, variant: Variant, values: Values
+    paper: Paper, placement: str, reading: str, cls: str, variant: Setting, values: Values
 ) -> float:
     return paper.height(placement)
 
 
-def _with_traffic(name: str, about: str, made: Callable[[str], Ranked]) -> list[Candidate]:
+def _with_traffic(name: str, about: str, made: Callable[[str], Ranked]) -> list[RankedScore]:
     return [
-        Candidate(name, about, made(ALONE)),
-        Candidate(f"{name}, in traffic", "the same among other road users", made(TRAFFIC)),
+        RankedScore(name, about, made(ALONE)),
+        RankedScore(f"{name}, in traffic", "the same among other road users", made(TRAFFIC)),
     ]
 
 
@@ -98,7 +98,7 @@ CANDIDATES = (
         "mean AP of objects, by the beams and pixels they get",
         lambda traffic: _objects("ap", traffic, 1.0),
     ),
-    Candidate("mean height", "how high the LiDARs are mounted: no score at all", _height),
+    RankedScore("mean height", "how high the LiDARs are mounted: no score at all", _height),
 )
 """The scores of this project, and the simplest rival."""
 
@@ -107,17 +107,17 @@ def surrogate(name: str) -> Ranked:
     """Return the authors' own score of that name; it is of the class alone."""
 
     def ranked(
-        paper: Paper, placement: str, reading: str, cls: str, variant: Variant, values: Values
+        paper: Paper, placement: str, reading: str, cls: str, variant: Setting, values: Values
     ) -> float:
         return float(paper.surrogates[name][cls][placement])
 
     return ranked
 
 
-def candidates_of(paper: Paper) -> tuple[Candidate, ...]:
+def candidates_of(paper: Paper) -> tuple[RankedScore, ...]:
     """Return the scores that a paper's results are held against, its own ones last."""
     own = (
-        Candidate(f"{name} ({paper.short})", "the authors' own", surrogate(name))
+        RankedScore(f"{name} ({paper.short})", "the authors' own", surrogate(name))
         for name in paper.surrogates
     )
     return (*CANDIDATES, *own)

@@ -11,7 +11,7 @@ import pytest
 
 from pe_report.validity import correlated, scores
 from pe_report.validity.choices import BASE, BODY_M, body_of, box_triangles, variants
-from pe_report.validity.correlated import LAYOUTS, LEVEL, Question, questions
+from pe_report.validity.correlated import LAYOUTS, LEVEL, RankQuestion, questions
 from pe_report.validity.effort import FULL, QUICK
 from pe_report.validity.plan import names, plan
 from pe_report.validity.published import CLEAN, DEGREES, RADIANS, paper_of, papers
@@ -98,8 +98,10 @@ def test_the_quick_run_is_complete(quick):
 
 def test_height_is_what_the_papers_disagree_on(quick):
     """Independent of any score: 0.88 and -0.69, as a table of both papers' cars gives by hand."""
-    found = {row["score"]: row["rho"] for row in quick.data["over_papers"]}
-    assert found["mean height"] == pytest.approx([0.877, -0.694], abs=1e-3)
+    reading, placed = correlated.WAYS[0]
+    rows = [row for row in quick.data["over_papers"] if row["score"] == "mean height"]
+    found = {(row["reading"], row["placements"]): row["rho"] for row in rows}
+    assert found[reading, placed] == pytest.approx([0.877, -0.694], abs=1e-3)
 
 
 def test_scores_are_turned_so_that_higher_is_better(quick):
@@ -117,14 +119,14 @@ def test_scores_are_turned_so_that_higher_is_better(quick):
 
 def test_without_the_rolled_placements_there_are_five():
     paper = paper_of("place3d")
-    question = Question(paper, CLEAN, "car", DEGREES, LEVEL)
+    question = RankQuestion(paper, CLEAN, "car", DEGREES, LEVEL)
     level = ["center", "line", "pyramid", "square", "trapezoid"]
     assert [name for (name,) in question.placements] == level
     assert all(len(aim) == 5 for aim in question.aims.values())
 
 
 def test_layouts_average_what_differs_in_cameras_alone():
-    question = Question(paper_of("icra2024"), CLEAN, "car", DEGREES, LAYOUTS)
+    question = RankQuestion(paper_of("icra2024"), CLEAN, "car", DEGREES, LAYOUTS)
     assert question.placements[0] == ("wide+center", "narrow+center")
     assert question.aims["BEVFusion/VoxelNet"][0] == pytest.approx((88.65 + 87.49) / 2)
 

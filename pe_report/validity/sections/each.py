@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...words import table
 from ..choices import variants
 from ..correlated import CEILING
-from ..facts import MAIN_CLASS, Row, ValidityFacts
+from ..facts import MAIN_CLASS, Figures, ValidityFacts
 from ..published import CLEAN, Paper, papers
 from .one_test import signed, way_text
 
@@ -39,7 +39,7 @@ def _table(facts: ValidityFacts, paper: Paper, cls: str) -> str:
     return f"### {paper.short}: {paper.classes[cls]}\n\n{table(titles, lines)}\n\n"
 
 
-def _line(facts: ValidityFacts, row: Row, detectors: list[str]) -> list[str]:
+def _line(facts: ValidityFacts, row: Figures, detectors: list[str]) -> list[str]:
     figures = [signed(row["by_detector"][name]) for name in detectors]
     p = "-" if row["p"] is None else f"{row['p']:.3f}"
     told = [*figures, signed(row["mean"]), p]
@@ -66,7 +66,7 @@ choice that was fixed and all of these.
 """
 
 
-def _range(row: Row) -> str:
+def _range(row: Figures) -> str:
     return f"{signed(row['lowest'])} to {signed(row['highest'])}"
 
 
@@ -94,6 +94,6 @@ def _conditions(facts: ValidityFacts, paper: Paper) -> str:
     return f"{table(titles, lines)}\n\n"
 
 
-def _cell(facts: ValidityFacts, row: Row) -> str:
+def _cell(facts: ValidityFacts, row: Figures) -> str:
     told = signed(row["mean"])
     return f"*{told}*" if facts.greyed(row) else told

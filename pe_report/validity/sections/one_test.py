@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...words import table
 from ..correlated import LAYOUTS, LEVEL
-from ..facts import LEVEL_5, MAIN_CLASS, Row, ValidityFacts
+from ..facts import LEVEL_5, MAIN_CLASS, Figures, ValidityFacts
 from ..published import papers
 
 
@@ -43,7 +43,7 @@ def way_text(way: tuple[str, str]) -> str:
     return f"All placements, rolls in {reading}"
 
 
-def _line(facts: ValidityFacts, way: tuple[str, str], row: Row) -> list[str]:
+def _line(facts: ValidityFacts, way: tuple[str, str], row: Figures) -> list[str]:
     told = f"{row['holm']:.3f}"
     if row["holm"] < LEVEL_5:
         told = f"**{told}**"

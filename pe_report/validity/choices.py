@@ -34,7 +34,7 @@ PARTS = ("own class", "all classes")
 
 
 @dataclass(frozen=True)
-class Setting:
+class ScoreChoice:
     """One way to choose what had to be chosen."""
 
     body: str = BODIES[0]
@@ -58,10 +58,10 @@ class Setting:
         return ", ".join(said)
 
 
-BASE = Setting()
+BASE = ScoreChoice()
 
 
-def variants(every: bool) -> Iterator[Setting]:
+def variants(every: bool) -> Iterator[ScoreChoice]:
     """Yield the first choice, then, if asked, all that differ from it in one thing."""
     yield BASE
     if every:

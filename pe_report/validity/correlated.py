@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .choices import BASE, Setting
+from .choices import BASE, ScoreChoice
 from .published import CLEAN, READINGS, Paper, papers
 from .ranks import (
     Floats,
@@ -78,7 +78,7 @@ class RankQuestion:
         }
 
     def ranked(
-        self, candidate: RankedScore, values: Values, variant: Setting = BASE
+        self, candidate: RankedScore, values: Values, variant: ScoreChoice = BASE
     ) -> list[float]:
         """Return a score's values of the placements, higher for better."""
 
@@ -118,7 +118,7 @@ def _ways(paper: Paper) -> list[tuple[str, str]]:
     return list(WAYS[:3])
 
 
-def correlations(values: Values, tried: list[Setting]) -> list[Json]:
+def correlations(values: Values, tried: list[ScoreChoice]) -> list[Json]:
     """Return a row for each paper, condition, class, reading, set of placements and score."""
     return [
         _row(question, candidate, values, tried)
@@ -129,7 +129,7 @@ def correlations(values: Values, tried: list[Setting]) -> list[Json]:
 
 
 def _row(
-    question: RankQuestion, candidate: RankedScore, values: Values, tried: list[Setting]
+    question: RankQuestion, candidate: RankedScore, values: Values, tried: list[ScoreChoice]
 ) -> Json:
     aims = question.aims
     score = question.ranked(candidate, values)

@@ -31,5 +31,5 @@ class ValidityEffort:
     all_variants: bool
 
 
-FULL = ValidityEffort(0, 262_144, 32_768, 32, 500, True)
+FULL = ValidityEffort(0, 262_144, 32_768, 16, 500, True)
 QUICK = ValidityEffort(8_192, 8_192, 4_096, 1, 8, False)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ..plan import Task
-from .choices import BASE, Setting, variants
+from .choices import BASE, ScoreChoice, variants
 from .effort import ValidityEffort
 from .published import papers
 from .tasks import (
@@ -36,7 +36,7 @@ def _tasks(effort: ValidityEffort) -> dict[str, Task]:
     return {task.name: task for task in found}
 
 
-def _of_variant(effort: ValidityEffort, way: Setting) -> Iterator[Task]:
+def _of_variant(effort: ValidityEffort, way: ScoreChoice) -> Iterator[Task]:
     for paper in papers():
         for placement in paper.placements:
             for reading in paper.readings(placement):
@@ -44,7 +44,7 @@ def _of_variant(effort: ValidityEffort, way: Setting) -> Iterator[Task]:
 
 
 def _of_placement(
-    effort: ValidityEffort, way: Setting, placed: tuple[str, str, str]
+    effort: ValidityEffort, way: ScoreChoice, placed: tuple[str, str, str]
 ) -> Iterator[Task]:
     which = dict(zip(("paper", "placement", "reading"), placed, strict=True))
     where: dict[str, Any] = {**which, "body": way.body}

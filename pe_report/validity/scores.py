@@ -9,12 +9,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .choices import PARTS, Setting
+from .choices import PARTS, ScoreChoice
 from .published import Paper
 from .tasks import ALONE, TRAFFIC, object_name, voxel_name
 
 Values = Mapping[str, Any]
-Ranked = Callable[[Paper, str, str, str, Setting, Values], float]
+Ranked = Callable[[Paper, str, str, str, ScoreChoice, Values], float]
 """From paper, placement, reading, class, variant and what was computed to a number."""
 
 
@@ -38,7 +38,7 @@ class RankedScore:
 
 def _voxels(prior: str, key: str, traffic: str, sign: float) -> Ranked:
     def ranked(
-        paper: Paper, placement: str, reading: str, cls: str, variant: Setting, values: Values
+        paper: Paper, placement: str, reading: str, cls: str, variant: ScoreChoice, values: Values
     ) -> float:
         found = values[voxel_name(paper.id, placement, reading, traffic, variant)][prior]
         own = found["per_class"].get(cls, found)  # the uniform prior knows no classes
@@ -50,7 +50,7 @@ def _voxels(prior: str, key: str, traffic: str, sign: float) -> Ranked:
 
 def _objects(key: str, traffic: str, sign: float) -> Ranked:
     def ranked(
-        paper: Paper, placement: str, reading: str, cls: str, variant: Setting, values: Values
+        paper: Paper, placement: str, reading: str, cls: str, variant: ScoreChoice, values: Values
     ) -> float:
         found = values[object_name(paper.id, placement, reading, traffic, variant)]
         part = found["per_class"][cls] if variant.part == PARTS[0] else found
@@ -60,7 +60,7 @@ def _objects(key: str, traffic: str, sign: float) -> Ranked:
 
 
 def _height(
-    paper: Paper, placement: str, reading: str, cls: str, variant: Setting, values: Values
+    paper: Paper, placement: str, reading: str, cls: str, variant: ScoreChoice, values: Values
 ) -> float:
     return paper.height(placement)
 
@@ -107,7 +107,7 @@ def surrogate(name: str) -> Ranked:
     """Return the authors' own score of that name; it is of the class alone."""
 
     def ranked(
-        paper: Paper, placement: str, reading: str, cls: str, variant: Setting, values: Values
+        paper: Paper, placement: str, reading: str, cls: str, variant: ScoreChoice, values: Values
     ) -> float:
         return float(paper.surrogates[name][cls][placement])
 

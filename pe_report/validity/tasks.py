@@ -11,7 +11,7 @@ import numpy as np
 import pe_core as pe
 from pe_core.targets import DrawnObjects, ObjectEvaluator, TargetRule, drawn_objects
 
-from .choices import Setting, body_of, box_triangles, curves_of, prior_of
+from .choices import ScoreChoice, body_of, box_triangles, curves_of, prior_of
 from .published import paper_of
 
 Json = dict[str, Any]
@@ -21,13 +21,13 @@ PRIORS = {"road": pe.Prior.road, "uniform": pe.Prior.uniform}
 SPACE = pe.PerceptionSpace()
 
 
-def voxel_name(paper: str, placement: str, reading: str, traffic: str, way: Setting) -> str:
+def voxel_name(paper: str, placement: str, reading: str, traffic: str, way: ScoreChoice) -> str:
     """Name of a placement's voxel scores; the density tells only in traffic."""
     density = f"/{way.density:g}" if traffic == TRAFFIC else ""
     return f"voxels/{traffic}/{paper}/{placement}/{reading}/{way.body}{density}"
 
 
-def object_name(paper: str, placement: str, reading: str, traffic: str, way: Setting) -> str:
+def object_name(paper: str, placement: str, reading: str, traffic: str, way: ScoreChoice) -> str:
     """Name of a placement's object scores."""
     return (
         f"objects/{traffic}/{paper}/{placement}/{reading}/{way.body}/{way.density:g}/{way.curves}"

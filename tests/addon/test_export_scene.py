@@ -71,6 +71,22 @@ def parts(names):
     return [bpy.data.objects[name] for name in names if not name.endswith(ours)]
 
 
+def test_blender_imports_an_stl_as_one_closed_solid_where_it_was(seen, tmp_path):
+    import bmesh  # there once bpy is
+
+    path = exported(tmp_path, "solids", range_m=6.0) / "roof_field.stl"
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.stl_import(filepath=str(path))
+    (solid,) = bpy.context.selected_objects
+    mesh = bmesh.new()
+    mesh.from_mesh(solid.data)
+    assert all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges)
+    assert mesh.calc_volume(signed=True) > 0.0
+    places = np.array([solid.matrix_world @ vertex.co for vertex in mesh.verts])
+    mesh.free()
+    assert np.hypot(*(places[:, :2] - (-0.43, 0.0)).T).max() == pytest.approx(6.0, abs=1e-3)
+
+
 def test_a_folder_is_replaced_when_that_is_asked_for(seen, tmp_path):
     exported(tmp_path, "solids", range_m=3.0)
     with pytest.raises(RuntimeError, match="one is there"):

@@ -41,6 +41,15 @@ class PlacedBoxes:
         offsets = np.stack([c * x + s * y, c * y - s * x, z], axis=1)
         return cls(offsets, objects.sizes / 2.0, objects.headings)
 
+    def some(self, which: Ints) -> PlacedBoxes:
+        """Return some of them."""
+        return PlacedBoxes(self.offsets[which], self.halves[which], self.headings[which])
+
+    def from_above(self) -> tuple[Floats, Floats]:
+        """Where the centres are along the ground's x and y (N,), from the sensor [m]."""
+        (x, y, _), (c, s) = self.offsets.T, self.headings.T
+        return c * x - s * y, s * x + c * y
+
     def along(self, which: Ints, directions: Floats) -> tuple[Floats, Floats, Floats]:
         """Ground-frame directions (P, 3) along the axes of box `which` (P,) each."""
         c, s = self.headings[which].T

@@ -8,7 +8,7 @@ import pytest
 import pe_core as pe
 from pe_core import kinds
 from tests.engine import shapes
-from tests.engine.test_object_oracle import VIEWS, random_objects
+from tests.engine.test_object_oracle import CAMERAS, VIEWS, random_objects
 
 ELEVATIONS = np.radians(np.linspace(-25.0, 15.0, 20))
 SPREAD = np.linspace(-4.0, 4.0, 20)
@@ -89,3 +89,23 @@ def test_the_paper_s_lidar_on_a_few_hundred_objects():
         counts = measured(sensor, some, shapes.box_car(), traffic)
         expected = pe.measure_objects(sensor, some, shapes.box_car(), traffic)
         assert counts.tolist() == expected.tolist()
+
+
+@pytest.mark.parametrize("name", [*CAMERAS, "ranged"])
+def test_a_camera_s_kernel_measures_what_the_definition_does(name):
+    """To the bit, level and tilted, low over the car so that it hides much."""
+    ranged = pe.Camera("ranged", 200, 130, math.radians(60.0), None, 8.0, 20.0)
+    camera, rng = CAMERAS.get(name, ranged), np.random.default_rng(8)
+    hiding = 0
+    for rotation in ((0.0, 0.0, 10.0), (5.0, 15.0, 130.0), (-20.0, 30.0, 250.0)):
+        sensor = pe.Sensor("s", camera, pe.Pose.from_degrees((-0.3, 0.1, 1.45), rotation))
+        some = random_objects(rng, 80, 20, nearest=5.0, farthest=25.0)
+        found = []
+        for on_car, traffic in VIEWS.values():
+            vehicle = shapes.box_car() if on_car else None
+            m = measured(sensor, some, vehicle, traffic)
+            assert m.tolist() == pe.measure_objects(sensor, some, vehicle, traffic).tolist()
+            found.append(m.sum())
+        assert found[0] > found[1] > 0
+        hiding += found[2] < found[0]
+    assert hiding

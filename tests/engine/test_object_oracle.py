@@ -126,3 +126,14 @@ def test_a_wall_right_behind_a_fisheye_shows_beyond_its_shoulders():
     (dense,) = object_oracle.pixels(sensor, rays_of(sensor.model), 2, wall, None, False)
     assert pe.measure_objects(sensor, wall)[0] == pytest.approx(dense, rel=0.05)
     assert 100 < dense < 30_000
+
+
+def test_boxes_behind_a_fisheye_show_nothing():
+    """Their outlines go round the direction right behind, or pass it closely."""
+    sensor = pe.Sensor("s", CAMERAS["fisheye"], pe.Pose((0.0, 0.0, 1.5)))
+    rng = np.random.default_rng(2)
+    centers = rng.uniform((-30.0, -1.5, 0.5), (-8.0, 1.5, 2.5), (300, 3))
+    count = len(centers)
+    sizes, yaws = rng.uniform(0.5, 4.0, (count, 3)), rng.uniform(-3.0, 3.0, count)
+    some = pe.Objects(centers, sizes, yaws, np.zeros(count), ("box",))
+    assert pe.measure_objects(sensor, some).tolist() == [0.0] * count

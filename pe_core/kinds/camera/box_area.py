@@ -8,6 +8,7 @@ pieces; a face that lies right behind it has the outline of all that is not its 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -18,6 +19,8 @@ from ...scene.geometry import dot
 from ..placed_boxes import PlacedBoxes
 from .aperture import ImagePoints, aperture_of
 from .area import QUAD, ROUNDING_PX, clamped_integral
+from .bent_area import RIGHT_BEHIND
+from .lens import Lens
 from .model import Camera
 
 Floats = NDArray[np.float64]
@@ -42,6 +45,10 @@ class BoxImages:
     area: Floats
     low: Floats
     high: Floats
+
+    def some(self, which: Ints) -> BoxImages:
+        """Return some of them."""
+        return BoxImages(self.area[which], self.low[which], self.high[which])
 
 
 def box_images(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> BoxImages:
@@ -155,7 +162,7 @@ def _outlined(
     aperture = aperture_of(camera)
     outline = face_points(boxes, which, axis, _round_a_face(pieces))
     depth, left, up = np.moveaxis(along_camera(axes, boxes, which, outline), -1, 0)
-    places = camera.projection.project(depth, left, up)
+    places = _projected(camera.projection, depth, left, up)
     area = aperture.area(places)
     behind = _holds_behind(axes, boxes, which, axis)
     if behind.any():
@@ -164,6 +171,19 @@ def _outlined(
         for own, all_ in zip(places, picture, strict=True):
             own[behind] = all_
     return area, places
+
+
+def _projected(lens: Lens, depth: Floats, left: Floats, up: Floats) -> ImagePoints:
+    """Places of directions [px]; those beyond the edge of the field are moved farther out.
+
+    So a straight piece between two of them does not cut across the picture, even where what it
+    stands for passes right behind the camera.
+    """
+    theta = np.arctan2(np.hypot(left, up), depth)
+    most = np.minimum(theta, RIGHT_BEHIND) / 2.0
+    farther = np.maximum(np.tan(most) / math.tan(min(lens.edge, RIGHT_BEHIND) / 2.0), 1.0)
+    x, y = lens.project(depth, left, up)
+    return lens.cx + (x - lens.cx) * farther, lens.cy + (y - lens.cy) * farther
 
 
 def _round_a_face(pieces: int) -> Floats:

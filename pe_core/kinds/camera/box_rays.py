@@ -32,7 +32,8 @@ BOXES_AT_ONCE = 512
 class BoxRays:
     """Rays from a camera that meet boxes, (R,) each.
 
-    `item` the box, ascending; `directions` (R, 3) unit, ground frame; `distance` to the box [m].
+    `item` the box, by its rank among those asked for, ascending; `directions` (R, 3) unit, ground
+    frame; `distance` to the box [m].
     """
 
     item: Ints
@@ -43,7 +44,7 @@ class BoxRays:
 def rays_to_boxes(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, images: BoxImages, which: Ints
 ) -> BoxRays:
-    """Return the rays through the images of some boxes, ascending."""
+    """Return the rays through the images of boxes `which` (P,) that meet them."""
     found = list(_met(camera, axes, boxes, images, which))
     if not found:
         return BoxRays(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros(0))
@@ -51,7 +52,7 @@ def rays_to_boxes(
 
 
 def seen_share(rays: BoxRays, hidden: Flags, count: int) -> Floats:
-    """(N,) share of each box's rays that nothing hides; 1 of a box that none of them meets."""
+    """(P,) share of each box's rays that nothing hides; 1 of a box that none of them meets."""
     whole = np.bincount(rays.item, minlength=count)
     unseen = np.bincount(rays.item[hidden], minlength=count)
     return np.asarray((whole - unseen + (whole == 0)) / np.maximum(whole, 1))
@@ -67,10 +68,10 @@ def _met(
         low, high = images.low[own, None], images.high[own, None]
         places = (low + (high - low) * lattice).reshape(-1, 2)
         directions, exists = _through(camera, axes, places)
-        item = np.repeat(own, RAYS)[exists]
-        enter, leave = boxes.crossing(item, directions)
+        rank = np.repeat(np.arange(some.start, some.stop), RAYS)[exists]
+        enter, leave = boxes.crossing(which[rank], directions)
         met = np.flatnonzero((enter < leave) & (enter > 0.0))
-        yield item[met], directions[met], enter[met]
+        yield rank[met], directions[met], enter[met]
 
 
 def _through(camera: Camera, axes: Floats, places: Floats) -> tuple[Floats, Ints]:

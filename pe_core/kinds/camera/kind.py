@@ -16,12 +16,14 @@ from ...scene.vehicle import Vehicle
 from ..kernels import Floats, Voxels
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind
 from ..object_curves import all_carried_over
+from ..object_kernel import ObjectView
 from ..view_patch import ViewPatch
 from . import table as tables
 from .definition import count_pixels
 from .kernels import CameraGrid, CameraSample
 from .model import Camera
 from .object_definition import count_object_pixels
+from .on_objects import CameraObjects
 from .picture import picture_rays
 from .ranged import out_of_range
 from .view import picture_patch
@@ -88,6 +90,10 @@ class CameraKind(Kind):
     def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> CameraSample:
         """Take the closed form of the area where it is good."""
         return CameraSample(voxels, vehicle)
+
+    def on_objects(self, view: ObjectView) -> CameraObjects:
+        """Look only where something may be seen, and be hidden."""
+        return CameraObjects(view)
 
 
 CAMERA = CameraKind()

@@ -19,6 +19,8 @@ CELLS = 64
 """Bins along a side of the map."""
 MAP = Raster((-1.0, 1.0), (-1.0, 1.0), CELLS)
 
+ROOM_PX = 1e-3
+"""Rectangles are taken this much larger, against rounding."""
 BORDER = 1.05
 """The map reaches this far beyond the picture's edges, for voxels that only touch the picture."""
 
@@ -36,7 +38,7 @@ class ShadowMap:
     """
 
     def __init__(self, camera: Camera, axes: Floats, triangles: Floats) -> None:
-        lens = camera.projection
+        self._lens = lens = camera.projection
         width, height = camera.width, camera.height
         self._wide = BORDER * (2.0 * max(lens.cx, width - lens.cx)) / 2.0 / lens.fx
         self._high = BORDER * (2.0 * max(lens.cy, height - lens.cy)) / 2.0 / lens.fy
@@ -67,6 +69,24 @@ class ShadowMap:
         bins = self._bin(u) * CELLS + self._bin(v)
         outside = np.maximum(np.abs(u), np.abs(v)) > 1.0
         return self._hit[bins] | outside
+
+    def may_hide_in(self, low: Floats, high: Floats) -> NDArray[np.bool_]:
+        """Whether the vehicle may show in upright rectangles of the picture, corners (V, 2) [px].
+
+        Right and down; False of those without places.
+        """
+        shown = (low <= high).all(axis=1)
+        ends = np.where(shown[:, None], low, 0.0), np.where(shown[:, None], high, 0.0)
+        (x0, y0), (x1, y1) = (
+            (p + room).T for p, room in zip(ends, (-ROOM_PX, ROOM_PX), strict=True)
+        )
+        lens = self._lens
+        i0, i1 = (self._bin((lens.cx - x) / lens.fx / self._wide) for x in (x1, x0))
+        j0, j1 = (self._bin((lens.cy - y) / lens.fy / self._high) for y in (y1, y0))
+        sums = np.zeros((CELLS + 1, CELLS + 1), np.int32)
+        sums[1:, 1:] = self._hit.reshape(CELLS, CELLS).cumsum(axis=0).cumsum(axis=1)
+        inside = sums[i1 + 1, j1 + 1] - sums[i0, j1 + 1] - sums[i1 + 1, j0] + sums[i0, j0]
+        return shown & (inside > 0)
 
     @staticmethod
     def _bin(u: Floats) -> NDArray[np.int32]:

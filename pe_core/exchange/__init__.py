@@ -5,6 +5,7 @@ from .exporting import export_rig, rig_files, write_files
 from .files import Written
 from .importing import STAND_INS, ImportedRig, import_rig
 from .pictures import Picture, straight
+from .quaternions import pose_from_quaternion
 from .table import RIG_FORMATS, RigFormat, rig_format
 from .vehicle_info import read_vehicle_info
 
@@ -20,6 +21,7 @@ __all__ = [
     "export_rig",
     "import_rig",
     "picture_of",
+    "pose_from_quaternion",
     "read_vehicle_info",
     "rig_files",
     "rig_format",

@@ -29,6 +29,8 @@ PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
 FEET_M = {"VLP-16": 0.0377, "Pandar40P": 0.047}
 """From the foot of a housing up to the centre of the scan, as tier4's sensor_component_description
 (03ba094) mounts these models; other models' frames are written at the centre of the scan."""
+Unit = tuple[str, dict[str, Pose]]
+"""A file, and the frames in it."""
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
 
 
@@ -40,34 +42,29 @@ def foot_of(model: str | None) -> float:
 
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     """Return the kit's two files, and its cameras' lenses."""
-    return _written(sensors, {KIT: _kit(sensors)}, {})
+    return _written(sensors, {KIT: _kit(sensors)}, {KIT: (IN_KIT, {})})
 
 
 def write_over(folder: Path, sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     """Return the files of a kit that is there, with the sensors of ours where they are now."""
-    base, kit = dict(_frames(folder / TO_KIT, BASE)), dict(_frames(folder / IN_KIT, KIT))
-    if KIT not in base:
-        raise InputError(folder / TO_KIT, BASE, KIT, ", ".join(base))
-    return _written(sensors, base, kit)
+    return _written(sensors, *_read_files(folder))
 
 
 def _written(
-    sensors: tuple[CarriedSensor, ...], base: Mapping[str, Pose], kit: Mapping[str, Pose]
+    sensors: tuple[CarriedSensor, ...], base: Mapping[str, Pose], units: Mapping[str, Unit]
 ) -> tuple[Written, list[str]]:
-    """Return the files, from frames that stand on base_link and in the kit; others go into it."""
+    """Return the files, from frames on base_link and in units; others go into the first unit."""
     named, lines = with_legal_frames(sensors, slashes=True)
     own = {_frame(each): each for each in named}
-    in_base = {f: (_seen_from(None, own[f]), _model(own[f])) for f in base if f in own}
-    movable = [f for f in (*kit, *own) if f in own and f not in base]
-    others = {f: _seen_from(base[KIT], own[f]) for f in movable}
-    in_kit = {f: (pose, _model(own[f])) for f, pose in others.items()}
-    kept = [f for f in (*base, *kit) if f not in own and f != KIT]
-    files = {
-        TO_KIT: _yaml(BASE, {f: in_base.get(f, (pose, "")) for f, pose in base.items()}),
-        IN_KIT: _yaml(KIT, {f: (kit[f], "") for f in kit} | in_kit),
-        **info_files(named),
-    }
-    lines += [f"{frame}: kept as it stood in the kit" for frame in kept]
+    there = {*base, *(frame for _, frames in units.values() for frame in frames)}
+    files = {TO_KIT: _yaml(BASE, _placed(base, own, None))}
+    for number, (parent, (file, frames)) in enumerate(units.items()):
+        new = [] if number else [frame for frame in own if frame not in there]
+        placed = _placed(frames, own, base[parent], new)
+        files[file] = _yaml(parent, placed)
+    kept = [frame for frame in there if frame not in own and frame not in units]
+    files |= info_files(named)
+    lines += [f"{frame}: kept as it stood in the kit" for frame in sorted(kept)]
     lines += [
         f"{s.name}: its frame is written at the centre of its scan; Autoware's description of "
         f"{s.model} may want the foot of the housing"
@@ -75,6 +72,21 @@ def _written(
         if s.kind == LIDAR and not foot_of(s.model)
     ]
     return files, lines
+
+
+def _placed(
+    frames: Mapping[str, Pose],
+    own: Mapping[str, CarriedSensor],
+    unit: Pose | None,
+    new: Sequence[str] = (),
+) -> dict[str, tuple[Pose, str]]:
+    """Return frames of a file in their order, those of sensors where these are, and new ones."""
+    return {
+        frame: (_seen_from(unit, own[frame]), own[frame].model or "")
+        if frame in own
+        else (frames[frame], "")
+        for frame in (*frames, *new)
+    }
 
 
 def _kit(sensors: Sequence[CarriedSensor]) -> Pose:
@@ -99,10 +111,6 @@ def _seen_from(kit: Pose | None, each: CarriedSensor) -> Pose:
     return pose_of(product(back, frame.ground_from_sensor), turned(back, apart))
 
 
-def _model(each: CarriedSensor) -> str:
-    return each.model or ""
-
-
 def _frame(each: CarriedSensor) -> str:
     if each.name.endswith(OWN_FRAME):
         return each.name
@@ -119,7 +127,7 @@ def _yaml(parent: str, frames: Mapping[str, tuple[Pose, str]]) -> bytes:
 
 
 def read(path: Path) -> tuple[CarriedSensor, ...]:
-    """Read a kit: a folder with both files, or either of them.
+    """Read a kit: a folder with all its files, or one of them.
 
     Frames come as they are: a LiDAR's foot is lifted to the centre of its scan when its model has
     been chosen.
@@ -130,13 +138,42 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
         When a file is missing or wrong.
     """
     folder = path if path.is_dir() else path.parent
-    poses = dict(_frames(folder / TO_KIT, BASE))
-    if KIT not in poses:
-        raise InputError(folder / TO_KIT, BASE, KIT, ", ".join(poses))
-    kit = poses.pop(KIT)
-    inside = {name: composed(kit, pose) for name, pose in _frames(folder / IN_KIT, KIT)}
-    found = [_sensor(name, pose) for name, pose in {**inside, **poses}.items()]
+    base, units = _read_files(folder)
+    inside = {
+        name: composed(base[parent], pose)
+        for parent, (_, frames) in units.items()
+        for name, pose in frames.items()
+    }
+    rest = {name: pose for name, pose in base.items() if name not in units}
+    found = [_sensor(name, pose) for name, pose in {**inside, **rest}.items()]
     return with_info(folder, found)
+
+
+def _read_files(folder: Path) -> tuple[dict[str, Pose], dict[str, Unit]]:
+    """Return the frames on base_link, and units by their frames: the kit, or several of them.
+
+    A unit's file is UNIT_calibration.yaml, as tier4's aip_x2 has them: top_unit, front_unit, ...
+    """
+    base = dict(_frames(folder / TO_KIT, BASE))
+    found = sorted(folder.glob("*_calibration.yaml"))
+    files = [each for each in found if each.name not in (TO_KIT, IN_KIT)]
+    units = {}
+    for file in (folder / IN_KIT, *files):
+        if file.name == IN_KIT and files and not file.exists():
+            continue
+        parent = _parent(file)
+        if parent not in base:
+            raise InputError(folder / TO_KIT, BASE, parent, ", ".join(base))
+        units[parent] = file.name, dict(_frames(file, parent))
+    return base, units
+
+
+def _parent(path: Path) -> str:
+    """Return the one frame that a unit's file hangs its frames on."""
+    parents = list(parse_yaml_blocks(str(path), text_of(path)))
+    if len(parents) != 1:
+        raise InputError(path, "file", "one frame, and others on it", ", ".join(parents) or "none")
+    return parents[0]
 
 
 def _frames(path: Path, parent: str) -> Iterator[tuple[str, Pose]]:

@@ -72,7 +72,8 @@ def export_rig(
     """
     row, output = rig_format(name), Path(output)
     files, lines = rig_files(rig, name, reference)
-    if replace and row.write_over and all((output / file).is_file() for file in row.files):
+    # The last of a format's files says where the others stand.
+    if replace and row.write_over and (output / row.files[-1]).is_file():
         sensors, left = _sensors(rig, row, reference)
         files, lines = row.write_over(output, sensors)
         lines = [*lines, *left]

@@ -2,6 +2,7 @@
 
 from .by_name import MeasuredByName
 from .camera import CAMERA, BrownConrady, Camera, FTheta, KannalaBrandt, Lens, Pinhole
+from .ego_mask import EgoMask
 from .kernels import GridKernel, Measured, SampleKernel, Stopped, Voxels
 from .kind import Kind
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
@@ -19,6 +20,7 @@ __all__ = [
     "BeamField",
     "BrownConrady",
     "Camera",
+    "EgoMask",
     "FTheta",
     "GridKernel",
     "KannalaBrandt",

@@ -22,6 +22,7 @@ from ..scene.sensors import Sensor, SensorModel
 from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .defined import DefinedGrid, DefinedSample
+from .ego_mask import EgoMask
 from .kernels import Floats, GridKernel, SampleKernel, Voxels
 from .object_kernel import DefinedObjects, ObjectKernel, ObjectView
 from .view_patch import ViewPatch
@@ -132,6 +133,10 @@ class Kind(ABC):
 
     def view(self, model: Any, step: float) -> ViewPatch | None:
         """Return where a sensor looks, in triangles of about `step` [rad]; none by default."""
+        return None
+
+    def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask | None:
+        """Return what of the sensor's own picture its vehicle takes; None by default: not told."""
         return None
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> GridKernel:

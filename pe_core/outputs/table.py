@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from ..errors import InputError, shown
 from ..exchange import Written
-from . import libraries, scene_gltf, solids, svg
+from . import libraries, masks, scene_gltf, solids, svg
 from .request import OutputRequest
 
 
@@ -46,6 +46,7 @@ _ROWS = (
     ),
     SceneOutput("gltf", "whole scene (glTF)", scene_gltf.FILE, scene_gltf.write),
     SceneOutput("rerun", "Rerun recording", libraries.RECORDING, libraries.write_recording),
+    SceneOutput("masks", "ego masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
 )
 SCENE_OUTPUTS = MappingProxyType({row.name: row for row in _ROWS})
 """Outputs by name."""

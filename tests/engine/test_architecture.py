@@ -36,7 +36,8 @@ ALLOWED = {
         *("formats", "scoring", "targets", "sight", "search", "catalog", "advice"),
     },
     "outputs": {
-        *("errors", "version", "text", "scene", "kinds", "sight", "exchange", "study"),
+        *("errors", "version", "text", "scene", "kinds", "sight", "graphics"),
+        *("exchange", "study"),
     },
     "sweep": {"errors", "version", "text", "scene", "study"},
     "public": {

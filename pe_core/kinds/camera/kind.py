@@ -13,6 +13,7 @@ from ...scene.objects import Objects
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
+from ..ego_mask import EgoMask
 from ..kernels import Floats, Voxels
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind
 from ..object_curves import all_carried_over
@@ -20,6 +21,7 @@ from ..object_kernel import ObjectView
 from ..view_patch import ViewPatch
 from . import table as tables
 from .definition import count_pixels
+from .ego import picture_mask
 from .kernels import CameraGrid, CameraSample
 from .model import Camera
 from .object_definition import count_object_pixels
@@ -82,6 +84,10 @@ class CameraKind(Kind):
     def view(self, model: Camera, step: float) -> ViewPatch:
         """Take what the picture shows."""
         return picture_patch(model, step)
+
+    def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
+        """Ask every pixel."""
+        return picture_mask(sensor, vehicle)
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> CameraGrid:
         """Fill columns of voxels between the sides of the picture."""

@@ -11,6 +11,7 @@ from ...scene.objects import Objects
 from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
+from ..ego_mask import EgoMask
 from ..kernels import Floats, Voxels
 from ..kind import Kind
 from ..object_kernel import ObjectView
@@ -19,6 +20,7 @@ from . import table as tables
 from .asked import beams_to, missed, some_beams
 from .definition import count_beams
 from .detectors import OBJECT_CURVES
+from .ego import revolution_mask
 from .model import Lidar
 from .object_definition import count_on_objects
 from .on_grid import LidarGrid
@@ -85,6 +87,10 @@ class LidarKind(Kind):
     def view(self, model: Lidar, step: float) -> ViewPatch:
         """Take all that lies between its beams."""
         return beam_patch(model, step)
+
+    def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
+        """Ask every beam."""
+        return revolution_mask(sensor, vehicle)
 
     def on_grid(self, space: PerceptionSpace, vehicle: Vehicle | None, enough: int) -> LidarGrid:
         """Sweep planes of the grid."""

@@ -72,7 +72,7 @@ def range_picture(
     met = (which >= 0) & (thing < np.minimum(body, ground)) & ~silent
     stopped = (body <= others) & (body <= lidar.max_range)
     rows = np.argsort(-lidar.elevations, kind="stable")
-    columns = np.argsort(-_around(lidar), kind="stable")
+    columns = np.argsort(-columns_around(lidar), kind="stable")
 
     def laid_out(values: NDArray) -> NDArray:
         return values.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
@@ -82,7 +82,7 @@ def range_picture(
         laid_out(stopped),
         laid_out(np.where(met, which, -1)),
         lidar.elevations[rows],
-        _around(lidar)[columns],
+        columns_around(lidar)[columns],
     )
 
 
@@ -105,7 +105,7 @@ def _to_ground(height: float, up: Floats) -> Floats:
     return distance
 
 
-def _around(lidar: Lidar) -> Floats:
+def columns_around(lidar: Lidar) -> Floats:
     """(A,) azimuths of the columns, above -180 to 180 degrees [rad]."""
     azimuths = lidar.azimuth_steps * lidar.azimuth_step
     turned: Floats = np.pi - np.mod(np.pi - azimuths, 2.0 * np.pi)

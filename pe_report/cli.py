@@ -33,6 +33,8 @@ def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     fit = verbs.add_parser("fit", help="find a and b of AP = a ln m + b in a table")
     fit.add_argument("table", metavar="TABLE", help="CSV with the columns m and ap, and perhaps n")
     fit.add_argument("--kind", choices=("lidar", "camera"), default="lidar", help="of the sensor")
+    about = "m is counted on whole objects of this class, not divided by their voxels"
+    fit.add_argument("--object", metavar="CLASS", help=about)
     fit.add_argument(
         "--saturation",
         type=float,

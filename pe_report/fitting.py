@@ -24,7 +24,7 @@ LONGEST_FILE = 255
 def fit(args: argparse.Namespace) -> Answer:
     """Run the verb."""
     found = fit_ap_curve(read_ap_table(args.table), args.saturation)
-    snippet = study_snippet(_named(found, Path(args.table)), args.kind)
+    snippet = study_snippet(_named(found, Path(args.table)), args.kind, args.object)
     if args.output is not None:
         folder = prepare_folder(args.output, (SNIPPET, PLOT))
         curves = {Path(args.table).stem: fit_data(found)}

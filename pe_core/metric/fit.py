@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,8 +25,8 @@ class ApTable:
     """AP of an algorithm on objects of like measurement.
 
     `m` (N,) measurement a voxel, as the metric counts it: points or pixels on an object, divided by
-    its surface in faces of a voxel; may be below 1. `ap` (N,) in [0, 1]. `n` (N,) objects behind
-    each point, the weights of a fit.
+    its surface in faces of a voxel; may be below 1. For whole objects it is not divided. `ap` (N,)
+    in [0, 1]. `n` (N,) objects behind each point, the weights of a fit.
     """
 
     m: Floats
@@ -87,15 +88,22 @@ def fit_ap_curve(table: ApTable, saturation: float = SATURATION) -> CurveFit:
     return CurveFit(ApCurve(a, b), a_error, b_error, rms, table, tuple(why))
 
 
-def study_snippet(fit: CurveFit, kind: str) -> str:
-    """Lines of TOML for a study: ``[ap.lidar]`` or ``[ap.camera]``."""
+def study_snippet(fit: CurveFit, kind: str, name: str | None = None) -> str:
+    """Lines of TOML for a study: ``[ap.lidar]``, or of a class of objects that is named."""
+    where = f"ap.{kind}" if name is None else f"ap.{kind}.objects.{_key(name)}"
     taken, every = int(fit.used.sum()), len(fit.why)
     return (
         f"# AP = a ln m + b, fitted to {taken} of {every} points of {Path(fit.table.source).name}\n"
-        f"[ap.{kind}]\n"
+        f"[{where}]\n"
         f"a = {fit.curve.a:.6g} # +- {fit.a_error:.2g}\n"
         f"b = {fit.curve.b:.6g} # +- {fit.b_error:.2g}\n"
     )
+
+
+def _key(name: str) -> str:
+    """Return a name as TOML has it in a key."""
+    plain = name.isascii() and name.isidentifier()
+    return name if plain else json.dumps(name, ensure_ascii=False)
 
 
 def _reasons(table: ApTable, saturation: float) -> list[str]:

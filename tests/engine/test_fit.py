@@ -1,6 +1,7 @@
 """`pe_core.fit`: a and b of the AP curve, what is left out, and bad tables."""
 
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -133,3 +134,10 @@ def test_a_wrong_table_is_one_line_with_the_lines_number(tmp_path, text, line):
 def test_tables_without_a_curve_are_refused(m, ap, line):
     with pytest.raises(pe.InputError, match=line):
         fit_ap_curve(table(m, ap))
+
+
+def test_the_snippet_of_a_class_of_objects_is_the_study_s_table():
+    fit = fit_ap_curve(ApTable(np.array([1.0, 2.0, 4.0]), np.array([0.2, 0.3, 0.4]), np.ones(3)))
+    for name in ("car", "road works \N{CONSTRUCTION SIGN}"):
+        table = tomllib.loads(study_snippet(fit, "lidar", name))
+        assert list(table["ap"]["lidar"]["objects"][name]) == ["a", "b"]

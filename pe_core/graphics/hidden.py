@@ -10,7 +10,7 @@ from ..scene import Sensor, Vehicle
 from .models import camera_of
 from .primitives import Primitives
 
-RAYS = 900
+RAYS = 240
 """Places of the picture that are looked along: enough to see where the body begins."""
 
 

@@ -42,7 +42,7 @@ def scene_data(one: Reviewed) -> dict[str, Any]:
     """Return all that is drawn of a study, as plain data."""
     scores = one.after.per_sensor
     return {
-        "vehicle": vehicle_data(one.vehicle),
+        "vehicle": vehicle_data(one.vehicle, one.shown_vehicle),
         "sensors": [
             sensor_data(number, sensor, scores.get(sensor.name), one.vehicle)
             for number, sensor in enumerate(one.rig)

@@ -27,11 +27,17 @@ LOOKS = {
 """How a part looks, by what its name says."""
 
 
-def vehicle_data(vehicle: pe.Vehicle | None) -> dict[str, Any] | None:
-    """Return the body's corners, its triangles part by part, and what was left out."""
-    if vehicle is None:
+def vehicle_data(
+    vehicle: pe.Vehicle | None, lighter: tuple[pe.Vehicle | None, float]
+) -> dict[str, Any] | None:
+    """Return the body's corners, its triangles part by part, and what was left out.
+
+    `lighter` is the vehicle of fewer triangles that all of the page shares, and how far its surface
+    moved for that [m].
+    """
+    if vehicle is None or lighter[0] is None:
         return None
-    shown, error = scene.simplified(vehicle, MOST_TRIANGLES)
+    shown, moved = scene.simplified(lighter[0], MOST_TRIANGLES)
     order = np.argsort(shown.parts, kind="stable")
     low, step = grid_of(shown.triangles.reshape(-1, 3))
     corners = counted(shown.triangles[order].reshape(-1, 3), low, step)
@@ -47,7 +53,7 @@ def vehicle_data(vehicle: pe.Vehicle | None) -> dict[str, Any] | None:
         "bounds": [bound.tolist() for bound in vehicle.bounds],
         "shown": len(shown.triangles),
         "all": len(vehicle.triangles),
-        "error": error,
+        "error": lighter[1] + moved,
     }
 
 

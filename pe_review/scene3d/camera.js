@@ -52,6 +52,11 @@ function fittingFov(field, aspect) {
   return Math.min(2 * Math.atan(1.12 * Math.max(down, across / aspect)) * 180 / Math.PI, WIDEST);
 }
 
+function captionOf(sensor) {
+  const wider = sensor.field && Math.max(...sensor.field) > WIDEST;
+  return `From ${sensor.name}${wider ? ", the middle of its view" : ""}`;
+}
+
 /* Look from a sensor; dragging turns the head: the centre of the turn is just ahead of the eye. */
 function lookFrom(view, sensor) {
   const { camera, controls } = view;

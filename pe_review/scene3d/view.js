@@ -58,7 +58,7 @@ class View {
     this.labels[number].off = true;
     lookFrom(this, this.from.sensor);
     this.caption.hidden = false;
-    this.caption.querySelector("span").textContent = `From ${this.from.sensor.name}`;
+    this.caption.querySelector("span").textContent = captionOf(this.from.sensor);
     this.draw();
   }
 

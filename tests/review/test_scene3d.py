@@ -55,7 +55,7 @@ def test_the_vehicle_has_all_triangles_by_part(scored):
         ("body", "Windshield", "nothing"),
         glass=("Windshield",),
     )
-    found = vehicle_data(vehicle)
+    found = vehicle_data(vehicle, (vehicle, 0.0))
     drawn = points(found)[numbers(found["triangles"], "u2")].reshape(-1, 3, 3)
     expected = np.concatenate([vehicle.triangles[1::2], vehicle.triangles[::2]])
     np.testing.assert_allclose(drawn, expected, atol=1e-4)
@@ -71,8 +71,9 @@ def test_a_large_vehicle_is_simplified_and_that_is_said(scored, monkeypatch):
     around = np.linspace(0.0, 2.0 * np.pi, 1001)
     rim = np.stack([np.cos(around), np.sin(around), np.ones(1001)], axis=1)
     cone = np.stack([rim[:-1], rim[1:], np.zeros((1000, 3))], axis=1)
-    found = vehicle_data(pe.Vehicle(np.concatenate([cone, 1.001 * cone])))
-    assert found["all"] == 2000 and found["shown"] <= 1000 and found["error"] > 0.0
+    whole = pe.Vehicle(np.concatenate([cone, 1.001 * cone]))
+    found = vehicle_data(whole, (whole, 0.25))
+    assert found["all"] == 2000 and found["shown"] <= 1000 and found["error"] > 0.25
 
 
 def test_sensors_stand_where_they_do_with_their_layers(data, scored):

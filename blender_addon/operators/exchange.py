@@ -82,6 +82,11 @@ class PE_OT_import_rig(ImportHelper, bpy.types.Operator):
             return refuse(self, error)
 
 
+def models_for(row: bpy.types.PropertyGroup, _context: object, typed: str) -> list[str]:
+    """Return the catalogue's names of a row's kind that hold what is typed; all where none does."""
+    return catalog.matching(typed, row.kind) or catalog.names(row.kind)
+
+
 class PE_ModelChoice(bpy.types.PropertyGroup):
     """A sensor of a file, and the model that it is to have."""
 
@@ -90,9 +95,7 @@ class PE_ModelChoice(bpy.types.PropertyGroup):
     model: StringProperty(
         name="Model",
         description="Name of the sensor in the catalogue",
-        search=lambda row, _context, typed: (
-            catalog.matching(typed, row.kind) or catalog.names(row.kind)
-        ),
+        search=models_for,
         search_options=set(),
     )
 

@@ -13,6 +13,11 @@ from .reports import REFUSALS, refuse, tell
 LIDAR = "lidar"
 
 
+def lidar_models(_own: object, _context: object, typed: str) -> list[str]:
+    """Return the catalogue's LiDARs whose names hold what is typed; all where none does."""
+    return catalog.matching(typed, LIDAR) or catalog.names(LIDAR)
+
+
 class PE_OT_sensors_from_objects(bpy.types.Operator):
     """Put Blender's cameras and empties in place of the sensors that stand here, as a variant.
 
@@ -29,7 +34,7 @@ class PE_OT_sensors_from_objects(bpy.types.Operator):
         name="Empties' Model",
         description="For empties that say no model (custom property `model`)",
         default=exchange.STAND_INS[LIDAR],
-        search=lambda _own, _context, typed: catalog.matching(typed, LIDAR) or catalog.names(LIDAR),
+        search=lidar_models,
         search_options=set(),
     )
 

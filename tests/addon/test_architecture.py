@@ -227,3 +227,15 @@ def test_only_the_faces_of_rooms_are_used(name):
 def test_every_module_can_be_imported():
     for name in set(FILES) - {"__init__", "__main__"}:
         assert importlib.import_module(f"{PACKAGE}.{name}")
+
+
+def test_properties_call_functions_by_their_names():
+    """Blender evaluates annotations apart from their module: a lambda there finds none of its."""
+    wrong = [
+        f"{path.name}:{node.lineno}"
+        for path in sorted(ROOT.rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.AnnAssign)
+        and any(isinstance(part, ast.Lambda) for part in ast.walk(node.annotation))
+    ]
+    assert not wrong

@@ -191,5 +191,17 @@ def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path):
     assert [s.model.name for s in back.rig] == ["PandaSet wide", "KITTI cam2", "Pandar64"]
 
 
+def test_dialogs_offer_models_of_the_kind():
+    from types import SimpleNamespace
+
+    from blender_addon.operators.exchange import models_for
+    from blender_addon.operators.plain_objects import lidar_models
+
+    row = SimpleNamespace(kind="camera")
+    assert models_for(row, None, "kitti") == ["KITTI cam2"]
+    assert models_for(row, None, "") == catalog.names("camera")
+    assert lidar_models(None, None, "QT128") == ["Hesai QT128C2X"]
+
+
 def test_the_usual_stand_in_is_the_engine_s():
     assert exchange.STAND_INS["lidar"] in catalog.names("lidar")

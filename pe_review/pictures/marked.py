@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from ..engine import graphics
@@ -13,8 +14,6 @@ LINE, LETTER = 17.0, 10.0
 ABOVE = 7.0
 EDGE = 26.0
 """Room below for words along the edge."""
-HEAD = 42.0
-"""Room above for marks."""
 KEY_WIDE = 190.0
 
 MarkWord = tuple[float, float, str]
@@ -53,7 +52,12 @@ class MarkedPicture:
     @property
     def head(self) -> float:
         """Room above for marks, of a picture that is low."""
-        return HEAD if self.below and self.marks else 0.0
+        ups = lifted(self._on_edge, -math.inf) if self.below else []
+        return LINE - min(ups) if ups else 0.0
+
+    @property
+    def _on_edge(self) -> tuple[MarkWord, ...]:
+        return tuple((x, 0.0, words) for x, _, words in self.marks)
 
     @property
     def foot(self) -> float:
@@ -62,23 +66,23 @@ class MarkedPicture:
 
     def _mark(self, canvas: Canvas) -> None:
         """Write what is above places, in the picture or in the room above it."""
-        places = tuple((x, 0.0 if self.head else y, words) for x, y, words in self.marks)
-        css = "mark" if self.head else "mark dark"
-        for (x, y, words), up in zip(self.marks, lifted(places, self.head), strict=True):
-            if up < self.head + y - LINE:
-                end = self.head + y - 2.0
-                line = {"d": f"M{x:.1f} {end:.1f}V{up + 3:.1f}", "stroke_opacity": "0.7"}
-                canvas.add("path", stroke="#8c959f" if self.head else "#fff", **line)
+        head, css = self.head, "mark" if self.head else "mark dark"
+        ups = lifted(self._on_edge, -math.inf) if head else lifted(self.marks)
+        for (x, y, words), up in zip(self.marks, ups, strict=True):
+            if up < y - LINE:
+                line = f"M{x:.1f} {head + y - 2:.1f}V{head + up + 3:.1f}"
+                color = "#8c959f" if head else "#fff"
+                canvas.add("path", d=line, stroke=color, stroke_opacity="0.7")
             half = LETTER * len(words) / 2.0
             across = min(max(x, half), self.width - half)
-            canvas.text(across, up, words, text_anchor="middle", css=css)
+            canvas.text(across, head + up, words, text_anchor="middle", css=css)
 
 
-def lifted(marks: tuple[MarkWord, ...], head: float = 0.0) -> list[float]:
+def lifted(marks: tuple[MarkWord, ...], highest: float = LINE) -> list[float]:
     """Return how far down each text stands: above its place, higher where another is there."""
     placed: list[tuple[float, float, float]] = []
     for x, y, words in marks:
-        half, up = LETTER * len(words) / 2.0, max(head + y - ABOVE, LINE)
+        half, up = LETTER * len(words) / 2.0, max(y - ABOVE, highest)
         while any(abs(x - a) < half + b and abs(up - c) < LINE for a, b, c in placed):
             up -= LINE
         placed.append((x, half, up))

@@ -59,8 +59,11 @@ def camera_shot(sensor: pe.Sensor) -> tuple[Viewshot, float]:
     def look(x: Floats, y: Floats) -> Floats:
         return scene.rotate(turned, lens.unproject(x * across, y * down))
 
+    middle = np.array([width / 2.0, width / 2.0 + 1.0])
+    one, two = look(middle, np.full(2, height / 2.0))
+    pixel_rad = math.sqrt(float(((two - one) ** 2).sum()))
     eye = np.array(sensor.pose.position)
-    return Viewshot(eye, width, height, look, across / camera.focal_px, True), 1.0 / across
+    return Viewshot(eye, width, height, look, pixel_rad, True), 1.0 / across
 
 
 def _marks(

@@ -157,3 +157,17 @@ def test_places_are_told_from_the_rear_axle_where_it_is_known(scored):
     outcome = dataclasses.replace(scored.outcome, study=study)
     html = places_of(dataclasses.replace(scored, outcome=outcome))
     assert "<td>3.700</td>" in html and "<td>0.870</td>" in html  # 2.3 + 1.4, and 1.2 - 0.33
+
+
+def test_words_above_a_low_picture_have_room_however_many():
+    marks = tuple((300.0 + k, 10.0, "40 m") for k in range(6))
+    drawing = MarkedPicture(b"", 720, 150, marks, ((0.0, "behind"),)).svg("alt")
+    ups = [float(e.get("y")) for e in ET.fromstring(drawing).iter("text") if e.text == "40 m"]
+    assert min(ups) >= 12.0 and len(set(ups)) == 6
+
+
+def test_a_pixel_is_as_wide_as_its_lens_makes_it():
+    """Also where the focal length is in the coefficients."""
+    for name in ("WoodScape surround view", "Camera 60 deg"):
+        shot, _ = camera_shot(mounted(load(name)))
+        assert shot.pixel_rad * shot.width == pytest.approx(load(name).hfov, rel=0.35)

@@ -12,6 +12,13 @@ from . import literal
 from .embree import Embree
 from .many_rows import full_score_of_four_lidars, full_score_of_many, time_against_sensors
 from .mesh_rows import read_glb, read_obj, read_ply
+from .object_rows import (
+    objects_free,
+    objects_in_traffic,
+    objects_of_a_camera,
+    objects_of_a_rig,
+    objects_on_car,
+)
 from .problems import (
     ROOF_LIDAR,
     car,
@@ -216,5 +223,10 @@ ROWS: dict[str, Callable[[], Timing]] = {
         full_score_of_four_lidars,
         full_score_of_many,
         time_against_sensors,
+        objects_free,
+        objects_on_car,
+        objects_in_traffic,
+        objects_of_a_rig,
+        objects_of_a_camera,
     )
 }

@@ -24,7 +24,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Small = NDArray[np.int16]
 
-RUNS_AT_ONCE = 12_000
+RUNS_AT_ONCE = 16_000
 """Their arrays fit the cache."""
 GRAZING = 1e-10
 """A ray whose inverse distances to where it enters and leaves differ by less is unsure [1/m]."""

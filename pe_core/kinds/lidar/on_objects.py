@@ -25,7 +25,7 @@ from .known import KnownBeams
 from .lattice import lattice_of
 from .model import Lidar
 from .object_definition import BoxHits, first_of_scene
-from .object_runs import RunBlock, TurnedFan
+from .object_runs import ChannelRuns, RunBlock, TurnedFan
 from .traffic import FanTraffic
 
 Floats = NDArray[np.float64]
@@ -80,13 +80,14 @@ def _by_fans(beams: BoxBeams, scenes: Ints | None) -> Ints:
 def _alone(beams: BoxBeams, seen: BoxesFromAbove) -> Ints:
     """Count beams on boxes that the LiDAR is beside, where none hides another."""
     counts = np.zeros(len(seen.beside), np.int64)
+    left: dict[int, tuple[FanBeams, list[ChannelRuns]]] = {}
     for fan, block in _blocks(beams, seen):
         asked, number = fan.asked(block), block.high - block.low
         number[asked] = 0
         counts[block.item] += number.sum(axis=0)
-        if not asked.any():
-            continue
-        runs = fan.existing(block.some(asked))
+        left.setdefault(id(fan), (fan, []))[1].append(block.some(asked))
+    for fan, several in left.values():
+        runs = fan.existing(ChannelRuns.joined(several))
         known, stopped = fan.settled(runs)
         np.add.at(counts, runs.item[known], (runs.high - runs.low - stopped)[known])
         runs = runs.some(~known)

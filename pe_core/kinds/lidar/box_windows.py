@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ...scene.geometry import rotate
 from ...scene.numbering import blocks
-from .box_beams import BoxBeams, joined
+from .box_beams import BoxBeams
 from .lattice import WINDOW_MARGIN, Windows, lattice_of
 from .object_definition import BoxHits
 
@@ -19,17 +21,17 @@ NEAREST_M = 1e-3
 """A LiDAR whose axis comes nearer to a box than this has all its beams tested."""
 
 
-def candidate_hits(beams: BoxBeams) -> BoxHits:
-    """Return all hits of boxes: of the beams in each box's window those that meet it."""
+def candidate_hits(beams: BoxBeams) -> Iterator[BoxHits]:
+    """Yield all hits of boxes, box by box: those of the beams in its window."""
     windows, beside = _windows(beams)
-    lattice, found = lattice_of(beams.lidar), [beams.all_hits(np.flatnonzero(~beside))]
+    lattice = lattice_of(beams.lidar)
+    yield beams.all_hits(np.flatnonzero(~beside))
     which = np.flatnonzero(beside)
     for some in blocks(len(which), BOXES_AT_ONCE):
         own = which[some]
         part = Windows(*(w[own] for w in windows))
         item, beam = lattice.candidates(part)
-        found.append(beams.hits(own[item], beam))
-    return joined(found)
+        yield beams.hits(own[item], beam)
 
 
 def _windows(beams: BoxBeams) -> tuple[tuple[Floats, Floats, Floats, Floats], NDArray[np.bool_]]:

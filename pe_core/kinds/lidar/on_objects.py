@@ -64,8 +64,10 @@ def _is_upright(sensor: Sensor) -> bool:
 
 def _one_by_one(beams: BoxBeams, scenes: Ints | None) -> Ints:
     """Count beams by testing all that may meet a box."""
-    hits = candidate_hits(beams)
-    return beams.counted(hits if scenes is None else first_of_scene(hits, scenes))
+    found = candidate_hits(beams)
+    if scenes is None:
+        return np.add.reduce([beams.counted(hits) for hits in found])
+    return beams.counted(first_of_scene(joined(list(found)), scenes))
 
 
 def _by_fans(beams: BoxBeams, scenes: Ints | None) -> Ints:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 MINUS = "\N{MINUS SIGN}"
+NARROW = "\N{NARROW NO-BREAK SPACE}"
 ARROW = "\N{RIGHTWARDS ARROW}"
 
 
@@ -21,8 +22,8 @@ def change(value: float, digits: int = 2) -> str:
 
 
 def percent(share: float) -> str:
-    """Return a share, 0 to 1, as "81.4 %"."""
-    return f"{number(100.0 * share, 1)} %"
+    """Return a share, 0 to 1, as "81.4 %", in one piece."""
+    return f"{number(100.0 * share, 1)}{NARROW}%"
 
 
 def percent_points(share: float) -> str:

@@ -8,13 +8,15 @@ import json
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+KEPT = "\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}"
+"""Do not print, but stand in our own figures."""
 UNSAFE = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"}
 """What could end a script, or begin a comment in one; JSON's strings may also be written so."""
 
 
 def escaped(text: object) -> str:
     """Return a text as HTML, also fit for an attribute; what does not print is written out."""
-    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
+    shown = "".join(c if c.isprintable() or c in KEPT else ascii(c)[1:-1] for c in str(text))
     return html.escape(shown.encode("utf-8", "backslashreplace").decode(), quote=True)
 
 

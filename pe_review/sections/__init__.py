@@ -21,7 +21,7 @@ from .versus import versus
 TOGETHER: tuple[Callable[[tuple[Reviewed, ...]], Section], ...] = (head, versus)
 """What is told of all studies at once, above them; of a single one, too."""
 SECTIONS: tuple[Callable[[Reviewed], Section], ...] = (
-    *(view3d, parts, objects, maps, sensors, failing, searching, told, again),
+    *(view3d, maps, parts, objects, sensors, failing, searching, told, again),
 )
 """What every study has; of several they stand side by side. One whose html is empty is left out."""
 

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ..engine import advice
+from ..engine import advice, sight
 from ..figures import change, joined, number, percent, up_first
 from ..markup import Markup, escaped, table
+from ..pictures.ground_maps import difference_map
+from ..pictures.named_still import named_still
+from ..pictures.svg import STYLE, figure, grid
 from ..reviewed import Reviewed
 from ..section import Section
 from ..winning import CloseRow, close_rows, leads
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
+STEP_M = 1.0
+"""Of the maps."""
 GROUPS = {"rig": "", "zone": "By zone", "class": "By class"}
 
 
@@ -23,13 +28,15 @@ def versus(each: tuple[Reviewed, ...]) -> Section:
     inside = "".join(
         [
             f'<ul class="brief">{"".join(f"<li>{line}</li>" for line in _brief(each, rows))}</ul>',
+            _pictures(each),
+            _difference_maps(each),
             _table(each, rows, "entropy", "Perception entropy in nats: lower is better"),
             _table(each, rows, "coverage", "Seen of where objects are: higher is better"),
             _blind(each),
             _losses(each),
         ]
     )
-    return Section("summary", "Who wins where", inside)
+    return Section("summary", "Who wins where", inside, styles=(STYLE,))
 
 
 def _brief(each: Sequence[Reviewed], rows: Sequence[CloseRow]) -> Iterator[str]:
@@ -61,6 +68,34 @@ def _named(each: Sequence[Reviewed], key: str) -> str:
     return (
         f'<span class="whose-{key}"><span class="swatch"></span> <b>{escaped(one.name)}</b></span>'
     )
+
+
+def _pictures(each: Sequence[Reviewed]) -> str:
+    """The vehicles with their sensors."""
+    drawn = [f"<div>{_named(each, one.key)}{_still(one)}</div>" for one in each]
+    return f'<div class="maps">{"".join(drawn)}</div>'
+
+
+def _still(one: Reviewed) -> Markup:
+    alt = f"{one.name}: the vehicle with its sensors"
+    return one.once("still", lambda: named_still(one.shown_vehicle[0], one.rig, alt))
+
+
+def _difference_maps(each: Sequence[Reviewed]) -> str:
+    """Maps of where each of the others is better than the first."""
+    first, *others = each
+    base, drawn = _ground(first), []
+    for one in others:
+        ends = (f"8 nats less in {one.name}", "8 more")
+        alt = f"Map of the difference in entropy: {one.name} less {first.name}"
+        made = difference_map(base, _ground(one), one.vehicle, alt, ends)
+        a, b = _named(each, first.key), _named(each, one.key)
+        drawn.append(figure(made, Markup(f"Blue: {b} is better; orange: {a} is better")))
+    return f"<h3>Where they differ</h3>{grid(drawn, 30.0)}"
+
+
+def _ground(one: Reviewed) -> sight.GroundSight:
+    return one.once("ground", lambda: one.sight.ground(one.rig, step=STEP_M))
 
 
 def _heads(each: Sequence[Reviewed], first: str) -> list[str | Markup]:

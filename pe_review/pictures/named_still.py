@@ -21,12 +21,17 @@ HIDDEN_M = 0.12
 """A sensor this far behind the surface that is seen in its place is hidden by it."""
 
 
-def named_still(vehicle: pe.Vehicle | None, rig: pe.Rig, alt: str) -> Markup:
-    """Return a picture of a rig on its vehicle, its sensors numbered, as a figure."""
+def named_still(
+    vehicle: pe.Vehicle | None, rig: pe.Rig, alt: str, picture: bytes | None = None
+) -> Markup:
+    """Return a picture of a rig on its vehicle, its sensors numbered, as a figure.
+
+    `picture` is its `still`, where that is there already.
+    """
     view = usual_view(vehicle, rig)
     wide, high = map(float, SIZE)
     canvas = Canvas(wide, high, alt)
-    canvas.picture(still(vehicle, rig, SIZE, view), (0.0, 0.0, wide, high))
+    canvas.picture(picture or still(vehicle, rig, SIZE, view), (0.0, 0.0, wide, high))
     places = np.array([sensor.pose.position for sensor in rig])
     ends = np.stack(view.project(places, *SIZE), axis=1)
     hidden = _hidden(vehicle, view, places)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..markup import escaped, picture
-from ..pictures.named_still import named_still
+from ..pictures.of_reviewed import named_still_of
 from ..reviewed import Reviewed
 from ..section import Section
 from .body import vehicle_data
@@ -63,9 +63,7 @@ def _still(one: Reviewed) -> str:
     """The picture for a browser that cannot turn the view."""
     names = ", ".join(sensor.name for sensor in one.rig)
     alt = f"The vehicle with its sensors: {names}"
-    if one.picture is not None:
-        return picture(one.picture, alt)
-    return one.once("still", lambda: named_still(one.shown_vehicle[0], one.rig, alt))
+    return named_still_of(one, alt) if one.picture is None else picture(one.picture, alt)
 
 
 def _left_out(data: dict[str, Any]) -> str:

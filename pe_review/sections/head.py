@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..engine import advice, kinds, metric
 from ..figures import ARROW, change, count, joined, number, percent, percent_points, up_first
 from ..markup import Markup, escaped, picture
-from ..pictures.named_still import named_still
+from ..pictures.of_reviewed import named_still_of
 from ..pictures.svg import STYLE
 from ..reviewed import Reviewed
 from ..section import Section
@@ -165,8 +165,7 @@ def _worst_loss(one: Reviewed) -> tuple[str, str, str]:
 
 def _picture(one: Reviewed) -> str:
     if one.picture is None:
-        alt = f"The vehicle with {_sensors(one)}"
-        return one.once("still", lambda: named_still(one.shown_vehicle[0], one.rig, alt))
+        return named_still_of(one, f"The vehicle with {_sensors(one)}")
     return picture(one.picture, f"The vehicle with {_sensors(one)} and what they see")
 
 

@@ -8,7 +8,7 @@ from ..engine import advice, sight
 from ..figures import change, joined, number, percent, up_first
 from ..markup import Markup, escaped, table
 from ..pictures.ground_maps import difference_map
-from ..pictures.named_still import named_still
+from ..pictures.of_reviewed import named_still_of
 from ..pictures.svg import STYLE, figure, grid
 from ..reviewed import Reviewed
 from ..section import Section
@@ -77,21 +77,28 @@ def _pictures(each: Sequence[Reviewed]) -> str:
 
 
 def _still(one: Reviewed) -> Markup:
-    alt = f"{one.name}: the vehicle with its sensors"
-    return one.once("still", lambda: named_still(one.shown_vehicle[0], one.rig, alt))
+    return named_still_of(one, f"{one.name}: the vehicle with its sensors")
 
 
 def _difference_maps(each: Sequence[Reviewed]) -> str:
-    """Maps of where each of the others is better than the first."""
+    """Maps of where the first is better than each of the others, in the colours of two studies."""
     first, *others = each
-    base, drawn = _ground(first), []
-    for one in others:
-        ends = (f"8 nats less in {one.name}", "8 more")
-        alt = f"Map of the difference in entropy: {one.name} less {first.name}"
-        made = difference_map(base, _ground(one), one.vehicle, alt, ends)
-        a, b = _named(each, first.key), _named(each, one.key)
-        drawn.append(figure(made, Markup(f"Blue: {b} is better; orange: {a} is better")))
-    return f"<h3>Where they differ</h3>{grid(drawn, 30.0)}"
+    drawn = [figure(_difference(first, one), _colors(each, first, one)) for one in others]
+    shown = grid(drawn, 30.0)
+    narrow = f'<div class="narrow">{shown}</div>' if len(drawn) == 1 else shown
+    return f"<h3>Where they differ</h3>{narrow}"
+
+
+def _difference(first: Reviewed, other: Reviewed) -> Markup:
+    alt = f"Map of the difference in entropy between {first.name} and {other.name}"
+    ends = ("8 nats less here", "8 nats less here")
+    return difference_map(_ground(other), _ground(first), first.vehicle, alt, ends)
+
+
+def _colors(each: Sequence[Reviewed], first: Reviewed, other: Reviewed) -> Markup:
+    """Say what the map's colours mean; those of the first two studies are the map's own."""
+    blue, orange = _named(each, first.key), _named(each, other.key)
+    return Markup(f"Blue: {blue} is better there. Orange: {orange} is better there.")
 
 
 def _ground(one: Reviewed) -> sight.GroundSight:

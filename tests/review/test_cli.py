@@ -5,10 +5,19 @@ import pytest
 import pe_core as pe
 from pe_core.app.cli import main
 from pe_review import PAGE
+from pe_review.sections.again import again
+from pe_review.sections.search import searching
 from tests.review.conftest import small_study
 
 NAMED = "a <b> & c"
 """A file's name that a page must escape."""
+
+
+@pytest.fixture(autouse=True)
+def few_sections(monkeypatch):
+    """What the page says is tested elsewhere."""
+    monkeypatch.setattr("pe_review.page.TOGETHER", ())
+    monkeypatch.setattr("pe_review.page.SECTIONS", (searching, again))
 
 
 @pytest.fixture

@@ -95,7 +95,8 @@ def test_scripts_and_styles_stand_once_and_data_by_study(scored, other, monkeypa
     assert {key: json.loads(data)["key"] for key, data in found.items()} == {"a": "a", "b": "b"}
 
 
-def test_a_page_of_ours_is_replaced_another_is_not(scored, tmp_path):
+def test_a_page_of_ours_is_replaced_another_is_not(scored, tmp_path, monkeypatch):
+    monkeypatch.setattr("pe_review.page.SECTIONS", ())
     path = write_page([scored], tmp_path)
     assert path == tmp_path / PAGE and write_page([scored], tmp_path) == path
     path.write_text("mine")

@@ -86,10 +86,9 @@ def _row(number: int, sensor: Mapping[str, Any]) -> str:
 
 
 def _cell(number: int, sensor: Mapping[str, Any], layer: str) -> str:
-    if not sensor["layers"].get(layer) and layer != "stopped":
-        return ""
     own = f'data-sensor="{number}" data-layer="{layer}"'
-    box = _box(f"{sensor['name']}: {TOLD[layer]}", layer, own)
+    there = bool(sensor["layers"].get(layer))
+    box = _box(f"{sensor['name']}: {TOLD[layer]}", layer, own) if there else ""
     return box + (_share(sensor["share"]) if layer == "stopped" else "")
 
 

@@ -116,17 +116,29 @@ class View {
   }
 }
 
+/* A view; none where a browser promises WebGL and then has none left. */
+function viewOf(root, data) {
+  try {
+    return new View(root, data);
+  } catch (error) {
+    console.warn("no 3-D view:", error);
+    return null;
+  }
+}
+
 function begin(root) {
   const data = JSON.parse(document.getElementById(`data-${root.dataset.section}-${root.dataset.key}`).textContent);
+  const view = viewOf(root, data);
+  if (!view) return;
   root.querySelector(".v3-still").hidden = true;
   root.querySelector(".v3-live").hidden = false;
-  const view = new View(root, data);
   listenToHands(view);
   listenToPanel(view);
   listenToPaper(view);
   startAsSwitched(view);
   view.fit();
   view.show("quarter");
+  view.canvas.addEventListener("webglcontextrestored", () => view.draw());
   new ResizeObserver(() => view.draw()).observe(view.stage);
 }
 

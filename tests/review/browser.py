@@ -1,11 +1,16 @@
 """A headless Chromium, and pages of ours opened in it; Debian's package, driven by Playwright."""
 
+from __future__ import annotations
+
 import shutil
 from contextlib import contextmanager
 
-from playwright.sync_api import Browser, Page, Playwright
-
 from tests.needed import unavailable
+
+try:
+    from playwright.sync_api import Browser, Page, Playwright, sync_playwright
+except ImportError:
+    Browser = Page = Playwright = sync_playwright = None
 
 PACKAGE = "chromium"
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
@@ -20,6 +25,17 @@ WITHOUT_WEBGL = """
   };"""
 SETTLED = """() => new Promise((done) =>
   requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))"""
+
+
+@contextmanager
+def started():
+    """Yield Chromium; skip where it or Playwright is missing."""
+    if sync_playwright is None:
+        unavailable("there is no Playwright: install the extra test")
+    with sync_playwright() as playwright:
+        browser = launched(playwright)
+        yield browser
+        browser.close()
 
 
 def launched(playwright: Playwright) -> Browser:

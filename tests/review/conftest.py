@@ -9,6 +9,7 @@ import pe_core as pe
 from pe_core.catalog import load
 from pe_review import Reviewed, page_bytes
 from pe_review.pictures import named_still, through_lens
+from tests.review.browser import started
 
 NAMES = ("</script><b>roof", "front & left / 60°")
 """Names that would end a script, and begin an element, if they were not escaped."""
@@ -101,10 +102,5 @@ def page_of_two(scored, other):
 @pytest.fixture(scope="session")
 def chromium():
     """A headless Chromium for all tests of pages."""
-    sync_api = pytest.importorskip("playwright.sync_api")
-    from tests.review.browser import launched
-
-    with sync_api.sync_playwright() as playwright:
-        browser = launched(playwright)
+    with started() as browser:
         yield browser
-        browser.close()

@@ -34,7 +34,7 @@ def add_export_options(
     parser.add_argument("--to", required=needed, choices=known, metavar="FORMAT", help=about)
     about = "file, or folder for a format of several files"
     parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
-    about = f"of {', '.join(SCENE_OUTPUTS)}: how far sensors are drawn [m] (default: their own)"
+    about = f"of {', '.join(n for n, row in SCENE_OUTPUTS.items() if row.has_range)}: how far sensors are drawn [m] (default: their own)"
     parser.add_argument("--range", type=float, metavar="M", help=about)
     parser.add_argument("--replace", action="store_true", help="replace files that are there")
     _add_axle_options(parser)
@@ -70,13 +70,13 @@ def _add_axle_options(parser: argparse.ArgumentParser) -> None:
 
 def export(study: Study, args: argparse.Namespace) -> Answer:
     """Write a study's rig, or its scene, for another program."""
+    _refuse_range(args)
     reference = _reference(args, study.reference, study.vehicle, args.to)
     where, options = (args.to, args.output), {"replace": args.replace}
     if args.to in SCENE_OUTPUTS:
         study = replace(study, reference=reference)
         paths, lines = export_scene(study, *where, args.range, **options)
     else:
-        _refuse_range(args)
         paths, lines = export_rig(study.rig, *where, reference, **options)
     for line in lines:
         tell(line)
@@ -85,9 +85,9 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
 
 def _refuse_range(args: argparse.Namespace) -> None:
     """Raise `InputError` for a range where no field of view is drawn."""
-    if args.range is not None:
-        expected = f"one of {', '.join(SCENE_OUTPUTS)}"
-        raise InputError("--range", "option", expected, args.to)
+    ranged = [row.name for row in SCENE_OUTPUTS.values() if row.has_range]
+    if args.range is not None and args.to not in ranged:
+        raise InputError("--range", "option", f"one of {', '.join(ranged)}", args.to)
 
 
 def import_study(args: argparse.Namespace) -> Answer:

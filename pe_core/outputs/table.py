@@ -39,14 +39,14 @@ class SceneOutput:
 
 
 _ROWS = (
-    SceneOutput("solids", "fields of view as solids (glTF, STL)", "solids", solids.write, True),
-    SceneOutput("footprints", "footprints on the ground (SVG)", svg.FILE, svg.write),
+    SceneOutput("solids", "Fields of View as Solids (glTF, STL)", "solids", solids.write, True),
+    SceneOutput("footprints", "Footprints on the Ground (SVG)", svg.FILE, svg.write),
     SceneOutput(
-        "footprints-dxf", "footprints on the ground (DXF)", libraries.DXF, libraries.write_dxf
+        "footprints-dxf", "Footprints on the Ground (DXF)", libraries.DXF, libraries.write_dxf
     ),
-    SceneOutput("gltf", "whole scene (glTF)", scene_gltf.FILE, scene_gltf.write),
-    SceneOutput("rerun", "Rerun recording", libraries.RECORDING, libraries.write_recording),
-    SceneOutput("masks", "ego masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
+    SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
+    SceneOutput("rerun", "Rerun Recording", libraries.RECORDING, libraries.write_recording),
+    SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
 )
 SCENE_OUTPUTS = MappingProxyType({row.name: row for row in _ROWS})
 """Outputs by name."""

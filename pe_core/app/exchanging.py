@@ -17,6 +17,8 @@ from ..text.cells import quoted
 from .status import DONE, Answer
 from .terminal import tell
 
+RANGED = tuple(row.name for row in SCENE_OUTPUTS.values() if row.has_range)
+"""Outputs that draw fields of view, as far as asked for."""
 POSE = ("X", "Y", "Z", "ROLL", "PITCH", "YAW")
 NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
 
@@ -34,7 +36,7 @@ def add_export_options(
     parser.add_argument("--to", required=needed, choices=known, metavar="FORMAT", help=about)
     about = "file, or folder for a format of several files"
     parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
-    about = f"of {', '.join(n for n, row in SCENE_OUTPUTS.items() if row.has_range)}: how far sensors are drawn [m] (default: their own)"
+    about = f"of {', '.join(RANGED)}: how far sensors are drawn [m] (default: by their own range)"
     parser.add_argument("--range", type=float, metavar="M", help=about)
     parser.add_argument("--replace", action="store_true", help="replace files that are there")
     _add_axle_options(parser)
@@ -85,9 +87,8 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
 
 def _refuse_range(args: argparse.Namespace) -> None:
     """Raise `InputError` for a range where no field of view is drawn."""
-    ranged = [row.name for row in SCENE_OUTPUTS.values() if row.has_range]
-    if args.range is not None and args.to not in ranged:
-        raise InputError("--range", "option", f"one of {', '.join(ranged)}", args.to)
+    if args.range is not None and args.to not in RANGED:
+        raise InputError("--range", "option", f"one of {', '.join(RANGED)}", args.to)
 
 
 def import_study(args: argparse.Namespace) -> Answer:

@@ -31,7 +31,7 @@ def maps(one: Reviewed) -> Section:
 
 def _ground(one: Reviewed) -> str:
     """Maps of all of the ground; after a search what it was before, and what changed."""
-    seen = one.sight.ground(one.rig, step=STEP_M)
+    seen = one.once("ground", lambda: one.sight.ground(one.rig, step=STEP_M))
     titles = {layer.title: layer for layer in LAYERS}
     drawn = [
         figure(ground_map(seen, layer, one.vehicle, _alt(one, title)), _caption(layer))

@@ -6,7 +6,7 @@ import bpy
 
 from .layout import Tab
 
-NAME_SHARE, NARROW_SHARE = 0.5, 0.28
+NAME_SHARE, NARROW_SHARE = 0.5, 0.3
 
 
 class PE_PT_breakdown(Tab, bpy.types.Panel):
@@ -33,8 +33,9 @@ class PE_PT_breakdown(Tab, bpy.types.Panel):
             for part in settings.result_parts:
                 if part.is_class == is_class:
                     more = (part.ap, part.reach) if found else ()
-                    figures = f"{part.entropy:.2f}", f"{part.coverage:.1%}"
-                    draw_row(column, part.name, *figures, *more)
+                    digits = 0 if found else 1  # four figures have to fit
+                    nats = f"{part.entropy:.{digits + 1}f}"
+                    draw_row(column, part.name, nats, f"{part.coverage:.{digits}%}", *more)
             if not is_class:
                 column.separator()
 

@@ -66,6 +66,21 @@ def test_a_lidar_s_kernel_counts_what_the_definition_does(name):
         assert found[0] > found[3] > 0  # something hides something
 
 
+TILTS = ((0, 3, 0), (0, 90, 0), (90, 0, 0), (180, 0, 0), (0, -30, 90), (0, 1e-7, 0), (1e-4, 0, 45))
+
+
+@pytest.mark.parametrize("rotation", TILTS)
+def test_a_tilted_lidar_at_round_angles_among_round_objects(rotation):
+    """Sides then run along planes of channels, or nearly."""
+    objects = round_objects(np.random.default_rng(11))
+    pose = pe.Pose.from_degrees((0.5, -1.0, 2.0), rotation)
+    sensor = pe.Sensor("s", LIDARS["regular"], pose)
+    for vehicle in (None, shapes.box_car()):
+        counts = measured(sensor, objects, vehicle, False)
+        assert counts.tolist() == pe.measure_objects(sensor, objects, vehicle).tolist()
+    assert np.count_nonzero(counts) > 5
+
+
 def test_a_sensor_over_and_in_objects_of_a_scene():
     """Such scenes are compared beam by beam, the others are not."""
     some = random_objects(np.random.default_rng(4), 40, 10, nearest=4.0, farthest=25.0)

@@ -34,6 +34,13 @@ def candidate_hits(beams: BoxBeams) -> Iterator[BoxHits]:
         yield beams.hits(own[item], beam)
 
 
+def azimuth_spans(beams: BoxBeams) -> tuple[Floats, Floats]:
+    """First and last azimuth (N,) of boxes in the sensor's frame; all round of one on the axis."""
+    (middle, half, _, _), beside = _windows(beams)
+    half = np.where(beside, half, np.pi)
+    return middle - half, middle + half
+
+
 def _windows(beams: BoxBeams) -> tuple[tuple[Floats, Floats, Floats, Floats], NDArray[np.bool_]]:
     """Windows of all boxes, and whether they lie beside the LiDAR's axis."""
     boxes, axes = beams.boxes, beams.sensor.pose.ground_from_sensor

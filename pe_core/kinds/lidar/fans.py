@@ -51,6 +51,11 @@ class ChannelSlopes:
         codes = (2 * below + (upto > below)).astype(np.int16)
         return cls(slopes, float(low), (BINS - 2) / float(high - low), codes)
 
+    @property
+    def steepest(self) -> float:
+        """The slope that is farthest from level."""
+        return float(np.abs(self.slopes).max())
+
     def below(self, bins: Floats) -> tuple[NDArray[np.int16], Flags]:
         """How many channels lie below slopes, times `scale`, and where that is not sure.
 

@@ -103,18 +103,24 @@ class TurnedFan:
 
     def runs(self, boxes: PlacedBoxes, seen: BoxesFromAbove, which: Ints) -> Iterator[RunBlock]:
         """Yield the runs through some boxes, which the sensor is `beside`."""
-        first = np.ceil((seen.first[which] - self.start) / self.step - WIDER).astype(np.int64)
-        last = np.floor((seen.last[which] - self.start) / self.step + WIDER).astype(np.int64)
-        counts = last - first + 1
+        for some, column in self.columns(seen.first[which], seen.last[which]):
+            yield self._through(boxes, seen, which[some], column)
+
+    def columns(self, begin: Floats, end: Floats) -> Iterator[tuple[Ints, NDArray[np.int32]]]:
+        """Yield boxes (M,) that span azimuths [rad], and steps (A, M) that hold these azimuths.
+
+        Steps go on into a second turn; of some boxes a few too many.
+        """
+        first = np.ceil((begin - self.start) / self.step - WIDER).astype(np.int64)
+        last = np.floor((end - self.start) / self.step + WIDER).astype(np.int64)
+        counts = np.minimum(last - first + 1, self.count)
         order = np.argsort(-counts, kind="stable")
         order = order[: np.count_nonzero(counts > 0)]
-        which, first, counts = which[order], first[order] % self.count, counts[order]
-        start = 0
-        while start < len(which):
+        first, counts, start = first[order] % self.count, counts[order], 0
+        while start < len(order):
             width = int(counts[start])
             some = slice(start, start + max(1, RUNS_AT_ONCE // width))
-            column = (first[some] + np.arange(width)[:, None]).astype(np.int32)
-            yield self._through(boxes, seen, which[some], column)
+            yield order[some], (first[some] + np.arange(width)[:, None]).astype(np.int32)
             start = some.stop
 
     def _through(

@@ -2,13 +2,13 @@
 
 An upright LiDAR's beams are taken azimuth by azimuth (`object_runs`); what rounding, the range, or
 a part of the vehicle that is not before the box for sure could decide has its beams tested one by
-one, as the definition does. So have all boxes of a LiDAR that is tilted, or has too many fans.
+one, as the definition does. So is a tilted LiDAR (`tilted_runs`), but for traffic: there, and of
+one with too many fans, all beams that may meet a box are tested.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +17,15 @@ from ...scene.sensors import Sensor
 from ..object_kernel import ObjectKernel, ObjectView
 from ..placed_boxes import PlacedBoxes
 from .box_beams import BoxBeams, joined
-from .box_windows import candidate_hits
+from .box_windows import azimuth_spans, candidate_hits
 from .fan_beams import FanBeams
 from .fans import fans_of
 from .from_above import BoxesFromAbove
 from .known import KnownBeams
 from .lattice import lattice_of
-from .model import Lidar
 from .object_definition import BoxHits, first_of_scene
 from .object_runs import ChannelRuns, RunBlock, TurnedFan
+from .tilted_runs import TiltedBoxes, tilted_runs
 from .traffic import FanTraffic
 
 Floats = NDArray[np.float64]
@@ -34,6 +34,8 @@ Flags = NDArray[np.bool_]
 
 MOST_FANS = 16
 """With more, testing one by one is as fast."""
+STEEPEST = 1e3
+"""A LiDAR with a beam along its own axis has all tested one by one."""
 
 
 class LidarObjects(ObjectKernel):
@@ -49,17 +51,29 @@ class LidarObjects(ObjectKernel):
         ends = known.ended(sensor, draft=False).ends
         beams = BoxBeams(sensor, boxes, known.turned(sensor), ends)
         scenes = view.objects.scenes if view.traffic else None
-        counts = _by_fans(beams, scenes) if _is_upright(sensor) else _one_by_one(beams, scenes)
-        return counts.astype(float)
+        return _counts(beams, scenes).astype(float)
 
     def forget_all_but(self, sensors: Collection[Sensor]) -> None:
         """Keep the beams of these sensors alone."""
         self._known.forget_all_but(sensors)
 
 
-def _is_upright(sensor: Sensor) -> bool:
-    roll, pitch, _ = sensor.pose.rpy
-    return roll == 0.0 and pitch == 0.0 and len(fans_of(cast(Lidar, sensor.model))) <= MOST_FANS
+def _counts(beams: BoxBeams, scenes: Ints | None) -> Ints:
+    """Count beams on all boxes the quickest way there is."""
+    fans = fans_of(beams.lidar)
+    few = len(fans) <= MOST_FANS and all(fan.slopes.steepest < STEEPEST for fan in fans)
+    roll, pitch, _ = beams.sensor.pose.rpy
+    if few and roll == 0.0 and pitch == 0.0:
+        seen = BoxesFromAbove.of(beams.boxes)
+        over = beams.all_hits(np.flatnonzero(~seen.beside))
+        if scenes is None:
+            return beams.counted(over) + _alone(beams, _blocks(beams, seen))
+        return _in_traffic(beams, seen, over, scenes)
+    if few and scenes is None:
+        tilted = TiltedBoxes.of(beams.boxes, beams.sensor.pose.ground_from_sensor)
+        within = beams.all_hits(np.flatnonzero(~tilted.outside))
+        return beams.counted(within) + _alone(beams, _tilted_blocks(beams, tilted))
+    return _one_by_one(beams, scenes)
 
 
 def _one_by_one(beams: BoxBeams, scenes: Ints | None) -> Ints:
@@ -70,20 +84,11 @@ def _one_by_one(beams: BoxBeams, scenes: Ints | None) -> Ints:
     return beams.counted(first_of_scene(joined(list(found)), scenes))
 
 
-def _by_fans(beams: BoxBeams, scenes: Ints | None) -> Ints:
-    """Count beams of an upright LiDAR."""
-    seen = BoxesFromAbove.of(beams.boxes)
-    over = beams.all_hits(np.flatnonzero(~seen.beside))
-    if scenes is None:
-        return beams.counted(over) + _alone(beams, seen)
-    return _in_traffic(beams, seen, over, scenes)
-
-
-def _alone(beams: BoxBeams, seen: BoxesFromAbove) -> Ints:
-    """Count beams on boxes that the LiDAR is beside, where none hides another."""
-    counts = np.zeros(len(seen.beside), np.int64)
+def _alone(beams: BoxBeams, blocks: Iterator[tuple[FanBeams, RunBlock]]) -> Ints:
+    """Count beams on boxes whose runs are known, where none hides another."""
+    counts = np.zeros(len(beams.boxes.offsets), np.int64)
     left: dict[int, tuple[FanBeams, list[ChannelRuns]]] = {}
-    for fan, block in _blocks(beams, seen):
+    for fan, block in blocks:
         asked, number = fan.asked(block), block.high - block.low
         number[asked] = 0
         counts[block.item] += number.sum(axis=0)
@@ -122,4 +127,17 @@ def _blocks(beams: BoxBeams, seen: BoxesFromAbove) -> Iterator[tuple[FanBeams, R
         own = FanBeams.of(fan, lattice_of(lidar), beams.ends, unclear)
         turned = TurnedFan.of(fan, yaw, lidar.azimuth_step, lidar.azimuth_count)
         for block in turned.runs(beams.boxes, seen, which):
+            yield own, block
+
+
+def _tilted_blocks(beams: BoxBeams, seen: TiltedBoxes) -> Iterator[tuple[FanBeams, RunBlock]]:
+    """Yield runs of channels of a tilted LiDAR through all boxes that it is not in."""
+    lidar, distance = beams.lidar, 1.0 / seen.near
+    which = np.flatnonzero(seen.outside & (distance <= lidar.max_range))
+    unclear = (distance <= lidar.min_range) | (beams.reach() >= lidar.max_range)
+    spans = azimuth_spans(beams)
+    for fan in fans_of(lidar):
+        own = FanBeams.of(fan, lattice_of(lidar), beams.ends, unclear)
+        turned = TurnedFan.of(fan, 0.0, lidar.azimuth_step, lidar.azimuth_count)
+        for block in tilted_runs(turned, seen, spans, which):
             yield own, block

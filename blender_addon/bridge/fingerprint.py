@@ -17,7 +17,7 @@ from .rig import held_pose, pose_of_matrix, sensor_objects, view_layer_of
 from .targets import targets_signature
 
 Standing = tuple[object, ...]
-"""Model, fusion group and placement of a sensor that counts; none for one that does not."""
+"""Model, fusion group, placement, perhaps an AP curve of its own; none where it does not count."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Fingerprint:
 
     def with_rig(self, rig: pe.Rig) -> Fingerprint:
         """Return that of the same scene with its sensors placed as a rig has them."""
-        placed = {s.name: (*self.sensors[s.name][:2], _numbers(s.pose)) for s in rig}
+        placed = {s.name: _placed(self.sensors[s.name], s.pose) for s in rig}
         return replace(self, sensors={**self.sensors, **placed})
 
 
@@ -81,7 +81,12 @@ def _standing(obj: bpy.types.Object, visible: bool) -> Standing:
         where: object = _numbers(pose_of_matrix(placement) if held is None else held)
     except pe.InputError:  # what cannot be scored has a fingerprint all the same
         where = placement.tolist()
-    return own.model, own.fusion, where
+    curve = (own.curve_a, own.curve_b) if own.own_curve else None
+    return (own.model, own.fusion, where, *([curve] if curve else []))
+
+
+def _placed(standing: Standing, pose: pe.Pose) -> Standing:
+    return (*standing[:2], _numbers(pose), *standing[3:])
 
 
 def _numbers(pose: pe.Pose) -> tuple[float, ...]:

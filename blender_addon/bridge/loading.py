@@ -101,6 +101,7 @@ def records_of_study(study: pe.Study) -> tuple[Record, ...]:
                 mirror_of=linked.get(name, ""),
                 mount=mounting.on.get(name, ""),
                 rack=racks.get(name, ""),
+                curve=sensor.curve,
             )
         )
     return tuple(sorted(found, key=lambda record: record.name))

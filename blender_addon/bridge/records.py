@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ..engine import catalog, pe, search
+from .own_curves import curve_of, put_curve
 from .rig import (
     held_pose,
     pose_from_numbers,
@@ -26,7 +27,8 @@ class Record:
     """One sensor: what the score and the search know of it, whether it counts, and its look.
 
     `bounded` says which axes have bounds of their own, `low` and `high` which [m or deg];
-    `mirror_of` is the sensor it is linked to, `mount` and `rack` where it may sit, and with whom.
+    `mirror_of` is the sensor it is linked to, `mount` and `rack` where it may sit, and with whom;
+    `curve` its own AP curve.
     """
 
     name: str
@@ -43,6 +45,7 @@ class Record:
     mirror_of: str = ""
     mount: str = ""
     rack: str = ""
+    curve: pe.ApCurve | None = None
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -52,7 +55,7 @@ class Record:
     @property
     def scored(self) -> tuple[object, ...]:
         """What a score depends on."""
-        return self.name, self.model, self.fusion, self.numbers, self.visible
+        return self.name, self.model, self.fusion, self.numbers, self.visible, self.curve
 
     @property
     def told_apart(self) -> tuple[object, ...]:
@@ -102,6 +105,7 @@ def _record_of(obj: bpy.types.Object, layer: bpy.types.ViewLayer) -> Record:
         own.mirror_of,
         own.mount,
         own.rack,
+        curve_of(own),
     )
 
 
@@ -136,6 +140,7 @@ def records_of(variant: bpy.types.PropertyGroup) -> tuple[Record, ...]:
             tuple(row.bounds_low),
             tuple(row.bounds_high),
             *_ties_of(variant, row),
+            curve_of(row),
         )
         for row in variant.sensors
     )
@@ -158,6 +163,7 @@ def write_records(variant: bpy.types.PropertyGroup, records: Sequence[Record]) -
     for record in records:
         row = variant.sensors.add()
         row.name, row.model, row.fusion = record.name, record.model, record.fusion
+        put_curve(row, record.curve)
         row.pose, row.free, row.visible = record.numbers, record.free, record.visible
         row.display, row.size = record.display, record.size_m
         row.bounded, row.bounds_low, row.bounds_high = record.bounded, record.low, record.high
@@ -190,7 +196,7 @@ def free_axes_of(records: Sequence[Record]) -> dict[str, tuple[str, ...]]:
 def _sensor(record: Record) -> pe.Sensor:
     try:
         model = catalog.load(record.model)
-        return pe.Sensor(record.name, model, record.pose, record.fusion or None)
+        return pe.Sensor(record.name, model, record.pose, record.fusion or None, record.curve)
     except pe.InputError as error:
         field = f"sensor {record.name!r}: {error.field}"
         raise pe.InputError("variant", field, error.expected, error.found) from None

@@ -11,6 +11,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..engine import catalog, geometry, pe, search
+from .own_curves import curve_of
 
 SCALE_TOLERANCE = 1e-4
 """How far a sensor's axes may be from unit length and from right angles."""
@@ -46,7 +47,7 @@ def rig_from_objects(objects: Sequence[bpy.types.Object], depsgraph: bpy.types.D
 
 
 def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Sensor:
-    """Return one object's model, placement and fusion group as a sensor.
+    """Return one object's model, placement, fusion group and AP curve as a sensor.
 
     Raises
     ------
@@ -56,7 +57,7 @@ def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) ->
     settings = obj.perception_entropy
     try:
         model, pose = catalog.load(settings.model), pose_of(obj, depsgraph)
-        return pe.Sensor(obj.name, model, pose, settings.fusion or None)
+        return pe.Sensor(obj.name, model, pose, settings.fusion or None, curve_of(settings))
     except pe.InputError as error:
         field = f"sensor {obj.name!r}: {error.field}"
         raise pe.InputError("scene", field, error.expected, error.found) from None

@@ -69,7 +69,7 @@ def _designed(now: Sequence[Record], design: pe.Design) -> tuple[Record, ...]:
 
 def _as_taken(record: Record, sensor: pe.Sensor) -> Record:
     model, fusion = sensor.model.name, sensor.fusion or ""
-    return replace(record, model=model, fusion=fusion, pose=sensor.pose)
+    return replace(record, model=model, fusion=fusion, pose=sensor.pose, curve=sensor.curve)
 
 
 def _note(design: pe.Design, currency: str) -> str:

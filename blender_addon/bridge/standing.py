@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import bpy
 
 from .newcomers import SENSORS
+from .own_curves import put_curve
 from .parking import park, parked, unpark
 from .records import Record
 from .rig import place_poses, sensor_objects, view_layer_of
@@ -81,6 +82,7 @@ def _dress(obj: bpy.types.Object, record: Record) -> None:
         own.model = record.model
     if own.fusion != record.fusion:
         own.fusion = record.fusion
+    put_curve(own, record.curve)
     own.free, own.bounded = record.free, record.bounded
     own.bounds_low, own.bounds_high = record.low, record.high
     own.rack = record.rack

@@ -138,7 +138,7 @@ def _is_rig(variant: Variant, rig: pe.Rig) -> bool:
 
 def _told_apart(sensor: pe.Sensor) -> tuple[object, ...]:
     """What a score depends on; the catalogue gives one object for each of its sensors."""
-    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose
+    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
 
 
 def keep_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) -> None:

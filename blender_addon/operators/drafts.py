@@ -57,7 +57,7 @@ class Drafts:
             if self._others:
                 self._before = self._evaluator.entropy(pe.Rig(self._others))
         own = self._study.rig[self._name]
-        moved = pe.Sensor(own.name, own.model, pose, own.fusion)
+        moved = own.moved(pose)
         score = self._evaluator.score(pe.Rig([*self._others, moved]), draft=True)
         return Gain(self._before, score.entropy, score.coverage)
 

@@ -241,7 +241,7 @@ def _label(wish: PictureWish, _tools: Tools, name: str) -> graphics.LayerShape:
 def _ghost_keys(wish: PictureWish) -> dict[str, Hashable]:
     if not wish.ghosts:
         return {}
-    others = tuple((s.name, id(s.model), s.pose, s.group) for s in wish.ghosts)
+    others = tuple((s.name, id(s.model), s.pose, s.group, s.curve) for s in wish.ghosts)
     here = tuple((each.sensor.name, each.sensor.pose) for each in wish.counted)
     reach_too = "reach" in wish.view.layers and wish.prior is not None
     reached = (wish.body_key, wish.prior_key, wish.view.reach_class) if reach_too else None

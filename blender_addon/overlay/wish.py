@@ -59,7 +59,8 @@ class SceneSensor:
     def key(self) -> Hashable:
         """Tells it from itself moved, or made another one."""
         sensor = self.sensor
-        return sensor.name, id(sensor.model), sensor.pose, sensor.group, self.number
+        of = sensor.name, id(sensor.model), sensor.pose
+        return *of, sensor.group, sensor.curve, self.number
 
 
 @dataclass(frozen=True, slots=True, eq=False)

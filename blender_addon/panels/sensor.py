@@ -93,4 +93,24 @@ class PE_PT_bounds(Tab, bpy.types.Panel):
         draw_bounds(self.layout, context.active_object.perception_entropy)
 
 
-CLASSES = (PE_PT_sensor, PE_PT_bounds)
+class PE_PT_own_curve(Tab, bpy.types.Panel):
+    """Score this sensor by an AP curve of its own: another perception algorithm than its kind's"""
+
+    bl_idname = "PE_PT_own_curve"
+    bl_label = "Own AP Curve"
+    bl_parent_id = "PE_PT_sensor"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        self.layout.prop(context.active_object.perception_entropy, "own_curve", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.active_object.perception_entropy
+        row = self.layout.row(align=True)
+        row.active = settings.own_curve
+        row.label(text="AP = a ln m + b")
+        row.prop(settings, "curve_a")
+        row.prop(settings, "curve_b")
+
+
+CLASSES = (PE_PT_sensor, PE_PT_own_curve, PE_PT_bounds)

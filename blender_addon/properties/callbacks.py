@@ -33,6 +33,15 @@ def model_chosen(settings: bpy.types.PropertyGroup, context: bpy.types.Context) 
     changed(settings, context)
 
 
+def own_curve_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Update callback of a sensor's own AP curve: it begins as its kind's."""
+    entry = catalog.entries().get(settings.model)
+    if settings.own_curve and entry is not None and not settings.is_property_set("curve_a"):
+        curve = kinds.KINDS[entry.kind].curve
+        settings.curve_a, settings.curve_b = curve.a, curve.b
+    changed(settings, context)
+
+
 def models_of_a_kind(
     settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
 ) -> list[tuple[str, str]]:

@@ -15,7 +15,7 @@ from bpy.props import (
 
 from ..engine import search
 from .advanced import SearchBounds
-from .callbacks import changed, model_chosen, models_of_a_kind, redraw
+from .callbacks import changed, model_chosen, models_of_a_kind, own_curve_switched, redraw
 from .mounting import MountedSettings
 from .selection import OfferedModels
 from .warnings import PE_StoppingPart
@@ -47,6 +47,18 @@ class PE_ObjectSettings(SearchBounds, MountedSettings, OfferedModels, bpy.types.
         description="Sensors of one group count their beams or pixels together. When empty, all "
         "LiDARs are one group and each camera stands alone",
         update=changed,
+    )
+    own_curve: BoolProperty(
+        name="Own AP Curve",
+        description="Take the numbers below for this sensor, not its kind's. Sensors of one fusion "
+        "group have one curve",
+        update=own_curve_switched,
+    )
+    curve_a: FloatProperty(
+        name="a", description="AP = a ln m + b: slope", precision=4, min=1e-12, update=changed
+    )
+    curve_b: FloatProperty(
+        name="b", description="AP = a ln m + b: value at one point", precision=4, update=changed
     )
     free: BoolVectorProperty(
         name="Free Axes",

@@ -34,6 +34,9 @@ class PE_VariantSensor(bpy.types.PropertyGroup):
     name: StringProperty(name="Name", description="Name of the sensor's object")
     model: StringProperty(name="Model", description="Name of the sensor in the catalogue")
     fusion: StringProperty(name="Fusion", description="Its group, empty for the usual one")
+    own_curve: BoolProperty(name="Own AP Curve", description="It does not take its kind's")
+    curve_a: FloatProperty(name="a", description="AP = a ln m + b: slope")
+    curve_b: FloatProperty(name="b", description="AP = a ln m + b: value at one point")
     pose: FloatVectorProperty(
         name="Placement",
         description="x, y, z [m], roll, pitch, yaw [deg]",

@@ -37,6 +37,9 @@ from .timing import Timing, Work, best, best_in_turn, peak_mb
 Position = tuple[float, float, float]
 
 
+BESIDE: Position = (-7.4, 1.0, 1.2)
+
+
 def grid_free() -> Timing:
     """A Pandar64 on the grid of 64 million voxels, against the literal loop in C++."""
     return _against_literal(None, "no vehicle")
@@ -154,6 +157,21 @@ def rays_from_afar() -> Timing:
     return _against_embree(car(), (-22.0, 1.0, 1.2), "20 m off")
 
 
+def rays_from_beside() -> Timing:
+    """A frame from 5 m off."""
+    return _against_embree(car(), BESIDE, "5 m off")
+
+
+def rays_at_a_million_from_roof() -> Timing:
+    """A frame from the usual place over a car of a million triangles and a half."""
+    return _against_embree(car(1_500_000), ROOF_LIDAR, "38 cm over a roof")
+
+
+def rays_at_a_million_from_beside() -> Timing:
+    """The same from 5 m off, where most triangles are smaller than the gaps between rays."""
+    return _against_embree(car(1_500_000), BESIDE, "5 m off")
+
+
 def rays_at_many_triangles() -> Timing:
     """A frame from 3 cm over a car of millions of triangles."""
     return _against_embree(car(6_000_000), (-0.4, 0.02, 1.48), "3 cm over a roof")
@@ -208,6 +226,9 @@ ROWS: dict[str, Callable[[], Timing]] = {
         rays_close,
         rays_from_roof,
         rays_from_afar,
+        rays_from_beside,
+        rays_at_a_million_from_roof,
+        rays_at_a_million_from_beside,
         rays_at_many_triangles,
         rays_of_a_camera,
         live_map,

@@ -69,8 +69,8 @@ class Evaluator:
         shift = in_range[0], in_range[1], in_range[2]
         self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
         self._shift, self._model, self._workers = shift, model, workers
-        require_room_for_samples(samples)
         classes = len(prior.class_names)
+        require_room_for_samples(samples, columns_bytes(space, classes))
         require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
         fusion = Fusion(model or PerceptionModel())
         self._scorer: GridScorer | SampledScorer

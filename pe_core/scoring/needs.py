@@ -30,8 +30,8 @@ PLANE_BYTES = 24
 """Of a voxel of the planes that a thread works on: counts, sums, precision, entropy, weights."""
 SAMPLES = 262_144
 """The voxels that are offered in place of the grid."""
-SAMPLE_BYTES = 350
-"""Of a sampled voxel, with some sensors (measured: 290 while they are drawn, 430 with twelve)."""
+SAMPLE_BYTES = 600
+"""Of a sampled voxel (measured: 270 to 420 while they are drawn, 590 with 32 sensors)."""
 COARSER = (2, 4, 5, 10, 20)
 """How many times as coarse a grid is offered."""
 
@@ -84,18 +84,24 @@ def require_room_for(space: PerceptionSpace, needed: Callable[[PerceptionSpace],
     raise InputError("score", "memory", expected, f"about {size_text(amount)}")
 
 
-def require_room_for_samples(samples: int) -> None:
-    """Refuse a sample that takes more memory than there is.
+def samples_bytes(samples: int, columns: int) -> int:
+    """Return what a score of that many voxels takes, beside the prior's `columns` [bytes]."""
+    return columns + samples * SAMPLE_BYTES
+
+
+def require_room_for_samples(samples: int, columns: int) -> None:
+    """Refuse a sample that takes more memory than there is; `columns` is the prior's part [bytes].
 
     Raises
     ------
     InputError
         One line with how much it takes, how much there is, and how many voxels would fit.
     """
-    there, amount = available_bytes(), samples * SAMPLE_BYTES
-    if there is None or amount <= there:
+    there, amount = available_bytes(), samples_bytes(samples, columns)
+    if samples == 0 or there is None or amount <= there:
         return
-    fitting = 1 << max(0, (there // SAMPLE_BYTES).bit_length() - 1)
+    most = max(0, there - columns) // SAMPLE_BYTES
+    fitting = 1 << max(0, most.bit_length() - 1)
     way = f"; try samples = {fitting}" if fitting >= MIN_SAMPLES else ""
     expected = f"what fits in the {size_text(there)} of memory that are free{way}"
     raise InputError("score", "memory", expected, f"about {size_text(amount)}")

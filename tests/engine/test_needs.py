@@ -35,6 +35,20 @@ def test_estimates_are_near_what_is_taken(lidars, cameras):
     assert peak / needs.FACTOR <= estimate <= peak * needs.FACTOR
 
 
+@pytest.mark.parametrize(("lidars", "cameras"), [(1, 0), (6, 6)])
+def test_an_estimate_of_samples_is_not_below_what_is_taken(lidars, cameras):
+    """Nor more than the factor above it: drawn, and all that a score tells of one or twelve."""
+    ours, samples = study(lidars, cameras), 65_536
+    tracemalloc.start()
+    try:
+        ours.evaluator(samples).score(ours.rig)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    columns = needs.columns_bytes(SPACE, len(ours.prior.class_names))
+    assert peak <= needs.samples_bytes(samples, columns) <= peak * needs.FACTOR
+
+
 def test_too_little_memory_is_one_line_with_what_would_fit(monkeypatch):
     ours = study(4, 1)
     evaluator = ours.evaluator(0, workers=2)
@@ -63,7 +77,7 @@ def test_where_nobody_tells_how_much_there_is_all_is_tried(monkeypatch):
 def test_too_large_a_sample_is_told_with_one_that_fits(monkeypatch):
     ours = study(1, 0)
     monkeypatch.setattr(needs, "available_bytes", lambda: 100_000_000)
-    words = r"score: memory: .*100\.0 MB .*try samples = 262144, found about 5\.8 GB"
+    words = r"score: memory: .*100\.0 MB .*try samples = 131072, found about 10\.0 GB"
     with pytest.raises(pe.InputError, match=words):
         ours.evaluator(16_777_216)
     assert ours.evaluator(4096).entropy(ours.rig) > 0.0

@@ -8,7 +8,6 @@ from ..reviewed import Reviewed
 from ..scene3d import view3d
 from ..section import Section
 from .again import again
-from .differing import differing
 from .failing import failing
 from .head import head
 from .maps import maps
@@ -19,7 +18,7 @@ from .sensors import sensors
 from .told import told
 from .versus import versus
 
-TOGETHER: tuple[Callable[[tuple[Reviewed, ...]], Section], ...] = (head, versus, differing)
+TOGETHER: tuple[Callable[[tuple[Reviewed, ...]], Section], ...] = (head, versus)
 """What is told of all studies at once, above them; of a single one, too."""
 SECTIONS: tuple[Callable[[Reviewed], Section], ...] = (
     *(view3d, maps, parts, objects, sensors, failing, searching, told, again),

@@ -1,7 +1,6 @@
 """Plans and maps: what is ahead is right, what is left is up, colours mean what the key says."""
 
 import base64
-import dataclasses
 import re
 import xml.etree.ElementTree as ET
 
@@ -24,7 +23,6 @@ from pe_review.pictures.ground_maps import (
 from pe_review.pictures.plan import PlanDrawing, outline_of
 from pe_review.pictures.reach_plan import reach_to
 from pe_review.pictures.svg import Canvas, hexadecimal, path_of
-from pe_review.sections.differing import differing
 from pe_review.sections.maps import maps
 from tests.engine.test_png import decoded
 from tests.review.conftest import box
@@ -129,21 +127,3 @@ def test_the_section_tells_what_the_engine_found(scored):
 def test_a_search_shows_before_and_what_changed(searched, bare):
     assert maps(searched).html.count("<svg") == 12
     assert maps(bare).html.count("<svg") == 9  # also without a vehicle
-
-
-def test_two_studies_have_pictures_and_a_difference(scored, other, searched):
-    """The same rig has none anywhere: its map is of one pale colour."""
-    html = differing((scored, other)).html
-    assert html.count("<svg") == 3 and differing((scored,)).html == ""
-    ET.fromstring(f"<div>{html}</div>")
-    same = differing((scored, dataclasses.replace(scored, key="b"))).html
-    pixels = pixels_of(same[same.index("place by place") :])
-    assert (pixels[pixels[..., 3] > 0][:, :3] > 235).all()
-
-
-def test_studies_of_other_ground_have_no_difference(scored):
-    space = dataclasses.replace(scored.found.space, x=(-10.0, 10.0))
-    study = dataclasses.replace(scored.found, space=space)
-    outcome = dataclasses.replace(scored.outcome, study=study)
-    other = dataclasses.replace(scored, outcome=outcome, known={}, key="b")
-    assert "Their spaces differ" in differing((scored, other)).html

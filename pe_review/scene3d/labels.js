@@ -1,9 +1,13 @@
 /* Names over the view, as buttons: of those that would overlap one goes higher. */
 
-const RISE = 26, GAP = 3;
+const RISE = 26, GAP = 3, LONGEST = 28;
+
+function shortened(name) {
+  return name.length > LONGEST ? `${name.slice(0, LONGEST - 1)}…` : name;
+}
 
 function sensorLabel(sensor, onClick) {
-  const label = element("button", "v3-label", sensor.name);
+  const label = element("button", "v3-label", shortened(sensor.name));
   label.type = "button";
   label.tabIndex = -1;  // its like in the table is reached by keys
   label.style.setProperty("--tint", sensor.color);

@@ -165,6 +165,14 @@ def test_nothing_overflows_sideways(chromium, file, desktop, size):
         assert page.locator(".v3-canvas").evaluate("c => c.style.touchAction") == "none"
 
 
+def test_a_long_name_overflows_nothing(view):
+    name = view.locator(".v3-table button span").first
+    own = name.inner_text()
+    name.evaluate("span => { span.textContent = 'lidar_'.repeat(20) }")
+    assert view.evaluate(SIDEWAYS) <= 0
+    name.evaluate("(span, own) => { span.textContent = own }", own)
+
+
 def test_without_webgl_a_still_picture_is_there(chromium, file):
     with opened(chromium, file, DESKTOP, WITHOUT_WEBGL) as (page, heard):
         assert page.locator(".v3-live").is_hidden() and heard.complaints == []

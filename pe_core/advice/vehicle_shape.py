@@ -15,6 +15,8 @@ from .figures import metres
 SUNK_M, FLOATS_M = 0.15, 0.3
 """Tyres may sink a little, and a body without wheels hangs a little over the ground."""
 OFF_ORIGIN_M = 1.0
+WIDE_M = 3.2
+"""A lorry is 2.6 m wide, and mirrors stand out by 0.3 m on either side."""
 FLOOR_M = 6.0
 """What is wider than any vehicle and lower than this may be a vehicle on a floor."""
 
@@ -54,6 +56,18 @@ def _size(body: Bodywork) -> Iterator[Advice]:
     if min(x, y) > USUAL_SECOND_M and z < FLOOR_M:
         would = f"is a floor part of its mesh? Or, {would}"
     yield Advice(None, "size", f"{found}; {would}", fix="scale_vehicle", amount=(factor,))
+
+
+def _wide(body: Bodywork) -> Iterator[Advice]:
+    """As wide as no vehicle on a road, and flat as a car: in units of its own."""
+    x, y, z = body.size
+    if WIDE_M < y < x and z < y:
+        factor = car_factor(x)
+        text = (
+            f"{metres(y)} wide is more than roads allow; scaled by {factor:g} it would be as long "
+            "as a car"
+        )
+        yield Advice(None, "width", text, fix="scale_vehicle", amount=(factor,))
 
 
 def _stands(body: Bodywork) -> Iterator[Advice]:
@@ -121,5 +135,5 @@ def _off_origin(body: Bodywork) -> Iterator[Advice]:
 
 
 CHECKS: tuple[Callable[[Bodywork], Iterator[Advice]], ...] = (
-    *(_stands, _on_its_roof, _faces, _height, _off_origin),
+    *(_wide, _stands, _on_its_roof, _faces, _height, _off_origin),
 )

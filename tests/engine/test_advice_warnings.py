@@ -316,6 +316,14 @@ def test_off_the_origin(sedan):
     assert (None, "off_origin") not in told(moved(sedan, shift=(0.9, 0, 0)))
 
 
+def test_a_car_as_wide_as_no_road_vehicle(sedan):
+    """2.03 m over its mirrors: 3.25 m at 1.6 times the size; 4.70 m long, 0.6 of which is 4.5."""
+    found = told(moved(sedan, scale=1.6))[None, "width"]
+    assert found.text.startswith("3.25 m wide is more than roads allow; scaled by 0.6 it would")
+    assert (found.fix, found.amount) == ("scale_vehicle", (0.6,))
+    assert (None, "width") not in told(moved(sedan, scale=1.5))
+
+
 @pytest.mark.parametrize(
     ("factor", "unit"), [(0.0254, "inches"), (0.01, "centimetres"), (0.001, "millimetres")]
 )

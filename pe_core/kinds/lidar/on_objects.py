@@ -23,7 +23,8 @@ from .fans import fans_of
 from .from_above import BoxesFromAbove
 from .known import KnownBeams
 from .lattice import lattice_of
-from .object_definition import BoxHits, first_of_scene
+from .nearest_hits import nearest_hits
+from .object_definition import BoxHits
 from .object_runs import ChannelRuns, RunBlock, TurnedFan
 from .tilted_runs import TiltedBoxes, tilted_runs
 from .traffic import FanTraffic
@@ -81,7 +82,7 @@ def _one_by_one(beams: BoxBeams, scenes: Ints | None) -> Ints:
     found = candidate_hits(beams)
     if scenes is None:
         return np.add.reduce([beams.counted(hits) for hits in found])
-    return beams.counted(first_of_scene(joined(list(found)), scenes))
+    return beams.counted(nearest_hits(joined(list(found)), scenes, beams.lidar.beam_count))
 
 
 def _alone(beams: BoxBeams, blocks: Iterator[tuple[FanBeams, RunBlock]]) -> Ints:
@@ -115,7 +116,7 @@ def _in_traffic(beams: BoxBeams, seen: BoxesFromAbove, over: BoxHits, scenes: In
         found, unclear = own.count()
         counts += found
         hits.append(unclear)
-    return counts + beams.counted(first_of_scene(joined(hits), scenes))
+    return counts + beams.counted(nearest_hits(joined(hits), scenes, beams.lidar.beam_count))
 
 
 def _blocks(beams: BoxBeams, seen: BoxesFromAbove) -> Iterator[tuple[FanBeams, RunBlock]]:

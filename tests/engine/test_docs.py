@@ -20,6 +20,7 @@ PAGES = [
     "docs/study.md",
     "docs/blender.md",
     "docs/long_runs.md",
+    "docs/review.md",
 ]
 
 

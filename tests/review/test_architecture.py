@@ -79,3 +79,17 @@ def test_the_parser_loads_no_section():
         [sys.executable, "-c", code], cwd=FOLDER.parent, capture_output=True, text=True
     )
     assert run.stdout.split() == ["pe_review", "pe_review.cli", "pe_review.engine"], run.stderr
+
+
+def test_the_copy_in_the_extension_takes_the_engine_beside_it(tmp_path):
+    """And no other: Blender lets no add-on bring packages of the highest level."""
+    (tmp_path / "extension").mkdir()
+    (tmp_path / "extension" / "__init__.py").touch()
+    for name in ("pe_core", "pe_review"):
+        (tmp_path / "extension" / name).symlink_to(FOLDER.parent / name)
+    code = (
+        "import sys; import extension.pe_review.page, extension.pe_review.making; "
+        "print(*sorted(m for m in sys.modules if m in ('pe_core', 'pe_review')))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+    assert (run.returncode, run.stdout.strip()) == (0, ""), run.stdout + run.stderr

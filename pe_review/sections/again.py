@@ -52,7 +52,7 @@ def _facts(one: Reviewed) -> str:
         *([name, version] for name, version in one.versions.items()),
         ["Scored on", _looked_at(one)],
         *([["Seed", str(one.asked.search.seed)]] if one.searched else []),
-        ["Study, SHA-256", _digest(studies.fingerprint(found))],
+        ["Study as given, SHA-256", _digest(studies.fingerprint(one.asked))],
         ["Vehicle", found.vehicle_line or "none: nothing hides anything"],
         ["Vehicle, SHA-256", _digest(studies.vehicle_digest(one.vehicle) or "")],
     ]
@@ -74,11 +74,19 @@ def _digest(text: str) -> str | Markup:
 
 
 def _study(one: Reviewed) -> str:
-    text = studies.study_writers(one.found, studies.STUDY)[studies.STUDY]
+    """The study as it was given, from which the run follows; of a search the one found, too."""
+    if not one.searched:
+        return _text(one.asked, f"study-{one.key}", "The study")
+    given = _text(one.asked, f"study-{one.key}", "The study as it was given")
+    return given + _text(one.found, f"found-{one.key}", "The study with the places that were found")
+
+
+def _text(study: pe.Study, name: str, title: str) -> str:
+    """Return a study's file with a button that copies it."""
+    text = studies.study_writers(study, studies.STUDY)[studies.STUDY]
     assert isinstance(text, bytes)
-    name = f"study-{one.key}"
     return (
-        f'<h3>The study</h3><button type="button" data-copies="{name}" hidden>Copy</button>'
+        f'<h3>{title}</h3><button type="button" data-copies="{name}" hidden>Copy</button>'
         f'<pre id="{name}" tabindex="0">{escaped_lines(text.decode())}</pre>'
     )
 

@@ -1,5 +1,9 @@
 """The verb, and the page beside a search's results, as a user runs them."""
 
+import html
+import re
+import tomllib
+
 import pytest
 
 import pe_core as pe
@@ -69,6 +73,8 @@ def test_a_search_leaves_its_page_unless_it_is_not_wanted(study, tmp_path, capsy
         assert (out / PAGE).exists() == left
     text = (out / PAGE).read_text("utf-8")
     assert "What was moved" in text
+    given = html.unescape(re.search(r'<pre id="study-a"[^>]*>(.*?)</pre>', text, re.S)[1])
+    assert tomllib.loads(given)["sensor"] == tomllib.loads(study.read_text("utf-8"))["sensor"]
     assert pe.study.files_of_other_runs(out) == []
     assert main(["score", str(study), "-o", str(out)]) == 0
     assert not (out / PAGE).exists(), "it told of the search"

@@ -177,12 +177,16 @@ def test_models_that_a_file_does_not_tell_are_chosen(car, tmp_path):
         bpy.ops.pe.choose_models(filepath=str(path), rows=rows)
 
 
-def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path):
-    path, out = tmp_path / "car.blend", tmp_path / "objects.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    answer = run("blender_addon", path, "export", "--to", "blender", "-o", out)
-    assert answer.returncode == 0, answer.stderr
-    assert "PandaSet wide" not in answer.stderr and "eye: Blender's camera has no" in answer.stderr
+def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys):
+    from blender_addon.commands.parser import parser
+
+    out = tmp_path / "objects.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))
+    args = parser("pe").parse_args(["export", "--to", "blender", "-o", str(out)])
+    assert args.function(args) == (f"wrote {out}", 0)
+    assert "eye: Blender's camera has no distortion" in capsys.readouterr().err
+    with pytest.raises(pe.InputError, match="one is there"):
+        args.function(args)
     answer = run("blender_addon", out, "import", "-o", tmp_path / "back.toml")
     assert answer.returncode == 0, answer.stderr
     back, before = pe.load_study(tmp_path / "back.toml"), scenes.study()

@@ -11,6 +11,7 @@ import pe_core as pe
 from pe_core import graphics
 from pe_core.catalog import load
 from pe_core.kinds import Camera, KannalaBrandt, range_picture
+from pe_review.figures import percent
 from pe_review.pictures import through_lens
 from pe_review.pictures.all_round import lidar_picture
 from pe_review.pictures.company import company, looks_to
@@ -148,7 +149,7 @@ def test_the_section_tells_where_and_how_much(scored):
     ET.fromstring(f"<div>{section.html}</div>")
     assert section.html.count("<svg") == 3  # a LiDAR with its key, and a camera
     for name, score in scored.after.per_sensor.items():
-        assert f"<td>{score.coverage * 100:.1f} %</td>" in section.html, name
+        assert f"<td>{percent(score.coverage)}</td>" in section.html, name
     assert "no [reference]" in section.html
 
 

@@ -53,12 +53,12 @@ def options(kind):
     return {"min_range": 5.0, "max_range": 11.0} if kind == "short" else {}
 
 
-def small_camera(hfov_deg, width=200, height=130):
+def small_camera(hfov_deg, width=150, height=100):
     return pe.Camera("small", width, height, math.radians(hfov_deg))
 
 
 def fisheye():
-    return pe.Camera("fish", 200, 180, None, pe.KannalaBrandt(60.0, 60.0, 100.0, 90.0))
+    return pe.Camera("fish", 150, 136, None, pe.KannalaBrandt(45.0, 45.0, 75.0, 68.0))
 
 
 CAMERAS = {"60 deg": small_camera(60.0), "120 deg": small_camera(120.0), "fisheye": fisheye()}

@@ -106,9 +106,10 @@ class PE_PT_own_curve(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.active_object.perception_entropy
-        row = self.layout.row(align=True)
-        row.active = settings.own_curve
-        row.label(text="AP = a ln m + b")
+        column = self.layout.column()
+        column.active = settings.own_curve
+        column.label(text="AP = a ln m + b")
+        row = column.row(align=True)
         row.prop(settings, "curve_a")
         row.prop(settings, "curve_b")
 

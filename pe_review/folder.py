@@ -48,6 +48,12 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
     return pe.Outcome("optimize", *parts, begun.inputs, begun.judged, robustness)
 
 
+def command_of_folder(folder: Path) -> str:
+    """Return the command line that a folder's results were made by; empty where it is not told."""
+    told = json.loads(text.read_bytes(folder / studies.RESULT, RESULT_BYTES))
+    return str(told.get("run", {}).get("command", ""))
+
+
 def _row(rig: pe.Rig, row: Mapping[str, Any]) -> studies.HistoryRow:
     placed = row["placements"]
     poses = [

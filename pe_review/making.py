@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .engine import app, pe, studies
-from .folder import outcome_of_folder
+from .folder import command_of_folder, outcome_of_folder
 from .page import PAGE, page_bytes, write_page
 from .reviewed import MOST_STUDIES, Reviewed
 
@@ -27,7 +27,9 @@ def review(args: argparse.Namespace) -> app.Answer:
     each = []
     for name, study in changed.items():
         outcome = _searched(files[name], args) or app.scored(study, args.workers)
-        each.append(Reviewed(name, outcome))
+        searched = outcome.kind == "optimize"
+        command = command_of_folder(Path(files[name])) if searched else args.command_line
+        each.append(Reviewed(name, outcome, command=command))
     return _written(each, args)
 
 
@@ -56,7 +58,8 @@ def review_studies(
     for name, study in changed.items():
         outcome = app.scored(study, args.workers)
         shown = None if picture is None else picture(outcome)
-        each.append(Reviewed(name, outcome, picture=shown, versions=versions or {}))
+        told = {"command": args.command_line, "versions": versions or {}}
+        each.append(Reviewed(name, outcome, picture=shown, **told))
     return _written(each, args)
 
 
@@ -65,7 +68,9 @@ def leave(outcome: pe.Outcome, data: dict[str, Any], folder: Path) -> None:
     there = data["run"].get("files", {})
     picture = (folder / studies.REVIEW).read_bytes() if studies.REVIEW in there else None
     host = {k: v for k, v in data["run"]["versions"].items() if k not in TOLD}
-    one = Reviewed(folder.resolve().name, outcome, picture=picture, versions=host)
+    command = str(data["run"].get("command", ""))
+    name = folder.resolve().name
+    one = Reviewed(name, outcome, picture=picture, command=command, versions=host)
     studies.add_to_result(data, folder, {PAGE: page_bytes([one])})
 
 

@@ -31,7 +31,7 @@ class Reviewed:
     picture : bytes or None
         A rendered picture of it, PNG; None: a section draws one.
     command : str
-        The command line that makes this page again; empty where there is none.
+        The command line that makes it again, as it was given; empty where it is not known.
     versions : mapping of str
         Programs besides the engine's that it was made with.
     known : dict

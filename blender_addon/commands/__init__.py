@@ -6,7 +6,9 @@ Options, progress, files and exit statuses are those of the command ``pe``.
 from __future__ import annotations
 
 import contextlib
+import shlex
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TextIO
 
 import bpy
@@ -29,6 +31,8 @@ def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
     try:
         with contextlib.redirect_stdout(out):
             args = parser(prog).parse_args(argv)
+        file = shlex.quote(Path(bpy.data.filepath).name or "FILE.blend")
+        args.command_line = app.as_typed(prog.replace("FILE.blend", file), argv)
     except SystemExit as stop:  # help was asked for, or the usage was wrong
         return int(stop.code or 0)
     return app.run(lambda: args.function(args), out)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from .. import bridge
-from ..engine import page, pe
+from ..engine import app, page, pe
 from .reports import REFUSALS, chosen_file, refuse, tell
 
 
@@ -36,6 +38,15 @@ def scored(context: bpy.types.Context, show: Callable[[float], None]) -> pe.Outc
     for progress in job:
         show(progress.fraction)
     return job.outcome
+
+
+def same_headless(path: Path, render: bool) -> str:
+    """Return the command that makes a page of the file as it is saved; empty where it is not."""
+    if not bpy.data.filepath or bpy.data.is_dirty:
+        return ""
+    options = ["review", "-o", path.parent.name or ".", *([] if render else ["--no-render"])]
+    file = shlex.quote(Path(bpy.data.filepath).name)
+    return app.as_typed(f"blender -b {file} --command pe", options)
 
 
 class PE_OT_render_review(ExportHelper, bpy.types.Operator):
@@ -84,7 +95,8 @@ class PE_OT_export_review(ExportHelper, bpy.types.Operator):
                 outcome = scored(context, show)
                 picture = review.picture_of(context.scene, outcome) if self.render else None
                 versions = bridge.blender_version()
-                one = page.Reviewed(path.stem, outcome, picture=picture, versions=versions)
+                told = {"command": same_headless(path, self.render), "versions": versions}
+                one = page.Reviewed(path.stem, outcome, picture=picture, **told)
                 # The file dialog has asked whether to replace it.
                 page.write_page([one], path.parent, name=path.name, replace=True)
         except REFUSALS as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -20,7 +21,7 @@ from ..study import (
 )
 from ..version import __version__
 from .choosing import check_not_resumed, choose
-from .command import Parser, add_run_options, add_sensors_verb, run, with_options
+from .command import Parser, add_run_options, add_sensors_verb, as_typed, run, with_options
 from .exchanging import add_export_options, add_import_options, export, import_study
 from .explaining import (
     add_compare_options,
@@ -50,7 +51,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     open_missing_streams()
 
     def work() -> Answer:
-        args = parser().parse_args(argv)
+        given = sys.argv[1:] if argv is None else argv
+        args = parser().parse_args(given)
+        args.command_line = as_typed("pe", given)
         answer: Answer = args.function(args)
         return answer
 

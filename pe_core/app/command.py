@@ -6,9 +6,10 @@ Used by `pe`, by `blender --command pe` and by bpy as a module, so that they beh
 from __future__ import annotations
 
 import argparse
+import shlex
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NoReturn, TextIO
 
@@ -120,6 +121,11 @@ def describe(name: str) -> str:
     plot = kind.plot(model)
     source = f"source          {catalog.entries()[name].source}"
     return "\n".join([name, *kind.words(model), source, *(["", *plot] if plot else [])])
+
+
+def as_typed(prog: str, argv: Sequence[str]) -> str:
+    """Return a command line as a shell takes it: the program, and what it was given."""
+    return " ".join([prog, *map(shlex.quote, argv)])
 
 
 def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:

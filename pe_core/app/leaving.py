@@ -28,6 +28,8 @@ def with_pages(args: argparse.Namespace, more: More | None = None) -> More | Non
         return None
 
     def write(outcome: Outcome, data: Data, folder: Path) -> None:
+        # Pages tell how to run it again.
+        data["run"] = {**data["run"], "command": args.command_line}
         for one in each:
             one.write(outcome, data, folder)
 

@@ -36,11 +36,13 @@ def again(one: Reviewed) -> Section:
 
 
 def _command(one: Reviewed) -> str:
-    lines = one.command or (
-        "pe optimize study.toml -o DIR" if one.searched else "pe score study.toml"
-    )
+    """The command line as it was given, and one that needs nothing but the study below."""
+    by = f"<p>It is made again, where its files are, by</p><pre>{escaped(one.command)}</pre>"
+    given = by if one.command else ""
+    lines = "pe optimize study.toml -o DIR" if one.searched else "pe review study.toml -o DIR"
     return (
-        f"<p>With the study below and the files it names beside it:</p><pre>{escaped(lines)}</pre>"
+        f"{given}<p>With the study below saved as study.toml, and the files it names beside it:</p>"
+        f"<pre>{lines}</pre>"
     )
 
 

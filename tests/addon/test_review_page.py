@@ -44,9 +44,10 @@ def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path):
     bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml"))
     arguments = ["--grid-samples", "1024", "-o", str(tmp_path / "inside"), "--no-render"]
     said = io.StringIO()
-    assert commands.main(["review", *arguments], "pe", said) == 0
+    assert commands.main(["review", *arguments], commands.IN_BLENDER, said) == 0
     inside = (tmp_path / "inside" / page.PAGE).read_text("utf-8")
     assert said.getvalue() == f"{tmp_path / 'inside' / page.PAGE}\n"
+    assert "<pre>blender -b study.blend --command pe review --grid-samples 1024 -o" in inside
     from pe_core.app.cli import main
 
     outside = [str(tmp_path / "study.toml"), *arguments[:2], "-o", str(tmp_path / "outside")]
@@ -57,6 +58,7 @@ def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path):
 
 
 def without_hosts(text):
-    """A page without the programs it was made with, and the mesh's name."""
+    """A page without the programs it was made with, the command line, and the mesh's name."""
+    text = re.sub(r"<p>It is made again.*?</pre>", "", text)
     text = re.sub(r'<tr><th scope="row">blender</th>.*?</tr>', "", text)
     return text.replace("study.npz", "vehicle.npz")

@@ -2,6 +2,7 @@
 
 import html
 import re
+import shlex
 import tomllib
 
 import pytest
@@ -38,6 +39,8 @@ def test_a_study_s_page_is_written_and_its_path_printed(study, tmp_path, capsys)
     assert capsys.readouterr().out == f"{path}\n"
     text = path.read_text("utf-8")
     assert "a &lt;b&gt; &amp; c" in text and NAMED not in text
+    given = shlex.join(["pe", "review", str(study), "-o", str(path.parent)])
+    assert f"<pre>{html.escape(given)}</pre>" in text
     assert [each.name for each in path.parent.glob("*.html")] == [PAGE]
 
 
@@ -73,6 +76,8 @@ def test_a_search_leaves_its_page_unless_it_is_not_wanted(study, tmp_path, capsy
         assert (out / PAGE).exists() == left
     text = (out / PAGE).read_text("utf-8")
     assert "What was moved" in text
+    told = shlex.join(["pe", "optimize", str(study), "-o", str(out)])
+    assert f"<pre>{html.escape(told)}</pre>" in text
     given = html.unescape(re.search(r'<pre id="study-a"[^>]*>(.*?)</pre>', text, re.S)[1])
     assert tomllib.loads(given)["sensor"] == tomllib.loads(study.read_text("utf-8"))["sensor"]
     assert pe.study.files_of_other_runs(out) == []

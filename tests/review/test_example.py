@@ -1,0 +1,62 @@
+"""The shuttle's page that the README links: whole, of today's make, and it asks nobody."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from pe_review.page import POLICY
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "reviews" / "four_corners.html"
+MOST_BYTES = 2_500_000
+ELSEWHERE = r'(?:src|href|action)="(?!#|data:)[^"]*"|url\((?!["\']?data:)|@import'
+"""What a browser would ask somebody for."""
+
+
+@pytest.fixture(scope="module")
+def shown():
+    """The page, as text."""
+    return PAGE.read_text("utf-8")
+
+
+def chapters(text):
+    """The sections of a page, in their order."""
+    return re.findall(r'<section id="([\w-]+)"', text)
+
+
+def shape(data):
+    """Names of what the 3-D view is given."""
+    return [sorted(each) for each in (data, data["vehicle"], data["sensors"][0], data["maps"][0])]
+
+
+def view(text):
+    """The data of a page's 3-D view."""
+    return json.loads(re.search(r'id="data-view-a">(.*?)</script>', text, re.S)[1])
+
+
+def test_it_holds_all_it_needs(shown):
+    assert f'content="{POLICY}"' in shown and shown.endswith("</html>\n")
+    drawn = re.sub(r"<script.*?</script>", "", shown, flags=re.S)
+    assert re.findall(ELSEWHERE, drawn) == []
+    assert PAGE.stat().st_size < MOST_BYTES
+
+
+def test_it_is_of_today_s_make(shown, searched_page):
+    """Else `tools/example_review.py` has to be run again."""
+    assert chapters(shown) == chapters(searched_page)
+    assert shape(view(shown)) == shape(view(searched_page))
+
+
+def test_its_sensors_are_the_example_s_and_the_search_is_told(shown):
+    names = [sensor["name"] for sensor in view(shown)["sensors"]]
+    assert names == ["camera_left", "camera_right", "lidar_left", "lidar_right"]
+    assert "pe optimize blend_assets/examples/four_corners/study.toml" in shown
+
+
+def test_it_is_linked():
+    for place, folder in ((ROOT / "README.md", "docs/"), (ROOT / "docs" / "review.md", "")):
+        text = place.read_text("utf-8")
+        assert f"({folder}reviews/{PAGE.name})" in text
+        assert f"({folder}images/four_corners_review.png)" in text

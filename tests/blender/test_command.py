@@ -10,6 +10,14 @@ from tests.blender.runner import output_of
 
 SCORE_TIMEOUT_S = 300
 FAST = ("--grid-samples", 4096)  # to be quick: all else is the same as on the whole grid
+IN_TRAFFIC = """
+import sys, bpy
+start, saved = sys.argv[-2:]
+bpy.ops.wm.open_mainfile(filepath=start)
+settings = bpy.context.scene.perception_entropy
+settings.targets, settings.traffic, settings.scenes = "objects", True, 8
+bpy.ops.wm.save_as_mainfile(filepath=saved)
+"""
 SHORT = ("--samples", 4096, "--candidates", 10)
 
 
@@ -61,14 +69,30 @@ def test_wrong_usage_is_status_2(installed, sedan):
 
 
 def test_blender_and_engine_agree_to_the_last_bit(installed, sedan, tmp_path):
-    inside = installed.pe(sedan, "score", *FAST, "--json", "--output", tmp_path / "inside")
+    inside, outside = both_scores(installed, sedan, tmp_path)
+    assert inside["entropy"] == outside["entropy"]
+
+
+def test_they_agree_on_objects_in_traffic(installed, sedan, tmp_path):
+    script = tmp_path / "objects.py"
+    script.write_text(IN_TRAFFIC, "utf-8")
+    saved = tmp_path / "objects.blend"
+    answer = installed.script(script, sedan, saved)
+    assert answer.returncode == 0, output_of(answer)
+    inside, outside = both_scores(installed, saved, tmp_path)
+    assert inside["after"]["objects"]["traffic"] is True
+    assert inside["after"] == outside["after"]
+
+
+def both_scores(installed, blend, folder) -> tuple[dict, dict]:
+    """What Blender and the engine alone say of a scene, numbers as text."""
+    inside = installed.pe(blend, "score", *FAST, "--json", "--output", folder / "inside")
     assert inside.returncode == 0, output_of(inside)
-    exported = installed.pe(sedan, "export", "--output", tmp_path / "study")
+    exported = installed.pe(blend, "export", "--output", folder / "study")
     assert exported.returncode == 0, output_of(exported)
 
-    (study,) = (tmp_path / "study").glob("*.toml")
+    (study,) = (folder / "study").glob("*.toml")
     command = [sys.executable, "-m", "pe_core", "score", study, *map(str, FAST), "--json"]
     outside = subprocess.run(command, capture_output=True, text=True, timeout=SCORE_TIMEOUT_S)
     assert outside.returncode == 0, output_of(outside)
-
-    assert document_in(inside.stdout)["entropy"] == document_in(outside.stdout)["entropy"]
+    return document_in(inside.stdout), document_in(outside.stdout)

@@ -7,7 +7,7 @@ from ..choices import variants
 from ..correlated import CEILING
 from ..facts import MAIN_CLASS, Figures, ValidityFacts
 from ..published import CLEAN, Paper, papers
-from .one_test import signed, way_text
+from .one_test import share, signed, way_text
 
 
 def by_class(facts: ValidityFacts) -> str:
@@ -41,7 +41,7 @@ def _table(facts: ValidityFacts, paper: Paper, cls: str) -> str:
 
 def _line(facts: ValidityFacts, row: Figures, detectors: list[str]) -> list[str]:
     figures = [signed(row["by_detector"][name]) for name in detectors]
-    p = "-" if row["p"] is None else f"{row['p']:.3f}"
+    p = "-" if row["p"] is None else share(row["p"])
     told = [*figures, signed(row["mean"]), p]
     if facts.greyed(row):
         told = [f"*{figure}*" for figure in told]

@@ -44,14 +44,19 @@ def way_text(way: tuple[str, str]) -> str:
 
 
 def _line(facts: ValidityFacts, way: tuple[str, str], row: Figures) -> list[str]:
-    told = f"{row['holm']:.3f}"
+    told = share(row["holm"])
     if row["holm"] < LEVEL_5:
         told = f"**{told}**"
     figures = [signed(value) for value in (*row["rho"], row["mean"])]
     name = f"test: {row['score']}, {', '.join(way)}"
-    return [row["score"], *figures, f"{row['p']:.3f}", facts.say(name, told)]
+    return [row["score"], *figures, share(row["p"]), facts.say(name, told)]
 
 
 def signed(value: float | None) -> str:
     """Return a rho as it is shown; a dash where a score has one value for all."""
     return "-" if value is None else f"{round(value, 2) + 0.0:+.2f}"
+
+
+def share(p: float) -> str:
+    """Return a p value as it is shown."""
+    return f"{p:.3f}" if p >= 0.001 else "< 0.001"

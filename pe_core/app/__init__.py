@@ -24,7 +24,7 @@ from .explaining import (
 from .interrupts import leave
 from .leaving import add_page_option, pages, with_pages
 from .resuming import begun_search, job_and_folder
-from .rigs import add_rigs_verb
+from .rigs import add_rigs_verb, study_of_rig
 from .status import BAD_INPUT, DONE, INTERRUPTED, USAGE, Answer
 from .summary import summary
 from .sweeping import add_sweep_options, sweep
@@ -70,6 +70,7 @@ __all__ = [
     "run",
     "scored",
     "show",
+    "study_of_rig",
     "summary",
     "sweep",
     "tell",

@@ -19,7 +19,11 @@ def test_a_glance_and_a_score_agree(draft):
     rig = rig_at((0.0, 0.0, 1.9))
     glance, score = evaluator().glance(rig, draft=draft), evaluator().score(rig, draft=draft)
     names = {field.name for field in fields(glance)}
-    assert names == {field.name for field in fields(score)} - {"per_sensor", "ground_map"}
+    assert names == {field.name for field in fields(score)} - {
+        "per_sensor",
+        "ground_map",
+        "objects",
+    }
     assert {name: getattr(glance, name) for name in names} == {
         name: getattr(score, name) for name in names
     }

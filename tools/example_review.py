@@ -9,6 +9,7 @@ RESULTS is a folder that such a search has left; without it one is made.
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,8 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 if str(ROOT) not in sys.path:  # run as a script
     sys.path.insert(0, str(ROOT))
 
-from pe_core.app.cli import main as pe_main  # noqa: E402
-from pe_core.app.work import drive  # noqa: E402
+from pe_core.app import drive  # noqa: E402
 from pe_core.study import Outcome, ScoreJob, Study  # noqa: E402
 from pe_review import Reviewed, page_bytes  # noqa: E402
 from pe_review.folder import outcome_of_folder  # noqa: E402
@@ -66,7 +66,8 @@ def main(arguments: list[str]) -> int:
         return 0
     os.chdir(ROOT)
     with TemporaryDirectory() as folder:
-        status = pe_main([*COMMAND[1:-1], folder, "--no-review"])
+        command = [sys.executable, "-m", "pe_core", *COMMAND[1:-1], folder, "--no-review"]
+        status = subprocess.run(command).returncode
         if status == 0:
             write(Path(folder))
     return status

@@ -17,7 +17,7 @@ import rerun.blueprint as rrb
 
 from pe_core import Sensor
 from pe_core.exchange import Picture, carried, straight, with_pictures
-from pe_core.graphics import COVERAGE, ENTROPY, drawing_of, ground_map
+from pe_core.graphics import COVERAGE, ENTROPY, drawing_of, ground_map, sensor_color
 from pe_core.kinds import kind_of
 from pe_core.outputs import (
     BLIND,
@@ -28,7 +28,6 @@ from pe_core.outputs import (
     blind_volume,
     mounted_view,
     plain_names,
-    sensor_color,
     view_wires,
 )
 from pe_core.scene import rotate

@@ -17,6 +17,7 @@ from .colors import (
     Rgba,
     on_scale,
     sensor_color,
+    sensor_color_on_paper,
     with_alpha,
 )
 from .frustums import (
@@ -106,6 +107,7 @@ __all__ = [
     "range_share",
     "ring_lines",
     "sensor_color",
+    "sensor_color_on_paper",
     "shown_beams",
     "stopped_lines",
     "with_alpha",

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+Rgb = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
 
 
@@ -54,16 +55,32 @@ PAPER = Palette(
 )
 """For a light page."""
 
-SENSOR_COLORS: tuple[tuple[float, float, float], ...] = (
-    (0.34, 0.71, 0.91),
-    (0.90, 0.62, 0.0),
-    (0.10, 0.75, 0.55),
-    (0.87, 0.52, 0.72),
-    (0.95, 0.90, 0.30),
-    (0.25, 0.50, 0.85),
-    (0.90, 0.42, 0.15),
+SENSOR_COLORS: tuple[Rgb, ...] = (
+    (0.63, 0.77, 0.99),
+    (0.70, 0.42, 0.66),
+    (0.06, 0.70, 0.37),
+    (0.62, 0.38, 1.0),
+    (0.94, 1.0, 0.0),
+    (0.56, 1.0, 1.0),
+    (0.71, 0.70, 0.68),
 )
-"""One a sensor, in the order of their names, again from the first when they are more."""
+"""One a sensor, in the order of a rig, again from the first when they are more: for a dark ground.
+
+Blue, purple, green, violet, yellow, ice, grey. Any two, and each and what is `stopped`, are far
+apart in CIE Lab to all eyes, those without one kind of cone included (Machado, Oliveira and
+Fernandes, IEEE TVCG 15(6), 2009): a test measures it.
+"""
+
+SENSOR_COLORS_ON_PAPER: tuple[Rgb, ...] = (
+    (0.01, 0.17, 0.44),
+    (0.44, 0.02, 0.19),
+    (0.09, 0.63, 0.35),
+    (0.46, 0.19, 0.85),
+    (0.44, 0.34, 0.12),
+    (0.12, 0.41, 0.59),
+    (0.56, 0.55, 0.55),
+)
+"""The same hues for a light ground, as far apart."""
 
 CIVIDIS = (
     *((0.0, 0.135, 0.305), (0.0, 0.191, 0.441), (0.165, 0.248, 0.429), (0.264, 0.308, 0.423)),
@@ -97,6 +114,11 @@ def with_alpha(color: tuple[float, ...], alpha: float) -> Rgba:
     return (color[0], color[1], color[2], alpha)
 
 
-def sensor_color(number: int) -> tuple[float, float, float]:
-    """Return the colour of a rig's sensor by its place."""
+def sensor_color(number: int) -> Rgb:
+    """Return the colour of a rig's sensor by its place, for a dark ground."""
     return SENSOR_COLORS[number % len(SENSOR_COLORS)]
+
+
+def sensor_color_on_paper(number: int) -> Rgb:
+    """Return the colour of a rig's sensor by its place, for a light ground."""
+    return SENSOR_COLORS_ON_PAPER[number % len(SENSOR_COLORS_ON_PAPER)]

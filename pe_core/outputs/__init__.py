@@ -1,7 +1,7 @@
 """The scene in other programs' files, out alone: solids, footprints, glTF, recordings."""
 
 from .blind_volume import blind_volume
-from .colors import BLIND, BODY, GLASS, Rgb, hex_color, sensor_color
+from .colors import BLIND, BODY, GLASS, Rgb, hex_color
 from .exporting import export_scene, scene_files
 from .footprints import GroundPlan, SeenGround
 from .names import plain_names
@@ -29,6 +29,5 @@ __all__ = [
     "plain_names",
     "scene_files",
     "scene_output",
-    "sensor_color",
     "view_wires",
 ]

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import InputError
+from ..graphics import sensor_color_on_paper
 from ..kinds import kind_of
 from ..scene import PerceptionSpace, Pose, Sensor, Vehicle
 from ..sight.outline import outlines
-from .colors import Rgb, sensor_color
+from .colors import Rgb
 from .names import plain_names
 from .request import OutputRequest
 from .slicing import level_outlines
@@ -65,7 +66,7 @@ def ground_plan(wanted: OutputRequest) -> tuple[GroundPlan, list[str]]:
     found: list[SeenGround] = []
     lines: list[str] = []
     for number, sensor in enumerate(study.rig):
-        one = _footprint(wanted, sensor, names[sensor.name], sensor_color(number))
+        one = _footprint(wanted, sensor, names[sensor.name], sensor_color_on_paper(number))
         if not one.outlines:
             lines.append(f"{sensor.name}: sees no ground within {one.reach:g} m")
         found.append(one)

@@ -15,8 +15,8 @@ from ..exchange import Written
 from ..exchange.carried import CarriedSensor, carried, with_pictures
 from ..exchange.frames import quaternion
 from ..exchange.pictures import centred
+from ..graphics import sensor_color_on_paper
 from ..scene import Sensor, rotate
-from .colors import sensor_color
 from .glb import LINES, GlbScene, y_up
 from .glb_vehicle import add_vehicle
 from .request import OutputRequest
@@ -76,7 +76,7 @@ def _view(scene: GlbScene, wanted: OutputRequest, sensor: Sensor, number: int) -
     view = mounted_view(sensor, wanted.study.vehicle, wanted.reach(sensor, REACH_M), STEP)
     if view is None:
         return []
-    name, color = f"{sensor.name} field of view", sensor_color(number)
+    name, color = f"{sensor.name} field of view", sensor_color_on_paper(number)
     solid = free_solid(name, view)
     lines = view_wires(view)
     ends = np.cumsum([len(line) for line in lines])

@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterable
 
 from ..exchange import Written
+from ..graphics import sensor_color_on_paper
 from ..kinds import kind_of
 from .blind_volume import blind_volume
-from .colors import BLIND, HIDDEN, Rgb, sensor_color
+from .colors import BLIND, HIDDEN, Rgb
 from .glb import GlbScene
 from .glb_vehicle import add_vehicle
 from .names import plain_names
@@ -41,7 +42,7 @@ def write(wanted: OutputRequest) -> tuple[Written, list[str]]:
         lines += _end(wanted, sensor.name, sensor.model)
         files[f"{plain}_field.stl"] = stl_bytes(whole_solid(f"{plain}_field", view))
         free, hidden = free_solid(f"{plain}_free", view), hidden_solid(f"{plain}_hidden", view)
-        shown.append((free, sensor_color(number), FREE_ALPHA))
+        shown.append((free, sensor_color_on_paper(number), FREE_ALPHA))
         shown += [(hidden, HIDDEN, HIDDEN_ALPHA)] if hidden is not None else []
     near, more = _near(wanted)
     shown += [(near, BLIND, BLIND_ALPHA)] if near is not None else []

@@ -28,7 +28,7 @@ def sensor_solids(rig: pe.Rig) -> list[PaintedBody]:
 
 def sensor_rgb(number: int) -> tuple[float, float, float]:
     """Return the colour of a rig's sensor by its place; sRGB."""
-    return graphics.sensor_color(number)
+    return graphics.sensor_color_on_paper(number)
 
 
 def housing_of(sensor: pe.Sensor) -> scene.Housing:

@@ -44,8 +44,9 @@ def named_still(
 def key(rig: pe.Rig) -> Markup:
     """Return the sensors' numbers, colours and names as a list."""
     each = "".join(
-        f'<li><span class="swatch" style="background:{hexadecimal(graphics.sensor_color(k))}">'
-        f"</span>{k + 1} {escaped(sensor.name)} <small>({escaped(sensor.model.name)})</small></li>"
+        '<li><span class="swatch" '
+        f'style="background:{hexadecimal(graphics.sensor_color_on_paper(k))}"></span>'
+        f"{k + 1} {escaped(sensor.name)} <small>({escaped(sensor.model.name)})</small></li>"
         for k, sensor in enumerate(rig)
     )
     return Markup(f'<ul class="key">{each}</ul>')
@@ -69,7 +70,7 @@ def spread(places: Floats) -> Floats:
 
 def _numbered(canvas: Canvas, number: int, end: Floats, disc: Floats, hidden: bool) -> None:
     """A disc with a number, and a line to its sensor: dashed to one behind the vehicle."""
-    color = hexadecimal(graphics.sensor_color(number))
+    color = hexadecimal(graphics.sensor_color_on_paper(number))
     line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
     dashes = "4 4" if hidden else "none"
     canvas.add("path", d=line, stroke="#1b1f24", stroke_width=1.5, stroke_dasharray=dashes)

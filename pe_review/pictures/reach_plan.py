@@ -39,7 +39,7 @@ def reach_plan(
         plan.ring(radius, color=GRID)
     size: dict[str, Any] = {"fill": "none", "stroke_linejoin": "round"}
     for number, sensor in enumerate(rig):
-        color = hexadecimal(graphics.sensor_color(number))
+        color = hexadecimal(graphics.sensor_color_on_paper(number))
         line = plan.at(_closed(found, found.per_sensor[sensor.name]))
         plan.canvas.path([line], stroke=color, stroke_width=1.2, stroke_opacity="0.85", **size)
     if before is not None:
@@ -67,7 +67,7 @@ def reach_to(found: sight.Reach, bearing_deg: float) -> str:
 def reach_key(rig: pe.Rig) -> list[tuple[str, str]]:
     """Return each sensor's colour and name."""
     numbered = enumerate(rig)
-    return [(hexadecimal(graphics.sensor_color(number)), s.name) for number, s in numbered]
+    return [(hexadecimal(graphics.sensor_color_on_paper(number)), s.name) for number, s in numbered]
 
 
 def _closed(found: sight.Reach, distance: Floats) -> Floats:
@@ -100,7 +100,10 @@ def _key(plan: PlanDrawing, has_before: bool) -> None:
     lines: Mapping[str, dict[str, object]] = {
         "the rig": {"stroke": RIG, "stroke_width": 2.2},
         **({"before": {"stroke": BEFORE, "stroke_dasharray": "5 4"}} if has_before else {}),
-        "a sensor alone": {"stroke": hexadecimal(graphics.sensor_color(0)), "stroke_width": 1.2},
+        "a sensor alone": {
+            "stroke": hexadecimal(graphics.sensor_color_on_paper(0)),
+            "stroke_width": 1.2,
+        },
     }
     at, down = plan.left, plan.bottom + 38.0
     for words, style in lines.items():

@@ -5,6 +5,7 @@ The geometry is the engine's, that of the views in Blender.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import degrees
 from typing import Any
 
@@ -20,9 +21,9 @@ BEAMS_EACH, BEAM_M, VIEW_M, FOOT_M = 180, 7.0, 2.5, 20.0
 """Beams that are drawn of a LiDAR, how long; a camera's view, and how far its ground is drawn."""
 MOST_RINGS = 10
 PALETTE = graphics.PAPER
-FREE = graphics.with_alpha(PALETTE.free, 0.55)
 STOPPED = graphics.with_alpha(PALETTE.stopped, 0.9)
-RING = graphics.with_alpha(PALETTE.free, 0.8)
+BEAM, RING, EDGE, SIDE = 0.5, 0.8, 0.9, 0.12
+"""How strong a sensor's colour is in its beams, its rings, and its view's edges and sides."""
 NOTHING = graphics.Primitives.empty()
 
 
@@ -31,12 +32,13 @@ def sensor_data(
 ) -> dict[str, Any]:
     """Return one sensor of a rig by its number; `one_score` is its row of the score, or None."""
     drawing = graphics.drawing_of(sensor.kind)
-    layers = _of_beams(sensor, vehicle) if drawing.beams else _of_view(sensor, vehicle)
+    color = graphics.sensor_color_on_paper(number)
+    of_kind = _of_beams if drawing.beams else _of_view
     return {
         "name": sensor.name,
         "kind": kinds.kind_of(sensor.model).label,
         "model": sensor.model.name,
-        "color": css(graphics.with_alpha(graphics.sensor_color(number), 1.0)),
+        "color": css(graphics.with_alpha(color, 1.0)),
         "at": list(sensor.pose.position),
         "turned": list(sensor.pose.rotation_deg),
         "axes": sensor.pose.ground_from_sensor.tolist(),
@@ -44,19 +46,23 @@ def sensor_data(
         "sees": "beams" if drawing.beams else "view",
         "share": _share(one_score),
         "housing": housing_data(sensor.model.name),
-        "layers": layers,
+        "layers": of_kind(sensor, vehicle, color),
     }
 
 
-def _of_beams(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> dict[str, Any]:
+def _of_beams(
+    sensor: pe.Sensor, vehicle: pe.Vehicle | None, color: tuple[float, ...]
+) -> dict[str, Any]:
     """Free beams, stopped ones, and rings where channels meet the ground."""
     found = graphics.cast(sensor, vehicle, MOST_BEAMS)
     choice = graphics.BeamChoice(BEAMS_EACH, graphics.ChannelMode.FEW)
     beams = graphics.shown_beams(found, choice)
-    colors = np.where(beams.stopped[:, None], STOPPED, FREE)
+    colors = np.where(beams.stopped[:, None], STOPPED, graphics.with_alpha(color, BEAM))
     around = None if vehicle is None else vehicle.bounds
     rows = _rings(found)
-    rings = graphics.ground_rings(found, rows, np.tile(RING, (len(rows), 1)))
+    rings = graphics.ground_rings(
+        found, rows, np.tile(graphics.with_alpha(color, RING), (len(rows), 1))
+    )
     return {
         "sees": _layer(graphics.free_lines(sensor, beams, BEAM_M, colors, around)),
         "stopped": _layer(graphics.stopped_lines(sensor, beams, colors)),
@@ -64,17 +70,21 @@ def _of_beams(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> dict[str, Any]:
     }
 
 
-def _of_view(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> dict[str, Any]:
+def _of_view(
+    sensor: pe.Sensor, vehicle: pe.Vehicle | None, color: tuple[float, ...]
+) -> dict[str, Any]:
     """A view's edges and sides, what of the vehicle is in it, and the ground that it looks at."""
     drawing = graphics.drawing_of(sensor.kind)
     sketch = drawing.sketch(sensor, vehicle, graphics.BeamChoice(1))
-    layers = {"sees": _layer(sketch.lines(VIEW_M, PALETTE), sketch.faces(VIEW_M, PALETTE))}
+    edge, side = graphics.with_alpha(color, EDGE), graphics.with_alpha(color, SIDE)
+    palette = replace(PALETTE, camera=edge, camera_face=side, other=edge)
+    layers = {"sees": _layer(sketch.lines(VIEW_M, palette), sketch.faces(VIEW_M, palette))}
     if drawing.footprint is None:
         return layers
     outline = drawing.footprint(sensor, FOOT_M)
-    edge = graphics.footprint_lines(outline, PALETTE.camera)
+    around = graphics.footprint_lines(outline, edge)
     layers["stopped"] = _layer(graphics.hidden_lines(sensor, vehicle, STOPPED))
-    layers["ground"] = _layer(edge, graphics.footprint_faces(outline, PALETTE.camera_face))
+    layers["ground"] = _layer(around, graphics.footprint_faces(outline, side))
     return layers
 
 

@@ -116,17 +116,11 @@ def _maps(maps: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _key(data: Mapping[str, Any]) -> str:
-    """What the lines are, and what was left out of the vehicle."""
-    palette = graphics.PAPER
-    entries = {
-        "beams": (palette.free, "", "beam that leaves the vehicle"),
-        "view": (palette.camera, "", "view of a camera"),
-        "stopped": (palette.stopped, "dashed", "stopped by the vehicle"),
-    }
-    there = {sensor["sees"] for sensor in data["sensors"]} | {"stopped"}
-    rows = "".join(
-        f'<li><i class="{style}" style="--tint:{css(color)}"></i>{words}</li>'
-        for name, (color, style, words) in entries.items()
-        if name in there
+    """What the lines are."""
+    first = data["sensors"][0]["color"]
+    stopped = css(graphics.PAPER.stopped)
+    rows = (
+        f'<li><i style="--tint:{first}"></i>in a sensor\'s colour: what it sees</li>'
+        f'<li><i class="dashed" style="--tint:{stopped}"></i>stopped by the vehicle</li>'
     )
     return f'<ul class="v3-key">{rows}<li>Grid of 1 m, darker every 5 m.</li></ul>'

@@ -89,7 +89,7 @@ def _views(one: Reviewed) -> str:
 
 
 def _view(one: Reviewed, place: int, sensor: pe.Sensor) -> str:
-    color = hexadecimal(graphics.sensor_color(place))
+    color = hexadecimal(graphics.sensor_color_on_paper(place))
     name = escaped(sensor.name)
     head = (
         f'<h3><span class="swatch" style="background:{color}"></span> {place + 1} {name} '

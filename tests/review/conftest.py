@@ -94,6 +94,12 @@ def searched_page(searched):
 
 
 @pytest.fixture(scope="session")
+def bare_page(bare):
+    """The page of a study without a vehicle, as text."""
+    return page_bytes([bare]).decode()
+
+
+@pytest.fixture(scope="session")
 def page_of_two(scored, other):
     """The page of two studies, as text."""
     return page_bytes([scored, other]).decode()

@@ -4,6 +4,7 @@ import html
 import re
 import shlex
 import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -53,6 +54,38 @@ def test_a_page_of_somebody_s_own_is_refused_before_the_work(study, tmp_path, ca
     assert (tmp_path / PAGE).read_text() == "mine"
     assert main(["review", str(study), "-o", str(tmp_path), "--replace"]) == 0
     assert (tmp_path / PAGE).read_text().startswith("<!DOCTYPE html>")
+
+
+def test_ctrl_c_while_the_page_is_written_leaves_all_as_it_was(
+    study, tmp_path, capsys, monkeypatch
+):
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    (tmp_path / PAGE).write_text("mine")
+    before = sorted(path.name for path in tmp_path.iterdir())
+    monkeypatch.setattr("pe_review.page.SECTIONS", (searching, interrupted))
+    assert main(["review", str(study), "-o", str(tmp_path), "--replace"]) == 130
+    assert sorted(path.name for path in tmp_path.iterdir()) == before
+    assert (tmp_path / PAGE).read_text() == "mine"
+    assert main(["review", str(study), "-o", str(tmp_path / "new")]) == 130
+    assert not (tmp_path / "new" / PAGE).exists()
+    assert "interrupted" in capsys.readouterr().err
+
+
+def test_ctrl_c_between_page_and_disk_leaves_no_half_page(study, tmp_path, monkeypatch):
+    real = Path.write_bytes
+
+    def cut_off(path, data):
+        real(path, data[: len(data) // 2])
+        raise KeyboardInterrupt
+
+    (tmp_path / PAGE).write_text("mine")
+    before = sorted(path.name for path in tmp_path.iterdir())
+    monkeypatch.setattr(Path, "write_bytes", cut_off)
+    assert main(["review", str(study), "-o", str(tmp_path), "--replace"]) == 130
+    assert sorted(path.name for path in tmp_path.iterdir()) == before
+    assert (tmp_path / PAGE).read_text() == "mine"
 
 
 def test_a_folder_that_cannot_be_is_one_line(study, capsys):

@@ -37,7 +37,7 @@ class Elements(HTMLParser):
             assert self.open.pop() == tag, (tag, self.open[-4:])
 
 
-PAGES = ["page", "searched_page", "page_of_two"]
+PAGES = ["page", "searched_page", "page_of_two", "bare_page"]
 
 
 @pytest.mark.parametrize("which", PAGES)

@@ -25,6 +25,8 @@ Measurement = tuple[CurveOf, NDArray]
 
 LONGEST_TABLE = (1 << 16) - 1
 """Counts are kept in 16 bits."""
+MOST_BYTES = 257
+"""Numbers of 8 bits whose sum 16 bits hold."""
 
 
 class Curves(Protocol):
@@ -45,8 +47,13 @@ def group_sum(measured: Sequence[Any]) -> Any:
     """Sum measurements as kernels give them, eq. 6: counts of few bits each, or what adds up."""
     if len(measured) == 1:
         return measured[0]
-    whole = isinstance(measured[0], np.ndarray) and is_whole(measured[0])
-    return reduce(add, (m.astype(np.uint32) for m in measured) if whole else measured)
+    if not (isinstance(measured[0], np.ndarray) and is_whole(measured[0])):
+        return reduce(add, measured)
+    is_short = all(m.itemsize == 1 for m in measured) and len(measured) <= MOST_BYTES
+    total = measured[0].astype(np.uint16 if is_short else np.uint32)
+    for m in measured[1:]:
+        np.add(total, m, out=total, casting="unsafe")
+    return total
 
 
 def late_fusion(precisions: Iterable[ArrayLike], blind: str = "floor") -> Floats:

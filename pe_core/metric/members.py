@@ -38,12 +38,13 @@ class SensorSums(NamedTuple):
 
 
 class MemberSums:
-    """Sums over planes for the sensors of fusion groups, by the floor rule."""
+    """Sums over planes for the sensors of fusion groups, whose sums are `totals`; floor rule."""
 
-    def __init__(self, fused: PlaneFusion, groups: Sequence[Sequence[Group]]) -> None:
-        self._fused, self._groups = fused, groups
+    def __init__(
+        self, fused: PlaneFusion, groups: Sequence[Sequence[Group]], totals: Sequence[Group]
+    ) -> None:
+        self._fused, self._groups, self._totals = fused, groups, totals
         self._rests = [_rests(members) for members in groups]
-        self._totals = [(members[0][0], group_sum([m for _, m in members])) for members in groups]
 
     def of_plane(self, plane: int, whole: Floats, weights: Floats) -> Floats:
         """Return the sums (3, S) of a plane, whose entropies and weights are (ny, nz)."""
@@ -53,21 +54,25 @@ class MemberSums:
         for k, members in enumerate(self._groups):
             for s, own in enumerate(members):
                 mine = _on_plane(own, plane)
-                at = np.flatnonzero(mine.m)
+                at = np.flatnonzero(mine.m != 0)
                 if not at.size:
                     found.append((0.0, 0.0, 0.0))
                     continue
-                without = self._without(mine, at, totals[k], others[k], self._rests[k], s, plane)
-                weight = weights[mine.rows].reshape(-1)[at]
-                gone = entropy_of(without) - whole[mine.rows].reshape(-1)[at]
-                alone = self._alone(mine, at) - H_BLIND
-                found.append(((gone * weight).sum(), (alone * weight).sum(), weight.sum()))
+                m, weight = mine.m.reshape(-1).take(at, mode="clip"), _taken(weights, mine.rows, at)
+                rest = self._rests[k], s, plane
+                gone = entropy_of(self._without(mine, at, m, totals[k], others[k], *rest))
+                gone -= _taken(whole, mine.rows, at)
+                gone *= weight  # in place: a new array costs as much as the product
+                gained = self._gained(mine.kind, m)
+                gained *= weight
+                found.append((gone.sum(), gained.sum(), weight.sum()))
         return np.array(found).T
 
     def _without(
         self,
         mine: OnPlane,
         at: NDArray[np.int64],
+        m: NDArray,
         total: OnPlane,
         others: Floats,
         rests: Sequence[Group] | None,
@@ -76,13 +81,17 @@ class MemberSums:
     ) -> Floats:
         """1 / sigma^2 of all sensors but one, where that one sees something."""
         rows = slice(mine.rows.start - total.rows.start, mine.rows.stop - total.rows.start)
-        left = others[rows].reshape(-1)[at]
+        left = _taken(others, rows, at)
         if rests is None:
             return left
         if rests == ():  # whole numbers: what is left of their sum is exact
-            rest = total.m[rows].reshape(-1)[at] - mine.m.reshape(-1)[at]
-            return left + self._fused.added(mine.kind, rest)
-        return left + self._added(_on_plane(rests[s], plane), mine.rows).reshape(-1)[at]
+            rest = _taken(total.m, rows, at) - m
+            left += self._fused.added(mine.kind, rest)
+        else:
+            left += (
+                self._added(_on_plane(rests[s], plane), mine.rows).reshape(-1).take(at, mode="clip")
+            )
+        return left
 
     def _added(self, own: OnPlane, rows: slice) -> Floats:
         """What a sensor adds to 1 / sigma^2 in rows that may be others than its own."""
@@ -93,12 +102,11 @@ class MemberSums:
             added[start - rows.start : stop - rows.start] = self._fused.added(own.kind, some)
         return added
 
-    def _alone(self, mine: OnPlane, at: NDArray[np.int64]) -> Floats:
-        """Entropy of one sensor alone, where it sees something."""
-        m = mine.m.reshape(-1)[at]
-        if mine.m.dtype.kind in "iu":
-            return np.take(self._fused.alone(mine.kind), m, mode="clip")
-        return entropy_of(self._fused.added(mine.kind, m) + BLIND_PRECISION)
+    def _gained(self, kind: CurveOf, m: NDArray) -> Floats:
+        """Entropy of one sensor alone, less that of none."""
+        if m.dtype.kind in "iu":
+            return self._fused.gained(kind).take(m, mode="clip")
+        return entropy_of(self._fused.added(kind, m) + BLIND_PRECISION) - H_BLIND
 
     def _others(self, totals: Sequence[OnPlane], shape: tuple[int, ...]) -> list[Floats]:
         """1 / sigma^2 of all groups but one, in the rows of that one; of each."""
@@ -125,6 +133,11 @@ def _rests(members: Sequence[Group]) -> Sequence[Group] | None:
         (kind, group_sum([m for j, (_, m) in enumerate(members) if j != k]))
         for k, (kind, _) in enumerate(members)
     ]
+
+
+def _taken(values: NDArray, rows: slice, at: NDArray[np.int64]) -> NDArray:
+    """Values (ny, nz) at places that are counted from the first of some rows."""
+    return values[rows].reshape(-1).take(at, mode="clip")
 
 
 def _on_plane(own: Group, plane: int) -> OnPlane:

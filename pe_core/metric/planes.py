@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .entropy import BLIND_PRECISION, entropy_of
+from .entropy import BLIND_PRECISION, H_BLIND, entropy_of
 from .fusion import CurveOf, Fusion
 
 Floats = NDArray[np.float64]
@@ -97,9 +97,9 @@ class PlaneFusion:
             return np.take(self._by_count(kind), m, mode="clip")
         return self._shown(kind, np.ascontiguousarray(m))
 
-    def alone(self, kind: CurveOf) -> Floats:
-        """Entropy of a lone group by its whole numbers."""
-        return self._alone(kind, 1)
+    def gained(self, kind: CurveOf) -> Floats:
+        """Entropy of a lone group by its whole numbers, less that of a blind one."""
+        return self._kept(("gained", kind, 1), lambda: self._alone(kind, 1) - H_BLIND)
 
     def _counted(self, counts: Sequence[Counted], blind: int, rows: slice) -> Floats:
         """1 / sigma^2 of so many blind groups and what whole numbers add, in some rows."""

@@ -135,7 +135,8 @@ class GridScorer:
                 watched.check()
                 values = {s.name: m(planes) for s, (_, m) in zip(rig, measured, strict=True)}
                 fused = [fused_early(rig, values, members) for members in parts]
-                members = MemberSums(self._planes, members_of(rig, values)) if is_sparse else None
+                each = members_of(rig, values)
+                members = MemberSums(self._planes, each, fused[0]) if is_sparse else None
                 return self._reduced(fused, planes, members)
 
             found = watched.taken(pool.map(work, self._blocks()), len(self._blocks()))

@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Size = tuple[int, int]
 
-LAMPS_A_PIXEL, TURNS = 9, 4
+LAMPS_A_PIXEL, TURNS = 6, 4
 """Lamps of the dome that a pixel asks, and how many sets of them there are."""
 FAR = 8.0
 """How far away lamps are, in half the size of what stands there."""

@@ -9,14 +9,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from pe_report.page import put_together
 from pe_report.validity import correlated, scores
 from pe_report.validity.choices import BASE, BODY_M, body_of, box_triangles, variants
 from pe_report.validity.correlated import LAYOUTS, LEVEL, RankQuestion, questions
 from pe_report.validity.effort import FULL, QUICK
+from pe_report.validity.facts import ValidityFacts
 from pe_report.validity.plan import names, plan
 from pe_report.validity.published import CLEAN, DEGREES, RADIANS, paper_of, papers
+from pe_report.validity.results import read_results
+from pe_report.validity.sections import SECTIONS
 from pe_report.validity.sections.settle import placements_for
-from tests.report.conftest import pe
+from tests.report.conftest import ROOT, pe
 
 
 @pytest.fixture(scope="session")
@@ -169,6 +173,14 @@ def test_a_changed_score_is_noticed(quick, tmp_path):
     (tmp_path / "results.json").write_text(json.dumps(data))
     run = pe("validate", "--page-only", "--output", tmp_path)
     assert run.returncode != 0 and run.stderr.count("\n") == 1 and "correlations" in run.stderr
+
+
+def test_the_page_of_the_docs_is_that_of_its_results():
+    """Whole: correlations are worked out again from the scores, and every word from them."""
+    data = read_results(ROOT / "docs" / "validity" / "results.json")
+    facts = ValidityFacts(data)
+    page = put_together(section(facts) for section in SECTIONS)
+    assert (ROOT / "docs" / "validity" / "README.md").read_text("utf-8") == page
 
 
 def test_placements_needed_are_those_of_fishers_z():

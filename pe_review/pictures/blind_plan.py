@@ -14,6 +14,8 @@ SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
 LEAST_M = 0.3
 """Less is a strip along the body that is not measured."""
 WIDE = 330.0
+ROOM_M = 2.0
+"""A measure that ends this near to the border has no room for its words beyond it."""
 
 
 def blind_plan(found: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -> Markup:
@@ -62,7 +64,8 @@ def _measure(plan: PlanDrawing, found: sight.BlindGround, vehicle: pe.Vehicle, s
     line = f"M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}m0 0{cross}"
     plan.canvas.add("path", d=line, fill="none", stroke="#1b1f24", stroke_width=1.0)
     words = f"> {away:g} m" if zone is None else f"{away:.1f} m"
-    x, y, anchor = _beside(axis, sign, x1, y1)
+    beside = _within if away > found.within - ROOM_M else _beside
+    x, y, anchor = beside(axis, sign, x1, y1)
     plan.canvas.text(x, y, words, text_anchor=anchor, css="strong halo")
 
 
@@ -71,6 +74,13 @@ def _beside(axis: int, sign: int, x: float, y: float) -> tuple[float, float, str
     if axis == 1:
         return x + 8.0, y + 4.0, "start"
     return x + sign * 8.0, y + 4.0, "start" if sign > 0 else "end"
+
+
+def _within(axis: int, sign: int, x: float, y: float) -> tuple[float, float, str]:
+    """As `_beside`, on the vehicle's side of the end."""
+    if axis == 1:
+        return x + 8.0, y + (14.0 if sign > 0 else -6.0), "start"
+    return x - sign * 6.0, y - 6.0, "end" if sign > 0 else "start"
 
 
 def _bounds(

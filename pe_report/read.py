@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -111,8 +111,17 @@ def read_json(path: Path) -> dict[str, Any]:
     return data
 
 
+CheckValue = Callable[[Path, str, Any, str], None]
+"""Takes file, task name, value and field; raises `InputError` unless it is such a task's value."""
+
+
 def checked_results(path: Path, results: Any) -> dict[str, dict[str, Any]]:
     """Return results by task name, each with its value and seconds, or raise `InputError`."""
+    return checked_entries(path, results, _check_value)
+
+
+def checked_entries(path: Path, results: Any, check_value: CheckValue) -> dict[str, dict[str, Any]]:
+    """As `checked_results`, of any verb's tasks."""
     if not isinstance(results, dict):
         raise InputError(path, "results", "an object", type(results).__name__)
     for name, entry in results.items():
@@ -120,7 +129,7 @@ def checked_results(path: Path, results: Any) -> dict[str, dict[str, Any]]:
         field = f"results.{name}"
         check_keys(entry, ("value", "seconds"), path, field)
         Amount(0.0).check(entry["seconds"], path, f"{field}.seconds")
-        _check_value(path, name, entry["value"], f"{field}.value")
+        check_value(path, name, entry["value"], f"{field}.value")
     return results
 
 

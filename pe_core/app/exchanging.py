@@ -91,15 +91,20 @@ def _refuse_range(args: argparse.Namespace) -> None:
         raise InputError("--range", "option", f"one of {', '.join(RANGED)}", args.to)
 
 
-def import_study(args: argparse.Namespace) -> Answer:
-    """Write a study of a rig that another program has written."""
+def new_study(args: argparse.Namespace) -> tuple[Path, Vehicle | None]:
+    """Return where a study is to be written, if it may be, and its vehicle if it has a mesh."""
     output = Path(args.output)
     if output.exists() and not args.replace:
         raise InputError(output, "file", "a new file (or --replace)", "one is there")
-    vehicle = None
-    if args.mesh is not None:
-        mesh = read_mesh(output.parent / args.mesh)
-        vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
+    if args.mesh is None:
+        return output, None
+    mesh = read_mesh(output.parent / args.mesh)
+    return output, Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
+
+
+def import_study(args: argparse.Namespace) -> Answer:
+    """Write a study of a rig that another program has written."""
+    output, vehicle = new_study(args)
     reference = _reference(args, None, vehicle, args.format or args.file)
     placed = None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
     models = chosen_models(args.model)

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
 from .. import catalog
 from ..catalog import KnownRig, KnownSensor
-from ..errors import InputError
-from ..formats import read_mesh
 from ..scene import Rig, Sensor, Vehicle
 from ..study import Study, save_study
+from .exchanging import new_study
 from .status import DONE, Answer
 from .terminal import tell
 
@@ -43,13 +41,7 @@ def show_rigs(args: argparse.Namespace) -> Answer:
 
 def write_rig(rig: KnownRig, args: argparse.Namespace) -> str:
     """Write a rig as a study, on a mesh or without a vehicle."""
-    output = Path(args.output)
-    if output.exists() and not args.replace:
-        raise InputError(output, "file", "a new file (or --replace)", "one is there")
-    vehicle = None
-    if args.mesh is not None:
-        mesh = read_mesh(output.parent / args.mesh)
-        vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
+    output, vehicle = new_study(args)
     study = study_of_rig(rig, vehicle, args.mesh, stretched=not args.as_published)
     save_study(study, output)
     tell(f"{rig.title}: {_standing(rig, vehicle, args.as_published)}. {rig.note}")

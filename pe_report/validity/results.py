@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ from pe_core import InputError
 from pe_core.text import dump_json
 
 from ..form import Amount, Each, Form, Keyed, Text, check_keys
-from ..read import ENTROPY, MADE, SCHEMA, SHARE, read_json
+from ..read import ENTROPY, MADE, SCHEMA, SHARE, checked_entries, read_json
 from .choices import BASE, variants
 from .correlated import correlations, over_papers
 from .effort import FULL, QUICK, ValidityEffort
@@ -45,30 +46,28 @@ def read_results(path: Path) -> dict[str, Any]:
     if missing:
         raise InputError(path, "results", "those of a complete run", f"not so: {min(missing)}")
     values = {name: entry["value"] for name, entry in results.items()}
-    tried = [way for way in variants(effort.all_variants) if way != BASE]
-    for key, found in (
-        ("correlations", correlations(values, tried)),
-        ("over_papers", over_papers(values)),
-    ):
+    for key, found in judged(values, effort).items():
         if data[key] != json.loads(dump_json(found)):
             raise InputError(path, key, "what the scores give", "others")
     return data
 
 
+def judged(values: Mapping[str, Any], effort: ValidityEffort) -> dict[str, Any]:
+    """Return all that is said of the scores, as results.json has it."""
+    tried = [way for way in variants(effort.all_variants) if way != BASE]
+    return {"correlations": correlations(values, tried), "over_papers": over_papers(values)}
+
+
 def checked_results(path: Path, results: Any) -> dict[str, dict[str, Any]]:
     """Return results by task name, each with its value and seconds, or raise `InputError`."""
-    if not isinstance(results, dict):
-        raise InputError(path, "results", "an object", type(results).__name__)
-    for name, entry in results.items():
-        Text().check(name, path, "results")
-        field = f"results.{name}"
-        check_keys(entry, ("value", "seconds"), path, field)
-        Amount(0.0).check(entry["seconds"], path, f"{field}.seconds")
-        kind = name.partition("/")[0]
-        if kind not in SHAPES:
-            raise InputError(path, "results", "what pe validate computes", ascii(name[:60]))
-        SHAPES[kind].check(entry["value"], path, f"{field}.value")
-    return results
+    return checked_entries(path, results, _check_value)
+
+
+def _check_value(path: Path, name: str, value: Any, field: str) -> None:
+    kind = name.partition("/")[0]
+    if kind not in SHAPES:
+        raise InputError(path, "results", "what pe validate computes", ascii(name[:60]))
+    SHAPES[kind].check(value, path, field)
 
 
 def _checked_made(path: Path, made: Any) -> ValidityEffort:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +17,10 @@ from ..ledger import RESULTS, Ledger
 from ..page import PAGE, check_ours, put_together
 from ..problems import STUDIES
 from ..runner import Ended, run_all
-from .choices import BASE, variants
-from .correlated import correlations, over_papers
-from .effort import FULL, QUICK, ValidityEffort
+from .effort import FULL, QUICK
 from .facts import ValidityFacts
 from .plan import plan
-from .results import checked_results, read_results
+from .results import checked_results, judged, read_results
 from .sections import SECTIONS
 from .sections.head import TITLE
 from .sections.one_test import signed
@@ -70,12 +67,6 @@ def _results(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
         end.note = f"{ledger.path} keeps what is done, the same command goes on"
         raise
     return ledger.save(**judged(ledger.values, effort))
-
-
-def judged(values: Mapping[str, Any], effort: ValidityEffort) -> dict[str, Any]:
-    """Return all that is said of the scores, as results.json has it."""
-    tried = [way for way in variants(effort.all_variants) if way != BASE]
-    return {"correlations": correlations(values, tried), "over_papers": over_papers(values)}
 
 
 def summary(facts: ValidityFacts) -> str:

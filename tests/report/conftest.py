@@ -26,6 +26,15 @@ def pe_without_matplotlib(*arguments):
     return subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
 
 
+def numbers(data):
+    """All numbers of JSON data."""
+    if isinstance(data, dict):
+        data = list(data.values())
+    if isinstance(data, list):
+        return [n for value in data for n in numbers(value)]
+    return [data] if isinstance(data, (int, float)) and not isinstance(data, bool) else []
+
+
 @pytest.fixture(scope="session")
 def quick(tmp_path_factory):
     """The folder, the data and the run of ``pe reproduce --quick``."""

@@ -10,7 +10,7 @@ import pytest
 
 from pe_report.effort import QUICK
 from pe_report.plan import plan
-from tests.report.conftest import ROOT, pe
+from tests.report.conftest import ROOT, numbers, pe
 
 KEYS = ("1", "2", "3 default", "3 front", "4")
 
@@ -65,14 +65,6 @@ def test_every_figure_of_the_page_is_in_the_results(quick):
     found = set(re.findall(r"(?<![\d.])-?\d+\.\d{4}(?!\d)", page))
     assert len(found) > 30
     assert found <= told | paper
-
-
-def numbers(data):
-    if isinstance(data, dict):
-        data = list(data.values())
-    if isinstance(data, list):
-        return [n for value in data for n in numbers(value)]
-    return [data] if isinstance(data, (int, float)) and not isinstance(data, bool) else []
 
 
 def test_every_picture_of_the_page_is_there(quick):

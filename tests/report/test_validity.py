@@ -20,7 +20,7 @@ from pe_report.validity.published import CLEAN, DEGREES, RADIANS, paper_of, pape
 from pe_report.validity.results import read_results
 from pe_report.validity.sections import SECTIONS
 from pe_report.validity.sections.settle import placements_for
-from tests.report.conftest import ROOT, pe
+from tests.report.conftest import ROOT, numbers, pe
 
 
 @pytest.fixture(scope="session")
@@ -148,14 +148,6 @@ def test_every_rho_of_the_page_is_in_the_results(quick):
     told = {f"{v + 0.0:+.2f}" for v in numbers(quick.data)}
     found = set(re.findall(r"(?<![\d.])[+-]\d\.\d\d(?!\d)", page))
     assert len(found) > 30 and found <= told
-
-
-def numbers(data):
-    if isinstance(data, dict):
-        data = list(data.values())
-    if isinstance(data, list):
-        return [n for value in data for n in numbers(value)]
-    return [data] if isinstance(data, (int, float)) and not isinstance(data, bool) else []
 
 
 def test_every_picture_of_the_page_is_there(quick):

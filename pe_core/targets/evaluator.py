@@ -107,25 +107,17 @@ class ObjectEvaluator:
         """Score a rig as a whole, not sensor by sensor."""
         with self._is_free:
             self._fused.check(rig)
-            m = self._sensors.measure(rig)
-            entropies, seen = self._fused.entropies(rig, m)
-            whole = self._sums.part(entropies, seen)
-            return Glance(
-                whole.entropy,
-                whole.coverage,
-                self._sums.standard_error(entropies, len(rig.groups)),
-                self._sums.classes(entropies, seen),
-                self._sums.zones(entropies, seen),
-                0,
-            )
+            return self._glance(rig, *self._fused.entropies(rig, self._sensors.measure(rig)))
 
     def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
         """Score a rig in full: as `Evaluator.score`, and what `ObjectScore` tells besides."""
         with self._is_free:
             _go_on(watch, 0.0)
-            glance = self.glance(rig)
-            _go_on(watch, 0.5)
+            self._fused.check(rig)
             m = self._sensors.measure(rig)
+            entropies, seen = self._fused.entropies(rig, m)
+            glance = self._glance(rig, entropies, seen)
+            _go_on(watch, 0.5)
             per_sensor = {s.name: self._sensor(s.name, rig, m, glance.entropy) for s in rig}
             _go_on(watch, 0.7)
             return Score(
@@ -136,8 +128,19 @@ class ObjectEvaluator:
                 glance.per_zone,
                 per_sensor,
                 0,
-                objects=self._told(rig, m),
+                objects=self._told(rig, m, entropies),
             )
+
+    def _glance(self, rig: Rig, entropies: Floats, seen: NDArray[np.bool_]) -> Glance:
+        whole = self._sums.part(entropies, seen)
+        return Glance(
+            whole.entropy,
+            whole.coverage,
+            self._sums.standard_error(entropies, len(rig.groups)),
+            self._sums.classes(entropies, seen),
+            self._sums.zones(entropies, seen),
+            0,
+        )
 
     def _entropy(self, rig: Rig, m: MByName) -> float:
         return self._sums.part(*self._fused.entropies(rig, m)).entropy
@@ -156,8 +159,7 @@ class ObjectEvaluator:
         fused = FusedObjects(rings.objects, counted, self._model)
         return rings, fused, ObjectsByName(rings.objects, self.vehicle, False)
 
-    def _told(self, rig: Rig, m: MByName) -> ObjectScore:
-        entropies, _ = self._fused.entropies(rig, m)
+    def _told(self, rig: Rig, m: MByName, entropies: Floats) -> ObjectScore:
         points = [m[s.name] for s in rig if kind_of(s).counts_points]
         rings, fused, sensors = self._rings
         far, _ = fused.entropies(rig, sensors.measure(rig))

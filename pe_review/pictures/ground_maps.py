@@ -62,7 +62,7 @@ COVERAGE = MapLayer(
     "how much of a place some sensor sees, over its height",
     lambda seen: seen.coverage,
     _shaded(graphics.COVERAGE),
-    ("0 %", "50 %", "100 %"),
+    graphics.QUANTITIES[graphics.COVERAGE].ticks,
     tuple(graphics.QUANTITIES[graphics.COVERAGE].swatches),
 )
 SENSORS = MapLayer(

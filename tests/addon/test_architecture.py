@@ -5,8 +5,6 @@ import importlib
 import re
 from pathlib import Path
 
-import pytest
-
 import blender_addon
 from blender_addon import engine
 
@@ -172,23 +170,31 @@ def test_imports_are_seen_wherever_they_stand(tmp_path):
     assert found == ["bridge.rig", "engine"]
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_the_bridge_is_taken_by_its_face(name):
-    inside = {to for to in imported_files(name, FILES[name]) if to.startswith("bridge.")}
-    assert not inside or unit_of(name) == "bridge"
+def packages_imported(name):
+    """The top-level packages that a file imports."""
+    return {full.partition(".")[0] for full in imports(name, FILES[name])}
 
 
-@pytest.mark.parametrize("name", sorted(ARRAYS))
-def test_what_is_drawn_is_made_without_scene_or_gpu(name):
-    foreign = {full.partition(".")[0] for full in imports(name, FILES[name])}
-    assert not foreign & {"bpy", "gpu", "gpu_extras", "mathutils", "bpy_extras"}
+def test_the_bridge_is_taken_by_its_face():
+    offenders = [
+        f"{name}: {to}"
+        for name, path in FILES.items()
+        if unit_of(name) != "bridge"
+        for to in imported_files(name, path)
+        if to.startswith("bridge.")
+    ]
+    assert not offenders
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_the_engine_comes_through_its_door(name):
-    tops = {full.partition(".")[0] for full in imports(name, FILES[name])}
-    assert not tops & {"pe_core", "pe_report"}
-    assert name == "engine" or "importlib" not in tops
+def test_what_is_drawn_is_made_without_scene_or_gpu():
+    blender = {"bpy", "gpu", "gpu_extras", "mathutils", "bpy_extras"}
+    assert not [name for name in sorted(ARRAYS) if packages_imported(name) & blender]
+
+
+def test_the_engine_comes_through_its_door():
+    around = [name for name in FILES if packages_imported(name) & {"pe_core", "pe_report"}]
+    assert not around
+    assert [name for name in FILES if "importlib" in packages_imported(name)] == ["engine"]
 
 
 def rooms():
@@ -207,21 +213,34 @@ def public_names(room):
     return set(getattr(room, "__all__", (n for n in dir(room) if not n.startswith("_"))))
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_only_the_faces_of_rooms_are_used(name):
-    tree = ast.parse(FILES[name].read_text("utf-8"))
+def beside_the_faces(tree):
+    """Yield what a source takes from the engine that no room shows."""
     taken = {
         alias.asname or alias.name: alias.name
         for node in ast.walk(tree)
         if isinstance(node, ast.ImportFrom) and node.module == "engine"
         for alias in node.names
     }
-    assert set(taken.values()) <= set(rooms())
+    yield from set(taken.values()) - set(rooms())
     for node in ast.walk(tree):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
-            room = taken.get(node.value.id)
-            if room is not None:
-                assert node.attr in public_names(rooms()[room]), f"{room}.{node.attr}"
+            room = rooms().get(taken.get(node.value.id))
+            if room is not None and node.attr not in public_names(room):
+                yield f"{room.__name__}.{node.attr}"
+
+
+def test_only_the_faces_of_rooms_are_used():
+    offenders = {
+        name: found
+        for name, path in FILES.items()
+        if (found := sorted(beside_the_faces(ast.parse(path.read_text("utf-8")))))
+    }
+    assert not offenders
+
+
+def test_the_rule_of_faces_catches_what_goes_deeper():
+    source = "from .engine import pe, bogus\npe.Study, pe.nothing_of_the_kind\n"
+    assert sorted(beside_the_faces(ast.parse(source))) == ["bogus", "pe_core.nothing_of_the_kind"]
 
 
 def test_every_module_can_be_imported():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import bpy
 
@@ -15,8 +15,6 @@ from .tolerance import store_robustness
 
 PARTS_NAMED = 3
 """How many parts of the vehicle the panel names as stopping beams."""
-LEAST_SHARE = 5e-4
-"""A part that stops less of what a sensor sees is not named: it would read 0.0%."""
 MARKING = (MISSING, DRIVER)
 """Warnings that mark a result: what was scored is not what was meant."""
 
@@ -61,20 +59,24 @@ def store_words(
     seen: advice.Outlook | None = None,
 ) -> None:
     """Keep a result in words: the rig's with the scene, each sensor's with its object."""
-    lines = advice.words(score, study.rig, study.vehicle, seen)
-    of_rig = lines[: len(lines) - len(score.per_sensor)]
-    scene.perception_entropy.result_words = "\n".join(of_rig)
-    for name, own in score.per_sensor.items():
-        obj = scene.objects.get(name)
+    scene.perception_entropy.result_words = "\n".join(advice.rig_words(score, seen))
+    for row in advice.sensor_rows(score, study.rig, study.vehicle, seen):
+        obj = scene.objects.get(row.name)
         if obj is not None and obj.perception_entropy.is_sensor:
-            zones = None if seen is None else seen.shares.zones[name]
-            alone = len(score.per_sensor) == 1
-            sensor = study.rig[name]
-            stopped = advice.stopped_words(sensor, own, study.vehicle)
-            told = advice.sensor_words(own, sensor, study.vehicle, zones, alone=alone)
-            shares = [t.partition(": ")[0] if t == stopped else t for t in told]  # parts: below
-            obj.perception_entropy.words = "\n".join(shares)
-            _store_parts(obj.perception_entropy, advice.stopped_shares(sensor, own, study.vehicle))
+            _store_row(obj.perception_entropy, row)
+            zones = None if seen is None or score.objects else seen.shares.zones[row.name]
+            own, sensor = score.per_sensor[row.name], study.rig[row.name]
+            told = advice.sensor_words(own, sensor, study.vehicle, zones, alone=row.loss is None)
+            obj.perception_entropy.words = "\n".join(told)
+
+
+def _store_row(settings: bpy.types.PropertyGroup, row: advice.SensorRow) -> None:
+    """Store a sensor's row of the table: loss, where it costs most, and the parts that hide it."""
+    _, settings.loss_text, settings.loss_where, _ = row.cells
+    settings.stopped_parts.clear()
+    for name, share in list(row.hidden_by.items())[:PARTS_NAMED]:
+        part = settings.stopped_parts.add()
+        part.name, part.share = name, share
 
 
 def _store_breakdown(settings: bpy.types.PropertyGroup, score: pe.Score) -> None:
@@ -86,15 +88,6 @@ def _store_breakdown(settings: bpy.types.PropertyGroup, score: pe.Score) -> None
             row = settings.result_parts.add()
             row.name, row.is_class = name[:1].upper() + name[1:], is_class
             row.entropy, row.coverage = part.entropy, part.coverage
-
-
-def _store_parts(settings: bpy.types.PropertyGroup, shares: Mapping[str, float]) -> None:
-    """Keep which parts of the vehicle are in a sensor's way, most first."""
-    settings.stopped_parts.clear()
-    for name, share in sorted(shares.items(), key=lambda item: -item[1])[:PARTS_NAMED]:
-        if share >= LEAST_SHARE:
-            row = settings.stopped_parts.add()
-            row.name, row.share = name, share
 
 
 def store_warnings(settings: bpy.types.PropertyGroup, told: Sequence[pe.Advice]) -> None:

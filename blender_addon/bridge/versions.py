@@ -80,6 +80,6 @@ def score_from_dict(figures: dict) -> pe.Score:
 
 def _words_of(result_json: str) -> tuple[str, ...]:
     try:
-        return advice.words(score_from_dict(json.loads(result_json)["after"]))
+        return advice.rig_words(score_from_dict(json.loads(result_json)["after"]))
     except (ValueError, KeyError, TypeError):  # a damaged result says nothing
         return (EARLIER,)

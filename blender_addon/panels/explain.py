@@ -6,6 +6,7 @@ import bpy
 
 from ..operators import answer
 from .layout import Tab
+from .sensor_table import draw_sensor_table
 from .words import draw_sentence
 
 
@@ -26,6 +27,8 @@ class PE_PT_explain(Tab, bpy.types.Panel):
             lines.active = not settings.result_stale
             for line in settings.result_words.splitlines():
                 draw_sentence(lines, context, line[:1].upper() + line[1:], icon="DOT")
+        if settings.has_result:
+            draw_sensor_table(layout, context)
         if obj is not None and obj.perception_entropy.is_sensor:
             draw_sensor_words(layout, context, obj)
 
@@ -33,20 +36,15 @@ class PE_PT_explain(Tab, bpy.types.Panel):
 def draw_sensor_words(
     layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object
 ) -> None:
-    """Draw what the last result says of one sensor; parts in its way are buttons."""
+    """Draw what the last result says of one sensor in sentences."""
     settings = obj.perception_entropy
     if not settings.has_result:
         return
     box = layout.box().column(align=True)
     box.label(text=obj.name, icon="EMPTY_DATA", translate=False)
-    alone = f"alone {settings.entropy:.4f} nats, sees {settings.coverage:.1%} of where objects are"
+    alone = f"sees {settings.coverage:.1%} of where objects are"
     for line in (alone, *settings.words.splitlines()):
         draw_sentence(box, context, line[:1].upper() + line[1:], icon="DOT")
-    if settings.stopped_parts:
-        row = box.row(align=True)
-        for part in settings.stopped_parts:
-            text = f"{part.name}  {part.share:.1%}"
-            row.operator("pe.select_part", text=text, translate=False).name = part.name
 
 
 def draw_answer(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

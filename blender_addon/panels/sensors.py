@@ -1,4 +1,4 @@
-"""The list of sensors: which count, whose beams are drawn, model, and entropy alone."""
+"""The list of sensors: which count, whose beams are drawn, model, and what the loss costs."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def draw_header(layout: bpy.types.UILayout, share: float) -> None:
     name.label(text="Sensor")
     if model is not None:
         model.label(text="Model")
-    figure.label(text="Alone")
+    figure.label(text="Loss")
 
 
 def draw_sensor(
@@ -71,7 +71,12 @@ def draw_sensor(
     name.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
     if model is not None:
         model.label(text=settings.model, translate=False)
-    figure.label(text=f"{settings.entropy:.2f}" if settings.has_result else "–", translate=False)
+    figure.label(text=loss_of(settings), translate=False)
+
+
+def loss_of(settings: bpy.types.PropertyGroup) -> str:
+    """Return how much the rig's entropy rises without a sensor, as the last result has it."""
+    return settings.loss_text if settings.has_result and settings.loss_text else "–"
 
 
 def cells(

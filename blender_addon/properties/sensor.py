@@ -116,6 +116,12 @@ class PE_ObjectSettings(SearchBounds, MountedSettings, OfferedModels, bpy.types.
         name="Stopped By", description="Which parts of the vehicle stop how many beams"
     )
 
+    loss_text: StringProperty(
+        name="Loss", description="How much the rig's entropy rises when this sensor fails [nats]"
+    )
+    loss_where: StringProperty(
+        name="Costs Most", description="Where it rises most, and how much there [nats]"
+    )
     words: StringProperty(
         name="In Words", description="What the last result says of this sensor, a line each"
     )

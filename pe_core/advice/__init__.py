@@ -5,28 +5,43 @@ from .fragile import fragile, off_by
 from .mounting import stopped_shares
 from .object_words import object_words, objects_looked_at
 from .outlook import Outlook, class_of, outlook
-from .phrases import WHERE, sensor_words, stopped_words, words
+from .phrases import WHERE, rig_words, sensor_words, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
+from .sensor_table import (
+    SENSOR_COLUMNS,
+    SHORT_ZONES,
+    SensorRow,
+    loss_text,
+    sensor_rows,
+    sensor_table,
+)
 from .side_by_side import ComparedRow, compare
 from .told import warnings
 from .vehicle_line import vehicle_line
 
 __all__ = [
     "FRAGILE",
+    "SENSOR_COLUMNS",
+    "SHORT_ZONES",
     "WHERE",
     "Advice",
     "AskedPlace",
     "ComparedRow",
     "Outlook",
     "SensorAtPlace",
+    "SensorRow",
     "ask_place",
     "class_of",
     "compare",
     "fragile",
+    "loss_text",
     "object_words",
     "objects_looked_at",
     "off_by",
     "outlook",
+    "rig_words",
+    "sensor_rows",
+    "sensor_table",
     "sensor_words",
     "stopped_shares",
     "stopped_words",

@@ -50,18 +50,26 @@ def words(
         Of the same rig: tells what is seen by several, expected AP, reach, blind ground, and where
         each sensor sees most.
     """
-    return tuple(_lines(score, rig, vehicle, seen))
+    return *rig_words(score, seen), *_sensor_lines(score, rig, vehicle, seen)
 
 
-def _lines(
-    score: Score, rig: Rig | None, vehicle: Vehicle | None, seen: Outlook | None
-) -> Iterator[str]:
+def rig_words(score: Score, seen: Outlook | None = None) -> tuple[str, ...]:
+    """Return those lines of `words` that are on the whole rig."""
+    return tuple(_rig_lines(score, seen))
+
+
+def _rig_lines(score: Score, seen: Outlook | None) -> Iterator[str]:
     yield _coverage(score, seen)
     yield from _zones(score.per_zone)
     if score.objects is not None:
         yield from object_words(score.objects)
     if seen is not None:
         yield from outlook_words(seen, of_voxels=score.objects is None)
+
+
+def _sensor_lines(
+    score: Score, rig: Rig | None, vehicle: Vehicle | None, seen: Outlook | None
+) -> Iterator[str]:
     for name, own in score.per_sensor.items():
         sensor = None if rig is None else rig[name]
         zones = None if seen is None or score.objects else seen.shares.zones[name]

@@ -47,13 +47,16 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
     name = advice.class_of(study.prior, args.class_name)
     outcome = scored(study, args.workers)
     seen = advice.outlook(study.sight(), study.rig, name)
-    said = advice.words(outcome.after, study.rig, study.vehicle, seen)
+    scored_rig = outcome.after, study.rig, study.vehicle, seen
+    rows = advice.sensor_rows(*scored_rig)
     data = {
         "score": outcome.after.to_dict(),
         **seen.to_dict(),
-        "words": list(said),
+        "sensors": [row.to_dict() for row in rows],
+        "words": list(advice.words(*scored_rig)),
         "warnings": [each.to_dict() for each in outcome.warnings],
     }
+    said = *advice.rig_words(outcome.after, seen), *advice.sensor_table(rows)
     return _answer(data, [_entropy(outcome), *said, *warned(outcome)], args.json)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinds import PerceptionModel
-from ..metric.entropy import ap_of_entropy
+from ..metric.entropy import H_BLIND, ap_of_entropy
 from ..metric.fusion import Fusion
 from ..prior.prior import ClassDensity, Prior
 from ..scene.frozen import frozen
@@ -219,14 +219,14 @@ class Sight:
             }
 
     def shares(self, rig: Rig, *, draft: bool = False) -> SeenShares:
-        """Tell how much of where objects are is seen: by how many sensors, by each of them where.
+        """Tell how much of where objects are is seen, and what each sensor's loss costs by zone.
 
         On a sample of the prior, as `expected_ap`; `draft` as in `ground`.
         """
         with self._is_free:
             look = self._looks.at("prior", self._drawn)
             m, _ = look.measured(rig, draft)
-            return seen_shares(look.places, m)
+            return seen_shares(look.places, m, self._rises(rig, m))
 
     @property
     def densities(self) -> tuple[ClassDensity, ...]:
@@ -240,6 +240,16 @@ class Sight:
         """AP of every voxel, of some sensors fused: eqs. 4 to 7, and 5 backwards."""
         entropies, _ = self._fusion.entropies(fused_early(rig, m, members))
         return ap_of_entropy(entropies)
+
+    def _rises(self, rig: Rig, m: Mapping[str, NDArray]) -> dict[str, Floats]:
+        """How much the entropy of every voxel rises without each sensor [nats], by name."""
+        whole, _ = self._fusion.entropies(fused_early(rig, m, list(m)))
+        rises = {}
+        for name in m:
+            others = [other for other in m if other != name]
+            without = self._fusion.entropies(fused_early(rig, m, others))[0] if others else H_BLIND
+            rises[name] = without - whole
+        return rises
 
     def _places(self, layer: int | None, cells: GroundCells) -> VoxelsByCell:
         if layer is None:

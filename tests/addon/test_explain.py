@@ -113,13 +113,41 @@ def test_words_are_the_engines(car):
     bpy.ops.pe.score()
     study = scenes.study()
     score = study.evaluator().score(study.rig)
-    lines = advice.words(score, study.rig, study.vehicle)
-    assert car.perception_entropy.result_words.splitlines() == list(lines[:-1])
+    assert car.perception_entropy.result_words.splitlines() == list(advice.rig_words(score))
     own = car.objects["roof"].perception_entropy
     assert own.words.splitlines()[0] == "the only sensor"
     shares = advice.stopped_shares(study.rig["roof"], score.per_sensor["roof"], study.vehicle)
     assert {row.name: row.share for row in own.stopped_parts} == pytest.approx(shares)
     assert own.stopped_parts, "a score without a part in the way proves nothing here"
+
+
+def test_the_table_has_every_sensor_of_the_score(car):
+    """Seven sensors, two of which see nothing: a row each, the engine's figures in it."""
+    places = [(0.7, 0.0, 1.55), (0.2, 0.9, 1.0), (0.2, -0.9, 1.0), (-2.0, 0.0, 1.2), (0.0, 0.0, -3)]
+    for number, place in enumerate(places):
+        scenes.add_sensor(f"cam_{number}", model="Camera 60 deg", location=place)
+    scenes.add_sensor("zz_last", location=(0.0, 0.0, 0.9))  # in the body: it sees nothing
+    car.perception_entropy.grid_samples = 4096
+    bpy.context.view_layer.update()
+    bpy.ops.pe.score()
+    study = scenes.study()
+    seen = advice.outlook(study.sight(), study.rig)
+    score = study.evaluator().score(study.rig)
+    bridge.store_words(car, study, score, seen)
+    assert any(car.objects[name].perception_entropy.loss_where != "-" for name in score.per_sensor)
+    assert not any("without it" in line for line in car.perception_entropy.result_words.split("\n"))
+    for width in (240, 600):
+        window, layout = Window(car, car.objects["roof"]), Layout()
+        window.region.width = width
+        panels.sensor_table.draw_sensor_table(layout, window)
+        for name, loss, where, _ in (
+            row.cells for row in advice.sensor_rows(score, study.rig, study.vehicle, seen)
+        ):
+            assert layout.texts("operator").count(name) == 1
+            at = layout.notes.index(("operator", name))
+            assert layout.notes[at + 1] == ("label", loss)
+            assert layout.notes[at + 2] == ("label", where)
+    assert len(score.per_sensor) == 7
 
 
 def test_a_part_is_selected_by_its_name(car):

@@ -81,6 +81,32 @@ def test_a_sensor_in_phrases():
     assert advice.sensor_words(SENSORS["spare"], zones=blind, alone=True) == ("the only sensor",)
 
 
+def test_the_table_has_a_row_a_sensor():
+    rows = advice.sensor_rows(score(sensors=SENSORS))
+    assert advice.sensor_table(rows) == [
+        "sensor  loss [nats]  costs most  hidden by",
+        "roof           0.42  -           roof 6.0%, hood 1.5%",
+        "spare          none  -           -",
+    ]
+    alone = advice.sensor_rows(score(sensors={"roof": SENSORS["roof"]}))
+    assert alone[0].loss is None and advice.loss_text(None) == "only"
+
+
+def test_a_loss_is_told_where_it_costs_most():
+    """Two LiDARs see all round, a camera looks ahead: without it, ahead is what gets worse."""
+    roof, camera = shapes.lidar_on_roof(), shapes.camera(60.0, (1.9, 0.0, 0.9))
+    rig, space = pe.Rig([roof, camera]), shapes.small_space()
+    study = pe.Study(rig, shapes.box_car(), space)
+    seen = advice.outlook(study.sight(), rig)
+    found = study.evaluator(4096).score(rig)
+    rows = {row.name: row for row in advice.sensor_rows(found, rig, study.vehicle, seen)}
+    losses = seen.shares.losses["camera"]
+    assert rows["camera"].zone == max(losses, key=losses.get)
+    assert losses["front"] > losses["rear"] == 0.0 and rows["camera"].zone_loss >= losses["front"]
+    both = losses["near"], losses["mid"], losses.get("far", 0.0)
+    assert min(both) <= rows["camera"].loss <= max(both)  # a mean over the rings, which cover all
+
+
 @pytest.mark.parametrize(
     ("by_part", "text"),
     [

@@ -28,6 +28,7 @@ from . import (
     search_sensor,
     select,
     selection,
+    upright,
     variants,
 )
 from .ask_place import answer
@@ -61,6 +62,7 @@ CLASSES = (
     *own_sensors.CLASSES,
     *apply_scale.CLASSES,
     *look.CLASSES,
+    *upright.CLASSES,
     *select.CLASSES,
     *focus.CLASSES,
     *job.CLASSES,
@@ -80,12 +82,14 @@ CLASSES = (
 
 
 def register() -> None:
-    """Have Esc come back from looking through a sensor."""
+    """Have Esc come back from looking through a sensor, and dropped sensors stand."""
     look.register()
+    upright.register()
 
 
 def unregister() -> None:
     """Let go of what runs, and of what waits for the mouse."""
     running.unregister()
     placing.end()
+    upright.unregister()
     look.unregister()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -18,6 +19,8 @@ ROOF_DEPTH_M = 0.1
 FRONT_INSET_M = 0.05
 """How far behind the roof's front edge a camera stands."""
 DOWN = (0.0, 0.0, -1.0)
+GAP_DEG = 30.0
+"""A LiDAR whose horizontal field of view leaves out no more than this measures all around."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,22 @@ OTHER = Mount(None, 0.05, True, 1.5, True, "ARROWS", 0.25)
 def mount_of(kind: str) -> Mount:
     """Return how sensors of a kind are added."""
     return MOUNTS.get(kind, OTHER)
+
+
+def mount_for(model: object) -> Mount:
+    """Return how sensors of a model are added.
+
+    A LiDAR that does not measure all around looks away from the vehicle, as a camera does.
+    """
+    mount = mount_of(model.kind)
+    narrow = isinstance(model, pe.Lidar) and not sees_all_around(model)
+    return replace(mount, outward=True) if narrow else mount
+
+
+def sees_all_around(lidar: pe.Lidar) -> bool:
+    """Whether a LiDAR's field of view has no horizontal gap wider than GAP_DEG."""
+    low, high = lidar.horizontal_fov
+    return bool(high - low >= math.radians(360.0 - GAP_DEG))
 
 
 def sensible_place(context: bpy.types.Context, mount: Mount) -> Vector:

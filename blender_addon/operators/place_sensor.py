@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import bpy
@@ -13,7 +14,7 @@ from ..housing import known_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
 from . import placing
 from .add_sensor import choose_vehicle, new_sensor, select_only
-from .mounting import Mount, mount_of, sensible_place
+from .mounting import Mount, mount_for, sensible_place
 from .offered import described
 from .pointing import STEP_M, Stance, view_under
 from .reports import REFUSALS, refuse
@@ -27,6 +28,14 @@ STEPS = {
     "WHEELUPMOUSE": STEP_M,
 }
 """Keys that bring a sensor nearer to the surface, or farther from it [m]."""
+TURN_DEG, FINE_TURN_DEG = 5.0, 1.0
+TURNS = {
+    "LEFT_ARROW": (1.0, 0.0),
+    "RIGHT_ARROW": (-1.0, 0.0),
+    "UP_ARROW": (0.0, -1.0),
+    "DOWN_ARROW": (0.0, 1.0),
+}
+"""Keys that turn a sensor: yaw to the left and pitch nose down, in steps; finer with Shift."""
 NUMBERS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
 TYPED = {key: str(n) for n, key in enumerate(NUMBERS)} | {"PERIOD": ".", "COMMA": "."}
 TYPED["BACK_SPACE"] = ""
@@ -68,6 +77,17 @@ class PE_OT_place_sensor(bpy.types.Operator):
         unit="LENGTH",
     )
 
+    yaw: FloatProperty(
+        name="Yaw",
+        description="Turned from there about its z axis; positive is to the left",
+        subtype="ANGLE",
+    )
+    pitch: FloatProperty(
+        name="Pitch",
+        description="Turned from there about its y axis; positive is nose down",
+        subtype="ANGLE",
+    )
+
     housing: BoolProperty(
         name="Housing",
         description="Show the sensor's own body in its true size, where a data sheet gives it",
@@ -91,12 +111,13 @@ class PE_OT_place_sensor(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Place it at the location that is given."""
         try:
-            kind = kinds.kind_of(catalog.load(self.model))
+            model = catalog.load(self.model)
+            kind = kinds.kind_of(model)
         except REFUSALS as error:
             return refuse(self, error)
         choose_vehicle(context.scene)
         spot = Spot(Vector(self.location), Vector(self.normal).normalized(), "")
-        mount = mount_of(kind.name)
+        mount = mount_for(model)
         middle = placing.middle_of(context.scene.perception_entropy.vehicle)
         self._add(context, mount, kind.label, self._stance(mount).placed(spot, mount, middle))
         return {"FINISHED"}
@@ -108,7 +129,7 @@ class PE_OT_place_sensor(bpy.types.Operator):
         try:
             model = catalog.load(self.model)
             choose_vehicle(context.scene)
-            placing.begin(context, model, self._stance(mount_of(model.kind)))
+            placing.begin(context, model, self._stance(mount_for(model)))
         except REFUSALS as error:
             return refuse(self, error)
         context.window_manager.modal_handler_add(self)
@@ -150,6 +171,9 @@ class PE_OT_place_sensor(bpy.types.Operator):
             held.stand(replace(held.stance, along_normal=not held.stance.along_normal))
         elif event.type in STEPS and not (event.ctrl or event.shift or event.alt):
             held.step(STEPS[event.type])
+        elif event.type in TURNS and not (event.ctrl or event.alt):
+            step = FINE_TURN_DEG if event.shift else TURN_DEG
+            held.turn(*(step * way for way in TURNS[event.type]))
         elif event.type in TYPED and not (event.ctrl or event.alt):
             held.typed(TYPED[event.type])
         elif event.type.startswith(VIEW):
@@ -176,7 +200,7 @@ class PE_OT_place_sensor(bpy.types.Operator):
 
     def _stance(self, mount: Mount) -> Stance:
         own = mount.stand_off_m if self.stand_off < 0.0 else self.stand_off
-        return Stance(own, self.along_normal)
+        return Stance(own, self.along_normal, math.degrees(self.yaw), math.degrees(self.pitch))
 
 
 CLASSES = (PE_OT_place_sensor,)

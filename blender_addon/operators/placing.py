@@ -5,6 +5,7 @@ It is kept here and not in the scene: until it is placed, nothing of the file ha
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -18,7 +19,7 @@ from ..engine import graphics, kinds, pe
 from . import running
 from .add_sensor import is_part
 from .drafts import Drafts
-from .mounting import mount_of
+from .mounting import mount_for
 from .pointing import MOST_M, Stance, ray_of, view_under
 from .preview import Preview
 from .surface import Spot, parts_of, spot_on_ray
@@ -36,7 +37,7 @@ class Placing:
 
     def __init__(self, context: bpy.types.Context, model: Any, stance: Stance) -> None:
         self.model, self.kind = model, kinds.kind_of(model)
-        self.mount, self.stance = mount_of(model.kind), stance
+        self.mount, self.stance = mount_for(model), stance
         self.matrix: Matrix | None = None
         self._spot: Spot | None = None
         self.score = self._typed = ""
@@ -82,6 +83,18 @@ class Placing:
         """Stand nearer or farther."""
         self._typed = ""
         self.stand(self.stance.changed(by_m))
+
+    def turn(self, yaw_deg: float, pitch_deg: float) -> None:
+        """Turn it where it is."""
+        self.stand(self.stance.turned(yaw_deg, pitch_deg))
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """Yaw and pitch [deg] of the sensor as it is held; those of its stance while it is not."""
+        if self.matrix is None:
+            return self.stance.yaw_deg, self.stance.pitch_deg
+        _, pitch, yaw = self.matrix.to_euler()
+        return round(math.degrees(yaw), 1) + 0.0, round(math.degrees(pitch), 1) + 0.0
 
     @property
     def told(self) -> str:
@@ -134,6 +147,8 @@ class Placing:
             return
         stands = "along the normal" if self.stance.along_normal else "upright"
         where = f"{self.stance.stand_off_m:g} m from {self._spot.part}, {stands}"
+        if self.stance.is_turned:
+            where += ", yaw {:g}°, pitch {:g}°".format(*self.angles)
         self._preview.write(self.model.name, where, self.score)
 
     def _told(self, score: str) -> None:
@@ -211,6 +226,7 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
     if current is None:
         return
     row = header.layout.row()
+    angles = "Yaw {:g}°, Pitch {:g}°".format(*current.angles)
     other = "Upright" if current.stance.along_normal else "Along Normal"
     keys = (
         (("MOUSE_LMB",), "Place"),
@@ -218,6 +234,7 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
         (("EVENT_RETURN",), "On the Roof"),
         (("EVENT_N",), other),
         (("MOUSE_MMB",), f"Wheel, [ ], Digits: Stand-off {current.told}"),
+        (("DRIVER_ROTATIONAL_DIFFERENCE",), f"Arrows (Shift: 1°): {angles}"),
         (("EVENT_ESC",), "   Leave"),
     )
     for icons, text in keys:

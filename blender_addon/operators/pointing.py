@@ -20,6 +20,8 @@ POSITION_DECIMALS, YAW_STEP_DEG = 3, 1.0
 STEEP = 0.999
 """Of two unit vectors: they are parallel."""
 STEP_M, LEAST_M, MOST_M = 0.01, 0.0, 2.0
+STEEPEST_DEG = 90.0
+"""A sensor pitches no further than straight down or up."""
 
 
 class Aim(NamedTuple):
@@ -32,15 +34,31 @@ class Aim(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Stance:
-    """How a sensor stands on a surface: its distance from it [m], and along which direction."""
+    """How a sensor stands on a surface: its distance from it [m], and along which direction.
+
+    `yaw_deg` (positive is left) and `pitch_deg` (positive is nose down) turn it from there.
+    """
 
     stand_off_m: float
     along_normal: bool = False
+    yaw_deg: float = 0.0
+    pitch_deg: float = 0.0
 
     def changed(self, by_m: float) -> Stance:
         """Return one that is nearer or farther, within reason."""
         nearer = min(max(self.stand_off_m + by_m, LEAST_M), MOST_M)
         return replace(self, stand_off_m=round(nearer, POSITION_DECIMALS))
+
+    def turned(self, yaw_deg: float, pitch_deg: float) -> Stance:
+        """Return one that is turned further by these angles."""
+        yaw = (self.yaw_deg + yaw_deg + 180.0) % 360.0 - 180.0
+        pitch = min(max(self.pitch_deg + pitch_deg, -STEEPEST_DEG), STEEPEST_DEG)
+        return replace(self, yaw_deg=yaw, pitch_deg=pitch)
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether a sensor is turned from the direction that its place gives it."""
+        return bool(self.yaw_deg or self.pitch_deg)
 
     def placed(self, spot: Spot, mount: Mount, middle: Vector) -> Matrix:
         """(4, 4) placement on a spot of a vehicle with that middle.
@@ -51,10 +69,15 @@ class Stance:
         origin = spot.point + spot.normal * self.stand_off_m
         at = Matrix.Translation([round(value, POSITION_DECIMALS) for value in origin])
         if not self.along_normal:
-            yaw = _outward(spot.point, middle) if mount.outward else 0.0
-            return at @ Matrix.Rotation(yaw, 4, "Z")
+            yaw = outward(spot.point, middle) if mount.outward else 0.0
+            return at @ Matrix.Rotation(yaw, 4, "Z") @ self._turn()
         turned = _looking(spot.normal) if mount.outward else _standing(spot.normal)
-        return at @ turned.to_4x4()
+        return at @ turned.to_4x4() @ self._turn()
+
+    def _turn(self) -> Matrix:
+        """(4, 4) yaw, then pitch, in the sensor's own frame."""
+        yaw, pitch = math.radians(self.yaw_deg), math.radians(self.pitch_deg)
+        return Matrix.Rotation(yaw, 4, "Z") @ Matrix.Rotation(pitch, 4, "Y")
 
 
 def view_under(context: bpy.types.Context, event: bpy.types.Event) -> Aim | None:
@@ -84,7 +107,7 @@ def _holds(rectangle: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool
     return inside_x and rectangle.y <= y < rectangle.y + rectangle.height
 
 
-def _outward(point: Vector, middle: Vector) -> float:
+def outward(point: Vector, middle: Vector) -> float:
     """Yaw from the vehicle's middle to a point of it [rad], in whole degrees."""
     away = (point - middle).to_2d()
     if away.length < UPRIGHT_M:

@@ -27,6 +27,7 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         layout.prop(settings, "model")
         layout.prop(settings, "fusion")
         layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
+        layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
         draw_mirror(layout, obj)
         draw_mounted(layout, settings)
         layout.label(text=f"The search may change, for {obj.name}:")

@@ -79,6 +79,11 @@ class PE_ObjectSettings(SearchBounds, MountedSettings, OfferedModels, bpy.types.
         options={"HIDDEN"},
     )
 
+    stands_when_dropped: BoolProperty(
+        name="Stands When Dropped",
+        description="Stands upright on the surface when it is dropped from the asset browser",
+        options={"HIDDEN"},
+    )
     is_parked: BoolProperty(
         name="Is Parked",
         description="A sensor that is set aside, as it belongs to another variant",

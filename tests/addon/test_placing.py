@@ -1,5 +1,6 @@
 """The sensor that is held under the mouse: its stand-off, its words, and that it lets go."""
 
+import math
 from types import SimpleNamespace
 from typing import ClassVar
 
@@ -10,7 +11,7 @@ from mathutils import Vector
 
 from blender_addon import bridge, operators
 from blender_addon.engine import catalog, graphics, pe
-from blender_addon.operators import placing, pointing, preview
+from blender_addon.operators import place_sensor, placing, pointing, preview
 from blender_addon.operators.surface import Spot
 from tests.addon import scenes
 
@@ -89,6 +90,23 @@ def test_a_stand_off_is_typed_stepped_and_taken_back(held):
     held.typed("")
     held.typed("")
     assert held.stance.stand_off_m == 0.05  # nothing typed: as usual for its kind
+
+
+def test_arrow_keys_turn_it_from_the_direction_of_its_place(held):
+    held._stand(ROOF)
+    assert held.angles == (180.0, 0.0), "behind the middle it looks back"
+    held.turn(*(5.0 * way for way in place_sensor.TURNS["LEFT_ARROW"]))
+    held.turn(*(5.0 * way for way in place_sensor.TURNS["DOWN_ARROW"]))
+    assert held.angles == (-175.0, 5.0)
+    ahead = held.matrix.col[0].to_3d()
+    assert ahead.z == pytest.approx(-math.sin(math.radians(5.0)), abs=1e-6), "down is nose down"
+    assert held._preview._text[1].endswith("upright, yaw -175°, pitch 5°")
+    held._stand(None)
+    held._stand(ROOF)
+    assert held.angles == (-175.0, 5.0), "it goes on as it was turned"
+    for _ in range(40):
+        held.turn(10.0, 5.0)
+    assert held.stance.pitch_deg == 90.0 and -180.0 <= held.stance.yaw_deg < 180.0
 
 
 def test_it_is_drawn_where_it_stands_and_as_it_is_turned(held):

@@ -1,0 +1,110 @@
+"""Sensors stood upright: by the button, and when they come from the asset browser."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Matrix, Vector
+
+from blender_addon.housing import housing_mesh
+from blender_addon.operators import upright
+from tests.addon import scenes
+
+TAIL = Vector((-2.0, 0.3, 0.6))
+
+
+def axes(obj):
+    """Return where a sensor looks, and its up, each (3,)."""
+    bpy.context.view_layer.update()
+    turned = np.array(obj.matrix_world)[:3, :3]
+    return turned[:, 0], turned[:, 2]
+
+
+def turned_over(name, model, location=(0.0, 0.9, 0.5)):
+    """Return a sensor on the car's left side that lies on its own."""
+    return scenes.add_sensor(name, model=model, location=location, rotation_euler=(1.2, 0.4, -0.7))
+
+
+@pytest.mark.parametrize(
+    ("model", "ahead"),
+    [
+        ("Camera 60 deg", (0.0, 1.0, 0.0)),  # away from the vehicle's middle
+        ("Hesai AT128E2X", (0.0, 1.0, 0.0)),  # 120 degrees wide: as a camera
+        ("Pandar64", (math.cos(-0.7), math.sin(-0.7), 0.0)),  # all around: keeps its heading
+    ],
+)
+def test_the_button_turns_and_does_not_move(car, model, ahead):
+    sensor = turned_over("it", model)
+    place = sensor.location.copy()
+    assert bpy.ops.pe.stand_upright(name="it") == {"FINISHED"}
+    looks, up = axes(sensor)
+    assert looks == pytest.approx(ahead, abs=1e-5) and up == pytest.approx((0, 0, 1), abs=1e-6)
+    assert (sensor.location - place).length < 1e-5
+
+
+def test_the_button_takes_all_that_are_selected_and_no_other(car):
+    first, second = turned_over("first", "Camera 60 deg"), turned_over("second", "Camera 60 deg")
+    third = turned_over("third", "Camera 60 deg")
+    for obj in bpy.context.scene.objects:
+        obj.select_set(obj in (first, second))
+    bpy.context.view_layer.objects.active = second
+    bpy.ops.pe.stand_upright()
+    assert [axes(each)[1][2] > 0.999 for each in (first, second, third)] == [True, True, False]
+
+
+def test_of_no_sensor_one_line_is_said(car):
+    for obj in bpy.context.scene.objects:
+        obj.select_set(False)
+    bpy.context.view_layer.objects.active = car.objects["body"]
+    with pytest.raises(RuntimeError, match="expected at least one sensor"):
+        bpy.ops.pe.stand_upright()
+
+
+def dropped(name, model, point, normal):
+    """Return a sensor as Blender leaves an asset that was dropped onto a surface."""
+    obj = bpy.data.objects.new(name, housing_mesh(model))
+    bpy.context.scene.collection.objects.link(obj)
+    obj.perception_entropy.model = model
+    obj.perception_entropy.is_sensor = obj.perception_entropy.stands_when_dropped = True
+    up = Vector(normal)
+    turn = up.to_track_quat("Z", "Y").to_matrix().to_4x4()
+    low, high = np.min(obj.bound_box, axis=0), np.max(obj.bound_box, axis=0)
+    base = Vector(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]))
+    obj.matrix_world = Matrix.Translation(point) @ turn @ Matrix.Translation(-base)
+    bpy.context.view_layer.update()
+    return obj
+
+
+def reach_into(obj, point, normal):
+    """How far a sensor's body reaches through a surface; negative where it is clear of it [m]."""
+    corners = [obj.matrix_world @ Vector(each) for each in obj.bound_box]
+    return max(-(corner - Vector(point)).dot(Vector(normal)) for corner in corners)
+
+
+@pytest.mark.parametrize(
+    ("model", "point", "normal", "ahead"),
+    [
+        ("Camera 60 deg", TAIL, (-0.98, 0.0, 0.199), (-0.99, 0.14, 0.0)),
+        ("Camera 60 deg", (0.1, 0.9, 0.6), (0.0, 1.0, 0.0), (0.05, 0.999, 0.0)),
+        ("Velodyne VLP-16 Puck", (-0.3, 0.0, 1.5), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)),
+    ],
+)
+def test_an_asset_dropped_on_a_surface_stands_on_it_once(car, model, point, normal, ahead):
+    sensor = dropped("new", model, point, normal)
+    upright.stand_dropped()
+    looks, up = axes(sensor)
+    assert up == pytest.approx((0, 0, 1), abs=1e-6)
+    assert looks == pytest.approx(ahead, abs=0.2) and looks[2] == pytest.approx(0.0, abs=1e-6)
+    assert reach_into(sensor, point, normal) == pytest.approx(0.0, abs=1e-3), "not on the surface"
+    sensor.rotation_euler = (0.5, 0.0, 0.0)  # whoever turns it now wants that
+    upright.stand_dropped()
+    assert axes(sensor)[1][2] == pytest.approx(math.cos(0.5), abs=1e-6)
+
+
+def test_what_is_still_an_asset_is_left_alone(car):
+    sensor = dropped("new", "Camera 60 deg", TAIL, (-1.0, 0.0, 0.0))
+    sensor.asset_mark()
+    before = sensor.matrix_world.copy()
+    upright.stand_dropped()
+    assert sensor.matrix_world == before and sensor.perception_entropy.stands_when_dropped

@@ -88,6 +88,10 @@ REGION_ITEMS = tuple((each.key, each.label, each.description) for each in REGION
 """As Blender wants a menu."""
 
 
+BEFORE_MOVE, PINNED = 0, -1
+"""What the live score is compared with; any other number is the key of a variant."""
+
+
 def free_name(wanted: str, taken: set[str]) -> str:
     """Return a name, with a number behind it where it is taken: "Idea", "Idea 2"."""
     name, number = wanted, 2

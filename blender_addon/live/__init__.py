@@ -1,14 +1,14 @@
 """The score that follows the hand.
 
-`latest` is what is known now, `session` asks for it, `words` puts it into words, `readout` draws
-those in the corner of the 3D view.
+`latest` is what is known now, `session` asks for it, `reference` and `against` say what it is
+compared with, `words` puts it into words, `readout` draws those in the corner of the 3D view.
 """
 
 from __future__ import annotations
 
-from . import latest, readout, session
+from . import against, latest, readout, session
 
-__all__ = ["latest", "register", "unregister"]
+__all__ = ["against", "latest", "register", "unregister"]
 
 
 def register() -> None:

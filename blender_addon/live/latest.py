@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..engine import pe
+from .reference import Reference
 
 
 @dataclass(frozen=True)
@@ -28,26 +29,35 @@ class Reading:
     ----------
     glance : Glance
         The whole rig's entropy and coverage, by class and by zone; a draft while it moves.
-    before : Glance or None
-        The same before the drag began, or the one that is under way; None for the first.
+    reference : Reference or None
+        What it is compared with; None where there is nothing to compare with yet.
     rested : bool
         Whether it was read of a scene at rest: exactly, and to the bit as any front end would.
     rig : Rig
         What was scored.
     moved_m : float
         How far a body of very many triangles was moved by making it simpler, at most; 0 as a rule.
+    number : int
+        Which of the scene's requests it answers.
     """
 
     glance: pe.Glance
-    before: pe.Glance | None
+    reference: Reference | None
     rested: bool
     rig: pe.Rig
     moved_m: float = 0.0
+    number: int = 0
+
+    @property
+    def before(self) -> pe.Glance | None:
+        """What the score is compared with, once it is known."""
+        return None if self.reference is None else self.reference.glance
 
 
 _scored: dict[str, Scored] = {}
 _readings: dict[str, Reading] = {}
 _notes: dict[str, str] = {}
+_requests: dict[str, int] = {}
 """By the scene's name."""
 
 
@@ -72,6 +82,17 @@ def note_reading(scene_name: str, found: Reading) -> None:
     _notes.pop(scene_name, None)
 
 
+def note_request(scene_name: str) -> int:
+    """Note that the scene is no longer as it was read before; return the number of the request."""
+    _requests[scene_name] = number = _requests.get(scene_name, 0) + 1
+    return number
+
+
+def is_exact(scene_name: str, found: Reading) -> bool:
+    """Whether a reading is the exact score of the scene as it stands; else it is a preview."""
+    return found.rested and found.number == _requests.get(scene_name, 0)
+
+
 def note(scene_name: str) -> str:
     """Return why the reading is not that of the scene as it is; "" when it is, or soon will be."""
     return _notes.get(scene_name, "")
@@ -90,5 +111,5 @@ def forget_reading(scene_name: str) -> None:
 
 def forget() -> None:
     """Drop everything: another file is about to be shown, or nothing any more."""
-    for each in (_scored, _readings, _notes):
+    for each in (_scored, _readings, _notes, _requests):
         each.clear()

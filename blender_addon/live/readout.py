@@ -65,26 +65,29 @@ def draw() -> None:
     space = context.space_data
     wanted = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
     if context.scene.perception_entropy.live.on and wanted and _is_corner(context):
-        lines = lines_of(latest.reading(context.scene.name), latest.note(context.scene.name))
+        name = context.scene.name
+        reading = latest.reading(name)
+        exact = reading is not None and latest.is_exact(name, reading)
+        lines = lines_of(reading, latest.note(name), exact)
         draw_lines(lines, *_place(context), context.preferences.system.ui_scale)
 
 
-def lines_of(reading: latest.Reading | None, note: str) -> list[TextRow]:
-    """Lines from the top down."""
-    found = [] if reading is None else _lines_of_words(reading)
+def lines_of(reading: latest.Reading | None, note: str, exact: bool) -> list[TextRow]:
+    """Lines from the top down; a reading that is not `exact` is a preview."""
+    found = [] if reading is None else _lines_of_words(reading, exact)
     if note:
         found += [TextRow(SMALL, ((row, ALERT),)) for row in textwrap.wrap(note, MOST_COLUMNS)]
     return found or [TextRow(SMALL, (("Live: scoring ...", FAINT),))]
 
 
-def _lines_of_words(reading: latest.Reading) -> list[TextRow]:
-    words = words_of(reading)
+def _lines_of_words(reading: latest.Reading, exact: bool) -> list[TextRow]:
+    words = words_of(reading, exact)
     arrow, color = ARROWS.get(words.sense, ""), BY_SENSE.get(words.sense, FAINT)
     change = ((f"{arrow} {words.change}".strip(), color),) if words.change else ()
     small = [TextRow(SMALL, ((text, INK),)) for text in words.lines]
     return [
         TextRow(LARGE, ((words.headline, INK), *change)),
-        TextRow(SMALL, ((words.error, FAINT),)),
+        TextRow(SMALL, tuple((text, FAINT) for text in (words.error, words.against) if text)),
         *small,
     ]
 

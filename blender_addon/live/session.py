@@ -8,6 +8,7 @@ was found is shown by the drawing that is under way, or by the next one.
 from __future__ import annotations
 
 from collections.abc import Hashable
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -16,8 +17,9 @@ from bpy.app.handlers import persistent
 
 from .. import body, bridge, changes, motion, worker
 from ..engine import pe
-from . import latest
+from . import against, latest
 from .asking import EvaluatorStore, ScoreWish, priors, read
+from .reference import Moves, ReadRig, Reference
 
 VEHICLE_MOVES = "The vehicle changes: measured again when it rests"
 
@@ -34,10 +36,9 @@ MOVING = "TRANSFORM_OT_"
 """How the names of Blender's operators begin that move things."""
 
 _evaluators = EvaluatorStore()
-_before: dict[str, pe.Glance] = {}
-"""By the scene's name: what the score was before the drag that is under way, or the last one."""
-_drags: dict[str, int] = {}
-"""By the scene's name: which of Blender's operators moved it last; 0 for none."""
+_moves = Moves()
+_last: dict[str, pe.Rig] = {}
+"""By the scene's name: the rig that was read last."""
 _seen: dict[str, Seen] = {}
 """By the scene's name: what there was when it was read."""
 _generation = 0
@@ -53,16 +54,18 @@ def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     if seen is None or seen.moves == motion.count():
         return
     if seen.version != body.shared.version:
+        if operator := _moving_operator():  # the vehicle is dragged; an undo is no move
+            _moves.note(scene.name, operator, _last_read(scene.name), None)
+        latest.note_request(scene.name)
         latest.set_note(scene.name, VEHICLE_MOVES)
         return
-    _begin_drag(scene.name)
     ask(scene, depsgraph, draft=True)
 
 
 def rest() -> None:
     """All rests: ask for the exact score of every scene that is shown."""
     if not _moving_operator():
-        _drags.clear()
+        _moves.end()
     for scene in shown_scenes():
         depsgraph = bridge.view_layer_of(scene).depsgraph
         if depsgraph is not None:
@@ -72,24 +75,33 @@ def rest() -> None:
 def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) -> None:
     """Read a scene, and have it scored beside the window."""
     name = scene.name
+    last, number = _last_read(name), latest.note_request(name)
     try:
         wish = read(scene, depsgraph, draft=draft)
     except pe.InputError as error:
         say(name, str(error))
         return
+    if draft:
+        _moves.note(name, _moving_operator(), last, wish.rig)
     seen, known = Seen(motion.count(), body.shared.version, wish.prior_key), _seen.get(name)
     if known is not None and known.prior != seen.prior:
-        _before.pop(name, None)  # entropies under two priors are no change
-    _seen[name] = seen
-    job, shown = partial(work, name, wish, _generation), lambda _: changes.reading.tell()
-    worker.hand.ask(name, job, shown, partial(failed, name))
+        _moves.drop(name)  # entropies under two priors are no change
+    _seen[name], _last[name] = seen, wish.rig
+    reference = against.reference_of(scene, wish, _moves)
+    job = partial(work, name, wish, number, reference, _generation)
+    worker.hand.ask(name, job, lambda _: changes.reading.tell(), partial(failed, name))
 
 
-def work(name: str, wish: ScoreWish, generation: int) -> None:
+def work(
+    name: str, wish: ScoreWish, number: int, reference: Reference | None, generation: int
+) -> None:
     """In the thread: score, and put what was found where the next drawing looks."""
-    (glance, moved_m), before = _evaluators.glance(name, wish), _before.get(name)
+    exact = not wish.draft
+    if exact and reference is not None and reference.glance is None and reference.rig is not None:
+        reference.glance, _ = _evaluators.glance(name, replace(wish, rig=reference.rig))
+    glance, moved_m = _evaluators.glance(name, wish)
     if generation == _generation:
-        reading = latest.Reading(glance, before, not wish.draft, wish.rig, moved_m)
+        reading = latest.Reading(glance, reference, exact, wish.rig, moved_m, number)
         latest.note_reading(name, reading)
 
 
@@ -121,7 +133,8 @@ def switched() -> None:
             drop(scene.name)
             latest.forget_reading(scene.name)
             _seen.pop(scene.name, None)
-            _before.pop(scene.name, None)
+            _last.pop(scene.name, None)
+            _moves.drop(scene.name)
     if not bpy.app.background:
         rest()
     changes.reading.tell()
@@ -137,21 +150,22 @@ def shown_scenes() -> list[bpy.types.Scene]:
 @persistent
 def forget(*_: object) -> None:
     """Before another file comes: nothing of this one is kept or delivered."""
-    for name in {*_seen, *_before}:
+    for name in tuple(_seen):
         drop(name)
-    _drags.clear()
-    _seen.clear()
-    _before.clear()
+    for each in (_moves, _seen, _last):
+        each.clear()
     priors.clear()
+    against.forget()
     latest.forget()
 
 
-def _begin_drag(name: str) -> None:
-    """Note what the score was, unless this is a drag in which the hand but rested for a moment."""
-    reading, operator = latest.reading(name), _moving_operator()
-    if reading is not None and reading.rested and not 0 != operator == _drags.get(name):
-        _before[name] = reading.glance
-    _drags[name] = operator
+def _last_read(name: str) -> ReadRig | None:
+    """Return the rig that was read last, and its exact score where that is there already."""
+    rig, reading = _last.get(name), latest.reading(name)
+    if rig is None:
+        return None
+    known = reading is not None and latest.is_exact(name, reading)
+    return ReadRig(rig, reading.glance if known else None)
 
 
 def _moving_operator() -> int:

@@ -12,26 +12,28 @@ LEAST_CHANGE = 0.0005
 LEAST_ZONE_CHANGE = 0.005
 """A zone is worth a word from here on [nats]."""
 BETTER, SAME, WORSE = -1, 0, 1
+LONGEST_LABEL = 32
+"""Letters of a variant's name that the read-out has room for."""
 
 
 class ReadoutText(NamedTuple):
-    """What the read-out says: a headline, how it changed, and lines below."""
+    """What the read-out says: a headline, how it changed, against what, and lines below."""
 
     headline: str
     error: str
     change: str
     sense: int
+    against: str
     lines: tuple[str, ...]
 
 
-def words_of(reading: Reading) -> ReadoutText:
-    """Put a reading into words."""
+def words_of(reading: Reading, exact: bool) -> ReadoutText:
+    """Put a reading into words; one that is not the exact score of the scene is a preview."""
     now, before = reading.glance, reading.before
     change, sense = change_of(now.entropy, before.entropy) if before else ("", SAME)
     what = "of where objects are is seen" if now.voxels else "of the objects are seen"
     seen = f"{now.coverage:.1%} {what}{points(now, before)}"
-    lines = (seen, *zone_lines(now, before))
-    state = "at rest" if reading.rested else "draft while it moves"
+    state = "at rest" if exact else "preview"
     if reading.moved_m:
         state += f", body simplified to {1000.0 * reading.moved_m:.0f} mm"
     return ReadoutText(
@@ -39,8 +41,14 @@ def words_of(reading: Reading) -> ReadoutText:
         f"± {max(now.stderr, 1e-3):.3f}  {state}",
         change,
         sense,
-        lines,
+        f"compared with {short(reading.reference.label)}" if before else "",
+        (seen, *zone_lines(now, before)),
     )
+
+
+def short(name: str) -> str:
+    """Return a name that fits into a row: its end is left out where it is too long."""
+    return name if len(name) <= LONGEST_LABEL else f"{name[: LONGEST_LABEL - 3].rstrip()}..."
 
 
 def change_of(now: float, before: float) -> tuple[str, int]:
@@ -67,6 +75,5 @@ def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:
     for word, sign in (("Better", -1.0), ("Worse", 1.0)):
         name = max(common, key=lambda each: sign * by[each], default=None)
         if name is not None and sign * by[name] >= LEAST_ZONE_CHANGE:
-            where, seen = advice.WHERE.get(name, name), now.per_zone[name].coverage
-            found.append(f"{word} {where} by {abs(by[name]):.2f} nats, {seen:.0%} seen")
+            found.append(f"{word} {advice.WHERE.get(name, name)} by {abs(by[name]):.2f} nats")
     return found

@@ -15,6 +15,7 @@ from . import (
     focus,
     job,
     known_rigs,
+    live_reference,
     look,
     mending,
     mirror_sensor,
@@ -33,6 +34,7 @@ from . import (
 )
 from .ask_place import answer
 from .known_rigs import rigs
+from .live_reference import reference_label
 from .mending import LABELS as FIX_LABELS
 from .offered import Offer, brief, makers, models, offers
 from .select import listed_sensors
@@ -47,6 +49,7 @@ __all__ = [
     "makers",
     "models",
     "offers",
+    "reference_label",
     "register",
     "rigs",
     "running",
@@ -76,6 +79,7 @@ CLASSES = (
     *variants.CLASSES,
     *comparing.CLASSES,
     *known_rigs.CLASSES,
+    *live_reference.CLASSES,
     *mending.CLASSES,
     *ask_place.CLASSES,
 )

@@ -6,7 +6,7 @@ import bpy
 from bpy.props import IntProperty
 
 from .. import bridge, changes, stale
-from ..choices import free_name
+from ..choices import BEFORE_MOVE, free_name
 from ..engine import pe
 from .reports import REFUSALS, refuse, tell
 
@@ -129,6 +129,8 @@ class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
         index = [row.key for row in settings.variants].index(variant.key)
         if variant.key == settings.view.ghost_key:
             settings.view.ghost_key = 0
+        if variant.key == settings.live.against:
+            settings.live.against = BEFORE_MOVE
         if variant.key == settings.variant_key:
             settings.variant_key, settings.variant_changed = 0, False
         settings.variants.remove(index)

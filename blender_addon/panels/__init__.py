@@ -6,6 +6,7 @@ from . import (
     explain,
     export,
     focus,
+    live,
     main,
     mounts,
     overlay,
@@ -19,6 +20,7 @@ from . import (
 
 CLASSES = (
     *main.CLASSES,
+    *live.CLASSES,
     *sensor.CLASSES,
     *part.CLASSES,
     *explain.CLASSES,

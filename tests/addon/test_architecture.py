@@ -37,7 +37,17 @@ ALLOWED = {
     "housing": {"changes", "engine", "roster"},
     "library": set(),
     "redraw": set(),
-    "live": {"body", "bridge", "changes", "engine", "motion", "redraw", "roster", "worker"},
+    "live": {
+        "body",
+        "bridge",
+        "changes",
+        "choices",
+        "engine",
+        "motion",
+        "redraw",
+        "roster",
+        "worker",
+    },
     "overlay": {"engine"},
     "searching": {"engine", "redraw"},
     "overlay.reading": {

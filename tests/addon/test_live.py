@@ -8,8 +8,9 @@ import pytest
 
 import blender_addon
 from blender_addon import bridge, changes, motion, worker
+from blender_addon.choices import BEFORE_MOVE, PINNED
 from blender_addon.engine import pe
-from blender_addon.live import asking, latest, readout, session
+from blender_addon.live import asking, latest, readout, reference, session
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -51,6 +52,10 @@ def rest():
 
 def reading(scene):
     return latest.reading(scene.name)
+
+
+def is_exact(scene):
+    return latest.is_exact(scene.name, reading(scene))
 
 
 def exact():
@@ -104,6 +109,79 @@ def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypa
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)  # an address may come again
     drag(live.objects["roof"])
     assert reading(live).before == second != start
+
+
+@pytest.mark.parametrize("by", [0.05, 0.0], ids=["clicked", "escaped"])
+def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
+    start, roof = reading(live).glance, live.objects["roof"]
+    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
+    drag(roof)
+    rest()  # held still until it was scored
+    monkeypatch.setattr(session, "_moving_operator", lambda: 0)  # Blender ends it, then updates
+    drag(roof, by - 0.05)
+    rest()
+    assert reading(live).before == start and is_exact(live)
+    assert (reading(live).glance == start) == (by == 0.0)
+    roof.update_tag()  # an update that moves nothing begins no move
+    bpy.context.view_layer.update()
+    rest()
+    assert reading(live).before == start
+
+
+def test_of_two_moves_in_a_row_the_first_one_s_end_is_scored_later(live, monkeypatch):
+    for operator in (4711, 0, 4712):
+        monkeypatch.setattr(session, "_moving_operator", lambda op=operator: op)
+        drag(live.objects["roof"])
+        if operator == 0:
+            between = exact()
+    assert reading(live).before is None and reading(live).reference is not None
+    rest()
+    assert told(reading(live).before) == told(between) and told(reading(live).glance) != told(
+        between
+    )
+
+
+def test_a_reading_of_before_is_a_preview(live, monkeypatch):
+    assert is_exact(live)
+    monkeypatch.setattr(worker.hand, "ask", lambda *_: None)  # a machine that is busy
+    drag(live.objects["roof"])
+    assert reading(live).rested and not is_exact(live)
+    rest()
+    assert not is_exact(live), "asked for, not there yet"
+
+
+def test_pinned_sensors_stay_what_it_is_compared_with(live):
+    start = reading(live).glance
+    bpy.ops.pe.live_against(key=PINNED)
+    for _ in range(2):
+        drag(live.objects["roof"])
+        assert reading(live).before == start or reading(live).before is None
+        rest()
+        assert told(reading(live).before) == told(start)
+        assert reading(live).reference.label == reference.PINNED_LABEL
+    live.perception_entropy.prior = "uniform"
+    rest()
+    moved = reading(live).rig
+    assert told(reading(live).before) != told(start), "scored again under the new prior"
+    assert told(reading(live).glance) == told(exact()) and reading(live).rig == moved
+    bpy.ops.pe.live_against(key=BEFORE_MOVE)
+    assert reading(live).before is None
+
+
+def test_a_variant_is_what_it_is_compared_with(live):
+    start = exact()
+    bpy.ops.pe.save_variant()
+    row = live.perception_entropy.variants[0]
+    drag(live.objects["roof"], 0.3)
+    bpy.ops.pe.live_against(key=row.key)
+    assert told(reading(live).before) == told(start)
+    assert reading(live).reference.label == row.name
+    bpy.ops.pe.update_variant()
+    rest()
+    assert told(reading(live).before) == told(exact()) != told(start)
+    bpy.ops.pe.delete_variant()
+    rest()
+    assert reading(live).reference is None or reading(live).reference.label != "Variant"
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):
@@ -209,7 +287,7 @@ def test_undo_in_the_middle_of_a_drag(live):
 def test_another_file_in_the_middle_of_a_drag(live):
     drag(live.objects["roof"])
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert reading(bpy.context.scene) is None and not session._seen and not session._before
+    assert reading(bpy.context.scene) is None and not session._seen and not session._last
     rest()
     assert reading(bpy.context.scene) is None
 
@@ -255,9 +333,9 @@ def test_what_is_dropped_while_it_is_worked_out_is_never_shown(live):
     latest.forget_reading(live.name)
     asked_at = session._generation
     session.drop(live.name)
-    session.work(live.name, wish, asked_at)
+    session.work(live.name, wish, 1, None, asked_at)
     assert reading(live) is None
-    session.work(live.name, wish, session._generation)
+    session.work(live.name, wish, 1, None, session._generation)
     assert reading(live) is not None
 
 

@@ -4,6 +4,7 @@ import pytest
 
 from blender_addon.engine import pe
 from blender_addon.live import latest, readout, words
+from blender_addon.live.reference import Reference
 
 
 def glance(entropy=3.0, coverage=0.85, zones=()):
@@ -12,18 +13,35 @@ def glance(entropy=3.0, coverage=0.85, zones=()):
 
 
 def said(now, before=None, rested=True):
-    return words.words_of(latest.Reading(now, before, rested, None))
+    return words.words_of(reading_of(now, before), rested)
+
+
+def reading_of(now, before=None, moved_m=0.0, label="before this move"):
+    reference = None if before is None else Reference(label, None, before)
+    return latest.Reading(now, reference, True, None, moved_m)
 
 
 def test_the_first_reading_has_nothing_to_compare_with():
     found = said(glance())
     assert found.headline == "3.000 nats" and found.error == "± 0.022  at rest"
-    assert (found.change, found.sense) == ("", words.SAME)
+    assert (found.change, found.sense, found.against) == ("", words.SAME, "")
     assert found.lines == ("85.0% of where objects are is seen",)
 
 
 def test_a_draft_says_so():
-    assert said(glance(), rested=False).error == "± 0.022  draft while it moves"
+    assert said(glance(), rested=False).error == "± 0.022  preview"
+
+
+def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
+    assert said(glance(), glance()).against == "compared with before this move"
+    long = "A variant whose name is longer than a row of the read-out"
+    found = words.words_of(reading_of(glance(), glance(3.1), label=long), True)
+    assert found.against == "compared with A variant whose name is longe..."
+    rows = readout.lines_of(reading_of(glance(), glance(3.1)), "", True)
+    assert [text for text, _ in rows[1].words] == [
+        "± 0.022  at rest",
+        "compared with before this move",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -49,8 +67,8 @@ def test_the_zones_that_changed_most_are_named():
     before = glance(zones=[("front", 3.0, 0.9), ("left", 2.0, 0.8), ("far", 5.0, 0.7)])
     now = glance(zones=[("front", 2.8, 0.94), ("left", 2.3, 0.72), ("far", 4.99, 0.7)])
     assert said(now, before).lines[1:] == (
-        "Better ahead by 0.20 nats, 94% seen",
-        "Worse on the left by 0.30 nats, 72% seen",
+        "Better ahead by 0.20 nats",
+        "Worse on the left by 0.30 nats",
     )
     assert said(before, before).lines[1:] == ()
 
@@ -63,19 +81,18 @@ def test_a_zone_that_came_or_went_is_no_change():
 
 
 def test_the_read_out_says_what_is_in_the_way_below_what_was():
-    reading = latest.Reading(glance(), None, True, None)
+    reading = reading_of(glance())
     line = "scene: sensor 'roof': scale: expected 1 in each direction, found 2, 2, 2"
-    found = readout.lines_of(reading, line)
+    found = readout.lines_of(reading, line, True)
     rows = [text for each in found for text, color in each.words if color == readout.ALERT]
     assert " ".join(rows) == line and all(len(row) <= readout.MOST_COLUMNS for row in rows)
     assert found[0].words[0][0] == "3.000 nats"
-    assert readout.lines_of(None, "")[0].words[0][0] == "Live: scoring ..."
+    assert readout.lines_of(None, "", False)[0].words[0][0] == "Live: scoring ..."
 
 
 def test_better_and_worse_differ_by_arrow_and_colour():
     lines = [
-        readout.lines_of(latest.Reading(glance(), glance(h), True, None), "")[0].words[1]
-        for h in (3.1, 2.9)
+        readout.lines_of(reading_of(glance(), glance(h)), "", True)[0].words[1] for h in (3.1, 2.9)
     ]
     (better, blue), (worse, orange) = lines
     assert better.startswith("\N{DOWNWARDS ARROW}") and worse.startswith("\N{UPWARDS ARROW}")
@@ -83,5 +100,7 @@ def test_better_and_worse_differ_by_arrow_and_colour():
 
 
 def test_a_body_that_was_made_simpler_is_told():
-    reading = latest.Reading(glance(), None, True, None, 0.0204)
-    assert words.words_of(reading).error == "± 0.022  at rest, body simplified to 20 mm"
+    assert (
+        words.words_of(reading_of(glance(), moved_m=0.0204), True).error
+        == "± 0.022  at rest, body simplified to 20 mm"
+    )

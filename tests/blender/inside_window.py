@@ -130,7 +130,8 @@ def live_reading(scene):
         "entropy": glance.entropy,
         "coverage": glance.coverage,
         "draft": glance.draft,
-        "rested": reading.rested,
+        "rested": latest.is_exact(scene.name, reading),
+        "number": reading.number,
         "before": before,
     }
 

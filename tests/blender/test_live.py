@@ -65,20 +65,33 @@ def grab_and_move(stage, moves=MOVES):
         stage.rest(0.1)
 
 
+def next_exact(stage, after):
+    """Wait for the exact score of what stands there after another reading."""
+
+    def there():
+        said = stage.state["live"]
+        return said["rested"] and said["number"] > after["number"]
+
+    stage.wait_for(there, EFFECT_TIMEOUT_S, "an exact score")
+    return stage.state["live"]
+
+
 def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, installed, tmp_path):
-    start = wait_for_rest(live)
+    """The change stays when the hand lets go: Blender's last update of a move begins none."""
+    begun = live.state["live"]
+    start = begun["entropy"]
     grab_and_move(live)
-    draft = live.wait_for(lambda: live.state["live"].get("draft"), EFFECT_TIMEOUT_S, "a draft")
-    assert live.state["live"]["before"] == start
-    draft = live.state["live"]["entropy"]
-    assert draft != start
+    live.wait_for(lambda: live.state["live"].get("draft"), EFFECT_TIMEOUT_S, "a draft")
+    assert live.state["live"]["before"] == start != live.state["live"]["entropy"]
     live.photograph(screenshots / "window_live_drag.png")
+    held = next_exact(live, begun)  # held still until it is scored
+    assert held["before"] == start and not held["draft"]
     live.mouse("click", 1)
-    end = wait_for_rest(live, other_than=start)
-    assert live.state["live"]["before"] == start and not live.state["live"]["draft"]
+    let_go = next_exact(live, held)
+    assert (let_go["before"], let_go["entropy"]) == (start, held["entropy"])
     live.photograph(screenshots / "window_live_rest.png")
 
-    copy = tmp_path / "moved.blend"
+    copy, end = tmp_path / "moved.blend", let_go["entropy"]
     live.do(f"bpy.ops.wm.save_as_mainfile(filepath={str(copy)!r}, copy=True)")
     answer = installed.pe(copy, "score", "--grid-samples", SAMPLES, "--json", "--output", tmp_path)
     assert answer.returncode == 0, output_of(answer)
@@ -86,6 +99,14 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
     assert found["entropy"] == end, "a window and the command line differ"
 
     live.point_at_view()
+    live.key("g")
+    live.mouse("mousemove_relative", "--", 60, -20)
+    held = next_exact(live, let_go)
+    assert held["before"] == end != held["entropy"]
+    live.key("Escape")
+    put_back = next_exact(live, held)
+    assert (put_back["before"], put_back["entropy"]) == (end, end)
+
     live.key("ctrl+z")
     live.wait_for(lambda: wait_for_rest(live) == start, EFFECT_TIMEOUT_S, "the start's score")
     assert "Traceback" not in live.log.read_text()

@@ -17,13 +17,14 @@ from ..text.tables import Table
 from ..text.values import vector
 from .carried import CAMERA, LIDAR, CarriedSensor
 from .elsewhere import brought
+from .figures import COEFFICIENT, FOCAL, PIXELS, PLACE
 from .files import Written
 from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
 from .pictures import Picture, pinhole_picture
 
 POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
 TITLE, NAME = "Argoverse 2", "sensor_name"
-TURN, PLACE = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
+TURN, SHIFT = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
 LENS, BENT = ("fx_px", "fy_px", "cx_px", "cy_px"), ("k1", "k2", "k3")
 SIZE = ("height_px", "width_px")
 CONVENTIONS = {
@@ -40,7 +41,7 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     feather = brought("feather", TITLE)
     poses = [_pose_row(each) for each in sensors]
     known = [_lens_row(s.name, s.picture) for s in sensors if s.picture is not None]
-    columns = (NAME, *TURN, *PLACE), (NAME, *LENS, *BENT, *SIZE)
+    columns = (NAME, *TURN, *SHIFT), (NAME, *LENS, *BENT, *SIZE)
     tables = zip((POSES, INTRINSICS), columns, (poses, known), strict=True)
     return {
         file: feather.table_bytes(_by_column(names, rows), SIZE, CONVENTIONS)
@@ -83,14 +84,15 @@ def _rows(path: Path) -> list[Table]:
 def _sensor(path: Path, row: Table, cameras: Mapping[str, Table]) -> CarriedSensor:
     name = row.text(NAME)
     turn = vector(path, row.field("qw"), [row.number(key) for key in TURN], 4)
-    place = vector(path, row.field("tx_m"), [row.number(key) for key in PLACE], 3, METRES)
+    place = vector(path, row.field("tx_m"), [row.number(key) for key in SHIFT], 3, METRES)
     rotation = from_quaternion(path, row.field("qw"), turn)
     if name not in cameras:
         return CarriedSensor(name, pose_of(rotation, place), LIDAR)
     lens = cameras[name]
-    size = lens.whole("width_px"), lens.whole("height_px")
-    fx, fy, cx, cy = (lens.number(key) for key in LENS)
+    size = lens.whole("width_px", rule=PIXELS), lens.whole("height_px", rule=PIXELS)
+    rules = FOCAL, FOCAL, PLACE, PLACE
+    fx, fy, cx, cy = (lens.number(k, rule=rule) for k, rule in zip(LENS, rules, strict=True))
     picture = pinhole_picture(fx, fy, cx, cy, size)
-    told = f"{name}: {NO_BEND}" if any(lens.number(key, 0.0) for key in BENT) else ""
+    told = f"{name}: {NO_BEND}" if any(lens.number(key, 0.0, COEFFICIENT) for key in BENT) else ""
     pose = pose_of(product(rotation, BODY_FROM_OPTICAL.T), place)
     return CarriedSensor(name, pose, CAMERA, None, picture, told=told)

@@ -6,6 +6,7 @@ and Brandt's is equidistant.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -18,6 +19,7 @@ from ..text.tables import Table
 from ..text.values import numbers
 from ..text.yaml_blocks import parse_yaml_blocks
 from .carried import CAMERA, CarriedSensor
+from .figures import PIXELS
 from .files import plain_number, text_of
 from .pictures import Picture
 
@@ -109,7 +111,7 @@ def _on_one_line(found: re.Match[str]) -> str:
 
 
 def _pixels(top: Table, key: str) -> int:
-    return int(top.number(key))
+    return top.whole(key, rule=PIXELS)
 
 
 def _data(top: Table, key: str, lengths: Sequence[int]) -> list[float]:
@@ -117,6 +119,7 @@ def _data(top: Table, key: str, lengths: Sequence[int]) -> list[float]:
     value: Any = table.raw("data")
     found = numbers(value) if isinstance(value, list) else None
     plain = [] if found is None else [float(v) for v in found.ravel()]
+    plain = plain if all(map(math.isfinite, plain)) else []
     if len(plain) not in lengths and (len(plain) < max(lengths) or any(plain[max(lengths) :])):
         expected = f"{' or '.join(map(str, lengths))} numbers"
         raise InputError(table.source, table.field("data"), expected, shown(value))

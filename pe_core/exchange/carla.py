@@ -9,8 +9,9 @@ from typing import Any
 
 from ..errors import InputError
 from ..text.tables import Table
-from ..text.values import Number, Whole
+from ..text.values import Number
 from .carried import CAMERA, LIDAR, CarriedSensor, Scan, uneven
+from .figures import CHANNELS, PIXELS, RANGE
 from .files import Written, json_bytes, json_of, json_rows, named_numbers, pose_from
 from .pictures import Picture, picture_of_fov
 
@@ -22,7 +23,8 @@ SCAN_KEYS = (
     *("channels", "upper_fov", "lower_fov", "range", "points_per_second", "rotation_frequency"),
 )
 FOV = Number(0.0, 180.0, above=True, below=True, unit="degrees", noun="angle")
-RATE, MANY = Number(0.0, above=True, cap=1e12), Whole(1, 10_000)
+UP = Number(-90.0, 90.0, unit="degrees", noun="angle")
+RATE = Number(0.0, above=True, cap=1e12)
 PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
@@ -90,13 +92,18 @@ def _sensor(path: Path, row: Table) -> CarriedSensor:
 
 
 def _picture(row: Table) -> Picture:
-    size = row.whole("image_size_x"), row.whole("image_size_y")
+    size = row.whole("image_size_x", rule=PIXELS), row.whole("image_size_y", rule=PIXELS)
     return picture_of_fov(math.radians(row.number("fov", rule=FOV)), size)
 
 
 def _scan(row: Table) -> Scan:
-    frames, channels = row.number("rotation_frequency", rule=RATE), row.whole("channels", rule=MANY)
+    frames, channels = (
+        row.number("rotation_frequency", rule=RATE),
+        row.whole("channels", rule=CHANNELS),
+    )
     beams = row.number("points_per_second", rule=RATE) / frames
-    low, high = (math.radians(row.number(key)) for key in ("lower_fov", "upper_fov"))
+    low, high = (math.radians(row.number(key, rule=UP)) for key in ("lower_fov", "upper_fov"))
+    if low > high:
+        raise row.error("lower_fov", "an angle up to upper_fov", f"{math.degrees(low):g}")
     azimuths = max(round(beams / channels), 1)
-    return Scan(channels, low, high, azimuths, (-math.pi, math.pi), row.number("range"))
+    return Scan(channels, low, high, azimuths, (-math.pi, math.pi), row.number("range", rule=RANGE))

@@ -24,6 +24,8 @@ Floats = NDArray[np.float64]
 CAMERA, LIDAR = Camera.kind, Lidar.kind
 
 
+NO_EXTENT_RAD = 1e-9
+"""A scan of less across does not turn."""
 EVEN_RAD = 1e-4
 """Channels nearer to even distances than this are even."""
 
@@ -32,7 +34,7 @@ EVEN_RAD = 1e-4
 class Scan:
     """A LiDAR's beams, as formats have them that know channels at even distances.
 
-    Angles in radians, the range in metres. `even` says whether the channels are so; `directions`
+    Angles in radians, ranges in metres. `even` says whether the channels are so; `directions`
     are the beams themselves, where they are known.
     """
 
@@ -44,6 +46,7 @@ class Scan:
     max_range: float
     even: bool = True
     directions: Floats | None = None
+    min_range: float = 0.0
 
     @property
     def beam_count(self) -> int:
@@ -172,13 +175,21 @@ def _unfolded(lens: Lens) -> Lens:
 
 def lidar_of(name: str, scan: Scan) -> Lidar:
     """Return the LiDAR of a scan: of its beams where they are known, else of even channels."""
+    ranges = scan.max_range, scan.min_range
     if scan.directions is not None:
-        return Lidar.from_directions(name, scan.directions, scan.max_range)
+        return Lidar.from_directions(name, scan.directions, *ranges)
     elevations = np.linspace(scan.low, scan.high, scan.channels)
     low, high = scan.fov
+    if high - low < NO_EXTENT_RAD:  # it does not turn: its channels stand at one azimuth
+        level = np.cos(elevations)
+        beams = [level * math.cos(low), level * math.sin(low), np.sin(elevations)]
+        return Lidar.from_directions(name, np.stack(beams, axis=1), *ranges)
     share = min((high - low) / (2.0 * math.pi), 1.0)
     steps = max(round(scan.azimuths / share), 1)
-    return Lidar(name, elevations, steps, scan.max_range, horizontal_fov=scan.fov)
+    fov = scan.fov
+    return Lidar(
+        name, elevations, steps, scan.max_range, horizontal_fov=fov, min_range=scan.min_range
+    )
 
 
 def _carried(sensor: Sensor) -> CarriedSensor:
@@ -197,7 +208,7 @@ def _scan(model: Lidar) -> Scan:
     step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
     even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
     figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
-    return Scan(*figures, model.max_range, even, model.directions)
+    return Scan(*figures, model.max_range, even, model.directions, model.min_range)
 
 
 def named_apart(names: Sequence[str]) -> list[str]:

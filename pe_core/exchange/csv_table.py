@@ -7,12 +7,14 @@ import io
 import math
 from pathlib import Path
 
-from ..errors import InputError, shown
+from ..errors import InputError
 from ..kinds.camera.lens import LENSES
 from ..kinds.camera.lens.table import FOV_DEG
 from ..text.values import choice
 from .carried import CarriedSensor
+from .figures import PIXELS, figure, whole_figure
 from .files import Written, plain_number, pose_from, text_of
+from .limits import MAX_FRAMES, require_at_most
 from .pictures import Picture
 
 FILE = "rig.csv"
@@ -64,11 +66,13 @@ def _lens_cells(picture: Picture | None) -> list[str]:
 def read(path: Path) -> tuple[CarriedSensor, ...]:
     """Read such a table; only the name and the numbers have to be there."""
     lines = [line for line in text_of(path).splitlines() if line and not line.startswith("#")]
+    require_at_most(path, "file", len(lines), MAX_FRAMES, "rows")
     rows = csv.DictReader(lines)
-    missing = [key for key in ("name", *PLACE, *TURN) if key not in (rows.fieldnames or ())]
-    if missing:
-        raise InputError(path, missing[0], f"the columns {', '.join(COLUMNS)}", "none of that name")
     try:
+        missing = [key for key in ("name", *PLACE, *TURN) if key not in (rows.fieldnames or ())]
+        if missing:
+            expected = f"the columns {', '.join(COLUMNS)}"
+            raise InputError(path, missing[0], expected, "none of that name")
         return tuple(_read_row(path, k, row) for k, row in enumerate(rows))
     except csv.Error as error:
         raise InputError(path, "file", "a table (CSV)", error) from None
@@ -82,18 +86,16 @@ def _read_row(path: Path, number: int, row: dict[str, str]) -> CarriedSensor:
 
 
 def _number(path: Path, number: int, row: dict[str, str], key: str) -> float:
-    try:
-        return float(row[key])
-    except (TypeError, ValueError):
-        field = f"row {number + 1}, {key}"
-        raise InputError(path, field, "a number", shown(row[key])) from None
+    return figure(path, f"row {number + 1}, {key}", row[key])
 
 
 def _picture(path: Path, number: int, row: dict[str, str]) -> Picture | None:
     """Return the lens of a row; None where its columns are empty."""
     if not all(row.get(key) for key in FIGURES):
         return None
-    width, height, *place = (_number(path, number, row, key) for key in FIGURES)
+    keys = FIGURES[:2]
+    size = [whole_figure(path, f"row {number + 1}, {key}", row[key], PIXELS) for key in keys]
+    fx, fy, cx, cy = (_number(path, number, row, key) for key in FIGURES[2:])
     lens = LENSES[choice(path, f"row {number + 1}, lens", row.get("lens") or "pinhole", LENSES)]
     words, field = (row.get("coefficients") or "").split(), f"row {number + 1}, coefficients"
     if len(words) > len(lens.coefficients):
@@ -105,5 +107,4 @@ def _picture(path: Path, number: int, row: dict[str, str]) -> Picture | None:
         degrees = _number(path, number, row, "fov_deg")
         fov = math.radians(FOV_DEG.checked(path, f"row {number + 1}, fov_deg", degrees))
     figures = dict(zip(lens.coefficients, values, strict=False))
-    fx, fy, cx, cy = place
-    return Picture(lens(fx, fy, cx, cy, fov, **figures), (int(width), int(height)))
+    return Picture(lens(fx, fy, cx, cy, fov, **figures), (size[0], size[1]))

@@ -14,13 +14,15 @@ from numpy.typing import NDArray
 from ..errors import shown
 from ..kinds.camera import FTheta
 from ..text.tables import Table
+from ..text.values import FINITE, Number
+from .figures import COEFFICIENT, FOCAL, PIXELS, PLACE, figure, figures, whole_figure
 from .files import plain_number, spaced
 from .pictures import Picture, pinhole_picture
 
 Floats = NDArray[np.float64]
 
 PINHOLE, F_THETA = "pinhole", "ftheta"
-FOCAL, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")
+FOCAL_KEYS, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")
 POLYNOMIALS = ("polynomial", "bw-poly")
 FORWARD, BACKWARD = "angle-to-pixeldistance", "pixeldistance-to-angle"
 MOST = 6
@@ -29,6 +31,8 @@ PLACES = 2000
 """Radii at which a polynomial is turned round."""
 NOTICED_PX = 0.1
 TURNED = "its polynomial from pixels to angles is turned round to within {:.1f} px"
+GENTLEST = 1e-9
+"""Radians a pixel, or pixels a radian: less is no lens."""
 GENTLE = 1.0
 """Without a word on its direction: a polynomial that begins less steeply gives angles."""
 
@@ -56,8 +60,8 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
     """
     if not all(key in properties for key in (*MIDDLE, *SIZE)):
         return None, ""
-    (cx, cy), (width, height) = ([_number(properties, k) for k in keys] for keys in (MIDDLE, SIZE))
-    size = int(width), int(height)
+    cx, cy = (_number(properties, key, PLACE) for key in MIDDLE)
+    width, height = size = _pixels(properties, SIZE[0]), _pixels(properties, SIZE[1])
     key = next((each for each in POLYNOMIALS if each in properties), None)
     if key is not None:
         rising = _rising(properties, key)
@@ -68,9 +72,9 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
             found, off = _turned_round(rising, reach)
             told = TURNED.format(off) if off > NOTICED_PX else ""
         return Picture(FTheta(1.0, 1.0, cx, cy, None, *found[1:]), size), told
-    if not all(key in properties for key in FOCAL):
+    if not all(key in properties for key in FOCAL_KEYS):
         return None, ""
-    fx, fy = (_number(properties, each) for each in FOCAL)
+    fx, fy = (_number(properties, each, FOCAL) for each in FOCAL_KEYS)
     return pinhole_picture(fx, fy, cx, cy, size), ""
 
 
@@ -78,18 +82,17 @@ def _is_forward(properties: Table, key: str, rising: list[float]) -> bool:
     way = properties.text("polynomial-type", "", choices=("", FORWARD, BACKWARD))
     if way:
         return way == FORWARD
-    return key == POLYNOMIALS[0] and abs(rising[1]) >= GENTLE
+    return key == POLYNOMIALS[0] and rising[1] >= GENTLE
 
 
 def _rising(properties: Table, key: str) -> list[float]:
     """Return coefficients from the constant on; the constant is 0."""
     value = properties.raw(key)
-    try:
-        found = [float(word) for word in str(value).split()]
-    except ValueError:
-        found = []
-    if not 2 <= len(found) <= MOST + 1 or found[0] != 0.0:
-        expected = f"2 to {MOST + 1} numbers, the first of them 0"
+    expected = f"2 to {MOST + 1} numbers, the first of them 0 and the second above 0"
+    if not isinstance(value, str) or not 2 <= len(value.split()) <= MOST + 1:
+        raise properties.error(key, expected, shown(value))
+    found = figures(properties.source, properties.field(key), value, None, COEFFICIENT)
+    if found[0] != 0.0 or found[1] < GENTLEST:
         raise properties.error(key, expected, shown(value))
     return found
 
@@ -119,9 +122,9 @@ def _turned_round(rising: list[float], reach: float) -> tuple[list[float], float
     return [0.0, *(float(v) / scale**n for n, v in enumerate(found, start=1))], off
 
 
-def _number(properties: Table, key: str) -> float:
-    value = properties.raw(key)
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise properties.error(key, "a number", shown(value)) from None
+def _number(properties: Table, key: str, rule: Number = FINITE) -> float:
+    return figure(properties.source, properties.field(key), properties.raw(key), rule)
+
+
+def _pixels(properties: Table, key: str) -> int:
+    return whole_figure(properties.source, properties.field(key), properties.raw(key), PIXELS)

@@ -12,7 +12,7 @@ from ..scene.geometry import METRES, ROTATION, ROTATION_DEG, Pose
 from ..text.files import TEXT_BYTES, decode_text, read_bytes
 from ..text.json_text import dump_json
 from ..text.tables import Table
-from ..text.values import vector
+from ..text.values import FINITE, vector
 
 Written = Mapping[str, bytes]
 """Bytes by file name."""
@@ -70,4 +70,4 @@ def pose_from(
 
 def named_numbers(table: Table, keys: Sequence[str]) -> tuple[float, ...]:
     """Return numbers of a table by their keys."""
-    return tuple(table.number(key) for key in keys)
+    return tuple(table.number(key, rule=FINITE) for key in keys)

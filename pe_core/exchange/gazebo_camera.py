@@ -6,10 +6,16 @@ import math
 from xml.etree.ElementTree import Element, SubElement
 
 from ..kinds.camera import BrownConrady
+from ..text.values import SHARE, Number
+from .figures import COEFFICIENT, FOCAL, PIXELS, PLACE
+from .files import spaced
+from .gazebo_element import SensorElement
 from .pictures import Picture, Size, picture_of_fov, pinhole_picture
 
 BENT = ("k1", "k2", "k3", "p1", "p2")
 INTRINSICS = ("fx", "fy", "cx", "cy")
+WIDEST = Number(0.0, 2.0 * math.pi, above=True, unit="rad", noun="angle")
+"""Field of view of a camera in Gazebo, fisheyes included."""
 
 
 def write_picture(element: Element, picture: Picture, size: Size) -> None:
@@ -29,32 +35,36 @@ def write_picture(element: Element, picture: Picture, size: Size) -> None:
         bent = SubElement(element, "distortion")
         for key in BENT:
             SubElement(bent, key).text = repr(getattr(picture.lens, key))
-        SubElement(bent, "center").text = "0.5 0.5"
+        cx, cy = picture.center
+        SubElement(bent, "center").text = spaced((cx / width, cy / height))
 
 
-def picture_in(sensor: Element | None) -> Picture | None:
-    """Return the picture of a sensor; None where its figures are not all there."""
-    numbers = numbers_in(sensor, ("camera/horizontal_fov", "image/width", "image/height"))
-    if numbers is None or not 0.0 < numbers[0] < math.pi:
+def picture_in(sensor: SensorElement) -> Picture | None:
+    """Return the picture of a sensor; None where its figures are not all there.
+
+    The centre of the distortion, in shares of the picture's size, is the principal point where no
+    intrinsics say another one. A field of view of 180 degrees and more is no pinhole's: its lens is
+    left to be chosen.
+
+    Raises
+    ------
+    InputError
+        When a number is none or impossible.
+    """
+    fov = sensor.number("camera/horizontal_fov", WIDEST)
+    width, height = (sensor.whole(f"image/{key}", PIXELS) for key in ("width", "height"))
+    focal = sensor.numbers(tuple(f"lens/intrinsics/{key}" for key in INTRINSICS[:2]), FOCAL)
+    middle = sensor.numbers(tuple(f"lens/intrinsics/{key}" for key in INTRINSICS[2:]), PLACE)
+    bent = [sensor.number(f"camera/distortion/{key}", COEFFICIENT) or 0.0 for key in BENT]
+    center = sensor.pair("camera/distortion/center", SHARE)
+    if fov is None or width is None or height is None or fov >= math.pi:
         return None
-    size = int(numbers[1]), int(numbers[2])
-    place = numbers_in(sensor, tuple(f"lens/intrinsics/{key}" for key in INTRINSICS))
-    bent = numbers_in(sensor, tuple(f"camera/distortion/{key}" for key in BENT))
-    if place is None:
-        picture = picture_of_fov(numbers[0], size)
-    else:
-        picture = pinhole_picture(place[0], place[1], place[2], place[3], size)
-    if bent is None or not any(bent):
-        return picture
-    own = picture.lens
+    picture = picture_of_fov(fov, (width, height))
+    fx, fy = focal or (picture.fx, picture.fy)
+    if middle is None and any(bent) and center is not None:
+        middle = [center[0] * width, center[1] * height]
+    cx, cy = middle or picture.center
+    if not any(bent):
+        return pinhole_picture(fx, fy, cx, cy, (width, height))
     values = dict(zip(BENT, bent, strict=True))
-    return Picture(BrownConrady(own.fx, own.fy, own.cx, own.cy, None, **values), size)
-
-
-def numbers_in(sensor: Element | None, keys: tuple[str, ...]) -> list[float] | None:
-    """Return numbers inside a Gazebo sensor, by where they are; None unless all are there."""
-    try:
-        texts = [None if sensor is None else sensor.findtext(f".//{key}") for key in keys]
-        return [float(text or "") for text in texts]
-    except ValueError:
-        return None
+    return Picture(BrownConrady(fx, fy, cx, cy, None, **values), (width, height))

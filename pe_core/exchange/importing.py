@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,6 +13,8 @@ from ..errors import InputError, shown
 from ..scene.geometry import Pose
 from ..scene.reference import Reference
 from ..scene.sensors import Rig, Sensor, SensorModel
+from ..text.memory import told_if_too_much
+from ..text.values import A_NAME
 from .carried import (
     CAMERA,
     LIDAR,
@@ -22,6 +25,7 @@ from .carried import (
     picture_of,
 )
 from .frames import composed, origin_in_ground, shifted
+from .limits import MAX_SENSORS, require_at_most
 from .pictures import KeptPicture, alike
 from .table import RigFormat, rig_format, told_format
 
@@ -85,16 +89,40 @@ def import_rig(
         raise InputError(path, "file", "an existing file or folder", "nothing of that name")
     row = told_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
-    read, models = row.read(path), models or {}
+    with _in_file(path), told_if_too_much(path):
+        return _imported(path, row, _placing(origin, placed), models or {})
+
+
+@contextmanager
+def _in_file(path: Path) -> Iterator[None]:
+    """Have what is wrong with a lens, a pose or a model of a file said of the file."""
+    try:
+        yield
+    except InputError as error:
+        if Path(error.source).is_relative_to(path if path.is_dir() else path.parent):
+            raise
+        field = f"{error.source}: {error.field}"
+        raise InputError(path, field, error.expected, error.found) from None
+
+
+def _imported(
+    path: Path,
+    row: RigFormat,
+    place: Callable[[Pose], Pose],
+    models: Mapping[str, str],
+) -> ImportedRig:
+    read = row.read(path)
+    require_at_most(path, "sensors", len(read), MAX_SENSORS, "sensors")
+    for number, each in enumerate(read, 1):
+        A_NAME.checked(path, f"name of sensor {number}", each.name)
     found = [each for each in read if not _sees_nothing(each)]
-    blind = [f"{each.name}: no sensor that sees; left out" for each in read if each not in found]
+    blind = [f"{s.name}: no sensor that sees; left out" for s in read if _sees_nothing(s)]
     if not found:
         raise InputError(path, "sensors", "some that see", "; ".join(blind) or "none")
     names = named_apart([each.name for each in found])
     unknown = next((key for key in models if key not in names), None)
     if unknown is not None:
         raise InputError(path, f"model of {unknown}", f"one of {', '.join(names)}", "no sensor")
-    place = _placing(origin, placed)
     called = [each.called(n) for each, n in zip(found, names, strict=True)]
     done = [_sensor(each, models.get(each.name), row, place) for each in called]
     noted = [f"{each.name}: {each.told}" for each in called if each.told]

@@ -9,9 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError, shown
+from ..errors import InputError
 from ..scene.geometry import Pose
+from ..text.values import Number
 from .carried import CAMERA, LIDAR, CarriedSensor, cameras, lidars
+from .figures import figures
 from .files import Written, spaced, text_of
 from .frames import (
     BODY_FROM_OPTICAL,
@@ -26,6 +28,8 @@ from .pictures import pinhole_picture
 FILE, MOST_CAMERAS = "calib.txt", 4
 RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
 PARALLEL = 1e-9
+ENTRY = Number(cap=1e9)
+"""An entry of a matrix."""
 
 
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
@@ -106,11 +110,9 @@ def _rows(path: Path) -> dict[str, list[float]]:
         key, _, values = line.partition(":")
         if not values.strip():
             continue
-        try:
-            rows[key.strip()] = [float(word) for word in values.split()]
-        except ValueError:
-            if key.strip() != "calib_time":
-                raise InputError(path, f"line {number + 1}", "numbers", shown(line)) from None
+        if key.strip() != "calib_time":
+            field = f"line {number + 1}, {key.strip()}"
+            rows[key.strip()] = figures(path, field, values, None, ENTRY)
     return rows
 
 

@@ -15,9 +15,12 @@ from ..errors import InputError, shown
 from ..scene.geometry import Pose
 from .camera_info import info_files, with_info
 from .carried import CAMERA, CarriedSensor
+from .figures import figure
 from .files import Written, plain_number, pose_from, text_of
 from .frame_names import with_legal_frames
-from .frames import OPTICAL_RPY, composed, from_quaternion, pose_of
+from .frame_tree import poses_from_root
+from .frames import OPTICAL_RPY, from_quaternion, pose_of
+from .limits import LONGEST_LINE, MAX_FRAMES, require_at_most
 
 FILE, ROOT, OPTICAL = "rig.launch.xml", "base_link", "_optical"
 CONVENTIONS = (
@@ -27,6 +30,8 @@ CONVENTIONS = (
 PUBLISHER = "static_transform_publisher"
 PLACE, TURN, QUATERNION = ("x", "y", "z"), ("roll", "pitch", "yaw"), ("qw", "qx", "qy", "qz")
 ENDS = ("frame-id", "child-frame-id")
+EQUALS = re.compile(r"(--[a-z-]+)=")
+"""Between an option and its value, in place of a blank."""
 ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
 
 
@@ -62,16 +67,19 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
         When there is no call, a number is none, or frames have two roots or a circle.
     """
     path = path / FILE if path.is_dir() else path
-    text = re.sub("<!--.*?-->", "", text_of(path), flags=re.DOTALL)
+    calls = ARGS.findall(without_comments(text_of(path)))
+    require_at_most(path, "file", len(calls), MAX_FRAMES, f"calls of {PUBLISHER}")
     links: dict[str, tuple[str, Pose]] = {}
-    for number, found in enumerate(ARGS.findall(text)):
+    for number, found in enumerate(calls):
+        require_at_most(path, f"transform {number + 1}", len(found), LONGEST_LINE, "characters")
         parent, child, pose = _transform(path, f"transform {number + 1}", found)
         if child in links:
             raise InputError(path, f"frame {child}", "one parent", "two")
         links[child] = parent, pose
     if not links:
         raise InputError(path, "file", f"calls of {PUBLISHER}", "none")
-    poses = placed(path, links)
+    frames = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
+    poses = poses_from_root(path, links, frames, "frame")
     optical = {name for name in links if name.endswith(OPTICAL)}
     cameras = {links[name][0] for name in optical}
     named = [name for name in links if name not in optical]
@@ -79,33 +87,10 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
     return with_info(path.parent, found)
 
 
-def placed(path: Path, links: dict[str, tuple[str, Pose]]) -> dict[str, Pose]:
-    """Return where frames are in the one that is nobody's child, by name.
-
-    Raises
-    ------
-    InputError
-        When there are two such frames, or none.
-    """
-    roots = sorted({parent for parent, _ in links.values()} - set(links))
-    if len(roots) != 1:
-        found = "none: frames go in a circle" if not roots else ", ".join(roots)
-        raise InputError(path, "frame", "one root", found)
-    poses, left = {roots[0]: Pose((0.0, 0.0, 0.0))}, dict(links)
-    while left:
-        ready = [child for child, (parent, _) in left.items() if parent in poses]
-        if not ready:
-            raise InputError(path, f"frame {next(iter(left))}", "a way to the root", "a circle")
-        for child in ready:
-            parent, pose = left.pop(child)
-            poses[child] = composed(poses[parent], pose)
-    return poses
-
-
 def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
     """Return parent, child and pose of one call."""
     try:
-        words = shlex.split(args)
+        words = shlex.split(EQUALS.sub(r"\1 ", args))
     except ValueError as error:
         raise InputError(path, field, "arguments", error) from None
     given = dict(zip(words[::2], words[1::2], strict=False))
@@ -127,8 +112,16 @@ def _bare(given: dict[str, str]) -> dict[str, str]:
 
 
 def _number(path: Path, field: str, given: dict[str, str], key: str, dashes: str = "--") -> float:
-    text = given.get(f"{dashes}{key}", "0")
-    try:
-        return float(text)
-    except ValueError:
-        raise InputError(path, f"{field}, {key}", "a number", shown(text)) from None
+    return figure(path, f"{field}, {key}", given.get(f"{dashes}{key}", "0"))
+
+
+def without_comments(text: str) -> str:
+    """Return XML without its comments, in one pass; one that never ends takes all the rest."""
+    kept, begin = [], 0
+    while (start := text.find("<!--", begin)) >= 0:
+        kept.append(text[begin:start])
+        end = text.find("-->", start + 4)
+        if end < 0:
+            return "".join(kept)
+        begin = end + 3
+    return "".join([*kept, text[begin:]])

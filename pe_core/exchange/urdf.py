@@ -6,7 +6,7 @@ them, where readers of URDF pass over what they do not know.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -14,11 +14,16 @@ from ..errors import InputError, shown
 from ..scene.geometry import Pose
 from ..text.files import read_bytes
 from ..text.xml_text import parse_xml
-from .carried import CAMERA, LIDAR, CarriedSensor, Scan, uneven
+from .carried import CAMERA, LIDAR, CarriedSensor, uneven
+from .figures import figures
 from .files import Written, pose_from, spaced
 from .frame_names import with_legal_frames
-from .frames import OPTICAL_RPY, composed
-from .gazebo_camera import numbers_in, picture_in, write_picture
+from .frame_tree import poses_from_root
+from .frames import OPTICAL_RPY
+from .gazebo_camera import picture_in, write_picture
+from .gazebo_element import SensorElement
+from .gazebo_lidar import scan_in, write_scan
+from .limits import MAX_FRAMES, require_at_most
 
 FILE, ROOT, OPTICAL = "rig.urdf", "base_link", "_optical"
 CONVENTIONS = (
@@ -64,20 +69,7 @@ def _gazebo(robot: Element, each: CarriedSensor) -> None:
     if each.picture is not None and each.picture.size is not None:
         write_picture(SubElement(sensor, CAMERA), each.picture, each.picture.size)
     elif each.scan is not None:
-        _lidar(SubElement(sensor, LIDAR), each.scan)
-
-
-def _lidar(element: Element, scan: Scan) -> None:
-    block = SubElement(element, "scan")
-    ranges = (
-        ("horizontal", scan.azimuths, *scan.fov),
-        ("vertical", scan.channels, scan.low, scan.high),
-    )
-    for name, samples, least, most in ranges:
-        part = SubElement(block, name)
-        for key, value in (("samples", samples), ("min_angle", least), ("max_angle", most)):
-            SubElement(part, key).text = repr(value)
-    SubElement(SubElement(element, "range"), "max").text = repr(scan.max_range)
+        write_scan(SubElement(sensor, LIDAR), each.scan)
 
 
 def read(path: Path) -> tuple[CarriedSensor, ...]:
@@ -99,7 +91,7 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
     names = [name for name in poses if name in told] or list(_bodiless(robot, poses))
     if not names:
         raise InputError(path, "link", "links of sensors", "none")
-    return tuple(_sensor(name, poses, told.get(name)) for name in names)
+    return tuple(_sensor(path, name, poses, told.get(name)) for name in names)
 
 
 def _is_sensor(block: Element) -> bool:
@@ -108,30 +100,18 @@ def _is_sensor(block: Element) -> bool:
 
 def _poses(path: Path, robot: Element) -> dict[str, Pose]:
     """Return where links are, by name, from the root outward."""
-    links = [link.get("name", "") for link in robot.iter("link")]
+    links = dict.fromkeys(link.get("name", "") for link in robot.iter("link"))
+    require_at_most(path, "link", len(links), MAX_FRAMES, "links")
     joints = {}
     for joint in robot.findall("joint"):
         child, parent = (_end(path, joint, end, links) for end in ("child", "parent"))
         if child in joints:
             raise InputError(path, f"link {child}", "one parent", "two")
         joints[child] = parent, _origin(path, joint)
-    roots = [name for name in links if name not in joints]
-    if len(roots) != 1:
-        found = "none: joints go in a circle" if not roots else ", ".join(roots)
-        raise InputError(path, "link", "one root", found)
-    poses = {roots[0]: Pose((0.0, 0.0, 0.0))}
-    left = dict(joints)
-    while left:
-        ready = [child for child, (parent, _) in left.items() if parent in poses]
-        if not ready:
-            raise InputError(path, f"link {next(iter(left))}", "a way to the root", "a circle")
-        for child in ready:
-            parent, origin = left.pop(child)
-            poses[child] = composed(poses[parent], origin)
-    return poses
+    return poses_from_root(path, joints, links, "link")
 
 
-def _end(path: Path, joint: Element, end: str, links: list[str]) -> str:
+def _end(path: Path, joint: Element, end: str, links: Collection[str]) -> str:
     element = joint.find(end)
     name = "" if element is None else element.get("link", "")
     if name not in links:
@@ -144,12 +124,8 @@ def _origin(path: Path, joint: Element) -> Pose:
     """Return where a joint puts its child; movable ones are taken as they stand."""
     element, field = joint.find("origin"), f"joint {joint.get('name', '')!r}"
     values = {} if element is None else element.attrib
-    numbers = []
-    for key in ("xyz", "rpy"):
-        try:
-            numbers.append([float(word) for word in values.get(key, "0 0 0").split()])
-        except ValueError:
-            raise InputError(path, f"{field}, {key}", "three numbers", shown(values[key])) from None
+    keys = ("xyz", "rpy")
+    numbers = [figures(path, f"{field}, {k}", values.get(k, "0 0 0"), (3,)) for k in keys]
     return pose_from(path, field, *numbers)
 
 
@@ -171,7 +147,7 @@ def _optical_of(name: str, poses: dict[str, Pose]) -> str | None:
     return next((s + e for s in (name, stem) for e in endings if s + e in poses), None)
 
 
-def _sensor(name: str, poses: dict[str, Pose], block: Element | None) -> CarriedSensor:
+def _sensor(path: Path, name: str, poses: dict[str, Pose], block: Element | None) -> CarriedSensor:
     kind = CAMERA if _optical_of(name, poses) else None
     if block is None:
         return CarriedSensor(name, poses[name], kind)
@@ -182,15 +158,7 @@ def _sensor(name: str, poses: dict[str, Pose], block: Element | None) -> Carried
         kind = next((k for word, k in KIND_WORDS.items() if word in words), kind)
     if own is not None:
         kind = own.get("kind") or kind
-    figures = (picture_in(sensor), _scan(sensor))
-    return CarriedSensor(name, poses[name], kind, model or None, *figures)
-
-
-def _scan(sensor: Element | None) -> Scan | None:
-    keys = ("samples", "min_angle", "max_angle")
-    across, up = ([f"{way}/{key}" for key in keys] for way in ("horizontal", "vertical"))
-    numbers = numbers_in(sensor, (*across, *up, "range/max"))
-    if numbers is None:
-        return None
-    azimuths, left, right, channels, low, high, max_range = numbers
-    return Scan(int(channels), low, high, int(azimuths), (left, right), max_range)
+    inside = SensorElement(path, name, sensor)
+    return CarriedSensor(
+        name, poses[name], kind, model or None, picture_in(inside), scan_in(inside)
+    )

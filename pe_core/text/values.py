@@ -46,7 +46,7 @@ class Number:
     noun : str
         What the value is called.
     infinite : bool
-        Whether infinity is a number, too.
+        Whether infinity is a number, too, beyond the cap.
     """
 
     least: float = -math.inf
@@ -71,7 +71,7 @@ class Number:
         high = number < self.most if self.below else number <= self.most
         if not (low and high):
             return False
-        return abs(number) <= self.cap and (self.infinite or -math.inf < number < math.inf)
+        return self.infinite if math.isinf(number) else abs(number) <= self.cap
 
     def words(self, number: float = math.nan, count: int = 1) -> str:
         """What is expected, said to one who gave `number`; in the plural for more than one."""

@@ -13,10 +13,14 @@ from ..errors import InputError, shown
 
 DEEPEST = 20
 QUOTED = r"'[^']*'|\"[^\"\\]*\""
+# Each part takes all it can and stops at a character that it cannot hold: a line takes the time of
+# one pass, however many blanks are in it. Blanks at the end of a key or a value are cut off later.
 LINE = re.compile(
-    rf"^(?P<blanks> *)(?P<key>{QUOTED}|[^\s'\"#\[{{&*!|>%@-][^:#]*?) *:(?P<rest>( .*)?)$"
+    rf"^(?P<blanks> *)(?P<key>(?:{QUOTED}) *|[^\s'\"#\[{{&*!|>%@-][^:#]*):(?P<rest>( .*)?)$"
 )
-PLAIN_REST = re.compile(rf"^ *(?P<value>{QUOTED}|[^\s'\"#\[{{&*!|>%@][^#]*?)? *( #.*)?$")
+PLAIN_REST = re.compile(
+    rf"^(?P<part> *(?P<value>(?:{QUOTED}) *|[^\s'\"#\[{{&*!|>%@][^#]*)?)(?P<comment>#.*)?$"
+)
 LIST = re.compile(r"^ *\[(?P<values>[^\[\]{}\"'#&*!|>%@]*)\] *( #.*)?$")
 NUMBER = re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 WORDS = {"true": True, "false": False, "null": None, "~": None}
@@ -63,14 +67,17 @@ def _parsed(source: str, number: int, line: str, lists: bool) -> tuple[int, str,
         values = [_value(word.strip()) for word in listed["values"].split(",") if word.strip()]
         return len(found["blanks"]), _unquoted(found["key"]), values, True
     rest = PLAIN_REST.match(found["rest"]) if found else None
+    if rest is not None and rest["comment"] and not rest["part"].endswith(" "):
+        rest = None
     if found is None or rest is None:
         expected = "nested `key: value`, the part of YAML that calibrations use"
         raise InputError(source, f"line {number}", expected, shown(line.strip()))
-    value = rest["value"]
+    value = rest["value"] and rest["value"].rstrip(" ")
     return len(found["blanks"]), _unquoted(found["key"]), _value(value), value is not None
 
 
 def _unquoted(text: str) -> str:
+    text = text.rstrip(" ")
     return text[1:-1] if text[:1] in ("'", '"') else text
 
 

@@ -87,8 +87,8 @@ BENT = {"model": "brown-conrady"}
 REFUSED = [
     ({"cx": -5}, "cx: expected a place in the picture, 0 to 640, found -5"),
     ({"cy": 481.5}, "cy: expected a place in the picture, 0 to 480, found 481.5"),
-    ({"fx": -400}, "fx: expected a focal length above 0 pixels, found -400"),
-    ({"fy": 0}, "fy: expected a focal length above 0 pixels, found 0"),
+    ({"fx": -400}, "fx: expected a focal length >= 1e-06 pixels, found -400"),
+    ({"fy": 0}, "fy: expected a focal length >= 1e-06 pixels, found 0"),
     ({"cx": None}, "cx: expected a finite number, found None"),
     ({"hfov_deg": 60}, "hfov_deg: expected either hfov_deg or a lens .*, found both"),
     ({"distortion": 3}, "distortion: expected a table, found 3"),

@@ -307,7 +307,7 @@ BAD = [
     (
         "rig.launch.xml",
         '<node exec="static_transform_publisher" args="--x one --frame-id a --child-frame-id b"/>',
-        "transform 1, x: expected a number",
+        "transform 1, x: expected a finite number",
     ),
     ("calib.txt", "P0: 1 2 3\nR0_rect: 1 0 0 0 1 0 0 0 1\n", "Tr_velo_to_cam"),
     (

@@ -19,7 +19,7 @@ from .lens.field import field_outline, reaching
 
 PIXELS = Whole(1, 1_000_000, "pixels")
 FOV = Angle(0.001, 180.0, below=True)
-FARTHEST = Number(0.0, above=True, unit="m", noun="length", infinite=True)
+FARTHEST = Number(0.0, above=True, cap=1e9, unit="m", noun="length", infinite=True)
 """Maximum range; a camera as a rule has none."""
 
 

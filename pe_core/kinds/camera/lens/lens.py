@@ -20,7 +20,7 @@ from ....text.values import Angle, Number
 Floats = NDArray[np.float64]
 Own = TypeVar("Own", bound="Lens")
 
-FOCAL = Number(0.0, above=True, cap=1e12, unit="pixels", noun="focal length")
+FOCAL = Number(1e-6, cap=1e12, unit="pixels", noun="focal length")
 PLACE = Number(cap=1e7, unit="pixels")
 FOV = Angle(0.001, 220.0)
 COEFFICIENT = Number(cap=1e6, noun="coefficient")

@@ -35,7 +35,7 @@ class Scan:
     """A LiDAR's beams, as formats have them that know channels at even distances.
 
     Angles in radians, ranges in metres. `even` says whether the channels are so; `directions`
-    are the beams themselves, where they are known.
+    are the beams of a file that lists them, `model` the LiDAR of a rig that goes out.
     """
 
     channels: int
@@ -47,6 +47,12 @@ class Scan:
     even: bool = True
     directions: Floats | None = None
     min_range: float = 0.0
+    model: Lidar | None = None
+
+    @property
+    def beams(self) -> Floats | None:
+        """(B, 3) directions of the beams, where they are known; worked out when asked for."""
+        return self.directions if self.model is None else self.model.directions
 
     @property
     def beam_count(self) -> int:
@@ -208,7 +214,7 @@ def _scan(model: Lidar) -> Scan:
     step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
     even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
     figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
-    return Scan(*figures, model.max_range, even, model.directions, model.min_range)
+    return Scan(*figures, model.max_range, even, None, model.min_range, model)
 
 
 def named_apart(names: Sequence[str]) -> list[str]:

@@ -46,7 +46,8 @@ def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) 
     for name, (parent, _) in hung.items():
         children.setdefault(parent, []).append(name)
     poses, level = {roots[0]: ORIGIN}, roots
-    while level := sorted((c for name in level for c in children.get(name, ())), key=order.__getitem__):
+    while level := [child for name in level for child in children.get(name, ())]:
+        level.sort(key=order.__getitem__)
         for name in level:
             parent, pose = hung[name]
             poses[name] = composed(poses[parent], pose)

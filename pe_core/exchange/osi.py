@@ -88,7 +88,7 @@ def _figures(each: CarriedSensor) -> dict[str, Any]:
             "number_of_pixels_horizontal": width,
             "number_of_pixels_vertical": height,
         }
-    if each.scan is None or (beams := each.scan.directions) is None:
+    if each.scan is None or (beams := each.scan.beams) is None:
         return {}
     low, high = each.scan.fov
     return {

@@ -25,6 +25,7 @@ from .placeable import check_placeable
 from .plain_objects import plain_objects, put_objects, sensors_of_objects
 from .prior import prior_from_scene, prior_key
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
+from .restored import restore_result
 from .rig import (
     mounted_on_sensor,
     place_poses,
@@ -123,6 +124,7 @@ __all__ = [
     "records_of",
     "records_of_scene",
     "reference_of",
+    "restore_result",
     "rig_from_objects",
     "rig_of",
     "same_score",

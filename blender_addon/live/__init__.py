@@ -1,14 +1,16 @@
 """The score that follows the hand.
 
 `latest` is what is known now, `session` asks for it, `reference` and `against` say what it is
-compared with, `words` puts it into words, `readout` draws those in the corner of the 3D view.
+compared with, `shown` which score is shown, `words` puts it into words, `readout` draws those in
+the corner of the 3D view.
 """
 
 from __future__ import annotations
 
 from . import against, latest, readout, session
+from .shown import ShownScore, shown
 
-__all__ = ["against", "latest", "register", "unregister"]
+__all__ = ["ShownScore", "against", "latest", "register", "shown", "unregister"]
 
 
 def register() -> None:

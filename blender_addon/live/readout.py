@@ -16,6 +16,7 @@ from gpu_extras.batch import batch_for_shader
 
 from .. import changes, redraw
 from . import latest
+from .shown import ShownScore, shown
 from .words import BETTER, WORSE, words_of
 
 VIEW = bpy.types.SpaceView3D
@@ -66,22 +67,20 @@ def draw() -> None:
     wanted = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
     if context.scene.perception_entropy.live.on and wanted and _is_corner(context):
         name = context.scene.name
-        reading = latest.reading(name)
-        exact = reading is not None and latest.is_exact(name, reading)
-        lines = lines_of(reading, latest.note(name), exact)
+        lines = lines_of(latest.reading(name), latest.note(name), shown(context.scene))
         draw_lines(lines, *_place(context), context.preferences.system.ui_scale)
 
 
-def lines_of(reading: latest.Reading | None, note: str, exact: bool) -> list[TextRow]:
-    """Lines from the top down; a reading that is not `exact` is a preview."""
-    found = [] if reading is None else _lines_of_words(reading, exact)
+def lines_of(reading: latest.Reading | None, note: str, score: ShownScore | None) -> list[TextRow]:
+    """Lines from the top down: what is shown of a reading, and what is in the way of a newer."""
+    found = [] if reading is None or score is None else _lines_of_words(reading, score)
     if note:
         found += [TextRow(SMALL, ((row, ALERT),)) for row in textwrap.wrap(note, MOST_COLUMNS)]
     return found or [TextRow(SMALL, (("Live: scoring ...", FAINT),))]
 
 
-def _lines_of_words(reading: latest.Reading, exact: bool) -> list[TextRow]:
-    words = words_of(reading, exact)
+def _lines_of_words(reading: latest.Reading, score: ShownScore) -> list[TextRow]:
+    words = words_of(reading, score)
     arrow, color = ARROWS.get(words.sense, ""), BY_SENSE.get(words.sense, FAINT)
     change = ((f"{arrow} {words.change}".strip(), color),) if words.change else ()
     small = [TextRow(SMALL, ((text, INK),)) for text in words.lines]

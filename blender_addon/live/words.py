@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from ..engine import advice, pe
 from .latest import Reading
+from .shown import ShownScore
 
 LEAST_CHANGE = 0.0005
 """Entropies nearer than this read the same in four places [nats]."""
@@ -27,23 +28,33 @@ class ReadoutText(NamedTuple):
     lines: tuple[str, ...]
 
 
-def words_of(reading: Reading, exact: bool) -> ReadoutText:
-    """Put a reading into words; one that is not the exact score of the scene is a preview."""
+def words_of(reading: Reading, shown: ShownScore) -> ReadoutText:
+    """Put a reading into words, and the score that is shown of it: a preview, exact, or stored.
+
+    What changed is told of the live score, from sample to sample.
+    """
     now, before = reading.glance, reading.before
     change, sense = change_of(now.entropy, before.entropy) if before else ("", SAME)
     what = "of where objects are is seen" if now.voxels else "of the objects are seen"
-    seen = f"{now.coverage:.1%} {what}{points(now, before)}"
-    state = "at rest" if exact else "preview"
-    if reading.moved_m:
-        state += f", body simplified to {1000.0 * reading.moved_m:.0f} mm"
+    seen = f"{shown.coverage:.1%} {what}{points(now, before)}"
     return ReadoutText(
-        f"{now.entropy:.3f} nats",
-        f"± {max(now.stderr, 1e-3):.3f}  {state}",
+        f"{shown.entropy:.3f} nats",
+        state_of(shown, reading.moved_m),
         change,
         sense,
         f"compared with {short(reading.reference.label)}" if before else "",
         (seen, *zone_lines(now, before)),
     )
+
+
+def state_of(shown: ShownScore, moved_m: float) -> str:
+    """Say a score's error, and what it is of: the scene at rest, a preview, or a stored result."""
+    if shown.stored and not shown.stderr:
+        return "as scored, on all voxels"
+    state = "as scored" if shown.stored else "at rest" if shown.exact else "preview"
+    simpler = f", body simplified to {1000.0 * moved_m:.0f} mm"
+    told = state + simpler if moved_m and not shown.stored else state
+    return f"± {max(shown.stderr, 1e-3):.3f}  {told}"
 
 
 def short(name: str) -> str:

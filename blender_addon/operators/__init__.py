@@ -3,6 +3,8 @@
 Panels take from here what there is to press and to choose from.
 """
 
+from ..live import ShownScore
+from ..live import shown as shown_score
 from . import (
     add_sensor,
     apply_scale,
@@ -43,6 +45,7 @@ __all__ = [
     "CLASSES",
     "FIX_LABELS",
     "Offer",
+    "ShownScore",
     "answer",
     "brief",
     "listed_sensors",
@@ -53,6 +56,7 @@ __all__ = [
     "register",
     "rigs",
     "running",
+    "shown_score",
     "unregister",
 ]
 

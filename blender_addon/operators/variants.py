@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import bpy
 from bpy.props import IntProperty
 
-from .. import bridge, changes, stale
+from .. import bridge, changes, explaining, stale
 from ..choices import BEFORE_MOVE, free_name
 from ..engine import pe
 from .reports import REFUSALS, refuse, tell
@@ -171,12 +173,26 @@ def switch(
     variant: bpy.types.PropertyGroup,
     before: tuple[bridge.Record, ...],
 ) -> None:
-    """Have a variant stand; when that can't be, put everything back as it was."""
+    """Have a variant stand with its own result; when it can't, put everything back as it was."""
     try:
         bridge.put_variant(scene, variant)
     except pe.InputError:
         bridge.stand(scene, before)
         raise
+    show_own_result(scene, variant)
+
+
+def show_own_result(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
+    """Show the score of the variant that stands; any other result is marked as of before."""
+    settings, now = scene.perception_entropy, stale.fingerprint(scene)
+    settings.result_stale = settings.has_result and settings.result_signature != now.text
+    if settings.has_result and not settings.result_stale:
+        return
+    with contextlib.suppress(pe.InputError):  # a score says what is wrong
+        depsgraph = bridge.view_layer_of(scene).depsgraph
+        outcome = bridge.restore_result(scene, variant, now, depsgraph)
+        if outcome is not None:
+            explaining.look_round(scene, outcome, now.text)
 
 
 def _free(scene: bpy.types.Scene, name: str) -> str:

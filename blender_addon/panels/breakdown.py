@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from .layout import Tab
+from .layout import Tab, draw_whether_stale
 
 NAME_SHARE, NARROW_SHARE = 0.5, 0.3
 
@@ -24,6 +24,7 @@ class PE_PT_breakdown(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
+        draw_whether_stale(self.layout, settings)
         column = self.layout.box().column(align=True)
         column.active = not settings.result_stale
         for is_class, title in ((False, "Zone"), (True, "Class")):

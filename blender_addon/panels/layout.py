@@ -23,6 +23,12 @@ def draw_properties(
         layout.prop(settings, name)
 
 
+def draw_whether_stale(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw a mark above figures of a result that is not that of the scene any more."""
+    if settings.result_stale:
+        layout.label(text="Of the last score, before a change", icon="FILE_REFRESH")
+
+
 def columns(
     layout: bpy.types.UILayout, factor: float
 ) -> tuple[bpy.types.UILayout, bpy.types.UILayout]:

@@ -31,8 +31,7 @@ class PE_PT_main(Tab, bpy.types.Panel):
         draw_add(self.layout)
         draw_sensors(self.layout, context)
         draw_actions(self.layout, settings)
-        if settings.has_result:
-            draw_result(self.layout, context)
+        draw_result(self.layout, context)
 
 
 def draw_add(layout: bpy.types.UILayout) -> None:

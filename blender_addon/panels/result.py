@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..operators import running
+from ..operators import ShownScore, running, shown_score
 from .layout import columns
 from .words import draw_sentence, draw_warning
 
@@ -23,7 +23,29 @@ def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
 
 
 def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the last result: figures with their names and units, and whether they still stand."""
+    """Draw one score: the live one, or the stored one where that is of the scene or Live is off."""
+    settings, live = context.scene.perception_entropy, shown_score(context.scene)
+    if live is not None and not live.stored:
+        draw_live(layout, settings, live)
+    elif settings.has_result:
+        draw_stored(layout, context)
+
+
+def draw_live(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, live: ShownScore
+) -> None:
+    """Draw the live score, as the corner of the 3D view tells it."""
+    column = layout.box().column(align=True)
+    draw_figure(column, "Entropy", f"{live.entropy:.3f} ± {max(live.stderr, 1e-3):.3f} nats")
+    draw_figure(column, "Coverage", f"{live.coverage:.1%}")
+    state = "Live: at rest, on a sample" if live.exact else "Live: a preview, on a sample"
+    column.label(text=state, icon="REC")
+    if settings.has_result:
+        layout.label(text="Changed since it was scored", icon="FILE_REFRESH")
+
+
+def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the stored result: figures with names and units, and whether they still stand."""
     settings = context.scene.perception_entropy
     column = layout.box().column(align=True)
     column.active = not settings.result_stale

@@ -5,6 +5,7 @@ import pytest
 from blender_addon.engine import pe
 from blender_addon.live import latest, readout, words
 from blender_addon.live.reference import Reference
+from blender_addon.live.shown import ShownScore
 
 
 def glance(entropy=3.0, coverage=0.85, zones=()):
@@ -13,7 +14,11 @@ def glance(entropy=3.0, coverage=0.85, zones=()):
 
 
 def said(now, before=None, rested=True):
-    return words.words_of(reading_of(now, before), rested)
+    return words.words_of(reading_of(now, before), score_of(now, rested))
+
+
+def score_of(now, exact=True, stored=False):
+    return ShownScore(now.entropy, now.coverage, now.stderr, exact, stored)
 
 
 def reading_of(now, before=None, moved_m=0.0, label="before this move"):
@@ -35,9 +40,9 @@ def test_a_draft_says_so():
 def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
     assert said(glance(), glance()).against == "compared with before this move"
     long = "A variant whose name is longer than a row of the read-out"
-    found = words.words_of(reading_of(glance(), glance(3.1), label=long), True)
+    found = words.words_of(reading_of(glance(), glance(3.1), label=long), score_of(glance()))
     assert found.against == "compared with A variant whose name is longe..."
-    rows = readout.lines_of(reading_of(glance(), glance(3.1)), "", True)
+    rows = readout.lines_of(reading_of(glance(), glance(3.1)), "", score_of(glance()))
     assert [text for text, _ in rows[1].words] == [
         "± 0.022  at rest",
         "compared with before this move",
@@ -83,16 +88,17 @@ def test_a_zone_that_came_or_went_is_no_change():
 def test_the_read_out_says_what_is_in_the_way_below_what_was():
     reading = reading_of(glance())
     line = "scene: sensor 'roof': scale: expected 1 in each direction, found 2, 2, 2"
-    found = readout.lines_of(reading, line, True)
+    found = readout.lines_of(reading, line, score_of(glance()))
     rows = [text for each in found for text, color in each.words if color == readout.ALERT]
     assert " ".join(rows) == line and all(len(row) <= readout.MOST_COLUMNS for row in rows)
     assert found[0].words[0][0] == "3.000 nats"
-    assert readout.lines_of(None, "", False)[0].words[0][0] == "Live: scoring ..."
+    assert readout.lines_of(None, "", None)[0].words[0][0] == "Live: scoring ..."
 
 
 def test_better_and_worse_differ_by_arrow_and_colour():
     lines = [
-        readout.lines_of(reading_of(glance(), glance(h)), "", True)[0].words[1] for h in (3.1, 2.9)
+        readout.lines_of(reading_of(glance(), glance(h)), "", score_of(glance()))[0].words[1]
+        for h in (3.1, 2.9)
     ]
     (better, blue), (worse, orange) = lines
     assert better.startswith("\N{DOWNWARDS ARROW}") and worse.startswith("\N{UPWARDS ARROW}")
@@ -101,6 +107,6 @@ def test_better_and_worse_differ_by_arrow_and_colour():
 
 def test_a_body_that_was_made_simpler_is_told():
     assert (
-        words.words_of(reading_of(glance(), moved_m=0.0204), True).error
+        words.words_of(reading_of(glance(), moved_m=0.0204), score_of(glance())).error
         == "± 0.022  at rest, body simplified to 20 mm"
     )

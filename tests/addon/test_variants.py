@@ -1,5 +1,7 @@
 """Variants: kept, put back exactly, nothing lost; their scores are those of the scene."""
 
+import json
+
 import bpy
 import numpy as np
 import pytest
@@ -212,6 +214,38 @@ def test_a_score_goes_to_the_variant_that_stands(ideas):
     ideas.perception_entropy.prior = "uniform"
     unsaved.check()
     assert first.stale
+
+
+def test_a_variant_that_is_switched_to_shows_its_own_result(ideas):
+    """Figures, words and the sensors' rows are those of when it was scored; others are marked."""
+
+    def shown():
+        settings = ideas.perception_entropy
+        own = [each.perception_entropy for each in bridge.sensor_objects(ideas)]
+        found = json.loads(settings.result_json)
+        kept = {k: found[k] for k in ("entropy", "coverage", "after", "placements", "inputs")}
+        sensors = [(e.entropy, e.coverage, e.stopped_text, e.words, e.loss_text) for e in own]
+        parts = [(row.name, row.entropy, row.coverage) for row in settings.result_parts]
+        words = settings.result_entropy, settings.result_words, settings.result_stale
+        return kept, sensors, parts, words
+
+    bpy.ops.pe.score()
+    first = shown()
+    ideas.objects["roof"].location.x += 0.5
+    bpy.context.view_layer.update()
+    bpy.ops.pe.save_variant()
+    bpy.ops.pe.score()
+    second = shown()
+    assert first != second
+    for name, own in (("Variant", first), ("Variant 2", second)):
+        switch(ideas, name)
+        assert shown() == own
+    ideas.perception_entropy.variants[0].has_result = False
+    switch(ideas, "Variant")
+    assert ideas.perception_entropy.result_stale, "what is shown is of the other one"
+    ideas.perception_entropy.prior = "uniform"
+    switch(ideas, "Variant 2")
+    assert ideas.perception_entropy.result_stale, "its score was made under another prior"
 
 
 def test_a_variant_is_scored_as_if_it_stood_there(ideas):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import body, bridge, changes, roster
+from . import body, bridge, changes, redraw, roster
 from .engine import advice, pe, sight
 from .worker import desk
 
@@ -18,14 +18,25 @@ WARNINGS, WORDS = "warnings", "words"
 """Topics of the work."""
 
 
+_behind = False
+"""Whether things have moved since what is odd was told."""
+
+
+def is_behind() -> bool:
+    """Whether the warnings that are told are of before the last move."""
+    return _behind
+
+
 def look_soon() -> None:
     """Look for what is odd a while from now, if nothing moves until then."""
+    _mark_behind(True)
     if not bpy.app.background and not bpy.app.timers.is_registered(look):
         bpy.app.timers.register(look, first_interval=PATIENCE_S)
 
 
 def not_yet() -> None:
     """Something moves: wait on."""
+    _mark_behind(True)
     if bpy.app.timers.is_registered(look):
         bpy.app.timers.unregister(look)
 
@@ -34,6 +45,7 @@ def look() -> None:
     """Look for what is odd in the scene that is open; tell it in its settings."""
     scene = bpy.context.scene
     if not bridge.sensor_objects(scene) and scene.perception_entropy.vehicle is None:
+        _mark_behind(False)
         return
     depsgraph = bpy.context.evaluated_depsgraph_get()
     own, name = bridge.scene_advice(scene), scene.name
@@ -55,9 +67,23 @@ def look() -> None:
             bridge.store_warnings(settings, (*own, *told))
             if settings.vehicle_line != line:
                 settings.vehicle_line = line
+            _mark_behind(_is_due())
             changes.picture.tell()
 
     desk.ask(WARNINGS, work, deliver, lambda _: None)
+
+
+def _is_due() -> bool:
+    """Whether they are to be looked for once more."""
+    return not bpy.app.background and bpy.app.timers.is_registered(look)
+
+
+def _mark_behind(behind: bool) -> None:
+    """Note whether warnings are of before a move, and have panels say so."""
+    global _behind
+    if behind != _behind and not bpy.app.background:
+        _behind = behind
+        redraw.editors()
 
 
 def look_round(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> None:

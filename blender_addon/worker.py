@@ -67,6 +67,12 @@ class Worker:
             topics = {*self._wanted, *(t for t, _ in self._done), self._under_way} - {None}
         return bool(topics) if topic is None else topic in topics
 
+    def awaits(self, beginning: str) -> bool:
+        """Whether an answer is awaited on a topic that begins so."""
+        with self._changed:
+            topics = (*self._wanted, *(topic for topic, _ in self._done), self._under_way or "")
+            return any(topic.startswith(beginning) for topic in topics)
+
     def stop(self) -> None:
         """Forget all wishes and answers, and end the thread, after what it has under way."""
         with self._changed:

@@ -8,9 +8,9 @@ the corner of the 3D view.
 from __future__ import annotations
 
 from . import against, latest, readout, session
-from .shown import ShownScore, shown
+from .shown import ShownScore, shown_score
 
-__all__ = ["ShownScore", "against", "latest", "register", "shown", "unregister"]
+__all__ = ["ShownScore", "against", "latest", "register", "shown_score", "unregister"]
 
 
 def register() -> None:

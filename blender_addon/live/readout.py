@@ -14,9 +14,9 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from .. import changes, redraw
+from .. import changes, redraw, worker
 from . import latest
-from .shown import ShownScore, shown
+from .shown import ShownScore, shown_score
 from .words import BETTER, WORSE, words_of
 
 VIEW = bpy.types.SpaceView3D
@@ -33,6 +33,10 @@ PLATE: Color = (0.08, 0.08, 0.08, 0.72)
 BY_SENSE = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
 """Blue is better, orange worse: told apart by colour-blind eyes too, and the arrow says it."""
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
+
+
+PICTURE = "overlay "
+"""How topics of work begin whose answers are what the 3D view shows of sensors."""
 
 
 class TextRow(NamedTuple):
@@ -67,7 +71,10 @@ def draw() -> None:
     wanted = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
     if context.scene.perception_entropy.live.on and wanted and _is_corner(context):
         name = context.scene.name
-        lines = lines_of(latest.reading(name), latest.note(name), shown(context.scene))
+        score = shown_score(context.scene)
+        if score is not None and score.exact and worker.desk.awaits(PICTURE):
+            score = score._replace(picture_follows=True)
+        lines = lines_of(latest.reading(name), latest.note(name), score)
         draw_lines(lines, *_place(context), context.preferences.system.ui_scale)
 
 

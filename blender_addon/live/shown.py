@@ -24,6 +24,8 @@ class ShownScore(NamedTuple):
         Whether it is of the scene as it stands; else it is a preview.
     stored : bool
         Whether it is the stored result.
+    picture_follows : bool
+        Whether beams and maps in the 3D view are still those of before the last move.
     """
 
     entropy: float
@@ -31,9 +33,10 @@ class ShownScore(NamedTuple):
     stderr: float
     exact: bool
     stored: bool
+    picture_follows: bool = False
 
 
-def shown(scene: bpy.types.Scene) -> ShownScore | None:
+def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
     """Return the score that is shown of a scene with *Live* on; None while there is none yet."""
     settings, reading = scene.perception_entropy, latest.reading(scene.name)
     if reading is None or not settings.live.on:

@@ -49,12 +49,13 @@ def words_of(reading: Reading, shown: ShownScore) -> ReadoutText:
 
 def state_of(shown: ShownScore, moved_m: float) -> str:
     """Say a score's error, and what it is of: the scene at rest, a preview, or a stored result."""
-    if shown.stored and not shown.stderr:
-        return "as scored, on all voxels"
     state = "as scored" if shown.stored else "at rest" if shown.exact else "preview"
-    simpler = f", body simplified to {1000.0 * moved_m:.0f} mm"
-    told = state + simpler if moved_m and not shown.stored else state
-    return f"± {max(shown.stderr, 1e-3):.3f}  {told}"
+    if moved_m and not shown.stored:
+        state += f", body simplified to {1000.0 * moved_m:.0f} mm"
+    if shown.picture_follows:
+        state += ", beams and maps follow"
+    whole = shown.stored and not shown.stderr
+    return f"on all voxels, {state}" if whole else f"± {max(shown.stderr, 1e-3):.3f}  {state}"
 
 
 def short(name: str) -> str:

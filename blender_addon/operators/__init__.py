@@ -3,8 +3,8 @@
 Panels take from here what there is to press and to choose from.
 """
 
-from ..live import ShownScore
-from ..live import shown as shown_score
+from ..explaining import is_behind as warnings_are_behind
+from ..live import ShownScore, shown_score
 from . import (
     add_sensor,
     apply_scale,
@@ -58,6 +58,7 @@ __all__ = [
     "running",
     "shown_score",
     "unregister",
+    "warnings_are_behind",
 ]
 
 CLASSES = (

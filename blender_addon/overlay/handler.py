@@ -6,11 +6,13 @@ Nothing is read, cast or worked out here: a redraw takes what is ready.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import bpy
 import gpu
 from bpy.app.handlers import persistent
 
+from ..engine import graphics
 from . import batches, updating, writing
 from .batches import Batches
 from .layers import LAYERS, WHOLE_RIG, Layer
@@ -78,11 +80,21 @@ def write() -> None:
     if not _wanted(context):
         return
     scene = context.scene.name
-    items = [shown.items(scene, layer.name)[name] for layer, ns in _visible(context) for name in ns]
-    writing.write_labels(context, [label for item in items for label in item.shape.labels])
+    visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
+    shapes = [shown.items(scene, layer)[name].shape for layer, name in visible]
+    writing.write_labels(context, [label for shape in shapes for label in shape.labels])
     if context.scene.perception_entropy.view.show_legend:
-        legends = dict.fromkeys(i.shape.legend for i in items if i.shape.legend is not None)
-        writing.write_legends(context, list(legends))
+        legends = (_legend(scene, layer, name) for layer, name in visible)
+        writing.write_legends(context, list(dict.fromkeys(k for k in legends if k is not None)))
+
+
+def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
+    """Legend of what is shown, marked where its figures are those of a preview."""
+    item = shown.items(scene, layer)[name]
+    found = item.shape.legend
+    if found is None or not updating.is_preview(scene, layer, name, item):
+        return found
+    return replace(found, title=f"{found.title} (preview)")
 
 
 def ready(scene: str, layer: Layer, names: list[str]) -> list[Batches]:

@@ -25,7 +25,7 @@ SOON_S = 0.01
 
 _reader = SceneReader()
 _tools = Tools()
-_asked: dict[tuple[str, str], Hashable] = {}
+_asked: dict[tuple[str, str], tuple[Mapping[str, Hashable], bool]] = {}
 """What was asked for last in each scene and layer: nothing is asked for twice."""
 _selection: dict[str, tuple[str, ...]] = {}
 """Selected sensors by the scene's name, as they were when last looked at."""
@@ -38,6 +38,12 @@ def update(moving: bool = False) -> None:
         wish = _reader.wish(scene, depsgraph, moving)
         for layer in LAYERS:
             _ask(scene.name, layer, wish)
+
+
+def is_preview(scene: str, layer: str, name: str, item: ShownLayer) -> bool:
+    """Whether what is shown is coarser than at rest, or of before the last change."""
+    keys, _ = _asked.get((scene, layer), ({name: item.key}, False))
+    return item.rough or keys.get(name) != item.key
 
 
 def soon(*_: object) -> None:

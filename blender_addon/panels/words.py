@@ -6,7 +6,7 @@ import textwrap
 
 import bpy
 
-from ..operators import FIX_LABELS
+from ..operators import FIX_LABELS, warnings_are_behind
 
 LETTER_PX = 6.2
 """About how wide a letter is, at a scale of 1."""
@@ -40,8 +40,15 @@ def draw_sentence(
 def draw_warning(
     layout: bpy.types.UILayout, context: bpy.types.Context, warning: bpy.types.PropertyGroup
 ) -> None:
-    """Draw a warning, the part that causes it as a button, and what would mend it."""
+    """Draw a warning, the part that causes it as a button, and what would mend it.
+
+    After a move it is dim, and says so, until the sensors have been looked over again.
+    """
     text = warning.text[:1].upper() + warning.text[1:]
+    if warnings_are_behind():
+        layout = layout.column(align=True)
+        layout.active = False
+        text = f"Before this move: {text[:1].lower()}{text[1:]}"
     draw_sentence(layout, context, text, icon="ERROR")
     if not (warning.fix in FIX_LABELS or warning.part):
         return

@@ -32,7 +32,7 @@ ALLOWED = {
     "worker": set(),
     "stale": {"body", "bridge", "changes", "roster"},
     "unsaved": {"bridge", "changes", "stale"},
-    "explaining": {"body", "bridge", "changes", "engine", "roster", "worker"},
+    "explaining": {"body", "bridge", "changes", "engine", "redraw", "roster", "worker"},
     "asking": {"body", "bridge", "changes", "engine", "roster", "worker"},
     "housing": {"changes", "engine", "roster"},
     "library": set(),

@@ -240,6 +240,32 @@ def test_a_driver_that_failed_is_told_by_name(car):
     assert "driver of its location did not run" in car.perception_entropy.result_missing
 
 
+def test_warnings_of_before_a_move_say_so_until_it_is_looked_over(car, monkeypatch):
+    car.objects["roof"].location.z = 3.0
+    bpy.context.view_layer.update()
+    bpy.ops.pe.score()
+    window = Window(car, car.objects["roof"])
+
+    def line():
+        panels.sensors.draw_sensors(shown := Layout(), window)
+        return " ".join(shown.texts("label"))
+
+    assert "Before this move" not in line()
+    app = type("App", (), {"background": False, "timers": Unregistered})
+    monkeypatch.setattr(explaining, "bpy", type("Bpy", (), {"app": app, "data": bpy.data}))
+    explaining.not_yet()
+    assert "Before this move" in line()
+    monkeypatch.setattr(explaining.bpy, "context", bpy.context, raising=False)
+    explaining.look()
+    assert "Before this move" not in line() and "clear of the vehicle" in line()
+
+
+class Unregistered:
+    """Blender's timers, of which none runs."""
+
+    is_registered = staticmethod(lambda _: False)
+
+
 def test_panels_show_words_warnings_and_the_place(car):
     car.objects["roof"].location.z = 3.0
     bpy.context.view_layer.update()

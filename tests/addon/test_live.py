@@ -7,10 +7,10 @@ import bpy
 import pytest
 
 import blender_addon
-from blender_addon import bridge, changes, motion, worker
+from blender_addon import bridge, changes, motion, stale, worker
 from blender_addon.choices import BEFORE_MOVE, PINNED
 from blender_addon.engine import pe
-from blender_addon.live import asking, latest, readout, reference, session
+from blender_addon.live import asking, latest, readout, reference, session, shown
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -182,6 +182,23 @@ def test_a_variant_is_what_it_is_compared_with(live):
     bpy.ops.pe.delete_variant()
     rest()
     assert reading(live).reference is None or reading(live).reference.label != "Variant"
+
+
+def test_one_score_is_shown_at_a_time(live, monkeypatch):
+    """Panel and read-out take theirs from here: live, or stored where that is of the scene."""
+    bpy.ops.pe.score()
+    rest()
+    score, settings = shown.shown_score(live), live.perception_entropy
+    assert score.stored and score.exact and score.entropy == settings.result_entropy
+    drag(live.objects["roof"])
+    now = reading(live).glance
+    assert shown.shown_score(live) == (now.entropy, now.coverage, now.stderr, False, False, False)
+    rest()
+    stale.check()
+    now = reading(live).glance
+    assert shown.shown_score(live) == (now.entropy, now.coverage, now.stderr, True, False, False)
+    settings.live.on = False
+    assert shown.shown_score(live) is None, "the panel draws the stored result, which is marked"
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):

@@ -37,6 +37,18 @@ def test_a_draft_says_so():
     assert said(glance(), rested=False).error == "± 0.022  preview"
 
 
+@pytest.mark.parametrize(
+    ("told", "line"),
+    [
+        ({"stored": True}, "± 0.022  as scored"),
+        ({"stored": True, "stderr": 0.0}, "on all voxels, as scored"),
+        ({"picture_follows": True}, "± 0.022  at rest, beams and maps follow"),
+    ],
+)
+def test_what_a_score_is_of_is_said(told, line):
+    assert words.state_of(score_of(glance())._replace(**told), 0.0) == line
+
+
 def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
     assert said(glance(), glance()).against == "compared with before this move"
     long = "A variant whose name is longer than a row of the read-out"

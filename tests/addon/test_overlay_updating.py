@@ -90,6 +90,18 @@ def test_a_moved_sensor_is_worked_out_alone_and_the_vehicle_is_not_read(rig, wor
     assert set(worked) == {("frustums", "eye"), ("labels", "eye"), *of_the_rig}
 
 
+def test_what_is_shown_of_before_a_change_is_marked_until_it_is_worked_out(rig, monkeypatch):
+    scenes.drawn(rig)
+    item = shown.items(rig.name, "blind")[""]
+    assert not updating.is_preview(rig.name, "blind", "", item)
+    monkeypatch.setattr(updating.worker.desk, "ask", lambda *_: None)  # a machine that is busy
+    rig.objects["roof"].location.x += 0.1
+    bpy.context.view_layer.update()
+    updating.on_rested()
+    assert shown.items(rig.name, "blind")[""] is item
+    assert handler._legend(rig.name, "blind", "").title.endswith(" (preview)")
+
+
 def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
     scenes.drawn(rig)
     fine = shown.items(rig.name, "ground")[""].shape.sheet.image.shape
@@ -98,8 +110,11 @@ def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
     updating.on_moved()
     item = shown.items(rig.name, "ground")[""]
     assert item.rough and item.shape.sheet.image.shape < fine
+    title = item.shape.legend.title
+    assert handler._legend(rig.name, "ground", "").title == f"{title} (preview)"
     worked.clear()
     updating.on_rested()
+    assert handler._legend(rig.name, "ground", "").title == title
     assert not shown.items(rig.name, "ground")[""].rough
     assert shown.items(rig.name, "ground")[""].shape.sheet.image.shape == fine
     assert {name for name, _ in worked} == {layer.name for layer in layers.LAYERS if layer.rough}

@@ -56,7 +56,7 @@ ALLOWED = {
     "overlay.updating": {
         *("changes", "engine", "overlay", "overlay.reading", "redraw", "roster", "worker"),
     },
-    "overlay.handler": {"overlay", "overlay.updating"},
+    "overlay.handler": {"engine", "overlay", "overlay.updating"},
     "review": {"bridge", "engine"},
     "operators": {
         *("asking", "body", "bridge", "changes", "choices", "engine", "explaining", "housing"),

@@ -21,21 +21,24 @@ from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .oddities import missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
 from .own_sensors import add_own_sensor, forget_own_sensors, sync_own_sensors, table_of
-from .placeable import check_placeable
+from .placeable import check_placeable, holder_of
 from .plain_objects import plain_objects, put_objects, sensors_of_objects
-from .prior import prior_from_scene, prior_key
+from .prior import focus_rows, prior_from_scene, prior_key
 from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
 from .restored import restore_result
 from .rig import (
+    held_pose,
     mounted_on_sensor,
     place_poses,
     place_rig,
+    pose_from_numbers,
     pose_of,
     pose_of_matrix,
     possible_sensors,
     rig_from_objects,
     sensor_from_object,
     sensor_objects,
+    stand_at,
     view_layer_of,
 )
 from .scene import check_scene, study_from_scene, study_of_rig, vehicle_of_scene
@@ -86,10 +89,13 @@ __all__ = [
     "copy_score",
     "drop_foreign_results",
     "fingerprint",
+    "focus_rows",
     "follow_mirrors",
     "forget_mirrors",
     "forget_own_sensors",
     "free_axes",
+    "held_pose",
+    "holder_of",
     "in_the_middle",
     "keep_front",
     "keep_score",
@@ -114,6 +120,7 @@ __all__ = [
     "place_poses",
     "place_rig",
     "plain_objects",
+    "pose_from_numbers",
     "pose_of",
     "pose_of_matrix",
     "possible_sensors",
@@ -139,6 +146,7 @@ __all__ = [
     "signature",
     "space_of",
     "stand",
+    "stand_at",
     "store_outcome",
     "store_warnings",
     "store_words",

@@ -53,6 +53,13 @@ def _check_locks(obj: bpy.types.Object, mounting: pe.Mounting) -> None:
         raise pe.InputError("scene", f"sensor {obj.name!r}", expected, found)
 
 
+def holder_of(obj: bpy.types.Object) -> str:
+    """Name what decides where an object stands, in its own stead; empty for one that is free."""
+    if obj.library is not None:
+        return f"the file that it is linked from, {obj.library.name}"
+    return next(_holders(obj), "")
+
+
 def _holders(obj: bpy.types.Object) -> Iterator[str]:
     """Name what decides where an object stands, besides its own location and rotation."""
     for path in _animated(obj):

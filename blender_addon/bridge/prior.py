@@ -43,6 +43,14 @@ def prior_key(scene: bpy.types.Scene) -> str:
     return repr(prior_signature(scene))
 
 
+def focus_rows(
+    scene: bpy.types.Scene,
+) -> tuple[tuple[str, float, tuple[Area, ...], tuple[str, ...] | None], ...]:
+    """Return name, factor, areas and classes (None: all) of each focus, as they are typed."""
+    rows = scene.perception_entropy.focus
+    return tuple((row.name, as_typed(row.factor), _areas(row), _classes(row)) for row in rows)
+
+
 def _prior_from_boxes(path: str) -> pe.Prior:
     if not path:
         raise pe.InputError("scene", "boxes", "a file of labelled boxes", "none chosen")

@@ -38,16 +38,18 @@ from .ask_place import answer
 from .known_rigs import rigs
 from .live_reference import reference_label
 from .mending import LABELS as FIX_LABELS
-from .offered import Offer, brief, makers, models, offers
+from .offered import SENSOR_COLORS, Offer, brief, held_by, makers, models, offers
 from .select import listed_sensors
 
 __all__ = [
     "CLASSES",
     "FIX_LABELS",
+    "SENSOR_COLORS",
     "Offer",
     "ShownScore",
     "answer",
     "brief",
+    "held_by",
     "listed_sensors",
     "makers",
     "models",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bpy
+import numpy as np
 from bpy.props import EnumProperty, StringProperty
 
 from .. import bridge, changes
@@ -13,6 +14,9 @@ from .reports import REFUSALS, refuse, tell
 IN_A_BOX = "BOX"
 """What the menu of a sensor's mounts calls none."""
 NO_GO_SIZE_M = 0.25
+"""Half a side of a no-go area that is round no part."""
+CLEAR_OF_PART_M, LEAST_SIDE_M = 0.02, 0.01
+"""How far an area round parts goes beyond them, and what a flat one has at least."""
 _shown: list[tuple[str, str, str]] = []
 """What the menu lists: Blender reads the texts after the function that made them is done."""
 
@@ -123,7 +127,8 @@ class PE_OT_mount_sensor(bpy.types.Operator):
 
 
 class PE_OT_add_no_go(bpy.types.Operator):
-    """Add a box that no part of a sensor may be in; move and scale it as any empty"""
+    """Add a box that no part of a sensor may be in: round the vehicle's parts that are selected,
+    else at the 3D cursor, or on the roof where the cursor is at the origin"""
 
     bl_idname = "pe.add_no_go"
     bl_label = "Add No-Go Area"
@@ -132,7 +137,9 @@ class PE_OT_add_no_go(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = bpy.data.objects.new("no_go", None)
         obj.empty_display_type, obj.empty_display_size = "CUBE", NO_GO_SIZE_M
-        obj.location = context.scene.cursor.location
+        low, high = no_go_extent(context)
+        obj.location = (low + high) / 2.0
+        obj.scale = np.maximum(high - low, LEAST_SIDE_M) / (2.0 * NO_GO_SIZE_M)
         bridge.shown_collection(context.scene).objects.link(obj)
         obj.perception_entropy.is_no_go = True
         for other in context.selected_objects:
@@ -140,6 +147,28 @@ class PE_OT_add_no_go(bpy.types.Operator):
         obj.select_set(True)
         context.view_layer.objects.active = obj
         return {"FINISHED"}
+
+
+def no_go_extent(context: bpy.types.Context) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and the highest corner (3,) [m] that a new no-go area has."""
+    if parts := selected_parts(context):
+        points = np.concatenate([_corners(part) for part in parts])
+        return points.min(axis=0) - CLEAR_OF_PART_M, points.max(axis=0) + CLEAR_OF_PART_M
+    half = np.full(3, NO_GO_SIZE_M)
+    middle = np.array(context.scene.cursor.location)
+    if not middle.any():  # where the cursor is unless somebody has put it elsewhere: in the car
+        vehicle = context.scene.perception_entropy.vehicle
+        meshes = [o for o in (vehicle.all_objects if vehicle else ()) if o.type == "MESH"]
+        points = np.concatenate([np.zeros((1, 3)), *map(_corners, meshes)])
+        middle[2] = points[:, 2].max() + NO_GO_SIZE_M
+    return middle - half, middle + half
+
+
+def _corners(obj: bpy.types.Object) -> np.ndarray:
+    """(8, 3) corners of an object's box in the ground frame [m]."""
+    ground_from_object = np.array(obj.matrix_world, dtype=float)
+    corners = np.array(obj.bound_box, dtype=float)
+    return corners @ ground_from_object[:3, :3].T + ground_from_object[:3, 3]
 
 
 def put_on_mount(

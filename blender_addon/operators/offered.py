@@ -5,8 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..engine import catalog, kinds
+import bpy
+
+from .. import bridge
+from ..engine import catalog, graphics, kinds
 from .mounting import mount_of
+
+SENSOR_COLORS = graphics.SENSOR_COLORS
+"""Colours of sensors in the 3D view, in the order of the list, again from the first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +61,8 @@ def described(model: str) -> str:
 
 def _is(entry: catalog.Entry, kind: str | None) -> bool:
     return entry.kind in kinds.KINDS and kind in (None, entry.kind)
+
+
+def held_by(obj: bpy.types.Object) -> str:
+    """Name what holds a sensor where it is, so that its pose is not typed; empty: it is free."""
+    return bridge.holder_of(obj)

@@ -97,11 +97,11 @@ def _measure(
     if spot is None or (zone is not None and 0.0 < zone < LEAST_M):
         return None
     if zone is None:
-        distance, text = found.within, f"blind beyond {found.within:g} m"
+        distance, text = found.within, f"blind beyond {found.within:g} m out"
     elif zone:
-        distance, text = zone, f"blind to {zone:.1f} m"
+        distance, text = zone, f"blind to {zone:.1f} m out"
     else:
-        distance, text = spot.distance, f"blind at {spot.distance:.1f} m"
+        distance, text = spot.distance, f"blind from {spot.distance:.1f} m out"
     axis, sign = SIDES[side]
     end = np.zeros(3)
     end[axis] = body[1 if sign > 0 else 0][axis] + sign * distance

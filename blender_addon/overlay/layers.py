@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import graphics, pe
-from . import asked, axles, blind, ghosts, heat, mounts, reach
+from . import asked, axles, blind, focus, ghosts, heat, mounts, reach
 from .tools import Tools
-from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, SELECTED, PictureWish, SceneSensor, ViewSettings
+from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, PictureWish, SceneSensor, ViewSettings
 
 WHOLE_RIG = ""
 """Under this name stands what belongs to no single sensor."""
@@ -165,28 +165,28 @@ def _beam_colors(
     of: SceneSensor, view: ViewSettings, channel: NDArray[np.int64], stopped: NDArray[np.bool_]
 ) -> NDArray[np.float32]:
     """(N, 4) colours of beams of these channels."""
-    free, hit = (np.float32(c) for c in (graphics.VIEWPORT.free, graphics.VIEWPORT.stopped))
+    by_sensor = view.beam_colors == BY_SENSOR
+    palette = graphics.sensor_palette(of.number) if by_sensor else graphics.VIEWPORT
+    free, hit = (np.float32(c) for c in (palette.free, palette.stopped))
     colors = np.where(stopped[:, None], hit, free)
-    if view.beam_colors == BY_SENSOR:
-        colors[:, :3] = graphics.sensor_color(of.number)
     if view.beam_colors == BY_CHANNEL:
         rank = np.argsort(np.argsort(of.sensor.model.elevations, kind="stable"))
         colors[:, :3] = graphics.on_scale(rank[channel] / max(len(rank) - 1, 1), graphics.VIRIDIS)
     return colors
 
 
-def _beam_legend(view: ViewSettings) -> graphics.ColorKey | None:
-    if view.beam_colors == BY_SENSOR:
-        return None  # the labels have the colours
+def _beam_legend(view: ViewSettings) -> graphics.ColorKey:
     if view.beam_colors == BY_CHANNEL:
         row = graphics.on_scale(np.linspace(0.0, 1.0, graphics.SWATCHES), graphics.VIRIDIS)
         swatches = tuple((*map(float, color), 1.0) for color in row)
         return graphics.ColorKey("Channel", swatches, ("lowest", "highest"))
-    solid = tuple(
-        graphics.with_alpha(c, 1.0) for c in (graphics.VIEWPORT.free, graphics.VIEWPORT.stopped)
+    palette = graphics.VIEWPORT
+    stopped = (graphics.with_alpha(palette.stopped, 1.0), "stopped by the vehicle")
+    if view.beam_colors == BY_SENSOR:  # free beams have the colours of the names
+        return graphics.ColorKey("Beams", classes=(stopped,))
+    return graphics.ColorKey(
+        "Beams", classes=((graphics.with_alpha(palette.free, 1.0), "free"), stopped)
     )
-    names = ("free", "stopped by the vehicle")
-    return graphics.ColorKey("Beams", classes=tuple(zip(solid, names, strict=True)))
 
 
 def _heat_keys(wish: PictureWish) -> dict[str, Hashable]:
@@ -209,30 +209,24 @@ def _views(wish: PictureWish, _tools: Tools, name: str) -> graphics.LayerShape:
     of = next(each for each in wish.sensors if each.sensor.name == name)
     drawing = graphics.drawing_of(of.sensor.kind)
     sketch = drawing.sketch(of.sensor, None, graphics.BeamChoice(1))
-    lines, faces = (
-        [sketch.lines(FRUSTUM_M, graphics.VIEWPORT)],
-        [sketch.faces(FRUSTUM_M, graphics.VIEWPORT)],
-    )
+    palette = graphics.sensor_palette(of.number)
+    lines, faces = [sketch.lines(FRUSTUM_M, palette)], [sketch.faces(FRUSTUM_M, palette)]
     if drawing.footprint is not None and wish.view.footprints:
         outline = drawing.footprint(of.sensor, wish.view.view_range)
-        lines.append(graphics.footprint_lines(outline, graphics.VIEWPORT.camera))
-        faces.append(graphics.footprint_faces(outline, graphics.VIEWPORT.camera_face))
+        lines.append(graphics.footprint_lines(outline, palette.camera))
+        faces.append(graphics.footprint_faces(outline, palette.camera_face))
     shown = graphics.Primitives.joined(lines)
     shown.colors[:, 3] *= 1.0 if of.selected else NOT_SELECTED
     return graphics.LayerShape(shown, graphics.Primitives.joined(faces))
 
 
 def _label_keys(wish: PictureWish) -> dict[str, Hashable]:
-    colored = wish.view.beam_colors, wish.view.reach_of
-    return {e.sensor.name: (e.key, e.selected, colored) for e in wish.sensors if e.drawn}
+    return {e.sensor.name: (e.key, e.selected) for e in wish.sensors if e.drawn}
 
 
 def _label(wish: PictureWish, _tools: Tools, name: str) -> graphics.LayerShape:
     of = next(each for each in wish.sensors if each.sensor.name == name)
-    by_sensor = wish.view.beam_colors == BY_SENSOR or wish.view.reach_of in (SELECTED, ALL)
-    color: graphics.Rgba = (
-        (*graphics.sensor_color(of.number), 1.0) if by_sensor else graphics.VIEWPORT.words
-    )
+    color = graphics.with_alpha(graphics.sensor_color(of.number), 1.0)
     return graphics.LayerShape(
         labels=(graphics.Tag(name, of.sensor.pose.position, color, strong=of.selected),)
     )
@@ -284,6 +278,14 @@ def _mounts(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape
     return mounts.mounts(wish.mounts, wish.boxes)
 
 
+def _focus_keys(wish: PictureWish) -> dict[str, Hashable]:
+    return {WHOLE_RIG: (wish.focus, wish.space)} if wish.focus and wish.space is not None else {}
+
+
+def _focus(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape:
+    return focus.focus_regions(wish.focus, wish.space)
+
+
 def _axle_keys(wish: PictureWish) -> dict[str, Hashable]:
     return {} if wish.reference is None else {WHOLE_RIG: (wish.reference, wish.body_key)}
 
@@ -314,6 +316,7 @@ LAYERS = (
     ),
     Layer("reach", "Reach", _reach_keys, _reach, 2.2, rough=True, on_ground=True, edged=True),
     Layer("mounts", "Mounts", _mount_keys, _mounts, 1.4, edged=True),
+    Layer("focus", "Focus", _focus_keys, _focus, 1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
     Layer("heat", "Stopped Where", _heat_keys, _heat, rough=True),

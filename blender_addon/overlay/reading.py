@@ -14,7 +14,15 @@ from .. import asking, body, bridge, roster, searching
 from ..engine import pe
 from ..live import latest
 from .layers import LAYERS
-from .wish import AVERAGE, MountFaces, PictureWish, SceneSensor, SearchBox, ViewSettings
+from .wish import (
+    AVERAGE,
+    FocusRegion,
+    MountFaces,
+    PictureWish,
+    SceneSensor,
+    SearchBox,
+    ViewSettings,
+)
 
 LEAST_LENGTH_M = 0.1
 BEST_SO_FAR = "best so far"
@@ -65,6 +73,7 @@ class SceneReader:
             place=None if answer is None else answer.place,
             mounts=mounts,
             boxes=_boxes(scene, sensors, vehicle, mounts),
+            focus=tuple(FocusRegion(*row) for row in bridge.focus_rows(scene)),
             reference=bridge.reference_of(scene.perception_entropy),
         )
 

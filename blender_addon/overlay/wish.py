@@ -33,7 +33,7 @@ class ViewSettings:
     beams_of: str = ALL
     channels: str = graphics.ChannelMode.FEW
     channel: int = 1
-    beam_colors: str = BY_STATE
+    beam_colors: str = BY_SENSOR
     rings: bool = True
     footprints: bool = True
     view_range: float = 12.0
@@ -83,6 +83,16 @@ class SearchBox:
 
 
 @dataclass(frozen=True, slots=True)
+class FocusRegion:
+    """A focus weight: its areas ((x low, x high), (y low, y high)) [m]; classes None: all."""
+
+    name: str
+    factor: float
+    areas: tuple[tuple[tuple[float, float], tuple[float, float]], ...]
+    classes: tuple[str, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class PictureWish:
     """A scene, as far as what is drawn depends on it.
 
@@ -108,6 +118,7 @@ class PictureWish:
     place: advice.AskedPlace | None = None
     mounts: tuple[MountFaces, ...] = ()
     boxes: tuple[SearchBox, ...] = ()
+    focus: tuple[FocusRegion, ...] = ()
     reference: pe.Reference | None = None
 
     @property

@@ -14,6 +14,7 @@ from . import (
     search,
     selection,
     sensor,
+    swatches,
     tolerance,
     variants,
 )
@@ -38,12 +39,14 @@ CLASSES = (
 
 
 def register() -> None:
-    """Add what stands in headers and menus of Blender's own."""
+    """Add icons, and what stands in headers and menus of Blender's own."""
+    swatches.register()
     overlay.register()
     export.register()
 
 
 def unregister() -> None:
-    """Take it out again."""
+    """Take them out again."""
     export.unregister()
     overlay.unregister()
+    swatches.unregister()

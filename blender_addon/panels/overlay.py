@@ -105,6 +105,7 @@ LAYERS: tuple[tuple[str, DrawChoices | None], ...] = (
     ("blind", _blind),
     ("reach", _reach),
     ("mounts", None),
+    ("focus", None),
     ("frustums", _frustums),
     ("beams", _beams),
     ("heat", None),

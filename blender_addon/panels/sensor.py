@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import bpy
 
+from ..operators import held_by
 from ..properties import AXIS_LABELS
 from .layout import Tab
+from .words import draw_sentence
+
+POSITION_LABELS = ("X", "Y", "Height")
+"""Height is that of the optical centre over the ground, z."""
 
 
 class PE_PT_sensor(Tab, bpy.types.Panel):
@@ -26,12 +31,33 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         layout = self.layout
         layout.prop(settings, "model")
         layout.prop(settings, "fusion")
+        draw_pose(layout, context, obj)
         layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
         layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
         draw_mirror(layout, obj)
         draw_mounted(layout, settings)
         layout.label(text=f"The search may change, for {obj.name}:")
         draw_free(layout, settings)
+
+
+def draw_pose(
+    layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object
+) -> None:
+    """Draw the pose in the ground frame; what holds the object, and locked axes, are not typed."""
+    settings, holder = obj.perception_entropy, held_by(obj)
+    pair = layout.split()
+    for name, texts, locks in (
+        ("ground_position", POSITION_LABELS, obj.lock_location),
+        ("ground_rotation", AXIS_LABELS[3:], obj.lock_rotation),
+    ):
+        column = pair.column(align=True)
+        for index, text in enumerate(texts):
+            cell = column.row(align=True)
+            locked = any(locks) if obj.parent else locks[index]  # of a frame of its own
+            cell.enabled = not (holder or locked)
+            cell.prop(settings, name, index=index, text=text)
+    if holder:
+        draw_sentence(layout, context, f"Held by {holder}", icon="LOCKED")
 
 
 def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..operators import listed_sensors
+from .swatches import swatch
 from .words import letters
 
 WIDE_LETTERS = 56
@@ -23,15 +24,16 @@ def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) ->
     for cell, text in zip(header, HEADER, strict=False):
         cell.active = False
         cell.label(text=text)
-    for obj in listed_sensors(context.scene):
-        _draw_row(table, obj, wide, active=obj == context.active_object)
+    for number, obj in enumerate(listed_sensors(context.scene)):
+        _draw_row(table, obj, wide, number, active=obj == context.active_object)
 
 
 def _draw_row(
-    layout: bpy.types.UILayout, obj: bpy.types.Object, wide: bool, *, active: bool
+    layout: bpy.types.UILayout, obj: bpy.types.Object, wide: bool, number: int, *, active: bool
 ) -> None:
     settings = obj.perception_entropy
     name, loss, where, *rest = _cells(layout, wide)
+    name.label(text="", icon_value=swatch(number))
     name.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
     if not settings.has_result:
         loss.label(text="not scored")

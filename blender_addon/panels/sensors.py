@@ -5,11 +5,12 @@ from __future__ import annotations
 import bpy
 
 from ..operators import listed_sensors
+from .swatches import swatch
 from .words import draw_warning, letters
 
 LEAST_SHARE = 0.34
 """How much of a row a name takes at least."""
-BESIDE_LETTERS = 6
+BESIDE_LETTERS = 9
 """What switches and the figure take from a row, in letters."""
 FIGURE_SHARE = 0.2
 
@@ -24,8 +25,8 @@ def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     share = name_share(objects, letters(context) - BESIDE_LETTERS)
     draw_header(box, share)
     warnings = list(context.scene.perception_entropy.result_warnings)
-    for obj in objects:
-        draw_sensor(box, context, obj, share)
+    for number, obj in enumerate(objects):
+        draw_sensor(box, context, obj, share, number)
         for warning in warnings:
             if warning.subject == obj.name:
                 draw_warning(box, context, warning)
@@ -46,8 +47,8 @@ def draw_header(layout: bpy.types.UILayout, share: float) -> None:
     row = layout.row(align=True)
     row.active = False
     row.scale_y = 0.8
-    row.label(text="", icon="BLANK1")
-    row.label(text="", icon="BLANK1")
+    for _ in range(3):
+        row.label(text="", icon="BLANK1")
     name, model, figure = cells(row, share)
     name.label(text="Sensor")
     if model is not None:
@@ -56,15 +57,21 @@ def draw_header(layout: bpy.types.UILayout, share: float) -> None:
 
 
 def draw_sensor(
-    layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object, share: float
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    obj: bpy.types.Object,
+    share: float,
+    number: int,
 ) -> None:
-    """Draw a sensor's row: the eye is the Outliner's, the rays are its beams' in the view."""
+    """Draw a sensor's row: the eye is the Outliner's, the rays are its beams' in the view, whose
+    colour stands beside them."""
     settings, counts = obj.perception_entropy, obj.visible_get()
     row = layout.row(align=True)
     eye = "HIDE_OFF" if counts else "HIDE_ON"
     row.operator("pe.toggle_sensor", text="", icon=eye, emboss=False).name = obj.name
     rays = "LIGHT_SUN" if settings.show else "DOT"
     row.prop(settings, "show", text="", icon=rays, emboss=False)
+    row.label(text="", icon_value=swatch(number))
     name, model, figure = cells(row, share)
     row.active = counts  # what is hidden is not scored
     active = obj == context.active_object

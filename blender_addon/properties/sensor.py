@@ -17,6 +17,7 @@ from ..engine import search
 from .advanced import SearchBounds
 from .callbacks import changed, model_chosen, models_of_a_kind, own_curve_switched, redraw
 from .mounting import MountedSettings
+from .pose import GroundPose
 from .selection import OfferedModels
 from .warnings import PE_StoppingPart
 
@@ -26,7 +27,9 @@ AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
-class PE_ObjectSettings(SearchBounds, MountedSettings, OfferedModels, bpy.types.PropertyGroup):
+class PE_ObjectSettings(
+    GroundPose, SearchBounds, MountedSettings, OfferedModels, bpy.types.PropertyGroup
+):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: BoolProperty(

@@ -28,7 +28,11 @@ TALL = (
 AVERAGED = ("AVERAGE", "Average", "All heights, by how likely an object is there: as scored", 0)
 COLORS = (
     ("STATE", "Free or Stopped", "Blue beams go free, orange ones end on the vehicle"),
-    ("SENSOR", "Sensor", "Each sensor has a colour of its own"),
+    (
+        "SENSOR",
+        "Sensor",
+        "Each sensor has a colour of its own, as in the list; orange beams end on the vehicle",
+    ),
     ("CHANNEL", "Channel", "From the lowest channel, dark, to the highest, bright"),
 )
 
@@ -100,6 +104,12 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         update=redraw,
     )
 
+    show_focus: BoolProperty(
+        name="Focus",
+        description="Outline the regions that count more or less than the prior says",
+        default=True,
+        update=redraw,
+    )
     show_mounts: BoolProperty(
         name="Mounts",
         description="Tint the surfaces that sensors may sit on; no-go areas and bounds are boxes",
@@ -207,6 +217,7 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         items=COLORS,
         name="Color By",
         description="What the colours of beams tell",
+        default="SENSOR",
         update=redraw,
     )
     rings: BoolProperty(

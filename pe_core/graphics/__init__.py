@@ -11,6 +11,7 @@ from .colors import (
     CIVIDIS,
     COUNTS,
     PAPER,
+    SENSOR_COLORS,
     VIEWPORT,
     VIRIDIS,
     Palette,
@@ -18,6 +19,7 @@ from .colors import (
     on_scale,
     sensor_color,
     sensor_color_on_paper,
+    sensor_palette,
     with_alpha,
 )
 from .frustums import (
@@ -64,6 +66,7 @@ __all__ = [
     "RANGES",
     "RING_FAR_M",
     "SENSORS",
+    "SENSOR_COLORS",
     "SWATCHES",
     "VIEWPORT",
     "VIRIDIS",
@@ -108,6 +111,7 @@ __all__ = [
     "ring_lines",
     "sensor_color",
     "sensor_color_on_paper",
+    "sensor_palette",
     "shown_beams",
     "stopped_lines",
     "with_alpha",

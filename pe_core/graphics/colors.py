@@ -9,7 +9,7 @@ them with alpha.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -122,3 +122,16 @@ def sensor_color(number: int) -> Rgb:
 def sensor_color_on_paper(number: int) -> Rgb:
     """Return the colour of a rig's sensor by its place, for a light ground."""
     return SENSOR_COLORS_ON_PAPER[number % len(SENSOR_COLORS_ON_PAPER)]
+
+
+def sensor_palette(number: int, palette: Palette = VIEWPORT) -> Palette:
+    """Return a palette in which all lines of one sensor have that sensor's colour.
+
+    Opacities stay those of the palette; `stopped`, `blind` and the rig's own colours are kept.
+    """
+    color = sensor_color(number)
+    hues = {
+        name: with_alpha(color, getattr(palette, name)[3])
+        for name in ("free", "camera", "camera_face", "other")
+    }
+    return replace(palette, **hues)

@@ -95,6 +95,7 @@ def seen_rig(car) -> bpy.types.Scene:
         setattr(view, f"show_{layer.name}", True)
     view.beams_of = "ALL"
     car.perception_entropy.axles_known = True
+    bpy.ops.pe.add_focus(region="front")
     return car
 
 

@@ -23,7 +23,7 @@ ALLOWED = {
     "changes": set(),
     "choices": set(),
     "engine": set(),
-    "properties": {"changes", "choices", "engine"},
+    "properties": {"bridge", "changes", "choices", "engine"},
     "bridge": {"choices", "engine"},
     "roster": {"bridge", "changes"},
     "body": {"bridge", "engine"},

@@ -99,10 +99,10 @@ def test_blind_ground_is_measured_by_side():
     nearest = {"front": ((2.0, 0.0), 0.0), "left": ((0.0, 4.0), 3.0)}
     found = found_blind((at_body, away), nearest, {"front": 3.0})
     shape = blind.blind_ground(found, car().bounds, 0.5)
-    assert {label.text for label in shape.labels} == {"blind to 3.0 m", "blind at 3.0 m"}
+    assert {label.text for label in shape.labels} == {"blind to 3.0 m out", "blind from 3.0 m out"}
     places = {label.text: label.place for label in shape.labels}
-    assert places["blind to 3.0 m"] == pytest.approx((5.0, 0.0, 0.0), abs=1e-6)
-    assert places["blind at 3.0 m"] == pytest.approx((0.0, 4.0, 0.0), abs=1e-6)
+    assert places["blind to 3.0 m out"] == pytest.approx((5.0, 0.0, 0.0), abs=1e-6)
+    assert places["blind from 3.0 m out"] == pytest.approx((0.0, 4.0, 0.0), abs=1e-6)
     assert shape.legend.classes[0][1] == "5 m² within 10 m" and "0.5 m" in shape.legend.title
     assert (shape.lines.points[:, 2] == 0.0).all() and len(shape.thin.points)
 
@@ -112,7 +112,7 @@ def test_blind_ground_that_does_not_end_says_so_and_a_strip_is_not_measured():
     nearest = {"front": ((2.0, 0.0), 0.0), "left": ((0.0, 1.0), 0.0)}
     found = found_blind((endless, strip), nearest, {"front": None, "left": 0.2})
     shape = blind.blind_ground(found, car().bounds, 0.0)
-    assert [label.text for label in shape.labels] == ["blind beyond 10 m"]
+    assert [label.text for label in shape.labels] == ["blind beyond 10 m out"]
 
 
 def test_nothing_blind_is_an_empty_shape():

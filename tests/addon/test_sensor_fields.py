@@ -1,0 +1,115 @@
+"""What a sensor is, as fields and in one colour; focus and no-go areas where they are meant."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+
+from blender_addon import bridge
+from blender_addon.engine import graphics
+from blender_addon.overlay import layers
+from blender_addon.panels import sensor as sensor_panel
+from blender_addon.panels import swatches
+from tests.addon import scenes
+from tests.addon.layouts import Layout, Window
+
+TURNED = (0.3, -0.2, 1.0)
+
+
+def pose(obj):
+    bpy.context.view_layer.update()
+    return bridge.pose_of(obj, scenes.depsgraph())
+
+
+@pytest.mark.parametrize("parented", [False, True])
+def test_the_fields_are_the_transform_of_the_object(car, parented):
+    roof = car.objects["roof"]
+    if parented:
+        parent = bpy.data.objects.new("parent", None)
+        car.collection.objects.link(parent)
+        parent.location, parent.rotation_euler = (3.0, -2.0, 0.5), TURNED
+        roof.parent = parent
+        bpy.context.view_layer.update()
+    fields = roof.perception_entropy
+    fields.ground_position[0] = 0.25
+    bpy.context.view_layer.update()
+    fields.ground_position = (0.25, -0.5, 1.75)
+    bpy.context.view_layer.update()
+    fields.ground_rotation = [math.radians(v) for v in (10.0, 90.0, -120.0)]
+    read = pose(roof)
+    assert read.position == (0.25, -0.5, 1.75)
+    assert read.rotation_deg == pytest.approx((10.0, 90.0, -120.0), abs=1e-9)
+    roof.matrix_world = roof.matrix_world @ roof.matrix_world.Translation((0.5, 0.0, 0.0))
+    assert pose(roof).position != read.position  # moved by hand: the fields follow
+    assert tuple(fields.ground_position) == pytest.approx(pose(roof).position, abs=1e-6)
+
+
+def test_what_is_held_is_told_and_not_typed(car):
+    roof = car.objects["roof"]
+    layout = Layout()
+    sensor_panel.draw_pose(layout, Window(car), roof)
+    assert not layout.texts("label")
+    roof.constraints.new("COPY_LOCATION").name = "to the mast"
+    sensor_panel.draw_pose(layout, Window(car), roof)
+    assert "to the mast" in " ".join(layout.texts("label"))
+
+
+def test_a_sensor_has_one_colour_in_every_layer_and_in_the_list(car):
+    for number in range(3):
+        scenes.add_sensor(f"eye {number}", "Camera 60 deg", location=(2.0, number - 1.0, 1.0))
+    car.perception_entropy.view.beams_of = "ALL"
+    drawn, wanted = scenes.drawn(car), {}
+    names = sorted(["roof", *(f"eye {k}" for k in range(3))])
+    for number, name in enumerate(names):
+        wanted[name] = np.float32(graphics.sensor_color(number))
+        (label,) = drawn["labels"][name].labels
+        assert np.float32(label.color[:3]) == pytest.approx(wanted[name])
+        icon = swatches.pixels(graphics.SENSOR_COLORS[number]).reshape(-1, 4)
+        assert icon[icon[:, 3] > 0.0, :3] == pytest.approx(np.broadcast_to(wanted[name], (484, 3)))
+    for name, shape in drawn["frustums"].items():
+        for part in (shape.lines, shape.faces):
+            assert len(part.colors) and (part.colors[:, :3] == wanted[name]).all()
+    beams = drawn["beams"]["roof"].lines.colors[:, :3]
+    stopped = np.float32(graphics.VIEWPORT.stopped[:3])
+    own, hit = ((beams == color).all(axis=1) for color in (wanted["roof"], stopped))
+    assert own.any() and hit.any() and (own | hit).all()
+
+
+def test_focus_regions_are_boxes_with_their_factors(car):
+    bpy.ops.pe.add_focus(region="far")
+    bpy.ops.pe.add_focus(region="custom")
+    row = car.perception_entropy.focus[1]
+    row.x_range, row.y_range, row.factor, row.classes = (5.0, 25.0), (-4.0, 4.0), 0.5, {"car"}
+    shape = scenes.drawn(car)["focus"][layers.WHOLE_RIG]
+    texts = [label.text for label in shape.labels]
+    assert texts == ["Focus 1: × 2", "Focus 1: × 2", "Focus 2: × 0.5 (car)"]
+    assert shape.labels[2].place == pytest.approx((15.0, 0.0, 0.0))
+    assert len(shape.lines.points) == 3 * 24
+    space = bridge.space_of(car.perception_entropy)
+    assert (
+        shape.lines.points[:, 0].min() > space.x[0] and shape.lines.points[:, 0].max() < space.x[1]
+    )
+    car.perception_entropy.view.show_focus = False
+    assert "focus" not in scenes.drawn(car)
+
+
+def test_a_no_go_area_begins_round_the_part_or_outside_the_car(car):
+    """Round the selected part, at a cursor that was moved, else on the roof."""
+    cabin = car.objects["cabin"]
+    for obj in bpy.context.selected_objects:
+        obj.select_set(False)
+    cabin.select_set(True)
+    bpy.context.view_layer.update()
+
+    bpy.ops.pe.add_no_go()
+    bpy.context.view_layer.update()
+    (box,) = bridge.no_go_boxes(car)
+    assert box.low == pytest.approx((-1.32, -0.82, 0.88)) and box.high == pytest.approx(
+        (0.72, 0.82, 1.52)
+    )
+    bpy.data.objects.remove(bpy.context.object)
+    bpy.ops.pe.add_no_go()  # nothing of the car is selected
+    bpy.context.view_layer.update()
+    (box,) = bridge.no_go_boxes(car)
+    assert box.low == pytest.approx((-0.25, -0.25, 1.5)) and box.high[2] == pytest.approx(2.0)

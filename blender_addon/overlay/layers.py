@@ -215,9 +215,10 @@ def _views(wish: PictureWish, _tools: Tools, name: str) -> graphics.LayerShape:
         outline = drawing.footprint(of.sensor, wish.view.view_range)
         lines.append(graphics.footprint_lines(outline, palette.camera))
         faces.append(graphics.footprint_faces(outline, palette.camera_face))
-    shown = graphics.Primitives.joined(lines)
-    shown.colors[:, 3] *= 1.0 if of.selected else NOT_SELECTED
-    return graphics.LayerShape(shown, graphics.Primitives.joined(faces))
+    shown, filled = graphics.Primitives.joined(lines), graphics.Primitives.joined(faces)
+    for part in (shown, filled):
+        part.colors[:, 3] *= 1.0 if of.selected else NOT_SELECTED
+    return graphics.LayerShape(shown, filled)
 
 
 def _label_keys(wish: PictureWish) -> dict[str, Hashable]:

@@ -10,13 +10,14 @@ from .words import letters
 
 WIDE_LETTERS = 56
 """From this room on, the parts that hide a sensor's view stand in its own row."""
-NAME_SHARE, LOSS_SHARE = 0.42, 0.3
+NAME_SHARE, LOSS_SHARE = 0.46, 0.3
 NO_FIGURE = "–"
-HEADER = ("Sensor", "Loss, nats", "Costs most", "Hidden by")
+HEADER = ("Sensor", "Loss", "Costs most", "Hidden by")
 
 
 def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw loss, where it costs most, and what hides it, of every sensor of the last result."""
+    layout.label(text="Without a sensor, nats worse:")
     table = layout.box().column(align=True)
     table.active = not context.scene.perception_entropy.result_stale
     wide = letters(context) >= WIDE_LETTERS
@@ -45,14 +46,16 @@ def _draw_row(
     elif settings.stopped_parts:
         below = layout.row(align=True)
         below.label(text="", icon="BLANK1")
-        below.label(text="hidden by")
-        _draw_parts(below, settings)
+        below.label(text="Hidden by")
+        _draw_parts(below, settings, 1)
 
 
-def _draw_parts(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw the parts that hide a sensor's view as buttons that select them."""
+def _draw_parts(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, most: int = 3
+) -> None:
+    """Draw the parts that hide most of a sensor's view as buttons that select them."""
     row = layout.row(align=True)
-    for part in settings.stopped_parts:
+    for part in settings.stopped_parts[:most]:
         text = f"{part.name} {part.share:.1%}"
         row.operator("pe.select_part", text=text, translate=False).name = part.name
     if not settings.stopped_parts:

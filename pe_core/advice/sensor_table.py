@@ -28,8 +28,8 @@ SHORT_ZONES = {
 OCCLUDERS_NAMED = 3
 MIN_SHARE = 5e-4
 """A part that hides less is not named: the share would read 0.0%."""
-MIN_RISE = 0.005
-"""Rises below this read 0.00 [nats]."""
+MIN_RISE, MIN_LOSS = 0.005, 0.00005
+"""Rises below the first would read 0.00, below the second they are none [nats]."""
 NO_FIGURE = "-"
 
 
@@ -117,17 +117,17 @@ def sensor_table(rows: Sequence[SensorRow]) -> list[str]:
 
 
 def loss_text(loss: float | None) -> str:
-    """Return what the loss of a sensor costs, in nats: "1.29", "none", or "only"."""
+    """Return what the loss of a sensor costs, in nats: "1.29", "< 0.01", "none", or "only"."""
     if loss is None:
         return "only"
-    if abs(loss) < MIN_RISE:
-        return f"{loss:.4f}" if abs(loss) >= MIN_RISE / 100.0 else "none"
-    return f"{loss:.2f}"
+    if abs(loss) < MIN_LOSS:
+        return "none"
+    return "< 0.01" if abs(loss) < MIN_RISE else f"{loss:.2f}"
 
 
 def where_text(row: SensorRow) -> str:
-    """Return where the loss costs most: "> 40 m (+2.10)"."""
-    return f"{SHORT_ZONES[row.zone]} (+{row.zone_loss:.2f})" if row.zone else NO_FIGURE
+    """Return where the loss costs most: "> 40 m +2.10"."""
+    return f"{SHORT_ZONES[row.zone]} +{row.zone_loss:.2f}" if row.zone else NO_FIGURE
 
 
 def hidden_text(parts: Mapping[str, float]) -> str:

@@ -124,14 +124,18 @@ def sensor_color_on_paper(number: int) -> Rgb:
     return SENSOR_COLORS_ON_PAPER[number % len(SENSOR_COLORS_ON_PAPER)]
 
 
+FACE_SHARE = 0.6
+
+
 def sensor_palette(number: int, palette: Palette = VIEWPORT) -> Palette:
     """Return a palette in which all lines of one sensor have that sensor's colour.
 
-    Opacities stay those of the palette; `stopped`, `blind` and the rig's own colours are kept.
+    Opacities stay those of the palette, but for sides of views: sensors' colours are light, and
+    `FACE_SHARE` of them hides as much. `stopped`, `blind` and the rig's own colours are kept.
     """
     color = sensor_color(number)
     hues = {
-        name: with_alpha(color, getattr(palette, name)[3])
-        for name in ("free", "camera", "camera_face", "other")
+        name: with_alpha(color, getattr(palette, name)[3]) for name in ("free", "camera", "other")
     }
-    return replace(palette, **hues)
+    face = with_alpha(color, palette.camera_face[3] * FACE_SHARE)
+    return replace(palette, **hues, camera_face=face)

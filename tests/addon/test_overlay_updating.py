@@ -68,7 +68,7 @@ def test_each_layer_has_a_switch_and_all_of_them_one(rig):
 
 def test_nothing_is_worked_out_without_a_change(rig, worked):
     scenes.drawn(rig)
-    assert len(worked) == 10
+    assert len(worked) == 11
     before = {layer: dict(shown.items(rig.name, layer)) for layer in ALL_LAYERS}
     worked.clear()
     scenes.drawn(rig)

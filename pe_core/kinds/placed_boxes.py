@@ -13,10 +13,11 @@ from ..scene.objects import Objects
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-NUDGE_M = np.array([2.0, 3.0, 5.0]) * 1e-8
+NUDGE_M = np.array([1.97, 3.02, 4.98]) * 1e-8
 """A sensor is moved by this, ground frame [m]: a beam that would run exactly along a face of a box
 (the horizontal one, at the height of its roof) then runs beside it or through it, whatever the
-rounding. Different along each axis, so that diagonals are decided as well."""
+rounding. The ratios are those of `lidar.ties`: of no beam at round angles, so that a beam through
+an edge of a box is decided as well."""
 NO_SPEED = 1e-30
 """Stands for a direction component of exactly 0, so that dividing by it gives +-huge."""
 

@@ -19,8 +19,12 @@ RIGS = int(os.environ.get("PE_PROPERTY_RIGS", "60"))
 INTERVALS = (0.1, 0.2, 0.25, 0.5)
 HALF_SHAPE = (12, 9, 7)
 """Of a space in voxels, but for its height, which is no more: areas are found in both ways."""
-NUDGE_Y = 3e-8
+NUDGE_Y = 3.02e-8
 """Of LiDARs, to the left, in voxels."""
+ROUND = "round"
+"""Name of LiDARs with round channels."""
+QUARTERS_DEG = (0.0, 90.0, 180.0, -90.0)
+ROUND_CHANNELS_DEG = (-60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0)
 ROUND_DEG = (0.0, 0.0, 30.0, 45.0, 90.0, -60.0, 135.0, 180.0, -90.0, 12.5)
 
 
@@ -50,19 +54,32 @@ class Scene:
         ]
         return replace(self, rig=self.rig.with_poses(poses))
 
-    def mirrored(self):
-        """Left and right exchanged."""
+    def mirrored(self, nudge_too=False):
+        """Left and right exchanged. A LiDAR's nudge is not, unless the caller mirrors that too."""
         flip = np.array([1.0, -1.0, 1.0])
         vehicle = self.vehicle and replace(self.vehicle, triangles=self.vehicle.triangles * flip)
-        poses = [pe.Pose(self._across(s), s.pose.rpy * -flip) for s in self.rig]
+        poses = [pe.Pose(self._across(s, nudge_too), s.pose.rpy * -flip) for s in self.rig]
         low, high = self.space.y
         space = replace(self.space, y=(-high, -low))
         return Scene(space, vehicle, self.rig.with_poses(poses))
 
-    def _across(self, sensor):
-        """Where the mirrored sensor is. A LiDAR's nudge is none: two of them are taken off."""
+    def _across(self, sensor, nudge_too):
+        """Where the mirrored sensor is; two nudges are taken off a LiDAR that is nudged as ever."""
         x, y, z = sensor.pose.position
-        return x, -y - (sensor.kind == "lidar") * 2.0 * NUDGE_Y * self.space.interval, z
+        off = sensor.kind == "lidar" and not nudge_too
+        return x, -y - off * 2.0 * NUDGE_Y * self.space.interval, z
+
+    def quarter_turned(self):
+        """All of it turned to the left by 90 degrees; the caller turns the nudges."""
+        left = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+        vehicle = self.vehicle and replace(self.vehicle, triangles=self.vehicle.triangles @ left.T)
+        poses = [
+            pe.Pose.from_degrees(left @ s.pose.position, s.pose.rotation_deg + np.array([0, 0, 90]))
+            for s in self.rig
+        ]
+        (low, high), x = self.space.y, self.space.x
+        space = replace(self.space, x=(-high, -low), y=x)
+        return Scene(space, vehicle, self.rig.with_poses(poses))
 
 
 def round_scene(number):
@@ -84,6 +101,10 @@ def _scene(rng, pose):
     lidar = pe.Sensor("lidar", _lidar(rng), pose(space))
     cameras = [pe.Sensor(name, _camera(rng), pose(space)) for name in ("camera", "other")]
     vehicle = _vehicle(rng, ends)
+    if lidar.model.name == ROUND and rng.random() < 0.6:  # beams through edges of voxels
+        vehicle = None
+        turn = tuple(rng.choice(QUARTERS_DEG, 3))
+        lidar = lidar.moved(pe.Pose.from_degrees(lidar.pose.position, turn))
     if vehicle is not None:
         lidar = lidar.moved(_off_edges(lidar.pose))
     return Scene(space, vehicle, pe.Rig([lidar, *cameras]))
@@ -95,6 +116,10 @@ def _off_edges(pose):
 
 
 def _lidar(rng):
+    """Channels at odd angles, or at round ones: those run through edges of voxels when turned."""
+    if rng.random() < 0.4:
+        elevations = np.radians(rng.permutation(ROUND_CHANNELS_DEG)[: rng.integers(1, 5)])
+        return pe.Lidar(ROUND, np.sort(elevations), int(rng.choice([12, 24, 72])), 60.0)
     channels, azimuths = int(rng.choice([1, 5, 16])), int(rng.choice([60, 90, 120]))
     return shapes.small_lidar(channels, azimuths, max_range=float(rng.choice([2.0, 60.0])))
 

@@ -10,7 +10,7 @@ from pe_core.kinds.lidar.grid import BeamGrid
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-6, 6), (-4, 4), (0, 4), 0.2)
-NUDGE = np.array([21990, 32985, 54976]) / 2**40
+NUDGE = np.array([21660, 33205, 54756]) / 2**40
 """By the tie rule a LiDAR stands this far above the round place where it is put, in voxels."""
 PLACES = {
     "corner": (0.2, -0.4, 1.8),
@@ -87,3 +87,53 @@ def test_voxels_on_a_lidar_s_axis(rotation, height):
     index = index[np.abs(SPACE.center_of(index) - pose.position).max(axis=1) < 0.8]
     expected = pe.measure(sensor, SPACE.center_of(index), SPACE.interval)
     assert shapes.counted(sensor, SPACE, index).tolist() == expected.tolist()
+
+
+TURNED = [(0, 90, 0), (90, 0, 0), (90, 90, -90), (0, -90, 180), (-90, 0, 90), (30, 90, 0)]
+
+
+@pytest.mark.parametrize("turn", TURNED)
+@pytest.mark.parametrize("position", [(0.2, -0.4, 1.8), (0.3, -0.4, 1.8)], ids=["corner", "edge"])
+def test_round_channels_turned_by_quarters(turn, position):
+    """Their directions are such as (0.5, 0.75, 0.433): 2 : 3, and run through edges of voxels."""
+    lidar = pe.Lidar("round", np.radians([-60.0, -30.0, 15.0, 30.0, 60.0]), 24, 50.0)
+    sensor = pe.Sensor("s", lidar, pe.Pose.from_degrees(position, turn))
+    index = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
+    index = index[np.abs(SPACE.center_of(index) - position).max(axis=1) < 1.7]
+    expected = pe.measure(sensor, SPACE.center_of(index), SPACE.interval)
+    assert shapes.counted(sensor, SPACE, index).tolist() == expected.tolist()
+    for turns in (0, 1):
+        further = pe.Pose.from_degrees(position, np.array(turn) + np.array([0, 0, 360 * turns]))
+        field, grid = pe.beam_field(sensor.moved(further), None), BeamGrid(SPACE)
+        grid.add(position, field.directions, field.ends)
+        assert grid.counts[tuple(index.T)].tolist() == expected.tolist()
+
+
+def test_no_direction_of_round_angles_has_the_ratio_of_two_nudges():
+    """Told apart by more than a sweep's roundings add up to over the paper's 1600 planes."""
+    angles, turns = (np.radians(np.arange(0.0, 91.0, step)) for step in (15.0, 30.0))
+    beams = np.array(
+        [(np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)) for e in angles for a in angles]
+    )
+    ratios = set()
+    for turn in np.stack(np.meshgrid(turns, turns, turns), axis=-1).reshape(-1, 3):
+        ratios |= fractions_of(np.abs(beams @ pe.Pose((0, 0, 0), tuple(turn)).ground_from_sensor.T))
+    assert {Fraction(2, 3), Fraction(5, 2)} < ratios and len(ratios) > 20
+    for a, b in ((0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1)):
+        planes = (1600, 800, 50)[a]
+        for ratio in ratios:
+            step = ratio * 2**40
+            rounding = abs(round(step) - step) * planes / 2**40 + Fraction(2, 2**40)
+            assert abs(Fraction(NUDGE[b]) - ratio * Fraction(NUDGE[a])) > rounding
+
+
+def fractions_of(directions):
+    """Ratios of two components that are ones of whole numbers up to 40."""
+    found = set()
+    for a, b in ((0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1)):
+        some = directions[(directions[:, a] > 1e-9) & (directions[:, b] > 1e-9)]
+        for ratio in np.unique(np.round(some[:, b] / some[:, a], 12)).tolist():
+            near = Fraction(ratio).limit_denominator(40)
+            if abs(near - Fraction(ratio)) < 1e-11 and near.numerator <= 40:
+                found.add(near)
+    return found

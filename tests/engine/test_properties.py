@@ -1,13 +1,16 @@
 """What must hold for any rig: on random ones, most of them at round places, where ties are."""
 
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
 import pe_core as pe
 from pe_core.kinds import kind_of
+from pe_core.kinds.camera.ties import NUDGE as CAMERA_NUDGE
 from pe_core.kinds.kernels import Voxels
+from pe_core.kinds.lidar.ties import NUDGE as LIDAR_NUDGE
 from tests.engine.random_rigs import RIGS, free_scene, round_scene
 
 ALL = 1 << 16
@@ -16,6 +19,7 @@ FLAT = 0.004
 """How far the closed form of an area may be off, relative."""
 SINGLE = 4e-6
 """Rounding of areas in single precision, relative: they go with the cube of a sum of two."""
+NUDGES = (LIDAR_NUDGE, CAMERA_NUDGE)
 STEPS = (-3.0, -1.0, -0.5, 0.0, 0.5, 1.0)
 
 each_rig = pytest.mark.parametrize("number", range(RIGS))
@@ -108,6 +112,38 @@ def test_moving_everything_by_halves_of_voxels_changes_nothing(number):
     assert_alike(on_grid(moved), on_grid(scene), SINGLE)
     if (outside(moved) == outside(scene)).all():
         assert entropy(moved) == pytest.approx(entropy(scene), abs=1e-8)
+
+
+@contextmanager
+def other_nudges(turned):
+    """What decides ties, mirrored or turned as well: x, y, z of the nudges become others.
+
+    A camera's aim is nudged towards the camera, on whichever side: signs are a LiDAR's alone.
+    """
+    before = [nudge.copy() for nudge in NUDGES]
+    try:
+        LIDAR_NUDGE[:] = turned(*LIDAR_NUDGE)
+        CAMERA_NUDGE[:] = np.abs(turned(*CAMERA_NUDGE))
+        yield
+    finally:
+        for nudge, kept in zip(NUDGES, before, strict=True):
+            nudge[:] = kept
+
+
+@pytest.mark.parametrize("number", range(2, RIGS, 3))
+def test_round_places_mirrored_and_turned(number):
+    """The mirrored and the turned map, once what decides ties is mirrored and turned as well.
+
+    By itself it is not: a voxel owns its lower faces wherever the rig is.
+    """
+    scene = round_scene(number)
+    found = on_grid(scene)
+    with other_nudges(lambda x, y, z: (x, -y, z)):
+        mirrored = on_grid(scene.mirrored(nudge_too=True))
+    assert_alike([m[:, ::-1] for m in mirrored], found, SINGLE)
+    with other_nudges(lambda x, y, z: (-y, x, z)):
+        turned = on_grid(scene.quarter_turned())
+    assert_alike([m[::-1].transpose(1, 0, 2) for m in turned], found, SINGLE)
 
 
 @each_rig

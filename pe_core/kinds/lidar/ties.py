@@ -21,9 +21,12 @@ Floats = NDArray[np.float64]
 SNAP_DECIMALS = 9
 NUDGE_UNIT = 2.0**-40
 """In voxels; what fixed point resolves as well (`lidar.grid`)."""
-NUDGE = np.array([21990, 32985, 54976]) * NUDGE_UNIT
-"""2, 3 and 5 times 1e-8 voxels: nanometres. Different along each axis, so that diagonals are
-decided as well."""
+NUDGE = np.array([21660, 33205, 54756]) * NUDGE_UNIT
+"""1.97, 3.02 and 4.98 times 1e-8 voxels: nanometres. Different along each axis, so that diagonals
+are decided as well: a beam whose direction had the ratio of two nudges would run through edges of
+voxels for all its nudge. Beams at round angles have ratios such as 2 : 3 and 2 : 5 (30 degrees up,
+pitched by 90), so these nudges are in none that angles in steps of 15 degrees give: off by so much
+that the roundings of a sweep through thousands of planes (`lidar.grid`) cannot decide."""
 NO_SPEED = 1e-30
 """Stands for a direction component of exactly 0, so that dividing by it gives +-huge."""
 

@@ -21,6 +21,7 @@ from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
 from .oddities import missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
 from .own_sensors import add_own_sensor, forget_own_sensors, sync_own_sensors, table_of
+from .passthrough import passthrough_of, write_passthrough
 from .placeable import check_placeable, holder_of
 from .plain_objects import plain_objects, put_objects, sensors_of_objects
 from .prior import focus_rows, prior_from_scene, prior_key
@@ -116,6 +117,7 @@ __all__ = [
     "mounting_of",
     "newer_version",
     "no_go_boxes",
+    "passthrough_of",
     "perception_of",
     "place_poses",
     "place_rig",
@@ -167,6 +169,7 @@ __all__ = [
     "view_camera",
     "view_layer_of",
     "visible_members",
+    "write_passthrough",
     "write_records",
     "write_reference",
     "write_score",

@@ -13,6 +13,7 @@ from ..engine import catalog, kinds, pe, search, studies
 from .axles import write_reference
 from .loaded_body import make_body, paint_area, same_body
 from .offers import put_selection
+from .passthrough import write_passthrough
 from .records import NO_BOUNDS, ZEROS, Record
 from .rig import stand_at, view_layer_of
 from .scene import study_from_scene, vehicle_of_scene
@@ -160,6 +161,7 @@ def _put_settings(settings: bpy.types.PropertyGroup, study: pe.Study) -> None:
     settings.method, settings.evaluations = own.method, own.evaluations
     _put_tolerance(settings, own.tolerance)
     write_reference(settings, study.reference)
+    write_passthrough(settings, study.passthrough)
 
 
 def _put_tolerance(settings: bpy.types.PropertyGroup, own: pe.Tolerance) -> None:

@@ -13,6 +13,7 @@ from .axles import reference_of
 from .holds import constrained, free_axes
 from .mounting import mounting_of
 from .offers import selection_of
+from .passthrough import passthrough_of
 from .prior import prior_from_scene
 from .rig import rig_from_objects, sensor_objects
 from .targets import targets_of
@@ -79,6 +80,7 @@ def study_of_rig(
         samples=settings.score_samples,
         mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
         reference=reference_of(settings),
+        passthrough=passthrough_of(settings),
         targets=targets_of(settings),
     )
 

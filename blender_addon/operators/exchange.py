@@ -44,7 +44,8 @@ class PE_OT_export_rig(ExportHelper, bpy.types.Operator):
             # Of one file the dialog has asked.
             replace = self.replace or not (row.beside or len(row.files) > 1)
             wanted = (study.rig, self.format, path, study.reference)
-            paths, lines = pe.export_rig(*wanted, replace=replace)
+            kept = study.passthrough
+            paths, lines = pe.export_rig(*wanted, passthrough=kept, replace=replace)
         except REFUSALS as error:
             return refuse(self, error)
         for line in lines:
@@ -153,7 +154,10 @@ def bring(
 ) -> set[str]:
     """Have a rig of a file stand in the scene, as a variant, and tell what has to be known."""
     title = path.stem or path.parent.name
-    return stand_sensors(operator, scene, title, tuple(found.rig), found.lines, f"Read from {path}")
+    come = tuple(found.rig), found.lines, f"Read from {path}"
+    answer = stand_sensors(operator, scene, title, *come)
+    bridge.write_passthrough(scene.perception_entropy, found.passthrough)
+    return answer
 
 
 def _kit_of(path: Path) -> Path:

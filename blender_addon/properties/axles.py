@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bpy.props import BoolProperty, FloatProperty
+from bpy.props import BoolProperty, FloatProperty, StringProperty
 
 from .callbacks import redraw
 
@@ -22,7 +22,14 @@ def _metres(name: str, description: str, least: float = 0.0, default: float = 0.
 
 
 class AxleSettings:
-    """A part of the scene's settings."""
+    """A part of the scene's settings: what exports need besides the rig."""
+
+    passthrough: StringProperty(
+        name="Kept of the Imported File",
+        description="What the file of an imported rig had besides the rig: an export to its own "
+        "format has it again",
+        options={"HIDDEN"},
+    )
 
     axles_known: BoolProperty(
         name="Axles",

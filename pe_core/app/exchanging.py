@@ -79,7 +79,8 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
         study = replace(study, reference=reference)
         paths, lines = export_scene(study, *where, args.range, **options)
     else:
-        paths, lines = export_rig(study.rig, *where, reference, **options)
+        kept = study.passthrough
+        paths, lines = export_rig(study.rig, *where, reference, passthrough=kept, **options)
     for line in lines:
         tell(line)
     return "\n".join(f"wrote {path}" for path in paths), DONE
@@ -109,7 +110,9 @@ def import_study(args: argparse.Namespace) -> Answer:
     placed = None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
     models = chosen_models(args.model)
     found = import_rig(args.file, args.format, reference, models, placed)
-    save_study(Study(found.rig, vehicle, mesh=args.mesh, reference=reference), output)
+    kept = found.passthrough
+    study = Study(found.rig, vehicle, mesh=args.mesh, reference=reference, passthrough=kept)
+    save_study(study, output)
     return "\n".join(_told(found, output)), DONE
 
 

@@ -4,6 +4,13 @@ from .carried import CarriedSensor, carried, picture_of, with_pictures
 from .exporting import export_rig, rig_files, write_files
 from .files import Written
 from .importing import STAND_INS, ImportedRig, import_rig
+from .passthrough import Passthrough
+from .passthrough_file import (
+    passthrough_of_text,
+    passthrough_table,
+    passthrough_text,
+    read_passthrough,
+)
 from .pictures import Picture, straight
 from .quaternions import pose_from_quaternion
 from .table import RIG_FORMATS, RigFormat, rig_format
@@ -14,14 +21,19 @@ __all__ = [
     "STAND_INS",
     "CarriedSensor",
     "ImportedRig",
+    "Passthrough",
     "Picture",
     "RigFormat",
     "Written",
     "carried",
     "export_rig",
     "import_rig",
+    "passthrough_of_text",
+    "passthrough_table",
+    "passthrough_text",
     "picture_of",
     "pose_from_quaternion",
+    "read_passthrough",
     "read_vehicle_info",
     "rig_files",
     "rig_format",

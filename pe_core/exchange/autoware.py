@@ -1,92 +1,47 @@
 """Autoware's sensor kit: sensors_calibration.yaml and sensor_kit_calibration.yaml.
 
 base_link is the rear axle on the ground; metres, radians. A camera's frame is NAME/camera_link,
-with our axes; a LiDAR's is NAME_base_link, at the foot of its housing where that is known; a name
-that ends in _link is the frame's own. Written over a kit that is there, its structure stays: where
-the kit is, whose frames are in it and whose on base_link, their order, and what is no sensor.
+with our axes; a LiDAR's is NAME_base_link, at the base of its housing where that is known; a name
+that ends in _link is the frame's own. `autoware_kit` writes into a kit that is there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from .. import catalog
 from ..errors import InputError
 from ..scene.geometry import Pose
 from ..text.tables import Table
 from ..text.yaml_blocks import parse_yaml_blocks
+from ..text.yaml_edit import comments_of
 from .camera_info import info_files, with_info
-from .carried import CAMERA, LIDAR, CarriedSensor
+from .carried import CAMERA, LIDAR, CarriedSensor, merged_lines
 from .files import Written, named_numbers, plain_number, pose_from, text_of
 from .frame_names import with_legal_frames
-from .frames import composed, pose_of, product, turned
+from .frames import composed, seen_from
+from .scan_offsets import scan_above_base
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
 LENS_FRAME, FOOT_FRAME, OWN_FRAME = "/camera_link", "_base_link", "_link"
 PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
-FEET_M = {"VLP-16": 0.0377, "Pandar40P": 0.047}
-"""From the foot of a housing up to the centre of the scan, as tier4's sensor_component_description
-(03ba094) mounts these models; other models' frames are written at the centre of the scan."""
 Unit = tuple[str, dict[str, Pose]]
 """A file, and the frames in it."""
+Units = Mapping[str, Unit]
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
 
 
-def foot_of(model: str | None) -> float:
-    """Return how far below the centre of its scan Autoware has a LiDAR's frame [m]."""
-    words = (model or "").split()
-    return next((FEET_M[word] for word in words if word in FEET_M), 0.0)
-
-
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
-    """Return the kit's two files, and its cameras' lenses."""
-    return _written(sensors, {KIT: _kit(sensors)}, {KIT: (IN_KIT, {})})
-
-
-def write_over(folder: Path, sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
-    """Return the files of a kit that is there, with the sensors of ours where they are now."""
-    return _written(sensors, *_read_files(folder))
-
-
-def _written(
-    sensors: tuple[CarriedSensor, ...], base: Mapping[str, Pose], units: Mapping[str, Unit]
-) -> tuple[Written, list[str]]:
-    """Return the files, from frames on base_link and in units; others go into the first unit."""
+    """Return a new kit's two files, and its cameras' lenses."""
     named, lines = with_legal_frames(sensors, slashes=True)
-    own = {_frame(each): each for each in named}
-    there = {*base, *(frame for _, frames in units.values() for frame in frames)}
-    files = {TO_KIT: _yaml(BASE, _placed(base, own, None))}
-    for number, (parent, (file, frames)) in enumerate(units.items()):
-        new = [] if number else [frame for frame in own if frame not in there]
-        placed = _placed(frames, own, base[parent], new)
-        files[file] = _yaml(parent, placed)
-    kept = [frame for frame in there if frame not in own and frame not in units]
-    files |= info_files(named)
-    lines += [f"{frame}: kept as it stood in the kit" for frame in sorted(kept)]
-    lines += [
-        f"{s.name}: its frame is written at the centre of its scan; Autoware's description of "
-        f"{s.model} may want the foot of the housing"
-        for s in named
-        if s.kind == LIDAR and not foot_of(s.model)
-    ]
-    return files, lines
-
-
-def _placed(
-    frames: Mapping[str, Pose],
-    own: Mapping[str, CarriedSensor],
-    unit: Pose | None,
-    new: Sequence[str] = (),
-) -> dict[str, tuple[Pose, str]]:
-    """Return frames of a file in their order, those of sensors where these are, and new ones."""
-    return {
-        frame: (_seen_from(unit, own[frame]), own[frame].model or "")
-        if frame in own
-        else (frames[frame], "")
-        for frame in (*frames, *new)
-    }
+    kit = _kit(named)
+    frames = {frame_of(s): (seen_from(kit, base_frame(s)), s.known_model or "") for s in named}
+    files = {TO_KIT: _yaml(BASE, {KIT: (kit, "")}), IN_KIT: _yaml(KIT, frames)}
+    return {**files, **info_files(named)}, [*lines, *base_lines(named)]
 
 
 def _kit(sensors: Sequence[CarriedSensor]) -> Pose:
@@ -96,34 +51,57 @@ def _kit(sensors: Sequence[CarriedSensor]) -> Pose:
     return Pose((x, y, z))
 
 
-def _seen_from(kit: Pose | None, each: CarriedSensor) -> Pose:
-    """Return a sensor's frame in the kit, or on base_link."""
-    frame = each.pose
-    if each.kind == LIDAR and foot_of(each.model):
-        frame = composed(frame, Pose((0.0, 0.0, -foot_of(each.model))))
-    if kit is None:
-        return frame
-    apart = [a - b for a, b in zip(frame.position, kit.position, strict=True)]
-    if kit.rpy == (0.0, 0.0, 0.0):
-        x, y, z = apart
-        return Pose((x, y, z), frame.rpy)
-    back = kit.ground_from_sensor.T
-    return pose_of(product(back, frame.ground_from_sensor), turned(back, apart))
-
-
-def _frame(each: CarriedSensor) -> str:
+def frame_of(each: CarriedSensor) -> str:
+    """Return the name of a sensor's frame."""
     if each.name.endswith(OWN_FRAME):
         return each.name
     return each.name + {CAMERA: LENS_FRAME, LIDAR: FOOT_FRAME}.get(each.kind or "", "")
 
 
+def base_frame(each: CarriedSensor) -> Pose:
+    """Return where a sensor's frame is: a LiDAR's is at the base of its housing."""
+    height = _height(each)
+    return composed(each.pose, Pose((0.0, 0.0, -height))) if height else each.pose
+
+
+def _height(each: CarriedSensor) -> float:
+    """Return how far a sensor is above its frame [m]."""
+    return scan_above_base(each.model) if each.kind == LIDAR else 0.0
+
+
+def base_lines(sensors: Sequence[CarriedSensor]) -> list[str]:
+    """Return lines on LiDARs whose frames are not at their scan, or should not be."""
+    return merged_lines((each.name, _base_text(each)) for each in sensors if each.kind == LIDAR)
+
+
+def _base_text(each: CarriedSensor) -> str:
+    if height := _height(each):
+        return f"its frame is {1000.0 * height:.1f} mm below the centre of its scan ({each.model})"
+    return (
+        f"its frame is written at the centre of its scan; Autoware's description of {each.model} "
+        "may want the base of the housing"
+    )
+
+
 def _yaml(parent: str, frames: Mapping[str, tuple[Pose, str]]) -> bytes:
     lines = [f"{parent}:"]
     for name, (pose, model) in frames.items():
-        lines.append(f"  {name}:" + (f"  # {model}" if model else ""))
-        numbers = zip((*PLACE, *TURN), (*pose.position, *pose.rpy), strict=True)
-        lines += [f"    {key}: {plain_number(value)}" for key, value in numbers]
+        lines += [f"  {line}" for line in frame_lines(name, pose, model)]
     return (HEAD + "\n".join(lines) + "\n").encode()
+
+
+def frame_lines(name: str, pose: Pose, model: str) -> list[str]:
+    """Return the lines of a frame."""
+    return [
+        f"{name}:" + (f"  # {model}" if model else ""),
+        *(f"  {key}: {value}" for key, value in pose_texts(pose).items()),
+    ]
+
+
+def pose_texts(pose: Pose) -> dict[str, str]:
+    """Return a pose's numbers by their keys."""
+    numbers = zip((*PLACE, *TURN), (*pose.position, *pose.rpy), strict=True)
+    return {key: plain_number(value) for key, value in numbers}
 
 
 def read(path: Path) -> tuple[CarriedSensor, ...]:
@@ -138,47 +116,66 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
         When a file is missing or wrong.
     """
     folder = path if path.is_dir() else path.parent
-    base, units = _read_files(folder)
+    texts = kit_texts(folder)
+    base, units = units_of(folder, texts)
     inside = {
         name: composed(base[parent], pose)
         for parent, (_, frames) in units.items()
         for name, pose in frames.items()
     }
     rest = {name: pose for name, pose in base.items() if name not in units}
-    found = [_sensor(name, pose) for name, pose in {**inside, **rest}.items()]
+    models = models_of(texts.values())
+    found = [_sensor(frame, pose, models) for frame, pose in {**inside, **rest}.items()]
     return with_info(folder, found)
 
 
-def _read_files(folder: Path) -> tuple[dict[str, Pose], dict[str, Unit]]:
+def models_of(texts: Iterable[str]) -> dict[str, str]:
+    """Return the catalogue's models that comments behind frames name, as `write` has them."""
+    known = catalog.entries()
+    return {
+        path[-1]: comment
+        for text in texts
+        for path, comment in comments_of(text).items()
+        if comment in known
+    }
+
+
+def kit_texts(folder: Path) -> dict[str, str]:
+    """Return the texts of a kit's calibrations by file name: that of base_link is the first."""
+    found = sorted(each.name for each in folder.glob("*_calibration.yaml"))
+    units = [name for name in found if name not in (TO_KIT, IN_KIT)]
+    kit = [IN_KIT] if IN_KIT in found or not units else []
+    return {name: text_of(folder / name) for name in (TO_KIT, *kit, *units)}
+
+
+def units_of(folder: Path, texts: Mapping[str, str]) -> tuple[dict[str, Pose], dict[str, Unit]]:
     """Return the frames on base_link, and units by their frames: the kit, or several of them.
 
     A unit's file is UNIT_calibration.yaml, as tier4's aip_x2 has them: top_unit, front_unit, ...
     """
-    base = dict(_frames(folder / TO_KIT, BASE))
-    found = sorted(folder.glob("*_calibration.yaml"))
-    files = [each for each in found if each.name not in (TO_KIT, IN_KIT)]
+    base = dict(_frames(folder / TO_KIT, texts[TO_KIT], BASE))
     units = {}
-    for file in (folder / IN_KIT, *files):
-        if file.name == IN_KIT and files and not file.exists():
+    for name, text in texts.items():
+        if name == TO_KIT:
             continue
-        parent = _parent(file)
+        parent = _parent(folder / name, text)
         if parent not in base:
             raise InputError(folder / TO_KIT, BASE, parent, ", ".join(base))
-        units[parent] = file.name, dict(_frames(file, parent))
+        units[parent] = name, dict(_frames(folder / name, text, parent))
     return base, units
 
 
-def _parent(path: Path) -> str:
+def _parent(path: Path, text: str) -> str:
     """Return the one frame that a unit's file hangs its frames on."""
-    parents = list(parse_yaml_blocks(str(path), text_of(path)))
+    parents = list(parse_yaml_blocks(str(path), text))
     if len(parents) != 1:
         raise InputError(path, "file", "one frame, and others on it", ", ".join(parents) or "none")
     return parents[0]
 
 
-def _frames(path: Path, parent: str) -> Iterator[tuple[str, Pose]]:
+def _frames(path: Path, text: str, parent: str) -> Iterator[tuple[str, Pose]]:
     """Yield names and poses of the frames in a parent."""
-    data: Any = parse_yaml_blocks(str(path), text_of(path))
+    data: Any = parse_yaml_blocks(str(path), text)
     top = Table(data, str(path))
     if parent not in top:
         raise InputError(path, parent, "a mapping of frames", "nothing")
@@ -190,15 +187,17 @@ def _frames(path: Path, parent: str) -> Iterator[tuple[str, Pose]]:
         yield name, pose_from(path, row.path, place, turn)
 
 
-def _sensor(frame: str, pose: Pose) -> CarriedSensor:
+def _sensor(frame: str, pose: Pose, models: Mapping[str, str]) -> CarriedSensor:
+    model = models.get(frame)
     if frame.endswith(LENS_FRAME):
-        return CarriedSensor(frame.removesuffix(LENS_FRAME), pose, CAMERA)
+        return CarriedSensor(frame.removesuffix(LENS_FRAME), pose, CAMERA, model)
     name = frame.removesuffix(FOOT_FRAME)
-    return CarriedSensor(name, pose, LIDAR if name != frame else None)
+    return CarriedSensor(name, pose, LIDAR if name != frame else None, model)
 
 
 def lifted(each: CarriedSensor) -> CarriedSensor:
     """Return a LiDAR at the centre of its scan, now that its model is known."""
-    if each.kind != LIDAR or not foot_of(each.model):
+    if not (height := _height(each)):
         return each
-    return each.moved(composed(each.pose, Pose((0.0, 0.0, foot_of(each.model)))))
+    told = f"{1000.0 * height:.1f} mm from its frame up to the centre of its scan ({each.model})"
+    return replace(each, pose=composed(each.pose, Pose((0.0, 0.0, height))), told=told)

@@ -36,10 +36,15 @@ LENSES: dict[str, type[Lens]] = {
 IN_BRACKETS = re.compile(r"\[[^\[\]]*\]")
 
 
+def info_name(camera: str) -> str:
+    """Return the name of a camera's file, from the folder of its rig."""
+    return f"{FOLDER}/{camera}.yaml"
+
+
 def info_files(sensors: Iterable[CarriedSensor]) -> dict[str, bytes]:
     """Return the files of a rig's cameras, by name; pictures are such as OpenCV knows."""
     return {
-        f"{FOLDER}/{each.name}.yaml": _text(each.name, each.picture, each.picture.size).encode()
+        info_name(each.name): _text(each.name, each.picture, each.picture.size).encode()
         for each in sensors
         if each.picture is not None and each.picture.size is not None
     }
@@ -74,7 +79,7 @@ def _distortion(lens: Lens) -> tuple[str, list[float]]:
 
 def with_info(folder: Path, sensors: Iterable[CarriedSensor]) -> tuple[CarriedSensor, ...]:
     """Return sensors with the pictures that stand beside their rig; such a sensor is a camera."""
-    return tuple(_with(folder / FOLDER / f"{each.name}.yaml", each) for each in sensors)
+    return tuple(_with(folder / info_name(each.name), each) for each in sensors)
 
 
 def _with(path: Path, each: CarriedSensor) -> CarriedSensor:
@@ -91,8 +96,13 @@ def read_info(path: Path) -> Picture:
     InputError
         When a number is missing, or the model of the distortion is none of those above.
     """
-    text = IN_BRACKETS.sub(_on_one_line, text_of(path))
-    top = Table(parse_yaml_blocks(str(path), text, lists=True), str(path))
+    return picture_of_info(str(path), text_of(path))
+
+
+def picture_of_info(source: str, text: str) -> Picture:
+    """Return the picture of a camera's text, as `read_info` does of its file."""
+    lists = IN_BRACKETS.sub(_on_one_line, text)
+    top = Table(parse_yaml_blocks(source, lists, lists=True), source)
     size = _pixels(top, "image_width"), _pixels(top, "image_height")
     k = _data(top, "camera_matrix", (9,))
     model = top.text("distortion_model", PLUMB_BOB)

@@ -71,7 +71,7 @@ class CarriedSensor:
     pose : Pose
         Axes are ours (a camera looks along x); the origin is the format's.
     kind : str or None
-        ``"camera"``, ``"lidar"``, or None where nothing tells.
+        ``"camera"``, ``"lidar"``, another one that the file names, or None where nothing tells.
     model : str or None
         What the file calls its model.
     picture : Picture or None
@@ -79,6 +79,15 @@ class CarriedSensor:
     fusion : str or None
     told : str
         What has to be known of how it was read, if anything.
+    entry : str
+        What stands in the file, a JSON object in the words of its format; empty where the format
+        keeps nothing. On the way back it is written again, with what has changed.
+    is_left_out : bool
+        Whether it is of a kind that is not known here: on the way back its entry is all of it.
+    is_unmoved : bool
+        Whether it is where its entry has it.
+    is_stand_in : bool
+        Whether its model stands in for one that nobody has named.
     """
 
     name: str
@@ -89,6 +98,15 @@ class CarriedSensor:
     scan: Scan | None = None
     fusion: str | None = None
     told: str = ""
+    entry: str = ""
+    is_left_out: bool = False
+    is_unmoved: bool = False
+    is_stand_in: bool = False
+
+    @property
+    def known_model(self) -> str | None:
+        """The name of its model, unless that only stands in."""
+        return None if self.is_stand_in else self.model
 
     def moved(self, pose: Pose) -> CarriedSensor:
         """Return the same sensor elsewhere."""
@@ -215,6 +233,15 @@ def _scan(model: Lidar) -> Scan:
     even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
     figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
     return Scan(*figures, model.max_range, even, None, model.min_range, model)
+
+
+def merged_lines(told: Iterable[tuple[str, str]]) -> list[str]:
+    """Return a line for each text, with all the names that it is about."""
+    names: dict[str, list[str]] = {}
+    for name, text in told:
+        if text:
+            names.setdefault(text, []).append(name)
+    return [f"{', '.join(own)}: {text}" for text, own in names.items()]
 
 
 def named_apart(names: Sequence[str]) -> list[str]:

@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 
 from ..errors import InputError
+from ..kinds import KINDS
 from ..kinds.camera.lens import LENSES
 from ..kinds.camera.lens.table import FOV_DEG
 from ..text.values import choice
@@ -15,6 +16,7 @@ from .carried import CarriedSensor
 from .figures import PIXELS, figure, whole_figure
 from .files import Written, plain_number, pose_from, text_of
 from .limits import MAX_FRAMES, require_at_most
+from .passthrough import entry_row, json_entry
 from .pictures import Picture
 
 FILE = "rig.csv"
@@ -37,13 +39,17 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     table = csv.writer(out, lineterminator="\n")
     table.writerow(COLUMNS)
     for each in sensors:
+        if each.is_left_out:
+            row = entry_row(each, lambda _: {}, (), ())
+            table.writerow([row.get(key, "") for key in COLUMNS])
+            continue
         numbers = (*each.pose.position, *each.pose.rotation_deg)
         figures = [plain_number(v) for v in numbers]
         table.writerow(
             [
                 each.name,
                 each.kind,
-                each.model,
+                each.known_model,
                 *figures,
                 each.fusion or "",
                 *_lens_cells(each.picture),
@@ -82,7 +88,9 @@ def _read_row(path: Path, number: int, row: dict[str, str]) -> CarriedSensor:
     numbers = [_number(path, number, row, key) for key in (*PLACE, *TURN)]
     pose = pose_from(path, f"row {number + 1}", numbers[:3], numbers[3:], degrees=True)
     kind, model, fusion = (row.get(key) or None for key in ("kind", "model", "fusion"))
-    return CarriedSensor(row["name"], pose, kind, model, _picture(path, number, row), fusion=fusion)
+    entry = "" if kind is None or kind in KINDS else json_entry({k: row.get(k) for k in COLUMNS})
+    known = row["name"], pose, kind, model, _picture(path, number, row)
+    return CarriedSensor(*known, fusion=fusion, entry=entry)
 
 
 def _number(path: Path, number: int, row: dict[str, str], key: str) -> float:

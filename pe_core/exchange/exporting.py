@@ -10,12 +10,17 @@ from ..scene.reference import Reference
 from ..scene.sensors import Rig
 from ..text.files import write_bytes
 from .carried import CarriedSensor, carried, with_pictures
-from .frames import origin_in_ground, shifted
+from .frames import origin_in_ground, seen_from, shifted
+from .other_kinds import listed_kinds
+from .passthrough import Passthrough, model_text
 from .table import RigFormat, rig_format
 
 
 def rig_files(
-    rig: Rig, name: str, reference: Reference | None = None
+    rig: Rig,
+    name: str,
+    reference: Reference | None = None,
+    passthrough: Passthrough | None = None,
 ) -> tuple[Mapping[str, bytes], list[str]]:
     """Return a rig in another program's format.
 
@@ -26,6 +31,8 @@ def rig_files(
         Of the format: one of `RIG_FORMATS`.
     reference : Reference, optional
         Where the rear axle is, which is the origin of some.
+    passthrough : Passthrough, optional
+        What an imported file had besides; written again if it was of this format.
 
     Returns
     -------
@@ -38,17 +45,39 @@ def rig_files(
         When there is no such format, it needs the rear axle, or it has no room for the rig.
     """
     row = rig_format(name)
-    sensors, left = _sensors(rig, row, reference)
-    files, lines = row.write(sensors)
+    kept = passthrough if passthrough is not None and passthrough.format == name else None
+    return _written(rig, row, reference, kept, {} if kept is None else kept.files)
+
+
+def _written(
+    rig: Rig,
+    row: RigFormat,
+    reference: Reference | None,
+    kept: Passthrough | None,
+    texts: Mapping[str, str],
+) -> tuple[Mapping[str, bytes], list[str]]:
+    """Return a rig's files, written into `texts` where there are some."""
+    sensors, left = _sensors(rig, row, reference, kept)
+    if texts and row.write_over is not None:
+        files, lines = row.write_over(texts, sensors)
+    else:
+        files, lines = row.write(sensors)
+    if kept is not None and kept.left_out:
+        which = listed_kinds((each.kind, each.name) for each in kept.left_out)
+        left = [*left, f"as they came in: {which}"]
     return files, [*lines, *left]
 
 
 def _sensors(
-    rig: Rig, row: RigFormat, reference: Reference | None
+    rig: Rig, row: RigFormat, reference: Reference | None, kept: Passthrough | None
 ) -> tuple[tuple[CarriedSensor, ...], list[str]]:
     """Return sensors in a format's frame, as far as it keeps them, and what it leaves."""
     back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
-    moved = [s.moved(shifted(s.pose, back)) for s in carried(rig)]
+    moved = tuple(s.moved(shifted(s.pose, back)) for s in carried(rig))
+    if kept is not None:
+        if kept.placed is not None:
+            moved = tuple(s.moved(seen_from(kept.placed, s.pose)) for s in moved)
+        moved = kept.restored(moved, {each.name: model_text(each.model) for each in rig})
     return with_pictures(moved, row.keeps, row.title)
 
 
@@ -58,12 +87,14 @@ def export_rig(
     output: str | Path,
     reference: Reference | None = None,
     *,
+    passthrough: Passthrough | None = None,
     replace: bool = False,
 ) -> tuple[list[Path], list[str]]:
     """Write a rig in another program's format; return the files, and lines on what is missing.
 
     `output` is the file, or the folder where a format has several; what is there stays unless
-    `replace` says otherwise. Of an Autoware kit that is replaced all but the sensors stays.
+    `replace` says otherwise. Of an Autoware kit that is replaced all but the sensors stays. What an
+    imported file had besides its rig is its `passthrough`: it is written again in its own format.
 
     Raises
     ------
@@ -71,12 +102,12 @@ def export_rig(
         As `rig_files`, and when a file is there already or cannot be written.
     """
     row, output = rig_format(name), Path(output)
-    files, lines = rig_files(rig, name, reference)
+    kept = passthrough if passthrough is not None and passthrough.format == name else None
+    texts: Mapping[str, str] = {} if kept is None else kept.files
     # The last of a format's files says where the others stand.
-    if replace and row.write_over and (output / row.files[-1]).is_file():
-        sensors, left = _sensors(rig, row, reference)
-        files, lines = row.write_over(output, sensors)
-        lines = [*lines, *left]
+    if replace and len(row.files) > 1 and (output / row.files[-1]).is_file():
+        texts = row.source(output) or texts
+    files, lines = _written(rig, row, reference, kept, texts)
     return write_files(files, output, inside=len(row.files) > 1, replace=replace), lines
 
 

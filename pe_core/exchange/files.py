@@ -25,11 +25,15 @@ def text_of(path: Path, most_bytes: int = TEXT_BYTES) -> str:
 
 def json_of(path: Path, most_bytes: int = TEXT_BYTES) -> Any:
     """Return a JSON file's data, or raise `InputError` for what is none."""
-    text = text_of(path, most_bytes)
+    return json_text(path, text_of(path, most_bytes))
+
+
+def json_text(source: object, text: str) -> Any:
+    """Return the data of a JSON text, or raise `InputError` for what is none."""
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InputError(path, "file", "valid JSON", error) from None
+        raise InputError(source, "file", "valid JSON", error) from None
 
 
 def json_bytes(data: Any) -> bytes:

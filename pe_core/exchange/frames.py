@@ -104,6 +104,15 @@ def composed(outer: Pose, inner: Pose) -> Pose:
     return pose_of(product(rotation, inner.ground_from_sensor), position)
 
 
+def seen_from(outer: Pose, inner: Pose) -> Pose:
+    """Return where `inner` is in the frame of `outer`, both given in one frame."""
+    x, y, z = (a - b for a, b in zip(inner.position, outer.position, strict=True))
+    if outer.rpy == (0.0, 0.0, 0.0):
+        return Pose((x, y, z), inner.rpy)
+    back = outer.ground_from_sensor.T
+    return pose_of(product(back, inner.ground_from_sensor), turned(back, (x, y, z)))
+
+
 def origin_in_ground(
     origin: str, reference: Reference | None, asking: str, source: object = "study"
 ) -> tuple[float, ...]:

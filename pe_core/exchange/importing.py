@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,20 +20,22 @@ from .carried import (
     CarriedSensor,
     camera_of,
     lidar_of,
+    merged_lines,
     named_apart,
     picture_of,
 )
 from .frames import composed, origin_in_ground, shifted
 from .limits import MAX_SENSORS, require_at_most
+from .other_kinds import NO_WORD, listed_kinds, parted
+from .passthrough import Passthrough, SourceSensor, model_text
 from .pictures import KeptPicture, alike
 from .table import RigFormat, rig_format, told_format
 
 STAND_INS = {LIDAR: "Velodyne VLP-16 Puck", CAMERA: "nuScenes front"}
 """Models that stand in for those a file does not tell, until somebody chooses."""
-NO_WORD = re.compile("[^a-z0-9]+")
 CHOOSE = "choose its model"
-SEE_NOTHING = {"gnss", "gps", "imu", "ins"}
-"""Words in the names of what rigs have besides sensors that see."""
+Modelled = tuple[CarriedSensor, SensorModel, str]
+"""A sensor, its model, and what there is to know of that."""
 LENS_WORDS = ("cam", "fisheye", "rgb", "image")
 """What the name of a camera has in it, where the file says no kind."""
 
@@ -49,12 +50,15 @@ class ImportedRig:
     to_choose : tuple of str
         Names of sensors whose model the file did not tell: another one stands in.
     lines : tuple of str
-        What to know of single sensors.
+        What to know of single sensors, and which were left out.
+    passthrough : Passthrough or None
+        What the file has besides, for an export in the same format; None where that is nothing.
     """
 
     rig: Rig
     to_choose: tuple[str, ...]
     lines: tuple[str, ...]
+    passthrough: Passthrough | None = None
 
 
 def import_rig(
@@ -90,7 +94,7 @@ def import_rig(
     row = told_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
     with _in_file(path), told_if_too_much(path):
-        return _imported(path, row, _placing(origin, placed), models or {})
+        return _imported(path, row, _Placing(origin, placed), models or {})
 
 
 @contextmanager
@@ -105,52 +109,83 @@ def _in_file(path: Path) -> Iterator[None]:
         raise InputError(path, field, error.expected, error.found) from None
 
 
+@dataclass(frozen=True, slots=True)
+class _Placing:
+    """Where a format's origin is in the ground frame, and where the file's own was put."""
+
+    origin: tuple[float, ...]
+    placed: Pose | None
+
+    def __call__(self, pose: Pose) -> Pose:
+        return shifted(pose if self.placed is None else composed(self.placed, pose), self.origin)
+
+
 def _imported(
-    path: Path,
-    row: RigFormat,
-    place: Callable[[Pose], Pose],
-    models: Mapping[str, str],
+    path: Path, row: RigFormat, place: _Placing, models: Mapping[str, str]
 ) -> ImportedRig:
     read = row.read(path)
     require_at_most(path, "sensors", len(read), MAX_SENSORS, "sensors")
     for number, each in enumerate(read, 1):
         A_NAME.checked(path, f"name of sensor {number}", each.name)
-    found = [each for each in read if not _sees_nothing(each)]
-    blind = [f"{s.name}: no sensor that sees; left out" for s in read if _sees_nothing(s)]
+    names = named_apart([each.name for each in read])
+    named = [each.called(name) for each, name in zip(read, names, strict=True)]
+    found, left_out = parted(named, models)
     if not found:
-        raise InputError(path, "sensors", "some that see", "; ".join(blind) or "none")
-    names = named_apart([each.name for each in found])
-    unknown = next((key for key in models if key not in names), None)
-    if unknown is not None:
-        raise InputError(path, f"model of {unknown}", f"one of {', '.join(names)}", "no sensor")
-    called = [each.called(n) for each, n in zip(found, names, strict=True)]
-    done = [_sensor(each, models.get(each.name), row, place) for each in called]
-    noted = [f"{each.name}: {each.told}" for each in called if each.told]
-    lines = (*blind, *noted, *(line for _, line in done if line))
-    to_choose = tuple(sensor.name for sensor, line in done if line.endswith(CHOOSE))
-    return ImportedRig(Rig([sensor for sensor, _ in done]), to_choose, lines)
+        none = listed_kinds((each.kind or "", each.name) for each in left_out)
+        raise InputError(path, "sensors", "cameras or LiDARs", none or "none")
+    _check_chosen(path, models, found, left_out)
+    done = [_with_model(each, models.get(each.name), row) for each in found]
+    rig = Rig([Sensor(s.name, model, place(s.pose), s.fusion) for s, model, _ in done])
+    kept = _kept(named, left_out, done, models)
+    passthrough = Passthrough(row.name, kept, row.source(path), place.placed)
+    told = [_left_out_line(left_out, row)] if left_out else []
+    noted = merged_lines((each.name, each.told) for each, _, _ in done)
+    lines = (*told, *noted, *(line for _, _, line in done if line))
+    to_choose = tuple(each.name for each, _, line in done if line.endswith(CHOOSE))
+    return ImportedRig(rig, to_choose, lines, passthrough if passthrough.holds else None)
 
 
-def _placing(origin: tuple[float, ...], placed: Pose | None) -> Callable[[Pose], Pose]:
-    if placed is None:
-        return lambda pose: shifted(pose, origin)
-    return lambda pose: shifted(composed(placed, pose), origin)
+def _check_chosen(
+    path: Path,
+    models: Mapping[str, str],
+    found: Sequence[CarriedSensor],
+    left_out: Sequence[CarriedSensor],
+) -> None:
+    """Raise `InputError` for a model of what is no sensor of the rig."""
+    names, others = [each.name for each in found], {each.name: each.kind for each in left_out}
+    for key in models:
+        if key not in names:
+            is_one = f"a {others[key]}, which is left out" if key in others else "no sensor"
+            raise InputError(path, f"model of {key}", f"one of {', '.join(names)}", is_one)
 
 
-def _sensor(
-    each: CarriedSensor, chosen: str | None, row: RigFormat, place: Callable[[Pose], Pose]
-) -> tuple[Sensor, str]:
-    """Return a sensor with its model, and a line about it where there is something to tell."""
+def _left_out_line(left_out: Sequence[CarriedSensor], row: RigFormat) -> str:
+    """Return which sensors are not in the rig, and whether an export has them again."""
+    which = listed_kinds((each.kind or "", each.name) for each in left_out)
+    kept = f"; an export to {row.title} has them again" if row.passes_through else ""
+    return f"left out: {which}{kept}"
+
+
+def _kept(
+    named: Sequence[CarriedSensor],
+    left_out: Sequence[CarriedSensor],
+    done: Sequence[Modelled],
+    models: Mapping[str, str],
+) -> tuple[SourceSensor, ...]:
+    """Return what is kept of each sensor, in the file's order."""
+    kept = {each.name: SourceSensor(each.name, each.kind or "", each.entry) for each in left_out}
+    for each, model, line in done:
+        text = "" if each.name in models else model_text(model)
+        known = each.name, model.kind, each.entry, each.pose, text
+        kept[each.name] = SourceSensor(*known, line.endswith(CHOOSE))
+    return tuple(kept[each.name] for each in named)
+
+
+def _with_model(each: CarriedSensor, chosen: str | None, row: RigFormat) -> Modelled:
+    """Return a sensor, its model, and a line about that where there is something to know."""
     each = replace(each, kind=each.kind or (CAMERA if _sounds_like_a_camera(each.name) else LIDAR))
     model, line = _model(each, chosen, row.keeps)
-    if not line.endswith(CHOOSE):
-        each = row.settled(replace(each, model=model.name))
-    return Sensor(each.name, model, place(each.pose), each.fusion), line
-
-
-def _sees_nothing(each: CarriedSensor) -> bool:
-    words = set(NO_WORD.sub(" ", each.name.lower()).split())
-    return each.model is None and each.picture is None and bool(words & SEE_NOTHING)
+    return row.settled(replace(each, model=model.name)), model, line
 
 
 def _sounds_like_a_camera(name: str) -> bool:

@@ -26,20 +26,20 @@ from .frames import (
     product,
     quaternion,
 )
+from .passthrough import entry_row, json_entry
 from .pictures import Picture, pinhole_picture
 
 CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
 FIVE = ("k1", "k2", "p1", "p2", "k3")
+POSE, FIGURES = ("translation", "rotation"), ("camera_intrinsic", "camera_distortion")
 AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
 """A kind's axes there, in ours; other kinds have ours."""
 
 
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     """Return the two tables."""
-    calibrated = [_calibrated(each) for each in sensors]
-    known = [
-        {"token": _token("sensor", s.name), "channel": s.name, "modality": s.kind} for s in sensors
-    ]
+    calibrated = [entry_row(each, _calibrated, POSE, FIGURES, CALIBRATED) for each in sensors]
+    known = [entry_row(each, _known, (), (), SENSORS) for each in sensors]
     sizes = [
         f"{s.name}: nuScenes' tables have no size of a picture; it is {w} x {h}"
         for s in sensors
@@ -47,6 +47,10 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
         for w, h in [s.picture.size]
     ]
     return {CALIBRATED: json_bytes(calibrated), SENSORS: json_bytes(known)}, sizes
+
+
+def _known(each: CarriedSensor) -> dict[str, Any]:
+    return {"token": _token("sensor", each.name), "channel": each.name, "modality": each.kind}
 
 
 def _calibrated(each: CarriedSensor) -> dict[str, Any]:
@@ -99,7 +103,8 @@ def _sensor(path: Path, row: Table, known: Table) -> CarriedSensor:
     picture = _picture(path, row.field("camera_intrinsic"), row.raw("camera_intrinsic", []))
     if picture is not None and row.raw("camera_distortion", []):
         picture = _bent(path, row, picture)
-    return CarriedSensor(name, pose_of(rotation, place), kind, None, picture)
+    entry = json_entry({CALIBRATED: row.data, SENSORS: known.data})
+    return CarriedSensor(name, pose_of(rotation, place), kind, None, picture, entry=entry)
 
 
 def _picture(path: Path, field: str, value: Any) -> Picture | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -11,6 +11,7 @@ from ..errors import InputError, shown
 from . import (
     argoverse2,
     autoware,
+    autoware_kit,
     carla,
     csv_table,
     driveworks,
@@ -35,6 +36,7 @@ from .pictures import (
 )
 
 Carried = tuple[CarriedSensor, ...]
+Texts = Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +62,11 @@ class RigFormat:
     beside : bool
         Whether files stand beside the one: lenses of cameras.
     write_over : callable, optional
-        As `write`, over what is in a folder: it keeps what is not ours.
+        As `write`, into texts that were there: it keeps what is not ours.
+    source : callable
+        The texts that `write_over` takes, by file name, of a path that was read.
+    passes_through : bool
+        Whether sensors of other kinds that came in go out again.
     """
 
     name: str
@@ -72,7 +78,9 @@ class RigFormat:
     settled: Callable[[CarriedSensor], CarriedSensor] = lambda each: each
     keeps: KeptPicture = whole
     beside: bool = False
-    write_over: Callable[[Path, Carried], tuple[Written, list[str]]] | None = None
+    write_over: Callable[[Texts, Carried], tuple[Written, list[str]]] | None = None
+    source: Callable[[Path], Texts] = lambda path: {}
+    passes_through: bool = False
 
 
 _ROWS = (
@@ -83,6 +91,7 @@ _ROWS = (
         (csv_table.FILE,),
         csv_table.write,
         csv_table.read,
+        passes_through=True,
     ),
     RigFormat(
         "urdf",
@@ -113,7 +122,9 @@ _ROWS = (
         autoware.lifted,
         keeps=opencv,
         beside=True,
-        write_over=autoware.write_over,
+        write_over=autoware_kit.write_over,
+        source=autoware_kit.source,
+        passes_through=True,
     ),
     RigFormat(
         "nuscenes",
@@ -123,6 +134,7 @@ _ROWS = (
         nuscenes.write,
         nuscenes.read,
         keeps=opencv_of_five,
+        passes_through=True,
     ),
     RigFormat(
         "argoverse2",
@@ -141,6 +153,9 @@ _ROWS = (
         carla.write,
         carla.read,
         keeps=square,
+        write_over=carla.write_over,
+        source=carla.source,
+        passes_through=True,
     ),
     RigFormat(
         "kitti",
@@ -168,6 +183,9 @@ _ROWS = (
         driveworks.write,
         driveworks.read,
         keeps=f_theta_of_five,
+        write_over=driveworks.write_over,
+        source=driveworks.source,
+        passes_through=True,
     ),
 )
 RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})

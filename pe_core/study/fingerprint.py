@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,7 +28,7 @@ def fingerprint(study: Study) -> str:
 
 
 def _parts(study: Study) -> Iterator[bytes]:
-    written = study_writers(study, STUDY)[STUDY]
+    written = study_writers(replace(study, passthrough=None), STUDY)[STUDY]
     assert isinstance(written, bytes)
     yield written
     yield json.dumps([catalog.to_table(sensor.model) for sensor in study.rig]).encode()

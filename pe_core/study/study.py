@@ -14,6 +14,7 @@ from typing import Any
 
 from ..advice import vehicle_line
 from ..errors import InputError, shown
+from ..exchange import Passthrough
 from ..formats.meshes import MeshAxes
 from ..kinds import PerceptionModel
 from ..prior.prior import Prior
@@ -123,7 +124,8 @@ class Study:
     `mesh` names the file the vehicle was read from (or is written to), `axes` is how that is to be
     taken, and `faces` how its axes were taken, in words (empty: they are the ground frame's).
     `samples` is the number of voxels a score looks at, 0: all; `reference` says where the vehicle's
-    axles are, for exports. Of `search`, what concerns the rig's sensors is kept; one that it does
+    axles are, for exports; `passthrough` is what an imported rig's file had besides the rig, for an
+    export to its own format. Of `search`, what concerns the rig's sensors is kept; one that it does
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
     `rig`, and what they cost. `targets` says whether voxels or objects are judged.
 
@@ -146,6 +148,7 @@ class Study:
     reference: Reference | None = None
     selection: Selection = field(default_factory=Selection)
     targets: TargetRule = field(default_factory=TargetRule)
+    passthrough: Passthrough | None = None
 
     def __post_init__(self) -> None:
         for name, kind in FIELDS.items():
@@ -159,6 +162,9 @@ class Study:
         if self.reference is not None and not isinstance(self.reference, Reference):
             found = type(self.reference).__name__
             raise InputError("study", "reference", "a Reference", found)
+        if not isinstance(self.passthrough, Passthrough | None):
+            found = type(self.passthrough).__name__
+            raise InputError("study", "passthrough", "a Passthrough", found)
         if self.mesh is not None:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
         object.__setattr__(self, "samples", samples_or_grid("study", self.samples))

@@ -10,6 +10,7 @@ from typing import Any
 
 from .. import catalog
 from ..errors import InputError, shown
+from ..exchange import passthrough_table, read_passthrough
 from ..formats.meshes import read_mesh
 from ..metric.entropy import ApCurve
 from ..scene.geometry import Pose
@@ -107,6 +108,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "vehicle": _vehicle_table(study),
         "reference": None if study.reference is None else asdict(study.reference),
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
+        "passthrough": passthrough_table(study.passthrough),
         "optimize": search_table(study.search),
         **selection_tables(study.selection, _model_value),
     }
@@ -152,6 +154,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         _read_reference(table),
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
         read_targets(table.table("metric")),
+        read_passthrough(table.table("passthrough")) if "passthrough" in table else None,
     )
     study.designs()
     study.coding()  # bounds that do not hold their start are bad input, not a late surprise

@@ -35,6 +35,11 @@ class Table:
         return key in self._data
 
     @property
+    def data(self) -> Mapping[str, Any]:
+        """What it holds, as it is."""
+        return self._data
+
+    @property
     def names(self) -> list[str]:
         """Its keys, in the file's order."""
         return list(self._data)

@@ -65,7 +65,7 @@ def _parsed(source: str, number: int, line: str, lists: bool) -> tuple[int, str,
     found = LINE.match(line.rstrip())
     if lists and found is not None and (listed := LIST.match(found["rest"])) is not None:
         values = [_value(word.strip()) for word in listed["values"].split(",") if word.strip()]
-        return len(found["blanks"]), _unquoted(found["key"]), values, True
+        return len(found["blanks"]), unquoted(found["key"]), values, True
     rest = PLAIN_REST.match(found["rest"]) if found else None
     if rest is not None and rest["comment"] and not rest["part"].endswith(" "):
         rest = None
@@ -73,10 +73,11 @@ def _parsed(source: str, number: int, line: str, lists: bool) -> tuple[int, str,
         expected = "nested `key: value`, the part of YAML that calibrations use"
         raise InputError(source, f"line {number}", expected, shown(line.strip()))
     value = rest["value"] and rest["value"].rstrip(" ")
-    return len(found["blanks"]), _unquoted(found["key"]), _value(value), value is not None
+    return len(found["blanks"]), unquoted(found["key"]), _value(value), value is not None
 
 
-def _unquoted(text: str) -> str:
+def unquoted(text: str) -> str:
+    """Return a text without the quotes round it."""
     text = text.rstrip(" ")
     return text[1:-1] if text[:1] in ("'", '"') else text
 
@@ -85,7 +86,7 @@ def _value(text: str | None) -> Any:
     if text is None:
         return None
     if text[:1] in ("'", '"'):
-        return _unquoted(text)
+        return unquoted(text)
     if text.lower() in WORDS:
         return WORDS[text.lower()]
     return float(text) if NUMBER.match(text) else text

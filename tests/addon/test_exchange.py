@@ -1,14 +1,17 @@
 """Rigs of other programs leave the scene and come into it; axles stand where wheels are."""
 
+import json
+
 import bpy
 import numpy as np
 import pytest
 
 from blender_addon import bridge
-from blender_addon.engine import exchange, pe
+from blender_addon.engine import app, exchange, pe
 from blender_addon.overlay import axles
 from tests.addon import scenes
 from tests.addon.test_commands import run
+from tests.engine.test_passthrough import CARLA
 
 AXLE = pe.Reference(-1.31, 0.33, 2.8)
 
@@ -116,3 +119,26 @@ def test_the_command_in_blender_writes_a_rig(axled, tmp_path):
     for name in exchange.rig_format("autoware").files:
         from_panel = (tmp_path / "panel" / name).read_bytes()
         assert (tmp_path / "kit" / name).read_bytes() == from_panel
+
+
+def test_what_a_file_has_besides_its_rig_stays_in_the_scene(axled, tmp_path, capfd):
+    """Radars are named, kept through a .blend and a study, and go out as they came in."""
+    objects = tmp_path / "objects.json"
+    objects.write_text(json.dumps(CARLA))
+    assert bpy.ops.pe.import_rig(filepath=str(objects)) == {"FINISHED"}
+    line = "left out: 1 radar (radar_front), 1 collision sensor (collision)"
+    assert line in capfd.readouterr().out
+    assert line in bridge.active_variant(axled).note
+    assert {s.name for s in scenes.study().rig} == {"rgb_front", "lidar"}
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "car.blend"))
+    study = tmp_path / "study" / "study.toml"
+    study.parent.mkdir()
+    assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
+    bridge.write_passthrough(bpy.context.scene.perception_entropy, None)
+    assert bpy.ops.pe.import_study(filepath=str(study)) == {"FINISHED"}
+    out = tmp_path / "out.json"
+    assert bpy.ops.pe.export_rig(filepath=str(out), format="carla") == {"FINISHED"}
+    assert json.loads(out.read_text()) == CARLA
+    app.main(["export", str(study), "--to", "carla", "-o", str(tmp_path / "command.json")])
+    assert (tmp_path / "command.json").read_bytes() == out.read_bytes()

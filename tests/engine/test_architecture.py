@@ -31,7 +31,7 @@ ALLOWED = {
     },
     "study": {
         *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
-        *("formats", "scoring", "targets", "sight", "search", "catalog", "advice"),
+        *("formats", "scoring", "targets", "sight", "search", "catalog", "advice", "exchange"),
     },
     "outputs": {
         *("errors", "version", "text", "scene", "kinds", "sight", "graphics"),

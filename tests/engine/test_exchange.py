@@ -93,9 +93,10 @@ def test_osi_has_every_beam(tmp_path):
 
 def test_carla_brings_back_even_channels_and_says_what_it_cannot(tmp_path):
     _, lines = rig_files(MIXED, "carla")
-    assert [line.split(":")[0] for line in lines] == ["roof"], "a Pandar64's channels are uneven"
+    told = [line for line in lines if "spaces channels evenly" in line]
+    assert [line.split(":")[0] for line in told] == ["roof"], "a Pandar64's channels are uneven"
     _, found = there_and_back("carla", tmp_path)
-    puck, model = found.rig["side left"].model, MIXED["side left"].model
+    puck, model = found.rig["side_left"].model, MIXED["side left"].model
     assert np.abs(puck.elevations - np.sort(model.elevations)).max() < 1e-9
     assert puck.beam_count == model.beam_count and puck.max_range == model.max_range
 
@@ -176,7 +177,8 @@ def test_an_autoware_kit(tmp_path):
     names = [each.name for each in found.rig]
     assert names == ["camera0", "velodyne_top", "velodyne_rear"]
     assert found.to_choose == ("camera0",), "never dropped, to be chosen"
-    assert found.lines[0] == "gnss_link: no sensor that sees; left out"
+    gone = "left out: 1 gnss sensor (gnss_link)"
+    assert found.lines[0] == f"{gone}; an export to Autoware sensor kit has them again"
     top = found.rig["velodyne_top"].pose
     up = rotation_matrix(-0.001, 0.015, -0.0364)[:, 2]  # the kit's, 37.7 mm along it
     assert top.position == pytest.approx(tuple(np.array([-0.5, 0.0, 2.0]) + 0.0377 * up))
@@ -374,7 +376,8 @@ def test_the_command_writes_and_reads(tmp_path, capsys, monkeypatch):
     command = ["import", "kit", "-o", "back.toml", "--rear-axle", "-1.31", "0.33"]
     assert main([*command, "--model", f"side_left={PUCK}"]) == 0
     told = capsys.readouterr().err
-    assert "roof: no model in the file" in told and "side_left" not in told
+    assert "side_left: 37.7 mm from its frame up to the centre of its scan" in told
+    assert "no model" not in told, "comments have them"
     back = pe.load_study("back.toml")
     assert back.reference == AXLE and len(back.rig) == len(MIXED)
     assert main(command) == 1, "a study is there"

@@ -1,0 +1,29 @@
+"""How far above the base of its housing a LiDAR scans.
+
+Kits and robot descriptions place a LiDAR's base frame; a score needs the centre of its scan.
+"""
+
+from __future__ import annotations
+
+import re
+
+SCAN_ABOVE_BASE_M = {
+    "VLP-16": 0.0377,
+    "VLS-128": 0.06611,
+    "HDL-32E": 0.09081,
+    "Pandar40P": 0.047,
+    "OT128": 0.09,
+    "XT32": 0.0464,
+    "QT128": 0.0582,
+    "QT128C2X": 0.0582,
+    "QT64": 0.0504,
+}
+"""By a word of the model's name: `base_scan_joint` of tier4's sensor_component_description
+(03ba094) for Hesai, VLP-16 and VLS-128, of tier4's velodyne_simulator (daf518d) for HDL-32E."""
+WORD = re.compile(r"[^\s()/]+")
+
+
+def scan_above_base(model: str | None) -> float:
+    """Return how far a model scans above its base frame [m]; 0 where that is not known."""
+    words = WORD.findall(model or "")
+    return next((SCAN_ABOVE_BASE_M[word] for word in words if word in SCAN_ABOVE_BASE_M), 0.0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from .. import catalog
 from ..scene.geometry import Pose
 from ..text.yaml_edit import Path as Keys
 from ..text.yaml_edit import with_comments, with_more_lines, with_values
@@ -93,10 +94,20 @@ def _patched(
             now = now if unit is None else seen_from(unit, now)
             texts = pose_texts(now)
             values |= {(parent, frame, key): texts[key] for key in _changed(old, now)}
-    named = {
-        (parent, frame): own[frame].known_model or "" for frame in models_of([text]) if frame in own
-    }
-    return with_comments(with_values(text, values), named)
+    comments: dict[Keys, str] = {}
+    for frame in models_of([text]):
+        model = _catalogued(own[frame]) if frame in own else None
+        if model is not None:
+            comments[parent, frame] = model
+    return with_comments(with_values(text, values), comments)
+
+
+def _catalogued(each: CarriedSensor) -> str | None:
+    """Return what a comment says of a sensor's model; None of a lens, which a file says."""
+    model = each.known_model or ""
+    if model in catalog.entries():
+        return model
+    return None if each.kind == CAMERA else ""
 
 
 def _changed(old: Pose, now: Pose) -> Iterator[str]:

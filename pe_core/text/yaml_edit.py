@@ -51,7 +51,9 @@ def _opens_block(line: str) -> bool:
     """Whether a line is a key without a value, and not one whose name has a hash in quotes."""
     found = LINE.match(line.rstrip())
     rest = PLAIN_REST.match(found["rest"]) if found else None
-    return found is not None and "#" not in found["key"] and bool(rest) and rest["value"] is None
+    if found is None or rest is None or "#" in found["key"]:
+        return False
+    return rest["value"] is None
 
 
 def with_more_lines(text: str, path: Path, more: Sequence[str]) -> str:

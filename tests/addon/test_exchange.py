@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge
-from blender_addon.engine import app, exchange, pe
+from blender_addon.engine import exchange, pe
 from blender_addon.overlay import axles
+from pe_core.app.cli import main
 from tests.addon import scenes
 from tests.addon.test_commands import run
 from tests.engine.test_passthrough import CARLA
@@ -140,5 +141,5 @@ def test_what_a_file_has_besides_its_rig_stays_in_the_scene(axled, tmp_path, cap
     out = tmp_path / "out.json"
     assert bpy.ops.pe.export_rig(filepath=str(out), format="carla") == {"FINISHED"}
     assert json.loads(out.read_text()) == CARLA
-    app.main(["export", str(study), "--to", "carla", "-o", str(tmp_path / "command.json")])
+    main(["export", str(study), "--to", "carla", "-o", str(tmp_path / "command.json")])
     assert (tmp_path / "command.json").read_bytes() == out.read_bytes()

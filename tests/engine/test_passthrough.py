@@ -304,6 +304,23 @@ def test_a_kit_that_is_there_keeps_its_text_without_the_study_s_help(tmp_path):
         assert again[name].pose.position == pytest.approx(rig[name].pose.position, abs=1e-9)
 
 
+def test_a_comment_that_names_a_model_is_one_and_stays_true(tmp_path):
+    """Kits that are written say so; a comment of the maker's is none, and stays."""
+    kit = written(tmp_path / "kit", "autoware")
+    file = kit / "sensor_kit_calibration.yaml"
+    file.write_text(KIT.replace("the one on the roof", "Hesai QT128C2X"))
+    found = import_rig(kit, None, AXLE)
+    assert found.rig["hesai_top"].model.name == "Hesai QT128C2X"
+    assert "hesai_top" not in found.to_choose and "hesai_left" in found.to_choose
+    for model in ("Hesai OT128 (Pandar128E4X)", "Velodyne VLP-16 Puck"):
+        top = pe.Sensor("hesai_top", pe.catalog.load(model), found.rig["hesai_top"].pose)
+        pe.export_rig(pe.Rig([top]), "autoware", kit, AXLE, replace=True)
+        assert f"  hesai_top_base_link:   # {model}\n" in file.read_text()
+    own = pe.Sensor("hesai_top", pe.Lidar("own", [0.0], 36, 30.0), top.pose)
+    pe.export_rig(pe.Rig([own]), "autoware", kit, AXLE, replace=True)
+    assert "  hesai_top_base_link:\n" in file.read_text()
+
+
 def test_a_lens_of_a_kit_is_written_when_it_is_another(tmp_path):
     kit = written(tmp_path / "kit", "autoware")
     info = (
@@ -369,9 +386,9 @@ def test_it_is_a_text_and_back_and_says_what_is_wrong(tmp_path):
         kept = import_rig(written(tmp_path / name, name), name, AXLE).passthrough
         assert passthrough_of_text(passthrough_text(kept), "scene") == kept
     assert passthrough_of_text("", "scene") is None and passthrough_text(None) == ""
-    row = {"name": "a", "kind": "radar", "entry": "[]"}
+    row = {"name": "a", "kind": "radar"}
     for table, words in [
-        ({"format": "carla", "sensor": [row]}, "entry: expected a JSON object"),
+        ({"format": "carla", "sensor": [row | {"entry": "[]"}]}, "entry: expected a JSON object"),
         ({"format": "carla", "sensor": [row | {"pose": [1, 2]}]}, "a list of 6 numbers"),
         ({"format": "carla", "files": {"../up": ""}}, "the name of a file"),
         ({"format": "carla", "files": {"a": 3}}, "a text"),

@@ -76,7 +76,7 @@ def test_one_range_is_there_for_all_lidars_and_others_are_told(tmp_path):
     del data["range"]
     path.write_text(json.dumps(data))
     found = pe.import_rig(path, "osi", AXLE)
-    assert "lidar_0: no range in the file; 100 m stands in" in found.lines
+    assert "lidar_0, lidar_1: no range in the file; 100 m stands in" in found.lines
     assert found.rig["lidar_0"].model.beam_count == 108, "its beams stay"
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import bpy
 from bpy.props import StringProperty
 
-from .. import bridge
+from .. import bridge, changes
 from ..engine import pe
-from . import range_image
+from . import range_image, view_state
 from .reports import REFUSALS, refuse, tell
 
 
@@ -40,10 +40,10 @@ class PE_OT_look_through(bpy.types.Operator):
             tell(self, "WARNING", f"Only cameras and LiDARs show a picture, not {obj.name}")
             return {"CANCELLED"}
         if looking_through(scene) == obj:
-            come_back(context)
+            come_back(scene)
             return {"FINISHED"}
         bridge.look_through(scene, obj, sensor.model)
-        turn_views(context, "CAMERA")
+        view_state.turn(scene, context.area)
         return {"FINISHED"}
 
     def _picture(self, context: bpy.types.Context, sensor: pe.Sensor) -> set[str]:
@@ -69,7 +69,7 @@ class PE_OT_look_back(bpy.types.Operator):
         return context.mode == "OBJECT" and looking_through(context.scene) is not None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        come_back(context)
+        come_back(context.scene)
         return {"FINISHED"}
 
 
@@ -81,20 +81,10 @@ def looking_through(scene: bpy.types.Scene) -> bpy.types.Object | None:
     return camera.parent if camera.perception_entropy.is_view else None
 
 
-def come_back(context: bpy.types.Context) -> None:
-    """Show the scene from where it was looked at before."""
-    bridge.look_back(context.scene)
-    turn_views(context, "PERSP")
-
-
-def turn_views(context: bpy.types.Context, perspective: str) -> None:
-    """Have the 3D view that is worked in look through the scene's camera, or no longer."""
-    area = context.area
-    if area is None or area.type != "VIEW_3D":
-        return
-    look = area.spaces.active.region_3d
-    if perspective == "CAMERA" or look.view_perspective == "CAMERA":
-        look.view_perspective = perspective
+def come_back(scene: bpy.types.Scene) -> None:
+    """Show the scene as it was looked at before: camera, size of pictures, and views."""
+    bridge.look_back(scene)
+    view_state.restore(scene)
 
 
 def _sensor(obj: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> pe.Sensor:
@@ -113,7 +103,9 @@ _keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 
 
 def register() -> None:
-    """Have Esc come back, in a window's 3D views."""
+    """Have Esc come back, in a window's 3D views; and undo, which leaves views as they are."""
+    for signal in (changes.moved, changes.rested):
+        signal.connect(view_state.settle)
     keys = bpy.context.window_manager.keyconfigs.addon
     if keys is not None:  # there are none without a window
         keymap = keys.keymaps.new(name="3D View", space_type="VIEW_3D")
@@ -122,6 +114,8 @@ def register() -> None:
 
 def unregister() -> None:
     """Take the key away."""
+    for signal in (changes.moved, changes.rested):
+        signal.disconnect(view_state.settle)
     while _keys:
         keymap, item = _keys.pop()
         keymap.keymap_items.remove(item)

@@ -165,6 +165,11 @@ class PE_SceneSettings(
         description="Camera and size of pictures before a sensor was looked through, as JSON",
     )
 
+    views_before_look: StringProperty(
+        name="Views Before Looking",
+        description="3D views as they were before a sensor was looked through, as JSON",
+    )
+
     has_result: BoolProperty(name="Has Result", description="A score is stored")
     result_kind: StringProperty(name="Kind", description="score or optimize")
     result_entropy: FloatProperty(

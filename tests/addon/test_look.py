@@ -9,6 +9,7 @@ from mathutils import Vector
 
 from blender_addon import bridge, upkeep
 from blender_addon.engine import catalog, graphics, kinds, pe
+from blender_addon.operators import view_state
 from tests.addon import scenes
 
 
@@ -68,6 +69,107 @@ def test_again_comes_back_to_what_was_before(car, eye):
     look(eye)
     assert car.camera == own
     assert (car.render.resolution_x, car.render.resolution_percentage) == (777, 50)
+
+
+def view_area():
+    """Return a 3D view of Blender's own layout."""
+    return next(area for area in bpy.data.screens["Layout"].areas if area.type == "VIEW_3D")
+
+
+def seen_in(area):
+    """Return all that says what a view shows, as plain numbers."""
+    space, look = area.spaces.active, area.spaces.active.region_3d
+    return {
+        "perspective": look.view_perspective,
+        "along an axis": look.is_orthographic_side_view,
+        "rotation": tuple(look.view_rotation),
+        "location": tuple(look.view_location),
+        "distance": look.view_distance,
+        "zoom": (look.view_camera_zoom, *look.view_camera_offset),
+        "lens": (space.lens, space.clip_start, space.clip_end),
+        "lock": space.lock_camera,
+        "own camera": (space.use_local_camera, space.camera and space.camera.name),
+    }
+
+
+def looking(area, obj):
+    """Look through a sensor from a view; Blender then turns the view as the camera is."""
+    with bpy.context.temp_override(area=area):
+        bpy.ops.pe.look_through(name=obj.name)
+    look = area.spaces.active.region_3d
+    assert look.view_perspective == "CAMERA"
+    look.view_rotation = bpy.context.scene.camera.matrix_world.to_quaternion()
+    look.view_location, look.view_distance = (9.0, 9.0, 9.0), 3.0
+
+
+def leave_by_operator(_scene, area):
+    with bpy.context.temp_override(area=area):
+        bpy.ops.pe.look_back()
+
+
+def leave_by_undo(scene, _area):
+    """As undo does it: the scene is as before, views are as they are."""
+    bridge.look_back(scene)
+    scene.perception_entropy.views_before_look = ""
+    view_state.settle()
+
+
+def leave_by_losing_the_sensor(scene, _area):
+    bpy.data.objects.remove(scene.camera.parent)
+    upkeep.go_round()
+    view_state.settle()
+
+
+WAYS_BACK = (leave_by_operator, leave_by_undo, leave_by_losing_the_sensor)
+
+
+@pytest.mark.parametrize("leave", WAYS_BACK)
+@pytest.mark.parametrize("orthographic", [False, True])
+def test_the_view_is_what_it_was_whatever_way_back(car, eye, leave, orthographic):
+    area = view_area()
+    space, look = area.spaces.active, area.spaces.active.region_3d
+    own = bpy.data.objects.new("own", bpy.data.cameras.new("own"))
+    car.collection.objects.link(own)
+    turned = (0.5, 0.5, 0.5, 0.5) if orthographic else (0.8, 0.2, 0.4, 0.4)
+    look.view_perspective = "ORTHO" if orthographic else "PERSP"
+    look.view_rotation, look.view_location, look.view_distance = turned, (0.1, 0.2, 0.3), 7.5
+    look.is_orthographic_side_view = orthographic
+    space.lens, space.clip_end, space.lock_camera = 35.0, 321.0, True
+    space.use_local_camera, space.camera = True, own
+    before = seen_in(area)
+    looking(area, eye)
+    assert not space.lock_camera, "turning the view would turn the camera"
+    other = scenes.add_sensor("other", model="Camera 60 deg", location=(0.0, 0.0, 1.6))
+    looking(area, other)
+    leave(car, area)
+    after = seen_in(area)
+    assert after.pop("rotation") == pytest.approx(before.pop("rotation"), abs=1e-6)
+    assert after == before
+    assert not car.perception_entropy.views_before_look
+
+
+def test_a_view_that_has_left_the_picture_is_not_turned_back(car, eye):
+    area = view_area()
+    looking(area, eye)
+    look = area.spaces.active.region_3d
+    look.view_perspective = "PERSP"  # as turning the view does
+    leave_by_operator(car, area)
+    assert look.view_distance == 3.0
+
+
+def test_a_file_saved_while_looking_knows_the_way_back(car, eye, tmp_path):
+    area = view_area()
+    area.spaces.active.region_3d.view_perspective = "ORTHO"
+    area.spaces.active.region_3d.view_distance = 7.5
+    looking(area, eye)
+    path = str(tmp_path / "looking.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    view_state._turned.clear()
+    bpy.ops.wm.open_mainfile(filepath=path, load_ui=True)
+    area = view_area()
+    leave_by_operator(bpy.context.scene, area)
+    look = area.spaces.active.region_3d
+    assert (look.view_perspective, look.view_distance) == ("ORTHO", 7.5)
 
 
 def test_from_one_sensor_to_another_and_back(car, eye):

@@ -171,7 +171,7 @@ def test_picture_and_check_follow_a_change(car):
         *("soon", "fit_all", "forget", "note", "sync_own_sensors"),
     }
     assert {f.__name__ for f in changes.rested.listeners} == {
-        *("check", "rest", "look_soon", "ask_again", "on_rested"),
+        *("check", "rest", "look_soon", "ask_again", "on_rested", "settle"),
     }
 
 

@@ -108,6 +108,7 @@ def report_state():
         "draft": held.score if held else "",
         "camera": scene.camera.name if scene.camera else None,
         "perspective": view3d()[1].spaces.active.region_3d.view_perspective,
+        "view": view_seen(),
         "pictures": pictures_shown(),
         "own_results": [s.name for s in sensors if s.perception_entropy.has_result],
     }
@@ -133,6 +134,17 @@ def live_reading(scene):
         "rested": latest.is_exact(scene.name, reading),
         "number": reading.number,
         "before": before,
+    }
+
+
+def view_seen():
+    """How the 3D view looks at the scene."""
+    look = view3d()[1].spaces.active.region_3d
+    numbers = [*look.view_rotation, *look.view_location, look.view_distance]
+    return {
+        "perspective": look.view_perspective,
+        "along_axis": look.is_orthographic_side_view,
+        "numbers": numbers,
     }
 
 

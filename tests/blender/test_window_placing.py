@@ -2,6 +2,7 @@
 
 import json
 import math
+import time
 
 import pytest
 
@@ -132,7 +133,11 @@ def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
     window.press("pe.add_sensor", "Camera")
     window.wait_for(lambda: sensors(window) != before, EFFECT_TIMEOUT_S, "a sensor")
     (name,) = sensors(window) - before
-    perspective = window.state["perspective"]
+    window.point_at_view()
+    window.key("KP_3")
+    window.wait_for(lambda: window.state["view"]["along_axis"], EFFECT_TIMEOUT_S, "a side view")
+    time.sleep(1.0)  # the view slides there
+    view = window.state["view"]
     window.press("pe.look_through")
     window.wait_for(lambda: window.state["perspective"] == "CAMERA", EFFECT_TIMEOUT_S, "its view")
     assert window.state["camera"] == f"{name} view"
@@ -140,7 +145,21 @@ def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
     window.point_at_view()
     window.key("Escape")
     window.wait_for(lambda: window.state["camera"] is None, EFFECT_TIMEOUT_S, "the way back")
-    assert window.state["perspective"] == perspective
+    seen = window.state["view"]
+    assert (seen["perspective"], seen["along_axis"]) == ("ORTHO", True)
+    assert seen["numbers"] == pytest.approx(view["numbers"], abs=1e-5)
+
+    window.press("pe.look_through")
+    window.wait_for(lambda: window.state["perspective"] == "CAMERA", EFFECT_TIMEOUT_S, "its view")
+    window.point_at_view()
+    window.key("ctrl+z")
+    window.wait_for(lambda: window.state["camera"] is None, EFFECT_TIMEOUT_S, "undo")
+    window.wait_for(
+        lambda: window.state["view"]["perspective"] == "ORTHO",
+        EFFECT_TIMEOUT_S,
+        "the view as it was",
+    )
+    assert window.state["view"]["numbers"] == pytest.approx(view["numbers"], abs=1e-5)
     assert "Traceback" not in window.log.read_text()
 
 

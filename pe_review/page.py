@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from itertools import count
 from pathlib import Path
 
 from .engine import pe, studies
@@ -20,8 +22,17 @@ POLICY = (
 """The page asks nobody for anything: a browser holds it to that."""
 
 
-def page_bytes(each: Sequence[Reviewed]) -> bytes:
+def page_bytes(
+    each: Sequence[Reviewed], watch: Callable[[float], None] = lambda _share: None
+) -> bytes:
     """Return the page of one study, or of several side by side.
+
+    Parameters
+    ----------
+    each : sequence of Reviewed
+    watch : callable, optional
+        Called before each section with the share of sections that are made, 0 to 1; what it raises
+        ends the work.
 
     Raises
     ------
@@ -29,7 +40,8 @@ def page_bytes(each: Sequence[Reviewed]) -> bytes:
         When there is no study, or more than a page has room for.
     """
     each = reviewed_together(each)
-    chapters = [*_of_all(each), *_of_each(each)]
+    watched = _counted(len(TOGETHER) + len(SECTIONS) * len(each), watch)
+    chapters = [*_of_all(each, watched), *_of_each(each, watched)]
     return _document(each, chapters).encode("utf-8")
 
 
@@ -61,15 +73,30 @@ Chapter = list[tuple[Reviewed, Section]]
 """A section of the page, as each study has it."""
 
 
-def _of_all(each: tuple[Reviewed, ...]) -> list[Chapter]:
+Make = Callable[[Callable[[], Section]], Section]
+"""Makes a section, and tells how far the page is."""
+
+
+def _counted(sections: int, watch: Callable[[float], None]) -> Make:
+    """Return what makes a section after telling how many of them are made."""
+    made = count()
+
+    def make(section: Callable[[], Section]) -> Section:
+        watch(next(made) / sections)
+        return section()
+
+    return make
+
+
+def _of_all(each: tuple[Reviewed, ...], make: Make) -> list[Chapter]:
     """Sections of all studies at once; of a single one most have nothing to say."""
-    found = [(each[0], section(each)) for section in TOGETHER]
+    found = [(each[0], make(partial(section, each))) for section in TOGETHER]
     return [[(one, made)] for one, made in found if made.html]
 
 
-def _of_each(each: tuple[Reviewed, ...]) -> list[Chapter]:
+def _of_each(each: tuple[Reviewed, ...], make: Make) -> list[Chapter]:
     """Sections that each study has, those of one kind together."""
-    chapters = [[(one, section(one)) for one in each] for section in SECTIONS]
+    chapters = [[(one, make(partial(section, one))) for one in each] for section in SECTIONS]
     kept = [[(one, made) for one, made in chapter if made.html] for chapter in chapters]
     return [chapter for chapter in kept if chapter]
 

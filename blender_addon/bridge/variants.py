@@ -141,8 +141,11 @@ def _told_apart(sensor: pe.Sensor) -> tuple[object, ...]:
     return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
 
 
-def keep_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) -> None:
-    """Keep where a search began and what it found as variants; the second one stands here."""
+def keep_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) -> int:
+    """Keep where a search began and what it found as variants; return the key of the latter.
+
+    The first one is the active one from then on, as the sensors have not been moved yet.
+    """
     now = records_of_scene(scene)
     began, found = _moved(now, outcome.start.rig), _moved(now, outcome.study.rig)
     before = kept_variant(scene, "Before optimize", began).key
@@ -150,7 +153,8 @@ def keep_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) 
     after = kept_variant(scene, name, found).key
     keep_score(scene, outcome.start.rig, outcome.before, surroundings)
     keep_score(scene, outcome.study.rig, outcome.after, surroundings)
-    choose_variant(scene, after if after != before else before)
+    choose_variant(scene, before)
+    return after
 
 
 def kept_variant(scene: bpy.types.Scene, name: str, records: Sequence[Record]) -> Variant:

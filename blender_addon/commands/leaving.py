@@ -24,7 +24,7 @@ def leave_scene(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) 
         bridge.place_rig(scene, outcome.study.rig)
         taken = stale.fingerprint(scene)
         bridge.store_outcome(scene, outcome, taken.text)
-        bridge.keep_search(scene, outcome, taken.surroundings)
+        bridge.choose_variant(scene, bridge.keep_search(scene, outcome, taken.surroundings))
         studies.add_to_result(data, folder, {OPTIMIZED: save_copy})
     if render:
         from .. import review  # only who wants a picture pays for it

@@ -14,6 +14,7 @@ from . import (
     exchange,
     export,
     export_scene,
+    exporting,
     focus,
     job,
     known_rigs,
@@ -49,6 +50,7 @@ __all__ = [
     "ShownScore",
     "answer",
     "brief",
+    "exporting",
     "held_by",
     "listed_sensors",
     "makers",
@@ -77,6 +79,7 @@ CLASSES = (
     *focus.CLASSES,
     *job.CLASSES,
     *selection.CLASSES,
+    *exporting.CLASSES,
     *export.CLASSES,
     *exchange.CLASSES,
     *plain_objects.CLASSES,
@@ -102,5 +105,6 @@ def unregister() -> None:
     """Let go of what runs, and of what waits for the mouse."""
     running.unregister()
     placing.end()
+    exporting.unregister()
     upright.unregister()
     look.unregister()

@@ -11,8 +11,9 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .. import bridge
 from ..engine import catalog, exchange, pe
+from .exporting import wrote
 from .file_sensors import stand_sensors
-from .reports import REFUSALS, chosen_file, refuse, tell
+from .reports import REFUSALS, chosen_file, refuse
 
 _ROWS = tuple((row.name, row.title, "", k) for k, row in enumerate(exchange.RIG_FORMATS.values()))
 TOLD = ("TOLD", "By Name", "As the file's name tells", len(_ROWS))
@@ -48,10 +49,7 @@ class PE_OT_export_rig(ExportHelper, bpy.types.Operator):
             paths, lines = pe.export_rig(*wanted, passthrough=kept, replace=replace)
         except REFUSALS as error:
             return refuse(self, error)
-        for line in lines:
-            tell(self, "WARNING", line)
-        tell(self, "INFO", f"Wrote {', '.join(each.name for each in paths)}")
-        return {"FINISHED"}
+        return wrote(self, *paths, lines=tuple(lines))
 
 
 class PE_OT_import_rig(ImportHelper, bpy.types.Operator):

@@ -8,6 +8,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .. import bridge, changes
 from ..engine import pe
+from .exporting import wrote
 from .reports import REFUSALS, chosen_file, refuse, tell
 
 
@@ -27,8 +28,7 @@ class PE_OT_export_study(ExportHelper, bpy.types.Operator):
             pe.export_study(study, path, replace_study=True)  # the file dialog has asked
         except REFUSALS as error:
             return refuse(self, error)
-        tell(self, "INFO", f"Wrote {path}")
-        return {"FINISHED"}
+        return wrote(self, path)
 
 
 class PE_OT_import_study(ImportHelper, bpy.types.Operator):

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
-from bpy_extras.io_utils import ExportHelper
 
 from .. import bridge
-from ..engine import outputs
-from .reports import REFUSALS, chosen_file, refuse, tell
+from ..engine import exchange, outputs
+from .exporting import ExportJob, ExportOperator, Steps, WrittenFiles
+from .reports import chosen_file
 
 _ROWS = tuple((row.name, row.title, "", k) for k, row in enumerate(outputs.SCENE_OUTPUTS.values()))
 
 
-class PE_OT_export_scene(ExportHelper, bpy.types.Operator):
+class PE_OT_export_scene(ExportOperator, bpy.types.Operator):
     """Write vehicle, sensors and what they see for CAD, viewers and other programs"""
 
     bl_idname = "pe.export_scene"
@@ -39,20 +39,31 @@ class PE_OT_export_scene(ExportHelper, bpy.types.Operator):
         self.filepath = outputs.scene_output(self.output).file
         return super().invoke(context, event)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def job(self, context: bpy.types.Context) -> ExportJob:
+        """Read the scene; work its files out beside the window."""
         row = outputs.scene_output(self.output)
-        try:
-            path = _with_ending(chosen_file(self.filepath), row)
-            study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-            replace = self.replace or not row.has_several  # of one file the dialog has asked
-            reach = self.range_m or None
-            paths, lines = outputs.export_scene(study, row.name, path, reach, replace=replace)
-        except REFUSALS as error:
-            return refuse(self, error)
-        for line in lines:
-            tell(self, "WARNING", line)
-        tell(self, "INFO", f"Wrote {', '.join(each.name for each in paths)}")
-        return {"FINISHED"}
+        path = _with_ending(chosen_file(self.filepath), row)
+        study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+        replace = self.replace or not row.has_several  # of one file the dialog has asked
+        reach = self.range_m or None
+        steps = PE_OT_export_scene.steps  # the operator ends with its dialog
+        return ExportJob(study, lambda job: steps(job, row, path, reach, replace))
+
+    @staticmethod
+    def steps(
+        job: ExportJob, row: outputs.SceneOutput, path: Path, reach: float | None, replace: bool
+    ) -> Steps:
+        """Make the files in a thread, then write them."""
+
+        def work() -> tuple[dict[str, bytes], list[str]]:
+            return outputs.scene_files(job.study, row.name, reach)
+
+        made = yield from job.made(f"exporting {row.title}", 0.0, work)
+        if made is None:
+            return None
+        files, lines = made
+        paths = exchange.write_files(files, path, inside=row.has_several, replace=replace)
+        return WrittenFiles(tuple(paths), tuple(lines))
 
 
 def _with_ending(path: Path, row: outputs.SceneOutput) -> Path:

@@ -20,6 +20,11 @@ class SceneJob(NamedTuple):
     taken: bridge.Fingerprint
 
 
+def is_undo(event: bpy.types.Event) -> bool:
+    """Whether keys for undo or redo were pressed, which Blender ignores while a job runs."""
+    return event.type == "Z" and event.value == "PRESS" and (event.ctrl or event.oskey)
+
+
 class JobOperator:
     """What score and optimize share; a subclass makes the job and says what to report."""
 
@@ -65,6 +70,10 @@ class JobOperator:
         if event.type == "ESC" and event.value == "PRESS" and not event.is_repeat:
             job.stop()
             job.show(context)
+            return {"RUNNING_MODAL"}
+        if is_undo(event):
+            job.refuse_undo(context)
+            tell(self, "INFO", running.NO_UNDO)
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
@@ -155,14 +164,20 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
     def write(
         self, scene: bpy.types.Scene, outcome: pe.Outcome, taken: bridge.Fingerprint
     ) -> list[str]:
-        """Move the sensors and keep the result; return the names of those that are gone."""
+        """Keep what was found as a variant, then move the sensors; return names of lost ones.
+
+        Undo takes back the move alone: the variant has an undo step of its own before it.
+        """
         settings = scene.perception_entropy
+        found = bridge.keep_search(scene, outcome, taken.surroundings)
+        if bpy.ops.ed.undo_push.poll():  # a script without a window has no undo
+            bpy.ops.ed.undo_push(message="Optimize: Keep Variant")
         goes_on = settings.has_result and settings.result_signature == taken.text
         first = settings.result_before if goes_on else outcome.before.entropy
         gone = bridge.place_rig(scene, outcome.study.rig, outcome.start.rig)
         keep(scene, outcome, taken.with_rig(outcome.study.rig).text)
         settings.result_before = first  # of searches in a row: where the first began
-        bridge.keep_search(scene, outcome, taken.surroundings)
+        bridge.choose_variant(scene, found)
         return gone
 
     def message(self, outcome: pe.Outcome) -> str:

@@ -3,41 +3,20 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
-from bpy_extras.io_utils import ExportHelper
 
 from .. import bridge
-from ..engine import app, page, pe
-from .reports import REFUSALS, chosen_file, refuse, tell
+from ..engine import app, page, pe, studies
+from .exporting import ExportJob, ExportOperator, Steps, WrittenFiles
+from .reports import chosen_file
 
-
-@contextmanager
-def waiting(context: bpy.types.Context) -> Iterator[Callable[[float], None]]:
-    """Show by the mouse that Blender is at work, and how far; it takes no input meanwhile."""
-    manager, window = context.window_manager, context.window
-    if bpy.app.background or window is None:
-        yield lambda _share: None
-        return
-    manager.progress_begin(0.0, 1.0)
-    window.cursor_modal_set("WAIT")
-    try:
-        yield manager.progress_update
-    finally:
-        window.cursor_modal_restore()
-        manager.progress_end()
-
-
-def scored(context: bpy.types.Context, show: Callable[[float], None]) -> pe.Outcome:
-    """Score the sensors where they are, on the scene's own voxels."""
-    job = pe.ScoreJob(bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get()))
-    for progress in job:
-        show(progress.fraction)
-    return job.outcome
+SCORED, RENDERED = 0.25, 0.4
+"""How much of an export is done when the score, and when the picture is there; nearly."""
+RENDERING = "rendering"
 
 
 def same_headless(path: Path, render: bool) -> str:
@@ -49,7 +28,7 @@ def same_headless(path: Path, render: bool) -> str:
     return app.as_typed(f"blender -b {file} --command pe", options)
 
 
-class PE_OT_render_review(ExportHelper, bpy.types.Operator):
+class PE_OT_render_review(ExportOperator, bpy.types.Operator):
     """Score the sensors where they are and render a picture of what they see (.png)"""
 
     bl_idname = "pe.render_review"
@@ -58,21 +37,28 @@ class PE_OT_render_review(ExportHelper, bpy.types.Operator):
     filename_ext = ".png"
     filter_glob: StringProperty(default="*.png", options={"HIDDEN"})
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def job(self, context: bpy.types.Context) -> ExportJob:
+        """Read the scene; score and render it step by step."""
+        path, scene = chosen_file(self.filepath), context.scene.name
+        study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+        return ExportJob(study, lambda job: PE_OT_render_review.steps(job, path, scene))
+
+    @staticmethod
+    def steps(job: ExportJob, path: Path, scene: str) -> Steps:
+        """Score, then render: the latter in Blender's own turn."""
         from .. import review  # only who wants a picture pays for it
 
-        try:
-            path = chosen_file(self.filepath)
-            with waiting(context) as show:
-                outcome = scored(context, show)
-                review.render_review(context.scene, outcome.study, outcome, path)
-        except REFUSALS as error:
-            return refuse(self, error)
-        tell(self, "INFO", f"Wrote {path}")
-        return {"FINISHED"}
+        outcome = yield from job.scored(SCORED)
+        if outcome is None:
+            return None
+        yield pe.Progress(RENDERING, SCORED)
+        if job.stopped:
+            return None
+        review.render_review(open_scene(scene), outcome.study, outcome, path)
+        return WrittenFiles((path,))
 
 
-class PE_OT_export_review(ExportHelper, bpy.types.Operator):
+class PE_OT_export_review(ExportOperator, bpy.types.Operator):
     """Score the sensors where they are and write a page to hand on (.html), with all they see"""
 
     bl_idname = "pe.export_review"
@@ -86,23 +72,55 @@ class PE_OT_export_review(ExportHelper, bpy.types.Operator):
         default=True,
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def job(self, context: bpy.types.Context) -> ExportJob:
+        """Read the scene; score, render and write the page step by step."""
+        path, scene = chosen_file(self.filepath), context.scene.name
+        study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+        told = {
+            "command": same_headless(path, self.render),
+            "versions": bridge.blender_version(),
+        }
+        shown = scene if self.render else ""
+        steps = PE_OT_export_review.steps  # the operator ends with its dialog
+        pe.prepare_folder(path.parent)  # not refused after all the work
+        return ExportJob(study, lambda job: steps(job, path, shown, told))
+
+    @staticmethod
+    def steps(job: ExportJob, path: Path, scene: str, told: dict[str, Any]) -> Steps:
+        """Score, render the picture of a scene, if one is wanted, and make the page in a thread."""
         from .. import review  # only who wants a page pays for it
 
-        try:
-            path = chosen_file(self.filepath)
-            with waiting(context) as show:
-                outcome = scored(context, show)
-                picture = review.picture_of(context.scene, outcome) if self.render else None
-                versions = bridge.blender_version()
-                told = {"command": same_headless(path, self.render), "versions": versions}
-                one = page.Reviewed(path.stem, outcome, picture=picture, **told)
-                # The file dialog has asked whether to replace it.
-                page.write_page([one], path.parent, name=path.name, replace=True)
-        except REFUSALS as error:
-            return refuse(self, error)
-        tell(self, "INFO", f"Wrote {path}")
-        return {"FINISHED"}
+        outcome = yield from job.scored(SCORED)
+        if outcome is None:
+            return None
+        picture = None
+        if scene:
+            yield pe.Progress(RENDERING, SCORED)
+            if job.stopped:
+                return None
+            picture = review.picture_of(open_scene(scene), outcome)
+        one = page.Reviewed(path.stem, outcome, picture=picture, **told)
+        watch = job.watch(RENDERED)
+        made = yield from job.made("page", RENDERED, lambda: page.page_bytes([one], watch))
+        if made is None:
+            return None
+        with studies.FileSet(path.parent, (path.name,)) as files:  # the dialog has asked
+            files.add(path.name, made)
+        return WrittenFiles((path,))
+
+
+def open_scene(name: str) -> bpy.types.Scene:
+    """Return a scene by its name.
+
+    Raises
+    ------
+    InputError
+        When it is gone.
+    """
+    scene = bpy.data.scenes.get(name)
+    if scene is None:
+        raise pe.InputError("export", "scene", "the scene that was scored", f"no {name!r} any more")
+    return scene
 
 
 CLASSES = (PE_OT_render_review, PE_OT_export_review)

@@ -24,6 +24,10 @@ SHOW_EVERY_S = 0.2
 """How often the progress is drawn: that takes time from the work."""
 CURVE_EVERY_S, BEST_EVERY_S = 2.0, 0.5
 """How often the 3D view is: its curve goes on, or a better placement was found."""
+NO_UNDO = "Undo waits until this has ended; Esc stops it"
+"""What is said to whoever presses the keys: Blender takes no undo while a job runs."""
+NOTICE_S = 6.0
+"""How long it is said."""
 
 
 class Running:
@@ -36,6 +40,7 @@ class Running:
         self._steps: Iterator[pe.Progress] = iter(job)
         self._shown = self._seen = 0.0
         self._better = 0
+        self._notice_until = 0.0
         manager = context.window_manager
         self._timer = manager.event_timer_add(TICK_S, window=context.window)
         manager.progress_begin(0.0, 1.0)
@@ -66,6 +71,16 @@ class Running:
             return stage
         sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
         return f"{stage}, best {'≈ ' if sampled else ''}{entropy:.3f}"
+
+    def refuse_undo(self, context: bpy.types.Context) -> None:
+        """Say beside the progress, for some time, that there is no undo now."""
+        self._notice_until = time.monotonic() + NOTICE_S
+        self.show(context)
+
+    @property
+    def notice(self) -> str:
+        """What is to be said beside the progress; empty as a rule."""
+        return NO_UNDO if time.monotonic() < self._notice_until else ""
 
     @property
     def on_escape(self) -> str:
@@ -149,6 +164,8 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
         bar = row.row()
         bar.ui_units_x = STATUS_BAR_WIDTH
         bar.progress(text=current.text, factor=current.progress.fraction)
+        if current.notice:
+            row.label(text=current.notice, icon="INFO")
         row.separator_spacer()
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import bpy
 
+from ..operators import exporting, running
 from .layout import Tab, draw_properties
+from .words import draw_sentence
 
 AXLES = ("rear_axle_x", "rear_axle_z", "wheelbase", "front_overhang", "rear_overhang")
 
@@ -19,6 +21,7 @@ class PE_PT_export(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        draw_written(layout, context)
         layout.operator("pe.export_study", icon="EXPORT")
         layout.operator("pe.import_study", icon="IMPORT")
         layout.operator("pe.render_review", icon="RENDER_STILL")
@@ -35,6 +38,22 @@ class PE_PT_export(Tab, bpy.types.Panel):
         draw_axles(layout, context.scene.perception_entropy)
 
 
+def draw_written(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what the last export wrote, what to know of it, and the way there."""
+    if running.current is not None:
+        layout.progress(text=running.current.text, factor=running.current.progress.fraction)
+    written = exporting.last
+    if written is None:
+        return
+    box = layout.box().column(align=True)
+    row = box.row()
+    draw_sentence(row.column(align=True), context, written.text, icon="CHECKMARK")
+    row.operator("pe.dismiss_written", text="", icon="X", emboss=False)
+    for line in written.lines:
+        draw_sentence(box, context, line, icon="ERROR")
+    box.operator("pe.open_folder", icon="FILE_FOLDER")
+
+
 def draw_axles(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw where the axles are, and what finds them."""
     row = layout.row()
@@ -46,6 +65,7 @@ def draw_axles(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) ->
 
 def draw_export(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """File > Export."""
+    menu.layout.operator("pe.export_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.export_rig", text="Rig of Sensors (Perception Entropy)")
     text = "Sensors as Cameras and Empties (Perception Entropy)"
     menu.layout.operator("pe.sensors_to_objects", text=text)
@@ -55,6 +75,7 @@ def draw_export(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
 
 def draw_import(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """File > Import."""
+    menu.layout.operator("pe.import_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.import_rig", text="Rig of Sensors (Perception Entropy)")
     text = "Cameras and Empties as Sensors (Perception Entropy)"
     menu.layout.operator("pe.sensors_from_objects", text=text)

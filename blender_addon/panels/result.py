@@ -20,6 +20,8 @@ def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
         return
     row.progress(text=running.current.text, factor=running.current.progress.fraction)
     row.operator("pe.cancel", text="", icon="CANCEL")
+    if running.current.notice:
+        layout.label(text=running.current.notice, icon="INFO")
 
 
 def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -115,10 +115,21 @@ def test_undo_brings_placement_and_result_back(car):
     bpy.ops.ed.undo_push(message="before")
     before = scenes.study().rig["roof"].pose
     assert bpy.ops.pe.optimize("EXEC_DEFAULT", True) == {"FINISHED"}
-    assert scenes.study().rig["roof"].pose != before
+    found = scenes.study().rig["roof"].pose
+    assert found != before
     bpy.ops.ed.undo()
+    settings = bpy.context.scene.perception_entropy
     assert scenes.study().rig["roof"].pose == before
-    assert not bpy.context.scene.perception_entropy.has_result
+    assert not settings.has_result
+    began, kept = settings.variants
+    assert settings.variant_key == began.key, "it says what stands here"
+    assert kept.name == "Optimized, seed 0" and kept.has_result and not kept.stale
+
+    bpy.ops.pe.switch_variant("EXEC_DEFAULT", True, key=kept.key)
+    assert scenes.study().rig["roof"].pose == found, "what was found is gone"
+    bpy.ops.ed.undo()
+    bpy.ops.ed.undo()
+    assert not bpy.context.scene.perception_entropy.variants, "a second undo takes all back"
 
 
 def test_stopped_search_keeps_the_best(car):

@@ -91,6 +91,7 @@ def report_state():
         "places": {each.name: list(each.matrix_world.translation) for each in sensors},
         "running": running.current is not None,
         "better_found": running.current is not None and better_found(running.current.job),
+        "notice": running.current.notice if running.current else "",
         "kind": found.result_kind,
         "has_result": found.has_result,
         "entropy": found.result_entropy,

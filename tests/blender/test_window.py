@@ -34,6 +34,9 @@ def test_optimize_runs_beside_the_window_esc_keeps_the_best_and_undo_brings_back
     assert window.state["running"], "the search was over before anyone could press Esc"
 
     window.point_at_view()
+    window.key("ctrl+z")
+    window.wait_for(lambda: "Esc" in window.state["notice"], EFFECT_TIMEOUT_S, "why undo waits")
+    assert window.state["running"] and window.state["places"] == start
     window.key("Escape")
     window.wait_for(lambda: not window.state["running"], SCORE_TIMEOUT_S, "the search to stop")
     window.wait_for(lambda: window.state["has_result"], EFFECT_TIMEOUT_S, "a result")
@@ -42,4 +45,5 @@ def test_optimize_runs_beside_the_window_esc_keeps_the_best_and_undo_brings_back
 
     window.key("ctrl+z")
     window.wait_for(lambda: window.state["places"] == start, EFFECT_TIMEOUT_S, "the old placement")
+    assert len(window.state["variants"]) == 2, "undo has lost what the search found"
     assert "Traceback" not in window.log.read_text()

@@ -16,8 +16,8 @@ from ..kinds.camera import Camera, Lens
 from ..kinds.camera.lens.field import fold_angle
 from ..kinds.lidar import Lidar
 from ..scene.geometry import Pose
-from ..scene.sensors import Rig, Sensor
-from .pictures import KeptPicture, Picture, lost
+from ..scene.sensors import Rig, Sensor, SensorModel
+from .pictures import ALIKE_PX, KeptPicture, Picture, Size, lost
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +26,9 @@ CAMERA, LIDAR = Camera.kind, Lidar.kind
 
 NO_EXTENT_RAD = 1e-9
 """A scan of less across does not turn."""
+OFF_CENTER = 0.06
+"""Of a picture's side, how far from the middle the principal point of a usual size may be:
+nuScenes' own cameras have it 0.046 below."""
 EVEN_RAD = 1e-4
 """Channels nearer to even distances than this are even."""
 
@@ -77,6 +80,8 @@ class CarriedSensor:
     picture : Picture or None
     scan : Scan or None
     fusion : str or None
+    min_range, max_range : float or None
+        [m]; None where the file does not say one.
     told : str
         What has to be known of how it was read, if anything.
     entry : str
@@ -97,6 +102,8 @@ class CarriedSensor:
     picture: Picture | None = None
     scan: Scan | None = None
     fusion: str | None = None
+    min_range: float | None = None
+    max_range: float | None = None
     told: str = ""
     entry: str = ""
     is_left_out: bool = False
@@ -164,17 +171,31 @@ def picture_of(model: object) -> Picture | None:
     return Picture(model.projection, (model.width, model.height))
 
 
-def camera_of(name: str, p: Picture) -> tuple[Camera, str]:
+def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera, str]:
     """Return the camera of a picture, and a line on what was made up of it, or nothing.
 
-    One without a size has its principal point in the middle. A lens that folds inside the picture
-    sees as far as it does not.
+    A picture without a size has that which is usual in its format, if the principal point is near
+    its middle; else one that has the principal point in the middle. A lens that folds inside the
+    picture sees as far as it does not.
     """
     if p.size is not None:
         return _camera(name, p, p.size)
-    width, height = (round(2.0 * middle) for middle in p.center)
+    (width, height), words = _made_up_size(p, usual)
     model, _ = _camera(name, p, (width, height))
-    return model, f"{name}: no size in the file; {width} x {height} px has its middle there"
+    return model, f"{name}: no size in the file; {width} x {height} px {words}"
+
+
+def _made_up_size(p: Picture, usual: Size | None) -> tuple[Size, str]:
+    """Return a size for a picture that has none, and why it is that one."""
+    twice = [2.0 * middle for middle in p.center]
+    width, height = (round(side) for side in twice)
+    is_centred = max(abs(twice[0] - width), abs(twice[1] - height)) < ALIKE_PX
+    if usual is None or is_centred:  # nobody calibrates a camera to the half of a pixel
+        return (width, height), "has its middle there"
+    off = max(abs(side / whole - 1.0) / 2.0 for side, whole in zip(twice, usual, strict=True))
+    if off < OFF_CENTER:
+        return usual, "is usual there"
+    return (width, height), "has its middle there"
 
 
 def _camera(name: str, p: Picture, size: tuple[int, int]) -> tuple[Camera, str]:
@@ -216,6 +237,17 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
     )
 
 
+def with_ranges(model: SensorModel, each: CarriedSensor) -> SensorModel:
+    """Return a model with the minimum and maximum range that a file says, where it says them."""
+    if not isinstance(model, Camera | Lidar):
+        return model
+    nearest = model.min_range if each.min_range is None else each.min_range
+    farthest = model.max_range if each.max_range is None else each.max_range
+    if (nearest, farthest) == (model.min_range, model.max_range):
+        return model
+    return replace(model, min_range=nearest, max_range=farthest)
+
+
 def _carried(sensor: Sensor) -> CarriedSensor:
     model = sensor.model
     figures: dict[str, Any] = {}
@@ -223,6 +255,9 @@ def _carried(sensor: Sensor) -> CarriedSensor:
         figures["picture"] = picture_of(model)
     elif isinstance(model, Lidar):
         figures["scan"] = _scan(model)
+    for key, none in (("min_range", 0.0), ("max_range", math.inf)):
+        if (value := getattr(model, key, none)) != none:
+            figures[key] = value
     known = (sensor.name, sensor.pose, sensor.kind, model.name)
     return CarriedSensor(*known, fusion=sensor.fusion, **figures)
 

@@ -11,9 +11,9 @@ from ..errors import InputError
 from ..kinds import KINDS
 from ..kinds.camera.lens import LENSES
 from ..kinds.camera.lens.table import FOV_DEG
-from ..text.values import choice
+from ..text.values import Number, choice
 from .carried import CarriedSensor
-from .figures import PIXELS, figure, whole_figure
+from .figures import FARTHEST, MIN_RANGE, PIXELS, figure, whole_figure
 from .files import Written, plain_number, pose_from, text_of
 from .limits import MAX_FRAMES, require_at_most
 from .passthrough import entry_row, json_entry
@@ -23,7 +23,8 @@ FILE = "rig.csv"
 PLACE, TURN = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
 FIGURES = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 LENS = (*FIGURES, "lens", "coefficients", "fov_deg")
-COLUMNS = ("name", "kind", "model", *PLACE, *TURN, "fusion", *LENS)
+RANGES = ("min_range_m", "max_range_m")
+COLUMNS = ("name", "kind", "model", *PLACE, *TURN, "fusion", *LENS, *RANGES)
 HEAD = """\
 # Origin on the ground under the vehicle's centre; x forward, y left, z up; metres, degrees.
 # R = Rz(yaw) Ry(pitch) Rx(roll); positive pitch is nose down; a camera looks along its x axis.
@@ -53,6 +54,7 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
                 *figures,
                 each.fusion or "",
                 *_lens_cells(each.picture),
+                *("" if v is None else plain_number(v) for v in (each.min_range, each.max_range)),
             ]
         )
     return {FILE: out.getvalue().encode()}, []
@@ -89,8 +91,15 @@ def _read_row(path: Path, number: int, row: dict[str, str]) -> CarriedSensor:
     pose = pose_from(path, f"row {number + 1}", numbers[:3], numbers[3:], degrees=True)
     kind, model, fusion = (row.get(key) or None for key in ("kind", "model", "fusion"))
     entry = "" if kind is None or kind in KINDS else json_entry({k: row.get(k) for k in COLUMNS})
-    known = row["name"], pose, kind, model, _picture(path, number, row)
-    return CarriedSensor(*known, fusion=fusion, entry=entry)
+    nearest = _range(path, number, row, RANGES[0], MIN_RANGE)
+    farthest = _range(path, number, row, RANGES[1], FARTHEST)
+    seen = kind, model, _picture(path, number, row), None, fusion
+    return CarriedSensor(row["name"], pose, *seen, nearest, farthest, entry=entry)
+
+
+def _range(path: Path, number: int, row: dict[str, str], key: str, rule: Number) -> float | None:
+    """Return a range [m], None where its cell is empty."""
+    return figure(path, f"row {number + 1}, {key}", row[key], rule) if row.get(key) else None
 
 
 def _number(path: Path, number: int, row: dict[str, str], key: str) -> float:

@@ -7,14 +7,18 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
+from ..scene.geometry import METRES, Pose
 from ..text.tables import Table
+from ..text.values import vector
 from .carried import CAMERA, LIDAR, CarriedSensor
 from .driveworks_lens import read_properties, write_properties
 from .files import Written, json_bytes, json_of, json_rows, json_text, pose_from
+from .frames import composed, shifted
 from .passthrough import ORIGIN, entry_row, json_entry
 
 FILE = "rig.json"
 POSE, TURN, PLACE = "nominalSensor2Rig_FLU", "roll-pitch-yaw", "t"
+TURN_CORRECTION, SHIFT_CORRECTION = "correction_sensor_R_FLU", "correction_rig_T"
 PROTOCOLS = {CAMERA: "camera.gmsl", LIDAR: "lidar.virtual"}
 """Protocols to write; kinds are read from the word before the dot."""
 UNKNOWN = ("", "virtual")
@@ -79,6 +83,22 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
     return tuple(_sensor(path, row) for row in rows)
 
 
+def _corrected(path: Path, row: Table, nominal: Pose) -> Pose:
+    """Return a nominal pose with what calibration found: a turn in the sensor's axes, a shift.
+
+    The shift is in the rig's axes: R = R_nominal R_correction, t = t_nominal + t_correction.
+    """
+    shift, turn = row.raw(SHIFT_CORRECTION, None), row.raw(TURN_CORRECTION, None)
+    if shift is None and turn is None:
+        return nominal
+    angles = [0.0, 0.0, 0.0] if turn is None else row.table(TURN_CORRECTION).raw(TURN)
+    field = row.field(TURN_CORRECTION)
+    turned = pose_from(path, field, (0.0, 0.0, 0.0), angles, degrees=True)
+    moved = (0.0, 0.0, 0.0) if shift is None else shift
+    by = vector(path, row.field(SHIFT_CORRECTION), moved, 3, METRES)
+    return shifted(composed(nominal, turned), by)
+
+
 def _sensor(path: Path, row: Table) -> CarriedSensor:
     word, entry = row.text("protocol", "").partition(".")[0], json_entry(row.data)
     if POSE not in row:
@@ -87,7 +107,7 @@ def _sensor(path: Path, row: Table) -> CarriedSensor:
     place, turn = pose.raw(PLACE), pose.raw(TURN)
     kind = None if word in UNKNOWN else word
     _, _, model = row.text("parameter", "").partition("model=")
-    where = pose_from(path, pose.path, place, turn, degrees=True)
+    where = _corrected(path, row, pose_from(path, pose.path, place, turn, degrees=True))
     found = read_properties(row.table("properties")) if kind == CAMERA else (None, "")
     named = row.text("name"), where, kind, model.split(",")[0] or None
     return CarriedSensor(*named, found[0], told=found[1], entry=entry)

@@ -11,6 +11,7 @@ from ..scene.sensors import Rig
 from ..text.files import write_bytes
 from .carried import CarriedSensor, carried, with_pictures
 from .frames import origin_in_ground, seen_from, shifted
+from .losses import lost_line
 from .other_kinds import listed_kinds
 from .passthrough import Passthrough, model_text
 from .table import RigFormat, rig_format
@@ -78,7 +79,8 @@ def _sensors(
         if kept.placed is not None:
             moved = tuple(s.moved(seen_from(kept.placed, s.pose)) for s in moved)
         moved = kept.restored(moved, {each.name: model_text(each.model) for each in rig})
-    return with_pictures(moved, row.keeps, row.title)
+    sensors, left = with_pictures(moved, row.keeps, row.title)
+    return sensors, left + lost_line(rig, row.title, row.holds)
 
 
 def export_rig(

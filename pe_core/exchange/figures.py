@@ -15,12 +15,12 @@ from typing import Any
 
 from ..errors import InputError, shown
 from ..kinds.camera.lens.lens import COEFFICIENT, FOCAL, PLACE
-from ..kinds.camera.model import PIXELS
+from ..kinds.camera.model import FARTHEST, PIXELS
 from ..kinds.lidar.model import RANGE, STEPS
 from ..kinds.ranges import MIN_RANGE
 from ..text.values import FINITE, Number, Whole
 
-__all__ = ["COEFFICIENT", "FOCAL", "MIN_RANGE", "PIXELS", "PLACE", "RANGE", "STEPS"]
+__all__ = ["COEFFICIENT", "FARTHEST", "FOCAL", "MIN_RANGE", "PIXELS", "PLACE", "RANGE", "STEPS"]
 __all__ += ["AZIMUTH", "CHANNELS", "ELEVATION", "FOV_RAD", "figure", "figures", "whole_figure"]
 
 QUARTER = math.pi / 2.0

@@ -8,12 +8,14 @@ from xml.etree.ElementTree import Element, SubElement
 from ..kinds.camera import BrownConrady
 from ..text.values import SHARE, Number
 from .figures import COEFFICIENT, FOCAL, PIXELS, PLACE
-from .files import spaced
+from .files import plain_number, spaced
 from .gazebo_element import SensorElement
 from .pictures import Picture, Size, picture_of_fov, pinhole_picture
 
 BENT = ("k1", "k2", "k3", "p1", "p2")
 INTRINSICS = ("fx", "fy", "cx", "cy")
+NEAR_M, FAR_M = 0.01, 1000.0
+"""Where Gazebo begins and ends to draw for a camera that has only one of its ranges."""
 WIDEST = Number(0.0, 2.0 * math.pi, above=True, unit="rad", noun="angle")
 """Field of view of a camera in Gazebo, fisheyes included."""
 
@@ -37,6 +39,15 @@ def write_picture(element: Element, picture: Picture, size: Size) -> None:
             SubElement(bent, key).text = repr(getattr(picture.lens, key))
         cx, cy = picture.center
         SubElement(bent, "center").text = spaced((cx / width, cy / height))
+
+
+def write_clip(element: Element, nearest: float | None, farthest: float | None) -> None:
+    """Write a camera's ranges into a <camera>, where it has some; Gazebo wants both [m]."""
+    if nearest is None and farthest is None:
+        return
+    clip = SubElement(element, "clip")
+    SubElement(clip, "near").text = plain_number(max(nearest or 0.0, NEAR_M))
+    SubElement(clip, "far").text = plain_number(FAR_M if farthest is None else farthest)
 
 
 def picture_in(sensor: SensorElement) -> Picture | None:

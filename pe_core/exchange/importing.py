@@ -23,12 +23,13 @@ from .carried import (
     merged_lines,
     named_apart,
     picture_of,
+    with_ranges,
 )
 from .frames import composed, origin_in_ground, shifted
 from .limits import MAX_SENSORS, require_at_most
 from .other_kinds import NO_WORD, listed_kinds, parted
 from .passthrough import Passthrough, SourceSensor, model_text
-from .pictures import KeptPicture, alike
+from .pictures import alike
 from .table import RigFormat, rig_format, told_format
 
 STAND_INS = {LIDAR: "Velodyne VLP-16 Puck", CAMERA: "nuScenes front"}
@@ -184,7 +185,7 @@ def _kept(
 def _with_model(each: CarriedSensor, chosen: str | None, row: RigFormat) -> Modelled:
     """Return a sensor, its model, and a line about that where there is something to know."""
     each = replace(each, kind=each.kind or (CAMERA if _sounds_like_a_camera(each.name) else LIDAR))
-    model, line = _model(each, chosen, row.keeps)
+    model, line = _model(each, chosen, row)
     return row.settled(replace(each, model=model.name)), model, line
 
 
@@ -192,13 +193,15 @@ def _sounds_like_a_camera(name: str) -> bool:
     return any(word in name.lower() for word in LENS_WORDS)
 
 
-def _model(each: CarriedSensor, chosen: str | None, kept: KeptPicture) -> tuple[SensorModel, str]:
+def _model(each: CarriedSensor, chosen: str | None, row: RigFormat) -> tuple[SensorModel, str]:
     if chosen is not None:
         return catalog.load(chosen), ""
     if (known := _known(each)) is not None:
-        return _known_or_own(each, catalog.load(known), kept)
+        model, line = _known_or_own(each, catalog.load(known), row)
+        return with_ranges(model, each), line
     if each.kind == CAMERA and each.picture is not None:
-        return camera_of(each.name, each.picture)
+        own, line = camera_of(each.name, each.picture, row.usual_size)
+        return with_ranges(own, each), line
     if each.kind == LIDAR and each.scan is not None:
         return lidar_of(each.name, each.scan), ""
     stand_in = STAND_INS.get(each.kind or "", STAND_INS[LIDAR])
@@ -214,12 +217,12 @@ def _known(each: CarriedSensor) -> str | None:
 
 
 def _known_or_own(
-    each: CarriedSensor, model: SensorModel, kept: KeptPicture
+    each: CarriedSensor, model: SensorModel, row: RigFormat
 ) -> tuple[SensorModel, str]:
     """Return the catalogue's model, or the file's own lens where that is another one."""
     picture = picture_of(model)
-    if picture is None or each.picture is None or alike(kept(picture), each.picture):
+    if picture is None or each.picture is None or alike(row.keeps(picture), each.picture):
         return model, ""
-    own, line = camera_of(each.name, each.picture)
+    own, line = camera_of(each.name, each.picture, row.usual_size)
     told = f"{each.name}: its lens is not that of {model.name} in the catalogue, but the file's"
     return own, line or told

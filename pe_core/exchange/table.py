@@ -24,8 +24,10 @@ from . import (
 from .carried import CarriedSensor
 from .files import Written
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
+from .losses import BEAMS, FUSION, MAX_RANGE, MIN_RANGE, MODEL
 from .pictures import (
     KeptPicture,
+    Size,
     centred,
     f_theta_of_five,
     opencv,
@@ -59,6 +61,10 @@ class RigFormat:
         A sensor as it is once its model is known.
     keeps : callable
         What it keeps of a camera's picture.
+    holds : frozenset of str
+        What it holds of sensors besides poses and lenses, in the words of `losses`.
+    usual_size : (int, int) or None
+        Of a picture where the format says no size: that of the data set it is of [px].
     beside : bool
         Whether files stand beside the one: lenses of cameras.
     write_over : callable, optional
@@ -77,6 +83,8 @@ class RigFormat:
     read: Callable[[Path], Carried]
     settled: Callable[[CarriedSensor], CarriedSensor] = lambda each: each
     keeps: KeptPicture = whole
+    holds: frozenset[str] = frozenset()
+    usual_size: Size | None = None
     beside: bool = False
     write_over: Callable[[Texts, Carried], tuple[Written, list[str]]] | None = None
     source: Callable[[Path], Texts] = lambda path: {}
@@ -92,6 +100,7 @@ _ROWS = (
         csv_table.write,
         csv_table.read,
         passes_through=True,
+        holds=frozenset({MODEL, FUSION, MIN_RANGE, MAX_RANGE}),
     ),
     RigFormat(
         "urdf",
@@ -101,6 +110,7 @@ _ROWS = (
         urdf.write,
         urdf.read,
         keeps=opencv_of_five,
+        holds=frozenset({MODEL, BEAMS, FUSION, MIN_RANGE, MAX_RANGE}),
     ),
     RigFormat(
         "ros",
@@ -135,6 +145,7 @@ _ROWS = (
         nuscenes.read,
         keeps=opencv_of_five,
         passes_through=True,
+        usual_size=(1600, 900),
     ),
     RigFormat(
         "argoverse2",
@@ -156,6 +167,7 @@ _ROWS = (
         write_over=carla.write_over,
         source=carla.source,
         passes_through=True,
+        holds=frozenset({BEAMS}),
     ),
     RigFormat(
         "kitti",
@@ -165,6 +177,7 @@ _ROWS = (
         kitti.write,
         kitti.read,
         keeps=straight,
+        usual_size=(1242, 375),
     ),
     RigFormat(
         "osi",
@@ -174,6 +187,7 @@ _ROWS = (
         osi.write,
         osi.read,
         keeps=centred,
+        holds=frozenset({BEAMS}),
     ),
     RigFormat(
         "driveworks",
@@ -186,6 +200,7 @@ _ROWS = (
         write_over=driveworks.write_over,
         source=driveworks.source,
         passes_through=True,
+        holds=frozenset({MODEL}),
     ),
 )
 RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})

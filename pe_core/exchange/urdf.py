@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from pathlib import Path
+from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ..errors import InputError, shown
@@ -15,16 +16,17 @@ from ..scene.geometry import Pose
 from ..text.files import read_bytes
 from ..text.xml_text import parse_xml
 from .carried import CAMERA, LIDAR, CarriedSensor, uneven
-from .figures import figures
-from .files import Written, pose_from, spaced
+from .figures import FARTHEST, MIN_RANGE, figure, figures
+from .files import Written, plain_number, pose_from, spaced
 from .frame_names import with_legal_frames
 from .frame_tree import poses_from_root
 from .frames import OPTICAL_RPY
-from .gazebo_camera import picture_in, write_picture
+from .gazebo_camera import picture_in, write_clip, write_picture
 from .gazebo_element import SensorElement
 from .gazebo_lidar import scan_in, write_scan
 from .limits import MAX_FRAMES, require_at_most
 
+RANGES = ("min_range", "max_range")
 FILE, ROOT, OPTICAL = "rig.urdf", "base_link", "_optical"
 CONVENTIONS = (
     " base_link is on the ground under the vehicle's centre: x forward, y left, z up; metres, "
@@ -61,13 +63,17 @@ def _joint(robot: Element, parent: str, child: str, xyz: object, rpy: object) ->
 def _gazebo(robot: Element, each: CarriedSensor) -> None:
     block = SubElement(robot, "gazebo", {"reference": each.name})
     kind = GAZEBO_KINDS.get(each.kind or "")
-    known = {"kind": each.kind or "", "model": each.model or ""}
+    known = {"kind": each.kind or "", "model": each.model or "", "fusion": each.fusion or ""}
+    known |= {k: "" if (v := getattr(each, k)) is None else plain_number(v) for k in RANGES}
+    known = {k: v for k, v in known.items() if v or k in ("kind", "model")}
     SubElement(block, "perception_entropy", known)
     if kind is None:
         return
     sensor = SubElement(block, "sensor", {"name": each.name, "type": kind})
     if each.picture is not None and each.picture.size is not None:
-        write_picture(SubElement(sensor, CAMERA), each.picture, each.picture.size)
+        camera = SubElement(sensor, CAMERA)
+        write_picture(camera, each.picture, each.picture.size)
+        write_clip(camera, each.min_range, each.max_range)
     elif each.scan is not None:
         write_scan(SubElement(sensor, LIDAR), each.scan)
 
@@ -159,6 +165,17 @@ def _sensor(path: Path, name: str, poses: dict[str, Pose], block: Element | None
     if own is not None:
         kind = own.get("kind") or kind
     inside = SensorElement(path, name, sensor)
-    return CarriedSensor(
-        name, poses[name], kind, model or None, picture_in(inside), scan_in(inside)
-    )
+    known = {} if own is None else _known(path, name, own)
+    seen = picture_in(inside), scan_in(inside)
+    return CarriedSensor(name, poses[name], kind, model or None, *seen, **known)
+
+
+def _known(path: Path, name: str, own: Element) -> dict[str, Any]:
+    """Return a sensor's fusion group and ranges, as far as our own element says them."""
+    rules = dict(zip(RANGES, (MIN_RANGE, FARTHEST), strict=True))
+    ranges = {
+        key: figure(path, f"sensor of {name}, {key}", own.get(key), rule)
+        for key, rule in rules.items()
+        if own.get(key) is not None
+    }
+    return {"fusion": own.get("fusion") or None, **ranges}

@@ -135,7 +135,11 @@ def test_nuscenes_own_front_camera(tmp_path):
     camera = found.rig["CAM_FRONT"]
     assert camera.pose.position == pytest.approx((0.32079118954, 0.0159456324149, 1.51095763913))
     assert camera.pose.rotation_deg == pytest.approx((-0.046, 0.323, 0.325), abs=2e-3)
-    assert math.degrees(camera.model.hfov) == pytest.approx(65.6, abs=0.1)
+    # the row through the principal point, 816.267 px of 1600
+    hfov = math.atan(816.26702 / 1266.417203) + math.atan((1600 - 816.26702) / 1266.417203)
+    assert (camera.model.width, camera.model.height) == (1600, 900)
+    assert camera.model.hfov == pytest.approx(hfov, abs=1e-9)
+    assert found.lines == ("CAM_FRONT: no size in the file; 1600 x 900 px is usual there",)
 
 
 def test_kitti_s_own_calibration(tmp_path):
@@ -151,6 +155,7 @@ def test_kitti_s_own_calibration(tmp_path):
     )
     found = pe.import_rig(tmp_path / "calib.txt", placed=pe.Pose((0.0, 0.0, 1.73)))
     first, second = found.rig["camera_0"], found.rig["camera_2"]
+    assert (first.model.width, first.model.height) == (1242, 375)
     assert first.pose.position == pytest.approx((0.27, 0.0, 1.65), abs=0.01)
     apart = math.dist(first.pose.position, second.pose.position)
     assert apart == pytest.approx(0.06, abs=1e-3)

@@ -69,7 +69,8 @@ def test_kitti_s_projection_has_the_pinhole_alone(tmp_path):
     lidar = pe.Sensor("top", pe.catalog.load("Velodyne VLP-16 Puck"), pe.Pose((0.0, 0.0, 2.0)))
     rig = pe.Rig([lidar, camera("eye", BROWN)])
     (path,), lines = pe.export_rig(rig, "kitti", tmp_path / "calib.txt")
-    assert "the distortion (brown-conrady) of own eye is left out of KITTI" in lines[-1]
+    assert "the distortion (brown-conrady) of own eye is left out of KITTI" in lines[-2]
+    assert lines[-1] == "left out of KITTI calibration: beams of top"
     theirs = pe.import_rig(path).rig["camera_0"].model.projection
     assert (theirs.fx, theirs.fy, theirs.cx, theirs.cy) == pytest.approx(PLACE, abs=1e-6)
 
@@ -211,6 +212,39 @@ def test_a_polynomial_that_cannot_be_turned_round_well_says_how_far_it_is_off(tm
 def test_driveworks_lenses_of_no_kind_are_refused(properties, words, tmp_path):
     with pytest.raises(pe.InputError, match=words):
         pe.import_rig(rig_json(tmp_path, **properties), reference=AXLE)
+
+
+def test_driveworks_corrections_are_applied(tmp_path):
+    """NVIDIA's own example: R = R_nominal R_correction, t = t_nominal + t_correction."""
+    path = rig_json(tmp_path, fx="1000", fy="1000", Model="pinhole")
+    data = json.loads(path.read_text())
+    (eye,) = data["rig"]["sensors"]
+    eye["nominalSensor2Rig_FLU"] = {"roll-pitch-yaw": [0, 0, 90], "t": [1.0, -0.1, 1.5]}
+    eye["correction_sensor_R_FLU"] = {"roll-pitch-yaw": [0.0, 4.74, 0.0]}
+    eye["correction_rig_T"] = [0.0, 0.0, 0.3275]
+    path.write_text(json.dumps(data))
+    (found,) = pe.import_rig(path, reference=AXLE).rig
+    assert found.pose.position == pytest.approx((1.0 - 1.31, -0.1, 1.8275))
+    down = math.radians(4.74)  # to the left, and nose down in the sensor's own axes
+    forward = found.pose.ground_from_sensor[:, 0]
+    assert forward == pytest.approx((0.0, math.cos(down), -math.sin(down)), abs=1e-12)
+    eye["correction_rig_T"] = [0.0, "x", 0.0]
+    path.write_text(json.dumps(data))
+    with pytest.raises(pe.InputError, match="correction_rig_T"):
+        pe.import_rig(path, reference=AXLE)
+
+
+def test_gazebo_s_distortion_centre_is_the_principal_point(tmp_path):
+    lens = BrownConrady(930.0, 930.0, 0.485 * 1920, 0.526 * 1080, None, -0.02)
+    (path,), _ = pe.export_rig(pe.Rig([camera("eye", lens)]), "urdf", tmp_path / "rig.urdf")
+    text = path.read_text()
+    center = text.partition("<center>")[2].partition("</center>")[0]
+    assert [float(v) for v in center.split()] == pytest.approx([0.485, 0.526])
+    intrinsics = text[text.index("<lens>") : text.index("</lens>") + 7]
+    path.write_text(text.replace(intrinsics, ""))
+    (eye,) = pe.import_rig(path).rig
+    found = eye.model.projection
+    assert (found.cx, found.cy) == pytest.approx((0.485 * 1920, 0.526 * 1080))
 
 
 def test_every_format_says_what_it_keeps():

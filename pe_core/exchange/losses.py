@@ -1,0 +1,67 @@
+"""What a format cannot hold of a rig, in one line: what each holds is declared, a set a format.
+
+Lenses have their own lines (`pictures`), as have channels that a format spaces evenly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from .. import catalog
+from ..kinds.lidar import Lidar
+from ..scene.sensors import Rig, Sensor, SensorModel
+
+MODEL = "model"
+"""The model's name: what the catalogue says of it is not lost."""
+BEAMS = "beams"
+"""A LiDAR's channels, azimuths and range."""
+MIN_RANGE, MAX_RANGE = "minimum range", "maximum range"
+FUSION, CURVE = "fusion group", "AP curve"
+EVERYTHING = (BEAMS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
+
+
+def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
+    """Return what of a rig a format has no room for, in one line; nothing where it has.
+
+    Parameters
+    ----------
+    rig : Rig
+    title : str
+        The format, as people call it.
+    holds : frozenset of str
+        Of `MODEL` and `EVERYTHING`, what it holds.
+    """
+    lost = {sensor.name: set(_owned(sensor, holds)) - holds for sensor in rig}
+    parts = []
+    for feature in EVERYTHING:
+        names = [name for name, features in lost.items() if feature in features]
+        if names:
+            parts.append(f"{feature} of {', '.join(names)}")
+    return [f"left out of {title}: {'; '.join(parts)}"] if parts else []
+
+
+def _owned(sensor: Sensor, holds: frozenset[str]) -> Iterator[str]:
+    """Yield what a sensor has that is not there by itself."""
+    if sensor.fusion is not None:
+        yield FUSION
+    if sensor.curve is not None:
+        yield CURVE
+    model = sensor.model
+    if MODEL in holds and _is_catalogued(model):
+        return
+    if isinstance(model, Lidar):
+        yield BEAMS
+        if BEAMS not in holds:
+            return  # with its ranges
+    if getattr(model, "min_range", 0.0) > 0.0:
+        yield MIN_RANGE
+    if getattr(model, "max_range", float("inf")) < float("inf") and not isinstance(model, Lidar):
+        yield MAX_RANGE
+
+
+def _is_catalogued(model: SensorModel) -> bool:
+    """Whether the catalogue has a model of that name with the same figures."""
+    if model.name not in catalog.names(model.kind):
+        return False
+    known = catalog.load(model.name)
+    return known is model or catalog.to_table(known) == catalog.to_table(model)

@@ -1,0 +1,89 @@
+"""What a format cannot hold of a rig is said in one line; what it holds comes back."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.exchange import RIG_FORMATS, rig_files
+
+AXLE = pe.Reference(-1.31, 0.33)
+CURVE = pe.ApCurve(0.2, 0.1)
+NEAR = pe.Camera("near", 640, 480, math.radians(70.0), min_range=0.3, max_range=40.0)
+BEAMS = pe.Lidar("own", np.radians([-20, -10, 0]), 36, 80.0, min_range=0.5)
+RIG = pe.Rig(
+    [
+        pe.Sensor("roof", BEAMS, pe.Pose((0.0, 0.0, 1.8)), fusion="top"),
+        pe.Sensor("puck", pe.catalog.load("Velodyne VLP-16 Puck"), pe.Pose((1.0, 0.0, 1.0))),
+        pe.Sensor("eye", NEAR, pe.Pose((1.5, 0.1, 1.3)), curve=CURVE),
+    ]
+)
+RANGES = "minimum range of eye; maximum range of eye"
+NOTHING_BUT_POSES = f"beams of roof, puck; {RANGES}; fusion group of roof; AP curve of eye"
+EVERY_BEAM = (
+    "minimum range of roof, eye; maximum range of eye; fusion group of roof; AP curve of eye"
+)
+LOST = {
+    "csv": "beams of roof; AP curve of eye",
+    "urdf": "AP curve of eye",
+    "carla": EVERY_BEAM,
+    "osi": EVERY_BEAM,
+    "driveworks": f"beams of roof; {RANGES}; fusion group of roof; AP curve of eye",
+    "kitti": f"beams of roof; {RANGES}; fusion group of roof; AP curve of eye",
+}
+
+
+@pytest.mark.parametrize("name", RIG_FORMATS)
+def test_what_a_format_cannot_hold_is_one_line(name):
+    if name == "argoverse2":
+        pytest.importorskip("pyarrow", reason="of the extra argoverse")
+    rig = pe.Rig([s for s in RIG if s.name != "puck"]) if name == "kitti" else RIG
+    _, lines = rig_files(rig, name, AXLE)
+    (line,) = [each for each in lines if each.startswith("left out of ")]
+    expected = LOST.get(name, NOTHING_BUT_POSES)
+    assert line == f"left out of {RIG_FORMATS[name].title}: {expected}"
+
+
+@pytest.mark.parametrize("name", RIG_FORMATS)
+def test_of_a_rig_that_a_format_holds_nothing_is_said(name):
+    rig = pe.Rig([pe.Sensor("eye", pe.catalog.load("KITTI cam2"), pe.Pose((1.0, 0.0, 1.5)))])
+    if name == "kitti":
+        return  # it wants a LiDAR
+    if name == "argoverse2":
+        pytest.importorskip("pyarrow", reason="of the extra argoverse")
+    _, lines = rig_files(rig, name, AXLE)
+    assert not [each for each in lines if each.startswith("left out of ")]
+
+
+@pytest.mark.parametrize("name", ["csv", "urdf"])
+def test_ranges_and_fusion_groups_come_back(name, tmp_path):
+    (path,), _ = pe.export_rig(RIG, name, tmp_path / RIG_FORMATS[name].files[0])
+    found = pe.import_rig(path).rig
+    assert (found["eye"].model.min_range, found["eye"].model.max_range) == (0.3, 40.0)
+    assert (found["roof"].fusion, found["eye"].fusion) == ("top", None)
+    assert found["puck"].model.max_range == RIG["puck"].model.max_range
+    if name == "urdf":
+        assert (found["roof"].model.min_range, found["roof"].model.max_range) == (0.5, 80.0)
+
+
+def test_gazebo_s_clip_is_the_camera_s_ranges_and_a_foreign_clip_is_not():
+    """Every URDF has a clip of some size, to draw with; a sensor's range is another thing."""
+    files, _ = rig_files(RIG, "urdf")
+    text = files["rig.urdf"].decode()
+    assert "<near>0.3</near>" in text and "<far>40.0</far>" in text
+    plain = pe.Rig([pe.Sensor("eye", pe.catalog.load("KITTI cam2"), pe.Pose((1.0, 0.0, 1.5)))])
+    assert "<clip>" not in rig_files(plain, "urdf")[0]["rig.urdf"].decode()
+
+
+def test_a_foreign_clip_is_no_range(tmp_path):
+    path = tmp_path / "rig.urdf"
+    path.write_text(
+        '<robot name="r"><link name="base"/><link name="eye"/><joint name="j" type="fixed">'
+        '<parent link="base"/><child link="eye"/></joint><gazebo reference="eye">'
+        '<sensor name="eye" type="camera"><camera><horizontal_fov>1.2</horizontal_fov><image><width>640</width>'
+        "<height>480</height></image><clip><near>0.1</near><far>100</far></clip></camera></sensor>"
+        "</gazebo></robot>"
+    )
+    (eye,) = pe.import_rig(path).rig
+    assert (eye.model.min_range, eye.model.max_range) == (0.0, math.inf)

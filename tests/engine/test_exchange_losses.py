@@ -81,8 +81,8 @@ def test_a_foreign_clip_is_no_range(tmp_path):
     path.write_text(
         '<robot name="r"><link name="base"/><link name="eye"/><joint name="j" type="fixed">'
         '<parent link="base"/><child link="eye"/></joint><gazebo reference="eye">'
-        '<sensor name="eye" type="camera"><camera><horizontal_fov>1.2</horizontal_fov><image><width>640</width>'
-        "<height>480</height></image><clip><near>0.1</near><far>100</far></clip></camera></sensor>"
+        '<sensor name="eye" type="camera"><camera><horizontal_fov>1.2</horizontal_fov>'
+        "<image><width>640</width><height>480</height></image><clip><near>0.1</near><far>100</far></clip></camera></sensor>"
         "</gazebo></robot>"
     )
     (eye,) = pe.import_rig(path).rig

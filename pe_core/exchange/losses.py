@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from .. import catalog
-from ..kinds.lidar import Lidar
 from ..scene.sensors import Rig, Sensor, SensorModel
+from .carried import CarriedSensor, carried
 
 MODEL = "model"
 """The model's name: what the catalogue says of it is not lost."""
@@ -31,7 +31,8 @@ def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
     holds : frozenset of str
         Of `MODEL` and `EVERYTHING`, what it holds.
     """
-    lost = {sensor.name: set(_owned(sensor, holds)) - holds for sensor in rig}
+    pairs = zip(rig, carried(rig), strict=True)
+    lost = {sensor.name: set(_owned(sensor, each, holds)) - holds for sensor, each in pairs}
     parts = []
     for feature in EVERYTHING:
         names = [name for name, features in lost.items() if feature in features]
@@ -40,22 +41,21 @@ def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
     return [f"left out of {title}: {'; '.join(parts)}"] if parts else []
 
 
-def _owned(sensor: Sensor, holds: frozenset[str]) -> Iterator[str]:
+def _owned(sensor: Sensor, each: CarriedSensor, holds: frozenset[str]) -> Iterator[str]:
     """Yield what a sensor has that is not there by itself."""
     if sensor.fusion is not None:
         yield FUSION
     if sensor.curve is not None:
         yield CURVE
-    model = sensor.model
-    if MODEL in holds and _is_catalogued(model):
+    if MODEL in holds and _is_catalogued(sensor.model):
         return
-    if isinstance(model, Lidar):
+    if each.scan is not None:
         yield BEAMS
         if BEAMS not in holds:
             return  # with its ranges
-    if getattr(model, "min_range", 0.0) > 0.0:
+    if each.min_range is not None:
         yield MIN_RANGE
-    if getattr(model, "max_range", float("inf")) < float("inf") and not isinstance(model, Lidar):
+    if each.max_range is not None and each.scan is None:
         yield MAX_RANGE
 
 

@@ -129,7 +129,7 @@ GREAT = {
         "at most 1,000,000 beams",
     ),
     "blanks in YAML": (
-        "sensors_calibration.yaml",
+        "sensor_kit_calibration.yaml",
         lambda: "base_link:\n  a" + " " * 1_000_000 + "b",
         "line 2",
     ),

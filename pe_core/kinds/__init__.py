@@ -3,6 +3,7 @@
 from .by_name import MeasuredByName
 from .camera import CAMERA, BrownConrady, Camera, FTheta, KannalaBrandt, Lens, Pinhole
 from .ego_mask import EgoMask
+from .ground_kernel import GroundKernel, GroundView, VisibleGround
 from .kernels import GridKernel, Measured, SampleKernel, Stopped, Voxels
 from .kind import Kind
 from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
@@ -13,6 +14,7 @@ from .object_kernel import ObjectKernel, ObjectView
 from .perception import BLIND_RULES, PerceptionModel
 from .table import KINDS, kind_named, kind_of, register, unregister
 from .view_patch import ViewPatch
+from .visible_ground import VisibleGroundCache
 
 __all__ = [
     "BLIND_RULES",
@@ -23,6 +25,8 @@ __all__ = [
     "EgoMask",
     "FTheta",
     "GridKernel",
+    "GroundKernel",
+    "GroundView",
     "KannalaBrandt",
     "Kind",
     "Lens",
@@ -38,6 +42,8 @@ __all__ = [
     "SampleKernel",
     "Stopped",
     "ViewPatch",
+    "VisibleGround",
+    "VisibleGroundCache",
     "Voxels",
     "all_carried_over",
     "beam_field",

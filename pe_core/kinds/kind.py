@@ -23,6 +23,7 @@ from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .defined import DefinedGrid, DefinedSample
 from .ego_mask import EgoMask
+from .ground_kernel import DefinedGround, GroundKernel, GroundView
 from .kernels import Floats, GridKernel, SampleKernel, Voxels
 from .object_kernel import DefinedObjects, ObjectKernel, ObjectView
 from .view_patch import ViewPatch
@@ -149,6 +150,10 @@ class Kind(ABC):
     def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> SampleKernel:
         """Return what measures sensors on some voxels; `enough` as on the grid."""
         return DefinedSample(self.measure, voxels, vehicle)
+
+    def on_ground(self, view: GroundView) -> GroundKernel:
+        """Return what tells which ground a sensor sees of what stands there."""
+        return DefinedGround(self.measure, view)
 
     def on_objects(self, view: ObjectView) -> ObjectKernel:
         """Return what measures sensors on some objects."""

@@ -1,41 +1,56 @@
 """Blind ground: where round the vehicle nothing is seen, as outlines and as distances by side.
 
-It is asked of something that stands on the ground and is so tall: blind is where none of it is
-seen, so what is taller has less of it. 0 is what lies flat.
+It is asked of a test body: an upright cylinder of the diameter `BODY_M` that stands on the ground
+and is so tall; 0 is a disc that lies flat. A body is unseen where no beam of a LiDAR passes through
+it and no line of sight of a camera ends on it. Blind ground is what unseen bodies can stand on: a
+gap between beams that is narrower than a body is none.
 
-Beams of a LiDAR leave gaps that no object fits into. So ground is blind where a disc of the
-diameter `GAP_M` finds room in which nothing is seen (the morphological opening of the unseen
-ground, or the closing of the seen): a narrower gap is none. The ground under the vehicle counts as
-unseen for that, so that a strip along the body is not lost, but is no blind ground; beyond the edge
-of what is looked at it goes on as at the edge. Specks smaller than `LEAST_M2` are none either: a
-ring's gap about as wide as the disc would be drawn as a row of dots.
+Squares of the ground say where something is seen for sure (`kinds.ground_kernel`). From these, all
+unseen bodies are found, and perhaps a few that are seen by a hair's breadth: figures err to the
+safe side. Blind ground, area and distances are never too small, but for specks (`LEAST_M2`) and
+strips along the body narrower than `STRIP_SQUARES`; and edges lie at most `ERR_SQUARES` too far out.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kinds import GroundView, VisibleGroundCache
 from ..scene.frozen import frozen
+from ..scene.ground_grid import GroundGrid
+from ..scene.sensors import Rig
+from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
-from .cells import GroundCells, Rectangle
+from .cells import ROUNDING, STEP, GroundCells, Rectangle
 from .outline import outlines
-from .places import VoxelsByCell
-from .regions import opened, without_specks
+from .regions import dilated, squares_touching, squares_within, without_specks
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-GAP_M = 0.3
-"""Gaps narrower than this are no blind ground: less than a small child is wide."""
-LEAST_M2 = 0.25
-"""Nor is what is smaller than this."""
+BODY_M = 0.3
+"""Diameter of the test body: that of the cylinders of FMVSS 111 and UN regulation 158, about as wide
+as a small child."""
+STEP_M, MOST_STEP_M = 0.05, 0.1
+"""Side of the squares; with larger ones no body would be known to be seen."""
+LEAST_M2 = 0.18
+"""Pieces of whole unseen squares smaller than this are none: every piece of 0.25 m2 has more."""
+STRIP_SQUARES = math.sqrt(2.0)
+"""Between what is seen and an unseen square lies no more than this, in squares."""
+NARROW_M = 0.1
+"""A strip of blind ground along the body that is narrower than this is none, to a side: less than
+what edges may be too far out."""
 NO_BODY_M = 1.0
 """Half the side of the square that stands for the body where there is no vehicle."""
+SQUARES_A_VOXEL = 16
+"""Of what is kept of voxels and squares: some bytes to some 100."""
 DECIMALS = 6
 """Distances are rounded to the micrometre."""
 SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
@@ -96,6 +111,12 @@ def body_rectangle(vehicle: Vehicle | None) -> Rectangle:
     return (x0, x1), (y0, y1)
 
 
+def fine_enough(step: float) -> float:
+    """Cut a square's side [m] in equal parts that bodies can be told by."""
+    step = STEP.checked("sight", "step", step)
+    return step / math.ceil(step / MOST_STEP_M - ROUNDING)
+
+
 def blind_ground(
     cells: GroundCells, blind: Flags, body: Rectangle, height: float, within: float, draft: bool
 ) -> BlindGround:
@@ -142,6 +163,9 @@ class _Strip:
         distance = np.maximum(sign * (along[rows] - edge) - cells.step / 2.0, 0.0)
         distance = np.round(distance, DECIMALS)
         strip = turned[np.ix_(rows, columns)]
+        first_clear = int(np.argmin(strip.any(axis=1))) if len(strip) else 0
+        if len(strip) and distance[first_clear] < NARROW_M:
+            strip[:first_clear] = False
         return cls(strip, distance, across[columns], edge, axis, sign)
 
     def nearest(self) -> BlindSpot | None:
@@ -157,9 +181,14 @@ class _Strip:
         return BlindSpot((along, beside) if self.axis == 0 else (beside, along), distance)
 
     def zone(self) -> float | None:
-        """How far from the body the first row without a blind place is."""
+        """How far from the body the first row without a blind place is; 0 where that is the first.
+
+        The body may end within a row: what is left of that row is nothing to tell.
+        """
         rows = np.flatnonzero(~self.blind.any(axis=1))
-        return float(self.distance[rows[0]]) if len(rows) else None
+        if not len(rows):
+            return None
+        return float(self.distance[rows[0]]) if rows[0] else 0.0
 
     def seen_from(self) -> float | None:
         """How far from the body the last blind place ends; None at the edge."""
@@ -169,9 +198,83 @@ class _Strip:
         return float(self.distance[rows[-1] + 1]) if len(rows) else 0.0
 
 
-def blind_cells(places: VoxelsByCell, m: Mapping[str, NDArray]) -> Flags:
-    """Which cells (NX, NY) are blind, by what sensors measure on their voxels."""
-    seen = places.any(np.logical_or.reduce([of_one > 0 for of_one in m.values()]))
-    step = places.cells.step
-    blind = opened(~seen | places.vehicle, GAP_M / 2.0 / step) & ~places.vehicle
-    return without_specks(blind, LEAST_M2 / step**2)
+@dataclass(frozen=True, eq=False)
+class BlindLook:
+    """Ground that is looked at for blind places: squares with a margin, and the sensors on them.
+
+    Attributes
+    ----------
+    cells : GroundCells
+        What is told of.
+    squares : VisibleGroundCache
+        The same squares, and `margin` more on each side.
+    own : (NX, NY) bool
+        Squares with the vehicle over their middles.
+    """
+
+    cells: GroundCells
+    squares: VisibleGroundCache
+    margin: int
+    own: Flags
+
+    @classmethod
+    def of(
+        cls, cells: GroundCells, height: float, vehicle: Vehicle | None, known: dict[str, Any]
+    ) -> BlindLook:
+        """Look at cells, at bodies of a height [m]; `known` as `VisibleGroundCache` has it."""
+        margin = math.ceil(BODY_M / cells.step) + 2
+        inner = GroundGrid((float(cells.x0[0]), float(cells.y0[0])), cells.shape, cells.step)
+        view = GroundView(inner.widened(margin), height, vehicle)
+        own = _under(vehicle, view.grid)
+        return cls(cells, VisibleGroundCache(view, known), margin, own)
+
+    @property
+    def size(self) -> int:
+        """How much is kept, in voxels' room."""
+        return self.own.size // SQUARES_A_VOXEL
+
+    def blind(self, rig: Rig, draft: bool) -> tuple[Flags, bool]:
+        """Blind cells (NX, NY) of a rig, and whether that is a draft."""
+        marked, drafted = self.squares.marked(rig, draft)
+        blind = blind_squares(marked & ~self.own, self.own, self.cells.step)
+        inner = tuple(slice(self.margin, n - self.margin) for n in blind.shape)
+        return np.ascontiguousarray(blind[inner]), drafted
+
+
+def blind_squares(marked: Flags, own: Flags, step: float) -> Flags:
+    """Squares (NX, NY) that unseen bodies can stand on, none too few.
+
+    Where a body surely is over a marked place, wherever in its squares both are, it is seen. All
+    squares that other bodies touch may be blind. Of these the unmarked ones are, in pieces that
+    are large enough, and those beside them: a marked square need not be seen in all of it.
+
+    Parameters
+    ----------
+    marked : (NX, NY) bool
+        Squares with a place at which something is seen.
+    own : (NX, NY) bool
+        The vehicle's: never blind, but a body may be partly under it.
+    step : float
+        Side of a square [m].
+    """
+    radius = BODY_M / 2.0 / step
+    unseen = ~dilated(marked, squares_within(radius))
+    maybe = dilated(unseen, squares_touching(radius)) & ~own
+    blind = without_specks(maybe & ~marked, LEAST_M2 / step**2)
+    return dilated(blind, squares_touching(STRIP_SQUARES)) & maybe
+
+
+def _under(vehicle: Vehicle | None, grid: GroundGrid) -> Flags:
+    """Squares (NX, NY) with the vehicle over their middles."""
+    own = np.zeros(grid.shape, bool)
+    if vehicle is None:
+        return own
+    first, last = [], []
+    for w, low, high, n in zip(grid.origin, *vehicle.bounds, grid.shape, strict=False):
+        first.append(int(np.clip(np.floor((low - w) / grid.step), 0, n - 1)))
+        last.append(int(np.clip(np.ceil((high - w) / grid.step), 1, n)))
+    (i, j), (i1, j1) = first, last
+    ends = [(w + a * grid.step, w + b * grid.step) for w, a, b in zip(grid.origin, first, last)]
+    space = PerceptionSpace(ends[0], ends[1], (0.0, grid.step), grid.step)
+    own[i:i1, j:j1] = np.isfinite(vehicle.top(space))
+    return own

@@ -18,6 +18,14 @@ VOXELS_KEPT = 4_000_000
 """Of all sets together, at most: some 100 bytes each."""
 
 
+class HasSize(Protocol):
+    """What is kept."""
+
+    @property
+    def size(self) -> int:
+        """How much it is, in voxels."""
+
+
 class HasVoxels(Protocol):
     """What is looked at: voxels of the space by number."""
 
@@ -27,6 +35,7 @@ class HasVoxels(Protocol):
 
 
 P = TypeVar("P", bound=HasVoxels)
+K = TypeVar("K", bound=HasSize)
 
 
 class Sighting(Generic[P]):
@@ -52,11 +61,20 @@ class KnownSightings:
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion) -> None:
         self._space, self._vehicle, self._fusion = space, vehicle, fusion
         self._known: dict[str, Any] = {}  # by kind: beams are turned and cast once for all looks
-        self._looks: dict[Hashable, Sighting[Any]] = {}  # the one asked for last comes last
+        self._looks: dict[Hashable, Any] = {}  # the one asked for last comes last
+
+    @property
+    def known(self) -> dict[str, Any]:
+        """What kernels know of sensors and of the vehicle, by kind, whatever is looked at."""
+        return self._known
 
     def at(self, key: Hashable, places: Callable[[], P]) -> Sighting[P]:
+        """Return the voxels kept by that key, or choose them."""
+        return self.kept(key, lambda: self._made(places()))
+
+    def kept(self, key: Hashable, made: Callable[[], K]) -> K:
         """Return what is kept by that key, or make it."""
-        look = self._looks.pop(key, None) or self._made(places())
+        look: K = self._looks.pop(key, None) or made()
         self._looks[key] = look
         room = VOXELS_KEPT
         for other in reversed(tuple(self._looks)):

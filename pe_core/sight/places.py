@@ -92,25 +92,6 @@ def in_layer(
     return VoxelsByCell(cells, index, weights)
 
 
-def standing(
-    cells: GroundCells, space: PerceptionSpace, tops: Floats | None, layer: int
-) -> VoxelsByCell:
-    """Choose voxels of what stands on the ground and reaches up into a layer.
-
-    From z = 0 up, or from the space's floor; the lowest and the highest layer always, some between
-    them. Columns of the vehicle weigh nothing, however high it is there.
-    """
-    foot = min(layer, max(0, math.floor(-space.z[0] / space.interval + ROUNDING)))
-    layers = layer + 1 - foot
-    x, y, share = cells.points(space.interval, over_height=layers > 1)
-    i, j = _columns(space, x, y)
-    k = foot + np.floor(share * layers).astype(np.int64)
-    k[share * x.shape[1] < 1.0] = foot  # a run of the sequence has one in the lowest of its parts
-    k[(1.0 - share) * x.shape[1] <= 1.0] = layer
-    weights = np.ones(x.shape) if tops is None else np.where(np.isfinite(tops[i, j]), 0.0, 1.0)
-    return VoxelsByCell(cells, np.stack([i, j, k], axis=-1).reshape(-1, 3), weights)
-
-
 def layer_at(space: PerceptionSpace, height: float) -> int:
     """Return the number of the layer of voxels that holds a height [m].
 

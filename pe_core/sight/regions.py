@@ -32,6 +32,49 @@ def closed(flags: Flags, radius: float) -> Flags:
     return ~opened(~flags, radius)
 
 
+def dilated(flags: Flags, widths: list[int]) -> Flags:
+    """Set what is near anything set in a region (NX, NY).
+
+    `widths` is a symmetric shape by its rows: k rows away (either way) reach is `widths[k]` cells
+    to either side. What is beyond the edge is not set.
+    """
+    found = np.zeros_like(flags)
+    by_width = {width: _along(flags, width) for width in set(widths)}
+    for k, width in enumerate(widths[: len(flags)]):
+        wide = by_width[width]
+        found[k:] |= wide[: len(wide) - k]
+        found[: len(wide) - k] |= wide[k:]
+    return found
+
+
+def _along(flags: Flags, reach: int) -> Flags:
+    """Set what is at most `reach` cells away in the same row; twice as far with each step."""
+    found, have = flags, 0
+    reach = min(reach, flags.shape[1] - 1)
+    while have < reach:
+        k = min(max(have, 1), reach - have)
+        wider = found.copy()
+        wider[:, k:] |= found[:, :-k]
+        wider[:, :-k] |= found[:, k:]
+        found, have = wider, have + k
+    return found
+
+
+def squares_within(radius: float) -> list[int]:
+    """Squares all of whose points are within a radius of all points of one square.
+
+    In squares, as `dilated` takes them: empty where the radius is less than a square's diagonal.
+    """
+    rows = int(math.sqrt(max(radius**2 - 1.0, 0.0)))
+    return [int(math.sqrt(radius**2 - (k + 1) ** 2)) - 1 for k in range(rows)]
+
+
+def squares_touching(radius: float) -> list[int]:
+    """Squares any of whose points are within a radius of any point of one square, as `dilated`."""
+    away = [max(k - 1, 0) for k in range(int(radius) + 2)]
+    return [int(math.sqrt(radius**2 - k**2)) + 1 for k in away]
+
+
 def without_specks(flags: Flags, least: float) -> Flags:
     """Drop connected pieces (by sides) of fewer cells than `least`."""
     width = flags.shape[1] + 1  # a cell more, so that no run goes on in the next row

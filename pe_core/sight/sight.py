@@ -20,11 +20,11 @@ from ..scene.vehicle import Vehicle
 from ..scoring.sampling import VoxelSample, draw
 from ..scoring.score import rounded
 from ..scoring.subsets import fused_early
-from .blind import BlindGround, blind_cells, blind_ground, body_rectangle
+from .blind import STEP_M, BlindGround, BlindLook, blind_ground, body_rectangle, fine_enough
 from .cells import GroundCells, round_a
 from .ground import GroundSight, ground_sight
 from .look import KnownSightings
-from .places import VoxelsByCell, by_prior, in_layer, layer_at, standing
+from .places import VoxelsByCell, by_prior, in_layer, layer_at
 from .reach import AP, BEARINGS, Reach, Spokes, density_of
 from .shares import SeenShares, seen_shares
 
@@ -112,10 +112,13 @@ class Sight:
         rig: Rig,
         height: float = 0.0,
         within: float = 10.0,
-        step: float = 0.1,
+        step: float = STEP_M,
         draft: bool = False,
     ) -> BlindGround:
         """Tell where round the vehicle nothing is seen of what stands on the ground.
+
+        That is an upright cylinder 0.3 m wide. Figures err to the safe side: no blind ground and
+        no distance is too small, and edges lie at most three squares too far out.
 
         Parameters
         ----------
@@ -125,7 +128,8 @@ class Sight:
         within : float
             How far from the rectangle of the vehicle's body to look [m].
         step : float
-            Side of the squares that the ground is judged in [m].
+            Side of the squares that the ground is judged in [m]; those of one wider than 0.1 m
+            are cut.
         draft : bool
             As in `ground`.
 
@@ -136,16 +140,16 @@ class Sight:
             nothing lies within.
         """
         body = body_rectangle(self.vehicle)
-        cells = GroundCells.of(self.space, step, round_a(body, within))
-        layer = layer_at(self.space, height)
+        cells = GroundCells.of(self.space, fine_enough(step), round_a(body, within))
+        layer_at(self.space, height)  # refuses a height that is not in the space
+        height = float(height)
         with self._is_free:
-            look = self._looks.at(
-                ("blind", layer, cells.key),
-                lambda: standing(cells, self.space, self._tops, layer),
+            look = self._looks.kept(
+                ("blind", height, cells.key),
+                lambda: BlindLook.of(cells, height, self.vehicle, self._looks.known),
             )
-            m, drafted = look.measured(rig, draft)
-            blind = blind_cells(look.places, m)
-            return blind_ground(cells, blind, body, float(height), float(within), drafted)
+            blind, drafted = look.blind(rig, draft)
+            return blind_ground(cells, blind, body, height, float(within), drafted)
 
     def reach(
         self,

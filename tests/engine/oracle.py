@@ -40,7 +40,8 @@ def first_hits(origin, directions, triangles):
             q = np.cross(s, e1)
             v = (directions @ q) / det
             t = (e2 @ q) / det
-        hit = (det != 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & (t < best)
+            hit = (det != 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
+        hit &= t < best
         best[hit], which[hit] = t[hit], index
     return best, which
 

@@ -14,6 +14,7 @@ from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
 from ..ego_mask import EgoMask
+from ..ground_kernel import GroundView
 from ..kernels import Floats, Voxels
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind
 from ..object_curves import all_carried_over
@@ -25,6 +26,7 @@ from .ego import picture_mask
 from .kernels import CameraGrid, CameraSample
 from .model import Camera
 from .object_definition import count_object_pixels
+from .on_ground import CameraGround
 from .on_objects import CameraObjects
 from .picture import picture_rays
 from .ranged import out_of_range
@@ -96,6 +98,10 @@ class CameraKind(Kind):
     def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> CameraSample:
         """Take the closed form of the area where it is good."""
         return CameraSample(voxels, vehicle)
+
+    def on_ground(self, view: GroundView) -> CameraGround:
+        """Look at points of what stands there."""
+        return CameraGround(view)
 
     def on_objects(self, view: ObjectView) -> CameraObjects:
         """Look only where something may be seen, and be hidden."""

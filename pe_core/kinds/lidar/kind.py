@@ -12,6 +12,7 @@ from ...scene.sensors import Sensor
 from ...scene.space import PerceptionSpace
 from ...scene.vehicle import Vehicle
 from ..ego_mask import EgoMask
+from ..ground_kernel import GroundView
 from ..kernels import Floats, Voxels
 from ..kind import Kind
 from ..object_kernel import ObjectView
@@ -23,6 +24,7 @@ from .detectors import OBJECT_CURVES
 from .ego import revolution_mask
 from .model import Lidar
 from .object_definition import count_on_objects
+from .on_ground import LidarGround
 from .on_grid import LidarGrid
 from .on_objects import LidarObjects
 from .on_sample import LidarSample
@@ -99,6 +101,10 @@ class LidarKind(Kind):
     def on_sample(self, voxels: Voxels, vehicle: Vehicle | None, enough: int) -> LidarSample:
         """Look beams up by direction."""
         return LidarSample(voxels, vehicle, enough)
+
+    def on_ground(self, view: GroundView) -> LidarGround:
+        """Follow beams where they are low."""
+        return LidarGround(view)
 
     def on_objects(self, view: ObjectView) -> LidarObjects:
         """Take runs of channels, azimuth by azimuth."""

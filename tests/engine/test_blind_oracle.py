@@ -1,0 +1,214 @@
+"""Blind ground against rays: test bodies placed one by one, by code that shares none of the engine's.
+
+A body is an upright cylinder. Beams are lines from a LiDAR that end on a triangle of the vehicle;
+the low part of one, from above, comes as near to a body's axis as a hand would work it out. A
+camera sees a body where a ray to one of many points of it meets no triangle first.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.sight import Sight, blind
+from pe_core.sight.cells import GroundCells, round_a
+from pe_core.sight.regions import dilated, squares_touching
+from tests.engine import oracle, shapes
+
+ASSETS = Path(__file__).parents[2] / "blend_assets"
+SPACE = pe.PerceptionSpace((-12, 12), (-10, 10), (0, 3), 0.1)
+WITHIN_M = 4.0
+RADIUS = 0.15
+SURE_RADIUS = 0.07
+"""What is blind lies within `FAR_M` of a hole in which nothing is seen, at least so large."""
+FAR_M = 0.15 + SURE_RADIUS * math.sqrt(2.0)
+
+
+def van():
+    """A box 5 m long, 2 m wide and 2.4 m tall, with a bonnet before it."""
+    body, bonnet = ((-2.5, -1.0, 0.25), (1.6, 1.0, 2.4)), ((1.6, -1.0, 0.25), (2.5, 1.0, 1.1))
+    return pe.Vehicle(np.concatenate([shapes.box(*body), shapes.box(*bonnet)]), clearance=0.0)
+
+
+def from_assets(name):
+    """An example vehicle of few triangles: rays are tested against each of them."""
+    with np.load(ASSETS / f"{name}.npz") as file:
+        few, _ = pe.scene.simplified(pe.Vehicle(file["triangles"]), 1000)
+    a, b, c = few.triangles.transpose(1, 0, 2)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return pe.Vehicle(few.triangles[area > 1e-9], clearance=0.0)
+
+
+VAN_RIG = [
+    shapes.lidar_on_roof(shapes.small_lidar(24, 360), (0.37, 0.21, 2.63), (0.0, 3.0, 11.0), "roof"),
+    shapes.camera(100.0, (2.53, 0.0, 0.93), (0.0, 18.0, 0.0), "front"),
+    shapes.camera(120.0, (0.11, 1.02, 1.87), (0.0, 55.0, 90.0), "left"),
+]
+SEDAN_RIG = [
+    shapes.lidar_on_roof(shapes.small_lidar(32, 360), (-0.43, 0.0, 1.8), name="roof"),
+    shapes.camera(90.0, (-2.36, 0.0, 1.02), (0.0, 25.0, 180.0), "rear"),
+]
+BUS_RIG = [
+    shapes.lidar_on_roof(shapes.small_lidar(16, 240), (3.03, 1.01, 0.91), (0.0, 1.2, 0.0), "a"),
+    shapes.lidar_on_roof(shapes.small_lidar(16, 240), (-3.03, -1.01, 1.7), (2.0, 0.0, 30.0), "b"),
+]
+
+
+class LowBeams:
+    """A LiDAR's beams from above, where they are between the ground and a height."""
+
+    def __init__(self, sensor, height, vehicle):
+        way = sensor.model.directions @ oracle.rotation(*sensor.pose.rpy).T
+        self.start, (x, y, z) = np.array(sensor.pose.position), way.T
+        with np.errstate(divide="ignore"):
+            ends = np.sort([-self.start[2] / z, (height - self.start[2]) / z], axis=0)
+        self.first, self.last = np.maximum(ends[0], 0.0), np.minimum(ends[1], 60.0)
+        low = np.flatnonzero((self.first <= self.last) & (self.first * np.hypot(x, y) < 20.0))
+        self.way, self.first, self.last = way[low], self.first[low], self.last[low]
+        self.triangles, self.hits = vehicle.triangles, np.full(len(low), np.nan)
+
+    def away(self, points):
+        """How far each point (N, 2) is from the nearest of them; beams are cast where it matters."""
+        flat = self.way[:, None, :2]
+        offset = points[None] - self.start[:2]
+        length = (flat**2).sum(axis=-1)
+        along = (offset * flat).sum(axis=-1) / np.maximum(length, 1e-12)
+        near = np.hypot(*np.moveaxis(offset - along[..., None] * flat, -1, 0)) < 0.3
+        new = np.flatnonzero(near.any(axis=1) & np.isnan(self.hits))
+        self.hits[new] = oracle.first_hits(self.start, self.way[new], self.triangles)[0]
+        last = np.fmin(self.last, self.hits)[:, None]
+        on = np.minimum(np.maximum(along, self.first[:, None]), last)
+        away = np.hypot(*np.moveaxis(offset - on[..., None] * flat, -1, 0))
+        away[~near | (last < self.first[:, None])] = np.inf
+        return away.min(axis=0)
+
+
+class SeenPoints:
+    """What a pinhole camera sees of bodies, point by point."""
+
+    def __init__(self, sensor, height, vehicle):
+        self.sensor, self.vehicle = sensor, vehicle
+        self.heights = np.linspace(0.0, height, 1 + math.ceil(height / 0.1))
+
+    def sees(self, points):
+        """Whether any point over (N, 2) up to the height is seen."""
+        camera, start = self.sensor.model, np.array(self.sensor.pose.position)
+        z = np.broadcast_to(self.heights[:, None, None], (len(self.heights), len(points), 1))
+        there = np.concatenate([np.broadcast_to(points, (*z.shape[:2], 2)), z], axis=-1)
+        rays = there.reshape(-1, 3) - start
+        depth, left, up = (rays @ oracle.rotation(*self.sensor.pose.rpy)).T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            wide = np.abs(left / depth) <= math.tan(camera.hfov / 2.0)
+            tall = np.abs(up / depth) <= math.tan(camera.hfov / 2.0) * camera.height / camera.width
+        asked = np.flatnonzero((depth > 0.0) & wide & tall)
+        distance = np.sqrt((rays[asked] ** 2).sum(axis=1))
+        hits, _ = oracle.first_hits(start, rays[asked] / distance[:, None], self.vehicle.triangles)
+        seen = np.zeros(len(rays), bool)
+        seen[asked] = hits >= distance
+        return seen.reshape(len(self.heights), -1).any(axis=0)
+
+
+DISC = np.array(
+    [(r * math.cos(a), r * math.sin(a)) for r in (0.0, 0.08, 0.155) for a in np.arange(0, 6.2, 0.5)]
+)
+"""Points of a body from above, a hair wider than it is."""
+
+
+DISC_FINE = np.array(
+    [
+        (r * math.cos(a), r * math.sin(a))
+        for r in np.linspace(0, 1, 6)
+        for a in np.arange(0, 6.2, 0.5)
+    ]
+)
+"""Places in a disc of radius 1."""
+
+
+class Oracle:
+    """All sensors of a rig."""
+
+    def __init__(self, rig, height, vehicle):
+        kinds = {"lidar": LowBeams, "camera": SeenPoints}
+        self.looks = [kinds[s.kind](s, height, vehicle) for s in rig]
+
+    def unseen(self, centers, radius):
+        """Whether bodies of a radius at centres (N, 2) are seen by none."""
+        found = np.ones(len(centers), bool)
+        places = centers[:, None] + DISC * (radius / RADIUS)
+        for look in self.looks:
+            if isinstance(look, LowBeams):
+                found &= look.away(centers) >= radius
+            else:
+                found &= ~look.sees(places.reshape(-1, 2)).reshape(len(centers), -1).any(axis=1)
+        return found
+
+
+class BlindMap:
+    """What is told of blind ground: its squares, and those of the vehicle."""
+
+    def __init__(self, vehicle, rig, height):
+        view = Sight(SPACE, pe.Prior.road(), vehicle)
+        self.told = view.blind(rig, height, WITHIN_M)
+        body = blind.body_rectangle(vehicle)
+        cells = GroundCells.of(SPACE, blind.STEP_M, round_a(body, WITHIN_M))
+        look = blind.BlindLook.of(cells, height, vehicle, {})
+        self.blind, _ = look.blind(rig, False)
+        own = look.own[look.margin : -look.margin, look.margin : -look.margin]
+        self.near_own = dilated(own, squares_touching(blind.STRIP_SQUARES))
+        self.own, self.cells = own, cells
+        assert self.told.area == pytest.approx(self.blind.sum() * blind.STEP_M**2)
+
+    def some_places(self, rng, count):
+        """Places that are not the vehicle's; half of them along edges of what is blind."""
+        edges = dilated(self.blind, [4] * 5) & dilated(~self.blind, [4] * 5)
+        found = []
+        for where in (np.argwhere(~self.own), np.argwhere(edges & ~self.own)):
+            i, j = where[rng.integers(len(where), size=count // 2)].T
+            found.append(np.stack([self.cells.x[i], self.cells.y[j]], axis=1))
+        found = np.concatenate(found)
+        return rng.permutation(found + rng.uniform(-0.025, 0.025, found.shape))
+
+    def _at(self, flags, points):
+        i, j = (
+            np.floor((w - low[0]) / blind.STEP_M).astype(int)
+            for w, low in zip(points.T, (self.cells.x0, self.cells.y0), strict=True)
+        )
+        inside = (i >= 0) & (j >= 0) & (i < flags.shape[0]) & (j < flags.shape[1])
+        return np.where(inside, flags[np.where(inside, i, 0), np.where(inside, j, 0)], True)
+
+    def is_blind(self, points):
+        """Whether points (N, 2) are told to be blind; those beyond are."""
+        return self._at(self.blind, points)
+
+    def beside_body(self, points):
+        """Whether points are not the vehicle's, nor in the strip beside it."""
+        return ~self._at(self.near_own, points)
+
+
+CASES = {
+    ("van", 0.0): (van, VAN_RIG),
+    ("van", 0.5): (van, VAN_RIG),
+    ("van", 1.2): (van, VAN_RIG),
+    ("sedan", 0.5): (lambda: from_assets("sedan"), SEDAN_RIG),
+    ("bus", 0.8): (lambda: from_assets("bus"), BUS_RIG),
+}
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]} {case[1]:g} m")
+def test_no_unseen_body_stands_where_nothing_is_told_and_no_edge_is_far_out(case, monkeypatch):
+    monkeypatch.setattr(blind, "LEAST_M2", 0.0)
+    vehicle, rig = CASES[case][0](), pe.Rig(CASES[case][1])
+    height, rng = case[1], np.random.default_rng(7)
+    told = BlindMap(vehicle, rig, height)
+    truth = Oracle(rig, height, vehicle)
+    centers = told.some_places(rng, 160)
+    unseen = centers[truth.unseen(centers, RADIUS)]
+    assert 10 < len(unseen) < 150
+    inside = (unseen[:, None] + DISC[None] * (0.149 / RADIUS)).reshape(-1, 2)
+    assert told.is_blind(inside[told.beside_body(inside)]).all()
+    blind_places = centers[told.is_blind(centers)]
+    near = (blind_places[:16, None] + FAR_M * DISC_FINE).reshape(-1, 2)
+    holes = truth.unseen(near, SURE_RADIUS) | ~told.beside_body(near)
+    assert holes.reshape(16, -1).any(axis=1).all()

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import graphics
-
-if TYPE_CHECKING:
-    from ..engine import sight
+from ..engine import graphics, sight
 
 Floats = NDArray[np.float64]
 Box = tuple[Floats, Floats]
@@ -19,8 +15,8 @@ Box = tuple[Floats, Floats]
 HATCH_M, HATCH_ALPHA = 0.35, 0.45
 LEAST_M = 0.3
 """Less is no more than a strip along the body: it is not measured."""
-SMOOTHED = 5
-"""Points of an outline whose mean is drawn: it runs along squares of 0.1 m."""
+SMOOTHED = 9
+"""Points of an outline whose mean is drawn: it runs along squares of 5 cm."""
 SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
 """By side: the axis that leads there, and which way."""
 TICK_M = 0.35
@@ -99,9 +95,9 @@ def _measure(
     if zone is None:
         distance, text = found.within, f"blind beyond {found.within:g} m out"
     elif zone:
-        distance, text = zone, f"blind to {zone:.1f} m out"
+        distance, text = zone, f"blind to {sight.shown_end(zone):.1f} m out"
     else:
-        distance, text = spot.distance, f"blind from {spot.distance:.1f} m out"
+        distance, text = spot.distance, f"blind from {sight.shown_start(spot.distance):.1f} m out"
     axis, sign = SIDES[side]
     end = np.zeros(3)
     end[axis] = body[1 if sign > 0 else 0][axis] + sign * distance

@@ -97,11 +97,8 @@ def _step(space: pe.PerceptionSpace, *, moving: bool) -> float:
 
 
 def _blind(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
-    step = 0.2 if wish.moving else 0.1
     height = wish.view.blind_height
-    found = tools.sight(wish).blind(
-        _rig(wish), height, within=BLIND_WITHIN_M, step=step, draft=wish.moving
-    )
+    found = tools.sight(wish).blind(_rig(wish), height, within=BLIND_WITHIN_M, draft=wish.moving)
     body = None if wish.vehicle is None else wish.vehicle.bounds
     return blind.blind_ground(found, body, height)
 

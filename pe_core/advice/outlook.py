@@ -10,7 +10,7 @@ from typing import Any
 from ..errors import InputError, shown
 from ..prior.prior import Prior
 from ..scene.sensors import Rig
-from ..sight import BlindGround, Reach, SeenShares, Sight
+from ..sight import BlindGround, Reach, SeenShares, Sight, shown_end
 
 USUAL_CLASS = "pedestrian"
 """Whose reach is told unless another class is asked for."""
@@ -141,7 +141,7 @@ def _blind_to(blind: BlindGround, side: str) -> str:
     end = blind.zone[side]
     if end == 0.0:
         return "none"
-    return f"beyond {blind.within:g} m" if end is None else f"to {end:.1f} m"
+    return f"beyond {blind.within:g} m" if end is None else f"to {shown_end(end):.1f} m"
 
 
 def _reach_dict(reach: Reach) -> dict[str, Any]:

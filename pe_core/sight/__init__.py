@@ -1,6 +1,6 @@
 """What a rig sees, place by place: the ground map, blind ground round the vehicle, reach."""
 
-from .blind import BlindGround, BlindSpot
+from .blind import BlindGround, BlindSpot, shown_end, shown_start
 from .ground import GroundSight
 from .outline import outlines
 from .reach import Reach
@@ -16,4 +16,6 @@ __all__ = [
     "Sight",
     "expected_ap",
     "outlines",
+    "shown_end",
+    "shown_start",
 ]

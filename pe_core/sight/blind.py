@@ -1,14 +1,7 @@
 """Blind ground: where round the vehicle nothing is seen, as outlines and as distances by side.
 
-It is asked of a test body: an upright cylinder of the diameter `BODY_M` that stands on the ground
-and is so tall; 0 is a disc that lies flat. A body is unseen where no beam of a LiDAR passes through
-it and no line of sight of a camera ends on it. Blind ground is what unseen bodies can stand on: a
-gap between beams that is narrower than a body is none.
-
-Squares of the ground say where something is seen for sure (`kinds.ground_kernel`). From these, all
-unseen bodies are found, and perhaps a few that are seen by a hair's breadth: figures err to the
-safe side. Blind ground, area and distances are never too small, but for specks (`LEAST_M2`) and
-strips along the body narrower than `STRIP_SQUARES`; and edges lie at most `ERR_SQUARES` too far out.
+Which squares of the ground are blind, `blind_squares` says. Distances are from the body's
+rectangle; they are rounded away from what is seen, so that no figure is better than it is.
 """
 
 from __future__ import annotations
@@ -17,40 +10,23 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinds import GroundView, VisibleGroundCache
 from ..scene.frozen import frozen
-from ..scene.ground_grid import GroundGrid
-from ..scene.sensors import Rig
-from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
-from .cells import ROUNDING, STEP, GroundCells, Rectangle
+from .cells import ROUNDING, GroundCells, Rectangle
 from .outline import outlines
-from .regions import dilated, squares_touching, squares_within, without_specks
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-BODY_M = 0.3
-"""Diameter of the test body: that of the cylinders of FMVSS 111 and UN regulation 158, about as wide
-as a small child."""
-STEP_M, MOST_STEP_M = 0.05, 0.1
-"""Side of the squares; with larger ones no body would be known to be seen."""
-LEAST_M2 = 0.18
-"""Pieces of whole unseen squares smaller than this are none: every piece of 0.25 m2 has more."""
-STRIP_SQUARES = math.sqrt(2.0)
-"""Between what is seen and an unseen square lies no more than this, in squares."""
 NARROW_M = 0.1
 """A strip of blind ground along the body that is narrower than this is none, to a side: less than
 what edges may be too far out."""
 NO_BODY_M = 1.0
 """Half the side of the square that stands for the body where there is no vehicle."""
-SQUARES_A_VOXEL = 16
-"""Of what is kept of voxels and squares: some bytes to some 100."""
 DECIMALS = 6
 """Distances are rounded to the micrometre."""
 SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
@@ -111,10 +87,14 @@ def body_rectangle(vehicle: Vehicle | None) -> Rectangle:
     return (x0, x1), (y0, y1)
 
 
-def fine_enough(step: float) -> float:
-    """Cut a square's side [m] in equal parts that bodies can be told by."""
-    step = STEP.checked("sight", "step", step)
-    return step / math.ceil(step / MOST_STEP_M - ROUNDING)
+def shown_end(distance: float) -> float:
+    """Round where blind ground ends [m] to a decimetre, outwards."""
+    return math.ceil(distance * 10.0 - ROUNDING) / 10.0
+
+
+def shown_start(distance: float) -> float:
+    """Round where blind ground begins [m] to a decimetre, towards the body."""
+    return math.floor(distance * 10.0 + ROUNDING) / 10.0
 
 
 def blind_ground(
@@ -196,85 +176,3 @@ class _Strip:
         if not len(self.blind) or (len(rows) and rows[-1] == len(self.blind) - 1):
             return None
         return float(self.distance[rows[-1] + 1]) if len(rows) else 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class BlindLook:
-    """Ground that is looked at for blind places: squares with a margin, and the sensors on them.
-
-    Attributes
-    ----------
-    cells : GroundCells
-        What is told of.
-    squares : VisibleGroundCache
-        The same squares, and `margin` more on each side.
-    own : (NX, NY) bool
-        Squares with the vehicle over their middles.
-    """
-
-    cells: GroundCells
-    squares: VisibleGroundCache
-    margin: int
-    own: Flags
-
-    @classmethod
-    def of(
-        cls, cells: GroundCells, height: float, vehicle: Vehicle | None, known: dict[str, Any]
-    ) -> BlindLook:
-        """Look at cells, at bodies of a height [m]; `known` as `VisibleGroundCache` has it."""
-        margin = math.ceil(BODY_M / cells.step) + 2
-        inner = GroundGrid((float(cells.x0[0]), float(cells.y0[0])), cells.shape, cells.step)
-        view = GroundView(inner.widened(margin), height, vehicle)
-        own = _under(vehicle, view.grid)
-        return cls(cells, VisibleGroundCache(view, known), margin, own)
-
-    @property
-    def size(self) -> int:
-        """How much is kept, in voxels' room."""
-        return self.own.size // SQUARES_A_VOXEL
-
-    def blind(self, rig: Rig, draft: bool) -> tuple[Flags, bool]:
-        """Blind cells (NX, NY) of a rig, and whether that is a draft."""
-        marked, drafted = self.squares.marked(rig, draft)
-        blind = blind_squares(marked & ~self.own, self.own, self.cells.step)
-        inner = tuple(slice(self.margin, n - self.margin) for n in blind.shape)
-        return np.ascontiguousarray(blind[inner]), drafted
-
-
-def blind_squares(marked: Flags, own: Flags, step: float) -> Flags:
-    """Squares (NX, NY) that unseen bodies can stand on, none too few.
-
-    Where a body surely is over a marked place, wherever in its squares both are, it is seen. All
-    squares that other bodies touch may be blind. Of these the unmarked ones are, in pieces that
-    are large enough, and those beside them: a marked square need not be seen in all of it.
-
-    Parameters
-    ----------
-    marked : (NX, NY) bool
-        Squares with a place at which something is seen.
-    own : (NX, NY) bool
-        The vehicle's: never blind, but a body may be partly under it.
-    step : float
-        Side of a square [m].
-    """
-    radius = BODY_M / 2.0 / step
-    unseen = ~dilated(marked, squares_within(radius))
-    maybe = dilated(unseen, squares_touching(radius)) & ~own
-    blind = without_specks(maybe & ~marked, LEAST_M2 / step**2)
-    return dilated(blind, squares_touching(STRIP_SQUARES)) & maybe
-
-
-def _under(vehicle: Vehicle | None, grid: GroundGrid) -> Flags:
-    """Squares (NX, NY) with the vehicle over their middles."""
-    own = np.zeros(grid.shape, bool)
-    if vehicle is None:
-        return own
-    first, last = [], []
-    for w, low, high, n in zip(grid.origin, *vehicle.bounds, grid.shape, strict=False):
-        first.append(int(np.clip(np.floor((low - w) / grid.step), 0, n - 1)))
-        last.append(int(np.clip(np.ceil((high - w) / grid.step), 1, n)))
-    (i, j), (i1, j1) = first, last
-    ends = [(w + a * grid.step, w + b * grid.step) for w, a, b in zip(grid.origin, first, last)]
-    space = PerceptionSpace(ends[0], ends[1], (0.0, grid.step), grid.step)
-    own[i:i1, j:j1] = np.isfinite(vehicle.top(space))
-    return own

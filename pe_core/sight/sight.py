@@ -20,7 +20,8 @@ from ..scene.vehicle import Vehicle
 from ..scoring.sampling import VoxelSample, draw
 from ..scoring.score import rounded
 from ..scoring.subsets import fused_early
-from .blind import STEP_M, BlindGround, BlindLook, blind_ground, body_rectangle, fine_enough
+from .blind import BlindGround, blind_ground, body_rectangle
+from .blind_squares import STEP_M, BlindLook, fine_enough
 from .cells import GroundCells, round_a
 from .ground import GroundSight, ground_sight
 from .look import KnownSightings

@@ -46,8 +46,8 @@ def side_words(found: sight.BlindGround, side: str) -> str:
     if zone is None:
         return f"at the body, beyond {found.within:g} m"
     if zone > 0.0:
-        return f"at the body, to {zone:.1f} m"
-    return f"at {spot.distance:.1f} m"
+        return f"at the body, to {sight.shown_end(zone):.1f} m"
+    return f"at {sight.shown_start(spot.distance):.1f} m"
 
 
 def _measure(plan: PlanDrawing, found: sight.BlindGround, vehicle: pe.Vehicle, side: str) -> None:
@@ -63,7 +63,8 @@ def _measure(plan: PlanDrawing, found: sight.BlindGround, vehicle: pe.Vehicle, s
     cross = "v6m0 -12v12" if axis == 0 else "h6m-12 0h12"
     line = f"M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}m0 0{cross}"
     plan.canvas.add("path", d=line, fill="none", stroke="#1b1f24", stroke_width=1.0)
-    words = f"> {away:g} m" if zone is None else f"{away:.1f} m"
+    told = sight.shown_end(away) if zone else sight.shown_start(away)
+    words = f"> {away:g} m" if zone is None else f"{told:.1f} m"
     beside = _within if away > found.within - ROOM_M else _beside
     x, y, anchor = beside(axis, sign, x1, y1)
     plan.canvas.text(x, y, words, text_anchor=anchor, css="strong halo")

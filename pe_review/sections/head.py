@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..engine import advice, kinds, metric
+from ..engine import advice, kinds, metric, sight
 from ..figures import ARROW, change, count, joined, number, percent, percent_points, up_first
 from ..markup import Markup, escaped, picture
 from ..pictures.of_reviewed import named_still_of
@@ -68,7 +68,9 @@ def _blind(one: Reviewed) -> str:
     if not ends:
         return f"{what} is seen all round the body"
     ways = [
-        f"beyond {blind.within:g} m {SIDES[s]}" if end is None else f"{number(end, 1)} m {SIDES[s]}"
+        f"beyond {blind.within:g} m {SIDES[s]}"
+        if end is None
+        else f"{number(sight.shown_end(end), 1)} m {SIDES[s]}"
         for s, end in ends.items()
     ]
     return f"{what} is hidden from the body to {joined(ways)}"
@@ -154,7 +156,8 @@ def _farthest(one: Reviewed) -> tuple[str, str, str]:
     if away[side] == 0.0:
         return "none", "", "all round, within 10 m"
     end = zone[side]
-    return ("&gt; 10" if end is None else number(end, 1)), "m", f"{SIDES[side]}, the farthest"
+    figure = "&gt; 10" if end is None else number(sight.shown_end(end), 1)
+    return figure, "m", f"{SIDES[side]}, the farthest"
 
 
 def _worst_loss(one: Reviewed) -> tuple[str, str, str]:

@@ -89,8 +89,10 @@ def _blind(one: Reviewed) -> str:
     heads = ("side", *(f"{h:g} m tall" if h else "flat on the ground" for h in found))
     caption = "Blind ground within 10 m of the body: where the nearest is, and how far it goes"
     note = (
-        '<p class="note">Blind is where nothing is seen of what stands there and is so tall, in '
-        "places wider than 0.3 m. Sides are the strips that the body sweeps to each.</p>"
+        '<p class="note">Blind ground is what a cylinder 0.3 m wide and exactly so tall can stand '
+        "on while no beam and no pixel meets it. Areas and distances err to the safe side: never "
+        "too small, and edges at most 0.15 m too far out. Sides are the strips that the body "
+        "sweeps to each; a strip along the body narrower than 0.1 m is none.</p>"
     )
     shown = f"{grid(drawn, 17.0)}{table(caption, heads, rows, css='words')}{note}"
     return f"<h3>Blind ground near the vehicle</h3>{shown}"

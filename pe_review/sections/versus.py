@@ -148,7 +148,7 @@ def _end(one: Reviewed, side: str) -> str:
     end = blind.zone[side]
     if end is None:
         return f"more than {blind.within:g} m"
-    return "none" if end == 0.0 else f"{number(end, 1)} m"
+    return "none" if end == 0.0 else f"{number(sight.shown_end(end), 1)} m"
 
 
 def _losses(each: Sequence[Reviewed]) -> str:

@@ -1,4 +1,4 @@
-"""Blind ground against rays: test bodies placed one by one, by code that shares none of the engine's.
+"""Blind ground against rays: test bodies placed one by one, by code that shares none with it.
 
 A body is an upright cylinder. Beams are lines from a LiDAR that end on a triangle of the vehicle;
 the low part of one, from above, comes as near to a body's axis as a hand would work it out. A
@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sight import Sight, blind
+from pe_core.sight import Sight, blind_squares
+from pe_core.sight.blind import body_rectangle
 from pe_core.sight.cells import GroundCells, round_a
 from pe_core.sight.regions import dilated, squares_touching
 from tests.engine import oracle, shapes
@@ -70,7 +71,7 @@ class LowBeams:
         self.triangles, self.hits = vehicle.triangles, np.full(len(low), np.nan)
 
     def away(self, points):
-        """How far each point (N, 2) is from the nearest of them; beams are cast where it matters."""
+        """How far each point (N, 2) is from the nearest; beams are cast where it matters."""
         flat = self.way[:, None, :2]
         offset = points[None] - self.start[:2]
         length = (flat**2).sum(axis=-1)
@@ -151,14 +152,14 @@ class BlindMap:
     def __init__(self, vehicle, rig, height):
         view = Sight(SPACE, pe.Prior.road(), vehicle)
         self.told = view.blind(rig, height, WITHIN_M)
-        body = blind.body_rectangle(vehicle)
-        cells = GroundCells.of(SPACE, blind.STEP_M, round_a(body, WITHIN_M))
-        look = blind.BlindLook.of(cells, height, vehicle, {})
+        body = body_rectangle(vehicle)
+        cells = GroundCells.of(SPACE, blind_squares.STEP_M, round_a(body, WITHIN_M))
+        look = blind_squares.BlindLook.of(cells, height, vehicle, {})
         self.blind, _ = look.blind(rig, False)
         own = look.own[look.margin : -look.margin, look.margin : -look.margin]
-        self.near_own = dilated(own, squares_touching(blind.STRIP_SQUARES))
+        self.near_own = dilated(own, squares_touching(blind_squares.PARTLY_SEEN))
         self.own, self.cells = own, cells
-        assert self.told.area == pytest.approx(self.blind.sum() * blind.STEP_M**2)
+        assert self.told.area == pytest.approx(self.blind.sum() * blind_squares.STEP_M**2)
 
     def some_places(self, rng, count):
         """Places that are not the vehicle's; half of them along edges of what is blind."""
@@ -172,7 +173,7 @@ class BlindMap:
 
     def _at(self, flags, points):
         i, j = (
-            np.floor((w - low[0]) / blind.STEP_M).astype(int)
+            np.floor((w - low[0]) / blind_squares.STEP_M).astype(int)
             for w, low in zip(points.T, (self.cells.x0, self.cells.y0), strict=True)
         )
         inside = (i >= 0) & (j >= 0) & (i < flags.shape[0]) & (j < flags.shape[1])
@@ -198,7 +199,7 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]} {case[1]:g} m")
 def test_no_unseen_body_stands_where_nothing_is_told_and_no_edge_is_far_out(case, monkeypatch):
-    monkeypatch.setattr(blind, "LEAST_M2", 0.0)
+    monkeypatch.setattr(blind_squares, "LEAST_M2", 0.0)
     vehicle, rig = CASES[case][0](), pe.Rig(CASES[case][1])
     height, rng = case[1], np.random.default_rng(7)
     told = BlindMap(vehicle, rig, height)

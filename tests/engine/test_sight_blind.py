@@ -7,16 +7,13 @@ import pytest
 
 import pe_core as pe
 from pe_core.sight import Sight
-from pe_core.sight.blind import BODY_M, NARROW_M, SIDES
+from pe_core.sight.blind import NARROW_M, SIDES
+from pe_core.sight.blind_squares import BODY_M, TOO_FAR_M
 from tests.engine import shapes
 from tests.engine.test_sight_outline import signed_area
 
 SPACE = pe.PerceptionSpace((-15, 15), (-15, 15), (0, 2), 0.1)
 BOX = pe.Vehicle(shapes.box((-2.0, -0.5, 0.0), (2.0, 0.5, 1.0)))
-
-
-EDGE_M = 0.15
-"""An edge is at most so far out, and never too far in."""
 
 
 def cone_lidar(lowest_deg=-45.0, height=2.0, position=(0.013, 0.017)):
@@ -36,12 +33,12 @@ def test_under_a_lidar_is_a_circle_as_wide_as_arithmetic_has_it(height):
         return
     (ring,) = blind.outlines
     away = np.hypot(*(ring - (0.013, 0.017)).T)
-    assert radius <= away.min() + 1e-9 and away.max() <= radius + EDGE_M
+    assert radius <= away.min() + 1e-9 and away.max() <= radius + TOO_FAR_M
     assert signed_area(ring) == pytest.approx(blind.area, rel=0.02)
-    assert math.pi * radius**2 <= blind.area <= math.pi * (radius + EDGE_M) ** 2
+    assert math.pi * radius**2 <= blind.area <= math.pi * (radius + TOO_FAR_M) ** 2
     for way, (axis, sign) in SIDES.items():  # from a square of 2 m that stands for a body
         exact = max(radius + sign * (0.013, 0.017)[axis] - 1.0, 0.0)
-        assert exact <= blind.zone[way] <= exact + EDGE_M or exact < NARROW_M > blind.zone[way]
+        assert exact <= blind.zone[way] <= exact + TOO_FAR_M or exact < NARROW_M > blind.zone[way]
         assert blind.seen_from[way] == blind.zone[way]
         assert (blind.nearest[way] is None) == (blind.zone[way] == 0.0)
 
@@ -70,7 +67,7 @@ def test_what_is_seen_at_its_foot_alone_is_seen():
     model = pe.Lidar("low", elevations, 720, 60.0)
     rig = pe.Rig([pe.Sensor("low", model, pe.Pose((0.013, 0.017, 2.0)))])
     blind = Sight(SPACE, pe.Prior.road()).blind(rig, height=1.5, within=2.5)
-    assert math.pi * 0.5**2 <= blind.area <= math.pi * (0.5 + EDGE_M) ** 2
+    assert math.pi * 0.5**2 <= blind.area <= math.pi * (0.5 + TOO_FAR_M) ** 2
     assert set(blind.zone.values()) == {0.0}
 
 
@@ -79,7 +76,7 @@ def test_a_camera_s_shadow_before_a_bonnet():
     eye = pe.Camera("wide", 1920, 1080, math.radians(90.0))
     rig = pe.Rig([pe.Sensor("eye", eye, pe.Pose.from_degrees((0.0, 0.0, 2.0), (0, 30, 0)))])
     blind = Sight(SPACE, pe.Prior.road(), BOX).blind(rig)
-    assert 2.0 <= blind.seen_from["front"] <= 2.0 + EDGE_M
+    assert 2.0 <= blind.seen_from["front"] <= 2.0 + TOO_FAR_M
     assert blind.seen_from["rear"] is None and blind.seen_from["left"] is None
     nearest = blind.nearest["front"]
     assert nearest.distance == 0.0 and nearest.point == pytest.approx((2.0, 0.0), abs=0.06)
@@ -134,7 +131,7 @@ def test_mirrored_rigs_have_mirrored_blind_ground():
     assert left.seen_from["right"] == pytest.approx(right.seen_from["left"])
     for way, sign in (("left", 1.0), ("right", -1.0)):
         exact = 1.5 / math.tan(math.radians(30.0)) + sign * 0.217 - 0.5
-        assert exact <= left.seen_from[way] <= exact + EDGE_M
+        assert exact <= left.seen_from[way] <= exact + TOO_FAR_M
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Cameras and what stands on the ground: points of posts that are in the picture, hidden by nothing.
+"""Cameras and what stands on the ground: points of posts in the picture that nothing hides.
 
 Posts stand in the middles of squares. What a camera sees of the ground is a region with an edge, so
 one square of a block is asked about first; then all squares of blocks that lie at an edge.
@@ -25,7 +25,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 BLOCK_M = 0.125
-"""Side of a block of squares: its diagonal is as wide as what a gap needs to count (sight.blind)."""
+"""Side of a block of squares: what finds room between its middles is too narrow to count."""
 
 ROOM_M = 1e-3
 """Balls round posts are taken this much larger."""

@@ -24,8 +24,8 @@ from .detectors import OBJECT_CURVES
 from .ego import revolution_mask
 from .model import Lidar
 from .object_definition import count_on_objects
-from .on_ground import LidarGround
 from .on_grid import LidarGrid
+from .on_ground import LidarGround
 from .on_objects import LidarObjects
 from .on_sample import LidarSample
 from .view import beam_patch

@@ -142,6 +142,7 @@ class _Strip:
         turned = blind if axis == 0 else blind.T
         distance = np.maximum(sign * (along[rows] - edge) - cells.step / 2.0, 0.0)
         distance = np.round(distance, DECIMALS)
+        distance[:1] = 0.0  # the body may end within a row: then the next one begins at the body
         strip = turned[np.ix_(rows, columns)]
         first_clear = int(np.argmin(strip.any(axis=1))) if len(strip) else 0
         if len(strip) and distance[first_clear] < NARROW_M:
@@ -161,14 +162,9 @@ class _Strip:
         return BlindSpot((along, beside) if self.axis == 0 else (beside, along), distance)
 
     def zone(self) -> float | None:
-        """How far from the body the first row without a blind place is; 0 where that is the first.
-
-        The body may end within a row: what is left of that row is nothing to tell.
-        """
+        """How far from the body the first row without a blind place is."""
         rows = np.flatnonzero(~self.blind.any(axis=1))
-        if not len(rows):
-            return None
-        return float(self.distance[rows[0]]) if rows[0] else 0.0
+        return float(self.distance[rows[0]]) if len(rows) else None
 
     def seen_from(self) -> float | None:
         """How far from the body the last blind place ends; None at the edge."""

@@ -44,7 +44,7 @@ def test_what_is_said():
         "expected AP: car 0.61, cone 0.20",
         "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, 80 m and more behind, "
         "nowhere left, 12 m right",
-        "blind to what is 0.5 m tall, from the body: to 4.2 m ahead, beyond 10 m behind, "
+        "blind to what is 0.5 m tall, from the body: to 4.3 m ahead, beyond 10 m behind, "
         "none left, to 2.0 m right",
     ]
 

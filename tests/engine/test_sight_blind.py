@@ -134,6 +134,20 @@ def test_mirrored_rigs_have_mirrored_blind_ground():
         assert exact <= left.seen_from[way] <= exact + TOO_FAR_M
 
 
+@pytest.mark.parametrize("shift", [0.0, 0.013, 0.031, 0.049])
+def test_nothing_blind_is_told_as_nothing_wherever_the_body_ends(shift):
+    """Channels steep enough to see up to the body, whose ends lie anywhere on the squares."""
+    body = pe.Vehicle(shapes.box((-2.0 - shift, -0.5, 0.0), (2.0 + shift, 0.5 + shift, 1.0)))
+    places = [(x, y) for x in (-2.3, 0.0, 2.3) for y in (-0.8, 0.85) if x or y]
+    lidars = [cone_lidar(-89.0, 1.3, place) for place in (*places, (-2.4, 0.1), (2.4, 0.1))]
+    rig = pe.Rig([pe.Sensor(f"l{n}", each.model, each.pose) for n, each in enumerate(lidars)])
+    blind = Sight(SPACE, pe.Prior.road(), body).blind(rig, 0.5, within=1.0)
+    assert set(blind.zone.values()) == set(blind.seen_from.values()) == {0.0}
+    assert set(blind.nearest.values()) == {None}
+    ahead = Sight(SPACE, pe.Prior.road(), body).blind(pe.Rig([rig.sensors[0]]), 0.5, within=1.0)
+    assert ahead.nearest["front"].distance == 0.0
+
+
 @pytest.mark.parametrize(
     ("asked", "line"),
     [

@@ -1,6 +1,7 @@
 """The arrows of ARCHITECTURE.md, held against every import of the add-on."""
 
 import ast
+import functools
 import importlib
 import re
 from pathlib import Path
@@ -99,12 +100,18 @@ def unit_of(name):
     return max(units, key=len, default=name)
 
 
+@functools.cache
+def nodes_of(source):
+    """Every node of a source's syntax tree; parsed once however many tests ask."""
+    return tuple(ast.walk(ast.parse(source)))
+
+
 def imports(name, path):
     """Yield the full name of everything a file imports, inside functions too: modules and names."""
     package = [PACKAGE, *([] if name == "__init__" else name.split("."))]
     if path.name != "__init__.py":
         package = package[:-1]
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for node in nodes_of(path.read_text("utf-8")):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -223,16 +230,16 @@ def public_names(room):
     return set(getattr(room, "__all__", (n for n in dir(room) if not n.startswith("_"))))
 
 
-def beside_the_faces(tree):
+def beside_the_faces(source):
     """Yield what a source takes from the engine that no room shows."""
     taken = {
         alias.asname or alias.name: alias.name
-        for node in ast.walk(tree)
+        for node in nodes_of(source)
         if isinstance(node, ast.ImportFrom) and node.module == "engine"
         for alias in node.names
     }
     yield from set(taken.values()) - set(rooms())
-    for node in ast.walk(tree):
+    for node in nodes_of(source):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             room = rooms().get(taken.get(node.value.id))
             if room is not None and node.attr not in public_names(room):
@@ -243,14 +250,14 @@ def test_only_the_faces_of_rooms_are_used():
     offenders = {
         name: found
         for name, path in FILES.items()
-        if (found := sorted(beside_the_faces(ast.parse(path.read_text("utf-8")))))
+        if (found := sorted(beside_the_faces(path.read_text("utf-8"))))
     }
     assert not offenders
 
 
 def test_the_rule_of_faces_catches_what_goes_deeper():
     source = "from .engine import pe, bogus\npe.Study, pe.nothing_of_the_kind\n"
-    assert sorted(beside_the_faces(ast.parse(source))) == ["bogus", "pe_core.nothing_of_the_kind"]
+    assert sorted(beside_the_faces(source)) == ["bogus", "pe_core.nothing_of_the_kind"]
 
 
 def test_every_module_can_be_imported():
@@ -263,7 +270,7 @@ def test_properties_call_functions_by_their_names():
     wrong = [
         f"{path.name}:{node.lineno}"
         for path in sorted(ROOT.rglob("*.py"))
-        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        for node in nodes_of(path.read_text("utf-8"))
         if isinstance(node, ast.AnnAssign)
         and any(isinstance(part, ast.Lambda) for part in ast.walk(node.annotation))
     ]

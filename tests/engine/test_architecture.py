@@ -1,6 +1,7 @@
 """The engine's rooms: what each may import, and that nothing else is imported."""
 
 import ast
+import functools
 import subprocess
 import sys
 from pathlib import Path
@@ -51,9 +52,20 @@ ALLOWED = {
 """Rooms of the engine, lowest first, and those they may look into: all of them further up here."""
 
 
+def nodes(path):
+    """Every node of a file's syntax tree."""
+    return nodes_of(path.read_text("utf-8"))
+
+
+@functools.cache
+def nodes_of(source):
+    """Every node of a source's syntax tree; parsed once however many tests ask."""
+    return tuple(ast.walk(ast.parse(source)))
+
+
 def imports(path):
     """(level, dotted module, name) of every import in a file, inside functions too."""
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             yield from ((0, alias.name, "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -101,7 +113,7 @@ def test_optional_packages_are_looked_for_in_one_place():
     callers = {
         str(path.relative_to(ROOT))
         for path in FILES
-        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        for node in nodes(path)
         if isinstance(node, ast.Name) and node.id in ("import_module", "__import__")
     }
     own_modules = {"__init__.py", "search/processes.py"}
@@ -141,11 +153,10 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
         if inside[0] == "graphics":  # a table by kind's name, and what its rows call
             continue
         named = {name for _, _, name in imports(path)} & {"Lidar", "Camera"}
-        texts = {
-            node.value
-            for node in ast.walk(ast.parse(path.read_text("utf-8")))
-            if isinstance(node, ast.Constant)
-        } & {"lidar", "camera"}
+        texts = {node.value for node in nodes(path) if isinstance(node, ast.Constant)} & {
+            "lidar",
+            "camera",
+        }
         assert inside == ("kinds", "__init__.py") or not named | texts, path
 
 

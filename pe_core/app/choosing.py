@@ -11,13 +11,20 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..study import FRONT_NAMES, ChoiceJob, TradeOff, front_dict, prepare_folder, write_front
+from ..study import (
+    FRONT_NAMES,
+    SAVE_EVERY_S,
+    ChoiceJob,
+    TradeOff,
+    front_dict,
+    prepare_folder,
+    write_front,
+)
 from ..text import dump_json
-from .elsewhere import another_folder
+from .fallback_folder import folder_or_fallback
 from .front_table import front_summary
 from .interrupts import Interrupted, stop_at_first
 from .reporting import Reporter
-from .saving import SAVE_EVERY_S
 from .status import BAD_INPUT, DONE, Answer
 from .terminal import tell
 
@@ -100,12 +107,12 @@ def _keep(
     """Write the front to a folder; where that fails, to another one that is told."""
     for place in (output, None):
         try:
-            folder = place or another_folder()
-            data = write_front(chosen, folder, host)
-            if more is not None:
-                more(chosen, folder)
-            for draw in plots:
-                draw(data, folder)
+            with folder_or_fallback(place) as folder:
+                data = write_front(chosen, folder, host)
+                if more is not None:
+                    more(chosen, folder)
+                for draw in plots:
+                    draw(data, folder)
         except InputError as error:
             tell(str(error))
             continue

@@ -5,11 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
 from ..study import (
+    SEARCH,
     STUDY,
     Outcome,
     Progress,
@@ -19,12 +22,15 @@ from ..study import (
     write_outcome,
 )
 from ..sweep import (
+    BEGUN,
     DONE,
     SWEEP_CSV,
     SWEEP_JSON,
+    WAITING,
     RunTask,
     SweepRow,
     SweepRun,
+    Workplace,
     read_settings,
     row_of,
     row_of_result,
@@ -36,10 +42,14 @@ from ..sweep import (
 from ..text import dump_json
 from . import status
 from .command import add_score_options, add_search_options, with_options
+from .fallback_folder import folder_or_fallback
 from .interrupts import Interrupted, Received, stop_at_first
 from .reporting import Reporter
 from .terminal import is_terminal, one_line, show, tell
 from .workplaces import workplace
+
+OPEN = (WAITING, BEGUN)
+"""The status of a run that has no result yet."""
 
 
 def add_sweep_options(parser: argparse.ArgumentParser) -> None:
@@ -65,13 +75,13 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> status.A
     runs = sweep_runs(files, settings, lambda study: with_options(study, args))
     folder = prepare_folder(args.output, [SWEEP_CSV, SWEEP_JSON])
     _refuse_folders(runs, files, folder, kind)
-    work = _Sweep(runs, kind, folder)
-    with stop_at_first(lambda: None) as received:
+    with ExitStack() as places, stop_at_first(lambda: None) as received:
+        work = _Sweep(runs, kind, folder, places)
         work.run(args, received)
-    if received.signum is not None:
-        raise Interrupted(received.signum, f"{work.told}; the same command goes on")
+        if received.signum is not None:
+            raise Interrupted(received.signum, f"{work.state}; the same command goes on")
     text = dump_json(work.data) if args.json else "\n".join(table_lines(work.rows, kind))
-    whole = all(row.status == DONE for row in work.rows)
+    whole = all(row.status == DONE for row in work.rows) and not work.fell_back
     return text, status.DONE if whole else status.BAD_INPUT
 
 
@@ -90,41 +100,78 @@ def _refuse_folders(
 class _Sweep:
     """A sweep under way: its rows, and its folder."""
 
-    def __init__(self, runs: Sequence[SweepRun], kind: str, folder: Path) -> None:
-        self._kind, self._folder = kind, folder
+    def __init__(
+        self, runs: Sequence[SweepRun], kind: str, folder: Path, places: ExitStack
+    ) -> None:
+        self._kind, self._folder, self._places = kind, folder, places
+        self._fallback: Path | None = None
         found = [row_of_result(run, folder / run.name, kind) for run in runs]
-        self.rows = [row or SweepRow(run) for row, run in zip(found, runs, strict=True)]
+        self.rows = [
+            row or SweepRow(run, self._unfinished(run))
+            for row, run in zip(found, runs, strict=True)
+        ]
         self._numbers = {run.name: number for number, run in enumerate(runs)}
         self._reporter, self._on_terminal = Reporter(sys.stderr), is_terminal(sys.stderr)
         self.data: dict[str, Any] = write_table(self.rows, kind, folder)
 
     @property
-    def told(self) -> str:
-        """How many runs are done, in words."""
-        return f"{self._done} of {len(self.rows)} runs are done"
+    def fell_back(self) -> bool:
+        """Whether something could not be written to the folder of the sweep."""
+        return self._fallback is not None
+
+    @property
+    def state(self) -> str:
+        """How many runs are done, and how many searches have a checkpoint, in words."""
+        kept = f", {self._begun} begun and kept" if self._begun else ""
+        return f"{self._done} of {len(self.rows)} runs are done{kept}"
 
     @property
     def _done(self) -> int:
         return sum(row.status == DONE for row in self.rows)
 
+    @property
+    def _begun(self) -> int:
+        return sum(row.status == BEGUN for row in self.rows)
+
+    def _unfinished(self, run: SweepRun) -> str:
+        """The status of a run that is not done: begun, where its search has a checkpoint."""
+        searches = self._kind == "optimize"
+        return BEGUN if searches and (self._folder / run.name / SEARCH).exists() else WAITING
+
     def run(self, args: argparse.Namespace, received: Received) -> None:
         """Carry out what is not done yet."""
-        left = [row.run for row in self.rows if row.status != DONE]
-        if self._done:
-            tell(f"{self.told} already")
+        left = [row.run.name for row in self.rows if row.status != DONE]
+        if self._done or self._begun:
+            going_on = f"; searches that go on: {self._begun}" if self._begun else ""
+            tell(f"{self._done} of {len(self.rows)} runs are done already{going_on}")
         if not left:
             return
         try:
             with workplace(args.workers, args.scheduler) as place:
-                searches = self._kind == "optimize"
-                tasks = {run.name: RunTask(run.study, searches, place.threads) for run in left}
-                run_all(tasks, place, self._take, lambda: self._goes_on(received))
+
+                def make_task(name: str) -> RunTask:
+                    return self._begin(self.rows[self._numbers[name]].run, place)
+
+                run_all(left, make_task, place, self._take, lambda: self._goes_on(received))
         finally:
             self._reporter.clear()
+            self.rows = [
+                replace(row, status=self._unfinished(row.run)) if row.status in OPEN else row
+                for row in self.rows
+            ]
+            self._write_table()
+
+    def _begin(self, run: SweepRun, place: Workplace) -> RunTask:
+        """Return the task of a run that goes to a worker now."""
+        number = self._numbers[run.name]
+        searches = self._kind == "optimize"
+        self.rows[number] = replace(self.rows[number], status=BEGUN)
+        checkpoints = place.checkpoints(run, self._folder / run.name) if searches else None
+        return RunTask(run.study, searches, place.threads, checkpoints)
 
     def _goes_on(self, received: Received) -> bool:
         if self._on_terminal:
-            share = sum(row.status != "waiting" for row in self.rows) / len(self.rows)
+            share = sum(row.status not in OPEN for row in self.rows) / len(self.rows)
             self._reporter.report(Progress("sweeping", share))
         return received.signum is None
 
@@ -133,19 +180,53 @@ class _Sweep:
         number = self._numbers[name]
         run = self.rows[number].run
         if isinstance(found, Outcome):
-            try:
-                write_outcome(found, self._folder / name)
-            except InputError as error:
-                found = error
+            found = self._keep(name, found)
         row = self.rows[number] = row_of(run, found)
-        self.data = write_table(self.rows, self._kind, self._folder)
+        self._write_table()
         self._tell(row, found)
+
+    def _keep(self, name: str, found: Outcome) -> Outcome | InputError:
+        """Write a run's results; where that fails, below a folder among temporary files."""
+        try:
+            write_outcome(found, self._folder / name)
+            return found
+        except InputError as error:
+            self._tell_failure(name, error)
+        try:
+            write_outcome(found, self._fall_back() / name)
+            return found
+        except InputError as error:
+            return error
+
+    def _write_table(self) -> None:
+        """Write the table; where that fails, to a folder among temporary files."""
+        try:
+            self.data = write_table(self.rows, self._kind, self._folder)
+        except InputError as error:
+            first = self._fallback is None
+            if first:
+                self._tell_failure("", error)
+            try:
+                self.data = write_table(self.rows, self._kind, self._fall_back())
+            except InputError as second:
+                if first:
+                    self._tell_failure("", second)
+
+    def _fall_back(self) -> Path:
+        """Return the folder for what cannot be written to that of the sweep; say it once."""
+        if self._fallback is None:
+            self._fallback = self._places.enter_context(folder_or_fallback(None))
+            self._tell_failure("", f"what cannot be written there is in {self._fallback}")
+        return self._fallback
+
+    def _tell_failure(self, name: str, what: InputError | str) -> None:
+        self._reporter.clear()
+        tell(str(what) if not name else f"{name}: {what}")
 
     def _tell(self, row: SweepRow, found: Outcome | InputError) -> None:
         name = row.run.name
         if isinstance(found, InputError):
-            self._reporter.clear()
-            tell(str(found) if found.source == name else f"{name}: {found}")
+            self._tell_failure("" if found.source == name else name, found)
         elif not self._on_terminal:
             figures = f"entropy {row.entropy:.4f}  coverage {row.coverage:.1%}"
             show(one_line(f"[{self._done}/{len(self.rows)}] {name}  {figures}") + "\n", sys.stderr)

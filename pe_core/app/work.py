@@ -14,11 +14,13 @@ from ..study import (
     Outcome,
     Study,
     files_of_other_runs,
+    prepare_folder,
+    remove_files_of_other_runs,
     result_dict,
     write_outcome,
 )
 from ..text import dump_json
-from .elsewhere import another_folder, put_elsewhere
+from .fallback_folder import folder_or_fallback, put_elsewhere
 from .interrupts import Interrupted, stop_at_first
 from .reporting import Reporter
 from .saving import Saver
@@ -101,15 +103,19 @@ def keep(
         What result.json holds.
     """
     data, kept = result_dict(outcome, host), list[Path]()
+    names = more.names if more else ()
     for place in (output, None):
         try:
-            folder = place or another_folder()
-            data = write_outcome(outcome, folder, host, more.names if more else ())
-            kept.append(folder)
-            if more is not None:
-                more.write(outcome, data, folder)
+            with folder_or_fallback(place) as folder:
+                prepare_folder(folder, names)  # a file of the user's may have come meanwhile
+                data = write_outcome(outcome, folder, host, names)
+                kept.append(folder)
+                if more is not None:
+                    more.write(outcome, data, folder)
         except InputError as error:
             tell(str(error))
+            if folder in kept:
+                remove_files_of_other_runs(folder)
             continue
         _tell_of_other_runs(folder)
         if folder != output:

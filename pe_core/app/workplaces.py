@@ -8,11 +8,13 @@ import re
 from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, shown
 from ..search import started
-from ..sweep import Workplace
+from ..sweep import FolderCheckpoints, RunCheckpoints, SweepRun, Workplace
+from .cluster_checkpoints import ClusterCheckpoints
 from .extras import EXTRAS, extra
 from .terminal import tell
 
@@ -53,6 +55,10 @@ class Here:
     def check(self) -> None:
         """It is always there."""
 
+    def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
+        """Have the process save them in the folder itself."""
+        return FolderCheckpoints(folder)
+
     def close(self) -> None:
         """End the processes, in the middle of what they do."""
         processes = self._count > 1  # they are killed; a thread goes on to the end of what it does
@@ -70,13 +76,21 @@ class DaskWorkers:
         self._client = _client_of(address)
         self.executor: Executor = self._client.get_executor(pure=False)
         self._alone = False
+        self._saved = ClusterCheckpoints(self._client)
 
     def width(self) -> int:
         """Two for each thread, so that none waits for the next."""
         return 2 * max(1, self._count())
 
     def check(self) -> None:
-        """Raise `InputError` when the scheduler is gone; tell, once, when it has no workers."""
+        """Save the checkpoints that have come; tell, once, that there are no workers.
+
+        Raises
+        ------
+        InputError
+            The scheduler is gone.
+        """
+        self._saved.save()
         if self._client.status == "closed":
             found = "that it is gone; what is done is kept"
             raise InputError(self._address, "scheduler", "one that stays until the end", found)
@@ -85,6 +99,10 @@ class DaskWorkers:
             need = "they need this version of perception-entropy"
             tell(f"{self._address}: no workers; waiting for some ({need})")
         self._alone = alone
+
+    def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
+        """Have the worker, which may be another machine, send them here to be saved."""
+        return self._saved.of(run, folder)
 
     def _count(self) -> int:
         """How many threads its workers have."""

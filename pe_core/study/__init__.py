@@ -1,6 +1,7 @@
 """Studies: their files, the work on them, and the results it leaves."""
 
 from ..search import METHODS, SCHEDULED_METHOD, Robustness
+from .checkpoint import SAVE_EVERY_S, Checkpoint
 from .choice_job import ChoiceJob, Design, TradeOff
 from .designed import design_study
 from .exporting import export_study, study_writers
@@ -24,6 +25,7 @@ from .results import (
     add_to_result,
     files_of_other_runs,
     placements,
+    remove_files_of_other_runs,
     result_dict,
     result_names,
     write_outcome,
@@ -45,10 +47,12 @@ __all__ = [
     "RESULT",
     "REVIEW",
     "REVIEW_PAGE",
+    "SAVE_EVERY_S",
     "SCHEDULED_METHOD",
     "SEARCH",
     "STUDY",
     "BegunSearch",
+    "Checkpoint",
     "ChoiceJob",
     "Design",
     "FileSet",
@@ -76,6 +80,7 @@ __all__ = [
     "placements",
     "prepare_folder",
     "read_search",
+    "remove_files_of_other_runs",
     "result_dict",
     "result_names",
     "save_study",

@@ -11,6 +11,7 @@ import io
 import json
 import platform
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -164,6 +165,19 @@ def files_of_other_runs(folder: Path) -> list[str]:
         return [n for n, digest in digests.items() if digest and digest != named.get(n)]
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
         return []
+
+
+def remove_files_of_other_runs(folder: Path) -> None:
+    """Remove an earlier run's files that this program wrote and nobody changed.
+
+    Where a later file of a run could not be written, that of an earlier run would stand beside the
+    new result.
+    """
+    ours = set(our_files(folder))
+    for name in files_of_other_runs(folder):
+        if name in ours:
+            with suppress(OSError):
+                (folder / name).unlink()
 
 
 def history_csv(history: tuple[HistoryRow, ...]) -> str:

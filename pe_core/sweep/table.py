@@ -18,7 +18,7 @@ from ..version import __version__
 from .run import SweepRun
 
 SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
-WAITING, DONE, FAILED = "waiting", "done", "failed"
+WAITING, BEGUN, DONE, FAILED = "waiting", "begun", "done", "failed"
 BEST, GAP = "*", "  "
 
 
@@ -29,7 +29,8 @@ class SweepRow:
     Attributes
     ----------
     run : SweepRun
-    status : {"waiting", "done", "failed"}
+    status : {"waiting", "begun", "done", "failed"}
+        Of a search that was begun, there may be a checkpoint in its folder.
     before, entropy : float or None
         Of the study as it was given, and of the result [nats]; the same where nothing was searched.
     coverage : float or None

@@ -6,6 +6,7 @@ import multiprocessing
 import os
 import signal
 import sys
+import time
 from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import replace
 
@@ -14,10 +15,19 @@ import pytest
 import pe_core as pe
 from pe_core.app.cli import main
 from pe_core.app.workplaces import workplace
-from pe_core.study import Outcome
-from pe_core.sweep import RunTask, carried_out, read_settings, run_all, sweep_runs
+from pe_core.search import Journal
+from pe_core.study import SEARCH, Checkpoint, Outcome, read_search
+from pe_core.sweep import (
+    FolderCheckpoints,
+    RunTask,
+    carried_out,
+    read_settings,
+    run_all,
+    sweep_runs,
+)
 from pe_core.sweep.names import LONGEST, folder_names
 from tests.engine import shapes
+from tests.engine.processes import GUARD_S, Command
 
 SEEDS = f"optimize.seed={','.join(map(str, range(10_001)))}"
 
@@ -195,6 +205,113 @@ def test_a_run_that_fails_is_named_and_the_others_are_kept(study, out, capsys):
     assert table(out)[0]["message"] and "failed" in out_text
 
 
+@pytest.fixture
+def noted(monkeypatch):
+    """Placements that a search evaluated, rather than took from its journal."""
+    noted, note = [], Journal.note
+
+    def watched(self, rig, level, judged):
+        noted.append(rig)
+        note(self, rig, level, judged)
+
+    monkeypatch.setattr(Journal, "note", watched)
+    return noted
+
+
+def searched(study):
+    """The result of a search that nothing broke off."""
+    job = pe.OptimizeJob(study)
+    list(job)
+    return job.outcome
+
+
+def test_a_run_continues_the_search_in_its_folder(study, out, noted):
+    whole = searched(pe.load_study(study))
+    evaluated = len(noted)
+    job = pe.OptimizeJob(pe.load_study(study))
+    for _ in job:
+        if job.evaluations >= 5:
+            break
+    Checkpoint(job).save(out)
+    begun = len(read_search(out).judged)
+    noted.clear()
+    task = RunTask(pe.load_study(study), True, 1, FolderCheckpoints(out))
+    found = carried_out(task)
+    assert (found.after.entropy, found.judged) == (whole.after.entropy, whole.judged)
+    assert len(noted) == evaluated - begun < evaluated
+    assert begun < len(read_search(out).judged) <= evaluated, "checkpoints go on as well"
+    noted.clear()
+    other = replace(task, study=replace(task.study, search=replace(task.study.search, seed=9)))
+    assert carried_out(other).after.entropy and len(noted) > 5, "another study's are not taken"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+@pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsys, noted):
+    argv = ["sweep", str(study), "--optimize", "--set", "optimize.seed=3,4", "--workers", "1"]
+    first = out / "car,optimize.seed=3"
+    with Command(*argv, "-o", out, hang_in_score=2) as command:
+        deadline = time.monotonic() + GUARD_S
+        while not (first / SEARCH).exists():
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
+        command.send(ending)
+        status = command.end()
+    killed = ending == signal.SIGKILL
+    assert status == (-ending if killed else 128 + ending)
+    if not killed:
+        kept = "0 of 2 runs are done, 1 begun and kept; the same command goes on"
+        assert command.complaints == [f"pe: interrupted; {kept}\n"]
+        assert [row["status"] for row in table(out)] == ["begun", "waiting"]
+    assert not list(out.rglob(".*.tmp"))
+    judged = len(read_search(first).judged)
+    noted.clear()
+    assert main([*argv, "-o", str(out)]) == 0
+    err = capsys.readouterr().err
+    assert "pe: 0 of 2 runs are done already; searches that go on: 1" in err
+    evaluated = len(noted)
+    noted.clear()
+    whole = [searched(replace_seed(pe.load_study(study), seed)) for seed in (3, 4)]
+    assert [float(row["entropy"]) for row in table(out)] == [each.after.entropy for each in whole]
+    assert evaluated == len(noted) - judged
+
+
+def replace_seed(study, seed):
+    return replace(study, search=replace(study.search, seed=seed))
+
+
+def test_results_that_cannot_be_written_go_to_one_other_folder(study, out, tmp_path, monkeypatch):
+    """A full disk: runs and table cannot be left where they were wanted; nothing is lost."""
+    other = tmp_path / "temporary"
+    other.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(other))
+    argv = ["sweep", str(study), "--set", "samples=1024,2048", "-o", str(out), "--workers", "1"]
+    assert main(argv) == 0
+    before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    real = os.replace
+
+    def full(source, target):
+        if out in type(out)(target).parents:
+            raise OSError(28, "No space left on device")
+        real(source, target)
+
+    def work_until_full(workers, scheduler):
+        monkeypatch.setattr(os, "replace", full)
+        return workplace(workers, scheduler)
+
+    monkeypatch.setattr("pe_core.app.sweeping.workplace", work_until_full)
+    assert main([*argv, "--seed", "9"]) == 1
+    (folder,) = other.iterdir()
+    assert [row["status"] for row in table(folder)] == ["done", "done"]
+    for row in table(folder):
+        result = json.loads((folder / row["run"] / "result.json").read_text())
+        assert result["entropy"] == float(row["entropy"])
+    table_written = {out / name: (out / name).read_bytes() for name in ("sweep.csv", "sweep.json")}
+    now = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    listing = {out / ".perception-entropy.json": now[out / ".perception-entropy.json"]}
+    assert now == {**before, **table_written, **listing}, "no file is half or gone"
+
+
 class Dying(Executor):
     """An executor whose workers die with some tasks, and with all others handed out meanwhile."""
 
@@ -233,6 +350,9 @@ class Place:
     def check(self):
         pass
 
+    def checkpoints(self, run, folder):
+        raise AssertionError("scores have none")
+
 
 @pytest.mark.parametrize(("deaths", "named"), [(1, []), (2, ["run2"])])
 def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, named):
@@ -247,7 +367,7 @@ def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, 
         assert name not in found, "each once"
         found[name] = what
 
-    run_all(tasks, Place(executor, 2), take)
+    run_all(list(tasks), tasks.get, Place(executor, 2), take)
     assert sorted(found) == ["run1", "run2", "run3"]
     failed = {name: str(what) for name, what in found.items() if isinstance(what, pe.InputError)}
     assert list(failed) == named
@@ -270,7 +390,7 @@ def test_real_processes_that_are_killed_are_replaced(study):
                 os.kill(victims.pop(), signal.SIGKILL)
             assert found.setdefault(name, what) is what, "each once"
 
-        run_all(tasks, place, take)
+        run_all(list(tasks), tasks.get, place, take)
     assert {name: type(what) for name, what in found.items()} == dict.fromkeys("abcd", Outcome)
     for child in multiprocessing.active_children():
         child.join(30)

@@ -13,6 +13,7 @@ import pytest
 import pe_core as pe
 from pe_core.app import sweeping
 from pe_core.app.cli import main
+from pe_core.study import SearchState, read_search
 from tests.engine import shapes
 from tests.engine.processes import ROOT
 
@@ -132,6 +133,34 @@ def test_a_worker_that_is_killed_costs_no_result(study, cluster, tmp_path, monke
         assert result["entropy"] == row["entropy"]
     assert cluster.workers[0].poll() == -signal.SIGKILL
     assert "Traceback" not in capsys.readouterr().err
+
+
+def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeypatch):
+    """Workers send what they judged; a worker that begins anew sends the same again."""
+    (cluster.folder / "go").touch()
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
+    search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, pe.Schedule(candidates=2))
+    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+    path, out = tmp_path / "car.toml", tmp_path / "out"
+    pe.export_study(study, path)
+    saved, save = [], SearchState.save
+
+    def watched(self, folder, best, entries, *, meshes=True):
+        save(self, folder, best, entries, meshes=meshes)
+        saved.append((folder, read_search(folder).judged))
+
+    monkeypatch.setattr(SearchState, "save", watched)
+    argv = ["sweep", str(path), "--optimize", "-o", str(out), "--scheduler", cluster.address]
+    assert main(argv) == 0
+    whole = pe.OptimizeJob(pe.load_study(path))
+    list(whole)
+    judged = read_search(out / "car").judged
+    assert judged == whole.outcome.judged
+    assert saved and all(folder == out / "car" for folder, _ in saved)
+    assert all(entries == judged[: len(entries)] for _, entries in saved)
+    assert json.loads((out / "car" / "result.json").read_text())["entropy"] == (
+        whole.outcome.after.entropy
+    )
 
 
 def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkeypatch, capsys):

@@ -7,7 +7,6 @@ its sensor, in the sensor's axes (forward, left, up).
 from __future__ import annotations
 
 import math
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -52,24 +51,23 @@ def recording_bytes(wanted: OutputRequest) -> tuple[bytes, list[str]]:
     """Return a recording, and lines on what is not in it."""
     study, stream = wanted.study, rr.RecordingStream(APPLICATION)
     lines = [] if study.vehicle is not None else ["no vehicle: nothing is hidden or blind near it"]
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "scene.rrd"
-        stream.save(path)
-        stream.send_blueprint(_blueprint())
-        stream.log("/", rr.ViewCoordinates.FLU, static=True)
-        _log_vehicle(stream, wanted)
-        names, _ = plain_names([sensor.name for sensor in study.rig])
-        known, left_out = with_pictures(carried(study.rig), straight, "Rerun")
-        for number, (sensor, one) in enumerate(zip(study.rig, known, strict=True)):
-            own = [SENSORS, names[sensor.name]]
-            _log_sensor(stream, wanted, sensor, own, sensor_color(number))
-            if one.picture is not None:
-                _log(stream, [*own, "picture"], _pinhole(one.picture))
-            if drawing_of(sensor.kind).beams:
-                _log(stream, [BEAMS, names[sensor.name]], _beams(wanted, sensor))
-        _log_ground(stream, wanted)
-        stream.disconnect()
-        return path.read_bytes(), lines + left_out
+    memory = stream.memory_recording()  # a file of the library's own may end half and say nothing
+    stream.send_blueprint(_blueprint())
+    stream.log("/", rr.ViewCoordinates.FLU, static=True)
+    _log_vehicle(stream, wanted)
+    names, _ = plain_names([sensor.name for sensor in study.rig])
+    known, left_out = with_pictures(carried(study.rig), straight, "Rerun")
+    for number, (sensor, one) in enumerate(zip(study.rig, known, strict=True)):
+        own = [SENSORS, names[sensor.name]]
+        _log_sensor(stream, wanted, sensor, own, sensor_color(number))
+        if one.picture is not None:
+            _log(stream, [*own, "picture"], _pinhole(one.picture))
+        if drawing_of(sensor.kind).beams:
+            _log(stream, [BEAMS, names[sensor.name]], _beams(wanted, sensor))
+    _log_ground(stream, wanted)
+    recording: bytes = memory.drain_as_bytes()
+    stream.disconnect()
+    return recording, lines + left_out
 
 
 def _blueprint() -> Any:

@@ -12,12 +12,18 @@ from .folder import command_of_folder, outcome_of_folder
 from .page import PAGE, page_bytes, write_page
 from .reviewed import MOST_STUDIES, Reviewed
 
+NOTHING_WRITTEN = "no page was written"
 TOLD = ("perception-entropy", "numpy", "python")
 """Programs that the page tells the versions of by itself."""
 
 
 def review(args: argparse.Namespace) -> app.Answer:
     """Score studies and write their page; Ctrl-C ends it, and then nothing is written."""
+    with app.noted_when_interrupted(NOTHING_WRITTEN):
+        return _review(args)
+
+
+def _review(args: argparse.Namespace) -> app.Answer:
     paths = [str(Path(each).resolve()) if Path(each).is_dir() else each for each in args.studies]
     files = app.named_by_file(paths)
     _check(len(files), args)
@@ -51,6 +57,16 @@ def review_studies(
     versions : mapping of str, optional
         Programs besides the engine's.
     """
+    with app.noted_when_interrupted(NOTHING_WRITTEN):
+        return _review_studies(asked, args, picture, versions)
+
+
+def _review_studies(
+    asked: Mapping[str, pe.Study],
+    args: argparse.Namespace,
+    picture: Callable[[pe.Outcome], bytes] | None,
+    versions: Mapping[str, str] | None,
+) -> app.Answer:
     _check(len(asked), args)
     changed = {name: app.with_options(study, args) for name, study in asked.items()}
     app.refuse_different(changed)

@@ -21,7 +21,7 @@ from .explaining import (
     refuse_different,
     scored,
 )
-from .interrupts import leave
+from .interrupts import leave, noted_when_interrupted
 from .leaving import add_page_option, pages, with_pages
 from .resuming import begun_search, job_and_folder
 from .rigs import add_rigs_verb, study_of_rig
@@ -62,6 +62,7 @@ __all__ = [
     "job_and_folder",
     "leave",
     "named_by_file",
+    "noted_when_interrupted",
     "open_missing_streams",
     "pages",
     "plots",

@@ -18,7 +18,7 @@ from ..errors import InputError
 from ..kinds import kind_of
 from ..study import METHODS, SCHEDULED_METHOD, Study
 from ..text.cells import quoted
-from .interrupts import FATAL
+from .interrupts import FATAL, signals_interrupt
 from .status import BAD_INPUT, DONE, Answer
 from .terminal import one_line, printable, show, tell
 from .work import print_answer
@@ -135,7 +135,8 @@ def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
     number: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
     """
     try:
-        text, status = main()
+        with signals_interrupt():
+            text, status = main()
         return print_answer(text, status, out or sys.stdout)
     except InputError as error:
         tell(str(error))
@@ -144,6 +145,9 @@ def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
         note = getattr(error, "note", "")
         tell(f"interrupted; {note}" if note else "interrupted")
         return FATAL + getattr(error, "signum", signal.SIGINT)
+    except MemoryError:
+        tell("not enough memory: close other programs, or ask for fewer voxels (--grid-samples)")
+        return BAD_INPUT
     except BrokenPipeError as error:  # of a stream that a verb writes to itself
         tell(str(error))
         return BAD_INPUT

@@ -23,6 +23,40 @@ class Interrupted(KeyboardInterrupt):
         self.signum, self.note = signum, note
 
 
+@contextmanager
+def signals_interrupt() -> Iterator[None]:
+    """Have SIGTERM and SIGHUP raise `Interrupted`, as Ctrl-C raises KeyboardInterrupt.
+
+    Without it they would end the program in the middle of its work without a word.
+    """
+
+    def handler(signum: int, _frame: object) -> None:
+        raise Interrupted(signum)
+
+    before = {}
+    try:
+        for number in _handled():
+            if number != signal.SIGINT:
+                before[number] = signal.signal(number, handler)
+    except ValueError:  # not the main thread: someone else handles signals
+        pass
+    try:
+        yield
+    finally:
+        for number, old in before.items():
+            signal.signal(number, _default(number) if old is None else old)
+
+
+@contextmanager
+def noted_when_interrupted(note: str) -> Iterator[None]:
+    """Have the message of an interruption say what became of the work."""
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        signum = getattr(error, "signum", signal.SIGINT)
+        raise Interrupted(signum, getattr(error, "note", "") or note) from None
+
+
 @dataclass
 class Received:
     """The signal that asked for an end; None if there was none."""

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
+from multiprocessing import resource_tracker
 from types import ModuleType
 from typing import Any, TypeVar
 
@@ -55,11 +56,12 @@ class Processes(Executor):
     def _new_pool(self) -> ProcessPoolExecutor:
         context = multiprocessing.get_context("spawn")
         begin = BEGIN.format(packages=_packages_around(), here=__name__)
-        return ProcessPoolExecutor(self._count, context, exec, (begin,))
+        with _signals_blocked():
+            return ProcessPoolExecutor(self._count, context, exec, (begin,))
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
         """Have a function called in a process; in a new one, if they broke down."""
-        with self._lock, _without_main():
+        with self._lock, _without_main(), _signals_blocked():
             try:
                 return self._pool.submit(fn, *args, **kwargs)
             except BrokenExecutor:
@@ -130,3 +132,24 @@ def _without_main() -> Iterator[None]:
         yield
     finally:
         sys.modules["__main__"] = main
+
+
+@contextmanager
+def _signals_blocked() -> Iterator[None]:
+    """Have processes that start meanwhile begin with the signals of `ENDING` blocked.
+
+    A terminal sends these to all processes at once, also to one that is not far enough to ignore
+    them: a worker would end in the middle of an import, with a traceback. The process that keeps
+    account of semaphores is started here, too: it ignores all of them but SIGHUP.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows has no such signals
+        yield
+        return
+    numbers = {getattr(signal, name) for name in ENDING}
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
+    try:
+        resource_tracker.ensure_running()
+        signal.pthread_sigmask(signal.SIG_BLOCK, numbers)  # that has unblocked SIGINT
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -7,7 +7,6 @@ its sensor, in the sensor's axes (forward, left, up).
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np

@@ -8,7 +8,7 @@ from pathlib import Path
 from ..errors import InputError
 from ..scene.reference import Reference
 from ..scene.sensors import Rig
-from ..text.files import write_bytes
+from ..text.files import write_all_bytes
 from .carried import CarriedSensor, carried, with_pictures
 from .frames import origin_in_ground, seen_from, shifted
 from .losses import lost_line
@@ -119,7 +119,7 @@ def write_files(
     """Write bytes by file name, and return their paths.
 
     All `inside` a folder; or the first at `output` itself, and others beside it. What is there
-    stays unless `replace` says otherwise; then nothing is written.
+    stays unless `replace` says otherwise; then, and where one cannot be written, none is.
     """
     folder = output if inside or output.is_dir() else output.parent
     paths = {folder / file: data for file, data in files.items()}
@@ -128,11 +128,10 @@ def write_files(
         paths = {output: files[first]} | {folder / file: files[file] for file in others}
     for path in paths:
         if path.exists() and not replace:
-            raise InputError(path, "file", "a new file, or a wish to replace it", "one is there")
+            raise InputError(path, "file", "a new file, or --replace", "one is there")
     for folder in {path.parent for path in paths}:
         _make_folder(folder)
-    for path, data in paths.items():
-        write_bytes(path, data)
+    write_all_bytes(paths)
     return list(paths)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import secrets
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import InputError
@@ -55,17 +56,42 @@ def write_bytes(path: Path, data: bytes) -> None:
 
     A folder, pipe or device in the file's place is refused, not replaced.
     """
+    write_all_bytes({path: data})
+
+
+def write_all_bytes(files: Mapping[Path, bytes]) -> None:
+    """Write several files, or leave all as it was where one of them cannot be written.
+
+    A folder, pipe or device in a file's place is refused, not replaced.
+
+    Raises
+    ------
+    InputError
+        For the first file that cannot be written.
+    """
     # Not the tempfile module: its files are readable by their owner alone, and os.replace
     # would hand that mode on to the result.
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
+    temporaries = {p: p.with_name(f".{p.name}.{secrets.token_hex(4)}.tmp") for p in files}
     try:
-        if path.exists():
-            _require_regular(path, os.stat(path), "a place to write to")
-        try:
-            temporary.write_bytes(data)
-            os.replace(temporary, path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        for path, data in files.items():
+            with _named(path):
+                if path.exists():
+                    _require_regular(path, os.stat(path), "a place to write to")
+                temporaries[path].write_bytes(data)
+        for path, temporary in temporaries.items():
+            with _named(path):
+                os.replace(temporary, path)
+    finally:
+        for temporary in temporaries.values():
+            with suppress(OSError, ValueError):
+                temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Name the file that cannot be written."""
+    try:
+        yield
     except InputError:
         raise
     except (OSError, ValueError) as error:

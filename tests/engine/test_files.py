@@ -8,7 +8,7 @@ import pytest
 
 from pe_core.errors import InputError
 from pe_core.text import files, memory
-from pe_core.text.files import read_bytes, write_bytes
+from pe_core.text.files import read_bytes, write_all_bytes, write_bytes
 from pe_core.text.memory import available_bytes, require_memory, size_text, told_if_too_much
 
 resource = pytest.importorskip("resource")
@@ -138,3 +138,16 @@ def test_the_machine_says_how_much_memory_it_has():
     if not Path("/proc/meminfo").exists():
         pytest.skip("another system")
     assert available_bytes() > 10_000_000
+
+
+def test_several_files_are_written_together_or_not_at_all(tmp_path):
+    (tmp_path / "first").write_bytes(b"old")
+    (tmp_path / "second").mkdir()
+    new = {tmp_path / name: b"new" for name in ("first", "second")}
+    with pytest.raises(InputError, match="second: file: expected a place to write to"):
+        write_all_bytes(new)
+    assert (tmp_path / "first").read_bytes() == b"old"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["first", "second"]
+    (tmp_path / "second").rmdir()
+    write_all_bytes(new)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == new

@@ -258,6 +258,7 @@ def test_a_full_disk_leaves_the_old_set_whole(study, out, elsewhere):
         assert command.end() == 1
     assert {p.name: p.read_bytes() for p in out.iterdir()} == before
     assert text.startswith("entropy ")  # what nobody could write is at least said
+    assert list(elsewhere.iterdir()) == []
     assert "file too large" in command.complaints[0].lower()
     assert command.complaints[-1] == "pe: the results are not in any file\n"
 
@@ -273,3 +274,56 @@ def test_a_file_that_appears_meanwhile_is_not_written_over(study, out, elsewhere
     assert (out / "history.csv").read_text() == "mine"
     (folder,) = elsewhere.iterdir()
     assert result(folder)["stopped"]
+
+
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_page_that_is_not_written_is_said(study, out, signum):
+    with Command("review", study, "-o", out, hang_in_score=1) as command:
+        command.wait_for_stage("scoring")
+        command.send(signum)
+        assert command.end() == SIGNALS[signum]
+    (line,) = command.complaints
+    assert line.startswith("pe: interrupted; no ") and list(out.iterdir()) == []
+
+
+def test_a_signal_between_two_scores_is_a_line(study):
+    """Where no verb looks for signals itself: they interrupt as Ctrl-C does."""
+    code = (
+        "import os, signal\n"
+        "from pe_core.app import command\n"
+        "def work():\n    os.kill(os.getpid(), signal.SIGTERM)\n    raise AssertionError\n"
+        "before = signal.getsignal(signal.SIGTERM)\n"
+        "print(command.run(work), signal.getsignal(signal.SIGTERM) == before)\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert (run.stdout, run.stderr) == ("143 True\n", "pe: interrupted\n")
+
+
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGHUP])
+def test_a_signal_to_the_whole_group_is_the_parent_s_affair(signum):
+    """As of a terminal: workers, which may still be starting, and all other helpers ignore it."""
+    code = (
+        "import os, signal, sys\n"
+        "from pe_core.search import Processes\n"
+        f"signal.signal({signum:d}, signal.SIG_IGN)\n"
+        "processes = Processes(2)\n"
+        "found = [processes.submit(os.getpid) for _ in range(2)]\n"
+        f"os.killpg(os.getpgid(0), {signum:d})\n"
+        "assert all(future.result(60) for future in found)\n"
+        "processes.shutdown(cancel_futures=True)\n"
+    )
+    command = [sys.executable, "-c", code]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, start_new_session=True)
+    assert (run.returncode, run.stderr) == (0, "")
+
+
+def test_a_file_of_the_user_s_that_appears_meanwhile_moves_the_whole_set(study, out, elsewhere):
+    options = {"env": environment(elsewhere)}
+    with Command("optimize", study, "-o", out, *ENDLESS, **options) as command:
+        command.wait_for_better()
+        (out / "review.html").write_text("mine")
+        command.send(signal.SIGTERM)
+        assert command.end() == 1
+    assert (out / "review.html").read_text() == "mine" and not (out / "result.json").exists()
+    (folder,) = elsewhere.iterdir()
+    assert result(folder)["stopped"] and (folder / "review.html").exists()

@@ -18,7 +18,7 @@ from .mirroring import (
 from .mount_shapes import LimitBox, bounds_box, mount_faces, mount_key, no_go_boxes
 from .mounting import mount_of_row, mounting_of
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
-from .oddities import missing_pieces, scene_advice
+from .oddities import layers_of, missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
 from .own_sensors import add_own_sensor, forget_own_sensors, sync_own_sensors, table_of
 from .passthrough import passthrough_of, write_passthrough
@@ -101,6 +101,7 @@ __all__ = [
     "keep_front",
     "keep_score",
     "keep_search",
+    "layers_of",
     "link_mirror",
     "load_into",
     "locked_axes",

@@ -10,13 +10,15 @@ from ..engine import pe
 from .rig import sensor_from_object, sensor_objects, view_layer_of
 
 MISSING, DRIVER, UNITS, REFUSED = "missing", "driver", "units", "refused"
+HIDDEN = "hidden_vehicle"
 """Codes of the advice, beside those of the engine."""
 
 
 def scene_advice(scene: bpy.types.Scene) -> tuple[pe.Advice, ...]:
     """Tell what is odd: pieces that are missing, units, and sensors that are no possible ones."""
     sensors = sensor_objects(scene)
-    return (*missing_pieces(scene, sensors), *_units(scene), *_refused(scene, sensors))
+    own = (*missing_pieces(scene, sensors), *_units(scene), *_hidden_vehicle(scene))
+    return (*own, *_refused(scene, sensors))
 
 
 def missing_pieces(
@@ -92,6 +94,59 @@ def _units(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
     if units.system == "IMPERIAL" or abs(units.scale_length - 1.0) > 1e-6:
         text = "one unit is not one metre in this scene: nothing can be scored"
         yield pe.Advice(None, UNITS, text, fix="metric_units")
+
+
+def _hidden_vehicle(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
+    """Advice on collections of the vehicle that are excluded or hidden, and so do not count."""
+    vehicle, layer = scene.perception_entropy.vehicle, view_layer_of(scene)
+    if vehicle is None:
+        return
+    found = layers_of(layer.layer_collection, vehicle)
+    if not found:
+        text = (
+            f"the vehicle collection {vehicle.name} is not in this scene: nothing of it is scored"
+        )
+        yield pe.Advice(None, HIDDEN, text)
+    elif how := _hidden(found[0]):
+        text = f"the vehicle collection {vehicle.name} is {how}: nothing of it is scored"
+        yield pe.Advice(None, HIDDEN, text, fix="show_vehicle")
+    else:
+        for child in _hidden_children(found[0]):
+            text = f"the vehicle's collection {child.name} is {_hidden(child)}: it is not scored"
+            yield pe.Advice(None, HIDDEN, text)
+
+
+def layers_of(
+    layer: bpy.types.LayerCollection, collection: bpy.types.Collection
+) -> list[bpy.types.LayerCollection]:
+    """Return a collection in a view layer and those that it is in, from it upwards.
+
+    Nothing where the view layer does not hold it.
+    """
+    if layer.collection == collection:
+        return [layer]
+    for child in layer.children:
+        if found := layers_of(child, collection):
+            return [*found, layer]
+    return []
+
+
+def _hidden(layer: bpy.types.LayerCollection) -> str:
+    """Say in which way a collection is out of the view; empty where it is in it."""
+    if layer.exclude:
+        return "excluded from the view layer"
+    if layer.collection.hide_render:
+        return "hidden in renders"
+    return "" if layer.is_visible else "hidden in the viewport"
+
+
+def _hidden_children(layer: bpy.types.LayerCollection) -> Iterator[bpy.types.LayerCollection]:
+    """Yield collections in one that are hidden, and hold something; not those in these."""
+    for child in layer.children:
+        if not _hidden(child):
+            yield from _hidden_children(child)
+        elif any(obj.type == "MESH" for obj in child.collection.all_objects):
+            yield child
 
 
 def _refused(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> Iterator[pe.Advice]:

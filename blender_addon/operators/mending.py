@@ -24,6 +24,7 @@ LABELS = {
     "roll_sensor": "Turn It Upright",
     "apply_scale": "Apply Its Scale",
     "metric_units": "Set Units to Metres",
+    "show_vehicle": "Show the Vehicle",
 }
 """What the button of a fix says."""
 
@@ -97,6 +98,14 @@ def metric_units(context: bpy.types.Context, _subject: str, _amount: AdviceAmoun
     units.system, units.scale_length, units.length_unit = "METRIC", 1.0, "METERS"
 
 
+def show_vehicle(context: bpy.types.Context, _subject: str, _amount: AdviceAmount) -> None:
+    """Have the vehicle's collection, and those that it is in, count again."""
+    vehicle, root = context.scene.perception_entropy.vehicle, context.view_layer.layer_collection
+    for layer in reversed(bridge.layers_of(root, vehicle)[:-1] if vehicle else []):
+        layer.exclude = layer.hide_viewport = False
+        layer.collection.hide_viewport = layer.collection.hide_render = False
+
+
 FIXES: dict[str, Callable[[bpy.types.Context, str, AdviceAmount], None]] = {
     "turn_vehicle": turn_vehicle,
     "scale_vehicle": scale_vehicle,
@@ -104,6 +113,7 @@ FIXES: dict[str, Callable[[bpy.types.Context, str, AdviceAmount], None]] = {
     "roll_sensor": roll_sensor,
     "apply_scale": apply_scale,
     "metric_units": metric_units,
+    "show_vehicle": show_vehicle,
 }
 
 

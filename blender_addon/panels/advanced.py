@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import textwrap
-
 import bpy
 
 from .layout import Tab, draw_properties
+from .words import draw_sentence
 
-WRAP = 38
 SCALARS = {
     "lidar": ("channels", "elevations", "azimuths", "azimuth_step", "min_range", "max_range"),
     "camera": ("width", "height", "hfov", "lens"),
@@ -39,12 +37,11 @@ class PE_PT_advanced(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_advanced"
     bl_label = "Advanced"
-    bl_parent_id = "PE_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
-        draw_own_sensors(self.layout, settings)
+        draw_own_sensors(self.layout, context)
         draw_curves(self.layout, settings)
         column = self.layout.column()
         column.label(text="Space and Voxels")
@@ -57,8 +54,9 @@ class PE_PT_advanced(Tab, bpy.types.Panel):
         draw_properties(column, settings, ("space_interval", "clearance"))
 
 
-def draw_own_sensors(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_own_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the file's own sensors, and the figures of the one that is selected."""
+    settings = context.scene.perception_entropy
     layout.label(text="Own Sensors")
     row = layout.row()
     name = PE_UL_own_sensors.__name__
@@ -69,8 +67,8 @@ def draw_own_sensors(layout: bpy.types.UILayout, settings: bpy.types.PropertyGro
     if settings.own_index < len(settings.own_sensors):
         own = settings.own_sensors[settings.own_index]
         draw_properties(layout.column(), own, ("kind", *SCALARS[own.kind]))
-        for line in textwrap.wrap(own.problem, WRAP):
-            layout.label(text=line, icon="ERROR", translate=False)
+        if own.problem:
+            draw_sentence(layout, context, own.problem, icon="ERROR")
 
 
 def draw_curves(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:

@@ -14,7 +14,6 @@ class PE_PT_breakdown(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_breakdown"
     bl_label = "By Zone and Class"
-    bl_parent_id = "PE_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod

@@ -7,7 +7,7 @@ import bpy
 from ..operators import answer
 from .layout import Tab
 from .sensor_table import draw_sensor_table
-from .words import draw_sentence
+from .words import BUTTON_PX, draw_sentence
 
 
 class PE_PT_explain(Tab, bpy.types.Panel):
@@ -15,7 +15,6 @@ class PE_PT_explain(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_explain"
     bl_label = "Explain"
-    bl_parent_id = "PE_PT_main"
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, obj = context.scene.perception_entropy, context.active_object
@@ -56,7 +55,7 @@ def draw_answer(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     row = box.row()
     lines = row.column(align=True)
     for line in found:
-        draw_sentence(lines, context, line)
+        draw_sentence(lines, context, line, beside_px=BUTTON_PX)
     row.operator("pe.dismiss_place", text="", icon="X", emboss=False)
 
 

@@ -6,7 +6,7 @@ import bpy
 
 from ..operators import exporting, running
 from .layout import Tab, draw_properties
-from .words import draw_sentence
+from .words import BUTTON_PX, draw_sentence
 
 AXLES = ("rear_axle_x", "rear_axle_z", "wheelbase", "front_overhang", "rear_overhang")
 
@@ -16,7 +16,6 @@ class PE_PT_export(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_export"
     bl_label = "Export and Import"
-    bl_parent_id = "PE_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -47,7 +46,7 @@ def draw_written(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
         return
     box = layout.box().column(align=True)
     row = box.row()
-    draw_sentence(row.column(align=True), context, written.text, icon="CHECKMARK")
+    draw_sentence(row.column(align=True), context, written.text, "CHECKMARK", BUTTON_PX)
     row.operator("pe.dismiss_written", text="", icon="X", emboss=False)
     for line in written.lines:
         draw_sentence(box, context, line, icon="ERROR")

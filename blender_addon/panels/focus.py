@@ -34,7 +34,6 @@ class PE_PT_focus(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_focus"
     bl_label = "Focus"
-    bl_parent_id = "PE_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:

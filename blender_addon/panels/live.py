@@ -31,7 +31,6 @@ class PE_PT_live(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_live"
     bl_label = "Live"
-    bl_parent_id = "PE_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod

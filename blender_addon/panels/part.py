@@ -12,7 +12,6 @@ class PE_PT_part(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_part"
     bl_label = "Vehicle Part"
-    bl_parent_id = "PE_PT_main"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

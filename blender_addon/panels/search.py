@@ -1,4 +1,4 @@
-"""How to score and to search."""
+"""What is scored, and how to search: the prior, the targets, the search."""
 
 from __future__ import annotations
 
@@ -8,29 +8,63 @@ from ..choices import FROM_BOXES, OBJECTS
 from .layout import Tab, draw_properties
 
 
-class PE_PT_search(Tab, bpy.types.Panel):
-    """How to score and to search"""
+class PE_PT_prior(Tab, bpy.types.Panel):
+    """Where objects are to be expected"""
 
-    bl_idname = "PE_PT_search"
-    bl_label = "Search"
-    bl_parent_id = "PE_PT_main"
+    bl_idname = "PE_PT_prior"
+    bl_label = "Prior"
     bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_chosen(self.layout, context.scene.perception_entropy, "prior")
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
         boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
-        draw_properties(self.layout, settings, ("prior", *boxes, "targets"))
-        objects = settings.targets == OBJECTS
-        if objects:
+        draw_properties(self.layout, settings, ("prior", *boxes))
+
+
+class PE_PT_targets(Tab, bpy.types.Panel):
+    """What is judged: voxels, or objects of the prior"""
+
+    bl_idname = "PE_PT_targets"
+    bl_label = "Targets"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_chosen(self.layout, context.scene.perception_entropy, "targets")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
+        draw_properties(self.layout, settings, ("targets",))
+        if settings.targets == OBJECTS:
             draw_properties(self.layout, settings, ("traffic", "scenes"))
+        else:
+            draw_voxels(self.layout, settings, "score_samples")
+
+
+class PE_PT_search(Tab, bpy.types.Panel):
+    """How to search"""
+
+    bl_idname = "PE_PT_search"
+    bl_label = "Search"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
         draw_properties(self.layout, settings, ("method", "candidates"))
         row = self.layout.row(align=True)
         row.prop(settings, "evaluations")
         if not settings.evaluations:
             row.label(text="All")
         self.layout.prop(settings, "seed")
-        for name in () if objects else ("search_samples", "score_samples"):
-            draw_voxels(self.layout, settings, name)
+        if settings.targets != OBJECTS:
+            draw_voxels(self.layout, settings, "search_samples")
+
+
+def draw_chosen(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str) -> None:
+    """Draw what is chosen of a menu, to be seen also when its panel is closed."""
+    layout.label(text=layout.enum_item_name(settings, name, getattr(settings, name)))
 
 
 def draw_voxels(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str) -> None:
@@ -41,4 +75,5 @@ def draw_voxels(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, n
         row.label(text="All")
 
 
+SCORING_CLASSES = (PE_PT_prior, PE_PT_targets)
 CLASSES = (PE_PT_search,)

@@ -12,7 +12,6 @@ class PE_PT_selection(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_selection"
     bl_label = "Sensor Choices"
-    bl_parent_id = "PE_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

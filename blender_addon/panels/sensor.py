@@ -18,7 +18,6 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_sensor"
     bl_label = "Sensor"
-    bl_parent_id = "PE_PT_main"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -44,7 +44,6 @@ class PE_PT_variants(Tab, bpy.types.Panel):
 
     bl_idname = "PE_PT_variants"
     bl_label = "Variants"
-    bl_parent_id = "PE_PT_main"
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         count = len(context.scene.perception_entropy.variants)

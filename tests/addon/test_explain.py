@@ -295,3 +295,40 @@ def test_a_place_is_asked_in_the_scene_s_own_space(car):
     car.perception_entropy.space_x = (-20.0, 20.0)
     bpy.ops.pe.ask_place(point=(30.0, 0.0, 0.0))
     assert "-20 to 20 m" in asking.answer(car).lines[0]
+
+
+def hide_it(layer):
+    layer.hide_viewport = True
+
+
+def exclude_it(layer):
+    layer.exclude = True
+
+
+def hide_in_renders(layer):
+    layer.collection.hide_render = True
+
+
+@pytest.mark.parametrize(
+    ("hide", "told"),
+    [(exclude_it, "excluded from"), (hide_it, "in the viewport"), (hide_in_renders, "in renders")],
+)
+def test_a_vehicle_that_is_out_of_the_view_is_told_by_name_and_can_be_shown(car, hide, told):
+    layer = bpy.context.view_layer.layer_collection.children["Car"]
+    assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+    hide(layer)
+    bpy.context.view_layer.update()
+    (advice,) = [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+    assert "Car is" in advice.text and told in advice.text
+    assert bpy.ops.pe.mend(fix=advice.fix) == {"FINISHED"}
+    assert scenes.study().vehicle is not None
+    assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+
+
+def test_a_part_of_the_vehicle_that_is_hidden_is_told_and_left(car):
+    inner = scenes.add_collection(bpy.data.collections["Car"], "Seats")
+    scenes.add_box(inner, "seat", (0.1, 0.1, 0.1))
+    layer = bpy.context.view_layer.layer_collection.children["Car"].children["Seats"]
+    layer.exclude = True
+    (advice,) = [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+    assert "Seats is excluded" in advice.text and advice.fix is None

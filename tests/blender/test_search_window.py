@@ -45,10 +45,46 @@ def test_a_search_on_a_painted_roof_shows_its_curve(stage, screenshots):
     stage.point_at_view()
     stage.key("ctrl+z")
     stage.wait_until(f"abs({PLACE}.x - {start[0]}) < 1e-6", START_TIMEOUT_S)
+    check_an_export(stage, screenshots)
     assert "Traceback" not in stage.log.read_text()
 
 
+def check_an_export(stage, screenshots):
+    """A page asked for in a file dialog: Esc leaves nothing, without it there is the page."""
+    page = stage.folder / "review.html"
+    ask_for(stage, page)
+    stage.wait_until(
+        f"{RUNNING} is not None and {RUNNING}.progress.fraction > 0.0", START_TIMEOUT_S
+    )
+    stage.key("Escape")
+    stage.wait_until(f"{RUNNING} is None", START_TIMEOUT_S)
+    assert not page.exists(), "half a page"
+
+    ask_for(stage, page)
+    stage.wait_until(
+        f"{RUNNING} is not None and {RUNNING}.progress.stage == 'page'", START_TIMEOUT_S
+    )
+    stage.photograph(screenshots / "window_exporting.png")
+    stage.wait_for(page.exists, BETTER_TIMEOUT_S, "the page")
+    stage.wait_until(f"{EXPORTING}.last is not None")
+    stage.photograph(screenshots / "window_exported.png")
+    assert "</html>" in page.read_text("utf-8")[-20:]
+
+
+def ask_for(stage, page):
+    """Have a file dialog ask for the page, and agree."""
+    stage.do(f"""
+        bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
+        with bpy.context.temp_override(window=window, area=area, region=region):
+            bpy.ops.pe.export_review("INVOKE_DEFAULT", filepath={str(page)!r})
+    """)
+    stage.rest(3.0)
+    stage.key("Return")
+
+
 VIEW = f"__import__('{ADDON}.searching.latest', fromlist=['view']).view"
+RUNNING = f"__import__('{ADDON}.operators.running', fromlist=['current']).current"
+EXPORTING = f"__import__('{ADDON}.operators.exporting', fromlist=['last'])"
 PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
 
 

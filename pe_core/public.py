@@ -39,6 +39,7 @@ from .scoring import (
     ObjectScore,
     PartScore,
     RigJudge,
+    Scatter,
     Score,
     SensorScore,
 )
@@ -137,6 +138,7 @@ __all__ = [
     "Reference",
     "Rig",
     "RigJudge",
+    "Scatter",
     "Schedule",
     "Score",
     "ScoreJob",

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from .engine import advice
+
 MINUS = "\N{MINUS SIGN}"
 NARROW = "\N{NARROW NO-BREAK SPACE}"
 ARROW = "\N{RIGHTWARDS ARROW}"
+joined = advice.joined
 
 
 def number(value: float, digits: int = 2) -> str:
@@ -39,13 +42,6 @@ def triple(values: Sequence[float], digits: int = 2) -> str:
 def count(value: int, noun: str) -> str:
     """Return "1 sensor", "15,904 triangles"."""
     return f"{value:,} {noun}{'' if value == 1 else 's'}"
-
-
-def joined(texts: Sequence[str]) -> str:
-    """Return "a", "a and b", "a, b and c"."""
-    if len(texts) < 2:
-        return "".join(texts)
-    return f"{', '.join(texts[:-1])} and {texts[-1]}"
 
 
 def up_first(text: str) -> str:

@@ -36,6 +36,8 @@ class Reviewed:
         Programs besides the engine's that it was made with.
     known : dict
         What was worked out of it `once`: the same study on another page shares it.
+    beside : int
+        How many studies are on the page.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Reviewed:
     command: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
     known: dict[str, Any] = field(default_factory=dict, repr=False)
+    beside: int = 1
 
     @property
     def searched(self) -> bool:
@@ -136,4 +139,7 @@ def reviewed_together(each: Sequence[Reviewed]) -> tuple[Reviewed, ...]:
     """
     if not 1 <= len(each) <= MOST_STUDIES:
         raise pe.InputError("review", "studies", f"1 to {MOST_STUDIES}", len(each))
-    return tuple(replace(r, key=key) for r, key in zip(each, ascii_lowercase, strict=False))
+    return tuple(
+        replace(one, key=key, beside=len(each))
+        for one, key in zip(each, ascii_lowercase, strict=False)
+    )

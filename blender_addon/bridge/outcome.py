@@ -12,6 +12,7 @@ from .oddities import DRIVER, MISSING
 from .rig import sensor_objects
 from .targets import store_found
 from .tolerance import store_robustness
+from .versions import figures_of
 
 PARTS_NAMED = 3
 """How many parts of the vehicle the panel names as stopping beams."""
@@ -36,7 +37,9 @@ def store_outcome(
     settings.result_before = outcome.before.entropy
     settings.result_coverage = outcome.after.coverage
     settings.result_stderr = outcome.after.stderr
-    settings.result_json = json.dumps(pe.result_dict(outcome, blender_version()))
+    result = pe.result_dict(outcome, blender_version())
+    result["after"] = figures_of(outcome.after)
+    settings.result_json = json.dumps(result)
     store_warnings(settings, outcome.warnings)
     store_robustness(settings, outcome)
     settings.result_missing = "\n".join(w.text for w in outcome.warnings if w.code in MARKING)
@@ -59,7 +62,7 @@ def store_words(
     seen: advice.Outlook | None = None,
 ) -> None:
     """Keep a result in words: the rig's with the scene, each sensor's with its object."""
-    scene.perception_entropy.result_words = "\n".join(advice.rig_words(score, seen))
+    scene.perception_entropy.result_words = "\n".join(advice.rig_words(score, seen, study.rig))
     for row in advice.sensor_rows(score, study.rig, study.vehicle, seen):
         obj = scene.objects.get(row.name)
         if obj is not None and obj.perception_entropy.is_sensor:

@@ -23,7 +23,7 @@ from .records import (
 )
 from .scene import study_of_rig
 from .standing import stand
-from .versions import score_from_dict
+from .versions import figures_of, score_from_dict
 
 Variant = bpy.types.PropertyGroup
 
@@ -172,7 +172,7 @@ def _moved(records: Sequence[Record], rig: pe.Rig) -> tuple[Record, ...]:
 
 def write_score(variant: Variant, score: pe.Score, surroundings: str) -> None:
     """Keep a score with a variant."""
-    _write_figures(variant, score.to_dict())
+    _write_figures(variant, figures_of(score))
     variant.signature = surroundings
 
 

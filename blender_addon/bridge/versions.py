@@ -66,6 +66,12 @@ def newer_version(scene: bpy.types.Scene) -> str:
     )
 
 
+def figures_of(score: pe.Score) -> dict:
+    """Return a score's plain data, with the scatter that errors of differences come from."""
+    scatter = {} if score.scatter is None else {"scatter": score.scatter.to_dict()}
+    return {**score.to_dict(), **scatter}
+
+
 def score_from_dict(figures: dict) -> pe.Score:
     """Return a score from its plain data: all but its sensors' part."""
     by_class, by_zone = (
@@ -75,7 +81,10 @@ def score_from_dict(figures: dict) -> pe.Score:
     whole = (figures["entropy"], figures["coverage"], figures["stderr"])
     objects = figures.get("objects")
     found = None if objects is None else pe.ObjectScore.from_dict(objects)
-    return pe.Score(*whole, by_class, by_zone, {}, figures["voxels"], objects=found)
+    scatter = figures.get("scatter")
+    kept = None if scatter is None else pe.Scatter.from_dict(scatter)
+    voxels = figures["voxels"]
+    return pe.Score(*whole, by_class, by_zone, {}, voxels, objects=found, scatter=kept)
 
 
 def _words_of(result_json: str) -> tuple[str, ...]:

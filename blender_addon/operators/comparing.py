@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from textwrap import wrap
 
 import bpy
 
@@ -13,6 +14,8 @@ from .job import JobOperator, SceneJob
 from .reports import tell
 
 LABEL_PX, COLUMN_PX = 190, 140
+LEAST_PX, LETTER_PX = 560, 7
+"""Width of the table at least, and of a letter of the sentences below it."""
 MOST_COLUMNS = 8
 TITLES = {
     "entropy": "Entropy [nats], lower is better",
@@ -125,7 +128,8 @@ class PE_OT_show_comparison(bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Work the table out, and open it under the mouse."""
         self.names, self.rows = compared(context.scene)
-        width = LABEL_PX + COLUMN_PX * len(self.names)
+        width = max(LABEL_PX + COLUMN_PX * len(self.names), LEAST_PX)
+        self.said = sentences(self.names, self.rows, width // LETTER_PX)
         return context.window_manager.invoke_popup(self, width=width)
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -137,6 +141,9 @@ class PE_OT_show_comparison(bpy.types.Operator):
         figures = split.row()
         for column in columns:
             draw_column(figures.column(align=True), column, "RIGHT")
+        said = self.layout.column(align=True)
+        for line in self.said:
+            said.label(text=line, translate=False)
         text = f"A star marks the best; in brackets the difference to {self.names[0]}"
         self.layout.label(text=text, translate=False)
 
@@ -180,6 +187,12 @@ def compared(
     rows = sorted(rows, key=lambda row: row.key != active)[:MOST_COLUMNS]
     scores = {row.name: bridge.score_of(row) for row in rows}
     return list(scores), advice.compare(scores)
+
+
+def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: int) -> list[str]:
+    """Return which variant is best and where, in lines of so many letters."""
+    said = (*advice.ranking(names, rows), *advice.win_words(names, rows))
+    return [line for sentence in said for line in wrap(sentence, letters)]
 
 
 def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[list[TableCell]]:

@@ -1,12 +1,15 @@
 """In words a designer uses: a place asked about, warnings, a score in words, several compared."""
 
 from .advice import FRAGILE, Advice
+from .figures import joined
 from .fragile import fragile, off_by
+from .hidden import HiddenSensor, hidden_sensors, hidden_words
 from .mounting import stopped_shares
 from .object_words import object_words, objects_looked_at
 from .outlook import Outlook, class_of, outlook
 from .phrases import WHERE, rig_words, sensor_words, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
+from .ranking import Notation, ranking, win_words
 from .sensor_table import (
     SENSOR_COLUMNS,
     SHORT_ZONES,
@@ -27,6 +30,8 @@ __all__ = [
     "Advice",
     "AskedPlace",
     "ComparedRow",
+    "HiddenSensor",
+    "Notation",
     "Outlook",
     "SensorAtPlace",
     "SensorRow",
@@ -34,11 +39,15 @@ __all__ = [
     "class_of",
     "compare",
     "fragile",
+    "hidden_sensors",
+    "hidden_words",
+    "joined",
     "loss_text",
     "object_words",
     "objects_looked_at",
     "off_by",
     "outlook",
+    "ranking",
     "rig_words",
     "sensor_rows",
     "sensor_table",
@@ -47,5 +56,6 @@ __all__ = [
     "stopped_words",
     "vehicle_line",
     "warnings",
+    "win_words",
     "words",
 ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 
 def percent(share: float) -> str:
     """Return a share, 0 to 1, as "85%"; small ones, and nearly all, with a digit: "0.4%"."""
@@ -30,3 +32,10 @@ def plural(count: float, noun: str) -> str:
 def times(factor: float) -> str:
     """Return a factor as "12 times", "half", "a tenth"... in plain digits: "0.31 times"."""
     return f"{factor:.0f} times" if factor >= 9.5 else f"{factor:.2g} times"
+
+
+def joined(texts: Sequence[str]) -> str:
+    """Return "a", "a and b", "a, b and c"."""
+    if len(texts) < 2:
+        return "".join(texts)
+    return f"{', '.join(texts[:-1])} and {texts[-1]}"

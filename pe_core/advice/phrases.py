@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from ..kinds import kind_of
 from ..scene.sensors import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..scoring.score import PartScore, Score, SensorScore
 from ..scoring.zones import FAR_M, NEAR_M
+from .advice import Advice
 from .figures import percent
+from .hidden import hidden_sensors, hidden_words
 from .mounting import stopped_shares
 from .object_words import object_words, objects_looked_at
 from .outlook import Outlook, outlook_words
@@ -36,8 +38,9 @@ def words(
     rig: Rig | None = None,
     vehicle: Vehicle | None = None,
     seen: Outlook | None = None,
+    warnings: Sequence[Advice] = (),
 ) -> tuple[str, ...]:
-    """Return a score in short lines: what is seen, where best and worst, what each sensor adds.
+    """Return a score in short lines: hidden sensors, what is seen, where, what each sensor adds.
 
     Lines that go on about a sensor begin with two spaces.
 
@@ -49,13 +52,22 @@ def words(
     seen : Outlook, optional
         Of the same rig: tells what is seen by several, expected AP, reach, blind ground, and where
         each sensor sees most.
+    warnings : sequence of Advice
+        On the same rig: they say why a sensor sees nothing.
     """
-    return *rig_words(score, seen), *_sensor_lines(score, rig, vehicle, seen)
+    of_rig = rig_words(score, seen, rig, warnings)
+    return *of_rig, *_sensor_lines(score, rig, vehicle, seen)
 
 
-def rig_words(score: Score, seen: Outlook | None = None) -> tuple[str, ...]:
+def rig_words(
+    score: Score,
+    seen: Outlook | None = None,
+    rig: Rig | None = None,
+    warnings: Sequence[Advice] = (),
+) -> tuple[str, ...]:
     """Return those lines of `words` that are on the whole rig."""
-    return tuple(_rig_lines(score, seen))
+    hidden = () if rig is None else hidden_words(hidden_sensors(rig, score, warnings))
+    return *hidden, *_rig_lines(score, seen)
 
 
 def _rig_lines(score: Score, seen: Outlook | None) -> Iterator[str]:

@@ -1,12 +1,13 @@
-"""Several scores side by side: a table of what differs."""
+"""Several scores side by side: a table of what differs, and of what only seems to."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from ..scoring.score import PartScore, Score
+from .certainty import LEAST, degrees_of, difference_errors, sure_factor
 
 ENTROPY, COVERAGE, AP, REACH = "entropy", "coverage", "ap", "reach"
 AHEAD = "front"
@@ -30,7 +31,12 @@ class ComparedRow:
     differences : tuple of float or None
         Value less the first one's.
     best : tuple of bool
-        Which are the best; none where all are alike.
+        Which are the best: the best value, and those not clearly worse; none where no value is
+        clearly worse than the best one.
+    errors : tuple of tuple of float
+        Standard error of the difference between each two of them; 0 where nothing is sampled.
+    factor : float
+        A difference is clear beyond so many standard errors (`certainty.sure_factor`).
     """
 
     group: str
@@ -39,6 +45,29 @@ class ComparedRow:
     values: tuple[float | None, ...]
     differences: tuple[float | None, ...]
     best: tuple[bool, ...]
+    errors: tuple[tuple[float, ...], ...]
+    factor: float
+
+    @property
+    def lower_is_better(self) -> bool:
+        """Whether it is an entropy."""
+        return self.measure == ENTROPY
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Which have a value, the best first."""
+        sign = 1.0 if self.lower_is_better else -1.0
+        there = [(sign * v, k) for k, v in enumerate(self.values) if v is not None]
+        return tuple(k for _, k in sorted(there))
+
+    @property
+    def winner(self) -> int | None:
+        """The one that is clearly better than all others; None where there is none."""
+        return self.best.index(True) if sum(self.best) == 1 else None
+
+    def differ(self, one: int, other: int) -> bool:
+        """Whether two of the values are clearly different; False where one is missing."""
+        return _differ(self.measure, self.values, self.errors, self.factor, one, other)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""
@@ -58,7 +87,8 @@ def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
 
 def _rows(scores: list[Score]) -> Iterator[ComparedRow]:
     for measure in (ENTROPY, COVERAGE):
-        yield _row("rig", "", measure, [getattr(score, measure) for score in scores])
+        own = [getattr(score, measure) for score in scores]
+        yield _row(scores, "rig", "", measure, own)
     yield from _parts("zone", scores, lambda score: score.per_zone)
     yield from _parts("class", scores, lambda score: score.per_class)
     yield from _found(scores)
@@ -70,12 +100,14 @@ def _found(scores: list[Score]) -> Iterator[ComparedRow]:
     each = [{} if found is None else found.per_class for found in objects]
     names = dict.fromkeys(name for own in each for name in own)
     if names:
-        yield _row("rig", "", AP, [None if found is None else found.ap for found in objects])
+        whole = [None if found is None else found.ap for found in objects]
+        yield _row(scores, "rig", "", AP, whole)
     for name in names:
-        yield _row("class", name, AP, [own[name].ap if name in own else None for own in each])
+        own = [own[name].ap if name in own else None for own in each]
+        yield _row(scores, "class", name, AP, own)
     for name in names:
         ahead = [own[name].reach[AHEAD] if name in own else None for own in each]
-        yield _row("class", name, REACH, ahead)
+        yield _row(scores, "class", name, REACH, ahead)
 
 
 def _parts(
@@ -85,19 +117,44 @@ def _parts(
     for name in dict.fromkeys(name for each in parts for name in each):
         for measure in (ENTROPY, COVERAGE):
             own = [getattr(each[name], measure) if name in each else None for each in parts]
-            yield _row(group, name, measure, own)
+            yield _row(scores, group, name, measure, own)
 
 
-def _row(group: str, name: str, measure: str, values: list[float | None]) -> ComparedRow:
+def _row(
+    scores: list[Score], group: str, name: str, measure: str, values: list[float | None]
+) -> ComparedRow:
     first = values[0] if values else None
     less = [None if v is None or first is None else v - first for v in values]
-    return ComparedRow(group, name, measure, tuple(values), tuple(less), _best(measure, values))
+    errors = difference_errors(scores, (group, name, measure))
+    factor = sure_factor(len(scores), degrees_of(scores))
+    best = _best(measure, values, errors, factor)
+    return ComparedRow(group, name, measure, tuple(values), tuple(less), best, errors, factor)
 
 
-def _best(measure: str, values: list[float | None]) -> tuple[bool, ...]:
-    """Mark the best of the values that are there, unless they are alike."""
-    there = [v for v in values if v is not None]
-    if len(set(there)) < 2:
+def _best(
+    measure: str,
+    values: Sequence[float | None],
+    errors: Sequence[Sequence[float]],
+    factor: float,
+) -> tuple[bool, ...]:
+    """Mark the best and what is not clearly worse; nothing where that is all there is."""
+    sign = 1.0 if measure == ENTROPY else -1.0
+    there = [(sign * v, k) for k, v in enumerate(values) if v is not None]
+    if not there:
         return (False,) * len(values)
-    best = min(there) if measure == ENTROPY else max(there)
-    return tuple(v == best for v in values)
+    first = min(there)[1]
+    alike = {k for _, k in there if not _differ(measure, values, errors, factor, first, k)}
+    return tuple(k in alike and len(alike) < len(there) for k in range(len(values)))
+
+
+def _differ(
+    measure: str,
+    values: Sequence[float | None],
+    errors: Sequence[Sequence[float]],
+    factor: float,
+    one: int,
+    other: int,
+) -> bool:
+    a, b = values[one], values[other]
+    least = max(LEAST[measure], factor * errors[one][other])
+    return a is not None and b is not None and abs(a - b) > least

@@ -53,10 +53,11 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
         "score": outcome.after.to_dict(),
         **seen.to_dict(),
         "sensors": [row.to_dict() for row in rows],
-        "words": list(advice.words(*scored_rig)),
+        "words": list(advice.words(*scored_rig, outcome.warnings)),
         "warnings": [each.to_dict() for each in outcome.warnings],
     }
-    said = *advice.rig_words(outcome.after, seen), *advice.sensor_table(rows)
+    of_rig = advice.rig_words(outcome.after, seen, study.rig, outcome.warnings)
+    said = *of_rig, *advice.sensor_table(rows)
     return _answer(data, [_entropy(outcome), *said, *warned(outcome)], args.json)
 
 
@@ -73,8 +74,14 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     }
     notes = [] if alike else ["their vehicles differ"]
     if error := max(score.stderr for score in scores.values()):
-        notes.append(f"on samples: entropies have a standard error of up to {error:.4f} nats")
-    return _answer(data, [*comparison(list(scores), rows), *notes], args.json)
+        notes.append(
+            f"on samples: entropies have a standard error of up to {error:.4f} nats; +- is that of "
+            "a difference, smaller on a shared sample"
+        )
+    names = list(scores)
+    said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
+    data["words"] = said
+    return _answer(data, [*comparison(names, rows), *said, *notes], args.json)
 
 
 def named_by_file(paths: list[str]) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..advice import object_words, objects_looked_at, off_by
+from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
 from ..kinds import kind_of
 from ..study import Outcome, Robustness
 
@@ -26,7 +26,10 @@ def summary(outcome: Outcome) -> str:
         found = outcome.after.objects
         lines += [*object_words(found), f"on {objects_looked_at(found)}"]
     scores = outcome.after.per_sensor
-    for sensor in outcome.study.rig:
+    rig = outcome.study.rig
+    hidden = hidden_sensors(rig, outcome.after, outcome.warnings)
+    lines += [f"ATTENTION: {line}" for line in hidden_words(hidden)]
+    for sensor in rig:
         x, y, z = sensor.pose.position
         roll, pitch, yaw = sensor.pose.rotation_deg
         own = scores[sensor.name]

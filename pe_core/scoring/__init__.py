@@ -5,6 +5,7 @@ from .judge import RigJudge
 from .object_score import FoundClass, ObjectScore
 from .sampled import Judgement
 from .sampling import VoxelSample, draw
+from .scatter import Scatter
 from .score import Glance, GroundMap, PartScore, Score, ScoreStopped, SensorScore
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "ObjectScore",
     "PartScore",
     "RigJudge",
+    "Scatter",
     "Score",
     "ScoreStopped",
     "SensorScore",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from functools import cached_property
 from threading import RLock
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .cases import Cases, together
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
+from .scatter import Figure, Scatter, residuals, sample_digest
 from .score import DECIMALS, Glance, PartScore, Score, SensorScore, rounded, sensor_score
 from .subsets import fused_early
 from .weights import outside_masses
@@ -63,6 +65,10 @@ class SampledScorer:
         voxels = Voxels(space, self._sample.index, self._sample.centers)
         self._sensors = MeasuredByName(voxels, vehicle, fusion.enough)
         self._is_free = RLock()
+
+    @cached_property
+    def _digest(self) -> str:
+        return sample_digest([self._sample.centers, self._sample.classes])
 
     def entropy(self, rig: Rig, draft: bool = False) -> float:
         """Perception entropy alone."""
@@ -138,22 +144,14 @@ class SampledScorer:
         """Everything a sampled score tells of the whole rig."""
         with self._is_free:
             self._sensors.measure(rig, draft)
-            entropies, seen = self._entropies(rig, [s.name for s in rig])
-            entropy, coverage = self._whole(entropies, seen)
-            return Glance(
-                entropy,
-                coverage,
-                self._standard_error(entropies, len(rig.groups)),
-                self._classes(entropies, seen),
-                self._by_zone(entropies, seen),
-                len(self._sample.index),
-                any(known.draft for known in self._sensors.last.values()),
-            )
+            return self._glance(rig, *self._entropies(rig, [s.name for s in rig]))
 
     def score(self, rig: Rig, draft: bool = False) -> Score:
         """Everything a sampled score tells."""
         with self._is_free:
-            whole = self.glance(rig, draft)
+            self._sensors.measure(rig, draft)
+            values = self._entropies(rig, [s.name for s in rig])
+            whole = self._glance(rig, *values)
             return Score(
                 whole.entropy,
                 whole.coverage,
@@ -163,6 +161,7 @@ class SampledScorer:
                 {s.name: self._sensor(s, rig, whole.entropy) for s in rig},
                 whole.voxels,
                 draft=whole.draft,
+                scatter=self._scatter(*values),
             )
 
     def _entropy_of(self, rig: Rig, measured: Mapping[str, NDArray]) -> float:
@@ -172,6 +171,18 @@ class SampledScorer:
     def _entropies(self, rig: Rig, members: Collection[str]) -> tuple[Floats, NDArray[np.bool_]]:
         """Entropy of every sampled voxel and whether it is seen, by some of the rig's sensors."""
         return self._fusion.entropies(fused_early(rig, self._sensors.m, members))
+
+    def _glance(self, rig: Rig, entropies: Floats, seen: NDArray[np.bool_]) -> Glance:
+        entropy, coverage = self._whole(entropies, seen)
+        return Glance(
+            entropy,
+            coverage,
+            self._standard_error(entropies, len(rig.groups)),
+            self._classes(entropies, seen),
+            self._by_zone(entropies, seen),
+            len(self._sample.index),
+            any(known.draft for known in self._sensors.last.values()),
+        )
 
     def _whole(self, entropies: Floats, seen: NDArray[np.bool_]) -> tuple[float, float]:
         """Mean entropy and coverage."""
@@ -193,6 +204,23 @@ class SampledScorer:
             name: PartScore(*self._whole(entropies.take(inside), seen.take(inside)), share)
             for name, (inside, share) in self._zones.items()
         }
+
+    def _scatter(self, entropies: Floats, seen: NDArray[np.bool_]) -> Scatter:
+        """Return the residuals of entropy and coverage: of the rig, of zones and classes."""
+        found: dict[Figure, tuple[float, ...]] = {}
+        everywhere = np.arange(len(entropies))
+        zones = {name: inside for name, (inside, _) in self._zones.items()}
+        by_class = dict(zip(self._sample.names, self._sample.classes.T, strict=True))
+        for measure, values in (("entropy", entropies), ("coverage", seen.astype(float))):
+            for name, inside in {"": everywhere, **zones}.items():
+                batch = self._sample.run[inside]
+                group = "zone" if name else "rig"
+                found[group, name, measure] = residuals(values[inside], None, batch, BLOCKS)
+            for name, likely in by_class.items():
+                if likely.any():
+                    own = residuals(values, likely, self._sample.run, BLOCKS)
+                    found["class", name, measure] = own
+        return Scatter(self._digest, found)
 
     def _sensor(self, sensor: Sensor, rig: Rig, entropy: float) -> SensorScore:
         alone, coverage = self._whole(*self._entropies(rig, [sensor.name]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from ..kinds import Stopped
 from ..scene.frozen import frozen
 from .object_score import ObjectScore
+
+if TYPE_CHECKING:
+    from .scatter import Scatter
 
 DECIMALS = 9
 """Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
@@ -125,6 +128,8 @@ class Score:
     objects : ObjectScore or None
         Of a score on objects: entropy, coverage and the rest are then means over objects, by their
         weights, and no voxel was looked at.
+    scatter : Scatter or None
+        How the figures scatter over the sample, for the error of a difference; None on the grid.
     """
 
     entropy: float
@@ -137,9 +142,10 @@ class Score:
     ground_map: GroundMap | None = None
     draft: bool = False
     objects: ObjectScore | None = None
+    scatter: Scatter | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the score as plain JSON data, without the ground map."""
+        """Return the score as plain JSON data, without ground map and scatter."""
         mark = {"draft": True} if self.draft else {}
         return {
             **mark,

@@ -129,6 +129,7 @@ class ObjectEvaluator:
                 per_sensor,
                 0,
                 objects=self._told(rig, m, entropies),
+                scatter=self._sums.scatter(entropies, seen),
             )
 
     def _glance(self, rig: Rig, entropies: Floats, seen: NDArray[np.bool_]) -> Glance:

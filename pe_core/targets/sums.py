@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +12,15 @@ from numpy.typing import NDArray
 from ..metric.entropy import H_BEST, H_BLIND, ap_of_entropy
 from ..scoring.object_score import POINTS, FoundClass, ObjectScore
 from ..scoring.sampled import ALIKE, RULE_OF_THREE
+from ..scoring.scatter import Figure, Scatter, residuals, sample_digest
 from ..scoring.score import PartScore, rounded
 from ..scoring.zones import zone_masks
 from .drawing import DrawnObjects
 from .rings import RingObjects, reach
 
+BATCHES = 32
+"""Scenes are put together in so many batches for the errors of differences; fewer where there are
+fewer scenes."""
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
@@ -89,6 +94,33 @@ class ObjectSums:
             )
         whole = rounded(self._mean(ap, None)), self._scatter(ap, None)
         return ObjectScore(*whole, len(ap), self._drawn.scenes, traffic, found)
+
+    def scatter(self, entropies: Floats, seen: Bools) -> Scatter:
+        """Return residuals by batch of scenes: entropy and coverage of all parts, AP of classes."""
+        scenes = self._drawn.scenes
+        batches = min(BATCHES, scenes)
+        batch = self._objects.scenes * batches // scenes
+        measures = {
+            "entropy": entropies,
+            "coverage": seen.astype(float),
+            "ap": ap_of_entropy(entropies),
+        }
+        parts = {("rig", ""): np.ones(len(entropies), bool)}
+        parts |= {("zone", name): mask for name, mask in self._zones.items()}
+        parts |= {("class", name): mask for name, mask in self._classes.items()}
+        found: dict[Figure, tuple[float, ...]] = {
+            (*part, measure): residuals(values, self._weights * mask, batch, batches)
+            for measure, values in measures.items()
+            for part, mask in parts.items()
+            if measure != "ap" or part[0] != "zone"
+        }
+        return Scatter(self._digest, found)
+
+    @cached_property
+    def _digest(self) -> str:
+        objects = self._objects
+        arrays = objects.centers, objects.sizes, objects.yaws, objects.scenes, self._weights
+        return sample_digest(arrays)
 
     def _shares(self, points: Floats, mask: Bools) -> dict[int, float]:
         return {n: rounded(self._mean(points >= n, mask)) for n in POINTS}

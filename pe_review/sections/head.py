@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ..engine import advice, kinds, metric, sight
 from ..figures import ARROW, change, count, joined, number, percent, percent_points, up_first
 from ..markup import Markup, escaped, picture
@@ -56,9 +58,23 @@ def found(one: Reviewed) -> Markup:
 
 
 def to_mind(one: Reviewed) -> Markup:
-    """Say what to keep in mind: blind ground at the body, the dearest sensor, warnings."""
-    said = [_blind(one), _dearest(one), _warned(one)]
-    return Markup(" ".join(f"{up_first(text)}." for text in said if text))
+    """Say what to keep in mind: hidden sensors, blind ground, the costliest loss, warnings."""
+    said = [*hidden(one), _blind(one), _dearest(one), _warned(one)]
+    return Markup(" ".join(f"{_begun(text)}." for text in said if text))
+
+
+def hidden(one: Reviewed) -> tuple[str, ...]:
+    """Name the sensors that see nothing or are mostly hidden."""
+    found = advice.hidden_sensors(one.rig, one.after, one.warnings)
+    named = [
+        replace(each, name=f"<b>{escaped(each.name)}</b>", why=escaped(each.why)) for each in found
+    ]
+    return advice.hidden_words(named)
+
+
+def _begun(text: str) -> str:
+    """Return the text of a sentence; a name at its beginning stays as it is written."""
+    return text if text.startswith("<") else up_first(text)
 
 
 def _blind(one: Reviewed) -> str:

@@ -15,7 +15,12 @@ HEADS = ("share of all", "seen", "entropy [nats]")
 
 
 def parts(one: Reviewed) -> Section:
-    """Return coverage and entropy of every class and zone, with those before a search."""
+    """Return coverage and entropy of every class and zone, with those before a search.
+
+    Of several studies the comparison has those of the scores, in one table.
+    """
+    if one.beside > 1 and not one.searched:
+        return Section("parts", "By class and zone", "")
     tables = [
         _table(one, "What is looked for", one.before.per_class, one.after.per_class),
         _table(one, "Where it is", one.before.per_zone, one.after.per_zone),

@@ -28,8 +28,9 @@ SIZES = (
 
 
 def sensors(one: Reviewed) -> Section:
-    """Return what there is to know of each sensor."""
-    inside = one.once("sensors", lambda: f"{places_of(one)}{_worth(one)}{_views(one)}")
+    """Return what there is to know of each sensor; tables of several studies stand in one."""
+    tables = f"{places_of(one)}{_worth(one)}" if one.beside == 1 else ""
+    inside = f"{tables}{one.once('views', lambda: _views(one))}"
     return Section("sensors", "Each sensor", inside, styles=(STYLE,))
 
 

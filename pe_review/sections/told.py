@@ -14,7 +14,7 @@ def told(one: Reviewed) -> Section:
     """Return what is odd about the study, and what its score says in words."""
     warned = "".join(_warning(each) for each in one.warnings)
     odd = warned or "<p>Nothing odd was found about vehicle and mounting.</p>"
-    said = advice.words(one.after, one.rig, one.vehicle, one.outlook)
+    said = advice.words(one.after, one.rig, one.vehicle, one.outlook, one.warnings)
     inside = f"{_simplified(one)}{odd}<h3>In words</h3>{''.join(_lines(said))}"
     return Section("advice", "What to look at", inside)
 

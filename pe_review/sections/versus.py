@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
-from ..engine import advice, sight
-from ..figures import change, joined, number, percent, up_first
+from ..engine import advice, pe, sight
+from ..figures import change, number, percent, up_first
 from ..markup import Markup, escaped, table
 from ..pictures.ground_maps import difference_map
 from ..pictures.of_reviewed import named_still_of
 from ..pictures.svg import STYLE, figure, grid
 from ..reviewed import Reviewed
 from ..section import Section
-from ..winning import CloseRow, close_rows, leads
+from .changed import changed
+from .head import hidden
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
 STEP_M = 1.0
 """Of the maps."""
+DIGITS = {"entropy": 2, "coverage": 1, "ap": 3}
+ON_PAGE = advice.Notation(number, percent, "±")
 GROUPS = {"rig": "", "zone": "By zone", "class": "By class"}
 
 
@@ -24,43 +28,44 @@ def versus(each: tuple[Reviewed, ...]) -> Section:
     """Return the comparison; nothing of a single study."""
     if len(each) < 2:
         return Section("summary", "Who wins where", "")
-    rows = close_rows({one.key: one.after for one in each})
+    rows = advice.compare({one.key: one.after for one in each})
     inside = "".join(
         [
             f'<ul class="brief">{"".join(f"<li>{line}</li>" for line in _brief(each, rows))}</ul>',
+            changed(each),
             _pictures(each),
             _difference_maps(each),
             _table(each, rows, "entropy", "Perception entropy in nats: lower is better"),
             _table(each, rows, "coverage", "Seen of where objects are: higher is better"),
+            _table(each, rows, "ap", "Expected AP: higher is better"),
+            _pairs(each, rows),
             _blind(each),
-            _losses(each),
+            _worth(each),
         ]
     )
     return Section("summary", "Who wins where", inside, styles=(STYLE,))
 
 
-def _brief(each: Sequence[Reviewed], rows: Sequence[CloseRow]) -> Iterator[str]:
-    """Yield who wins overall, who wins where, and what is not alike."""
-    yield _overall(each, rows)
-    for one, where in leads([one.key for one in each], rows).items():
-        if where:
-            yield f"{_named(each, one)} is better {joined([escaped(place) for place in where])}."
+def _brief(each: Sequence[Reviewed], rows: Sequence[advice.ComparedRow]) -> Iterator[str]:
+    """Yield which is better overall, which is better where, and what is not alike."""
+    names = [_named(each, one.key) for one in each]
+    yield from advice.ranking(names, rows, ON_PAGE)
+    yield from advice.win_words(names, [_escaped(row) for row in rows])
+    for one in each:
+        yield from (f"{_named(each, one.key)}: {line}." for line in hidden(one))
     vehicles = {one.found.vehicle_line for one in each}
     if len(vehicles) > 1:
         yield "Their vehicles differ."
     if error := max(one.after.stderr for one in each):
-        yield f"They are scored on samples: standard error up to {error:.4f} nats."
+        yield (
+            f"They are scored on samples: standard error up to {error:.4f} nats; ± is the standard "
+            "error of a difference, smaller where studies share the sample."
+        )
 
 
-def _overall(each: Sequence[Reviewed], rows: Sequence[CloseRow]) -> str:
-    row = next(row for row in rows if row.group == "rig" and row.measure == "entropy")
-    if row.winner is None:
-        return f"Overall they are alike, at {number(row.values[0] or 0.0)} nats."
-    others = sorted(v for k, v in enumerate(row.values) if k != row.winner and v is not None)
-    best = row.values[row.winner] or 0.0
-    name = _named(each, each[row.winner].key)
-    next_one = f"the next has {number(others[0])}"
-    return f"Overall {name} is better: {number(best)} nats, lower is better; {next_one}."
+def _escaped(row: advice.ComparedRow) -> advice.ComparedRow:
+    """Return a row whose name may stand in HTML."""
+    return replace(row, name=escaped(row.name))
 
 
 def _named(each: Sequence[Reviewed], key: str) -> str:
@@ -73,7 +78,7 @@ def _named(each: Sequence[Reviewed], key: str) -> str:
 def _pictures(each: Sequence[Reviewed]) -> str:
     """The vehicles with their sensors."""
     drawn = [f"<div>{_named(each, one.key)}{_still(one)}</div>" for one in each]
-    return f'<div class="maps">{"".join(drawn)}</div>'
+    return str(grid([Markup(each) for each in drawn], 17.0))
 
 
 def _still(one: Reviewed) -> Markup:
@@ -109,7 +114,9 @@ def _heads(each: Sequence[Reviewed], first: str) -> list[str | Markup]:
     return [first, *(Markup(_named(each, one.key)) for one in each)]
 
 
-def _table(each: Sequence[Reviewed], rows: Sequence[CloseRow], measure: str, title: str) -> str:
+def _table(
+    each: Sequence[Reviewed], rows: Sequence[advice.ComparedRow], measure: str, title: str
+) -> str:
     body: list[list[str | Markup]] = []
     for group, heading in GROUPS.items():
         inside = [row for row in rows if (row.group, row.measure) == (group, measure)]
@@ -117,22 +124,54 @@ def _table(each: Sequence[Reviewed], rows: Sequence[CloseRow], measure: str, tit
         for row in inside:
             name = up_first(advice.WHERE.get(row.name, row.name)) or "Overall"
             body.append([name, *(_cell(each, row, k) for k in range(len(each)))])
-    return table(title, _heads(each, ""), body)
+    return table(title, _heads(each, ""), body) if body else ""
 
 
-def _cell(each: Sequence[Reviewed], row: CloseRow, k: int) -> str | Markup:
-    value, first = row.values[k], row.values[0]
+def _cell(each: Sequence[Reviewed], row: advice.ComparedRow, k: int) -> str | Markup:
+    value, less = row.values[k], row.differences[k]
     if value is None:
         return "none"
-    entropy = row.measure == "entropy"
-    text = number(value) if entropy else percent(value)
-    if k and first is not None:
-        less = change(value - first) if entropy else change(100.0 * (value - first), 1)
-        text = f"{text} ({less})"
-    if k != row.winner:
+    text = _figure(row.measure, value)
+    if k and less is not None:
+        text = f"{text} ({_change(row.measure, less)})"
+    if not row.best[k]:
         return text
     best = '<span class="hidden"> best</span>'
     return Markup(f'<span class="wins whose-{each[k].key}-ink">{escaped(text)}{best}</span>')
+
+
+def _figure(measure: str, value: float) -> str:
+    return percent(value) if measure == "coverage" else number(value, DIGITS[measure])
+
+
+def _change(measure: str, value: float) -> str:
+    return change(100.0 * value if measure == "coverage" else value, DIGITS[measure])
+
+
+def _pairs(each: Sequence[Reviewed], rows: Sequence[advice.ComparedRow]) -> str:
+    """Differences of all pairs, of three studies and more."""
+    if len(each) < 3:
+        return ""
+    row = next(row for row in rows if (row.group, row.measure) == ("rig", "entropy"))
+    body = [
+        [Markup(_named(each, one.key)), *(_pair(row, i, j) for j in range(len(each)))]
+        for i, one in enumerate(each)
+    ]
+    title = (
+        "Entropy of the row less that of the column, in nats; bold where the difference is clear "
+        f"(more than {number(row.factor, 1)} standard errors, so that all pairs hold together)"
+    )
+    return table(title, _heads(each, ""), body)
+
+
+def _pair(row: advice.ComparedRow, i: int, j: int) -> str | Markup:
+    a, b = row.values[i], row.values[j]
+    if i == j or a is None or b is None:
+        return ""
+    error = row.errors[i][j]
+    told = f" ± {number(max(error, 0.01))}" if error else ""
+    text = escaped(f"{change(a - b)}{told}")
+    return Markup(f"<b>{text}</b>") if row.differ(i, j) else Markup(text)
 
 
 def _blind(each: Sequence[Reviewed]) -> str:
@@ -151,17 +190,26 @@ def _end(one: Reviewed, side: str) -> str:
     return "none" if end == 0.0 else f"{number(sight.shown_end(end), 1)} m"
 
 
-def _losses(each: Sequence[Reviewed]) -> str:
-    """What the loss of one sensor costs, of every study."""
-    rows = [
-        ["Worst loss", *(_loss(one, max) for one in each)],
-        ["Least loss", *(_loss(one, min) for one in each)],
-    ]
-    return table("When one sensor fails: rise of entropy in nats", _heads(each, ""), rows)
+def _worth(each: Sequence[Reviewed]) -> str:
+    """Return what each sensor of each study is worth, in one table."""
+    names = list(dict.fromkeys(sensor.name for one in each for sensor in one.rig))
+    rows: list[list[str]] = []
+    for heading, cell in WORTH.items():
+        rows.append([heading])
+        for name in names:
+            own = [one.after.per_sensor.get(name) for one in each]
+            rows.append([name, *("not there" if s is None else cell(s) for s in own)])
+    return table(
+        "What each sensor is worth, and what the vehicle takes of it", _heads(each, ""), rows
+    )
 
 
-def _loss(one: Reviewed, which: object) -> str:
-    scores = one.after.per_sensor
-    pick = max if which is max else min
-    name = pick(scores, key=lambda name: scores[name].lost)
-    return f"{change(scores[name].lost)} ({name})"
+def _hidden_share(own: pe.SensorScore) -> str:
+    return percent(own.stopped / own.beams) if own.beams else "not counted"
+
+
+WORTH: dict[str, Callable[[pe.SensorScore], str]] = {
+    "Entropy rises without it [nats]": lambda own: change(own.lost),
+    "Seen by it alone, of where objects are": lambda own: percent(own.coverage),
+    "Hidden by the vehicle, of its picture or beams": _hidden_share,
+}

@@ -338,6 +338,12 @@ def test_comparing_scores_what_has_no_score_as_if_it_stood_there(ideas):
     assert columns[1][2][0] == f"{whole.values[0]:.3f}"
     assert f"({whole.differences[1]:+.3f})" in columns[2][2][0]
     assert [columns[1][2][1], columns[2][2][1]] == list(whole.best)
+    assert bridge.score_of(second).scatter == higher.evaluator().score(higher.rig).scatter
+    said = comparing.sentences(names, table, 40)
+    assert " ".join(said) == " ".join(
+        (*pe.advice.ranking(names, table), *pe.advice.win_words(names, table))
+    )
+    assert said[0].startswith("Overall ") and max(map(len, said)) <= 40
 
 
 def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):

@@ -23,6 +23,7 @@ def test_a_glance_and_a_score_agree(draft):
         "per_sensor",
         "ground_map",
         "objects",
+        "scatter",
     }
     assert {name: getattr(glance, name) for name in names} == {
         name: getattr(score, name) for name in names

@@ -1,0 +1,114 @@
+"""How the figures of a sampled score scatter: what the error of a difference is made of.
+
+Scores of two rigs on one sample err together: where the sample has too many far voxels, both
+entropies are too high. Their difference is known far better than either of them. A score therefore
+keeps the residuals of its means in a few batches of the sample; those of two scores on the same
+sample are subtracted batch by batch (paired), those on different samples add up in square.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .score import rounded
+
+Floats = NDArray[np.float64]
+Figure = tuple[str, str, str]
+"""Group ("rig", "zone", "class"), name (empty for the rig), and measure ("entropy", ...)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scatter:
+    """Residuals of a score's means.
+
+    Attributes
+    ----------
+    sample : str
+        Digest of what was drawn: scores of one sample have the same.
+    residuals : mapping of Figure to tuple of float
+        For each figure, a weighted mean over the sample: what each batch adds to it above the mean,
+        sum_i w_i (v_i - mean) / sum w over the batch's members, (R,) in the figure's own unit. They
+        sum to 0.
+    """
+
+    sample: str
+    residuals: Mapping[Figure, tuple[float, ...]]
+
+    @property
+    def batches(self) -> int:
+        """How many batches the sample was divided into."""
+        return len(self.residuals["rig", "", "entropy"])
+
+    def error(self, figure: Figure) -> float | None:
+        """Return the standard error of a figure; None where the score has no such figure."""
+        own = self.residuals.get(figure)
+        return None if own is None else _standard_error(own)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data."""
+        rows = [[*figure, list(own)] for figure, own in self.residuals.items()]
+        return {"sample": self.sample, "residuals": rows}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Scatter:
+        """Return what `to_dict` has written down."""
+        rows = {
+            (group, name, measure): tuple(own) for group, name, measure, own in data["residuals"]
+        }
+        return cls(data["sample"], rows)
+
+
+def paired_error(one: Scatter | None, other: Scatter | None, figure: Figure) -> float | None:
+    """Return the standard error of the difference of a figure of two scores on the same sample.
+
+    None where they are of different samples, or one lacks the figure: their errors are then
+    independent.
+    """
+    if one is None or other is None or one.sample != other.sample:
+        return None
+    a, b = one.residuals.get(figure), other.residuals.get(figure)
+    if a is None or b is None or len(a) != len(b):
+        return None
+    return _standard_error([x - y for x, y in zip(a, b, strict=True)])
+
+
+def residuals(
+    values: Floats, weights: Floats | None, batch: NDArray[np.int64], batches: int
+) -> tuple[float, ...]:
+    """Return the residuals of a weighted mean by batch, (R,); see `Scatter`.
+
+    Parameters
+    ----------
+    values : (N,) float or bool
+    weights : (N,) float, optional
+        None: all alike.
+    batch : (N,) int
+        Which batch each is of, 0 to `batches` - 1.
+    batches : int
+    """
+    own = np.ones(len(values)) if weights is None else weights
+    mass = float(own.sum())
+    off = own * (values - float((own * values).sum()) / mass)
+    return tuple(rounded(each / mass) for each in np.bincount(batch, off, batches).tolist())
+
+
+def sample_digest(parts: Iterable[NDArray[Any]]) -> str:
+    """Return a digest of the arrays that a sample consists of."""
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(np.ascontiguousarray(part).tobytes())
+    return digest.hexdigest()[:16]
+
+
+def _standard_error(batches: Iterable[float]) -> float:
+    """Standard error of a mean from its residuals: of R batches that are drawn independently."""
+    own = list(batches)
+    square = math.fsum(each * each for each in own)
+    return rounded(math.sqrt(square * len(own) / max(len(own) - 1, 1)))

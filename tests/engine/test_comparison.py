@@ -1,0 +1,200 @@
+"""Scores side by side: what differs, what only seems to, and the sentences that say so."""
+
+import dataclasses
+import math
+from statistics import fmean, stdev
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import advice
+from pe_core.advice.certainty import difference_errors, sure_factor
+from pe_core.scoring.scatter import Scatter
+from tests.engine import shapes
+
+ENTROPY, COVERAGE = ("rig", "", "entropy"), ("rig", "", "coverage")
+NOISE = [
+    0.02 / math.sqrt(256 / 15) * np.cos(math.pi * (np.arange(16) + 0.5) * k / 16)
+    for k in range(1, 7)
+]
+"""Residuals of six scores: each sums to 0, its squares to 8 of the factor's, and is orthogonal to
+the others. By hand: the error of each difference is sqrt(16 / 15 * 2 * 8) of the factor, 0.02."""
+
+
+def score(entropy, coverage=0.5, own=None, sample="one", stderr=0.03):
+    """A score whose residuals are `own` beside those that all scores of the sample share."""
+    scatter = None
+    if own is not None:
+        shared = np.linspace(-0.01, 0.01, 16)
+        off = shared + own - np.mean(own)
+        scatter = Scatter(sample, {ENTROPY: tuple(off), COVERAGE: tuple(off / 20.0)})
+    return pe.Score(entropy, coverage, stderr, {}, {}, {}, 4096, scatter=scatter)
+
+
+@pytest.mark.parametrize(
+    "studies, degrees, factor",
+    [(1, 15, 2.1314), (2, 15, 2.1314), (3, 15, 2.6937), (6, 15, 3.4837), (2, 31, 2.0395)],
+)
+def test_the_factor_is_student_s_t_shared_by_all_pairs(studies, degrees, factor):
+    """Tables of t: two-sided, 5 % divided by 1, 1, 3, 15 and 1 pairs."""
+    assert sure_factor(studies, degrees) == pytest.approx(factor, abs=2e-3)
+
+
+def test_the_error_of_a_difference_is_paired_on_one_sample_and_in_square_on_two():
+    a, b, c = (score(2.0, own=own) for own in NOISE[:3])
+    other = score(2.0, own=NOISE[3], sample="another")
+    found = difference_errors([a, b, other], ENTROPY)
+    assert found[0][1] == found[1][0] == pytest.approx(0.02)
+    assert found[0][0] == 0.0
+    assert found[0][2] == found[1][2] == pytest.approx(math.hypot(0.03, 0.03))
+    assert difference_errors([a, score(2.0), c], ENTROPY)[0][1] == pytest.approx(
+        math.hypot(0.03, 0.03)
+    )
+    assert difference_errors([score(2.0, stderr=0.0)] * 2, ENTROPY) == ((0.0, 0.0), (0.0, 0.0))
+
+
+def test_a_scatter_comes_back_from_its_data():
+    kept = score(2.0, own=NOISE[0]).scatter
+    assert Scatter.from_dict(kept.to_dict()) == kept
+
+
+def ranked(entropies, own=True, **more):
+    scores = {
+        name: score(entropy, own=NOISE[k] if own else None, **more)
+        for k, (name, entropy) in enumerate(zip("ABCDEF", entropies, strict=False))
+    }
+    rows = advice.compare(scores)
+    return advice.ranking(list(scores), rows)[0], rows[0]
+
+
+@pytest.mark.parametrize(
+    "entropies, own, more, said, best",
+    [
+        (
+            (1.63, 1.54),
+            *(True, {}),
+            "Overall B is best by entropy: 1.54 nats, lower is better. Worse: A by 0.09 +- 0.02 "
+            "nats.",
+            (False, True),
+        ),
+        (
+            (1.54, 1.56),
+            *(True, {}),
+            "Overall A and B are alike by entropy: 1.54 and 1.56 nats, lower is better; standard "
+            "error of the difference 0.02 nats.",
+            (False, False),
+        ),
+        (
+            (1.54, 1.55, 1.70, 1.71, 1.90, 2.10),
+            *(True, {}),
+            "Overall A and B are alike by entropy, and better than the others: 1.54 and 1.55 nats, "
+            "lower is better; standard error of the difference 0.02 nats. Worse than A: C by 0.16 "
+            "+- 0.02 nats, D by 0.17 +- 0.02 nats, E by 0.36 +- 0.02 nats and F by 0.56 +- 0.02 "
+            "nats. Alike are also C and D.",
+            (True, True, False, False, False, False),
+        ),
+        (
+            (1.54, 1.60),  # without what pairs them the error is 0.04, and 2.13 of it 0.09
+            *(False, {}),
+            "Overall A and B are alike by entropy: 1.54 and 1.60 nats, lower is better; standard "
+            "error of the difference 0.04 nats.",
+            (False, False),
+        ),
+        (
+            (1.546, 1.54),  # of all voxels: what shows is told
+            *(False, {"stderr": 0.0}),
+            "Overall B is best by entropy: 1.54 nats, lower is better. Worse: A by 0.01 nats.",
+            (False, True),
+        ),
+        (
+            (1.544, 1.54),
+            *(False, {"stderr": 0.0}),
+            "Overall B and A are alike by entropy: 1.54 and 1.54 nats, lower is better.",
+            (False, False),
+        ),
+    ],
+    ids=["two", "two alike", "six in groups", "not paired", "exact", "below the last digit"],
+)
+def test_who_is_better_and_who_is_alike(entropies, own, more, said, best):
+    sentences, row = ranked(entropies, own, **more)
+    assert sentences == said
+    assert row.best == best
+
+
+def test_alike_is_not_said_of_two_that_differ_within_the_best():
+    """B is not told apart from A, nor C from A, but B from C: each pair has an error of its own."""
+    wide = NOISE[0] * 4.0
+    scores = {
+        "A": score(1.50, own=wide),
+        "B": score(1.51, own=NOISE[1]),
+        "C": score(1.60, own=NOISE[2]),
+    }
+    rows = advice.compare(scores)
+    said = advice.ranking(list(scores), rows)[0]
+    assert "A, B and C are alike" in said and "C is worse than B, by 0.09 +- 0.02" in said
+
+
+def test_winners_are_told_by_coverage_as_well():
+    part = pe.PartScore
+    exact = dataclasses.replace(score(2.0, 0.6), stderr=0.0)
+    a = dataclasses.replace(
+        exact, per_zone={"front": part(2.0, 0.7, 0.5), "far": part(3.0, 0.5, 0.5)}
+    )
+    b = dataclasses.replace(
+        exact,
+        coverage=0.65,
+        per_zone={"front": part(2.5, 0.8, 0.5), "far": part(3.0, 0.5, 0.5)},
+        per_class={"car": part(1.0, 0.5, 1.0)},
+    )
+    rows = advice.compare({"a": a, "b": b})
+    assert advice.ranking(["a", "b"], rows)[1] == (
+        "Overall b is best by coverage: 65.0%, higher is better. Worse: a by 5.0 points."
+    )
+    assert advice.win_words(["a", "b"], rows) == (
+        "a is better by entropy ahead.",
+        "b sees more ahead.",
+    )
+
+
+MODEL = shapes.small_lidar(16, 180)
+PAIR = [pe.Rig([shapes.lidar_on_roof(MODEL, (x, 0.0, 2.0))]) for x in (0.0, 0.4)]
+FIGURES = [ENTROPY, COVERAGE, ("zone", "near", "entropy"), ("class", "car", "coverage")]
+
+
+def test_paired_errors_are_the_scatter_of_differences_on_other_samples():
+    """60 samples of 2048 voxels, two rigs on each: what is told is what differences scatter by.
+
+    Half of it would be too low, twice too high; and the rigs' own errors are some times as large.
+    """
+    space, prior = shapes.small_space(), pe.Prior.road()
+    told, found, alone = ({figure: [] for figure in FIGURES} for _ in range(3))
+    for shift in np.random.default_rng(5).random((60, 3)):
+        evaluator = pe.Evaluator(space, prior, samples=2048, shift=tuple(shift))
+        scores = [evaluator.score(rig) for rig in PAIR]
+        assert scores[0].scatter.sample == scores[1].scatter.sample
+        for figure in FIGURES:
+            told[figure].append(difference_errors(scores, figure)[0][1])
+            found[figure].append(_value(scores[1], figure) - _value(scores[0], figure))
+            alone[figure].append(scores[0].scatter.error(figure))
+    for figure in FIGURES:
+        ratio = math.sqrt(fmean(e * e for e in told[figure])) / stdev(found[figure])
+        assert 0.8 < ratio < 2.0, (figure, ratio)
+    assert fmean(told[ENTROPY]) < 0.7 * math.sqrt(2.0) * fmean(alone[ENTROPY])
+
+
+def _value(score, figure):
+    group, name, measure = figure
+    parts = {"rig": {"": score}, "zone": score.per_zone, "class": score.per_class}
+    return getattr(parts[group][name], measure)
+
+
+def test_objects_are_paired_by_scene():
+    rule, prior = pe.TargetRule("objects", scenes=24), pe.Prior.road()
+    evaluator = pe.ObjectEvaluator(shapes.small_space(), prior, targets=rule)
+    a, b = (evaluator.score(rig) for rig in PAIR)
+    for figure in (ENTROPY, COVERAGE, ("rig", "", "ap"), ("class", "car", "ap")):
+        assert 0.0 < difference_errors([a, b], figure)[0][1] < 1.0
+    own = a.scatter.error(ENTROPY)
+    assert a.scatter.batches == 24 and own == pytest.approx(a.stderr, rel=0.35)
+    assert difference_errors([a, b], ENTROPY)[0][1] < 0.9 * math.hypot(own, own)

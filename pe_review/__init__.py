@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 from .cli import add_page, add_review_options
 
 if TYPE_CHECKING:
+    from .about import About
     from .making import review_studies
     from .page import PAGE, page_bytes, write_page
     from .reviewed import Reviewed, reviewed_together
     from .section import Section
 
 _PLACES = {
+    "About": "about",
     "review_studies": "making",
     "PAGE": "page",
     "page_bytes": "page",
@@ -30,6 +32,7 @@ _PLACES = {
 
 __all__ = [
     "PAGE",
+    "About",
     "Reviewed",
     "Section",
     "add_page",

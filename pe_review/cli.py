@@ -31,6 +31,12 @@ def add_review_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``review`` besides what is reviewed."""
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="folder for the page")
     parser.add_argument("--replace", action="store_true", help="replace a page that is there")
+    about = "title of the page, in place of the studies' names"
+    parser.add_argument("--title", default="", metavar="TEXT", help=about)
+    parser.add_argument("--author", default="", metavar="TEXT", help="who made it")
+    about = "date on the page, any text; 'today' is the day of the run (none without it)"
+    parser.add_argument("--date", default="", metavar="TEXT", help=about)
+    parser.add_argument("--revision", default="", metavar="TEXT", help="revision of the page")
 
 
 def add_page() -> None:

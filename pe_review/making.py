@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from .about import About
 from .engine import app, pe, studies
 from .folder import command_of_folder, outcome_of_folder
 from .page import PAGE, page_bytes, write_page
@@ -94,11 +95,17 @@ def _check(of_studies: int, args: argparse.Namespace) -> None:
     """Refuse what could not be written, or has no room on a page, before any is scored."""
     if of_studies > MOST_STUDIES:
         raise pe.InputError("command line", "STUDY", f"{MOST_STUDIES} at most", of_studies)
+    _about(args)
     pe.prepare_folder(args.output, () if args.replace else (PAGE,))
 
 
 def _written(each: Sequence[Reviewed], args: argparse.Namespace) -> app.Answer:
-    return str(write_page(each, args.output, replace=args.replace)), app.DONE
+    path = write_page(each, args.output, replace=args.replace, about=_about(args))
+    return str(path), app.DONE
+
+
+def _about(args: argparse.Namespace) -> About:
+    return About(args.title, args.author, args.date, args.revision)
 
 
 def _study(path: str) -> pe.Study:

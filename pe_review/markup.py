@@ -20,6 +20,14 @@ def escaped(text: object) -> str:
     return html.escape(shown.encode("utf-8", "backslashreplace").decode(), quote=True)
 
 
+def css_string(text: object) -> str:
+    """Return a text as a string of a style sheet."""
+    shown = "".join(c if c.isprintable() else " " for c in str(text))
+    unsafe = '"\\<>&'
+    inside = "".join(f"\\{ord(c):06x}" if c in unsafe else c for c in shown)
+    return f'"{inside.encode("utf-8", "replace").decode()}"'
+
+
 def script_json(data: Any) -> str:
     """Return plain data as JSON that can stand in a script element."""
     text = json.dumps(data, ensure_ascii=True, separators=(",", ":"), allow_nan=False)

@@ -7,8 +7,10 @@ from functools import partial
 from itertools import count
 from pathlib import Path
 
+from .about import About
 from .engine import pe, studies
-from .markup import escaped, script_json
+from .markup import css_string, escaped, script_json
+from .policy import policy, without_style_attributes
 from .reviewed import Reviewed, reviewed_together
 from .section import Section
 from .sections import SECTIONS, TOGETHER
@@ -16,14 +18,13 @@ from .sections import SECTIONS, TOGETHER
 PAGE = studies.REVIEW_PAGE
 HERE = Path(__file__).parent
 STYLES = ("look.css", "parts.css", "paper.css")
-POLICY = (
-    "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
-)
-"""The page asks nobody for anything: a browser holds it to that."""
+NOTHING_SAID = About()
 
 
 def page_bytes(
-    each: Sequence[Reviewed], watch: Callable[[float], None] = lambda _share: None
+    each: Sequence[Reviewed],
+    watch: Callable[[float], None] = lambda _share: None,
+    about: About = NOTHING_SAID,
 ) -> bytes:
     """Return the page of one study, or of several side by side.
 
@@ -33,6 +34,8 @@ def page_bytes(
     watch : callable, optional
         Called before each section with the share of sections that are made, 0 to 1; what it raises
         ends the work.
+    about : About
+        Title, author, date and revision.
 
     Raises
     ------
@@ -42,11 +45,16 @@ def page_bytes(
     each = reviewed_together(each)
     watched = _counted(len(TOGETHER) + len(SECTIONS) * len(each), watch)
     chapters = [*_of_all(each, watched), *_of_each(each, watched)]
-    return _document(each, chapters).encode("utf-8")
+    return _document(each, chapters, about).encode("utf-8")
 
 
 def write_page(
-    each: Sequence[Reviewed], folder: str | Path, *, name: str = PAGE, replace: bool = False
+    each: Sequence[Reviewed],
+    folder: str | Path,
+    *,
+    name: str = PAGE,
+    replace: bool = False,
+    about: About = NOTHING_SAID,
 ) -> Path:
     """Write the page to a folder; return its path.
 
@@ -57,6 +65,8 @@ def write_page(
     name : str
     replace : bool
         The user has agreed to replace the page that is there, whoever wrote it.
+    about : About
+        Title, author, date and revision.
 
     Raises
     ------
@@ -65,7 +75,7 @@ def write_page(
     """
     folder = pe.prepare_folder(folder, () if replace else (name,))
     with studies.FileSet(folder, (name,) if replace else ()) as files:
-        files.add(name, page_bytes(each))
+        files.add(name, page_bytes(each, about=about))
     return folder / name
 
 
@@ -101,37 +111,66 @@ def _of_each(each: tuple[Reviewed, ...], make: Make) -> list[Chapter]:
     return [chapter for chapter in kept if chapter]
 
 
-def _document(each: tuple[Reviewed, ...], chapters: list[Chapter]) -> str:
+def _document(each: tuple[Reviewed, ...], chapters: list[Chapter], about: About) -> str:
     made = [section for chapter in chapters for _, section in chapter]
-    title = f"Sensor review: {escaped(' and '.join(one.name for one in each))}"
-    styles = _once([*(_own(name) for name in STYLES), *(css for s in made for css in s.styles)])
-    scripts = _once(script for s in made for script in s.scripts)
+    body, numbered = without_style_attributes(_body(each, chapters, about))
+    css = [*(_own(name) for name in STYLES), *(css for s in made for css in s.styles)]
+    sheets = [f"\n{sheet}\n" for sheet in _once([*css, _on_paper(each, about), numbered])]
+    scripts = [f"\n{_closed(s)}\n" for s in _once(script for s in made for script in s.scripts)]
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-            f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+            f'<meta http-equiv="Content-Security-Policy" content="{policy(sheets, scripts)}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f'<meta name="generator" content="perception-entropy {pe.__version__}">',
-            f"<title>{title}</title>",
-            *(f"<style>\n{css}\n</style>" for css in styles),
-            f'</head>\n<body class="{"several" if len(each) > 1 else "single"}">',
-            '<a class="skip" href="#page">Skip to the review</a>',
-            _masthead(each),
-            _contents(chapters),
-            '<main id="page">',
-            *(_chapter(chapter, len(each)) for chapter in chapters),
-            "</main>",
+            *([f'<meta name="author" content="{escaped(about.author)}">'] if about.author else []),
+            f"<title>{escaped(_title(each, about))}</title>",
+            *(f"<style>{sheet}</style>" for sheet in sheets),
+            "</head>",
+            body,
             *(_data(one, section) for chapter in chapters for one, section in chapter),
-            *(f"<script>\n{_closed(script)}\n</script>" for script in scripts),
+            *(f"<script>{script}</script>" for script in scripts),
             "</body>\n</html>\n",
         ]
     )
 
 
-def _masthead(each: tuple[Reviewed, ...]) -> str:
+def _body(each: tuple[Reviewed, ...], chapters: list[Chapter], about: About) -> str:
+    return "\n".join(
+        [
+            f'<body class="{"several" if len(each) > 1 else "single"}">',
+            '<a class="skip" href="#page">Skip to the review</a>',
+            _masthead(each, about),
+            _contents(chapters),
+            '<main id="page">',
+            *(_chapter(chapter, len(each)) for chapter in chapters),
+            "</main>",
+        ]
+    )
+
+
+def _title(each: tuple[Reviewed, ...], about: About) -> str:
+    return about.title or f"Sensor review: {' and '.join(one.name for one in each)}"
+
+
+def _on_paper(each: tuple[Reviewed, ...], about: About) -> str:
+    """Return what stands in the margins of a printed page: title and revision, page numbers."""
+    revision = f"Revision {about.revision}" if about.revision else ""
+    left = css_string(" \N{MIDDLE DOT} ".join(filter(None, (_title(each, about), revision))))
+    font = "font: 8pt system-ui, sans-serif; color: #57606a"
+    return (
+        f"@page {{ @bottom-left {{ content: {left}; {font} }} "
+        f'@bottom-right {{ content: counter(page) " / " counter(pages); {font} }} }}'
+    )
+
+
+def _masthead(each: tuple[Reviewed, ...], about: About) -> str:
     kicker = "Review of sensors on a vehicle" if len(each) == 1 else "Sensors side by side"
     names = " <small>and</small> ".join(escaped(one.name) for one in each)
-    return f'<header class="masthead"><p class="kicker">{kicker}</p><h1>{names}</h1></header>'
+    heading = f"<h1>{escaped(about.title) or names}</h1>"
+    below = f'<p class="of">{names}</p>' if about.title else ""
+    said = f'<p class="about">{escaped(about.line)}</p>' if about.line else ""
+    return f'<header class="masthead"><p class="kicker">{kicker}</p>{heading}{below}{said}</header>'
 
 
 def _contents(chapters: list[Chapter]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +20,13 @@ SCORED, RENDERED = 0.25, 0.4
 RENDERING = "rendering"
 
 
-def same_headless(path: Path, render: bool) -> str:
+def same_headless(path: Path, render: bool, about: page.About) -> str:
     """Return the command that makes a page of the file as it is saved; empty where it is not."""
     if not bpy.data.filepath or bpy.data.is_dirty:
         return ""
     options = ["review", "-o", path.parent.name or ".", *([] if render else ["--no-render"])]
+    texts = {field.name: getattr(about, field.name) for field in fields(about)}
+    options += [f"--{name}={text}" for name, text in texts.items() if text]
     file = shlex.quote(Path(bpy.data.filepath).name)
     return app.as_typed(f"blender -b {file} --command pe", options)
 
@@ -71,22 +74,31 @@ class PE_OT_export_review(ExportOperator, bpy.types.Operator):
         description="Have Blender render the picture at the head of the page",
         default=True,
     )
+    title: StringProperty(name="Title", description="Of the page, in place of the file's name")
+    author: StringProperty(name="Author", description="Who made it")
+    date: StringProperty(
+        name="Date", description='Any text; "today" is the day of the export. Empty: none'
+    )
+    revision: StringProperty(name="Revision", description="Of the page")
 
     def job(self, context: bpy.types.Context) -> ExportJob:
         """Read the scene; score, render and write the page step by step."""
         path, scene = chosen_file(self.filepath), context.scene.name
+        about = page.About(self.title, self.author, self.date, self.revision)
         study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
         told = {
-            "command": same_headless(path, self.render),
+            "command": same_headless(path, self.render, about),
             "versions": bridge.blender_version(),
         }
         shown = scene if self.render else ""
         steps = PE_OT_export_review.steps  # the operator ends with its dialog
         pe.prepare_folder(path.parent)  # not refused after all the work
-        return ExportJob(study, lambda job: steps(job, path, shown, told))
+        return ExportJob(study, lambda job: steps(job, path, shown, told, about))
 
     @staticmethod
-    def steps(job: ExportJob, path: Path, scene: str, told: dict[str, Any]) -> Steps:
+    def steps(
+        job: ExportJob, path: Path, scene: str, told: dict[str, Any], about: page.About
+    ) -> Steps:
         """Score, render the picture of a scene, if one is wanted, and make the page in a thread."""
         from .. import review  # only who wants a page pays for it
 
@@ -101,7 +113,7 @@ class PE_OT_export_review(ExportOperator, bpy.types.Operator):
             picture = review.picture_of(open_scene(scene), outcome)
         one = page.Reviewed(path.stem, outcome, picture=picture, **told)
         watch = job.watch(RENDERED)
-        made = yield from job.made("page", RENDERED, lambda: page.page_bytes([one], watch))
+        made = yield from job.made("page", RENDERED, lambda: page.page_bytes([one], watch, about))
         if made is None:
             return None
         with studies.FileSet(path.parent, (path.name,)) as files:  # the dialog has asked

@@ -20,6 +20,11 @@ function listenToHands(view) {
     if (!stage.contains(event.target)) activate(view, false);
   });
   stage.addEventListener("keydown", (event) => onKey(view, event));
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || event.defaultPrevented || !view.from) return;
+    event.preventDefault();
+    view.show("quarter");
+  });
 }
 
 function turn(view, left, up) {

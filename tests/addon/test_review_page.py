@@ -21,9 +21,11 @@ def test_the_panel_s_page_has_blender_s_picture(car, tmp_path, monkeypatch):
     car.perception_entropy.score_samples = 1024
     path = tmp_path / "for <all>.html"
     path.write_text("mine")  # the file dialog has asked
-    assert bpy.ops.pe.export_review(filepath=str(path)) == {"FINISHED"}
+    said = {"title": "Roof & rails", "author": "A. Author", "date": "May", "revision": "B"}
+    assert bpy.ops.pe.export_review(filepath=str(path), **said) == {"FINISHED"}
     text = path.read_text("utf-8")
     assert "for &lt;all&gt;" in text
+    assert "<h1>Roof &amp; rails</h1>" in text and "A. Author, May, Revision B</p>" in text
     (picture,) = PICTURE.findall(text)
     assert base64.b64decode(picture).startswith(b"\x89PNG")
 

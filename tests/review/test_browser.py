@@ -127,6 +127,10 @@ def test_views_and_looking_from_a_sensor_and_back(view):
     assert len({start, above, pixels(view)}) == 3
     view.locator(".v3-caption button").click()
     assert pixels(view) == start and view.locator(".v3-caption").is_hidden()
+    view.click("[data-look='1']")
+    assert pixels(view) != start
+    view.keyboard.press("Escape")  # the button that was clicked still has the keys
+    assert pixels(view) == start and view.locator(".v3-caption").is_hidden()
 
 
 def test_it_is_turned_by_mouse_and_keys_and_reset(view):

@@ -35,12 +35,14 @@ def study(tmp_path):
 
 
 def test_a_study_s_page_is_written_and_its_path_printed(study, tmp_path, capsys):
-    assert main(["review", str(study), "-o", str(tmp_path / "new" / "out")]) == 0
+    said = ["--title", "Roof", "--author", "A <b>", "--date", "May", "--revision", "3"]
+    assert main(["review", str(study), "-o", str(tmp_path / "new" / "out"), *said]) == 0
     path = tmp_path / "new" / "out" / PAGE
     assert capsys.readouterr().out == f"{path}\n"
     text = path.read_text("utf-8")
     assert "a &lt;b&gt; &amp; c" in text and NAMED not in text
-    given = shlex.join(["pe", "review", str(study), "-o", str(path.parent)])
+    assert "<h1>Roof</h1>" in text and "A &lt;b&gt;, May, Revision 3</p>" in text
+    given = shlex.join(["pe", "review", str(study), "-o", str(path.parent), *said])
     assert f"<pre>{html.escape(given)}</pre>" in text
     assert [each.name for each in path.parent.glob("*.html")] == [PAGE]
 

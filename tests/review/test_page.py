@@ -1,13 +1,16 @@
 """The page as a file: whole, by itself, and safe whatever names are on it."""
 
+import base64
+import hashlib
 import json
 import re
+from datetime import date
 from html.parser import HTMLParser
 
 import pytest
 
 import pe_core as pe
-from pe_review import PAGE, Section, page_bytes, write_page
+from pe_review import PAGE, About, Section, page_bytes, write_page
 from pe_review.markup import escaped, script_json, table
 from tests.review.conftest import NAMES
 
@@ -65,6 +68,36 @@ def test_pictures_are_described_and_tables_are_headed(which, request):
     assert all(a.get("scope") in ("col", "row", "rowgroup") for tag, a in found if tag == "th")
     count = [tag for tag, _ in found].count
     assert count("table") == count("caption")
+
+
+@pytest.mark.parametrize("which", PAGES)
+def test_the_policy_names_every_script_and_style_by_its_hash(which, request):
+    """No style attribute is left, which a policy without 'unsafe-inline' would not let through."""
+    text = request.getfixturevalue(which)
+    stated = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
+    assert "unsafe" not in stated
+    body = text.partition("</head>")[2].partition("<script")[0]
+    assert " style=" not in body and body.count(" data-s=") > 9
+    for kind, content in re.findall(r"<(script|style)>(.*?)</\1>", text, re.S):
+        digest = base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()
+        allowed = next(part for part in stated.split("; ") if part.startswith(f"{kind}-src"))
+        assert f"'sha256-{digest}'" in allowed
+
+
+def test_a_page_says_what_it_is(scored, monkeypatch):
+    monkeypatch.setattr("pe_review.page.SECTIONS", ())
+    about = About('<b>Roof & "rails"\\</b>', "A. Author", "2026-05-04", "B")
+    text = page_bytes([scored], about=about).decode()
+    assert "<h1>&lt;b&gt;Roof &amp; &quot;rails&quot;\\&lt;/b&gt;</h1>" in text
+    assert '<p class="about">A. Author, 2026-05-04, Revision B</p>' in text
+    assert '<p class="of">a/b &lt;i&gt;c&lt;/i&gt;</p>' in text
+    assert '@bottom-left { content: "\\00003cb\\00003eRoof \\000026 ' in text
+    assert 'content: counter(page) " / " counter(pages)' in text
+    plain = page_bytes([scored]).decode()
+    assert 'class="about"' not in plain and page_bytes([scored]).decode() == plain
+    assert About(date="Today").date == date.today().isoformat()
+    with pytest.raises(pe.InputError, match="title: expected 200 letters at most, found 201"):
+        About("a" * 201)
 
 
 def test_names_end_no_element_and_no_script(page):

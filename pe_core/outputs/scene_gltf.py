@@ -66,9 +66,11 @@ def _camera(scene: GlbScene, known: CarriedSensor) -> list[int]:
     wide, high = picture.size[0] / picture.fx, picture.size[1] / picture.fy
     seen: dict[str, Any] = {"yfov": 2.0 * math.atan(high / 2.0), "aspectRatio": wide / high}
     seen |= {"znear": NEAR_M, "zfar": FAR_M}
-    scene.cameras.append({"name": known.name, "type": "perspective", "perspective": seen})
+    # Not the sensor's own name: trimesh has a node and a camera of one name for the same thing.
+    name = f"{known.name} view"
+    scene.cameras.append({"name": name, "type": "perspective", "perspective": seen})
     number = len(scene.cameras) - 1
-    return [scene.add_node(f"{known.name} view", rotation=LOOKING_ALONG_X, camera=number)]
+    return [scene.add_node(name, rotation=LOOKING_ALONG_X, camera=number)]
 
 
 def _view(scene: GlbScene, wanted: OutputRequest, sensor: Sensor, number: int) -> list[int]:

@@ -14,7 +14,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from .. import changes, redraw, worker
+from .. import changes, corners, redraw, worker
 from . import latest
 from .shown import ShownScore, shown_score
 from .words import BETTER, WORSE, words_of
@@ -35,6 +35,8 @@ BY_SENSE = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
 
 
+PLATE_NAME = "live"
+"""Of the read-out, among the plates in the corners of a view."""
 PICTURE = "overlay "
 """How topics of work begin whose answers are what the 3D view shows of sensors."""
 
@@ -61,6 +63,7 @@ def unregister() -> None:
     while _handles:
         changes.reading.disconnect(redraw.editors)
         VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
+    corners.forget(PLATE_NAME)
     redraw.editors()
 
 
@@ -69,13 +72,15 @@ def draw() -> None:
     context = bpy.context
     space = context.space_data
     wanted = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
+    box = None
     if context.scene.perception_entropy.live.on and wanted and _is_corner(context):
         name = context.scene.name
         score = shown_score(context.scene)
         if score is not None and score.exact and worker.desk.awaits(PICTURE):
             score = score._replace(picture_follows=True)
         lines = lines_of(latest.reading(name), latest.note(name), score)
-        draw_lines(lines, *_place(context), context.preferences.system.ui_scale)
+        box = draw_lines(lines, *_place(context), context.preferences.system.ui_scale)
+    corners.reserve(context.region.as_pointer(), PLATE_NAME, box)
 
 
 def lines_of(reading: latest.Reading | None, note: str, score: ShownScore | None) -> list[TextRow]:
@@ -98,8 +103,8 @@ def _lines_of_words(reading: latest.Reading, score: ShownScore) -> list[TextRow]
     ]
 
 
-def draw_lines(lines: list[TextRow], left: float, bottom: float, scale: float) -> None:
-    """Draw lines on a dark plate whose lower left corner is given [px]."""
+def draw_lines(lines: list[TextRow], left: float, bottom: float, scale: float) -> corners.Box:
+    """Draw lines on a dark plate whose lower left corner is given [px]; return its box."""
     width = max(LEAST_WIDTH * scale, *(_width(line, scale) for line in lines))
     height = sum(_height(line) for line in lines) * scale
     pad = PAD * scale
@@ -108,6 +113,7 @@ def draw_lines(lines: list[TextRow], left: float, bottom: float, scale: float) -
     for line in lines:
         y -= _height(line) * scale
         _write(line, left + pad, y + 0.3 * line.size * scale, scale)
+    return left, bottom, left + width + 2.0 * pad, bottom + height + 2.0 * pad
 
 
 def _write(line: TextRow, x: float, y: float, scale: float) -> None:

@@ -10,6 +10,7 @@ import gpu
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
+from .. import corners
 from ..engine import graphics
 from .batches import shader
 
@@ -46,17 +47,22 @@ def write_labels(context: bpy.types.Context, labels: Sequence[graphics.Tag]) -> 
 
 
 def write_legends(context: bpy.types.Context, legends: Sequence[graphics.ColorKey]) -> None:
-    """Write legends one above the other in the lower right corner, beside the sidebar."""
+    """Write legends one above the other in the lower right corner, beside the sidebar.
+
+    Where the view is too narrow for them beside the read-out, they stand above it.
+    """
     scale = _scale()
     if _is_a_side_view(context):
         return
     right = context.region.width - _sidebar_width(context) - MARGIN * scale
     blf.size(FONT, SIZE * scale)
-    fitting = _fitting(legends, context.region.height - GIZMOS * scale, scale)
-    width = max((_width(legend, scale) for legend in fitting), default=0.0)
-    bottom = MARGIN * scale
+    width = max((_width(legend, scale) for legend in legends), default=0.0)
+    region, sides = context.region.as_pointer(), (right - width, right)
+    bottom = corners.bottom_above(region, sides, MARGIN * scale, GAP * scale / 2.0)
+    room = context.region.height - GIZMOS * scale - (bottom - MARGIN * scale)
+    fitting = _fitting(legends, room, scale)
     for legend in reversed(fitting):
-        bottom = _legend(legend, (right - width, right), bottom, scale) + GAP * scale / 2.0
+        bottom = _legend(legend, sides, bottom, scale) + GAP * scale / 2.0
 
 
 def _fitting(

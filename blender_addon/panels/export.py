@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..operators import exporting, running
 from .layout import Tab, draw_properties
-from .words import BUTTON_PX, draw_sentence
 
 AXLES = ("rear_axle_x", "rear_axle_z", "wheelbase", "front_overhang", "rear_overhang")
 
@@ -20,7 +18,6 @@ class PE_PT_export(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        draw_written(layout, context)
         layout.operator("pe.export_study", icon="EXPORT")
         layout.operator("pe.import_study", icon="IMPORT")
         layout.operator("pe.render_review", icon="RENDER_STILL")
@@ -35,22 +32,6 @@ class PE_PT_export(Tab, bpy.types.Panel):
             "pe.export_scene", "output", text="Export Scene", icon="SCENE_DATA"
         )
         draw_axles(layout, context.scene.perception_entropy)
-
-
-def draw_written(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what the last export wrote, what to know of it, and the way there."""
-    if running.current is not None:
-        layout.progress(text=running.current.text, factor=running.current.progress.fraction)
-    written = exporting.last
-    if written is None:
-        return
-    box = layout.box().column(align=True)
-    row = box.row()
-    draw_sentence(row.column(align=True), context, written.text, "CHECKMARK", BUTTON_PX)
-    row.operator("pe.dismiss_written", text="", icon="X", emboss=False)
-    for line in written.lines:
-        draw_sentence(box, context, line, icon="ERROR")
-    box.operator("pe.open_folder", icon="FILE_FOLDER")
 
 
 def draw_axles(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:

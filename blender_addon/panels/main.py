@@ -10,6 +10,7 @@ from .layout import Tab
 from .result import draw_actions, draw_result, draw_vehicle_told
 from .sensors import draw_sensors
 from .words import draw_sentence
+from .written import draw_written
 
 KIND, MAKER = "pe_kind", "pe_maker"
 """What a button tells its menu, in Blender's context: the kind and the maker of sensors to list."""
@@ -31,6 +32,7 @@ class PE_PT_main(Tab, bpy.types.Panel):
         draw_add(self.layout)
         draw_sensors(self.layout, context)
         draw_actions(self.layout, settings)
+        draw_written(self.layout, context)
         draw_result(self.layout, context)
 
 

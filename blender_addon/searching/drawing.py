@@ -12,7 +12,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from .. import redraw
+from .. import corners, redraw
 from .curve import SearchCurve, curve_of
 from .latest import view
 
@@ -23,7 +23,9 @@ SMALL, TITLE = 11.0, 13.0
 WIDTH, HEIGHT = 268.0, 148.0
 PAD, LEFT, TOP, BOTTOM = 10.0, 36.0, 26.0, 18.0
 """Round the plate's inside, and what axes and title take of it."""
-MARGIN, HUD_ROW, LIVE_HEIGHT = 14.0, 30.0, 150.0
+MARGIN, HUD_ROW = 14.0, 30.0
+PLATE_NAME = "search"
+"""Of the curve, among the plates in the corners of a view."""
 LINE_PX, AXIS_PX, DOT_PX = 2.0, 1.0, 5.0
 Color = tuple[float, float, float, float]
 INK: Color = (0.95, 0.95, 0.95, 1.0)
@@ -60,6 +62,7 @@ def unregister() -> None:
     view.clear()
     while _handles:
         VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
+    corners.forget(PLATE_NAME)
     redraw.editors()
 
 
@@ -67,8 +70,13 @@ def draw() -> None:
     """Draw into the current 3D view; Blender calls this at each redraw."""
     context = bpy.context
     seen = view.get(context.scene.name)
+    box = None
     if seen is not None and _is_corner(context):
-        draw_curve(curve_of(seen), *_corner(context), context.preferences.system.ui_scale)
+        scale = context.preferences.system.ui_scale
+        left, bottom = _corner(context)
+        draw_curve(curve_of(seen), left, bottom, scale)
+        box = left, bottom, left + WIDTH * scale, bottom + HEIGHT * scale
+    corners.reserve(context.region.as_pointer(), PLATE_NAME, box)
 
 
 def draw_curve(curve: SearchCurve, left: float, bottom: float, scale: float) -> None:
@@ -142,9 +150,10 @@ def _corner(context: bpy.types.Context) -> tuple[float, float]:
             left = max(left, each.x + each.width - region.x)
         elif each.type == "HUD" and each.height > 1:
             bottom = max(bottom, each.y + each.height - region.y)
-    if context.scene.perception_entropy.live.on:
-        bottom += LIVE_HEIGHT * scale
-    return left + MARGIN * scale, bottom + MARGIN * scale / 2.0
+    left, bottom = left + MARGIN * scale, bottom + MARGIN * scale / 2.0
+    sides, gap = (left, left + WIDTH * scale), MARGIN * scale / 2.0
+    corners.reserve(region.as_pointer(), PLATE_NAME, None)
+    return left, corners.bottom_above(region.as_pointer(), sides, bottom, gap)
 
 
 def _is_corner(context: bpy.types.Context) -> bool:

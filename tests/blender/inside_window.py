@@ -84,6 +84,10 @@ def report_state():
     scene = bpy.context.window_manager.windows[0].scene
     if not hasattr(scene, "perception_entropy"):  # the extension is switched off
         return REPORT_S
+    if not any(
+        area.type == "VIEW_3D" for area in bpy.context.window_manager.windows[0].screen.areas
+    ):
+        return REPORT_S  # a file dialog fills the window
     found = scene.perception_entropy
     sensors = [each for each in scene.objects if each.perception_entropy.is_sensor]
     state = {

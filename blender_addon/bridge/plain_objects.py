@@ -22,6 +22,8 @@ COLLECTION = "Rig"
 CLIPS = (0.1, 1000.0)
 """Where Blender's cameras begin and end to see unless told: no ranges of a sensor."""
 LEFT_OUT = "{0}: Blender's camera has no distortion ({1}); its axis is right"
+HOLDS = frozenset({exchange.MODEL, exchange.MIN_RANGE, exchange.MAX_RANGE})
+"""What the objects hold besides poses and pictures."""
 ALIKE_PX = 0.01
 DIGITS_PX, DIGITS_M = 4, 6
 """What single precision leaves of a focal length and a range."""
@@ -143,7 +145,7 @@ def _is_of(picture: exchange.Picture, table: Mapping[str, object]) -> bool:
 def put_objects(scene: bpy.types.Scene, rig: pe.Rig) -> tuple[list[bpy.types.Object], list[str]]:
     """Add a rig's cameras and empties to a scene, in a collection of their own; return them.
 
-    The lines say what Blender's cameras cannot show.
+    The lines say what Blender's cameras and empties cannot show.
     """
     collection = bpy.data.collections.new(COLLECTION)
     scene.collection.children.link(collection)
@@ -160,7 +162,7 @@ def put_objects(scene: bpy.types.Scene, rig: pe.Rig) -> tuple[list[bpy.types.Obj
             lines.append(LEFT_OUT.format(sensor.name, picture.lens.model))
         collection.objects.link(obj)
         made.append(obj)
-    return made, lines
+    return made, lines + exchange.lost_line(rig, "Blender's objects", HOLDS)
 
 
 def _matrix(pose: pe.Pose, is_camera: bool) -> Matrix:

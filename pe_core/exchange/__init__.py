@@ -4,6 +4,7 @@ from .carried import CarriedSensor, carried, picture_of, with_pictures
 from .exporting import export_rig, rig_files, write_files
 from .files import Written
 from .importing import STAND_INS, ImportedRig, import_rig
+from .losses import MAX_RANGE, MIN_RANGE, MODEL, lost_line
 from .passthrough import Passthrough
 from .passthrough_file import (
     passthrough_of_text,
@@ -17,6 +18,9 @@ from .table import RIG_FORMATS, RigFormat, rig_format
 from .vehicle_info import read_vehicle_info
 
 __all__ = [
+    "MAX_RANGE",
+    "MIN_RANGE",
+    "MODEL",
     "RIG_FORMATS",
     "STAND_INS",
     "CarriedSensor",
@@ -28,6 +32,7 @@ __all__ = [
     "carried",
     "export_rig",
     "import_rig",
+    "lost_line",
     "passthrough_of_text",
     "passthrough_table",
     "passthrough_text",

@@ -177,6 +177,19 @@ def test_models_that_a_file_does_not_tell_are_chosen(car, tmp_path):
         bpy.ops.pe.choose_models(filepath=str(path), rows=rows)
 
 
+def test_what_objects_cannot_hold_is_said_in_one_line(scene):
+    near = pe.Camera("own", 640, 480, 1.2, min_range=0.5)
+    rig = pe.Rig(
+        [
+            pe.Sensor("top", catalog.load("HDL-64E"), pe.Pose((0.0, 0.0, 2.0)), "roof"),
+            pe.Sensor("eye", near, pe.Pose((0.0, 0.0, 1.0)), curve=pe.ApCurve(0.2, 0.1)),
+        ]
+    )
+    _, lines = bridge.put_objects(scene, rig)
+    said = "left out of Blender's objects: fusion group of top; AP curve of eye"
+    assert lines == [said], "a camera has clips for its ranges"
+
+
 def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys):
     from blender_addon.commands.parser import parser
 

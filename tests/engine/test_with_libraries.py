@@ -187,6 +187,24 @@ def test_a_damaged_feather_table_is_refused_in_a_line(tmp_path, damage):
         pe.import_rig(tmp_path, None, AXLE)
 
 
+def test_offsets_that_lie_and_feather_s_first_version_are_refused_before_a_value_is_read(tmp_path):
+    """A text that would begin before the table's own memory: reading it ended the process."""
+    feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
+    pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
+    path = tmp_path / "egovehicle_SE3_sensor.feather"
+    whole = path.read_bytes()
+    names = [each.name for each in RIG]
+    offsets = np.cumsum([0, *map(len, names)]).astype("<i4").tobytes()
+    assert whole.count(offsets) == 1, "where the texts of the names begin and end"
+    lying = np.array([0, 1 << 30, (1 << 30) + 5], "<i4").tobytes()
+    first = io.BytesIO()
+    feather.write_feather(feather.read_table(path), first, version=1)
+    for data in (whole.replace(offsets, lying), first.getvalue()):
+        path.write_bytes(data)
+        with pytest.raises(pe.InputError, match="expected a feather table"):
+            pe.import_rig(tmp_path, None, AXLE)
+
+
 ASKING = {
     "footprints-dxf": (lambda: scene_files(STUDY, "footprints-dxf"), "cad"),
     "rerun": (lambda: scene_files(STUDY, "rerun"), "rerun"),

@@ -27,6 +27,7 @@ from .rigs import KnownRig as KnownRig
 from .rigs import KnownSensor as KnownSensor
 from .rigs import known_rig as known_rig
 from .rigs import known_rigs as known_rigs
+from .scan_offsets import scan_above_base
 
 __all__ = [
     "Entry",
@@ -42,6 +43,7 @@ __all__ = [
     "matching",
     "names",
     "remove",
+    "scan_above_base",
     "to_table",
 ]
 

@@ -23,7 +23,6 @@ from .carried import CAMERA, LIDAR, CarriedSensor, merged_lines
 from .files import Written, named_numbers, plain_number, pose_from, text_of
 from .frame_names import with_legal_frames
 from .frames import composed, seen_from
-from .scan_offsets import scan_above_base
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
@@ -66,7 +65,7 @@ def base_frame(each: CarriedSensor) -> Pose:
 
 def _height(each: CarriedSensor) -> float:
     """Return how far a sensor is above its frame [m]."""
-    return scan_above_base(each.model) if each.kind == LIDAR else 0.0
+    return catalog.scan_above_base(each.model) if each.kind == LIDAR else 0.0
 
 
 def base_lines(sensors: Sequence[CarriedSensor]) -> list[str]:

@@ -1,5 +1,7 @@
 """Known rigs: published places in the ground frame, and carried onto another vehicle."""
 
+import math
+
 import pytest
 
 from pe_core import InputError, catalog
@@ -44,6 +46,40 @@ def test_a_rig_is_stretched_to_another_box_by_hand():
     assert front.pose.rpy == rig.sensors[1].pose.rpy
     same = rig.on_vehicle((-2.042, -0.865, 0.0), (2.042, 0.865, 1.562))
     assert [s.pose for s in same] == [s.pose for s in rig.sensors]
+
+
+def test_a_published_base_is_lifted_to_the_centre_of_the_scan():
+    """By hand: along the housing, which a roll of 50 degrees leans to the right once turned."""
+    rig = {each.name: each for each in catalog.known_rig("tier4_xx1").sensors}
+    models = [each.model for each in rig.values()]
+    assert models.count("Hesai PandarXT-32 / XT32") == 4 and len(models) == 5
+    assert rig["hesai_top"].pose.position == (-0.45, 0.0, 2.09)
+    roll = math.radians(50.0)
+    leaning = (-0.45, 0.564 + 0.0464 * math.sin(roll), 1.7 + 0.0464 * math.cos(roll))
+    assert rig["hesai_left"].pose.position == pytest.approx(leaning, abs=1e-5)
+    top = {each.name: each for each in catalog.known_rig("autoware").sensors}["velodyne_top"]
+    assert top.pose.position[2] == pytest.approx(2.0 + 0.06611, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("model", "above_mm"),
+    [
+        ("Velodyne VLS-128 Alpha Prime", 66.1),
+        ("Hesai OT128 (Pandar128E4X)", 90.0),
+        ("Hesai PandarXT-32 / XT32", 46.4),
+        ("Hesai QT128C2X", 58.2),
+        ("Hesai PandarQT (QT64)", 50.4),
+        ("Velodyne HDL-32E", 90.8),
+        ("Velodyne VLP-16 Puck", 37.7),
+        ("Hesai Pandar40P", 47.0),
+        ("Pandar64", 0.0),
+        ("Hesai XT32M2X", 0.0),
+    ],
+)
+def test_how_far_a_lidar_scans_above_its_base(model, above_mm):
+    """Millimetres of tier4's descriptions, by the catalogue's names; 0 where none says."""
+    assert catalog.load(model).kind == "lidar"
+    assert round(1000.0 * catalog.scan_above_base(model), 1) == above_mm
 
 
 def test_without_a_size_nothing_is_stretched():

@@ -1,7 +1,8 @@
 """Rigs of well-known vehicles, a TOML file each, with the source of their figures.
 
-Files hold positions as they were published, in the frame of whoever published them. Here they are
-put into the ground frame, and stretched onto another vehicle where that is asked for.
+Files hold positions as they were published, in the frame of whoever published them; with
+`base_frames` those of LiDARs are where their housings stand. Here they are put into the ground
+frame, and stretched onto another vehicle where that is asked for.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import Any
 
 from ...errors import InputError, shown
 from ...scene.geometry import Pose
+from ..scan_offsets import scan_above_base
 
 Sides = tuple[float, float, float]
 PAPER = "paper_"
@@ -106,7 +108,8 @@ def _order(rig: KnownRig) -> tuple[bool, str]:
 
 def _from_table(key: str, table: Mapping[str, Any]) -> KnownRig:
     length, width, height = table.get("size", (None, None, None))
-    sensors = tuple(_sensor(row, table["center_x"]) for row in table["sensor"])
+    lifted = table.get("base_frames", False)
+    sensors = tuple(_sensor(row, table["center_x"], lifted) for row in table["sensor"])
     return KnownRig(
         key,
         table["title"],
@@ -119,9 +122,14 @@ def _from_table(key: str, table: Mapping[str, Any]) -> KnownRig:
     )
 
 
-def _sensor(row: Mapping[str, Any], center_x: float) -> KnownSensor:
+def _sensor(row: Mapping[str, Any], center_x: float, is_base: bool) -> KnownSensor:
+    """Return a sensor; a LiDAR whose base is published is put where the centre of its scan is."""
     x, y, z = row["position"]
     pose = Pose.from_degrees((round(x - center_x, 5), y, z), row["rotation"])
+    if is_base and (height := scan_above_base(row["model"])):
+        up = pose.ground_from_sensor[:, 2].tolist()
+        x, y, z = (round(v + height * u, 5) for v, u in zip(pose.position, up, strict=True))
+        pose = Pose((x, y, z), pose.rpy)
     return KnownSensor(row["name"], row["model"], pose)
 
 

@@ -36,7 +36,7 @@ HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left,
 
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     """Return a new kit's two files, and its cameras' lenses."""
-    named, lines = with_legal_frames(sensors, slashes=True)
+    named, lines = with_legal_frames(sensors, slashes=True, frames=frames_of, taken=(BASE, KIT))
     kit = _kit(named)
     frames = {frame_of(s): (seen_from(kit, base_frame(s)), s.known_model or "") for s in named}
     files = {TO_KIT: _yaml(BASE, {KIT: (kit, "")}), IN_KIT: _yaml(KIT, frames)}
@@ -55,6 +55,11 @@ def frame_of(each: CarriedSensor) -> str:
     if each.name.endswith(OWN_FRAME):
         return each.name
     return each.name + {CAMERA: LENS_FRAME, LIDAR: FOOT_FRAME}.get(each.kind or "", "")
+
+
+def frames_of(each: CarriedSensor) -> tuple[str, ...]:
+    """Return the names of all frames of a sensor: it has one."""
+    return (frame_of(each),)
 
 
 def base_frame(each: CarriedSensor) -> Pose:

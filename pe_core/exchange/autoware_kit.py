@@ -23,6 +23,7 @@ from .autoware import (
     base_lines,
     frame_lines,
     frame_of,
+    frames_of,
     kit_texts,
     models_of,
     pose_texts,
@@ -61,7 +62,8 @@ def write_over(
     calibrations = {name: text for name, text in texts.items() if "/" not in name}
     base, units = units_of(Path(), calibrations)
     ours = [each for each in sensors if not each.is_left_out]
-    named, lines = with_legal_frames(ours, slashes=True)
+    taken = (BASE, *units)
+    named, lines = with_legal_frames(ours, slashes=True, frames=frames_of, taken=taken)
     own, there = {frame_of(each): each for each in named}, _all_frames(base, units)
     new = [each for frame, each in own.items() if frame not in there]
     files = {TO_KIT: _patched(texts[TO_KIT], BASE, base, own, None)}

@@ -270,13 +270,17 @@ def _scan(model: Lidar) -> Scan:
     return Scan(*figures, model.max_range, even, None, model.min_range, model)
 
 
-def merged_lines(told: Iterable[tuple[str, str]]) -> list[str]:
-    """Return a line for each text, with all the names that it is about."""
+def merged_lines(told: Iterable[tuple[str, str]], everyone: int = 0) -> list[str]:
+    """Return a line for each text, with the names that it is about; of `everyone` with none."""
     names: dict[str, list[str]] = {}
     for name, text in told:
         if text:
             names.setdefault(text, []).append(name)
-    return [f"{', '.join(own)}: {text}" for text, own in names.items()]
+    everyone = everyone if everyone > 1 else 0
+    return [
+        f"all sensors: {text}" if len(own) == everyone else f"{', '.join(own)}: {text}"
+        for text, own in names.items()
+    ]
 
 
 def named_apart(names: Sequence[str]) -> list[str]:

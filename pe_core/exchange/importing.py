@@ -140,7 +140,7 @@ def _imported(
     kept = _kept(named, left_out, done, models)
     passthrough = Passthrough(row.name, kept, row.source(path), place.placed)
     told = [_left_out_line(left_out, row)] if left_out else []
-    noted = merged_lines((each.name, each.told) for each, _, _ in done)
+    noted = merged_lines(((each.name, each.told) for each, _, _ in done), len(done))
     lines = (*told, *noted, *(line for _, _, line in done if line))
     to_choose = tuple(each.name for each, _, line in done if line.endswith(CHOOSE))
     return ImportedRig(rig, to_choose, lines, passthrough if passthrough.holds else None)

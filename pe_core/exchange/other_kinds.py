@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from ..kinds import KINDS
 from .carried import CarriedSensor
+from .passthrough import pose_entry
 
 NO_WORD = re.compile("[^a-z0-9]+")
 NAMED_KINDS = ("radar", "ultrasonic", "sonar", "gnss", "gps", "imu", "ins", "collision")
@@ -29,7 +30,8 @@ def parted(
         if not kind or kind in KINDS:
             known.append(each)
         else:
-            other.append(replace(each, kind=kind, is_left_out=True))
+            entry = each.entry or pose_entry(each)
+            other.append(replace(each, kind=kind, entry=entry, is_left_out=True))
     return known, other
 
 

@@ -21,6 +21,7 @@ from ..errors import InputError, shown
 from ..scene.geometry import Pose
 from ..scene.sensors import SensorModel
 from .carried import CarriedSensor
+from .files import pose_from
 
 ORIGIN = Pose((0.0, 0.0, 0.0))
 UNMOVED_M, UNTURNED = 2e-5, 4e-6
@@ -201,6 +202,18 @@ def _object_of(each: CarriedSensor, part: str) -> dict[str, Any]:
     if not isinstance(row, dict):
         raise InputError("passthrough", f"entry of {each.name}", "a JSON object", shown(row))
     return row
+
+
+def pose_entry(each: CarriedSensor, **more: Any) -> str:
+    """Return an entry of a pose: position [m] and angles [rad], and what else stands there."""
+    return json_entry({"pose": [list(each.pose.position), list(each.pose.rpy)], **more})
+
+
+def pose_of_entry(each: CarriedSensor) -> Pose:
+    """Return the pose of such an entry, or raise `InputError`."""
+    found = entry_row(each, lambda _: {}, (), ()).get("pose")
+    place, turn = found if isinstance(found, list) and len(found) == 2 else (found, None)
+    return pose_from("passthrough", each.name, place, turn)
 
 
 def json_entry(row: Any) -> str:

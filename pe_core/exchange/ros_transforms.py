@@ -8,25 +8,29 @@ from __future__ import annotations
 
 import re
 import shlex
+from collections.abc import Mapping
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ..errors import InputError, shown
 from ..scene.geometry import Pose
+from ..text.xml_text import parse_xml
 from .camera_info import info_files, with_info
 from .carried import CAMERA, CarriedSensor
 from .figures import figure
 from .files import Written, plain_number, pose_from, text_of
-from .frame_names import with_legal_frames
+from .frame_names import OPTICAL, with_optical_frames
 from .frame_tree import poses_from_root
 from .frames import OPTICAL_RPY, from_quaternion, pose_of
 from .limits import LONGEST_LINE, MAX_FRAMES, require_at_most
+from .passthrough import pose_of_entry
 
-FILE, ROOT, OPTICAL = "rig.launch.xml", "base_link", "_optical"
-CONVENTIONS = (
-    " base_link is on the ground under the vehicle's centre: x forward, y left, z up; metres, "
-    "radians. NAME_optical looks along z, x right, y down (REP 103). "
+FILE, ROOT = "rig.launch.xml", "base_link"
+AXES = (
+    "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
+    "103). "
 )
+OURS, THEIRS = " is on the ground under the vehicle's centre: ", " is that of the imported file: "
 PUBLISHER = "static_transform_publisher"
 PLACE, TURN, QUATERNION = ("x", "y", "z"), ("roll", "pitch", "yaw"), ("qw", "qx", "qy", "qz")
 ENDS = ("frame-id", "child-frame-id")
@@ -37,15 +41,40 @@ ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
 
 def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     """Return a launch file with a publisher for each sensor."""
-    named, lines = with_legal_frames(sensors)
+    return _written(sensors, ROOT, OURS)
+
+
+def write_over(
+    texts: Mapping[str, str], sensors: tuple[CarriedSensor, ...]
+) -> tuple[Written, list[str]]:
+    """Return such a file on the root of the one that came in."""
+    launch = parse_xml("passthrough", texts.get(FILE, "").encode())
+    return _written(sensors, launch.get("root", ROOT), THEIRS)
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return an empty launch file that names the root of this one."""
+    links = _links(path / FILE if path.is_dir() else path)
+    root = next(parent for parent, _ in links.values() if parent not in links)
+    return {FILE: tostring(Element("launch", {"root": root}), "unicode")}
+
+
+def _written(
+    sensors: tuple[CarriedSensor, ...], root: str, where: str
+) -> tuple[Written, list[str]]:
+    kept = [each for each in sensors if each.is_left_out]
+    ours = [each for each in sensors if not each.is_left_out]
+    named, lines = with_optical_frames(ours, (root, *(each.name for each in kept)))
     launch = Element("launch")
     for each in named:
-        _publisher(launch, ROOT, each.name, each.pose)
+        _publisher(launch, root, each.name, each.pose)
         if each.kind == CAMERA:
             optical = Pose((0.0, 0.0, 0.0), OPTICAL_RPY)
             _publisher(launch, each.name, each.name + OPTICAL, optical)
+    for each in kept:
+        _publisher(launch, root, each.name, pose_of_entry(each))
     indent(launch)
-    text = f"<!--{CONVENTIONS}-->\n{tostring(launch, 'unicode')}\n"
+    text = f"<!-- {root}{where}{AXES}-->\n{tostring(launch, 'unicode')}\n"
     return {FILE: text.encode(), **info_files(named)}, lines
 
 
@@ -67,6 +96,18 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
         When there is no call, a number is none, or frames have two roots or a circle.
     """
     path = path / FILE if path.is_dir() else path
+    links = _links(path)
+    frames = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
+    poses = poses_from_root(path, links, frames, "frame")
+    optical = {name for name in links if name.endswith(OPTICAL)}
+    cameras = {links[name][0] for name in optical}
+    named = [name for name in links if name not in optical]
+    found = [CarriedSensor(n, poses[n], CAMERA if n in cameras else None) for n in named]
+    return with_info(path.parent, found)
+
+
+def _links(path: Path) -> dict[str, tuple[str, Pose]]:
+    """Return frames by name: the one that each hangs on, and its pose there."""
     calls = ARGS.findall(without_comments(text_of(path)))
     require_at_most(path, "file", len(calls), MAX_FRAMES, f"calls of {PUBLISHER}")
     links: dict[str, tuple[str, Pose]] = {}
@@ -78,13 +119,7 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
         links[child] = parent, pose
     if not links:
         raise InputError(path, "file", f"calls of {PUBLISHER}", "none")
-    frames = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
-    poses = poses_from_root(path, links, frames, "frame")
-    optical = {name for name in links if name.endswith(OPTICAL)}
-    cameras = {links[name][0] for name in optical}
-    named = [name for name in links if name not in optical]
-    found = [CarriedSensor(n, poses[n], CAMERA if n in cameras else None) for n in named]
-    return with_info(path.parent, found)
+    return links
 
 
 def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:

@@ -111,6 +111,9 @@ _ROWS = (
         urdf.read,
         keeps=opencv_of_five,
         holds=frozenset({MODEL, BEAMS, FUSION, MIN_RANGE, MAX_RANGE}),
+        write_over=urdf.write_over,
+        source=urdf.source,
+        passes_through=True,
     ),
     RigFormat(
         "ros",
@@ -121,6 +124,9 @@ _ROWS = (
         ros_transforms.read,
         keeps=opencv,
         beside=True,
+        write_over=ros_transforms.write_over,
+        source=ros_transforms.source,
+        passes_through=True,
     ),
     RigFormat(
         "autoware",

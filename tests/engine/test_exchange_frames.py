@@ -1,0 +1,158 @@
+"""Frames of robots: names of their own, links that Gazebo keeps, the origin, other kinds."""
+
+import math
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+import pe_core as pe
+from pe_core.exchange import import_rig, rig_files
+
+PUCK = "Velodyne VLP-16 Puck"
+IMU = (
+    '<gazebo reference="imu_link"><sensor name="i" type="imu"><update_rate>100</update_rate>'
+    "</sensor></gazebo>"
+)
+ROBOT = f"""<robot name="cart">
+  <link name="base_link"/><link name="base_footprint"/>
+  <link name="roof"/><link name="imu_link"/><link name="front_radar"/>
+  <joint name="f" type="fixed"><parent link="base_link"/><child link="base_footprint"/>
+    <origin xyz="0 0 -0.35"/></joint>
+  <joint name="r" type="fixed"><parent link="base_link"/><child link="roof"/>
+    <origin xyz="0.2 0 1.5" rpy="0 0.1 0"/></joint>
+  <joint name="i" type="fixed"><parent link="roof"/><child link="imu_link"/>
+    <origin xyz="0 0 0.1"/></joint>
+  <joint name="o" type="fixed"><parent link="base_link"/><child link="front_radar"/>
+    <origin xyz="2 0 0.3"/></joint>
+  <gazebo reference="roof"><sensor name="l" type="gpu_lidar"/></gazebo>
+  <gazebo reference="front_radar"><sensor name="r" type="radar"><range>80</range></sensor></gazebo>
+  {IMU}
+</robot>
+"""
+
+
+def sensor(name, model=PUCK, position=(0.5, 0.1, 1.5), rotation=(3, 10, 20)):
+    return pe.Sensor(name, pe.catalog.load(model), pe.Pose.from_degrees(position, rotation))
+
+
+def transforms(root):
+    """A launch file with a LiDAR and a radar on its roof, as ROS 2 has them."""
+    call = '<node pkg="tf2_ros" exec="static_transform_publisher" args="--x {} --z {} '
+    call += '--yaw {} --frame-id {} --child-frame-id {}"/>'
+    rows = [(0.5, 1.7, 0.25, root, "roof"), (2.0, 0.5, 0.125, "roof", "front_radar")]
+    return "<launch>" + "".join(call.format(*row) for row in rows) + "</launch>"
+
+
+def test_gazebo_keeps_every_link_where_it_is():
+    """What its converter drops or fuses: links without a mass, or on joints not to be preserved."""
+    files, _ = rig_files(pe.Rig([sensor("roof"), sensor("cam", "KITTI cam2")]), "urdf")
+    robot = ElementTree.fromstring(files["rig.urdf"])
+    links = [link.get("name") for link in robot.iter("link")]
+    assert links == ["base_link", "roof", "cam", "cam_optical"]
+    for link in robot.iter("link"):
+        if link.get("name") in links and link.find("inertial") is not None:
+            assert float(link.find("inertial/mass").get("value")) > 1e-5
+            inertia = link.find("inertial/inertia").attrib
+            assert all(float(inertia[key]) > 0.0 for key in ("ixx", "iyy", "izz"))
+        assert link.find("inertial") is not None
+    told = {}
+    for block in robot.iter("gazebo"):
+        told.setdefault(block.get("reference"), set()).update(child.tag for child in block)
+    assert all("turnGravityOff" in told[name] for name in links)
+    assert all("preserveFixedJoint" in told[f"{name}_joint"] for name in links[1:])
+
+
+@pytest.mark.parametrize("name", ["urdf", "ros"])
+def test_frames_of_sensors_and_of_the_format_stay_apart(name, tmp_path):
+    """By any order of names; each comes back with its own kind and place."""
+    rig = pe.Rig(
+        [
+            sensor("cam_optical", PUCK, (1, 0, 1)),
+            sensor("cam", "KITTI cam2", (2, 0, 1)),
+            sensor("base_link", "KITTI cam2", (3, 0, 1)),
+            sensor("base_link_2", PUCK, (4, 0, 1)),
+        ]
+    )
+    paths, lines = pe.export_rig(rig, name, tmp_path / "out")
+    text = paths[0].read_text()
+    frames = re.findall(r'(?:<link name="|--child-frame-id )([\w/]+)', text)
+    assert len(frames) == len(set(frames)) and "cam_optical" in frames
+    assert "cam_optical: called cam_optical_sensor, which is a legal frame of its own" in lines
+    found = import_rig(paths[0], name).rig
+    assert [each.name for each in found] == [
+        *("cam_optical_sensor", "cam", "base_link_2", "base_link_2_2")
+    ]
+    for ours, theirs in zip(rig, found, strict=True):
+        assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-9)
+        assert name == "ros" or theirs.kind == ours.kind
+
+
+def test_autoware_s_frames_stay_apart():
+    rig = pe.Rig([sensor("sensor_kit"), sensor("base_link"), sensor("roof")])
+    files, _ = rig_files(rig, "autoware", pe.Reference(-1.3, 0.3))
+    frames = re.findall(r"^  (\S+):", "".join(f.decode() for f in files.values()), re.M)
+    assert len(frames) == len(set(frames)) == 4 and frames[0] == "sensor_kit_base_link"
+
+
+def test_a_robot_s_origin_is_the_link_on_the_ground_else_its_root(tmp_path):
+    (tmp_path / "r.urdf").write_text(ROBOT)
+    found = import_rig(tmp_path / "r.urdf")
+    assert found.rig["roof"].pose.position == pytest.approx((0.2, 0.0, 1.85))
+    assert any("roof: taken in base_footprint, which is on the ground" in s for s in found.lines)
+    (tmp_path / "r.urdf").write_text(ROBOT.replace("base_footprint", "under"))
+    found = import_rig(tmp_path / "r.urdf")
+    assert found.rig["roof"].pose.position == pytest.approx((0.2, 0.0, 1.5))
+    assert any("taken in the robot's root, base_link; if that is not" in s for s in found.lines)
+    ours, _ = rig_files(found.rig, "urdf")
+    (tmp_path / "ours.urdf").write_bytes(ours["rig.urdf"])
+    assert not any("taken in" in s for s in import_rig(tmp_path / "ours.urdf").lines)
+
+
+def test_a_robot_s_other_sensors_go_through_three_times(tmp_path):
+    """Their links where they were, and all that Gazebo was told of them."""
+    path = tmp_path / "0.urdf"
+    path.write_text(ROBOT)
+    for number in (1, 2, 3):
+        found = import_rig(path, placed=pe.Pose((0.3, 0.0, 0.0)))
+        assert [each.name for each in found.rig] == ["roof"]
+        gone = "left out: 1 radar (front_radar), 1 imu sensor (imu_link)"
+        assert found.lines[0].startswith(gone)
+        path = tmp_path / f"{number}.urdf"
+        pe.export_rig(found.rig, "urdf", path, passthrough=found.passthrough)
+        robot = ElementTree.fromstring(path.read_text())
+        places = {
+            joint.find("child").get("link"): joint.find("origin").get("xyz")
+            for joint in robot.iter("joint")
+        }
+        assert robot.get("name") == "cart" and robot.find("link").get("name") == "base_footprint"
+        assert [float(v) for v in places["roof"].split()] == pytest.approx([0.2, 0.0, 1.85])
+        assert [float(v) for v in places["front_radar"].split()] == pytest.approx([2.0, 0.0, 0.65])
+        kept = [
+            "".join(ElementTree.tostring(block, "unicode").split())
+            for block in robot.iter("gazebo")
+            if block.get("reference") == "imu_link" and block.find("sensor") is not None
+        ]
+        assert kept == ["".join(IMU.split())]
+
+
+def test_ros_transforms_go_through_three_times(tmp_path):
+    path, radars = tmp_path / "0.launch.xml", []
+    path.write_text(transforms("car"))
+    for number in (1, 2, 3):
+        found = import_rig(path, "ros")
+        assert found.lines[0].startswith("left out: 1 radar (front_radar)")
+        out = tmp_path / str(number) / "rig.launch.xml"
+        pe.export_rig(found.rig, "ros", out, passthrough=found.passthrough)
+        calls = re.findall(r'args="(.*?)"', out.read_text())
+        assert [call.split("--frame-id ")[1] for call in calls] == [
+            "car --child-frame-id roof",
+            "car --child-frame-id front_radar",
+        ]
+        assert calls[0].startswith("--x 0.5 --y 0.0 --z 1.7 --roll 0.0 --pitch 0.0 --yaw 0.25 ")
+        radars.append(calls[1])
+        path = out
+    assert radars == radars[:1] * 3
+    numbers = [float(v) for v in re.findall(r"--\w+ ([-\d.e]+)", radars[0])]
+    turned = 0.5 + 2.0 * math.cos(0.25), 2.0 * math.sin(0.25), 2.2, 0.0, 0.0, 0.375
+    assert numbers == pytest.approx(turned)

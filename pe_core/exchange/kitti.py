@@ -5,6 +5,7 @@ There is no vehicle in it: read back, the LiDAR is the origin. All cameras look 
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,10 @@ from .pictures import pinhole_picture
 
 FILE, MOST_CAMERAS = "calib.txt", 4
 RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
+ODOMETRY = "Tr"
+"""To the first camera as it is rectified: the benchmark of odometry has no R beside it."""
+KEY = re.compile(r"\s*([^\s:]*):?(.*)$")
+"""A line's key and its numbers: after a colon, or in the benchmark of tracking a blank."""
 PARALLEL = 1e-9
 ENTRY = Number(cap=1e9)
 """An entry of a matrix."""
@@ -85,7 +90,8 @@ def _to_camera(lidar: CarriedSensor, camera: CarriedSensor, axes: Floats) -> Flo
 def read(path: Path) -> tuple[CarriedSensor, ...]:
     """Read the LiDAR, at the origin, and the cameras round it."""
     rows = _rows(path)
-    rectified = _matrix(path, rows, RECTIFIED, (3, 3))
+    is_odometry = ODOMETRY in rows and not any(key in rows for key in RECTIFIED)
+    rectified = np.eye(3) if is_odometry else _matrix(path, rows, RECTIFIED, (3, 3))
     to_camera = _matrix(path, rows, TO_CAMERA, (3, 4))
     rotation = checked_rotation(path, TO_CAMERA[0], product(rectified, to_camera[:, :3]))
     shift = turned(rectified, to_camera[:, 3].tolist())
@@ -107,12 +113,9 @@ def read(path: Path) -> tuple[CarriedSensor, ...]:
 def _rows(path: Path) -> dict[str, list[float]]:
     rows = {}
     for number, line in enumerate(text_of(path).splitlines()):
-        key, _, values = line.partition(":")
-        if not values.strip():
-            continue
-        if key.strip() != "calib_time":
-            field = f"line {number + 1}, {key.strip()}"
-            rows[key.strip()] = figures(path, field, values, None, ENTRY)
+        key, values = KEY.match(line).groups()  # type: ignore[union-attr]
+        if key and values.strip() and key != "calib_time":
+            rows[key] = figures(path, f"line {number + 1}, {key}", values, None, ENTRY)
     return rows
 
 

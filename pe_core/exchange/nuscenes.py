@@ -1,7 +1,7 @@
 """nuScenes: the tables sensor.json and calibrated_sensor.json.
 
 Ego frame: the rear axle on the ground. A camera's frame is optical; a LiDAR's has x to the right
-and y forward. Distortion is nuImages' camera_distortion: k1, k2, p1, p2, k3.
+and y forward. Distortion is nuImages' camera_distortion: k1, k2, p1, p2, k3, of fisheyes also k4.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from ..text.tables import Table
 from ..text.values import numbers, vector
 from .carried import CAMERA, LIDAR, CarriedSensor
 from .files import Written, json_bytes, json_of, json_rows
+from .fourth_power import with_fourth
 from .frames import (
     BODY_FROM_OPTICAL,
     BODY_FROM_RIGHT_FORWARD,
@@ -101,10 +102,13 @@ def _sensor(path: Path, row: Table, known: Table) -> CarriedSensor:
     if kind in AXES:
         rotation = product(rotation, AXES[kind].T)
     picture = _picture(path, row.field("camera_intrinsic"), row.raw("camera_intrinsic", []))
+    told = ""
     if picture is not None and row.raw("camera_distortion", []):
-        picture = _bent(path, row, picture)
+        picture, told = _bent(path, row, picture)
     entry = json_entry({CALIBRATED: row.data, SENSORS: known.data})
-    return CarriedSensor(name, pose_of(rotation, place), kind, None, picture, entry=entry)
+    return CarriedSensor(
+        name, pose_of(rotation, place), kind, None, picture, told=told, entry=entry
+    )
 
 
 def _picture(path: Path, field: str, value: Any) -> Picture | None:
@@ -117,12 +121,15 @@ def _picture(path: Path, field: str, value: Any) -> Picture | None:
     return pinhole_picture(fx, fy, cx, cy)
 
 
-def _bent(path: Path, row: Table, picture: Picture) -> Picture:
-    """Return a picture with nuImages' distortion; of six numbers the last is a fisheye's."""
+def _bent(path: Path, row: Table, picture: Picture) -> tuple[Picture, str]:
+    """Return a picture with nuImages' distortion, and what has to be known of it, if anything."""
     field, values = row.field("camera_distortion"), row.raw("camera_distortion")
     found = numbers(values)
-    if found is None or found.ndim != 1 or len(found) not in (4, 5):
-        raise InputError(path, field, "4 or 5 numbers: k1, k2, p1, p2, k3", shown(values))
+    if found is None or found.ndim != 1 or len(found) not in (4, 5, 6):
+        raise InputError(path, field, "4 to 6 numbers: k1, k2, p1, p2, k3, k4", shown(values))
+    k1, k2, p1, p2, k3, k4 = [*map(float, found), 0.0, 0.0][:6]
+    if k4:
+        return with_fourth(picture, (k1, k2, k3, k4), (p1, p2))
     lens = picture.lens
     place = lens.fx, lens.fy, lens.cx, lens.cy
-    return Picture(BrownConrady(*place, None, *map(float, found)))
+    return Picture(BrownConrady(*place, None, k1, k2, p1, p2, k3)), ""

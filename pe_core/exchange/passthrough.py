@@ -64,6 +64,7 @@ class SourceSensor:
         untouched = bool(self.entry or self.is_stand_in) and same_model(self.model, model)
         if untouched:
             now = replace(now, picture=None, scan=None, is_stand_in=self.is_stand_in)
+            now = replace(now, min_range=None, max_range=None)
         unmoved = self.pose is not None and same_pose(self.pose, now.pose)
         return replace(now, entry=self.entry, is_unmoved=unmoved)
 

@@ -227,6 +227,7 @@ def told_format(path: Path) -> RigFormat:
         if names & set(row.files):
             return row
     ending = {".csv": "csv", ".urdf": "urdf", ".xacro": "urdf", ".sh": "ros", ".xml": "ros"}
+    ending[".txt"] = "kitti"
     if path.suffix.lower() in ending:
         return RIG_FORMATS[ending[path.suffix.lower()]]
     expected = f"a name that tells its format, or the format said: {', '.join(RIG_FORMATS)}"

@@ -91,6 +91,9 @@ REGION_ITEMS = tuple((each.key, each.label, each.description) for each in REGION
 BEFORE_MOVE, PINNED = 0, -1
 """What the live score is compared with; any other number is the key of a variant."""
 
+NO_ANCHOR = "NONE"
+"""No known rig is scored beside the live score."""
+
 
 def free_name(wanted: str, taken: set[str]) -> str:
     """Return a name, with a number behind it where it is taken: "Idea", "Idea 2"."""

@@ -7,6 +7,7 @@ the last operation, for which a row is always left, so that it does not jump wit
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import blf
@@ -15,7 +16,8 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 
 from .. import changes, corners, redraw, worker
-from . import latest
+from . import background, latest
+from .figure_words import anchor_line, figure_lines
 from .shown import ShownScore, shown_score
 from .words import BETTER, WORSE, words_of
 
@@ -24,6 +26,8 @@ FONT = 0
 LARGE, SMALL = 17.0, 11.0
 """Sizes of letters, in pixels of an interface at scale 1; so are all lengths below."""
 ROW, PAD, MARGIN, HUD_ROW = 17.0, 10.0, 14.0, 30.0
+ZONE_ROWS = 2
+"""Rows that are kept for zones, so that the plate does not jump with every move."""
 LEAST_WIDTH, MOST_COLUMNS = 236.0, 64
 Color = tuple[float, float, float, float]
 INK: Color = (0.95, 0.95, 0.95, 1.0)
@@ -78,28 +82,53 @@ def draw() -> None:
         score = shown_score(context.scene)
         if score is not None and score.exact and worker.desk.awaits(PICTURE):
             score = score._replace(picture_follows=True)
-        lines = lines_of(latest.reading(name), latest.note(name), score)
+        reading = latest.reading(name)
+        below = [] if reading is None else below_of(name, reading, score)
+        lines = lines_of(reading, latest.note(name), score, below)
         box = draw_lines(lines, *_place(context), context.preferences.system.ui_scale)
     corners.reserve(context.region.as_pointer(), PLATE_NAME, box)
 
 
-def lines_of(reading: latest.Reading | None, note: str, score: ShownScore | None) -> list[TextRow]:
-    """Lines from the top down: what is shown of a reading, and what is in the way of a newer."""
-    found = [] if reading is None or score is None else _lines_of_words(reading, score)
+def below_of(scene_name: str, reading: latest.Reading, score: ShownScore | None) -> list[TextRow]:
+    """Rows of key figures and of a known rig, faint where they are of before a move."""
+    figures = background.figures_of(scene_name, reading, score is not None and score.exact)
+    anchor = background.anchor_of(scene_name)
+    rows = []
+    if figures is not None:
+        color = INK if figures.current else FAINT
+        rows += [TextRow(SMALL, ((text, color),)) for text in figure_lines(figures)]
+    if anchor is not None:
+        rows.append(TextRow(SMALL, ((anchor_line(anchor, reading.glance), FAINT),)))
+    return rows
+
+
+def lines_of(
+    reading: latest.Reading | None,
+    note: str,
+    score: ShownScore | None,
+    below: Sequence[TextRow] = (),
+) -> list[TextRow]:
+    """Lines from the top down: what is shown of a reading, rows `below` it, what is in the way."""
+    found = [] if reading is None or score is None else _lines_of_words(reading, score, below)
     if note:
         found += [TextRow(SMALL, ((row, ALERT),)) for row in textwrap.wrap(note, MOST_COLUMNS)]
     return found or [TextRow(SMALL, (("Live: scoring ...", FAINT),))]
 
 
-def _lines_of_words(reading: latest.Reading, score: ShownScore) -> list[TextRow]:
+def _lines_of_words(
+    reading: latest.Reading, score: ShownScore, below: Sequence[TextRow]
+) -> list[TextRow]:
     words = words_of(reading, score)
     arrow, color = ARROWS.get(words.sense, ""), BY_SENSE.get(words.sense, FAINT)
     change = ((f"{arrow} {words.change}".strip(), color),) if words.change else ()
-    small = [TextRow(SMALL, ((text, INK),)) for text in words.lines]
+    kept = () if reading.before is None else ("",) * (ZONE_ROWS + 1 - len(words.lines))
+    seen, *zones = (TextRow(SMALL, ((text, INK),)) for text in (*words.lines, *kept))
     return [
         TextRow(LARGE, ((words.headline, INK), *change)),
         TextRow(SMALL, tuple((text, FAINT) for text in (words.error, words.against) if text)),
-        *small,
+        seen,
+        *(row for row in below if row.words[0][0]),
+        *zones,
     ]
 
 

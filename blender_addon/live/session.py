@@ -17,7 +17,7 @@ from bpy.app.handlers import persistent
 
 from .. import body, bridge, changes, motion, worker
 from ..engine import pe
-from . import against, latest
+from . import against, background, latest
 from .asking import EvaluatorStore, ScoreWish, priors, read
 from .reference import Moves, ReadRig, Reference
 
@@ -90,6 +90,8 @@ def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) 
     reference = against.reference_of(scene, wish, _moves)
     job = partial(work, name, wish, number, reference, _generation)
     worker.hand.ask(name, job, lambda _: changes.reading.tell(), partial(failed, name))
+    if not draft:
+        background.ask(scene, wish, reference)
 
 
 def work(
@@ -132,6 +134,7 @@ def switched() -> None:
         if not scene.perception_entropy.live.on:
             drop(scene.name)
             latest.forget_reading(scene.name)
+            background.drop(scene.name)
             _seen.pop(scene.name, None)
             _last.pop(scene.name, None)
             _moves.drop(scene.name)
@@ -147,6 +150,13 @@ def shown_scenes() -> list[bpy.types.Scene]:
     return [scene for scene in shown.values() if scene.perception_entropy.live.on]
 
 
+def look_at_settings() -> None:
+    """What the 3D view shows may be set for another height or class: so are the figures."""
+    if not bpy.app.background:
+        for scene in shown_scenes():
+            background.ask_again(scene)
+
+
 @persistent
 def forget(*_: object) -> None:
     """Before another file comes: nothing of this one is kept or delivered."""
@@ -156,6 +166,7 @@ def forget(*_: object) -> None:
         each.clear()
     priors.clear()
     against.forget()
+    background.forget()
     latest.forget()
 
 
@@ -181,10 +192,12 @@ def register() -> None:
     bpy.app.handlers.load_pre.append(forget)
     changes.rested.connect(rest)
     changes.live.connect(switched)
+    changes.picture.connect(look_at_settings)
 
 
 def unregister() -> None:
     """Stop listening and forget everything; the thread has ended."""
+    changes.picture.disconnect(look_at_settings)
     changes.live.disconnect(switched)
     changes.rested.disconnect(rest)
     bpy.app.handlers.load_pre.remove(forget)

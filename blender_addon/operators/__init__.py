@@ -4,7 +4,7 @@ Panels take from here what there is to press and to choose from.
 """
 
 from ..explaining import is_behind as warnings_are_behind
-from ..live import ShownScore, shown_score
+from ..live import ShownScore, live_lines, shown_score
 from . import (
     add_sensor,
     apply_scale,
@@ -53,6 +53,7 @@ __all__ = [
     "exporting",
     "held_by",
     "listed_sensors",
+    "live_lines",
     "makers",
     "models",
     "offers",

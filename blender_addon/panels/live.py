@@ -5,8 +5,9 @@ from __future__ import annotations
 import bpy
 
 from ..choices import BEFORE_MOVE, PINNED
-from ..operators import reference_label
+from ..operators import live_lines, reference_label
 from .layout import Tab, columns
+from .words import draw_sentence
 
 
 class PE_MT_live_against(bpy.types.Menu):
@@ -42,6 +43,13 @@ class PE_PT_live(Tab, bpy.types.Panel):
         name.label(text="Compared With")
         chosen = reference_label(context.scene)
         menu.menu(PE_MT_live_against.bl_idname, text=chosen, translate=False)
+        live = context.scene.perception_entropy.live
+        name, field = columns(self.layout, 0.4)
+        name.label(text="Beside")
+        field.prop(live, "anchor", text="")
+        self.layout.prop(live, "figures")
+        for line in live_lines(context.scene):
+            draw_sentence(self.layout, context, line)
 
 
 CLASSES = (PE_MT_live_against, PE_PT_live)

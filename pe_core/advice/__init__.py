@@ -4,6 +4,7 @@ from .advice import FRAGILE, Advice
 from .figures import joined
 from .fragile import fragile, off_by
 from .hidden import HiddenSensor, hidden_sensors, hidden_words
+from .key_figures import KeyFigures, key_figures
 from .mounting import stopped_shares
 from .object_words import object_words, objects_looked_at
 from .outlook import Outlook, class_of, outlook
@@ -31,6 +32,7 @@ __all__ = [
     "AskedPlace",
     "ComparedRow",
     "HiddenSensor",
+    "KeyFigures",
     "Notation",
     "Outlook",
     "SensorAtPlace",
@@ -42,6 +44,7 @@ __all__ = [
     "hidden_sensors",
     "hidden_words",
     "joined",
+    "key_figures",
     "loss_text",
     "object_words",
     "objects_looked_at",

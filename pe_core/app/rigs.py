@@ -6,8 +6,8 @@ import argparse
 from collections.abc import Sequence
 
 from .. import catalog
-from ..catalog import KnownRig, KnownSensor
-from ..scene import Rig, Sensor, Vehicle
+from ..catalog import KnownRig
+from ..scene import Vehicle
 from ..study import Study, save_study
 from .exchanging import new_study
 from .status import DONE, Answer
@@ -52,15 +52,8 @@ def study_of_rig(
     rig: KnownRig, vehicle: Vehicle | None = None, mesh: str | None = None, *, stretched: bool
 ) -> Study:
     """Return a known rig as a study: on a vehicle stretched onto it, or as it was published."""
-    sensors = rig.sensors
-    if stretched and vehicle is not None:
-        low, high = vehicle.bounds
-        sensors = rig.on_vehicle(low.tolist(), high.tolist())
-    return Study(Rig([_mounted(each) for each in sensors]), vehicle, mesh=mesh)
-
-
-def _mounted(each: KnownSensor) -> Sensor:
-    return Sensor(each.name, catalog.load(each.model), each.pose)
+    bounds = vehicle.bounds.tolist() if stretched and vehicle is not None else None
+    return Study(catalog.rig_on(rig, bounds), vehicle, mesh=mesh)
 
 
 def _standing(rig: KnownRig, vehicle: Vehicle | None, as_published: bool) -> str:

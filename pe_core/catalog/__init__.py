@@ -7,7 +7,7 @@ product, but cameras to compare with.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
@@ -19,7 +19,7 @@ from typing import Any
 from ..errors import InputError, shown
 from ..kinds import kind_named, kind_of
 from ..scene.housing import Housing
-from ..scene.sensors import SensorModel
+from ..scene.sensors import Rig, Sensor, SensorModel
 from ..text.fixed import fixed
 from ..text.values import A_NAME, A_TEXT
 from .housings import read_housing
@@ -43,6 +43,7 @@ __all__ = [
     "matching",
     "names",
     "remove",
+    "rig_on",
     "scan_above_base",
     "to_table",
 ]
@@ -148,6 +149,19 @@ def load(name: str) -> SensorModel:
             raise InputError("catalogue", "model", f"a name such as {_near(name)}", shown(name))
         _loaded.setdefault(name, from_table(name, entry.table))
     return _loaded[name]
+
+
+def rig_on(known: KnownRig, bounds: Sequence[Sequence[float]] | None = None) -> Rig:
+    """Return a known rig on a vehicle: stretched onto its box, or as it was published.
+
+    Parameters
+    ----------
+    known : KnownRig
+    bounds : (2, 3) float, optional
+        Lowest and highest corner of the vehicle [m]; None: as published.
+    """
+    sensors = known.sensors if bounds is None else known.on_vehicle(*bounds)
+    return Rig([Sensor(each.name, load(each.model), each.pose) for each in sensors])
 
 
 def housing(name: str) -> Housing | None:

@@ -9,8 +9,18 @@ import pytest
 import blender_addon
 from blender_addon import bridge, changes, motion, stale, worker
 from blender_addon.choices import BEFORE_MOVE, PINNED
-from blender_addon.engine import pe
-from blender_addon.live import asking, latest, readout, reference, session, shown
+from blender_addon.engine import advice, catalog, pe
+from blender_addon.live import (
+    asking,
+    background,
+    figure_words,
+    latest,
+    readout,
+    reference,
+    session,
+    shown,
+)
+from blender_addon.live.background import ShownFigures
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -37,6 +47,7 @@ def live(monkeypatch, car):
     for module in (motion, session):
         monkeypatch.setattr(module, "bpy", Window)
     drag(car.objects["roof"])  # from here on it is known what there is
+    car.perception_entropy.live.figures = False  # but where they are tested
     car.perception_entropy.live.on = True
     return car
 
@@ -199,6 +210,50 @@ def test_one_score_is_shown_at_a_time(live, monkeypatch):
     assert shown.shown_score(live) == (now.entropy, now.coverage, now.stderr, True, False, False)
     settings.live.on = False
     assert shown.shown_score(live) is None, "the panel draws the stored result, which is marked"
+
+
+def lines(scene):
+    return blender_addon.live.live_lines(scene)
+
+
+def test_figures_below_the_score_are_the_engine_s_and_of_before_while_it_moves(live, monkeypatch):
+    settings = live.perception_entropy
+    settings.live.figures = True
+    looking, of = scenes.study().sight(), {"height": 0.5, "class_name": "pedestrian"}
+    first = advice.key_figures(looking, reading(live).rig, **of)
+    assert lines(live) == list(figure_words.figure_lines(ShownFigures(first, None, True)))
+    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
+    drag(live.objects["roof"], 0.6)
+    told = list(figure_words.figure_lines(ShownFigures(first)))
+    assert lines(live) == told and all(line.startswith("Before this move: ") for line in told)
+    rest()
+    second = advice.key_figures(looking, reading(live).rig, **of)
+    assert second != first
+    assert lines(live) == list(figure_words.figure_lines(ShownFigures(second, first, True)))
+    settings.view.blind_height, settings.view.reach_class = "H100", "car"
+    second = advice.key_figures(looking, reading(live).rig, 1.0, "car")
+    first = advice.key_figures(looking, reading(live).reference.rig, 1.0, "car")
+    assert lines(live) == list(figure_words.figure_lines(ShownFigures(second, first, True)))
+    settings.targets = "objects"
+    rest()
+    assert [line for line in lines(live) if "ahead" in line] == [], "those are in the score"
+
+
+def test_a_known_rig_is_scored_on_this_vehicle_once(live, monkeypatch):
+    live.perception_entropy.live.anchor = "kitti"
+    study = replace(scenes.study(), samples=SAMPLES)
+    known = catalog.known_rig("kitti")
+    rig = catalog.rig_on(known, [corner.tolist() for corner in study.vehicle.bounds])
+    there = study.evaluator().score(rig).entropy
+    now = reading(live).glance.entropy
+    by = f"{abs(now - there):.3f} {'worse' if now > there else 'better'}"
+    assert lines(live) == [f"KITTI here: {there:.3f} nats; this is {by}"]
+    monkeypatch.setattr(background, "_score_anchor", lambda *_: pytest.fail("scored again"))
+    drag(live.objects["roof"])
+    rest()
+    assert lines(live)[0].startswith(f"KITTI here: {there:.3f} nats")
+    live.perception_entropy.live.anchor = "NONE"
+    assert lines(live) == []
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):

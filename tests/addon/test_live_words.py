@@ -2,8 +2,9 @@
 
 import pytest
 
-from blender_addon.engine import pe
-from blender_addon.live import latest, readout, words
+from blender_addon.engine import advice, pe
+from blender_addon.live import figure_words, latest, readout, words
+from blender_addon.live.background import ShownFigures
 from blender_addon.live.reference import Reference
 from blender_addon.live.shown import ShownScore
 
@@ -122,3 +123,58 @@ def test_a_body_that_was_made_simpler_is_told():
         words.words_of(reading_of(glance(), moved_m=0.0204), score_of(glance())).error
         == "± 0.022  at rest, body simplified to 20 mm"
     )
+
+
+def figures(**changed):
+    told = {"blind_m2": 81.24, "height": 0.5, "within": 10.0, "class_name": "pedestrian"}
+    told |= {"reach_m": 47.2, "at_least": False, "expected_ap": 0.617}
+    return advice.KeyFigures(**told | changed)
+
+
+@pytest.mark.parametrize(
+    ("now", "before", "lines"),
+    [
+        (
+            figures(),
+            None,
+            (
+                "81.2 m² blind to what is 0.5 m tall",
+                "Pedestrian found to 47 m ahead, AP 0.62",
+            ),
+        ),
+        (
+            figures(),
+            figures(blind_m2=84.3, reach_m=45.0, expected_ap=0.6),
+            (
+                "81.2 m² blind to what is 0.5 m tall (\N{MINUS SIGN}3.1)",
+                "Pedestrian found to 47 m ahead (+2), AP 0.62 (+0.02)",
+            ),
+        ),
+        (
+            figures(height=0.0, reach_m=80.0, at_least=True, expected_ap=None),
+            figures(blind_m2=81.26, reach_m=80.0),
+            (
+                "81.2 m² blind to what lies flat",
+                "Pedestrian found to \N{GREATER-THAN OR EQUAL TO} 80 m ahead",
+            ),
+        ),
+        (
+            figures(reach_m=0.0, class_name="cone"),
+            None,
+            ("81.2 m² blind to what is 0.5 m tall", "Cone found nowhere ahead, AP 0.62"),
+        ),
+        (
+            figures(reach_m=None, class_name=None, expected_ap=None),
+            None,
+            ("81.2 m² blind to what is 0.5 m tall", ""),
+        ),
+    ],
+)
+def test_figures_in_words(now, before, lines):
+    assert figure_words.figure_lines(ShownFigures(now, before, True)) == lines
+    of_before = tuple(f"Before this move: {line}" if line else "" for line in lines)
+    assert before or figure_words.figure_lines(ShownFigures(now)) == of_before
+
+
+def test_figures_that_are_not_there_yet_say_so():
+    assert figure_words.figure_lines(ShownFigures())[0] == figure_words.WAITING

@@ -46,7 +46,7 @@ def test_on_objects_reach_and_ap_are_left_to_the_score(study):
 
 
 def test_a_class_that_there_is_not(study):
-    with pytest.raises(pe.InputError, match="expected one of .*pedestrian"):
+    with pytest.raises(pe.InputError, match=r"expected one of .*pedestrian"):
         advice.key_figures(study.sight(), study.rig, class_name="boat")
 
 

@@ -166,7 +166,7 @@ def test_a_change_is_told_to_those_who_listen(car, heard):
 
 
 def test_picture_and_check_follow_a_change(car):
-    assert {f.__name__ for f in changes.picture.listeners} == {"soon"}
+    assert {f.__name__ for f in changes.picture.listeners} == {"look_at_settings", "soon"}
     assert {f.__name__ for f in changes.study.listeners} == {
         *("soon", "fit_all", "forget", "note", "sync_own_sensors"),
     }

@@ -215,9 +215,7 @@ def _ask_anchor(name: str, problem: Problem, chosen: str) -> None:
 
 def _score_anchor(problem: Problem, known_rig: catalog.KnownRig) -> pe.Glance:
     """In the thread: score a known rig, by an evaluator of its own."""
-    vehicle = problem.vehicle
-    bounds = None if vehicle is None else [corner.tolist() for corner in vehicle.bounds]
-    rig = catalog.rig_on(known_rig, bounds)
+    rig = catalog.rig_on(known_rig, problem.vehicle)
     return EvaluatorStore().glance("", ScoreWish(problem, rig, draft=False))[0]
 
 

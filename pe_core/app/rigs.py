@@ -52,8 +52,7 @@ def study_of_rig(
     rig: KnownRig, vehicle: Vehicle | None = None, mesh: str | None = None, *, stretched: bool
 ) -> Study:
     """Return a known rig as a study: on a vehicle stretched onto it, or as it was published."""
-    bounds = vehicle.bounds.tolist() if stretched and vehicle is not None else None
-    return Study(catalog.rig_on(rig, bounds), vehicle, mesh=mesh)
+    return Study(catalog.rig_on(rig, vehicle if stretched else None), vehicle, mesh=mesh)
 
 
 def _standing(rig: KnownRig, vehicle: Vehicle | None, as_published: bool) -> str:

@@ -7,7 +7,7 @@ product, but cameras to compare with.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
@@ -20,6 +20,7 @@ from ..errors import InputError, shown
 from ..kinds import kind_named, kind_of
 from ..scene.housing import Housing
 from ..scene.sensors import Rig, Sensor, SensorModel
+from ..scene.vehicle import Vehicle
 from ..text.fixed import fixed
 from ..text.values import A_NAME, A_TEXT
 from .housings import read_housing
@@ -151,16 +152,12 @@ def load(name: str) -> SensorModel:
     return _loaded[name]
 
 
-def rig_on(known: KnownRig, bounds: Sequence[Sequence[float]] | None = None) -> Rig:
-    """Return a known rig on a vehicle: stretched onto its box, or as it was published.
-
-    Parameters
-    ----------
-    known : KnownRig
-    bounds : (2, 3) float, optional
-        Lowest and highest corner of the vehicle [m]; None: as published.
-    """
-    sensors = known.sensors if bounds is None else known.on_vehicle(*bounds)
+def rig_on(known: KnownRig, vehicle: Vehicle | None = None) -> Rig:
+    """Return a known rig stretched onto a vehicle's box; without one as it was published."""
+    sensors = known.sensors
+    if vehicle is not None:
+        low, high = vehicle.bounds
+        sensors = known.on_vehicle(low.tolist(), high.tolist())
     return Rig([Sensor(each.name, load(each.model), each.pose) for each in sensors])
 
 

@@ -243,7 +243,7 @@ def test_a_known_rig_is_scored_on_this_vehicle_once(live, monkeypatch):
     live.perception_entropy.live.anchor = "kitti"
     study = replace(scenes.study(), samples=SAMPLES)
     known = catalog.known_rig("kitti")
-    rig = catalog.rig_on(known, [corner.tolist() for corner in study.vehicle.bounds])
+    rig = catalog.rig_on(known, study.vehicle)
     there = study.evaluator().score(rig).entropy
     now = reading(live).glance.entropy
     by = f"{abs(now - there):.3f} {'worse' if now > there else 'better'}"

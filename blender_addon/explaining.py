@@ -9,7 +9,7 @@ from __future__ import annotations
 import bpy
 
 from . import body, bridge, changes, redraw, roster
-from .engine import advice, pe, sight
+from .engine import advice, pe
 from .worker import desk
 
 PATIENCE_S = 1.0
@@ -93,8 +93,7 @@ def look_round(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> N
     study, score, name = outcome.study, outcome.after, scene.name
 
     def work() -> advice.Outlook:
-        looking = sight.Sight(study.space, study.prior, study.vehicle, model=study.model)
-        return advice.outlook(looking, study.rig)
+        return advice.outlook(study.sight(), study.rig)
 
     def deliver(seen: advice.Outlook) -> None:
         scene = bpy.data.scenes.get(name)

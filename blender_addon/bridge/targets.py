@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..choices import OBJECTS
-from ..engine import pe
+from ..engine import advice, pe
 
 
 def targets_of(settings: bpy.types.PropertyGroup) -> pe.TargetRule:
@@ -38,7 +38,7 @@ def store_found(settings: bpy.types.PropertyGroup, found: pe.ObjectScore | None)
         own = by_name.get(row.name) if row.is_class else None
         if own is not None:
             row.ap = f"{own.ap:.2f}"
-            row.reach = f"{own.reach['front']:.0f} m"
+            row.reach = advice.lone_reach(own.reach["front"])
 
 
 def _shown(name: str) -> str:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import graphics
+from ..engine import graphics, sight
 
 if TYPE_CHECKING:
-    from ..engine import pe, sight
+    from ..engine import pe
 
 Floats = NDArray[np.float64]
 
@@ -21,8 +21,6 @@ BEARINGS = 72
 FIGURES = 8
 """At how many bearings metres are written."""
 LEAST_FIGURE_M = 1.0
-AT_LEAST_M = 0.5
-"""A reach nearer to the edge of the space than this ends there: it is at least that far."""
 FAINT = 0.25
 
 
@@ -31,8 +29,7 @@ def reach_of_rig(
 ) -> graphics.LayerShape:
     """Return the rig's reach with metres at some bearings; `name` says which rig, of several."""
     color = palette.reach
-    title = f"{found.class_name.capitalize()} found, AP ≥ {AP:g}"
-    legend = graphics.ColorKey(title, classes=((color, name or "rig"),))
+    legend = graphics.ColorKey(_title(found), classes=((color, name or "rig"),))
     return graphics.LayerShape(
         lines=reach_lines(found, found.distance, color),
         labels=tuple(_figures(found, palette.words)),
@@ -47,21 +44,22 @@ def reach_of_sensors(found: sight.Reach, numbers: dict[str, int]) -> graphics.La
         color = (*graphics.sensor_color(number), 0.75)
         lines.append(reach_lines(found, found.per_sensor[name], color))
         classes.append((color, name))
-    legend = graphics.ColorKey(
-        f"{found.class_name.capitalize()} found, AP ≥ {AP:g}", classes=tuple(classes)
-    )
+    legend = graphics.ColorKey(_title(found), classes=tuple(classes))
     return graphics.LayerShape(lines=graphics.Primitives.joined(lines), legend=legend)
+
+
+def _title(found: sight.Reach) -> str:
+    """What is shown: lone objects are told apart from the voxels of a class."""
+    what = f"lone {found.class_name}" if found.sector else found.class_name
+    return f"{what[:1].upper()}{what[1:]} found, AP ≥ {AP:g}"
 
 
 def reach_lines(found: sight.Reach, distance: Floats, color: graphics.Rgba) -> graphics.Primitives:
     """A closed line on the ground; faint where the space ends before the reach does."""
-    cut = _at_least(found, distance)
-    distance = np.where(cut, distance, rounded(distance))
-    points = np.zeros((len(distance) + 1, 3))
-    closed = np.append(np.arange(len(distance)), 0)
-    points[:, 0] = (distance * np.cos(found.bearings))[closed]
-    points[:, 1] = (distance * np.sin(found.bearings))[closed]
-    cut = cut[closed]
+    line = sight.reach_line(found, distance)
+    closed = np.append(np.arange(len(line.points)), 0)
+    points = np.column_stack([line.points, np.zeros(len(line.points))])[closed]
+    cut = line.at_least[closed]
     colors = np.tile(np.float32(color), (len(closed) - 1, 2, 1))
     colors[cut[:-1] & cut[1:], :, 3] *= FAINT
     return graphics.Primitives.of(graphics.polyline(points), colors)
@@ -78,21 +76,11 @@ def rig_reach(
     return reach_of_rig(look.reach(rig, class_name, ap=AP, bearings=BEARINGS), palette, name)
 
 
-def rounded(distance: Floats) -> Floats:
-    """Distances all round, each weighed with its neighbours 1 2 1: what beams leave is ragged."""
-    return (np.roll(distance, 1) + 2.0 * distance + np.roll(distance, -1)) / 4.0
-
-
-def _at_least(found: sight.Reach, distance: Floats) -> NDArray[np.bool_]:
-    return distance >= found.limit - AT_LEAST_M
-
-
 def _figures(found: sight.Reach, color: graphics.Rgba) -> Iterable[graphics.Tag]:
     step = max(1, len(found.bearings) // FIGURES)
-    cut = _at_least(found, found.distance)
-    distance = np.where(cut, found.distance, rounded(found.distance))
+    cut = sight.ends_with_space(found, found.distance)
     for at in range(0, len(found.bearings), step):
-        metres, angle = float(distance[at]), float(found.bearings[at])
+        metres, angle = float(found.distance[at]), float(found.bearings[at])
         if metres >= LEAST_FIGURE_M:
             text = f"{'≥ ' if cut[at] else ''}{metres:.0f} m"
             place = (metres * float(np.cos(angle)), metres * float(np.sin(angle)), 0.0)

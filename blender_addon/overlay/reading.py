@@ -67,6 +67,7 @@ class SceneReader:
             scored=_scored(scene, sensors, judged.space),
             space=judged.space,
             model=judged.model,
+            targets=bridge.targets_of(scene.perception_entropy),
             ghosts=others,
             ghosts_name=name,
             searching=bool(searching.best(scene.name)),
@@ -109,7 +110,7 @@ class SceneReader:
         settings = scene.perception_entropy
         try:
             space, model = bridge.space_of(settings), bridge.perception_of(settings)
-            key = bridge.prior_key(scene), space, model
+            key = bridge.prior_key(scene), space, model, bridge.targets_of(settings)
             known = self._judged.get(scene.name)
             if known is None or known.key != key:
                 known = Judged(bridge.prior_from_scene(scene), space, model, key)

@@ -43,7 +43,8 @@ class Tools:
         return self._keep("sight", key, lambda: self._sight(wish))
 
     def _sight(self, wish: PictureWish) -> sight.Sight:
-        return sight.Sight(wish.space, wish.prior, self.body(wish), model=wish.model)
+        body, targets = self.body(wish), wish.targets
+        return sight.Sight(wish.space, wish.prior, body, model=wish.model, targets=targets)
 
     def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is kept under a key, or make it; the one asked for last goes last."""

@@ -96,10 +96,10 @@ class FocusRegion:
 class PictureWish:
     """A scene, as far as what is drawn depends on it.
 
-    `body_key` tells vehicles from others, `prior_key` priors, spaces and AP curves; `moving`: a
-    rough picture now is better than a fine one later. `scored` is the ground map of the last score,
-    of all voxels, if the scene still is as it was then. `ghosts` are another variant, or what a
-    search that runs has found: `searching`.
+    `body_key` tells vehicles from others, `prior_key` priors, spaces, AP curves and targets;
+    `moving`: a rough picture now is better than a fine one later. `scored` is the ground map of the
+    last score, of all voxels, if the scene still is as it was then. `ghosts` are another variant,
+    or what a search that runs has found: `searching`.
     """
 
     sensors: tuple[SceneSensor, ...]
@@ -112,6 +112,7 @@ class PictureWish:
     scored: pe.GroundMap | None = None
     space: pe.PerceptionSpace | None = None
     model: pe.PerceptionModel | None = None
+    targets: pe.TargetRule | None = None
     ghosts: tuple[pe.Sensor, ...] = ()
     ghosts_name: str = ""
     searching: bool = False

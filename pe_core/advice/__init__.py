@@ -6,7 +6,7 @@ from .fragile import fragile, off_by
 from .hidden import HiddenSensor, hidden_sensors, hidden_words
 from .key_figures import KeyFigures, key_figures
 from .mounting import stopped_shares
-from .object_words import object_words, objects_looked_at
+from .object_words import lone_reach, object_words, objects_looked_at
 from .outlook import Outlook, class_of, outlook
 from .phrases import WHERE, rig_words, sensor_words, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
@@ -45,6 +45,7 @@ __all__ = [
     "hidden_words",
     "joined",
     "key_figures",
+    "lone_reach",
     "loss_text",
     "object_words",
     "objects_looked_at",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..scoring.object_score import FoundClass, ObjectScore
+from ..scoring.object_score import FARTHEST_M, FoundClass, ObjectScore
 from .figures import percent
 from .outlook import SIDES
 
@@ -29,7 +29,7 @@ def _lines(found: ObjectScore) -> Iterator[str]:
     whole = f"expected AP {found.ap:.2f} +- {max(found.ap_stderr, 0.001):.3f}"
     yield f"{whole}: {', '.join(f'{name} {own.ap:.2f}' for name, own in each.items())}"
     for name, own in each.items():
-        yield f"{name}: {_points(own)}AP 0.5 {reach_words(own)}"
+        yield f"{name}: {_points(own)}found alone (AP 0.5) {reach_words(own)}"
 
 
 def _points(own: FoundClass) -> str:
@@ -40,11 +40,18 @@ def _points(own: FoundClass) -> str:
     return f"{shares} get {', '.join(map(str, own.points))} points or more; "
 
 
+def lone_reach(metres: float) -> str:
+    """Return how far a lone object is found: "73 m", "≥ 80 m" as far as was looked, "nowhere"."""
+    if metres < NEAREST_M:
+        return "nowhere"
+    return f"{'≥ ' if metres >= FARTHEST_M else ''}{metres:.0f} m"
+
+
 def reach_words(own: FoundClass) -> str:
     """Return how far a class is found to four sides."""
     found = {words: own.reach[way] for way, words in SIDES.items() if own.reach[way] >= NEAREST_M}
     if not found:
         return "nowhere ahead, behind, left or right"
     missing = ", ".join(words for words in SIDES.values() if words not in found)
-    ways = ", ".join(f"{reach:.0f} m {words}" for words, reach in found.items())
+    ways = ", ".join(f"{lone_reach(reach)} {words}" for words, reach in found.items())
     return f"up to {ways}{f'; not {missing}' if missing else ''}"

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+FARTHEST_M = 80.0
+"""How far away lone objects are looked for: a reach that equals it is "at least"."""
 POINTS = (1, 5, 20)
 """Objects are counted that get at least so many points of all LiDARs together."""
 
@@ -27,8 +29,8 @@ class FoundClass:
     points : mapping of int to float
         Share of its objects that get at least so many points, by number; empty without LiDARs.
     reach : mapping of str to float
-        By direction, the distance up to which it is found with an AP of 0.5 [m]: 0 where it is not,
-        the last ring's end where it is found as far as was looked.
+        By direction, the distance up to which a lone object of the class is found with an AP of 0.5
+        [m]: 0 where it is not, `FARTHEST_M` where it is found as far as was looked.
     """
 
     objects: int

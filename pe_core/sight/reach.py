@@ -62,6 +62,9 @@ class Reach:
         Where the space ends [m]: a reach that equals it is "at least".
     draft : bool
         Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+    sector : float
+        Of a study on objects: each distance is that of a sector so wide round its bearing [rad],
+        and a lone object's. 0: distances are along bearings, and of the class's voxels.
     """
 
     class_name: str
@@ -71,6 +74,7 @@ class Reach:
     per_sensor: Mapping[str, Floats]
     limit: Floats
     draft: bool = False
+    sector: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

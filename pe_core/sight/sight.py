@@ -20,11 +20,13 @@ from ..scene.vehicle import Vehicle
 from ..scoring.sampling import VoxelSample, draw
 from ..scoring.score import rounded
 from ..scoring.subsets import fused_early
+from ..targets import LoneObjects, TargetRule, drawn_objects
 from .blind import BlindGround, blind_ground, body_rectangle
 from .blind_squares import STEP_M, BlindLook, fine_enough
 from .cells import GroundCells, round_a
 from .ground import GroundSight, ground_sight
 from .look import KnownSightings
+from .object_reach import object_reach
 from .places import VoxelsByCell, by_prior, in_layer, layer_at
 from .reach import AP, BEARINGS, Reach, Spokes, density_of
 from .shares import SeenShares, seen_shares
@@ -50,6 +52,9 @@ class Sight:
         None: nothing hides anything.
     model : PerceptionModel, optional
         AP curves and fusion rule; the paper's by default.
+    targets : TargetRule, optional
+        What the study is scored on. On objects, `reach` is that of lone objects, as the score
+        tells it; on voxels, the default, that of the class's voxels.
 
     Raises
     ------
@@ -64,9 +69,11 @@ class Sight:
         vehicle: Vehicle | None = None,
         *,
         model: PerceptionModel | None = None,
+        targets: TargetRule | None = None,
     ) -> None:
         self.space, self.prior, self.vehicle = space, prior, vehicle
-        self._fusion = Fusion(model or PerceptionModel())
+        self._model, self.targets = model or PerceptionModel(), targets or TargetRule()
+        self._fusion = Fusion(self._model)
         self._densities: list[ClassDensity] = prior.densities(space)
         self._looks = KnownSightings(space, vehicle, self._fusion)
         self._is_free = RLock()
@@ -163,6 +170,9 @@ class Sight:
     ) -> Reach:
         """Tell how far away objects of a class are still found, all round.
 
+        Of a study on objects that is how far lone ones are, in each eighth of the circle, as the
+        score tells it; `bearings` and `draft` change nothing then.
+
         Parameters
         ----------
         rig : Rig
@@ -183,6 +193,8 @@ class Sight:
         count = BEARINGS.checked("sight", "bearings", bearings)
         density = density_of(self._densities, class_name)
         with self._is_free:
+            if self.targets.are_objects:
+                return object_reach(self._lone, rig, class_name, least)
             look = self._looks.at(
                 ("reach", class_name, count),
                 lambda: Spokes.of(self.space, self._tops, density, count),
@@ -260,6 +272,11 @@ class Sight:
         if layer is None:
             return by_prior(cells, self.space, self._tops, self._densities)
         return in_layer(cells, self.space, self._tops, layer)
+
+    @cached_property
+    def _lone(self) -> LoneObjects:
+        drawn = drawn_objects(self.prior, self.space, self.vehicle, self.targets)
+        return LoneObjects(drawn, self.vehicle, self._model)
 
     @cached_property
     def _tops(self) -> Floats | None:

@@ -205,7 +205,9 @@ class Study:
     def sight(self) -> Sight:
         """Return what tells the places that rigs of this study see."""
         with self._naming_vehicle():
-            return Sight(self.space, self.prior, self.vehicle, model=self.model)
+            return Sight(
+                self.space, self.prior, self.vehicle, model=self.model, targets=self.targets
+            )
 
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:

@@ -2,6 +2,7 @@
 
 from .drawing import DrawnObjects, drawn_objects
 from .evaluator import ObjectEvaluator
+from .lone import LoneObjects
 from .rule import OBJECTS, TARGETS, VOXELS, TargetRule
 
 __all__ = [
@@ -9,6 +10,7 @@ __all__ = [
     "TARGETS",
     "VOXELS",
     "DrawnObjects",
+    "LoneObjects",
     "ObjectEvaluator",
     "TargetRule",
     "drawn_objects",

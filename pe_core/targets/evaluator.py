@@ -22,7 +22,7 @@ from ..scoring.sampled import Judgement
 from ..scoring.score import Glance, Score, ScoreStopped, SensorScore, Watch, rounded
 from .drawing import CENTERED, DrawnObjects, drawn_objects
 from .fusing import FusedObjects
-from .rings import RingObjects, ring_objects
+from .lone import LoneObjects
 from .rule import OBJECTS, TargetRule
 from .sums import ObjectSums
 
@@ -154,17 +154,14 @@ class ObjectEvaluator:
         return SensorScore(alone.entropy, alone.coverage, lost, 0, 0, {})
 
     @cached_property
-    def _rings(self) -> tuple[RingObjects, FusedObjects, ObjectsByName]:
-        rings = ring_objects(self.drawn, self.vehicle)
-        counted = self.drawn.weights_by_class[rings.objects.labels]
-        fused = FusedObjects(rings.objects, counted, self._model)
-        return rings, fused, ObjectsByName(rings.objects, self.vehicle, False)
+    def _lone(self) -> LoneObjects:
+        return LoneObjects(self.drawn, self.vehicle, self._model)
 
     def _told(self, rig: Rig, m: MByName, entropies: Floats) -> ObjectScore:
         points = [m[s.name] for s in rig if kind_of(s).counts_points]
-        rings, fused, sensors = self._rings
-        far, _ = fused.entropies(rig, sensors.measure(rig))
-        return self._sums.told(entropies, points, rings, far, self.targets.traffic)
+        return self._sums.told(
+            entropies, points, self._lone, self._lone.ap(rig), self.targets.traffic
+        )
 
 
 def _go_on(watch: Watch | None, share: float) -> None:

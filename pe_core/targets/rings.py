@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..scene.objects import Objects
 from ..scene.vehicle import Vehicle
+from ..scoring.object_score import FARTHEST_M
 from ..scoring.score import rounded
 from .drawing import DrawnObjects
 from .footprints import overlap, rectangles
@@ -24,7 +25,7 @@ SECTORS = (
     *("rear", "rear right", "right", "front right"),
 )
 """Eighths of the circle, round the middle that each is called by."""
-RING_M, FARTHEST_M = 5.0, 80.0
+RING_M = 5.0
 RINGS = int(FARTHEST_M / RING_M)
 EACH = 8
 """Objects of a class in a sector of a ring, spread over its depth and its angle."""
@@ -64,28 +65,31 @@ def ring_objects(drawn: DrawnObjects, vehicle: Vehicle | None) -> RingObjects:
     return RingObjects(objects, cells[beside])
 
 
-def reach(rings: RingObjects, label: int, ap: Floats) -> Mapping[str, float]:
+def reach(
+    rings: RingObjects, label: int, ap: Floats, least: float = FOUND_AP
+) -> Mapping[str, float]:
     """Return how far a class is found, by direction [m]; `ap` (N,) is that of the ring objects."""
     count = len(rings.objects.class_names) * len(SECTORS) * RINGS
     there = np.bincount(rings.cells, minlength=count).reshape(-1, len(SECTORS), RINGS)[label]
     sums = np.bincount(rings.cells, ap, count).reshape(-1, len(SECTORS), RINGS)[label]
     means = np.where(there > 0, sums / np.maximum(there, 1), 0.0)
-    return {name: rounded(_reach(own.tolist())) for name, own in zip(SECTORS, means, strict=True)}
+    each = zip(SECTORS, means, strict=True)
+    return {name: rounded(_reach(own.tolist(), least)) for name, own in each}
 
 
-def _reach(means: list[float]) -> float:
-    """Return where the mean AP of rings falls below 0.5, from the first on in which it is not.
+def _reach(means: list[float], least: float = FOUND_AP) -> float:
+    """Return where the mean AP of rings falls below `least`, from the first in which it is not.
 
     Between the middles of two rings it runs straight.
     """
-    first = next((k for k, ap in enumerate(means) if ap >= FOUND_AP), None)
+    first = next((k for k, ap in enumerate(means) if ap >= least), None)
     if first is None:
         return 0.0
-    last = next((k for k in range(first, RINGS) if means[k] < FOUND_AP), None)
+    last = next((k for k in range(first, RINGS) if means[k] < least), None)
     if last is None:
         return FARTHEST_M
     above, below = means[last - 1], means[last]
-    return RING_M * (last - 0.5 + (above - FOUND_AP) / (above - below))
+    return RING_M * (last - 0.5 + (above - least) / (above - below))
 
 
 def _places() -> Floats:

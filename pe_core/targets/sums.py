@@ -16,7 +16,7 @@ from ..scoring.scatter import Figure, Scatter, residuals, sample_digest
 from ..scoring.score import PartScore, rounded
 from ..scoring.zones import zone_masks
 from .drawing import DrawnObjects
-from .rings import RingObjects, reach
+from .lone import LoneObjects
 
 BATCHES = 32
 """Scenes are put together in so many batches for the errors of differences; fewer where there are
@@ -69,19 +69,18 @@ class ObjectSums:
         self,
         entropies: Floats,
         points: Sequence[Floats],
-        rings: RingObjects,
-        far: Floats,
+        lone: LoneObjects,
+        lone_ap: Floats,
         traffic: bool,
     ) -> ObjectScore:
         """Put together what a score on objects tells besides.
 
-        `points` are m of the LiDARs, `far` (R,) the entropies of the objects in rings.
+        `points` are m of the LiDARs, `lone_ap` (R,) the AP of lone objects.
         """
-        ap, ring_ap = ap_of_entropy(entropies), ap_of_entropy(far)
+        ap = ap_of_entropy(entropies)
         total = np.sum(points, axis=0) if points else None
         found = {}
         for name, mask in self._classes.items():
-            label = self._objects.class_names.index(name)
             found[name] = FoundClass(
                 int(mask.sum()),
                 rounded(self._mass(mask)),
@@ -90,7 +89,7 @@ class ObjectSums:
                 rounded(self._mean(ap, mask)),
                 self._scatter(ap, mask),
                 {} if total is None else self._shares(total, mask),
-                reach(rings, label, ring_ap),
+                lone.reach(name, lone_ap),
             )
         whole = rounded(self._mean(ap, None)), self._scatter(ap, None)
         return ObjectScore(*whole, len(ap), self._drawn.scenes, traffic, found)

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..engine import graphics, pe, sight
 from ..markup import Markup
 from .plan import PlanDrawing, PlanEdges
 from .svg import hexadecimal
-
-Floats = NDArray[np.float64]
 
 RIG, BEFORE = "#0b5cad", "#8c959f"
 GRID = "#c8cfd6"
@@ -21,8 +19,6 @@ KEY_HIGH = 24.0
 FIGURES = 8
 """At how many bearings metres are written."""
 LEAST_FIGURE_M = 3.0
-AT_LEAST_M = 0.5
-"""A reach this near to the edge of the space ends there: it is at least so far."""
 
 
 def reach_plan(
@@ -40,12 +36,12 @@ def reach_plan(
     size: dict[str, Any] = {"fill": "none", "stroke_linejoin": "round"}
     for number, sensor in enumerate(rig):
         color = hexadecimal(graphics.sensor_color_on_paper(number))
-        line = plan.at(_closed(found, found.per_sensor[sensor.name]))
+        line = plan.at(sight.reach_line(found, found.per_sensor[sensor.name]).points)
         plan.canvas.path([line], stroke=color, stroke_width=1.2, stroke_opacity="0.85", **size)
     if before is not None:
-        line = plan.at(_closed(before, before.distance))
+        line = plan.at(sight.reach_line(before, before.distance).points)
         plan.canvas.path([line], stroke=BEFORE, stroke_width=1.6, stroke_dasharray="5 4", **size)
-    line = plan.at(_closed(found, found.distance))
+    line = plan.at(sight.reach_line(found, found.distance).points)
     plan.canvas.path([line], fill=RIG, fill_opacity="0.09", stroke=RIG, stroke_width=2.2)
     plan.vehicle(vehicle)
     _figures(plan, found)
@@ -70,30 +66,22 @@ def reach_key(rig: pe.Rig) -> list[tuple[str, str]]:
     return [(hexadecimal(graphics.sensor_color_on_paper(number)), s.name) for number, s in numbered]
 
 
-def _closed(found: sight.Reach, distance: Floats) -> Floats:
-    """(B, 2) the line round, each reach weighed with its neighbours: beams leave it ragged."""
-    cut = distance >= found.limit - AT_LEAST_M
-    round_ = (np.roll(distance, 1) + 2.0 * distance + np.roll(distance, -1)) / 4.0
-    away = np.where(cut, distance, round_)
-    return np.stack([away * np.cos(found.bearings), away * np.sin(found.bearings)], axis=1)
-
-
 def _figures(plan: PlanDrawing, found: sight.Reach) -> None:
-    line = _closed(found, found.distance)
-    for k in range(0, len(line), max(1, len(line) // FIGURES)):
+    bearings = found.bearings.tolist()
+    for k in range(0, len(bearings), max(1, len(bearings) // FIGURES)):
         distance = float(found.distance[k])
         if distance < LEAST_FIGURE_M:
             continue
-        x, y = plan.place(*line[k].tolist())
+        x, y = plan.place(distance * math.cos(bearings[k]), distance * math.sin(bearings[k]))
         words = f"{'≥ ' if _ends_with_space(found, k) else ''}{distance:.0f} m"
-        away, down = float(np.cos(found.bearings[k])), -float(np.sin(found.bearings[k]))
+        away, down = math.cos(bearings[k]), -math.sin(bearings[k])
         x = min(max(x + 24.0 * away, plan.left + 20.0), plan.left + plan.wide - 22.0)
         y = min(max(y + 13.0 * down + 4.0, 22.0), plan.bottom - 6.0)
         plan.canvas.text(x, y, words, text_anchor="middle", css="strong halo")
 
 
 def _ends_with_space(found: sight.Reach, k: int) -> bool:
-    return bool(found.distance[k] >= found.limit[k] - AT_LEAST_M)
+    return bool(sight.ends_with_space(found, found.distance)[k])
 
 
 def _key(plan: PlanDrawing, has_before: bool) -> None:

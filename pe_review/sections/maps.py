@@ -19,6 +19,7 @@ TALL = {0.0: "flat on the ground", 0.5: "0.5 m tall", 1.5: "1.5 m tall"}
 SIDES = {"front": "ahead", "left": "left", "right": "right", "rear": "behind"}
 USUAL = ("pedestrian", "car")
 """Classes whose reach is shown, where the prior has them."""
+FOUND_UP_TO = "Found up to, from the middle"
 WAYS = {"ahead": 0.0, "ahead left": 45.0, "left": 90.0, "behind": 180.0, "right": 270.0}
 WAYS["ahead right"] = 315.0
 
@@ -109,7 +110,9 @@ def _reach(one: Reviewed) -> str:
         before = one.sight.reach(one.asked.rig, name) if one.searched else None
         alt = f"Plan of how far a {name} is found, {one.name}"
         plan = reach_plan(found, before, one.rig, one.vehicle, bounds, alt)
+        alone = f"<b>A lone {escaped(name)}</b> found, by eighths of the circle: AP 0.5 or more"
         caption = f"<b>{escaped(up_first(name))}</b> found: AP 0.5 or more"
+        caption = alone if found.sector else caption
         drawn.append(figure(plan, Markup(caption)))
         rows.append((up_first(name), *(reach_to(found, way) for way in WAYS.values())))
         if before is not None:
@@ -119,5 +122,7 @@ def _reach(one: Reviewed) -> str:
         for color, name in reach_key(one.rig)
     )
     key = f'<ul class="key" aria-label="Colours of sensors">{swatches}</ul>'
-    shown = f"{grid(drawn)}{key}{table('Found up to, from the middle', ('class', *WAYS), rows)}"
+    of_objects = one.found.targets.are_objects
+    what = "A lone object is found up to, from the middle" if of_objects else FOUND_UP_TO
+    shown = f"{grid(drawn)}{key}{table(what, ('class', *WAYS), rows)}"
     return f"<h3>How far away objects are found</h3>{shown}"

@@ -40,9 +40,7 @@ def _reach(found: pe.ObjectScore) -> str:
     heads = ["", *(name[:1].upper() + name[1:] for name in each)]
     ways = next(iter(each.values())).reach if each else {}
     rows = [
-        [way[:1].upper() + way[1:], *(number(own.reach[way], 0) for own in each.values())]
+        [way[:1].upper() + way[1:], *(advice.lone_reach(own.reach[way]) for own in each.values())]
         for way in ways
     ]
-    return table(
-        "How far a lone object is found with AP 0.5 [m]; 80: as far as looked", heads, rows
-    )
+    return table("How far a lone object is found with AP 0.5 or more", heads, rows)

@@ -142,7 +142,7 @@ def test_reach_is_a_closed_line_with_metres():
 def test_reach_beyond_the_space_is_at_least_that_far_and_fainter():
     limit = np.where(np.arange(72) < 36, 30.0, 80.0)
     shape = reach.reach_of_rig(found_reach(np.minimum(limit, 40.0), limit))
-    assert {label.text for label in shape.labels} == {"≥ 30 m", "40 m", "38 m"}
+    assert {label.text for label in shape.labels} == {"≥ 30 m", "40 m"}, "as the page has"
     alpha = shape.lines.colors.reshape(-1, 2, 4)[..., 3]
     assert alpha[18].max() < 0.5 * alpha[50].min()
 

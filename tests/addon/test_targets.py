@@ -8,6 +8,7 @@ import pytest
 import pe_core as pe
 from blender_addon import bridge, stale
 from blender_addon.live import asking
+from pe_core import advice
 from pe_core.study import ScoreJob
 from tests.addon import scenes
 
@@ -44,7 +45,7 @@ def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path):
     assert settings.result_ap.startswith(f"{objects.ap:.3f}")
     shown = {row.name: (row.ap, row.reach) for row in settings.result_parts if row.is_class}
     car = objects.per_class["car"]
-    assert shown["Car"] == (f"{car.ap:.2f}", f"{car.reach['front']:.0f} m")
+    assert shown["Car"] == (f"{car.ap:.2f}", advice.lone_reach(car.reach["front"]))
     assert "expected AP" in settings.result_words
     score = bridge.versions.score_from_dict(stored["after"])
     assert score.objects == objects

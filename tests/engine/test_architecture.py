@@ -22,7 +22,7 @@ ALLOWED = {
     "formats": {"errors", "text", "metric", "scene", "prior", "kinds"},
     "scoring": {"errors", "text", "metric", "scene", "prior", "kinds"},
     "targets": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
-    "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
+    "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring", "targets"},
     "graphics": {"errors", "scene", "kinds", "scoring", "sight"},
     "search": {"errors", "text", "scene", "scoring"},
     "catalog": {"errors", "text", "scene", "kinds"},

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core import sight
 from pe_core.formats import read_ap_table
 from pe_core.kinds import KINDS, measure_objects
 from pe_core.kinds.object_curves import SIZES, carried_over
@@ -133,6 +134,27 @@ def test_traffic_hides_and_a_lone_object_is_hidden_by_none():
     for name, own in hidden.objects.per_class.items():
         assert own.ap <= free.objects.per_class[name].ap
         assert own.reach == free.objects.per_class[name].reach
+
+
+@pytest.mark.parametrize("traffic", [False, True])
+def test_sight_tells_the_same_reach_as_the_score(traffic):
+    """Maps, views and tables of a study on objects have one reach; of one on voxels another."""
+    targets, both = replace(FEW, traffic=traffic), rig(shapes.camera())
+    score = judge(targets=targets).score(both)
+    asked = (SPACE, ROAD, None)
+    view = pe.Sight(*asked, targets=targets)
+    for name, own in score.objects.per_class.items():
+        reach = view.reach(both, name)
+        assert reach.distance.tolist() == list(own.reach.values())
+        assert np.degrees(reach.bearings).tolist() == pytest.approx(np.arange(0.0, 360.0, 45.0))
+        assert set(reach.per_sensor) == {"roof", "camera"}
+        line = sight.reach_line(reach, reach.distance)
+        away = np.hypot(*line.points.T)
+        assert away == pytest.approx(np.repeat(reach.distance, 12))
+    alone = view.reach(pe.Rig([both["roof"]]), "car").distance
+    assert view.reach(both, "car").per_sensor["roof"].tolist() == alone.tolist()
+    assert (view.reach(both, "car", ap=0.7).distance <= view.reach(both, "car").distance).all()
+    assert pe.Sight(*asked).reach(both, "car").sector == 0.0
 
 
 def test_the_standard_error_is_honest():

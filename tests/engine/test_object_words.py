@@ -27,8 +27,8 @@ def test_words_of_a_score_on_objects():
         "50% of the objects are seen, by weight (80 objects in 8 scenes, in traffic)",
         "expected AP 0.33 +- 0.004: car 0.45, cone 0.20",
         "car: 100%, 90%, 50% get 1, 5, 20 points or more; "
-        "AP 0.5 up to 26 m ahead, 12 m left; not behind, right",
-        "cone: AP 0.5 nowhere ahead, behind, left or right",
+        "found alone (AP 0.5) up to 26 m ahead, 12 m left; not behind, right",
+        "cone: found alone (AP 0.5) nowhere ahead, behind, left or right",
     )
     assert "80 objects, none hides another" in advice.words(scored(traffic=False))[0]
 

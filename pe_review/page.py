@@ -13,7 +13,7 @@ from .markup import css_string, escaped, script_json
 from .policy import policy, without_style_attributes
 from .reviewed import Reviewed, reviewed_together
 from .section import Section
-from .sections import SECTIONS, TOGETHER
+from .sections import LAST, SECTIONS, TOGETHER
 
 PAGE = studies.REVIEW_PAGE
 HERE = Path(__file__).parent
@@ -43,8 +43,10 @@ def page_bytes(
         When there is no study, or more than a page has room for.
     """
     each = reviewed_together(each)
-    watched = _counted(len(TOGETHER) + len(SECTIONS) * len(each), watch)
-    chapters = [*_of_all(each, watched), *_of_each(each, watched)]
+    watched = _counted(len(TOGETHER) + len(SECTIONS) * len(each) + len(LAST), watch)
+    chapters = _of_all(TOGETHER, each, watched)
+    chapters += _of_each(each, watched)
+    chapters += _of_all(LAST, each, watched)
     return _document(each, chapters, about).encode("utf-8")
 
 
@@ -79,6 +81,7 @@ def write_page(
     return folder / name
 
 
+Together = Callable[[tuple[Reviewed, ...]], Section]
 Chapter = list[tuple[Reviewed, Section]]
 """A section of the page, as each study has it."""
 
@@ -98,9 +101,9 @@ def _counted(sections: int, watch: Callable[[float], None]) -> Make:
     return make
 
 
-def _of_all(each: tuple[Reviewed, ...], make: Make) -> list[Chapter]:
+def _of_all(sections: Sequence[Together], each: tuple[Reviewed, ...], make: Make) -> list[Chapter]:
     """Sections of all studies at once; of a single one most have nothing to say."""
-    found = [(each[0], make(partial(section, each))) for section in TOGETHER]
+    found = [(each[0], make(partial(section, each))) for section in sections]
     return [[(one, made)] for one, made in found if made.html]
 
 

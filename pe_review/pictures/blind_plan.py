@@ -8,7 +8,7 @@ from ..engine import pe, sight
 from ..markup import Markup
 from .plan import PlanDrawing
 
-BLIND = "#d55e00"
+BLIND, INK = "#d55e00", "#1b1f24"
 SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
 """By side: the axis that leads there, and which way."""
 LEAST_M = 0.3
@@ -19,7 +19,11 @@ ROOM_M = 2.0
 
 
 def blind_plan(found: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -> Markup:
-    """Return a plan of blind ground and, to each side, where the nearest of it begins or ends."""
+    """Return a plan of blind ground, with metres to each side.
+
+    A whisker is how far the blind ground that begins at the body reaches, and nothing else; a ring
+    marks the nearest blind ground where none begins at the body.
+    """
     plan = PlanDrawing(_bounds(found, vehicle), alt, wide=WIDE)
     lines = [plan.at(line) for line in found.outlines]
     style: dict[str, Any] = {
@@ -51,6 +55,7 @@ def side_words(found: sight.BlindGround, side: str) -> str:
 
 
 def _measure(plan: PlanDrawing, found: sight.BlindGround, vehicle: pe.Vehicle, side: str) -> None:
+    """Draw a whisker as far as the blind ground at the body goes, else mark the nearest of it."""
     spot, zone = found.nearest[side], found.zone[side]
     if spot is None or (zone is not None and 0.0 < zone < LEAST_M):
         return
@@ -59,15 +64,25 @@ def _measure(plan: PlanDrawing, found: sight.BlindGround, vehicle: pe.Vehicle, s
     edge = float(vehicle.bounds[1 if sign > 0 else 0][axis])
     start, end = list(spot.point), list(spot.point)
     start[axis], end[axis] = edge, edge + sign * away
-    (x0, y0), (x1, y1) = plan.place(*start), plan.place(*end)
-    cross = "v6m0 -12v12" if axis == 0 else "h6m-12 0h12"
-    line = f"M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}m0 0{cross}"
-    plan.canvas.add("path", d=line, fill="none", stroke="#1b1f24", stroke_width=1.0)
-    told = sight.shown_end(away) if zone else sight.shown_start(away)
-    words = f"> {away:g} m" if zone is None else f"{told:.1f} m"
+    x, y = plan.place(*end)
+    if zone == 0.0:
+        words = f"from {sight.shown_start(away):.1f} m"
+        plan.canvas.add("circle", cx=x, cy=y, r=3.5, fill="#fff", stroke=INK, stroke_width=1.2)
+    else:
+        words = f"> {away:g} m" if zone is None else f"{sight.shown_end(away):.1f} m"
+        _whisker(plan, plan.place(*start), (x, y), axis)
     beside = _within if away > found.within - ROOM_M else _beside
-    x, y, anchor = beside(axis, sign, x1, y1)
-    plan.canvas.text(x, y, words, text_anchor=anchor, css="strong halo")
+    right, down, anchor = beside(axis, sign, x, y)
+    plan.canvas.text(right, down, words, text_anchor=anchor, css="strong halo")
+
+
+def _whisker(
+    plan: PlanDrawing, start: tuple[float, float], end: tuple[float, float], axis: int
+) -> None:
+    (x0, y0), (x1, y1) = start, end
+    cap = "v6m0 -12v12" if axis == 0 else "h6m-12 0h12"
+    line = f"M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}m0 0{cap}"
+    plan.canvas.add("path", d=line, fill="none", stroke=INK, stroke_width=1.0)
 
 
 def _beside(axis: int, sign: int, x: float, y: float) -> tuple[float, float, str]:

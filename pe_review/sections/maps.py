@@ -93,7 +93,9 @@ def _blind(one: Reviewed) -> str:
         '<p class="note">Blind ground is what a cylinder 0.3 m wide and exactly so tall can stand '
         "on while no beam and no pixel meets it. Areas and distances err to the safe side: never "
         "too small, and edges at most 0.15 m too far out. Sides are the strips that the body "
-        "sweeps to each; a strip along the body narrower than 0.1 m is none.</p>"
+        "sweeps to each; a strip along the body narrower than 0.1 m is none. A line from the body "
+        "to a cap is how far blind ground that begins at the body reaches; a ring is the nearest "
+        "blind ground that begins farther out.</p>"
     )
     shown = f"{grid(drawn, 17.0)}{table(caption, heads, rows, css='words')}{note}"
     return f"<h3>Blind ground near the vehicle</h3>{shown}"

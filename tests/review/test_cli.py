@@ -23,6 +23,7 @@ NAMED = "a <b> & c"
 def few_sections(monkeypatch):
     """What the page says is tested elsewhere."""
     monkeypatch.setattr("pe_review.page.TOGETHER", ())
+    monkeypatch.setattr("pe_review.page.LAST", ())
     monkeypatch.setattr("pe_review.page.SECTIONS", (searching, again))
 
 

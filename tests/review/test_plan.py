@@ -1,0 +1,130 @@
+"""Dimensions, bill of materials, and what the figures rest on."""
+
+import dataclasses
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+import pe_core as pe
+from pe_core.catalog import load
+from pe_core.sight import BlindGround
+from pe_core.sight.blind import BlindSpot
+from pe_review import Reviewed, reviewed_together
+from pe_review.pictures.blind_plan import blind_plan
+from pe_review.pictures.dimensions import side_view, spread, top_view
+from pe_review.sections.basis import VALIDITY, VALIDITY_PAGE, basis
+from pe_review.sections.bill import bill
+from pe_review.sections.plan import plan
+from tests.review.conftest import NAMES, small_study
+from tests.review.test_versus import beside, cells, rig
+
+ROOT = Path(__file__).resolve().parents[2]
+CAR = small_study().vehicle  # 4.4 x 1.8 x 1.5 m, its floor 0.2 m over the ground
+
+
+@pytest.mark.parametrize(
+    "places, moved",
+    [
+        ([], []),
+        ([50.0], [50.0]),
+        ([10.0, 40.0], [10.0, 40.0]),
+        ([50.0, 50.0], [45.0, 55.0]),
+        ([50.0, 48.0, 90.0], [54.0, 44.0, 90.0]),
+        ([50.0, 50.0, 58.0], [42.667, 52.667, 62.667]),
+        ([0.0, 0.0], [0.0, 10.0]),
+        ([100.0, 100.0], [90.0, 100.0]),
+    ],
+)
+def test_labels_are_moved_apart_and_no_farther(places, moved):
+    assert spread(places, 10.0, 0.0, 100.0) == pytest.approx(moved, abs=1e-3)
+
+
+def texts(svg):
+    return [element.text for element in ET.fromstring(svg).iter("text")]
+
+
+def test_both_views_have_the_vehicle_s_size_and_the_sensors_ordinates():
+    """By hand: LiDAR at (0, 0, 1.8), camera at (2.3, 0.2, 1.2); front at 2.2, rear axle at -1.5."""
+    sensors = small_study().rig
+    side, top = side_view(sensors, CAR, "side"), top_view(sensors, CAR, -1.5, "top")
+    assert set(texts(side)) == {
+        *("4.40 m", "1.50", "1", "2", "2.20", "−0.10", "1.80", "1.20"),
+        *("from the foremost point [m]", "height [m]"),
+    }
+    assert set(texts(top)) == {
+        *("4.40 m", "1.80", "1", "2", "1.50", "3.80", "0.00", "0.20"),
+        *("forward of the rear axle [m]", "to the left [m]"),
+    }
+    lidar, camera = (
+        [float(e.get(k)) for k in ("cx", "cy")] for e in ET.fromstring(side).iter("circle")
+    )
+    assert camera[0] > lidar[0] and camera[1] > lidar[1]
+
+
+def test_the_section_measures_from_ground_front_axle_and_middle():
+    axle = pe.Reference(-1.5, 0.35, 2.8)
+    (one,) = beside(rig(), reference=axle)
+    html = plan(one).html
+    assert cells(html)[1] == ["2 front &amp; left / 60°", "1.200", "−0.100", "3.800", "0.200 left"]
+    assert "Rear axle 0.350 m over the ground, wheelbase 2.800 m" in html
+    (bare,) = beside(rig(), vehicle=None)
+    assert plan(bare).html == ""
+
+
+CHOICE = pe.Choice([pe.Option(load("Camera 60 deg"), 1200.0)], sensors=[NAMES[1]])
+
+
+def test_the_bill_counts_and_says_what_has_no_price():
+    priced = pe.Selection([CHOICE], currency="EUR")
+    (one,) = beside(rig(), selection=priced)
+    html = bill((one,)).html
+    assert cells(html) == [
+        ["small LiDAR", "LiDAR", "&lt;/script&gt;&lt;b&gt;roof", "1", "no price", "no price"],
+        ["Camera 60 deg", "Camera", "front &amp; left / 60°", "1", "1,200 EUR", "1,200 EUR"],
+        ["All sensors", "", "", "2", "", "at least 1,200 EUR"],
+    ]
+    assert "No price is known of 1 model: <b>small LiDAR</b>" in html
+    each = beside(rig(), rig(without=[NAMES[0]]), selection=priced)
+    assert cells(bill(each).html) == [
+        ["small LiDAR", "no price", "1", "–"],
+        ["Camera 60 deg", "1,200 EUR", "1", "1"],
+        ["Count", "", "2", "1"],
+        ["Sum", "", "at least 1,200 EUR", "1,200 EUR"],
+    ]
+
+
+def test_the_page_says_what_it_rests_on_and_what_it_does_not_say(scored):
+    html = basis((scored,)).html
+    assert "PointPillars on KITTI" in html and "RTM3D on KITTI" in html
+    assert "validation scenes of nuScenes" in html and "only the vehicle itself does" in html
+    assert "evaluated 14 m ahead, 14 m behind, 12 m to the left" in html
+    own = pe.PerceptionModel(lidar=pe.ApCurve(0.2, 0.5))
+    study = dataclasses.replace(small_study(), model=own, vehicle=None)
+    score = scored.after
+    (other,) = reviewed_together([Reviewed("own", pe.Outcome("score", study, study, score, score))])
+    html = basis((other,)).html
+    assert "given by the study" in html and "the figures are too good" in html
+
+
+def test_the_verdict_on_validity_is_that_of_its_page():
+    text = " ".join((ROOT / VALIDITY_PAGE).read_text("utf-8").split())
+    assert f"**{VALIDITY}.**" in text and "8 placements in Place3D and 8 placements" in text
+
+
+def test_a_whisker_is_blind_ground_from_the_body_on():
+    """Nearest blind ground that begins farther out has a ring and "from" in place of a whisker."""
+    spots = {
+        "front": BlindSpot((6.2, 0.0), 4.0),
+        "rear": BlindSpot((-2.2, 0.0), 0.0),
+        "left": BlindSpot((0.0, 0.9), 0.0),
+        "right": None,
+    }
+    zone = {"front": 0.0, "rear": 2.0, "left": None, "right": 0.0}
+    found = BlindGround((), 9.0, 0.5, 10.0, spots, zone, dict.fromkeys(zone))
+    svg = ET.fromstring(blind_plan(found, CAR, "plan"))
+    whiskers = [e.get("d") for e in svg.iter("path") if e.get("stroke") == "#1b1f24"]
+    whiskers = [d for d in whiskers if d.startswith("M") and "m0 0" in d]
+    assert len(whiskers) == 2 and len(list(svg.iter("circle"))) == 1
+    said = [text for text in texts(ET.tostring(svg)) if text and "m" in text]
+    assert {"from 4.0 m", "2.0 m", "> 10 m"} <= set(said)

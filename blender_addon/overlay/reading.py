@@ -107,7 +107,7 @@ class SceneReader:
 
     def _judged_by(self, scene: bpy.types.Scene) -> Judged:
         """Prior, space and AP curves; no prior where there is a mistake, which a score tells."""
-        settings = scene.perception_entropy
+        settings, space = scene.perception_entropy, None
         try:
             space, model = bridge.space_of(settings), bridge.perception_of(settings)
             key = bridge.prior_key(scene), space, model, bridge.targets_of(settings)
@@ -115,7 +115,7 @@ class SceneReader:
             if known is None or known.key != key:
                 known = Judged(bridge.prior_from_scene(scene), space, model, key)
         except pe.InputError as error:
-            known = Judged(None, None, None, str(error))
+            known = Judged(None, space, None, str(error))
         self._judged[scene.name] = known
         return known
 

@@ -222,7 +222,7 @@ def test_the_map_is_of_the_scene_s_own_space(rig):
     rig.perception_entropy.space_x = (-2000.0, 2000.0)
     assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * layers.MOST_PLACES
     rig.perception_entropy.space_x = (30.0, -20.0)  # a mistake: a score says which
-    assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach"}
+    assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach", "focus"}
 
 
 def test_a_class_that_the_prior_does_not_know_is_replaced(rig):

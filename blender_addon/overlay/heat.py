@@ -39,7 +39,8 @@ def heat(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.LayerSha
     weight = np.concatenate([np.full(s.sum(), _beams_for(each)) for each, s in pairs])
     normals = _towards(_normals(triangles[faces]), looks)
     tiles = _Tiles.of(points, normals, weight)
-    shares = np.log(np.maximum(tiles.density, LEAST) / LEAST) / np.log(MOST / LEAST)
+    # Bright is good, as on the ground map: where many beams are stopped it is dark.
+    shares = 1.0 - np.log(np.maximum(tiles.density, LEAST) / LEAST) / np.log(MOST / LEAST)
     colors = np.concatenate(
         [graphics.on_scale(shares, graphics.VIRIDIS), np.full((len(shares), 1), ALPHA, np.float32)],
         axis=1,
@@ -55,7 +56,7 @@ LEGEND = graphics.ColorKey(
         (*map(float, c), 1.0)
         for c in graphics.on_scale(np.linspace(0.0, 1.0, 13), graphics.VIRIDIS)
     ),
-    ticks=("1", "10", "100"),
+    ticks=("100", "10", "1 beam"),
 )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -11,15 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import graphics, pe
-from . import asked, axles, blind, focus, ghosts, heat, mounts, reach
+from . import asked, axles, blind, focus, ghosts, ground, heat, mounts, reach
 from .tools import Tools
 from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, PictureWish, SceneSensor, ViewSettings
 
 WHOLE_RIG = ""
 """Under this name stands what belongs to no single sensor."""
-COARSE_M, FINE_M = 1.5, 0.5
-"""Side of the ground map's places while something moves, and at rest."""
-MOST_PLACES = 60_000
 BLIND_WITHIN_M = 10.0
 RING_ALPHA = 0.55
 GHOST = 0.35
@@ -66,34 +62,14 @@ def _rig(wish: PictureWish) -> pe.Rig:
 
 
 def _ground_keys(wish: PictureWish) -> dict[str, Hashable]:
-    keys = _of_rig("ground_quantity", "ground_height", "ground_opacity")(wish)
-    return {name: (key, id(_as_scored(wish))) for name, key in keys.items()}
-
-
-def _as_scored(wish: PictureWish) -> pe.GroundMap | None:
-    """The score's own map, where that is what is to be shown."""
-    view = wish.view
-    averaged = view.ground_height is None and view.ground_quantity != graphics.SENSORS
-    return wish.scored if averaged else None
+    settings = ("ground_quantity", "ground_height", "ground_opacity", "ground_range")
+    keys = _of_rig(*settings, "entropy_range", "coverage_range")(wish)
+    more = id(ground.as_scored(wish)), ground.compared_key(wish)
+    return {name: (key, more) for name, key in keys.items()}
 
 
 def _ground(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
-    view = wish.view
-    if _as_scored(wish) is not None:
-        seen = graphics.as_scored(wish.scored, wish.space, FINE_M)
-        return graphics.ground_map(
-            seen, view.ground_quantity, view.ground_opacity, where=graphics.AS_SCORED
-        )
-    step = _step(wish.space, moving=wish.moving)
-    seen = tools.sight(wish).ground(_rig(wish), view.ground_height, step, draft=wish.moving)
-    return graphics.ground_map(seen, view.ground_quantity, view.ground_opacity)
-
-
-def _step(space: pe.PerceptionSpace, *, moving: bool) -> float:
-    """Side of the ground map's places: larger ones in a space that is larger than usual."""
-    (x0, x1), (y0, y1) = space.x, space.y
-    least, most = (COARSE_M, MOST_PLACES // 4) if moving else (FINE_M, MOST_PLACES)
-    return max(least, math.sqrt((x1 - x0) * (y1 - y0) / most))
+    return ground.ground(wish, tools)
 
 
 def _blind(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:

@@ -60,6 +60,7 @@ class SceneReader:
         vehicle, body_key = self._vehicle(scene, depsgraph, moving) if sensors else body.NOTHING
         judged = self._judged_by(scene)
         others, name = _ghosts(scene)
+        compared, compared_name = _compared(scene)
         answer = asking.answer(scene)
         mounts = self._mounts(scene, depsgraph, sensors, vehicle, body_key)
         return PictureWish(
@@ -74,6 +75,8 @@ class SceneReader:
             place=None if answer is None else answer.place,
             mounts=mounts,
             boxes=_boxes(scene, sensors, vehicle, mounts),
+            compared=compared,
+            compared_name=compared_name,
             focus=tuple(FocusRegion(*row) for row in bridge.focus_rows(scene)),
             reference=bridge.reference_of(scene.perception_entropy),
         )
@@ -140,9 +143,12 @@ def view_of(scene: bpy.types.Scene) -> ViewSettings:
     layers = (each.name for each in LAYERS if on and getattr(view, f"show_{each.name}"))
     same = ("ground_quantity", "ground_opacity", "reach_class", "reach_of", "beams_of", "channels")
     same += ("beam_colors", "rings", "footprints", "view_range")
+    same += ("ground_range", "ground_difference")
     return ViewSettings(
         layers=frozenset(layers),
         ground_height=_height(view.ground_height),
+        entropy_range=tuple(view.entropy_range),
+        coverage_range=tuple(view.coverage_range),
         blind_height=_height(view.blind_height) or 0.0,
         channel=view.every if view.channels == "EVERY" else view.channel,
         beam_limit=settings.beam_limit,
@@ -204,6 +210,23 @@ def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
     key = scene.perception_entropy.view.ghost_key
     for row in scene.perception_entropy.variants if key else ():
         if row.key == key:
+            with contextlib.suppress(pe.InputError):
+                return tuple(bridge.rig_of(bridge.records_of(row))), row.name
+    return (), ""
+
+
+def _compared(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
+    """Sensors that the difference map compares with, and what they are: those of the live score;
+    without it, the variant that this is set to."""
+    settings = scene.perception_entropy
+    if not settings.view.ground_difference:
+        return (), ""
+    reading = latest.reading(scene.name) if settings.live.on else None
+    found = None if reading is None else reading.reference
+    if found is not None and found.rig is not None:
+        return tuple(found.rig), found.label
+    for row in settings.variants if settings.live.against else ():
+        if row.key == settings.live.against:
             with contextlib.suppress(pe.InputError):
                 return tuple(bridge.rig_of(bridge.records_of(row))), row.name
     return (), ""

@@ -10,8 +10,8 @@ from .wish import PictureWish, SceneSensor
 
 T = TypeVar("T")
 
-KEPT = 24
-"""Things of each sort that are kept: those asked for last."""
+KEPT = {"casts": 24, "compared": 2}
+"""Things of a sort that are kept, else one: those asked for last."""
 MOST_TRIANGLES = 50_000
 """A body of more is simplified for what is drawn: a picture shows no more."""
 
@@ -42,6 +42,18 @@ class Tools:
         key = wish.body_key, wish.prior_key
         return self._keep("sight", key, lambda: self._sight(wish))
 
+    def compared(self, key: Hashable, make: Callable[[], sight.GroundSight]) -> sight.GroundSight:
+        """Return the ground as the sensors see it that a difference map compares with."""
+        return self._keep("compared", key, make)
+
+    def fitted(
+        self, key: Hashable, fit: Callable[[], tuple[float, float]], *, anew: bool
+    ) -> tuple[float, float]:
+        """Return the range of colours that was fitted last, unless a new one is wanted."""
+        if anew:
+            self._kept.get("fitted", {}).pop(key, None)
+        return self._keep("fitted", key, fit)
+
     def _sight(self, wish: PictureWish) -> sight.Sight:
         body, targets = self.body(wish), wish.targets
         return sight.Sight(wish.space, wish.prior, body, model=wish.model, targets=targets)
@@ -51,6 +63,6 @@ class Tools:
         kept = self._kept.setdefault(sort, {})
         found = kept.pop(key, None)
         kept[key] = make() if found is None else found
-        while len(kept) > (1 if sort != "casts" else KEPT):
+        while len(kept) > KEPT.get(sort, 1):
             del kept[next(iter(kept))]
         return kept[key]

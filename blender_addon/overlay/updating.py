@@ -22,6 +22,8 @@ from .tools import Tools
 from .wish import PictureWish
 
 SOON_S = 0.01
+TOGETHER_S = 0.12
+"""How long a layer that is ready waits for others that were asked for with it."""
 
 _reader = SceneReader()
 _tools = Tools()
@@ -58,6 +60,12 @@ def on_moved() -> None:
     global _moving
     _moving = True
     update(moving=True)
+
+
+def on_reading() -> None:
+    """The live score may be compared with other sensors now: difference maps are of the same."""
+    if any(scene.perception_entropy.view.ground_difference for scene in bpy.data.scenes):
+        soon()
 
 
 def on_rested() -> None:
@@ -157,9 +165,24 @@ def _worked_out(
 def _delivery(scene: str, layer: str) -> Callable[[dict[str, ShownLayer]], None]:
     def deliver(items: dict[str, ShownLayer]) -> None:
         shown.put(scene, layer, items)
-        redraw.editors()
+        _draw_together()
 
     return deliver
+
+
+def _draw_together() -> None:
+    """Have views drawn once for layers that come one after the other: a frame may take longer than
+    all of them. Those that are late are not waited for."""
+    if not any(worker.desk.busy(_topic(*asked)) for asked in _asked):
+        _draw_now()
+    elif not bpy.app.timers.is_registered(_draw_now):
+        bpy.app.timers.register(_draw_now, first_interval=TOGETHER_S)
+
+
+def _draw_now() -> None:
+    if bpy.app.timers.is_registered(_draw_now):
+        bpy.app.timers.unregister(_draw_now)
+    redraw.editors()
 
 
 def _failure(scene: str, layer: str) -> Callable[[Exception], None]:
@@ -198,6 +221,7 @@ def _signals() -> tuple[tuple[changes.Signal, Callable[[], None]], ...]:
         (changes.picture, soon),
         (changes.moved, on_moved),
         (changes.rested, on_rested),
+        (changes.reading, on_reading),
     )
 
 
@@ -218,7 +242,8 @@ def unregister() -> None:
     for handlers, function in reversed(_handlers()):
         if function in handlers:
             handlers.remove(function)
-    if bpy.app.timers.is_registered(_turn):
-        bpy.app.timers.unregister(_turn)
+    for timer in (_turn, _draw_now):
+        if bpy.app.timers.is_registered(timer):
+            bpy.app.timers.unregister(timer)
     forget()
     redraw.editors()

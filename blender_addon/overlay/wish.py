@@ -19,6 +19,10 @@ SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
 BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
 
 
+FITTED, WHOLE, FIXED = "FITTED", "WHOLE", "FIXED"
+"""What the colours of the ground map are spread over."""
+
+
 @dataclass(frozen=True, slots=True)
 class ViewSettings:
     """Settings of what is shown, by the names that the scene has them under."""
@@ -27,6 +31,10 @@ class ViewSettings:
     ground_quantity: str = graphics.SENSORS
     ground_height: float | None = None
     ground_opacity: float = 0.5
+    ground_range: str = FITTED
+    entropy_range: tuple[float, float] = (0.0, 0.0)
+    coverage_range: tuple[float, float] = (0.0, 1.0)
+    ground_difference: bool = False
     blind_height: float = 0.0
     reach_class: str = "pedestrian"
     reach_of: str = RIG
@@ -99,7 +107,8 @@ class PictureWish:
     `body_key` tells vehicles from others, `prior_key` priors, spaces, AP curves and targets;
     `moving`: a rough picture now is better than a fine one later. `scored` is the ground map of the
     last score, of all voxels, if the scene still is as it was then. `ghosts` are another variant,
-    or what a search that runs has found: `searching`.
+    or what a search that runs has found: `searching`. `compared` are the sensors that the
+    difference map compares with.
     """
 
     sensors: tuple[SceneSensor, ...]
@@ -120,6 +129,8 @@ class PictureWish:
     mounts: tuple[MountFaces, ...] = ()
     boxes: tuple[SearchBox, ...] = ()
     focus: tuple[FocusRegion, ...] = ()
+    compared: tuple[pe.Sensor, ...] = ()
+    compared_name: str = ""
     reference: pe.Reference | None = None
 
     @property

@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 import bpy
 
+from ..operators import reference_label
+
 UILayout = bpy.types.UILayout
 Settings = bpy.types.PropertyGroup
 
@@ -47,6 +49,24 @@ def _ground(layout: UILayout, settings: Settings) -> None:
     row = layout.row(align=True)
     row.prop(view, "ground_height", text="")
     row.prop(view, "ground_opacity", text="Opacity", slider=True)
+    if view.ground_quantity in RANGES:
+        _ground_colors(layout, settings)
+
+
+def _ground_colors(layout: UILayout, settings: Settings) -> None:
+    """Draw what the colours are spread over, and what the map is compared with."""
+    view = settings.view
+    if not view.ground_difference:
+        row = layout.row(align=True)
+        row.prop(view, "ground_range", text="")
+        if view.ground_range == "FIXED":
+            for index in (0, 1):
+                row.prop(view, RANGES[view.ground_quantity], index=index, text="")
+        row.operator("pe.fix_colors", text="", icon="PINNED")
+    row = layout.row(align=True)
+    row.prop(view, "ground_difference", toggle=True)
+    if view.ground_difference:
+        row.menu("PE_MT_live_against", text=reference_label(settings.id_data), translate=False)
 
 
 def _blind(layout: UILayout, settings: Settings) -> None:
@@ -96,6 +116,8 @@ def draw_in_header(self: bpy.types.Header, context: bpy.types.Context) -> None:
     part.popover(panel=PE_PT_view.bl_idname, text="")
 
 
+RANGES = {"ENTROPY": "entropy_range", "COVERAGE": "coverage_range"}
+"""The setting that holds a fixed range of colours."""
 NUMBERED = {"ONE": "channel", "EVERY": "every"}
 """The setting that says which channels, where there is one."""
 

@@ -7,7 +7,14 @@ What was there before stays on the scene's own settings: `show_overlay`, `beam_l
 from __future__ import annotations
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    StringProperty,
+)
 
 from ..engine import pe
 from .callbacks import redraw
@@ -78,6 +85,51 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         min=0.05,
         max=1.0,
         subtype="FACTOR",
+        update=redraw,
+    )
+
+    ground_range: EnumProperty(
+        items=(
+            (
+                "FITTED",
+                "Fitted",
+                "Colours are spread over what this scene shows: all but the "
+                "lowest and the highest 2 % of its places",
+            ),
+            (
+                "WHOLE",
+                "Whole",
+                "From what nobody sees to what is seen best: the same colours in "
+                "every scene, and on review pages",
+            ),
+            ("FIXED", "Fixed", "Between values of your own"),
+        ),
+        name="Range",
+        description="What the colours of the ground map are spread over; the bright end is good",
+        update=redraw,
+    )
+    entropy_range: FloatVectorProperty(
+        name="Entropy",
+        description="Entropy of the dark and of the bright end [nats]",
+        size=2,
+        default=(16.7, -11.0),
+        precision=1,
+        update=redraw,
+    )
+    coverage_range: FloatVectorProperty(
+        name="Coverage",
+        description="Coverage of the dark and of the bright end, 0 to 1",
+        size=2,
+        default=(0.0, 1.0),
+        min=0.0,
+        max=1.0,
+        precision=2,
+        update=redraw,
+    )
+    ground_difference: BoolProperty(
+        name="Difference",
+        description="Show where it is better (blue) and where worse (orange) than what Live is "
+        "compared with: before the last move, pinned sensors, or a variant",
         update=redraw,
     )
 

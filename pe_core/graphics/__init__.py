@@ -10,6 +10,7 @@ from .casts import A_DRAFT, MOST, Cast, cast
 from .colors import (
     CIVIDIS,
     COUNTS,
+    DIFFERENCE,
     PAPER,
     SENSOR_COLORS,
     VIEWPORT,
@@ -40,6 +41,9 @@ from .ground import (
     SENSORS,
     SWATCHES,
     as_scored,
+    difference_map,
+    fitted_bound,
+    fitted_bounds,
     ground_map,
 )
 from .hidden import hidden_lines
@@ -57,6 +61,7 @@ __all__ = [
     "COUNTS",
     "COUNT_NAMES",
     "COVERAGE",
+    "DIFFERENCE",
     "DRAWINGS",
     "ENTROPY",
     "MOST",
@@ -88,9 +93,12 @@ __all__ = [
     "beam_budget",
     "cast",
     "channels_of",
+    "difference_map",
     "drawing_of",
     "even_angles",
     "fan",
+    "fitted_bound",
+    "fitted_bounds",
     "footprint",
     "footprint_faces",
     "footprint_lines",

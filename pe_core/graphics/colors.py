@@ -97,6 +97,13 @@ VIRIDIS = (
 COUNTS = ((0.12, 0.13, 0.20), (0.24, 0.36, 0.62), (0.28, 0.66, 0.66), (0.95, 0.89, 0.45))
 """Nobody, one, two, three or more: each clearly lighter than the one before."""
 
+BETTER, SAME, WORSE = (0.0, 0.36, 0.62), (0.955, 0.955, 0.945), (0.70, 0.31, 0.0)
+"""Blue, white and orange: differences, told apart by all eyes."""
+DIFFERENCE = (WORSE, SAME, BETTER)
+"""From worse over alike to better, on a light page."""
+DIFFERENCE_ON_DARK = ((0.96, 0.55, 0.16), (0.62, 0.62, 0.62), (0.28, 0.62, 0.98))
+"""The same hues for the viewport's dark grey."""
+
 Scale = tuple[tuple[float, float, float], ...]
 
 

@@ -94,13 +94,14 @@ class ColorKey:
     """What colours say: a title, and a scale or classes.
 
     `scale` is a row of colours from the low end to the high one with `ticks` evenly below it;
-    `classes` are colours with a name each.
+    `classes` are colours with a name each. `bounds` are the values of the scale's ends.
     """
 
     title: str
     scale: tuple[Rgba, ...] = ()
     ticks: tuple[str, ...] = ()
     classes: tuple[tuple[Rgba, str], ...] = ()
+    bounds: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

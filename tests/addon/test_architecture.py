@@ -14,7 +14,7 @@ PACKAGE = "blender_addon"
 ARRAYS = {
     f"overlay.{name}"
     for name in (
-        *("asked", "blind", "ghosts", "heat"),
+        *("asked", "blind", "focus", "ghosts", "ground", "heat"),
         *("layers", "mounts", "reach", "store", "tools", "wish"),
     )
 }
@@ -63,7 +63,7 @@ ALLOWED = {
     "review": {"bridge", "engine"},
     "operators": {
         *("asking", "body", "bridge", "changes", "choices", "engine", "explaining", "housing"),
-        *("live", "properties", "redraw", "review", "roster", "searching", "stale"),
+        *("live", "overlay", "properties", "redraw", "review", "roster", "searching", "stale"),
         "worker",
     },
     "panels": {"choices", "operators", "properties"},

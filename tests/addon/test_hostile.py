@@ -36,7 +36,7 @@ MUST_BE_REFUSED = ("line break", "colour of a terminal", "turned text")
 @pytest.fixture
 def small(car, monkeypatch):
     """Return the car, its LiDAR one of few beams, and few voxels to look at."""
-    monkeypatch.setattr(layers, "FINE_M", 8.0)
+    monkeypatch.setattr(layers.ground, "FINE_M", 8.0)
     monkeypatch.setattr(layers, "BLIND_WITHIN_M", 1.0)
     car.objects["roof"].perception_entropy.model = "Velodyne VLP-16 Puck"
     settings = car.perception_entropy

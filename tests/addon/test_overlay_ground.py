@@ -13,14 +13,15 @@ from pe_core.sight import BlindGround, BlindSpot, GroundSight, Reach
 from tests.engine.drawn import box, car, lidar, mounted
 
 
-def seen(entropy=None, sensors=None, step=1.0, shape=(30, 20)):
+def seen(entropy=None, sensors=None, step=1.0, shape=(30, 20), coverage=None):
     """A map of places; the vehicle is in the middle."""
     nx, ny = shape
     nothing = np.zeros(shape)
     entropy = nothing if entropy is None else entropy
     sensors = np.ones(shape, int) if sensors is None else sensors
     x, y = ((np.arange(n) + 0.5 - n / 2) * step for n in (nx, ny))
-    return GroundSight(x, y, step, None, entropy, entropy, sensors, sensors)
+    coverage = entropy if coverage is None else coverage
+    return GroundSight(x, y, step, None, entropy, coverage, sensors, sensors)
 
 
 def test_a_scale_rises_evenly_in_lightness():
@@ -52,6 +53,42 @@ def test_the_map_lies_where_it_was_looked_and_is_clear_in_the_vehicle():
     np.testing.assert_allclose(sheet.image[3, 27, :3], colors.VIRIDIS[0], atol=1e-4)
     assert "nats" in shape.legend.title and "16.7" in shape.legend.ticks[0]
     assert shape.legend.scale[0][:3] == pytest.approx(colors.VIRIDIS[0], abs=1e-6)
+
+
+def test_colours_fit_what_is_shown_and_the_bright_end_is_good():
+    entropy = np.linspace(-4.0, 2.0, 600).reshape(30, 20)
+    entropy[0, 0], entropy[-1, -1], entropy[5, 5] = -10.9, 16.6, np.nan  # a few do not count
+    assert ground.fitted_bounds(seen(entropy), ground.ENTROPY) == (2.0, -4.0)
+    shape = ground.ground_map(seen(entropy), ground.ENTROPY, 1.0, faded=False, bounds=(2.0, -4.0))
+    assert shape.legend.ticks == ("2.0", "−1.0", "−4.0") and shape.legend.bounds == (2.0, -4.0)
+    image = shape.sheet.image.transpose(1, 0, 2)
+    np.testing.assert_allclose(image[0, 0, :3], colors.VIRIDIS[-1], atol=1e-6)
+    np.testing.assert_allclose(image[-1, -1, :3], colors.VIRIDIS[0], atol=1e-6)
+    coverage = np.full((30, 20), 0.97)
+    low, high = ground.fitted_bounds(seen(coverage=coverage), ground.COVERAGE)
+    assert 0.0 < low < 0.97 < high <= 1.0 and high - low >= 0.05
+    nothing = np.full((30, 20), np.nan)
+    whole = ground.QUANTITIES[ground.ENTROPY]
+    assert ground.fitted_bounds(seen(nothing), ground.ENTROPY) == (whole.low, whole.high)
+
+
+@pytest.mark.parametrize("quantity", [ground.ENTROPY, ground.COVERAGE])
+def test_a_difference_is_blue_where_it_is_better_and_orange_where_worse(quantity):
+    better = {"entropy": np.zeros((30, 20)), "coverage": np.full((30, 20), 0.5)}
+    worse = {name: values.copy() for name, values in better.items()}
+    better["entropy"][:10], better["coverage"][:10] = -3.0, 0.9
+    better["entropy"][20:], better["coverage"][20:] = 3.0, 0.1
+    shape = ground.difference_map(seen(**better), seen(**worse), quantity, 0.5, name="Idea")
+    image = shape.sheet.image.transpose(1, 0, 2)
+    low, same, high = colors.DIFFERENCE_ON_DARK
+    for at, color in ((9, high), (15, same), (20, low)):
+        np.testing.assert_allclose(image[at, 10, :3], color, atol=1e-6)
+    assert image[15, 10, 3] < 0.2 * image[9, 10, 3]  # what is alike is nearly clear
+    end = shape.legend.bounds[1]
+    assert end == pytest.approx({"ENTROPY": 3.0, "COVERAGE": 0.4}[quantity])
+    assert "Idea" in shape.legend.title and "worse" in shape.legend.ticks[0]
+    again = ground.difference_map(seen(**worse), seen(**worse), quantity, 0.5)
+    assert np.ptp(again.sheet.image[..., :3], axis=(0, 1)).max() < 1e-6
 
 
 def test_counts_are_four_classes_and_the_vehicle_is_clear():
@@ -177,6 +214,8 @@ def test_heat_is_hits_per_area_on_the_surface():
     sensor = mounted(pe.Lidar("down", angles, 1440, 50.0), (0.0, 0.0, 2.0))
     found = casts.cast(sensor, plate)
     shape = heat.heat([found], plate.triangles)
+    assert shape.legend.scale[0][:3] == pytest.approx(colors.VIRIDIS[0])  # dark: many, bad
+    assert shape.legend.ticks[0] == "100"
     points = shape.faces.points
     np.testing.assert_allclose(points[:, 2], heat.LIFT_M, atol=1e-6)
     radius = np.hypot(points[:, 0], points[:, 1]).max()

@@ -7,7 +7,7 @@ import pytest
 from blender_addon import body, bridge, changes
 from blender_addon.engine import graphics, sight
 from blender_addon.live import latest
-from blender_addon.overlay import handler, layers, updating
+from blender_addon.overlay import ground, handler, layers, updating
 from blender_addon.overlay.store import shown
 from tests.addon import scenes
 
@@ -160,13 +160,15 @@ def test_the_map_is_that_of_the_engine(rig, quantity, height):
     study = scenes.study()
     metres = None if height == "AVERAGE" else int(height[1:]) / 100.0
     look = sight.Sight(study.space, study.prior, study.vehicle)
-    found = look.ground(study.rig, metres, layers.FINE_M)
-    expected = graphics.ground_map(found, quantity, 1.0, faded=True).sheet
+    found = look.ground(study.rig, metres, ground.FINE_M)
+    bounds = None if quantity == "SENSORS" else graphics.fitted_bounds(found, quantity)
+    expected = graphics.ground_map(found, quantity, 1.0, faded=True, bounds=bounds).sheet
     np.testing.assert_allclose(sheet.image, expected.image, atol=1e-6)
 
 
 def test_after_a_score_its_own_map_is_shown_until_something_moves(rig):
     rig.perception_entropy.score_samples = 0
+    rig.perception_entropy.view.ground_range = "WHOLE"
     assert bpy.ops.pe.score() == {"FINISHED"}
     shape = scenes.drawn(rig)["ground"][""]
     score = latest.scored(rig.name).score
@@ -182,6 +184,52 @@ def test_after_a_score_its_own_map_is_shown_until_something_moves(rig):
     rig.objects["roof"].location.z += 0.1
     bpy.context.view_layer.update()
     assert "as scored" not in scenes.drawn(rig)["ground"][""].legend.title
+
+
+def test_colours_are_fitted_at_rest_kept_while_moving_and_fixed_at_will(rig):
+    def ends():
+        return shown.items(rig.name, "ground")[""].shape.legend.bounds
+
+    scenes.drawn(rig)
+    fitted = ends()
+    assert fitted[0] > fitted[1], "the bright end is the lower entropy"
+    assert fitted != (graphics.QUANTITIES["ENTROPY"].low, graphics.QUANTITIES["ENTROPY"].high)
+    rig.objects["roof"].location = (0.0, 0.0, 0.7)  # in the car: it sees little
+    bpy.context.view_layer.update()
+    updating.update(moving=True)
+    assert ends() == fitted
+    updating.update(moving=False)
+    other = ends()
+    assert other != fitted
+    assert bpy.ops.pe.fix_colors() == {"FINISHED"}
+    view = rig.perception_entropy.view
+    assert view.ground_range == "FIXED" and tuple(view.entropy_range) == pytest.approx(other)
+    rig.objects["roof"].location = (-0.43, 0.0, 1.8)
+    bpy.context.view_layer.update()
+    assert scenes.drawn(rig)["ground"][""].legend.bounds == pytest.approx(other)
+
+
+def test_the_difference_map_is_of_the_variant_that_live_is_compared_with(rig):
+    bpy.ops.pe.save_variant()
+    settings = rig.perception_entropy
+    settings.view.ground_difference = True
+    assert "nothing to compare with" in scenes.drawn(rig)["ground"][""].legend.title
+    settings.live.against = settings.variants[0].key
+    before = scenes.drawn(rig)["ground"][""]
+    assert settings.variants[0].name in before.legend.title
+    alike = before.sheet.image[before.sheet.image[..., 3] > 0.0]
+    assert len(alike) and np.ptp(alike[:, :3], axis=0).max() < 1e-6
+    study = scenes.study()
+    rig.objects["eye"].rotation_euler.z = 3.0
+    bpy.context.view_layer.update()
+    look = sight.Sight(study.space, study.prior, study.vehicle)
+    maps = [look.ground(each.rig, None, ground.FINE_M) for each in (scenes.study(), study)]
+    expected = graphics.difference_map(*maps, "ENTROPY", settings.view.ground_opacity)
+    found = scenes.drawn(rig)["ground"][""].sheet.image
+    np.testing.assert_allclose(found, expected.sheet.image, atol=1e-6)
+    assert np.ptp(found[..., 0]) > 0.1
+    settings.view.ground_quantity = "SENSORS"  # counts have no difference map
+    assert "Seen by" in scenes.drawn(rig)["ground"][""].legend.title
 
 
 def test_beams_of_the_selected_sensors_alone(rig):
@@ -220,7 +268,7 @@ def test_the_map_is_of_the_scene_s_own_space(rig):
     sheet = scenes.drawn(rig)["ground"][""].sheet
     assert (sheet.low, sheet.high) == ((-20.0, -40.0), (30.0, 40.0))
     rig.perception_entropy.space_x = (-2000.0, 2000.0)
-    assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * layers.MOST_PLACES
+    assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * ground.MOST_PLACES
     rig.perception_entropy.space_x = (30.0, -20.0)  # a mistake: a score says which
     assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach", "focus"}
 

@@ -313,7 +313,10 @@ def test_off_the_origin(sedan):
     found = told(moved(sedan, shift=(30, 1, 0)))[None, "off_origin"]
     assert found.text.startswith("its centre is 30 m off the origin, at (30.0, 1.0)")
     assert found.amount == pytest.approx((-30, -1, 0), abs=1e-3)
-    assert (None, "off_origin") not in told(moved(sedan, shift=(0.9, 0, 0)))
+    for shift in ((0.9, 0, 0), (0, 0.9, 0)):
+        assert (None, "off_origin") not in told(moved(sedan, shift=shift))
+    for shift in ((1.2, 0, 0), (0, -1.2, 0), (0.8, 0.8, 0)):
+        assert (None, "off_origin") in told(moved(sedan, shift=shift))
 
 
 def test_a_car_as_wide_as_no_road_vehicle(sedan):

@@ -229,6 +229,8 @@ def test_quaternions_of_all_rotations_come_back():
         rotation = rotation_matrix(*rpy)
         again = from_quaternion("test", "q", quaternion(rotation))
         assert np.abs(again - rotation).max() < 1e-12 and quaternion(rotation)[0] >= 0.0
+        longer = from_quaternion("test", "q", [1.3 * q for q in quaternion(rotation)])
+        assert np.abs(longer - rotation).max() < 1e-12
 
 
 # --- the reference --------------------------------------------------------------------------------

@@ -7,8 +7,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.search import Coding
+from pe_core.search.domains import frame_of, seat_of
 from tests.engine import mounting, shapes
-from tests.engine.mounting import BASE, CAN, CENTER, ON_ROOF, TOP, can, roof
+from tests.engine.mounting import BASE, CAN, CENTER, ON_ROOF, RADIUS, TOP, can, roof
 
 RNG_SEED = 3
 LEVEL = ("x", "y", "z")
@@ -102,6 +103,31 @@ def test_facing_looks_along_the_normal():
         assert rig["ahead"].pose.rotation_deg == (0.0, 0.0, 0.0)
         assert rig["aside"].pose.position[1] == pytest.approx(0.92, abs=1e-5)
         assert rig["aside"].pose.rotation_deg == (0.0, 0.0, 90.0)
+
+
+@pytest.mark.parametrize("normal", [(0.6, 0.0, 0.8), (0.0, 0.8, -0.6), (-0.48, 0.36, 0.8)])
+def test_facing_looks_along_a_normal_that_rises_or_falls(normal):
+    """Its x axis is the normal, its left is level, and it is upright."""
+    forward, left, up = frame_of("facing", np.array(normal)).T
+    assert forward == pytest.approx(normal)
+    assert left[2] == pytest.approx(0.0) and up[2] > 0.0
+
+
+def test_facing_the_back_of_the_housing_is_at_the_stand_off():
+    """A can in the car's front, its axis 8 mm before its middle: origin, radius, 2 cm."""
+    housing = pe.Housing("cylinder", (0.1, 0.1, 0.06), (0.008, 0.0, 0.03))
+    mount = pe.SurfaceMount(["front"], 0.02, "facing")
+    assert seat_of(mount, housing) == pytest.approx([-0.008 - 0.05, 0.0, 0.0])
+    ahead = can((2.3 + 0.02 + RADIUS, 0.0, 0.6), "ahead")
+    (rig, *_) = drawn(coded(ahead, mount={"ahead": mount}, free=("x", "y", "z")), 3)
+    assert rig["ahead"].pose.position[0] == pytest.approx(2.32 + RADIUS, abs=1e-5)
+
+
+def test_a_start_on_the_wrong_side_of_the_skin_is_refused():
+    """As far below the roof as it should be above it."""
+    below = shapes.camera(position=(0.0, 0.0, TOP - 0.1), name="eye")
+    with pytest.raises(pe.InputError, match=r"a start on its mount, such as \[0, 0, 1.5\]"):
+        coded(below, mount={"eye": roof(0.1)})
 
 
 def test_a_surface_s_outside_does_not_depend_on_how_its_corners_turn():

@@ -15,8 +15,10 @@ from pe_core.kinds import KINDS, measure_objects
 from pe_core.kinds.object_curves import SIZES, carried_over
 from pe_core.metric import fit_ap_curve
 from pe_core.study import study_from_dict
+from pe_core.targets.drawing import DrawnObjects
 from pe_core.targets.rings import SECTORS
 from pe_core.targets.rings import _reach as reach_of
+from pe_core.targets.sums import ObjectSums
 from tests.engine import shapes
 
 TABLES = Path(__file__).parents[2] / "docs" / "objects"
@@ -164,6 +166,17 @@ def test_the_standard_error_is_honest():
     scatter = np.std([each.entropy for each in found], ddof=1)
     told = np.mean([each.stderr for each in found])
     assert scatter / 1.5 < told < 3.0 * scatter
+
+
+def test_the_standard_error_by_hand():
+    """Scenes of two boxes and of one: 1, 3 and 8 nats by weights 1/4, 1/4, 1/2 are 5 in the mean.
+
+    Off that by weight: -1 - 0.5 and 1.5; the root of 2 / (2 - 1) times the squares' sum 4.5 is 3.
+    """
+    ones = np.ones((3, 3))
+    objects = pe.Objects(ones, ones, np.zeros(3), [0, 0, 0], ["car"], [0, 0, 1])
+    sums = ObjectSums(DrawnObjects(objects, np.array([0.25, 0.25, 0.5]), 2))
+    assert sums.standard_error(np.array([1.0, 3.0, 8.0]), 1) == pytest.approx(3.0)
 
 
 def test_a_golden_case():

@@ -9,8 +9,9 @@ import pytest
 import pe_core as pe
 from pe_core.app.cli import main
 from pe_core.outputs import export_scene, scene_files
+from pe_core.outputs.blind_volume import _squares, blind_volume
 from pe_core.outputs.solid import free_solid, hidden_solid, whole_solid
-from pe_core.outputs.views import mounted_view
+from pe_core.outputs.views import MountedView, mounted_view
 from pe_core.outputs.voxel_surface import joined, voxel_solid
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
@@ -92,6 +93,35 @@ def test_cubes_that_touch_along_an_edge_are_joined_by_a_third():
     assert is_watertight(corners(solid)) and (filled >= cubes).all()
     assert solid.volume == pytest.approx(filled.sum() * 0.125)
     assert voxel_solid("none", np.zeros((2, 2, 2), bool), np.zeros(3), 0.5) is None
+
+
+def test_what_is_hidden_in_two_places_that_touch_in_a_point_is_one_closed_solid():
+    """5 by 5 rays ahead, two of them stopped: the triangles round these share the middle ray."""
+    grid = np.arange(25).reshape(5, 5)
+    a, b, c, d = (w.ravel() for w in (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]))
+    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    y, z = np.meshgrid(np.linspace(-0.2, 0.2, 5), np.linspace(-0.2, 0.2, 5), indexing="ij")
+    ways = np.stack([np.ones(25), y.ravel(), z.ravel()], axis=1)
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    ends = np.full(25, 10.0)
+    ends[[grid[1, 1], grid[3, 3]]] = 5.0
+    hidden = hidden_solid("hidden", MountedView(np.zeros(3), ways, faces, 10.0, ends))
+    assert is_watertight(corners(hidden)) and hidden.volume > 0.0
+
+
+def test_where_nothing_is_seen_all_is_blind_but_the_vehicle():
+    """10 m round a block of 4 by 2 by 1 m, and 2.5 m high: 24 * 22 * 2.5 - 8 m3."""
+    block = pe.Vehicle(box((-2.0, -1.0, 0.0), (2.0, 1.0, 1.0)))
+    away = pe.Rig([lidar_on_roof(small_lidar(max_range=1.0), (500.0, 0.0, 2.0))])
+    assert blind_volume("blind", away, block).volume == pytest.approx(1312.0)
+
+
+def test_a_gap_of_one_cube_is_no_blind_volume():
+    """Seen from above, layer by layer: a square of two by two, with a strip on either side."""
+    layer = np.array([[0, 0, 1, 0, 0], [1, 1, 1, 1, 0], [0, 1, 1, 0, 1]], bool)
+    kept = np.array([[0, 0, 0, 0, 0], [0, 1, 1, 0, 0], [0, 1, 1, 0, 0]], bool)
+    flags = np.stack([layer, ~layer & False, layer], axis=2)
+    assert (_squares(flags) == np.stack([kept, kept & False, kept], axis=2)).all()
 
 
 def a_study(*sensors, vehicle=None):

@@ -40,13 +40,16 @@ def reaching(lens: Own, name: str, width: int, height: int) -> Own:
 
 
 def fold_angle(lens: Lens) -> float:
-    """Angle from the axis up to which a lens can be inverted [rad]; its edge, or where it folds."""
+    """Angle from the axis up to which a lens can be inverted [rad]; its edge, or where it folds.
+
+    Pixels a steradian are radius times slope, over the sine of the angle: both of them grow, or
+    none. What a shift adds to that has the other sign on the opposite spoke.
+    """
     theta = np.linspace(0.0, lens.edge, RINGS + 1)[1:]
     with np.errstate(all="ignore"):
         spokes = SPOKES if lens.shifts else 1
         grows = np.all(lens.density(*_rings(theta, spokes)) > 0.0, axis=1)
         grows &= lens.radius(theta) > 0.0
-        grows &= lens.slope(theta) > 0.0
     bad = np.flatnonzero(~grows)
     if not len(bad):
         return lens.edge

@@ -170,6 +170,17 @@ def test_undo_is_told(car, timers, heard):
     assert heard == [MOVED, RESTED]
 
 
+@pytest.mark.parametrize("name", ["undo_post", "redo_post", "load_post", "frame_change_post"])
+def test_what_blender_calls_after_a_step_back_or_a_load_is_told(car, timers, heard, name):
+    """Whether or not an update of the scene follows, in which objects seem to have changed."""
+    ours = [f for f in getattr(bpy.app.handlers, name) if f.__module__ == motion.__name__]
+    car.objects["roof"].location.x += 0.1  # without an update
+    for handler in ours:
+        handler(car, bpy.context.evaluated_depsgraph_get())
+    timers.pass_by(10.0)
+    assert heard == [MOVED, RESTED]
+
+
 def test_without_a_window_there_is_no_timer(car):
     drag(car.objects["roof"])
     assert not any(map(bpy.app.timers.is_registered, (motion.tell_moved, motion.tell_rested)))

@@ -139,6 +139,22 @@ def test_hidden_does_not_count(parts, how):
     assert scenes.vehicle(parts).part_names == ("seen",)
 
 
+@pytest.mark.parametrize("how", ["the instance", "in the instance"])
+def test_instances_hidden_in_renders_do_not_count(parts, how):
+    wheel = bpy.data.collections.new("Wheel")
+    scenes.add_box(wheel, "rim")
+    tyre = scenes.add_box(wheel, "tyre")
+    left, right = (instance_of(wheel, side, location=(0, y, 0)) for side, y in (("l", 5), ("r", 9)))
+    for instance in (left, right):
+        parts.objects.link(instance)
+    (left if how == "the instance" else tyre).hide_render = True
+    vehicle = scenes.vehicle(parts)
+    rows = {"the instance": ("rim", "tyre"), "in the instance": ("rim",)}
+    assert vehicle.part_names == rows[how]
+    assert len(vehicle.triangles) == 2 * BOX_TRIANGLES
+    assert (vehicle.triangles[..., 1].min() > 7.0) == (how == "the instance")
+
+
 def test_curve_counts_once(parts):
     """Blender lists a curve twice, as itself and as its mesh."""
     curve = bpy.data.curves.new("bar", "CURVE")

@@ -196,6 +196,14 @@ def test_objects_that_are_all_alike_leave_something_to_doubt():
     assert set(score.objects.per_class["car"].reach.values()) == {0.0}
 
 
+def test_reach_is_told_of_the_side_that_a_sensor_looks_to():
+    """A LiDAR over a quarter to the left: a car is found there, and on no other side."""
+    left = shapes.small_lidar(32, 360, horizontal_fov=(math.pi / 4, 3 * math.pi / 4))
+    reach = judge().score(pe.Rig([shapes.lidar_on_roof(left)])).objects.per_class["car"].reach
+    assert reach["left"] > 5.0
+    assert all(reach[side] == 0.0 for side in ("front", "rear", "right", "front right"))
+
+
 def test_reach_ends_where_the_mean_ap_falls_below_a_half():
     found = [1.0, 1.0, 0.75, 0.25, 0.9, *[0.0] * 11]
     assert reach_of(found) == 5.0 * 3.0  # half way between the middles at 12.5 and 17.5 m

@@ -7,8 +7,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.sight import Sight
-from pe_core.sight.blind import NARROW_M, SIDES
+from pe_core.sight.blind import NARROW_M, SIDES, blind_ground
 from pe_core.sight.blind_squares import BODY_M, TOO_FAR_M
+from pe_core.sight.cells import GroundCells
 from tests.engine import shapes
 from tests.engine.test_sight_outline import signed_area
 
@@ -94,6 +95,17 @@ def test_the_nearest_place_is_before_the_middle_of_the_body():
     assert points["front"] == pytest.approx((3.0, 0.7), abs=0.06)
     assert points["left"] == pytest.approx((2.0, 1.2), abs=0.06)
     assert set(blind.seen_from.values()) == set(blind.zone.values()) == {None}
+
+
+@pytest.mark.parametrize(("rows", "zone"), [(1, 0.0), (2, 0.1), (3, 0.15)])
+def test_a_speck_along_the_body_is_no_blind_ground_to_a_side(rows, zone):
+    """Rows of 5 cm before the bonnet: narrower than 10 cm is none, and the rest is as it is."""
+    cells = GroundCells.of(SPACE, 0.05)
+    blind = np.zeros((len(cells.x), len(cells.y)), bool)
+    blind[(cells.x > 2.0) & (cells.x < 2.0 + 0.05 * rows)] = True
+    found = blind_ground(cells, blind, ((-2.0, 2.0), (-0.5, 0.5)), 0.5, 15.0, False)
+    assert (found.zone["front"], found.seen_from["front"]) == (zone, zone)
+    assert (found.nearest["front"] is None) == (zone == 0.0)
 
 
 def test_the_vehicle_s_own_footprint_is_not_blind():

@@ -8,9 +8,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.app.cli import main
-from pe_core.outputs import blind_volume as blind_volume_module
 from pe_core.outputs import export_scene, scene_files
-from pe_core.outputs.blind_volume import _squares, blind_volume
+from pe_core.outputs.blind_volume import _round, _squares, blind_volume
 from pe_core.outputs.solid import free_solid, hidden_solid, whole_solid
 from pe_core.outputs.views import MountedView, mounted_view
 from pe_core.outputs.voxel_surface import joined, voxel_solid
@@ -128,10 +127,11 @@ def test_a_gap_of_one_cube_is_no_blind_volume():
 def test_every_cube_of_the_blind_volume_is_in_a_square_of_blind_ones_or_the_vehicle(monkeypatch):
     """Between a LiDAR's beams there are gaps of one cube; they are none of it."""
     found = []
-    monkeypatch.setattr(blind_volume_module, "joined", lambda cubes: found.append(cubes) or cubes)
+    names = blind_volume.__globals__
+    monkeypatch.setitem(names, "joined", lambda cubes: found.append(cubes) or cubes)
     car = box_car()
     blind_volume("blind", pe.Rig([lidar_on_roof(small_lidar())]), car)
-    space = blind_volume_module._round(car)
+    space = _round(car)
     unseen = found[0] | (space.centers(2) < car.top(space)[..., None])
     whole = unseen[:-1, :-1] & unseen[1:, :-1] & unseen[:-1, 1:] & unseen[1:, 1:]
     padded = np.pad(whole, ((1, 1), (1, 1), (0, 0)))

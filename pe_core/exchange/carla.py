@@ -29,7 +29,8 @@ SCAN_KEYS = (
 FOV = Number(0.0, 180.0, above=True, below=True, unit="degrees", noun="angle")
 UP = Number(-90.0, 90.0, unit="degrees", noun="angle")
 AROUND = Number(0.0, 360.0, above=True, unit="degrees", noun="angle")
-RATE = Number(0.0, above=True, cap=1e12)
+RATE, TURNS = Number(0.0, above=True, cap=1e12), Number(1e-3, cap=1e6)
+"""Points and turns a second."""
 SPAWN, LISTS, ACROSS = "spawn_point", ("sensors", "objects"), "horizontal_fov"
 FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS)
 PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
@@ -160,7 +161,7 @@ def _picture(row: Table) -> Picture:
 
 def _scan(row: Table) -> Scan:
     frames, channels = (
-        row.number("rotation_frequency", rule=RATE),
+        row.number("rotation_frequency", rule=TURNS),
         row.whole("channels", rule=CHANNELS),
     )
     beams = row.number("points_per_second", rule=RATE) / frames

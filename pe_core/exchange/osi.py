@@ -23,11 +23,14 @@ from .carried import CAMERA, LIDAR, CarriedSensor, Scan
 from .figures import PIXELS, PLAIN, RANGE
 from .files import Written, json_of, pose_from
 from .limits import BEAM_BYTES, MAX_BEAMS, require_at_most
+from .passthrough import entry_row, json_entry
 from .pictures import picture_of_fov
 from .protobuf_json import Message
 
 FILE = "sensor_view_configuration.json"
-LISTS = {kind: f"{kind}_sensor_view_configuration" for kind in (CAMERA, LIDAR)}
+OTHER_KINDS = ("radar", "ultrasonic")
+"""Kinds of OSI's that are not known here: they pass through."""
+LISTS = {k: f"{k}_sensor_view_configuration" for k in (CAMERA, LIDAR, *OTHER_KINDS)}
 DIGITS = 9
 """Of a beam's direction: one has up to 240,000 of them."""
 OTHER = "generic_sensor_view_configuration"
@@ -52,8 +55,8 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     ranges = {s.name: s.scan.max_range for s in sensors if s.scan is not None}
     top: dict[str, Any] = {"range": max(ranges.values())} if ranges else {}
     for number, each in enumerate(sensors):
-        row = {"sensor_id": {"value": number}, "mounting_position": _mounting(each)}
-        top.setdefault(LISTS.get(each.kind or "", OTHER), []).append(row | _figures(each))
+        row = entry_row(each, _row, (), ()) | {"sensor_id": {"value": number}}
+        top.setdefault(LISTS.get(each.kind or "", OTHER), []).append(row)
     text = json.dumps(top, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return {FILE: text.encode()}, _lines(sensors, ranges)
 
@@ -71,11 +74,12 @@ def _lines(sensors: Sequence[CarriedSensor], ranges: dict[str, float]) -> list[s
     return lines
 
 
-def _mounting(each: CarriedSensor) -> dict[str, Any]:
-    return {
+def _row(each: CarriedSensor) -> dict[str, Any]:
+    mounting = {
         "position": dict(zip(PLACE, each.pose.position, strict=True)),
         "orientation": dict(zip(TURN, each.pose.rpy, strict=True)),
     }
+    return {"mounting_position": mounting, **_figures(each)}
 
 
 def _figures(each: CarriedSensor) -> dict[str, Any]:
@@ -132,6 +136,8 @@ def _sensor(
     where = CarriedSensor(
         f"{kind or 'sensor'}_{number}", pose_from(path, mounting.path, place, turn), kind
     )
+    if kind in OTHER_KINDS:
+        return replace(where, entry=json_entry(row.data))
     if kind == CAMERA:
         return _camera(row, where)
     return _lidar(path, row, where, reach) if kind == LIDAR and "directions" in row else where

@@ -193,6 +193,7 @@ _ROWS = (
         osi.write,
         osi.read,
         keeps=centred,
+        passes_through=True,
         holds=frozenset({BEAMS}),
     ),
     RigFormat(

@@ -101,6 +101,30 @@ def many(piece, count, chain=False):
     )
 
 
+@pytest.mark.parametrize("name", ["carla", "csv", "kitti", "nuscenes", "urdf"])
+def test_a_word_in_place_of_a_number_is_never_0_or_nothing(name, tmp_path):
+    """Every third number of a file; in URDF those of the elements that are read."""
+    paths = good_files(name, tmp_path / "rig")
+    asked = paths[0].parent if len(paths) > 1 else paths[0]
+    refused = 0
+    for path in paths:
+        whole = path.read_bytes()
+        begin = whole.find(b"-->") if name == "urdf" else 0
+        inside = rb"(?<=[ >,:\"\[])" + NUMBER.pattern + rb"(?=[ <,\"\]\n])"
+        found = [m for m in re.finditer(inside, whole) if m.start() >= begin]
+        for each in found[::3]:
+            before, after = whole[: each.start()], whole[each.end() :]
+            if before.endswith(b"<s>"):
+                continue  # skew: Gazebo's own, not read
+            in_json = path.suffix == ".json" and not before.endswith(b'"')
+            path.write_bytes(before + (b'"one"' if in_json else b"one") + after)
+            with pytest.raises(pe.InputError):
+                pe.import_rig(asked, name, AXLE)
+            refused += 1
+        path.write_bytes(whole)
+    assert refused >= 10
+
+
 def robot(pieces):
     return f'<robot name="r"><link name="base"/>{pieces}</robot>'
 

@@ -111,3 +111,20 @@ def test_a_rig_of_too_many_beams_is_refused_before_they_are_written(monkeypatch)
         pe.InputError, match="at most 115 beams, each of which is written, found 116"
     ):
         rig_files(RIG, "osi", AXLE)
+
+
+def test_radars_are_left_out_by_name_and_come_again(tmp_path):
+    (path,), _ = pe.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
+    data = json.loads(path.read_text())
+    radar = {"sensorId": {"value": "7"}, "emitter_frequency": 77e9, "rx_antenna_diagram": [{}]}
+    data["radar_sensor_view_configuration"] = [radar]
+    path.write_text(json.dumps(data))
+    found = pe.import_rig(path, "osi", AXLE)
+    assert [s.name for s in found.rig] == ["lidar_0", "lidar_1", "camera_2"]
+    assert found.lines[0].startswith("left out: 1 radar (radar_7)")
+    (again,), _ = pe.export_rig(
+        found.rig, "osi", tmp_path / "again.json", AXLE, passthrough=found.passthrough
+    )
+    (row,) = json.loads(again.read_text())["radar_sensor_view_configuration"]
+    assert row["emitter_frequency"] == 77e9 and row["rx_antenna_diagram"] == [{}]
+    assert row["sensor_id"] == {"value": 3}

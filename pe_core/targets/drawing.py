@@ -150,13 +150,22 @@ def _counts(known: Mapping[str, float], targets: TargetRule) -> dict[str, int]:
 
 
 def _lots(count: int, scenes: int, shift: float) -> Ints:
-    """(count,) the scene of each of a class's objects: every scene has as many, or one more."""
+    """(count,) the scene of each of a class's objects: every scene has as many, or one more.
+
+    Which scenes have one more is by lot as well, another one for each class (another shift).
+    """
+    found = np.empty(count, np.int64)
+    drawn = _by_lot(scenes, (shift + 0.5) % 1.0)
+    found[_by_lot(count, shift)] = drawn[np.arange(count) * scenes // count]
+    return found
+
+
+def _by_lot(count: int, shift: float) -> Ints:
+    """(count,) the numbers below `count` in an order that a shift in [0, 1) decides."""
     x = np.arange(count, dtype=np.uint32) + np.uint32(int(shift * (1 << 32)))
     for odd in (0x85EBCA6B, 0xC2B2AE35):  # MurmurHash3's mixing
         x = (x ^ (x >> np.uint32(16))) * np.uint32(odd)
-    found = np.empty(count, np.int64)
-    found[np.argsort(x, kind="stable")] = np.arange(count) * scenes // count
-    return found
+    return np.argsort(x, kind="stable")
 
 
 def _weights(prior: Prior, objects: Objects) -> Floats:

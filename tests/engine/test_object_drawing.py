@@ -188,3 +188,15 @@ def test_a_prior_without_weight_on_the_objects_is_told():
         drawn(boxes)
     with pytest.raises(pe.InputError, match="size: expected three finite lengths above 0"):
         pe.ObjectClass("flat", (4.0, 0.0, 1.5), 0.2, 30.0, 1.0, 0.5, 0.0)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.31, 0.5, 0.77])
+def test_which_scenes_have_one_more_of_a_class_says_nothing_of_another_class(shift):
+    """Counts of classes are not correlated; truck and cone, alike in number, least of all."""
+    found = drawn(targets=TargetRule("objects", True, 256), shift=shift)
+    objects, classes = found.objects, range(len(found.objects.class_names))
+    counts = [np.bincount(objects.scenes[objects.labels == c], minlength=256) for c in classes]
+    uneven = [each for each in counts if np.ptp(each) == 1]
+    assert len(uneven) == 4 and all(np.ptp(each) <= 1 for each in counts)
+    others = np.corrcoef(uneven) - np.eye(len(uneven))
+    assert np.abs(others).max() < 3.0 / math.sqrt(256.0)  # what chance leaves

@@ -7,7 +7,7 @@ from .hidden import HiddenSensor, hidden_sensors, hidden_words
 from .key_figures import KeyFigures, key_figures
 from .mounting import stopped_shares
 from .object_words import lone_reach, object_words, objects_looked_at
-from .outlook import Outlook, class_of, outlook
+from .outlook import BLIND_TO_M, Outlook, class_of, outlook
 from .phrases import WHERE, rig_words, sensor_words, stopped_words, words
 from .place import AskedPlace, SensorAtPlace, ask_place
 from .ranking import Notation, ranking, win_words
@@ -19,11 +19,12 @@ from .sensor_table import (
     sensor_rows,
     sensor_table,
 )
-from .side_by_side import ComparedRow, compare
+from .side_by_side import ComparedRow, compare, compare_figures
 from .told import warnings
 from .vehicle_line import vehicle_line
 
 __all__ = [
+    "BLIND_TO_M",
     "FRAGILE",
     "SENSOR_COLUMNS",
     "SHORT_ZONES",
@@ -40,6 +41,7 @@ __all__ = [
     "ask_place",
     "class_of",
     "compare",
+    "compare_figures",
     "fragile",
     "hidden_sensors",
     "hidden_words",

@@ -16,7 +16,7 @@ from ..scoring.scatter import Figure, paired_error
 from ..scoring.score import PartScore, Score
 
 CERTAINTY = 0.95
-LEAST = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05}
+LEAST = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05, "blind": 0.05}
 """Half of the last digit that is shown, by measure: smaller differences are not told."""
 
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from ..scoring.score import PartScore, Score
 from .certainty import LEAST, degrees_of, difference_errors, sure_factor
+from .key_figures import KeyFigures
 
-ENTROPY, COVERAGE, AP, REACH = "entropy", "coverage", "ap", "reach"
+ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
+LOWER_IS_BETTER = frozenset({ENTROPY, BLIND})
 AHEAD = "front"
 """The direction whose reach is put side by side."""
 
@@ -23,9 +25,9 @@ class ComparedRow:
     group : {"rig", "zone", "class"}
     name : str
         Which zone or class; empty for the rig itself.
-    measure : {"entropy", "coverage", "ap", "reach"}
-        Entropy [nats], lower is better. Higher is better of coverage, 0 to 1, and of scores on
-        objects of expected AP, 0 to 1, and of reach ahead [m].
+    measure : {"entropy", "coverage", "ap", "reach", "blind"}
+        Entropy [nats] and blind ground [m2], lower is better. Higher is better of coverage and of
+        expected AP, 0 to 1, and of reach ahead [m].
     values : tuple of float or None
         In the order of the scores; None where one has no such zone or class.
     differences : tuple of float or None
@@ -50,8 +52,8 @@ class ComparedRow:
 
     @property
     def lower_is_better(self) -> bool:
-        """Whether it is an entropy."""
-        return self.measure == ENTROPY
+        """Whether it is an entropy, or blind ground."""
+        return self.measure in LOWER_IS_BETTER
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -83,6 +85,42 @@ def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
         In the order of the columns; differences are from the first.
     """
     return tuple(_rows(list(scores.values())))
+
+
+def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
+    """Put key figures side by side: blind ground, and of one class reach ahead and expected AP.
+
+    No AP is marked as the best: it is of a sample, and the error of a difference is not known.
+
+    Parameters
+    ----------
+    figures : mapping of name to KeyFigures
+        In the order of the columns, all of one height and one class; differences are from the
+        first.
+    """
+    found = list(figures.values())
+    if not found:
+        return ()
+    what = f"{found[0].height:g} m tall, within {found[0].within:g} m"
+    rows = [_exact_row("rig", what, BLIND, [f.blind_m2 for f in found])]
+    if (name := found[0].class_name) is not None:
+        rows.append(_exact_row("class", name, REACH, [f.reach_m for f in found]))
+        ap = _exact_row("class", name, AP, [f.expected_ap for f in found])
+        rows.append(replace(ap, best=(False,) * len(found)))
+    return tuple(rows)
+
+
+def _exact_row(group: str, name: str, measure: str, values: Sequence[float | None]) -> ComparedRow:
+    """Return a row of figures without an error."""
+    errors = ((0.0,) * len(values),) * len(values)
+    best = _best(measure, values, errors, 0.0)
+    return ComparedRow(group, name, measure, tuple(values), _less(values), best, errors, 0.0)
+
+
+def _less(values: Sequence[float | None]) -> tuple[float | None, ...]:
+    """Each value less the first one; None where one of the two is missing."""
+    first = values[0] if values else None
+    return tuple(None if v is None or first is None else v - first for v in values)
 
 
 def _rows(scores: list[Score]) -> Iterator[ComparedRow]:
@@ -123,12 +161,10 @@ def _parts(
 def _row(
     scores: list[Score], group: str, name: str, measure: str, values: list[float | None]
 ) -> ComparedRow:
-    first = values[0] if values else None
-    less = [None if v is None or first is None else v - first for v in values]
     errors = difference_errors(scores, (group, name, measure))
     factor = sure_factor(len(scores), degrees_of(scores))
     best = _best(measure, values, errors, factor)
-    return ComparedRow(group, name, measure, tuple(values), tuple(less), best, errors, factor)
+    return ComparedRow(group, name, measure, tuple(values), _less(values), best, errors, factor)
 
 
 def _best(
@@ -138,7 +174,7 @@ def _best(
     factor: float,
 ) -> tuple[bool, ...]:
     """Mark the best and what is not clearly worse; nothing where that is all there is."""
-    sign = 1.0 if measure == ENTROPY else -1.0
+    sign = 1.0 if measure in LOWER_IS_BETTER else -1.0
     there = [(sign * v, k) for k, v in enumerate(values) if v is not None]
     if not there:
         return (False,) * len(values)

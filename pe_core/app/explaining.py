@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 import signal
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from .. import advice
+from .. import advice, catalog
 from ..errors import InputError
+from ..scoring import Score
 from ..study import Outcome, ScoreJob, Study, vehicle_digest
 from ..text import dump_json
 from ..text.json_text import finite
@@ -19,6 +20,9 @@ from .side_by_side import comparison
 from .status import DONE, Answer
 from .summary import warned, with_error
 from .work import drive, tell_vehicle
+
+COMPARED = ("space", "prior", "model", "targets")
+"""What of a study has to be the same for scores to measure the same."""
 
 
 def add_explain_options(parser: argparse.ArgumentParser) -> None:
@@ -33,6 +37,12 @@ def add_explain_options(parser: argparse.ArgumentParser) -> None:
 
 def add_compare_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``compare`` to a parser."""
+    about = "for what is so tall blind ground is told [m] (0.5)"
+    parser.add_argument("--height", type=float, default=advice.BLIND_TO_M, metavar="M", help=about)
+    about = "class whose reach and expected AP are told (pedestrian)"
+    parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
+    about = "a known rig on the first one's vehicle as a further column"
+    parser.add_argument("--beside", metavar="RIG", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
     add_score_options(parser)
 
@@ -64,24 +74,51 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
 def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     """Score studies by name, and put them side by side."""
     refuse_different(studies)
+    studies = {**studies, **_beside(studies, args.beside)}
+    of = args.height, args.class_name
+    figures = {name: _figures(study, *of) for name, study in studies.items()}
     scores = {name: scored(study, args.workers).after for name, study in studies.items()}
-    rows = advice.compare(scores)
+    rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
     alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
     data = {
         "scores": {name: score.to_dict() for name, score in scores.items()},
-        "rows": [row.to_dict() for row in rows],
+        "figures": {name: own.to_dict() for name, own in figures.items()},
+        "rows": [row.to_dict() for row in (*rows, *figure_rows)],
         "same_vehicle": alike,
     }
-    notes = [] if alike else ["their vehicles differ"]
-    if error := max(score.stderr for score in scores.values()):
-        notes.append(
-            f"on samples: entropies have a standard error of up to {error:.4f} nats; +- is that of "
-            "a difference, smaller on a shared sample"
-        )
     names = list(scores)
     said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
     data["words"] = said
-    return _answer(data, [*comparison(names, rows), *said, *notes], args.json)
+    lines = [*comparison(names, [*rows, *figure_rows]), *said, *_notes(scores, alike)]
+    return _answer(data, lines, args.json)
+
+
+def _notes(scores: Mapping[str, Score], alike: bool) -> Iterator[str]:
+    """Yield what has to be known of a comparison: other vehicles, and the error of samples."""
+    if not alike:
+        yield "their vehicles differ"
+    if error := max(score.stderr for score in scores.values()):
+        yield (
+            f"on samples: entropies have a standard error of up to {error:.4f} nats; +- is that of "
+            "a difference, smaller on a shared sample"
+        )
+
+
+def _figures(study: Study, height: float, class_name: str | None) -> advice.KeyFigures:
+    """Return what stands beside a study's entropy and coverage in a comparison."""
+    voxels = not study.targets.are_objects
+    return advice.key_figures(study.sight(), study.rig, height, class_name, of_voxels=voxels)
+
+
+def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
+    """Return a known rig in place of the first study's, by its name; nothing without one."""
+    if key is None:
+        return {}
+    known, first = catalog.known_rig(key), next(iter(studies.values()))
+    name = key if key not in studies else f"known rig {key}"
+    rig = catalog.rig_on(known, first.vehicle)
+    parts = {field: getattr(first, field) for field in COMPARED}
+    return {name: Study(rig, first.vehicle, samples=first.samples, **parts)}
 
 
 def named_by_file(paths: list[str]) -> dict[str, str]:
@@ -108,7 +145,7 @@ def refuse_different(studies: Mapping[str, Study]) -> None:
     """Raise `InputError` for studies whose scores do not measure the same."""
     first, *others = studies.items()
     for name, study in others:
-        for field in ("space", "prior", "model", "targets"):
+        for field in COMPARED:
             if getattr(study, field) != getattr(first[1], field):
                 field = "AP curves and fusion" if field == "model" else field
                 expected = f"the same as in {first[0]}, to be compared with it"

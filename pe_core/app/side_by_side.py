@@ -12,12 +12,14 @@ TITLES = {
     "coverage": "seen, of where objects are",
     "ap": "expected AP",
     "reach": "reach ahead (AP 0.5) [m]",
+    "blind": "blind ground [m2], lower is better",
 }
 WAYS = {
     "entropy": (".4f", 1.0),
     "coverage": (".1%", 100.0),
     "ap": (".3f", 1.0),
     "reach": (".1f", 1),
+    "blind": (".1f", 1),
 }
 """How figures of a measure are written, and by what their differences are multiplied."""
 WIDEST = 24

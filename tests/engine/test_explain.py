@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-from pe_core import advice
+from pe_core import advice, catalog
 from pe_core.app.cli import main
 from tests.engine import shapes
 
@@ -103,6 +103,33 @@ def test_compare_puts_studies_side_by_side(study, tmp_path, capsys):
     data = json.loads(capsys.readouterr().out)
     assert [s["entropy"] for s in data["scores"].values()] == values
     assert data["rows"][0]["values"] == values
+
+
+def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(study, capsys):
+    """The table and the JSON have the engine's key figures; of a wrong height nothing is scored."""
+    call = ["compare", study, "--grid-samples", "1024", "--beside", "kitti", "--height", "1"]
+    assert main([*call, "--class", "car"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    first = pe.load_study(study)
+    rig = catalog.rig_on(catalog.known_rig("kitti"), first.vehicle)
+    look = first.sight()
+    figures = [advice.key_figures(look, each, 1.0, "car") for each in (first.rig, rig)]
+    assert lines[0].split() == ["car", "kitti"]
+    (ground,) = (line for line in lines if line.startswith("  1 m tall, within 10 m"))
+    assert f"{figures[0].blind_m2:.1f}" in ground and f"{figures[1].blind_m2:.1f}" in ground
+    assert ground.count("*") == 1, "less blind ground is better"
+    title = lines.index("reach ahead (AP 0.5) [m]")
+    assert lines[title + 1].split()[:2] == ["car", f"{figures[0].reach_m:.1f}".rstrip("*")]
+    assert main([*call, "--class", "car", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["figures"] == {"car": figures[0].to_dict(), "kitti": figures[1].to_dict()}
+    blind, reach, ap = data["rows"][-3:]
+    assert (blind["measure"], reach["measure"], ap["measure"]) == ("blind", "reach", "ap")
+    assert ap["values"] == [each.expected_ap for each in figures] and not any(ap["best"])
+    for wrong in (["--height", "99"], ["--class", "boat"], ["--beside", "nobody"]):
+        assert main([*call, *wrong]) == 1
+        out, err = capsys.readouterr()
+        assert out == "" and "expected" in err and "scoring" not in err
 
 
 def test_files_of_one_name_are_told_apart_by_their_folders(tmp_path, capsys):

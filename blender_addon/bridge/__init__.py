@@ -2,6 +2,7 @@
 
 from .advanced import clearance_of, perception_of, space_of
 from .axles import reference_of, write_reference
+from .figures import FigureRule, figure_rule, figures_of, figures_signature, write_figures
 from .fingerprint import Fingerprint, fingerprint, signature
 from .holds import constrained, free_axes, locked_axes
 from .loading import load_into
@@ -70,6 +71,7 @@ from .view_camera import look_back, look_through, tend_views, view_camera
 
 __all__ = [
     "SENSORS",
+    "FigureRule",
     "Fingerprint",
     "LimitBox",
     "Record",
@@ -89,6 +91,9 @@ __all__ = [
     "constrained",
     "copy_score",
     "drop_foreign_results",
+    "figure_rule",
+    "figures_of",
+    "figures_signature",
     "fingerprint",
     "focus_rows",
     "follow_mirrors",
@@ -170,6 +175,7 @@ __all__ = [
     "view_camera",
     "view_layer_of",
     "visible_members",
+    "write_figures",
     "write_passthrough",
     "write_records",
     "write_reference",

@@ -186,6 +186,7 @@ def take_scene_s_score(scene: bpy.types.Scene, variant: Variant, now: Fingerprin
 
 def copy_score(source: Variant, to: Variant) -> None:
     """Give a variant the score of another one."""
+    to.figures_json, to.figures_of = source.figures_json, source.figures_of
     if source.has_result:
         _write_figures(to, json.loads(source.score_json))
         to.signature, to.stale = source.signature, source.stale

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import changes, worker
+from .. import bridge, changes, worker
 from ..choices import NO_ANCHOR
 from ..engine import advice, catalog, pe, sight
 from . import latest
@@ -23,14 +23,6 @@ from .reference import Reference, rig_key
 
 KEPT = 24
 """Rigs whose figures are kept: those of the last moves, and what they are compared with."""
-
-
-@dataclass(frozen=True, slots=True)
-class FigureRule:
-    """What figures are told of: how tall blind ground is for [m], and which class is found."""
-
-    height: float
-    class_name: str
 
 
 class FigureStore:
@@ -105,7 +97,7 @@ class _Asked(NamedTuple):
 
     wish: ScoreWish
     reference: Reference | None
-    rule: FigureRule | None
+    rule: bridge.FigureRule | None
 
 
 _asked: dict[str, _Asked] = {}
@@ -114,14 +106,9 @@ _anchors: dict[str, Anchor] = {}
 """By the scene's name."""
 
 
-def rule_of(scene: bpy.types.Scene, prior: pe.Prior) -> FigureRule | None:
-    """Return what figures are told of, as the 3D view's blind ground and reach are set."""
-    settings, classes = scene.perception_entropy, prior.class_names
-    if not settings.live.figures:
-        return None
-    chosen = settings.view.reach_class
-    tall = int(settings.view.blind_height.removeprefix("H")) / 100.0
-    return FigureRule(tall, chosen if chosen in classes else classes[0])
+def rule_of(scene: bpy.types.Scene, prior: pe.Prior) -> bridge.FigureRule | None:
+    """Return what figures are told of; None where none are wanted."""
+    return bridge.figure_rule(scene, prior) if scene.perception_entropy.live.figures else None
 
 
 def ask(scene: bpy.types.Scene, wish: ScoreWish, reference: Reference | None) -> None:
@@ -182,7 +169,7 @@ def forget() -> None:
     known.clear()
 
 
-def _key(problem: Problem, rule: FigureRule | None, rig: pe.Rig) -> Hashable:
+def _key(problem: Problem, rule: bridge.FigureRule | None, rig: pe.Rig) -> Hashable:
     return problem.key, rule, rig_key(rig)
 
 
@@ -192,7 +179,7 @@ def _rigs(asked: _Asked) -> list[pe.Rig]:
     return [asked.wish.rig, *([] if other is None else [other])]
 
 
-def _work_out(problem: Problem, rule: FigureRule, rigs: list[pe.Rig]) -> None:
+def _work_out(problem: Problem, rule: bridge.FigureRule, rigs: list[pe.Rig]) -> None:
     """In the thread: work out figures; what is known by now is left."""
     looking, voxels = _looks.of(problem), not problem.targets.are_objects
     for rig in rigs:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from textwrap import wrap
+from typing import NamedTuple
 
 import bpy
 
@@ -13,6 +14,8 @@ from ..engine import advice, pe
 from .job import JobOperator, SceneJob
 from .reports import tell
 
+FIGURES_SHARE = 0.1
+"""About how much of a score's time its figures take."""
 LABEL_PX, COLUMN_PX = 190, 140
 LEAST_PX, LETTER_PX = 560, 7
 """Width of the table at least, and of a letter of the sentences below it."""
@@ -21,17 +24,36 @@ TITLES = {
     "entropy": "Entropy [nats], lower is better",
     "coverage": "Seen of where objects are",
     "ap": "Expected AP",
+    "reach": "Reach ahead [m], AP 0.5 or more",
+    "blind": "Blind ground [m²], lower is better",
 }
+WAYS = {"entropy": ".3f", "coverage": ".1%", "ap": ".3f", "reach": ".1f", "blind": ".1f"}
+"""How figures of a measure are written."""
 WHOLE = "Everywhere"
 
 
-class CompareJob:
-    """Scores of several studies by a key, one after the other; steps and stops as jobs do."""
+class ToCompare(NamedTuple):
+    """A variant that lacks a score that stands, or figures of the present height and class."""
 
-    def __init__(self, studies: dict[int, tuple[str, pe.Study]]) -> None:
-        self.studies = studies
+    name: str
+    study: pe.Study
+    unscored: bool
+
+
+class Compared(NamedTuple):
+    """What was found of a variant; `score` is None where it has one that stands."""
+
+    score: pe.Score | None
+    figures: advice.KeyFigures
+
+
+class CompareJob:
+    """Scores and figures of several studies by a key, in turn; steps and stops as jobs do."""
+
+    def __init__(self, lacking: dict[int, ToCompare], rule: bridge.FigureRule) -> None:
+        self.lacking, self.rule = lacking, rule
         self.stopped = self.dropped = False
-        self.outcome: dict[int, pe.Score] | None = None
+        self.outcome: dict[int, Compared] | None = None
 
     def stop(self) -> None:
         """Keep what is complete."""
@@ -42,22 +64,36 @@ class CompareJob:
         self.stopped = self.dropped = True
 
     def __iter__(self) -> Iterator[pe.Progress]:
-        found: dict[int, pe.Score] = {}
-        for key, (name, study) in self.studies.items():
-            job = pe.ScoreJob(study)
-            for step in job:
-                if self.stopped:
-                    job.stop()
-                share = (len(found) + step.fraction) / len(self.studies)
-                yield replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
-            if job.outcome is None:
+        found: dict[int, Compared] = {}
+        for key, (name, study, unscored) in self.lacking.items():
+            score = None
+            if unscored:
+                job = pe.ScoreJob(study)
+                for step in job:
+                    if self.stopped:
+                        job.stop()
+                    yield self._progress(name, len(found), step)
+                if job.outcome is None:
+                    break
+                score = job.outcome.after
+            if self.stopped and score is None:
                 break
-            found[key] = job.outcome.after
+            looking = pe.Progress("seeing", 1.0 - FIGURES_SHARE)
+            yield self._progress(name, len(found), looking)
+            found[key] = Compared(score, self._figures(study))
         self.outcome = None if self.dropped else found or None
+
+    def _progress(self, name: str, done: int, step: pe.Progress) -> pe.Progress:
+        share = (done + step.fraction) / len(self.lacking)
+        return replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
+
+    def _figures(self, study: pe.Study) -> advice.KeyFigures:
+        voxels = not study.targets.are_objects
+        return advice.key_figures(study.sight(), study.rig, *self.rule, of_voxels=voxels)
 
 
 class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
-    """Put all variants side by side: entropy and coverage, by zone and by class.
+    """Put all variants side by side: entropy and coverage by zone and class, blind ground, reach.
 
     Those without a score, or with one of before, are scored first"""
 
@@ -74,45 +110,53 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
         return super().poll(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        if not unscored(context.scene):
+        if not lacking(context.scene):
             return {"FINISHED"}
         return super().execute(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Show the table at once where all scores are there."""
         self.asked_in_window = not bpy.app.background
-        if self.asked_in_window and not unscored(context.scene):
+        if self.asked_in_window and not lacking(context.scene):
             return show()
         return super().invoke(context, event)
 
     def _task(self, context: bpy.types.Context) -> SceneJob:
-        depsgraph, studies, refused = context.evaluated_depsgraph_get(), {}, []
-        for row in unscored(context.scene):
+        scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+        found, refused = {}, []
+        for row in lacking(scene):
             try:
-                study = bridge.study_of_variant(context.scene, row, depsgraph)
-                studies[row.key] = row.name, study
+                study = bridge.study_of_variant(scene, row, depsgraph)
+                found[row.key] = ToCompare(row.name, study, not row.has_result or row.stale)
             except pe.InputError as error:
                 refused.append(error)
-        if not studies:
+        if not found:
             raise refused[0]
         for error in refused:
             tell(self, "WARNING", str(error))
-        return SceneJob(CompareJob(studies), stale.fingerprint(context.scene, depsgraph))
+        taken = stale.fingerprint(scene, depsgraph)
+        rule = bridge.figure_rule(scene, next(iter(found.values())).study.prior)
+        self.figures_of = bridge.figures_signature(scene, taken)
+        return SceneJob(CompareJob(found, rule), taken)
 
     def write(
-        self, scene: bpy.types.Scene, outcome: dict[int, pe.Score], taken: bridge.Fingerprint
+        self, scene: bpy.types.Scene, outcome: dict[int, Compared], taken: bridge.Fingerprint
     ) -> list[str]:
-        """Give each variant that still is there its score."""
+        """Give each variant that still is there its score and its figures."""
         for row in scene.perception_entropy.variants:
             if row.key in outcome:
-                bridge.write_score(row, outcome[row.key], taken.surroundings)
+                score, figures = outcome[row.key]
+                if score is not None:
+                    bridge.write_score(row, score, taken.surroundings)
+                bridge.write_figures(row, figures, self.figures_of)
         if self.asked_in_window:
             show()
         return []
 
-    def message(self, outcome: dict[int, pe.Score]) -> str:
+    def message(self, outcome: dict[int, Compared]) -> str:
         """Return the result in a line."""
-        return f"{len(outcome)} scored"
+        scored = sum(each.score is not None for each in outcome.values())
+        return f"{scored} scored, {len(outcome)} compared"
 
 
 class PE_OT_show_comparison(bpy.types.Operator):
@@ -171,11 +215,14 @@ def show() -> set[str]:
     return {"FINISHED"}
 
 
-def unscored(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
-    """Variants without a score that stands."""
-    bridge.check_variants(scene, stale.fingerprint(scene))
-    rows = scene.perception_entropy.variants
-    return [row for row in rows if not row.has_result or row.stale]
+def lacking(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
+    """Variants without a score that stands, or without figures of the present settings."""
+    now = stale.fingerprint(scene)
+    bridge.check_variants(scene, now)
+    of, rows = bridge.figures_signature(scene, now), scene.perception_entropy.variants
+    return [
+        row for row in rows if not row.has_result or row.stale or bridge.figures_of(row, of) is None
+    ]
 
 
 def compared(
@@ -186,12 +233,22 @@ def compared(
     rows = [row for row in scene.perception_entropy.variants if row.has_result]
     rows = sorted(rows, key=lambda row: row.key != active)[:MOST_COLUMNS]
     scores = {row.name: bridge.score_of(row) for row in rows}
-    return list(scores), advice.compare(scores)
+    return list(scores), (*advice.compare(scores), *figure_rows(scene, rows))
+
+
+def figure_rows(
+    scene: bpy.types.Scene, rows: list[bpy.types.PropertyGroup]
+) -> tuple[advice.ComparedRow, ...]:
+    """Return key figures side by side, where every variant has them."""
+    of = bridge.figures_signature(scene, stale.fingerprint(scene))
+    figures = {row.name: bridge.figures_of(row, of) for row in rows}
+    return () if None in figures.values() else advice.compare_figures(figures)
 
 
 def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: int) -> list[str]:
     """Return which variant is best and where, in lines of so many letters."""
-    said = (*advice.ranking(names, rows), *advice.win_words(names, rows))
+    scored = [row for row in rows if row.factor]  # key figures have no error to go by
+    said = (*advice.ranking(names, scored), *advice.win_words(names, scored))
     return [line for sentence in said for line in wrap(sentence, letters)]
 
 
@@ -225,11 +282,10 @@ def _cell(row: advice.ComparedRow, k: int) -> TableCell:
     value, less = row.values[k], row.differences[k]
     if value is None:
         return "–", False
-    nats = row.measure == "entropy"
-    text = f"{value:.3f}" if nats else f"{value:.1%}"
-    change = "" if less is None else f"{less:+.3f}" if nats else f"{100.0 * less:+.1f}"
+    way = WAYS[row.measure]
+    change = "" if less is None else f"{less:+{way}}".removesuffix("%")
     seen = bool(change.strip("+-0."))
-    return f"({change})  {text}" if seen else text, row.best[k]
+    return f"({change})  {value:{way}}" if seen else f"{value:{way}}", row.best[k]
 
 
 CLASSES = (PE_OT_compare_variants, PE_OT_show_comparison)

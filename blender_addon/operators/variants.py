@@ -78,7 +78,7 @@ class PE_OT_update_variant(VariantOperator, bpy.types.Operator):
         row = bridge.active_variant(scene)
         records = bridge.records_of_scene(scene)
         if not bridge.same_score(bridge.records_of(row), records):
-            row.has_result = False
+            row.has_result, row.figures_json = False, ""
         bridge.write_records(row, records)
         bridge.choose_variant(scene, row.key)
         tell(self, "INFO", f"Updated {row.name}")

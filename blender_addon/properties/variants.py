@@ -90,6 +90,13 @@ class PE_Variant(bpy.types.PropertyGroup):
     score_json: StringProperty(
         name="Score", description="The score in full: zones, classes, sensors"
     )
+    figures_json: StringProperty(
+        name="Figures", description="Blind ground, reach ahead and expected AP"
+    )
+    figures_of: StringProperty(
+        name="Figures Of",
+        description="Vehicle, prior, settings, height and class that the figures are of",
+    )
     signature: StringProperty(
         name="Signature", description="Vehicle, prior and settings it was scored with"
     )

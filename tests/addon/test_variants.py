@@ -340,16 +340,42 @@ def test_comparing_scores_what_has_no_score_as_if_it_stood_there(ideas):
     assert [columns[1][2][1], columns[2][2][1]] == list(whole.best)
     assert bridge.score_of(second).scatter == higher.evaluator().score(higher.rig).scatter
     said = comparing.sentences(names, table, 40)
+    scored = table[:-3]
     assert " ".join(said) == " ".join(
-        (*pe.advice.ranking(names, table), *pe.advice.win_words(names, table))
+        (*pe.advice.ranking(names, scored), *pe.advice.win_words(names, scored))
     )
     assert said[0].startswith("Overall ") and max(map(len, said)) <= 40
 
 
+def test_comparing_tells_blind_ground_reach_and_ap_for_the_height_and_class_shown(ideas):
+    """Scores that stand are not made again; another height asks for other figures."""
+    bpy.ops.pe.score()
+    first = ideas.perception_entropy.variants[0]
+    study, kept = scenes.study(), first.score_json
+    first.score_json = kept.replace('"voxels"', ' "voxels"')
+    for height, of, name in ((0.5, "H50", "pedestrian"), (1.0, "H100", "car")):
+        ideas.perception_entropy.view.blind_height = of
+        ideas.perception_entropy.view.reach_class = name
+        assert comparing.lacking(ideas)
+        bpy.ops.pe.compare_variants()
+        assert not comparing.lacking(ideas) and first.score_json != kept
+        own = pe.advice.key_figures(study.sight(), study.rig, height, name)
+        names, table = comparing.compared(ideas)
+        assert table[-3:] == pe.advice.compare_figures({"Variant": own})
+    assert [column[-1][0] for column in comparing.columns_of(names, table)] == [
+        "    1 m tall, within 10 m",
+        f"{own.blind_m2:.1f}",
+    ]
+    ideas.objects["roof"].location.z += 0.3
+    bpy.context.view_layer.update()
+    bpy.ops.pe.update_variant()
+    assert comparing.lacking(ideas), "they were of the sensors as they stood"
+
+
 def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):
     bpy.ops.pe.duplicate_variant()
-    studies = {k: (str(k), scenes.study()) for k in (1, 2)}
-    job = comparing.CompareJob(studies)
+    both = {k: comparing.ToCompare(str(k), scenes.study(), True) for k in (1, 2)}
+    job = comparing.CompareJob(both, bridge.FigureRule(0.5, "car"))
     for step in job:
         if step.stage == "scoring 2":
             job.stop()

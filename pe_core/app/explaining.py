@@ -10,7 +10,6 @@ from typing import Any
 
 from .. import advice, catalog
 from ..errors import InputError
-from ..scoring import Score
 from ..study import Outcome, ScoreJob, Study, vehicle_digest
 from ..text import dump_json
 from ..text.json_text import finite
@@ -89,15 +88,16 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     names = list(scores)
     said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
     data["words"] = said
-    lines = [*comparison(names, [*rows, *figure_rows]), *said, *_notes(scores, alike)]
+    error = max(score.stderr for score in scores.values())
+    lines = [*comparison(names, [*rows, *figure_rows]), *said, *_notes(error, alike)]
     return _answer(data, lines, args.json)
 
 
-def _notes(scores: Mapping[str, Score], alike: bool) -> Iterator[str]:
+def _notes(error: float, alike: bool) -> Iterator[str]:
     """Yield what has to be known of a comparison: other vehicles, and the error of samples."""
     if not alike:
         yield "their vehicles differ"
-    if error := max(score.stderr for score in scores.values()):
+    if error:
         yield (
             f"on samples: entropies have a standard error of up to {error:.4f} nats; +- is that of "
             "a difference, smaller on a shared sample"

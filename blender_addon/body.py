@@ -14,7 +14,7 @@ from typing import NamedTuple
 import bpy
 from bpy.app.handlers import persistent
 
-from . import bridge
+from . import bridge, simple_bodies
 from .engine import pe
 
 
@@ -148,6 +148,7 @@ def note_undo(*_: object) -> None:
 def forget(*_: object) -> None:
     """Before another file comes: nothing of this one may be kept."""
     shared.clear()
+    simple_bodies.shared.clear()
 
 
 def _handlers() -> tuple[tuple[list, object], ...]:

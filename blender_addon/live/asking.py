@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import body, bridge, roster
-from ..engine import geometry, pe
+from .. import body, bridge, roster, simple_bodies
+from ..engine import pe
 
 SAMPLES = 32_768
 """Voxels a live score looks at: an error of 0.02 nats on the sedan, and 10 ms a move of a LiDAR.
@@ -142,7 +142,4 @@ def judge_of(problem: Problem, vehicle: pe.Vehicle | None) -> pe.RigJudge:
 
 def light(vehicle: pe.Vehicle | None) -> tuple[pe.Vehicle | None, float]:
     """Return a vehicle of few enough triangles, and how far that moved its surface, at most [m]."""
-    if vehicle is None or len(vehicle.triangles) <= MOST_TRIANGLES:
-        return vehicle, 0.0
-    made: tuple[pe.Vehicle, float] = geometry.simplified(vehicle, MOST_TRIANGLES)
-    return made
+    return (None, 0.0) if vehicle is None else simple_bodies.shared.of(vehicle, MOST_TRIANGLES)

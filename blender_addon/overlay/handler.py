@@ -44,6 +44,7 @@ def unregister() -> None:
         VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
     forget()
     batches.forget_shaders()
+    writing.forget()
 
 
 @persistent

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Any, TypeVar
 
-from ..engine import geometry, graphics, pe, sight
+from .. import simple_bodies
+from ..engine import graphics, pe, sight
 from .wish import PictureWish, SceneSensor
 
 T = TypeVar("T")
@@ -31,11 +32,7 @@ class Tools:
     def body(self, wish: PictureWish) -> pe.Vehicle | None:
         """Return the vehicle, simplified where it has very many triangles."""
         vehicle = wish.vehicle
-        if vehicle is None or len(vehicle.triangles) <= MOST_TRIANGLES:
-            return vehicle
-        return self._keep(
-            "body", wish.body_key, lambda: geometry.simplified(vehicle, MOST_TRIANGLES)[0]
-        )
+        return None if vehicle is None else simple_bodies.shared.of(vehicle, MOST_TRIANGLES)[0]
 
     def sight(self, wish: PictureWish) -> sight.Sight:
         """Return what tells what rigs see."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 
 import blf
 import bpy
@@ -25,6 +26,10 @@ INK: graphics.Rgba = (0.92, 0.92, 0.92, 1.0)
 FAINT_INK: graphics.Rgba = (0.72, 0.72, 0.72, 1.0)
 PLATE: graphics.Rgba = (0.10, 0.10, 0.10, 0.78)
 LABEL_PLATE: graphics.Rgba = (0.08, 0.08, 0.08, 0.55)
+
+_square: list[gpu.types.GPUBatch] = []
+_bars: dict[tuple[graphics.Rgba, ...], gpu.types.GPUBatch] = {}
+"""Uploaded once, in the unit square, and drawn at any place and size."""
 
 
 def write_labels(context: bpy.types.Context, labels: Sequence[graphics.Tag]) -> None:
@@ -115,13 +120,13 @@ def _bar(
     colors: Sequence[graphics.Rgba], left: float, bottom: float, right: float, top: float
 ) -> None:
     """A row of colours that run into each other."""
-    step = (right - left) / (len(colors) - 1)
-    places = [(left + step * i, y) for i in range(len(colors)) for y in (bottom, top)]
-    shades = [color for color in colors for _ in range(2)]
-    smooth = shader("SMOOTH_COLOR")
-    arrays = {"pos": [(x, y, 0.0) for x, y in places], "color": shades}
-    with _blended():
-        batch_for_shader(smooth, "TRI_STRIP", arrays).draw(smooth)
+    smooth, row = shader("SMOOTH_COLOR"), tuple(colors)
+    if row not in _bars:
+        corners = [(i / (len(row) - 1), y, 0.0) for i in range(len(row)) for y in (0.0, 1.0)]
+        shades = [color for color in row for _ in range(2)]
+        _bars[row] = batch_for_shader(smooth, "TRI_STRIP", {"pos": corners, "color": shades})
+    with _blended(), _in_box((left, bottom, right, top)):
+        _bars[row].draw(smooth)
 
 
 def _ticks(ticks: Sequence[str], left: float, right: float, y: float) -> None:
@@ -139,12 +144,29 @@ def _text(text: str, x: float, y: float, color: graphics.Rgba) -> None:
 
 
 def _fill(box: tuple[float, float, float, float], color: graphics.Rgba) -> None:
-    left, bottom, right, top = box
     plain = shader("UNIFORM_COLOR")
-    corners = ((left, bottom, 0.0), (right, bottom, 0.0), (right, top, 0.0), (left, top, 0.0))
+    if not _square:
+        corners = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0))
+        _square.append(batch_for_shader(plain, "TRI_FAN", {"pos": corners}))
     plain.uniform_float("color", color)
-    with _blended():
-        batch_for_shader(plain, "TRI_FAN", {"pos": corners}).draw(plain)
+    with _blended(), _in_box(box):
+        _square[0].draw(plain)
+
+
+@contextlib.contextmanager
+def _in_box(box: tuple[float, float, float, float]) -> Iterator[None]:
+    """Have what is drawn within the unit square fill a box [px], within."""
+    left, bottom, right, top = box
+    with gpu.matrix.push_pop():
+        gpu.matrix.translate((left, bottom, 0.0))
+        gpu.matrix.scale((right - left, top - bottom, 1.0))
+        yield
+
+
+def forget() -> None:
+    """Leave nothing on the graphics card."""
+    _square.clear()
+    _bars.clear()
 
 
 class _blended:

@@ -18,8 +18,7 @@ Floats = NDArray[np.float64]
 RINGS = (10.0, 40.0)
 """Where the zones near, middle and far meet [m]."""
 KEY_HIGH, KEY_WIDE = 34.0, 210.0
-BETTER, SAME, WORSE = (0.0, 0.36, 0.62), (0.955, 0.955, 0.945), (0.70, 0.31, 0.0)
-"""Blue, white and orange: differences, told apart by all eyes."""
+WORSE, SAME, BETTER = graphics.DIFFERENCE
 MOST_CHANGE = 8.0
 """End of the scale of differences [nats]."""
 

@@ -4,10 +4,11 @@ import threading
 from dataclasses import replace
 
 import bpy
+import numpy as np
 import pytest
 
 import blender_addon
-from blender_addon import bridge, changes, motion, stale, worker
+from blender_addon import bridge, changes, motion, simple_bodies, stale, worker
 from blender_addon.choices import BEFORE_MOVE, PINNED
 from blender_addon.engine import advice, catalog, pe
 from blender_addon.live import (
@@ -440,12 +441,12 @@ def test_the_score_s_ground_map_is_kept_in_memory_for_the_views(car):
 def test_a_heavy_body_is_made_simpler_once_and_told(live, monkeypatch):
     made = []
 
-    def simplified(vehicle, most):
+    def simplified(vehicle, most, *, quick):
         made.append((len(vehicle.triangles), most))
         return vehicle, 0.02
 
     monkeypatch.setattr(asking, "MOST_TRIANGLES", 3)
-    monkeypatch.setattr(asking.geometry, "simplified", simplified)
+    monkeypatch.setattr(simple_bodies.geometry, "simplified", simplified)
     session.forget()
     session._evaluators.clear()
     rest()
@@ -453,3 +454,23 @@ def test_a_heavy_body_is_made_simpler_once_and_told(live, monkeypatch):
     rest()
     assert len(made) == 1 and made[0][0] > made[0][1] == 3
     assert reading(live).moved_m == 0.02
+
+
+def test_a_simple_body_is_made_once_and_a_smaller_one_of_it(monkeypatch):
+    whole = pe.Vehicle(np.random.default_rng(1).random((9000, 3, 3)))
+    made, simplified = [], simple_bodies.geometry.simplified
+
+    def watched(vehicle, most, *, quick):
+        made.append(len(vehicle.triangles))
+        return simplified(vehicle, most, quick=quick)
+
+    monkeypatch.setattr(simple_bodies.geometry, "simplified", watched)
+    bodies = simple_bodies.SimpleBodies()
+    assert bodies.of(whole, 10_000) == (whole, 0.0) and not made
+    first, moved = bodies.of(whole, 4000)
+    second, more = bodies.of(whole, 1500)
+    assert bodies.of(whole, 4000)[0] is first and bodies.of(whole, 1500)[0] is second
+    assert made == [9000, len(first.triangles)] and more > moved > 0.0
+    assert len(second.triangles) <= 1500 < len(first.triangles) <= 4000
+    bodies.clear()
+    assert bodies.of(whole, 1500)[0] is not second

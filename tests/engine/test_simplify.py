@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.scene import simplify
 from pe_core.scene.simplify import simplified
 from pe_core.scene.vehicle import closest_points
 from tests.engine import shapes
@@ -126,3 +127,19 @@ def test_a_mesh_without_extent_is_no_trouble():
 def test_what_is_no_number_of_triangles_is_told(wanted):
     with pytest.raises(pe.InputError, match="simplify: triangles: expected a whole number of tri"):
         simplified(shapes.box_car(), wanted)
+
+
+def test_quick_takes_one_look_and_tells_its_error_all_the_same(monkeypatch):
+    """The sizes of cubes that are tried are what costs time; the bound holds as ever."""
+    looks, of = [], simplify._Clusters.of
+
+    def watched(triangles, side):
+        looks.append(side)
+        return of(triangles, side)
+
+    monkeypatch.setattr(simplify._Clusters, "of", watched)
+    whole = pe.Vehicle(ball(6))
+    small, error = simplified(whole, 2500, quick=True)
+    assert len(looks) == 1 and 1250 <= len(small.triangles) <= 2500
+    points = surface_points(whole.triangles, 60)
+    assert 0.0 < farthest(points, small.triangles) <= error + 1e-9

@@ -14,7 +14,14 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from pe_core import Sensor
-from pe_core.exchange import Picture, carried, straight, with_pictures
+from pe_core.exchange import (
+    MAX_BEAMS,
+    Picture,
+    carried,
+    require_at_most,
+    straight,
+    with_pictures,
+)
 from pe_core.graphics import COVERAGE, ENTROPY, drawing_of, ground_map, sensor_color
 from pe_core.kinds import kind_of
 from pe_core.outputs import (
@@ -47,15 +54,24 @@ MAPS = {"coverage": COVERAGE, "entropy": ENTROPY}
 
 
 def recording_bytes(wanted: OutputRequest) -> tuple[bytes, list[str]]:
-    """Return a recording, and lines on what is not in it."""
-    study, stream = wanted.study, rr.RecordingStream(APPLICATION)
+    """Return a recording, and lines on what is not in it.
+
+    Raises
+    ------
+    InputError
+        When LiDARs have more than `MAX_BEAMS` beams: maps of the ground measure all of them.
+    """
+    study = wanted.study
+    known, left_out = with_pictures(carried(study.rig), straight, "Rerun")
+    beams = sum(one.scan.beam_count for one in known if one.scan is not None)
+    require_at_most("rerun", "sensors", beams, MAX_BEAMS, "beams, which its maps of the ground ask")
+    stream = rr.RecordingStream(APPLICATION)
     lines = [] if study.vehicle is not None else ["no vehicle: nothing is hidden or blind near it"]
     memory = stream.memory_recording()  # a file of the library's own may end half and say nothing
     stream.send_blueprint(_blueprint())
     stream.log("/", rr.ViewCoordinates.FLU, static=True)
     _log_vehicle(stream, wanted)
     names, _ = plain_names([sensor.name for sensor in study.rig])
-    known, left_out = with_pictures(carried(study.rig), straight, "Rerun")
     for number, (sensor, one) in enumerate(zip(study.rig, known, strict=True)):
         own = [SENSORS, names[sensor.name]]
         _log_sensor(stream, wanted, sensor, own, sensor_color(number))

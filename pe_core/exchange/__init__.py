@@ -4,6 +4,7 @@ from .carried import CarriedSensor, carried, picture_of, with_pictures
 from .exporting import export_rig, rig_files, write_files
 from .files import Written
 from .importing import STAND_INS, ImportedRig, import_rig
+from .limits import MAX_BEAMS, require_at_most
 from .losses import MAX_RANGE, MIN_RANGE, MODEL, lost_line
 from .passthrough import Passthrough
 from .passthrough_file import (
@@ -18,6 +19,7 @@ from .table import RIG_FORMATS, RigFormat, rig_format
 from .vehicle_info import read_vehicle_info
 
 __all__ = [
+    "MAX_BEAMS",
     "MAX_RANGE",
     "MIN_RANGE",
     "MODEL",
@@ -40,6 +42,7 @@ __all__ = [
     "pose_from_quaternion",
     "read_passthrough",
     "read_vehicle_info",
+    "require_at_most",
     "rig_files",
     "rig_format",
     "straight",

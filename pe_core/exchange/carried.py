@@ -38,7 +38,8 @@ class Scan:
     """A LiDAR's beams, as formats have them that know channels at even distances.
 
     Angles in radians, ranges in metres. `even` says whether the channels are so; `directions`
-    are the beams of a file that lists them, `model` the LiDAR of a rig that goes out.
+    are the beams of a file that lists them, `model` the LiDAR of a rig that goes out,
+    whose channels are off in azimuth by up to `offset_rad`.
     """
 
     channels: int
@@ -51,6 +52,7 @@ class Scan:
     directions: Floats | None = None
     min_range: float = 0.0
     model: Lidar | None = None
+    offset_rad: float = 0.0
 
     @property
     def beams(self) -> Floats | None:
@@ -143,9 +145,15 @@ def uneven(sensors: Iterable[CarriedSensor], asking: str) -> list[str]:
     """Return a line for each LiDAR whose channels a format cannot say, that knows even ones."""
     lines = []
     for each in sensors:
-        if each.scan is not None and not each.scan.even:
+        if each.scan is None:
+            continue
+        if not each.scan.even:
             had = f"the {each.scan.channels} of {each.model} are not"
             lines.append(f"{each.name}: {asking} spaces channels evenly; {had}")
+        if each.scan.offset_rad > EVEN_RAD:
+            most = f"{math.degrees(each.scan.offset_rad):.3g} deg"
+            had = f"those of {each.model}, up to {most}, are left out"
+            lines.append(f"{each.name}: {asking} has no azimuth offsets of channels; {had}")
     return lines
 
 
@@ -266,8 +274,9 @@ def _scan(model: Lidar) -> Scan:
     angles = sorted(model.elevations.tolist())
     step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
     even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
+    offset = float(np.abs(model.azimuth_offsets).max())
     figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
-    return Scan(*figures, model.max_range, even, None, model.min_range, model)
+    return Scan(*figures, model.max_range, even, None, model.min_range, model, offset)
 
 
 def merged_lines(told: Iterable[tuple[str, str]], everyone: int = 0) -> list[str]:

@@ -87,3 +87,12 @@ def test_a_foreign_clip_is_no_range(tmp_path):
     )
     (eye,) = pe.import_rig(path).rig
     assert (eye.model.min_range, eye.model.max_range) == (0.0, math.inf)
+
+
+@pytest.mark.parametrize(("name", "asking"), [("urdf", "Gazebo"), ("carla", "CARLA")])
+def test_channels_that_stand_apart_in_azimuth_are_told(name, asking):
+    offsets = np.radians([0.0, -2.5, 0.0])
+    own = pe.Lidar("own", np.radians([-10, 0, 10]), 36, 80.0, offsets)
+    _, lines = rig_files(pe.Rig([pe.Sensor("roof", own, pe.Pose((0.0, 0.0, 2.0)))]), name)
+    said = f"{asking} has no azimuth offsets of channels; those of own, up to 2.5 deg, are left out"
+    assert f"roof: {said}" in lines

@@ -123,6 +123,16 @@ def test_the_recording_has_vehicle_beams_maps_and_what_is_blind(recording):
     assert beams[:, 1, 2].min() > -1e-6, "none ends under the ground"
 
 
+def test_a_recording_of_too_many_beams_is_refused_before_they_are_asked():
+    """Of ten million it took six gigabytes."""
+    pytest.importorskip("rerun", reason="of the extra rerun")
+    great = pe.Lidar("great", np.radians(np.linspace(-20.0, 20.0, 1000)), 1001, 80.0)
+    study = pe.Study(pe.Rig([pe.Sensor("roof", great, pe.Pose((0.0, 0.0, 2.0)))]))
+    with pytest.raises(pe.InputError, match=r"at most 1,000,000 beams.*found 1,001,000"):
+        scene_files(study, "rerun")
+    assert "directions" not in vars(great), "they were never worked out"
+
+
 def tables():
     feather = pytest.importorskip("pyarrow.feather", reason="of the extra argoverse")
     files, lines = rig_files(RIG, "argoverse2", AXLE)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from importlib.metadata import entry_points
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from typing import Any
 
 from ..errors import InputError
 from ..study import (
@@ -19,6 +20,7 @@ from ..study import (
     prepare_folder,
     result_names,
 )
+from ..text.plugins import call_plugin, load_plugin, plugin_name
 from ..version import __version__
 from .choosing import check_not_resumed, choose
 from .command import Parser, add_run_options, add_sensors_verb, as_typed, run, with_options
@@ -101,9 +103,22 @@ def parser() -> argparse.ArgumentParser:
     add_sensors_verb(verbs)
     add_rigs_verb(verbs)
     for other in entry_points(group=VERBS):
-        other.load()(verbs)
+        _add_plugin_verbs(other, verbs)
     add_page_option(optimize)
     return top
+
+
+def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
+    """Add the verbs of a plugin; one that fails is named, and all other verbs work."""
+    try:
+        call_plugin(point, load_plugin(point), verbs)
+    except ImportError as error:
+        found = " ".join(str(error).split())
+        tell(
+            f"{plugin_name(point)}: expected what it imports, found {found}; its verbs are missing"
+        )
+    except InputError as error:
+        tell(f"{error}; its verbs are missing")
 
 
 def _run_job(args: argparse.Namespace) -> Answer:

@@ -18,7 +18,8 @@ from .cluster_checkpoints import ClusterCheckpoints
 from .extras import EXTRAS, extra
 from .terminal import tell
 
-ADDRESS = re.compile(r"((tcp|tls|wss?|ucxx?)://)?[^/\s]+:[0-9]{1,5}")
+ADDRESS = re.compile(r"((tcp|tls)://)?[^/\s]+:[0-9]{1,5}")
+"""Of the protocols that Dask has without further libraries."""
 CONNECT_S = 5.0
 """A scheduler that has not answered by then is not there."""
 
@@ -125,7 +126,10 @@ def _client_of(address: str) -> Any:
         raise InputError("command line", "scheduler", expected, "that it is not installed")
     if not ADDRESS.fullmatch(address):
         raise InputError(
-            "command line", "scheduler", "HOST:PORT or tcp://HOST:PORT", shown(address)
+            "command line",
+            "scheduler",
+            "HOST:PORT, tcp://HOST:PORT or tls://HOST:PORT",
+            shown(address),
         )
     _hush()
     try:

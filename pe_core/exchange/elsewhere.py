@@ -9,6 +9,7 @@ from importlib.metadata import entry_points
 from typing import Any
 
 from ..errors import InputError
+from ..text.plugins import load_plugin
 
 LIBRARIES = "pe_core.libraries"
 EXTRAS = {"dxf": "cad", "rerun": "rerun", "feather": "argoverse"}
@@ -26,7 +27,7 @@ def brought(name: str, title: str) -> Any:
     expected = f"pip install 'perception-entropy[{EXTRAS[name]}]'"
     for point in entry_points(group=LIBRARIES, name=name):
         try:
-            return point.load()
+            return load_plugin(point)
         except ImportError as error:
             raise InputError(title, "library", expected, " ".join(str(error).split())) from error
     raise InputError(title, "library", expected, "none installed")

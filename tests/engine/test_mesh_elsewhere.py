@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.app import cli
 from pe_core.formats import FoundMesh
 from pe_core.formats.meshes import elsewhere
 from tests.engine.mesh_files import BOX
@@ -70,6 +71,50 @@ def test_without_its_reader_one_line_says_what_to_install(monkeypatch, tmp_path,
         pe.InputError, match=r"pip install 'perception-entropy\[meshes\]'.*" + found
     ):
         pe.read_mesh(tmp_path / "car.dae")
+
+
+def fails(path, data):
+    raise KeyError("of the plugin's own")
+
+
+def gives_up(path, data):
+    raise SystemExit(3)
+
+
+def finds_nothing(path, data):
+    return None
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        ("fails", "plugin: expected to run to its end, found KeyError"),
+        ("gives_up", "plugin: expected to run to its end, found SystemExit: 3"),
+        ("finds_nothing", "result: expected a FoundMesh, found None"),
+        ("no_such_function", "plugin: expected to load, found AttributeError"),
+        ("DAE", "entry point: expected a function, found str"),
+    ],
+)
+def test_a_plugin_that_fails_is_named(monkeypatch, tmp_path, function, words):
+    install(monkeypatch, f"{__name__}:{function}")
+    monkeypatch.setitem(sys.modules, __name__, sys.modules[box.__module__])
+    (tmp_path / "box.dae").write_bytes(b"anything")
+    with pytest.raises(pe.InputError) as caught:
+        pe.read_mesh(tmp_path / "box.dae")
+    assert str(caught.value).startswith(f"plugin 'dae' of {__name__}: {words}")
+
+
+def test_a_plugin_s_verbs_that_fail_leave_the_others(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, __name__, sys.modules[box.__module__])
+    values = ("no_such_library_at_all:add", f"{__name__}:finds_nothing", "os:no_such_name")
+    points = [EntryPoint("odd", value, cli.VERBS) for value in values]
+    monkeypatch.setattr(cli, "entry_points", lambda group: points)
+    assert cli.main(["sensors", "Pandar64"]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("Pandar64")
+    lines = err.splitlines()
+    assert len(lines) == 3 and all(line.startswith("pe: plugin 'odd' of ") for line in lines)
+    assert all(line.endswith("its verbs are missing") for line in lines)
 
 
 def read_dae(monkeypatch, folder, text):

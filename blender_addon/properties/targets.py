@@ -28,6 +28,7 @@ class TargetSettings:
         description="Scenes that objects stand in; the expected score is their mean",
         default=pe.TargetRule().scenes,
         min=8,
+        max=20_000,
         soft_max=4096,
         update=changed,
     )

@@ -7,8 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
+
+MAX_RAYS = 50_000_000
+"""Of a mask: a picture of 50 megapixels takes about a minute and 2 GB."""
 FREE, OUTSIDE = -1, -2
 """In place of a part: what sees out, and what shows nothing, beyond the edge of a lens's field."""
+
+
+def require_few_rays(name: str, rays: int) -> None:
+    """Raise `InputError` for a mask of more rays than `MAX_RAYS`, before any is cast."""
+    if rays > MAX_RAYS:
+        raise InputError(name, "mask", f"at most {MAX_RAYS:,} pixels or beams", f"{rays:,}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

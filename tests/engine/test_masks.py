@@ -150,3 +150,12 @@ def test_the_command_writes_them_and_replaces_nothing_unasked(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     assert main([*line[:-1], str(tmp_path / "file")]) == 1
     assert len(capsys.readouterr().err.strip().splitlines()[-1:]) == 1
+
+
+def test_a_picture_of_too_many_pixels_is_refused_before_a_ray_is_cast(monkeypatch):
+    monkeypatch.setattr(Camera, "projection", property(lambda self: pytest.fail("rays are cast")))
+    model = Camera("c", 1_000_000, 51, math.radians(60.0))
+    sensor = pe.Sensor("wide", model, pe.Pose((0, 0, 1)))
+    words = "wide: mask: expected at most 50,000,000 pixels or beams, found 51,000,000"
+    with pytest.raises(pe.InputError, match=words):
+        ego_mask(sensor, BODY)

@@ -50,7 +50,8 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
 
 def _require_few_pieces(document: Document) -> None:
     """Count nodes with a mesh, and primitives, before any is placed."""
-    placed = sum("mesh" in node for node in document.root.get("nodes", []))
+    nodes = document.root.get("nodes", [])
+    placed = sum(isinstance(node, dict) and "mesh" in node for node in nodes)
     if placed > MAX_PLACED:
         expected = f"at most {MAX_PLACED:,} with a mesh (join meshes in the program that wrote it)"
         raise document.error("nodes", expected, f"{placed:,}")

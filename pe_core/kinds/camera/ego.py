@@ -9,7 +9,7 @@ import numpy as np
 from ...scene.geometry import rotate
 from ...scene.sensors import Sensor
 from ...scene.vehicle import Vehicle
-from ..ego_mask import FREE, OUTSIDE, EgoMask
+from ..ego_mask import FREE, OUTSIDE, EgoMask, require_few_rays
 from .model import Camera
 
 RAYS_AT_ONCE = 1 << 19
@@ -18,6 +18,7 @@ RAYS_AT_ONCE = 1 << 19
 def picture_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
     """Ask every pixel by the ray through its middle, some rows at a time."""
     camera = cast(Camera, sensor.model)
+    require_few_rays(sensor.name, camera.width * camera.height)
     found = np.full((camera.height, camera.width), FREE, np.int32)
     rows = max(1, RAYS_AT_ONCE // camera.width)
     seen = None

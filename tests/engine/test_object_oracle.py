@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core import kinds
 from tests.engine import object_oracle, shapes
 from tests.engine.test_oracle import LIDARS, azimuths_of, random_pose
 
@@ -126,6 +127,20 @@ def test_a_wall_right_behind_a_fisheye_shows_beyond_its_shoulders():
     (dense,) = object_oracle.pixels(sensor, rays_of(sensor.model), 2, wall, None, False)
     assert pe.measure_objects(sensor, wall)[0] == pytest.approx(dense, rel=0.05)
     assert 100 < dense < 30_000
+
+
+def test_a_sliver_on_a_fisheye_s_edge_is_hidden_by_what_stands_before_it():
+    """Of a car 20 m to the left 5 px reach into the field, beside every ray of the lattice."""
+    lens = pe.KannalaBrandt(320, 320, 640, 480, fov=math.radians(190.0))
+    eye = pe.Sensor("eye", pe.Camera("fisheye", 1280, 960, lens=lens), pe.Pose((0, 0, 1.0)))
+    car = pe.Objects([[-3.82, 20.0, 0.75]], [[4.0, 1.8, 1.5]], [0.0], [0], ["car"])
+    free = pe.measure_objects(eye, car)
+    assert 1.0 < free[0] < 10.0
+    for side, expected in ((1.0, 0.0), (-1.0, free[0])):  # the car's side, and the other one
+        wall = pe.Vehicle(shapes.box((-3.0, side * 0.55 - 0.05, 0.0), (3.0, side * 0.55, 3.0)))
+        assert pe.measure_objects(eye, car, wall)[0] == expected
+        kernel = kinds.kind_of(eye).on_objects(kinds.ObjectView(car, wall, False))
+        assert kernel.measure(eye)[0] == expected
 
 
 def test_boxes_behind_a_fisheye_show_nothing():

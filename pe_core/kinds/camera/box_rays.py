@@ -3,6 +3,8 @@
 Over the upright rectangle that holds a box's image lie RAYS places, a Fibonacci lattice: no two are
 at the same height or side by side, so an edge that cuts the image, however it runs, has the right
 share of them on each side to a hundredth or two. The rays through them that meet the box decide.
+None may: of a box as thin as a wire, or one that reaches into a fisheye's field by a sliver. Then
+rays to places on its sides decide, those that are in the picture and in the field.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from numpy.typing import NDArray
 from ...scene.geometry import dot, rotate
 from ...scene.numbering import blocks
 from ..placed_boxes import PlacedBoxes
-from .box_area import BoxImages
+from .box_area import BoxImages, along_camera, face_points
 from .model import Camera
 
 Floats = NDArray[np.float64]
@@ -26,13 +28,15 @@ Flags = NDArray[np.bool_]
 RAYS, TURN = 144, 89
 """Neighbours in Fibonacci's row: place i is at i / RAYS across, and at i * TURN / RAYS down."""
 BOXES_AT_ONCE = 512
+SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).reshape(-1, 2)
+"""Where rays to a side of a box that no other ray meets go, edges and corners too, in halves."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoxRays:
     """Rays from a camera that meet boxes, (R,) each.
 
-    `item` the box, by its rank among those asked for, ascending; `directions` (R, 3) unit, ground
+    `item` the box, by its rank among those asked for; `directions` (R, 3) unit, ground
     frame; `distance` to the box [m].
     """
 
@@ -72,6 +76,39 @@ def _met(
         enter, leave = boxes.crossing(which[rank], directions)
         met = np.flatnonzero((enter < leave) & (enter > 0.0))
         yield rank[met], directions[met], enter[met]
+        missed = np.setdiff1d(np.arange(some.start, some.stop), rank[met], assume_unique=False)
+        if len(missed):
+            yield _to_sides(camera, axes, boxes, which[missed], missed)
+
+
+def _to_sides(
+    camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, rank: Ints
+) -> tuple[Ints, Floats, Floats]:
+    """Rays to places on the sides that look at the camera, or to the one nearest to its view."""
+    sides, towards = [], []
+    for axis in range(3):
+        places = face_points(boxes, which, axis, SIDE_PLACES)
+        sides.append(along_camera(axes, boxes, which, places))
+        looks = np.abs(boxes.offsets[which, axis]) > boxes.halves[which, axis]
+        towards.append(np.broadcast_to(looks[:, None], places.shape[:2]))
+    points = np.concatenate(sides, axis=1)
+    beyond = np.where(np.concatenate(towards, axis=1), _beyond_view(camera, points), np.inf)
+    box, place = np.nonzero(beyond <= np.maximum(beyond.min(axis=1), 0.0)[:, None])
+    rays = points[box, place]
+    distance = np.sqrt(dot(rays, rays))
+    return rank[box], rotate(axes, rays / distance[:, None]), distance
+
+
+def _beyond_view(camera: Camera, points: Floats) -> Floats:
+    """How far points (..., 3) along the camera's axes are outside what it shows [px]; 0 inside."""
+    lens, (depth, left, up) = camera.projection, np.moveaxis(points, -1, 0)
+    theta = np.arctan2(np.hypot(left, up), depth)
+    inside = theta < (np.pi / 2.0 if lens.is_straight else lens.edge)
+    safe = np.where(inside, depth, 1.0) if lens.is_straight else depth
+    x, y = lens.project(safe, left, up)
+    out = np.maximum(np.abs(x - camera.width / 2.0) - camera.width / 2.0, 0.0)
+    out += np.maximum(np.abs(y - camera.height / 2.0) - camera.height / 2.0, 0.0)
+    return np.asarray(np.where(inside, out, out + np.maximum(lens.fx, lens.fy) * theta))
 
 
 def _through(camera: Camera, axes: Floats, places: Floats) -> tuple[Floats, Ints]:

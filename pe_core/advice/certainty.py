@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from statistics import NormalDist
 
 from ..scoring.sampling import BLOCKS
-from ..scoring.scatter import Figure, paired_error
+from ..scoring.scatter import FigureKey, paired_error
 from ..scoring.score import PartScore, Score
 
 CERTAINTY = 0.95
@@ -49,7 +49,7 @@ def degrees_of(scores: Iterable[Score]) -> int:
     return max(min(batches, default=BLOCKS) - 1, 1)
 
 
-def difference_errors(scores: Sequence[Score], figure: Figure) -> tuple[tuple[float, ...], ...]:
+def difference_errors(scores: Sequence[Score], figure: FigureKey) -> tuple[tuple[float, ...], ...]:
     """Return the standard errors of the differences of a figure between all pairs of scores.
 
     Scores on the same sample are paired (`scoring.scatter`); the errors of others are independent
@@ -66,7 +66,7 @@ def difference_errors(scores: Sequence[Score], figure: Figure) -> tuple[tuple[fl
     return tuple(rows)
 
 
-def _error(score: Score, figure: Figure) -> float:
+def _error(score: Score, figure: FigureKey) -> float:
     """Return the standard error of a figure of one score."""
     if not score.stderr or figure[2] == "reach":
         return 0.0
@@ -76,7 +76,7 @@ def _error(score: Score, figure: Figure) -> float:
     return _bound(score, figure) if known is None else known
 
 
-def _bound(score: Score, figure: Figure) -> float:
+def _bound(score: Score, figure: FigureKey) -> float:
     """Return an error that was not kept as told of objects, else on the safe side."""
     group, name, measure = figure
     found = score.objects

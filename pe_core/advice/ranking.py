@@ -52,7 +52,7 @@ def ranking(
     whole = {row.measure: row for row in rows if row.group == "rig"}
     if len(names) < 2:
         return ()
-    found = (_Ranked(names, whole[m], notation) for m in RANKED if m in whole)
+    found = (_RankingSentences(names, whole[m], notation) for m in RANKED if m in whole)
     return tuple(" ".join(each.sentences()) for each in found)
 
 
@@ -81,7 +81,7 @@ def _where(rows: Sequence[ComparedRow], measure: str, k: int) -> str:
     return "; ".join(found)
 
 
-class _Ranked:
+class _RankingSentences:
     """The sentences on one figure of several rigs."""
 
     def __init__(self, names: Sequence[str], row: ComparedRow, notation: Notation) -> None:

@@ -19,7 +19,7 @@ from ..scene.space import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from .cases import Cases, together
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
-from .scatter import Figure, Scatter, residuals, sample_digest
+from .scatter import FigureKey, Scatter, residuals, sample_digest
 from .score import DECIMALS, Glance, PartScore, Score, SensorScore, rounded, sensor_score
 from .subsets import fused_early
 from .weights import outside_masses
@@ -207,7 +207,7 @@ class SampledScorer:
 
     def _scatter(self, entropies: Floats, seen: NDArray[np.bool_]) -> Scatter:
         """Return the residuals of entropy and coverage: of the rig, of zones and classes."""
-        found: dict[Figure, tuple[float, ...]] = {}
+        found: dict[FigureKey, tuple[float, ...]] = {}
         everywhere = np.arange(len(entropies))
         zones = {name: inside for name, (inside, _) in self._zones.items()}
         by_class = dict(zip(self._sample.names, self._sample.classes.T, strict=True))

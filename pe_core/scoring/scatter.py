@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from .score import rounded
 
 Floats = NDArray[np.float64]
-Figure = tuple[str, str, str]
+FigureKey = tuple[str, str, str]
 """Group ("rig", "zone", "class"), name (empty for the rig), and measure ("entropy", ...)."""
 
 
@@ -32,21 +32,21 @@ class Scatter:
     ----------
     sample : str
         Digest of what was drawn: scores of one sample have the same.
-    residuals : mapping of Figure to tuple of float
+    residuals : mapping of FigureKey to tuple of float
         For each figure, a weighted mean over the sample: what each batch adds to it above the mean,
         sum_i w_i (v_i - mean) / sum w over the batch's members, (R,) in the figure's own unit. They
         sum to 0.
     """
 
     sample: str
-    residuals: Mapping[Figure, tuple[float, ...]]
+    residuals: Mapping[FigureKey, tuple[float, ...]]
 
     @property
     def batches(self) -> int:
         """How many batches the sample was divided into."""
         return len(self.residuals["rig", "", "entropy"])
 
-    def error(self, figure: Figure) -> float | None:
+    def error(self, figure: FigureKey) -> float | None:
         """Return the standard error of a figure; None where the score has no such figure."""
         own = self.residuals.get(figure)
         return None if own is None else _standard_error(own)
@@ -65,7 +65,7 @@ class Scatter:
         return cls(data["sample"], rows)
 
 
-def paired_error(one: Scatter | None, other: Scatter | None, figure: Figure) -> float | None:
+def paired_error(one: Scatter | None, other: Scatter | None, figure: FigureKey) -> float | None:
     """Return the standard error of the difference of a figure of two scores on the same sample.
 
     None where they are of different samples, or one lacks the figure: their errors are then

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..metric.entropy import H_BEST, H_BLIND, ap_of_entropy
 from ..scoring.object_score import POINTS, FoundClass, ObjectScore
 from ..scoring.sampled import ALIKE, RULE_OF_THREE
-from ..scoring.scatter import Figure, Scatter, residuals, sample_digest
+from ..scoring.scatter import FigureKey, Scatter, residuals, sample_digest
 from ..scoring.score import PartScore, rounded
 from ..scoring.zones import zone_masks
 from .drawing import DrawnObjects
@@ -107,7 +107,7 @@ class ObjectSums:
         parts = {("rig", ""): np.ones(len(entropies), bool)}
         parts |= {("zone", name): mask for name, mask in self._zones.items()}
         parts |= {("class", name): mask for name, mask in self._classes.items()}
-        found: dict[Figure, tuple[float, ...]] = {
+        found: dict[FigureKey, tuple[float, ...]] = {
             (*part, measure): residuals(values, self._weights * mask, batch, batches)
             for measure, values in measures.items()
             for part, mask in parts.items()

@@ -29,7 +29,7 @@ NEAR = 9.0
 """Dots nearer to each other than this are numbered together."""
 LETTER = 7.0
 """Width of a letter of a number."""
-Box = tuple[float, float, float, float]
+LabelBox = tuple[float, float, float, float]
 """Left, top, right and bottom."""
 INK, SOFT = "#1b1f24", "#8c959f"
 
@@ -126,7 +126,7 @@ def _positions(rig: pe.Rig) -> Floats:
 
 
 def _drawn(plane: ViewPlane, alt: str) -> Markup:
-    drawing = _Drawing(plane, alt)
+    drawing = _DimensionDrawing(plane, alt)
     drawing.vehicle()
     drawing.dimensions()
     drawing.ordinates()
@@ -134,7 +134,7 @@ def _drawn(plane: ViewPlane, alt: str) -> Markup:
     return drawing.canvas.svg()
 
 
-class _Drawing:
+class _DimensionDrawing:
     """A drawing being made."""
 
     def __init__(self, plane: ViewPlane, alt: str) -> None:
@@ -232,7 +232,7 @@ class _Drawing:
             numbers = ", ".join(str(k + 1) for k in group)
             taken.append(self._number(numbers, x, y, taken))
 
-    def _number(self, words: str, x: float, y: float, taken: Sequence[Box]) -> Box:
+    def _number(self, words: str, x: float, y: float, taken: Sequence[LabelBox]) -> LabelBox:
         """Write a number beside its dot, where it lies on no other if there is such a place."""
         wide = LETTER * len(words)
         spots = [(x + 6.0, y - 5.0), (x - 6.0 - wide, y - 5.0), (x + 6.0, y + 13.0)]
@@ -256,5 +256,5 @@ def _ticks(*places: tuple[float, float]) -> str:
     return "".join(f"M{x - 4:.1f} {y + 4:.1f}l8 -8" for x, y in places)
 
 
-def _overlap(one: Box, other: Box) -> bool:
+def _overlap(one: LabelBox, other: LabelBox) -> bool:
     return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -54,16 +55,31 @@ def write(sensors: tuple[CarriedSensor, ...]) -> tuple[Written, list[str]]:
     require_at_most("osi", "sensors", beams, MAX_BEAMS, "beams, each of which is written")
     ranges = {s.name: s.scan.max_range for s in sensors if s.scan is not None}
     top: dict[str, Any] = {"range": max(ranges.values())} if ranges else {}
-    for number, each in enumerate(sensors):
-        row = entry_row(each, _row, (), ()) | {"sensor_id": {"value": number}}
+    kept = [(each, entry_row(each, lambda _: {}, (), ())) for each in sensors if each.is_left_out]
+    taken = {_id_of(row) for _, row in kept}
+    free = (number for number in count() if number not in taken)
+    named = {number: each for number, each in zip(free, _ours(sensors), strict=False)}
+    for number, each in named.items():
+        row = {"sensor_id": {"value": number}, **_row(each)}
+        top.setdefault(LISTS.get(each.kind or "", OTHER), []).append(row)
+    for each, row in kept:
         top.setdefault(LISTS.get(each.kind or "", OTHER), []).append(row)
     text = json.dumps(top, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    return {FILE: text.encode()}, _lines(sensors, ranges)
+    return {FILE: text.encode()}, _lines(named, ranges)
 
 
-def _lines(sensors: Sequence[CarriedSensor], ranges: dict[str, float]) -> list[str]:
+def _ours(sensors: Sequence[CarriedSensor]) -> list[CarriedSensor]:
+    return [each for each in sensors if not each.is_left_out]
+
+
+def _id_of(row: Mapping[str, Any]) -> int | None:
+    """Return the id of an entry, if it has one."""
+    return Message(row, "passthrough").message("sensor_id").whole_figure("value", IDENTIFIER)
+
+
+def _lines(named: Mapping[int, CarriedSensor], ranges: dict[str, float]) -> list[str]:
     """Return what the configuration has no room for."""
-    order = ", ".join(f"{k} {s.name}" for k, s in enumerate(sensors))
+    order = ", ".join(f"{number} {each.name}" for number, each in named.items())
     lines = [f"OSI numbers sensors, it has no names: {order}"]
     farthest = max(ranges.values(), default=0.0)
     shorter = [f"{name} {reach:g} m" for name, reach in ranges.items() if reach != farthest]

@@ -195,6 +195,7 @@ _ROWS = (
         keeps=centred,
         passes_through=True,
         holds=frozenset({BEAMS}),
+        passes_through=True,
     ),
     RigFormat(
         "driveworks",

@@ -195,7 +195,6 @@ _ROWS = (
         keeps=centred,
         passes_through=True,
         holds=frozenset({BEAMS}),
-        passes_through=True,
     ),
     RigFormat(
         "driveworks",

@@ -127,4 +127,4 @@ def test_radars_are_left_out_by_name_and_come_again(tmp_path):
     )
     (row,) = json.loads(again.read_text())["radar_sensor_view_configuration"]
     assert row["emitter_frequency"] == 77e9 and row["rx_antenna_diagram"] == [{}]
-    assert row["sensor_id"] == {"value": 3}
+    assert row["sensor_id"] == {"value": "7"}, "as it came"

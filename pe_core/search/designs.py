@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
 
 from ..errors import InputError
 from ..scene.sensors import Rig, SensorModel
@@ -17,6 +17,8 @@ Picks = tuple[int, ...]
 """A design: which option each site takes."""
 LIMITS: dict[str, object] = {"max_price": None, "max_sensors": None, "max_of_kind": {}}
 """Limits of a selection, and what each is where there is none."""
+MAX_STEPS = 20_000
+"""Designs that are begun while those that the limits allow are looked for."""
 SLACK = 1e-9
 """Sums of prices are as large as a limit to this share of it."""
 
@@ -55,12 +57,18 @@ class DesignSpace:
         return designs
 
     def __iter__(self) -> Iterator[Picks]:
-        """Yield designs; sites that are alike take their options in order."""
-        yield from self._from(())
+        """Yield designs; sites that are alike take their options in order.
+
+        Raises
+        ------
+        InputError
+            After `MAX_STEPS` designs that were begun: limits may leave one in 1e40.
+        """
+        yield from self._from((), itertools.count())
 
     def first(self, count: int) -> list[Picks]:
         """Return so many designs, or all where there are fewer."""
-        return list(islice(self, count))
+        return list(itertools.islice(self, count))
 
     def price(self, picks: Iterable[int]) -> float:
         """What a design costs."""
@@ -95,9 +103,12 @@ class DesignSpace:
                 ordered[k] = pick
         return tuple(ordered)
 
-    def _from(self, begun: Picks) -> Iterator[Picks]:
+    def _from(self, begun: Picks, steps: Iterator[int]) -> Iterator[Picks]:
         if not self._keeps(begun):
             return
+        if next(steps) >= MAX_STEPS:
+            expected = f"limits that are checked on {MAX_STEPS:,} designs that are begun"
+            raise InputError("selection", "choice", f"fewer choices, or {expected}", "more")
         if len(begun) == len(self.sites):
             if self._counts(begun):
                 yield begun
@@ -105,7 +116,7 @@ class DesignSpace:
         site, last = self.sites[len(begun)], len(begun) - 1
         alike = last >= 0 and self.sites[last].alike == site.alike
         for pick in range(begun[last] if alike else 0, len(site.options)):
-            yield from self._from((*begun, pick))
+            yield from self._from((*begun, pick), steps)
 
     def _counts(self, picks: Picks) -> bool:
         """Whether a design has a sensor."""

@@ -146,3 +146,16 @@ def test_the_local_search_stops_at_its_limit(monkeypatch):
         looked |= {picks: -every.price(picks) for picks in asked}
         search.tell(looked)
     assert len(looked) == 25
+
+
+def test_limits_that_would_be_checked_for_ever_are_refused(monkeypatch):
+    """Each of 40 sites is a cheap LiDAR, of which 20 may be, or a dear camera: none is affordable,
+    which only begins to show behind billions of begun designs."""
+    monkeypatch.setattr("pe_core.search.designs.MAX_STEPS", 500)
+    names = [f"s{number}" for number in range(40)]
+    rig = pe.Rig([sensor(name) for name in names])
+    models = [pe.Option(pe.catalog.load(n), p) for n, p in ((MODELS[0], 1), (EYES[0], 2))]
+    each = [pe.Choice(models, [name]) for name in names]
+    with pytest.raises(pe.InputError, match="fewer choices, or limits that are checked on 500"):
+        designs(rig, *each, max_price=59, max_of_kind={"lidar": 20})
+    assert designs(rig, *each, max_price=60, max_of_kind={"lidar": 20}).first(1)

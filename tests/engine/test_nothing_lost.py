@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -327,3 +328,26 @@ def test_a_file_of_the_user_s_that_appears_meanwhile_moves_the_whole_set(study, 
     assert (out / "review.html").read_text() == "mine" and not (out / "result.json").exists()
     (folder,) = elsewhere.iterdir()
     assert result(folder)["stopped"] and (folder / "review.html").exists()
+
+
+def test_a_file_that_fails_after_the_result_leaves_none_of_an_older_set(study, tmp_path, elsewhere):
+    """Blender's scene and picture are written behind result.json: a full disk may end that."""
+    from pe_core.app import More
+    from pe_core.app.work import keep
+
+    names, fails = ["optimized.blend"], []
+
+    def write(outcome, data, folder):
+        if fails and folder == tmp_path / "out":
+            raise pe.InputError(folder / names[0], "file", "room to write to", "none")
+        pe.study.add_to_result(data, folder, {names[0]: b"scene"})
+
+    job = pe.ScoreJob(pe.load_study(study))
+    list(job)
+    assert keep(job.outcome, tmp_path / "out", None, More(names, write))[0] == 0
+    assert (tmp_path / "out" / names[0]).exists()
+    fails.append(True)
+    job.outcome = replace(job.outcome, seconds=99.0)
+    assert keep(job.outcome, tmp_path / "out", None, More(names, write))[0] == 1
+    assert not (tmp_path / "out" / names[0]).exists(), "it would be of another run"
+    assert pe.study.files_of_other_runs(tmp_path / "out") == []

@@ -132,7 +132,7 @@ class Sight:
         ----------
         rig : Rig
         height : float
-            How tall that is [m]; 0: flat on the ground.
+            How tall that is [m]; 0, and less: flat on the ground.
         within : float
             How far from the rectangle of the vehicle's body to look [m].
         step : float
@@ -154,7 +154,7 @@ class Sight:
         with self._is_free:
             look = self._looks.kept(
                 ("blind", height, cells.key),
-                lambda: BlindLook.of(cells, height, self.vehicle, self._looks.known),
+                lambda: BlindLook.of(cells, max(height, 0.0), self.vehicle, self._looks.known),
             )
             blind, drafted = look.blind(rig, draft)
             return blind_ground(cells, blind, body, height, float(within), drafted)

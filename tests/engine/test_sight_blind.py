@@ -60,6 +60,8 @@ def test_what_stands_stands_on_the_ground():
     for height in (0.0, 1.0):
         areas = [Sight(s, pe.Prior.road()).blind(rig, height, 3.0).area for s in (SPACE, deep)]
         assert areas[0] == areas[1] > 1.0
+    flat, under = (Sight(deep, pe.Prior.road()).blind(rig, h, 3.0) for h in (0.0, -0.5))
+    assert under.area == flat.area and under.height == -0.5
 
 
 def test_what_is_seen_at_its_foot_alone_is_seen():

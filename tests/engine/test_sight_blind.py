@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.kinds import CAMERA, GroundView
+from pe_core.kinds.ground_kernel import DefinedGround
+from pe_core.scene.ground_grid import GroundGrid
 from pe_core.sight import Sight
 from pe_core.sight.blind import NARROW_M, SIDES, blind_ground
 from pe_core.sight.blind_squares import BODY_M, TOO_FAR_M
@@ -173,3 +176,20 @@ def test_nothing_blind_is_told_as_nothing_wherever_the_body_ends(shift):
 def test_what_cannot_be_looked_at_is_told_in_a_line(asked, line):
     with pytest.raises(pe.InputError, match=line):
         Sight(SPACE, pe.Prior.road()).blind(pe.Rig([cone_lidar()]), **asked)
+
+
+def test_a_lens_that_bends_and_a_definition_alone_see_the_same_ground():
+    """The same pinhole as a lens of a round field; and a kind that has no kernel for ground."""
+    pose = pe.Pose.from_degrees((2.1, 0.0, 0.9), (0, 25, 0))
+    wide = pe.Camera("wide", 1920, 1080, math.radians(90.0))
+    lens = pe.Pinhole(960.0, 960.0, 960.0, 540.0, fov=math.radians(175.0))
+    round_ = pe.Camera("round", 1920, 1080, lens=lens)
+    view = GroundView(GroundGrid((1.0, -2.0), (60, 80), 0.05), 0.5, BOX)
+    one, other = (
+        CAMERA.on_ground(view).see(pe.Sensor("eye", model, pose), False).marked
+        for model in (wide, round_)
+    )
+    assert 500 < one.sum() < 4000 and np.array_equal(one, other)
+    defined = DefinedGround(CAMERA.measure, view).see(pe.Sensor("eye", wide, pose), False).marked
+    first = one[1::2, 1::2]  # where nothing is at an edge, every other square is asked about
+    assert np.mean(first != defined[1::2, 1::2]) < 0.03

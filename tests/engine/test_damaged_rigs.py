@@ -114,8 +114,10 @@ def test_a_word_in_place_of_a_number_is_never_0_or_nothing(name, tmp_path):
         found = [m for m in re.finditer(inside, whole) if m.start() >= begin]
         for each in found[::3]:
             before, after = whole[: each.start()], whole[each.end() :]
-            if before.endswith(b"<s>"):
-                continue  # skew: Gazebo's own, not read
+            if before.endswith(b"<s>") or before.rfind(b"<inertial>") > before.rfind(
+                b"</inertial>"
+            ):
+                continue  # a lens's skew and a link's mass: for Gazebo, not read
             in_json = path.suffix == ".json" and not before.endswith(b'"')
             path.write_bytes(before + (b'"one"' if in_json else b"one") + after)
             with pytest.raises(pe.InputError):

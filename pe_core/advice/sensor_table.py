@@ -117,12 +117,12 @@ def sensor_table(rows: Sequence[SensorRow]) -> list[str]:
 
 
 def loss_text(loss: float | None) -> str:
-    """Return what the loss of a sensor costs, in nats: "1.29", "< 0.01", "none", or "only"."""
+    """Return what the loss of a sensor costs, in nats: "1.29", "none", or "only"."""
     if loss is None:
         return "only"
     if abs(loss) < MIN_LOSS:
         return "none"
-    return "< 0.01" if abs(loss) < MIN_RISE else f"{loss:.2f}"
+    return f"{max(loss, 0.0) if abs(loss) < MIN_RISE else loss:.2f}"
 
 
 def where_text(row: SensorRow) -> str:

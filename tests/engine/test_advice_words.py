@@ -91,7 +91,7 @@ def test_the_table_has_a_row_a_sensor():
     alone = advice.sensor_rows(score(sensors={"roof": SENSORS["roof"]}))
     assert alone[0].loss is None
     losses = (None, 0.0, 0.00004, 0.0012, 0.006, 3.396, -0.2)
-    texts = ["only", "none", "none", "< 0.01", "0.01", "3.40", "-0.20"]
+    texts = ["only", "none", "none", "0.00", "0.01", "3.40", "-0.20"]
     assert [advice.loss_text(loss) for loss in losses] == texts
 
 

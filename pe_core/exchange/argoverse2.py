@@ -93,6 +93,6 @@ def _sensor(path: Path, row: Table, cameras: Mapping[str, Table]) -> CarriedSens
     rules = FOCAL, FOCAL, PLACE, PLACE
     fx, fy, cx, cy = (lens.number(k, rule=rule) for k, rule in zip(LENS, rules, strict=True))
     picture = pinhole_picture(fx, fy, cx, cy, size)
-    told = f"{name}: {NO_BEND}" if any(lens.number(key, 0.0, COEFFICIENT) for key in BENT) else ""
+    told = NO_BEND if any(lens.number(key, 0.0, COEFFICIENT) for key in BENT) else ""
     pose = pose_of(product(rotation, BODY_FROM_OPTICAL.T), place)
     return CarriedSensor(name, pose, CAMERA, None, picture, told=told)

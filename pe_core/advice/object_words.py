@@ -53,5 +53,8 @@ def reach_words(own: FoundClass) -> str:
     if not found:
         return "nowhere ahead, behind, left or right"
     missing = ", ".join(words for words in SIDES.values() if words not in found)
-    ways = ", ".join(f"{lone_reach(reach)} {words}" for words, reach in found.items())
+    ways = ", ".join(
+        f"{reach:.0f} m{' and more' if reach >= FARTHEST_M else ''} {words}"
+        for words, reach in found.items()
+    )
     return f"up to {ways}{f'; not {missing}' if missing else ''}"

@@ -27,6 +27,11 @@ def forget(plate: str) -> None:
         boxes.pop(plate, None)
 
 
+def boxes(region: int) -> tuple[Box, ...]:
+    """Return where plates stand in a region."""
+    return tuple(_boxes.get(region, {}).values())
+
+
 def bottom_above(region: int, sides: tuple[float, float], bottom: float, gap: float) -> float:
     """Return where a plate between two sides may begin so that it stands on no other one.
 
@@ -42,9 +47,5 @@ def bottom_above(region: int, sides: tuple[float, float], bottom: float, gap: fl
         Left free between plates [px].
     """
     left, right = sides
-    tops = [
-        box[3] + gap
-        for box in _boxes.get(region, {}).values()
-        if box[0] - gap < right and left < box[2] + gap
-    ]
+    tops = [box[3] + gap for box in boxes(region) if box[0] - gap < right and left < box[2] + gap]
     return max([bottom, *tops])

@@ -19,7 +19,7 @@ from .mirroring import (
 from .mount_shapes import LimitBox, bounds_box, mount_faces, mount_key, no_go_boxes
 from .mounting import mount_of_row, mounting_of
 from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
-from .oddities import layers_of, missing_pieces, scene_advice
+from .oddities import missing_pieces, scene_advice
 from .outcome import blender_version, store_outcome, store_warnings, store_words
 from .own_sensors import add_own_sensor, forget_own_sensors, sync_own_sensors, table_of
 from .passthrough import passthrough_of, write_passthrough
@@ -65,11 +65,19 @@ from .variants import (
     variant_named,
     write_score,
 )
-from .vehicle import vehicle_from_collection, visible_members
+from .vehicle import layers_of, vehicle_from_collection, visible_members
 from .versions import bring_up_to_date, newer_version
-from .view_camera import look_back, look_through, tend_views, view_camera
+from .view_camera import (
+    CAMERA_FROM_SENSOR,
+    look_back,
+    look_through,
+    shown_fov,
+    tend_views,
+    view_camera,
+)
 
 __all__ = [
+    "CAMERA_FROM_SENSOR",
     "SENSORS",
     "FigureRule",
     "Fingerprint",
@@ -151,6 +159,7 @@ __all__ = [
     "sensors_collection",
     "sensors_of_objects",
     "shown_collection",
+    "shown_fov",
     "signature",
     "space_of",
     "stand",

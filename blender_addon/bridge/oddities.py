@@ -8,6 +8,7 @@ import bpy
 
 from ..engine import pe
 from .rig import sensor_from_object, sensor_objects, view_layer_of
+from .vehicle import hidden_how, layers_of
 
 MISSING, DRIVER, UNITS, REFUSED = "missing", "driver", "units", "refused"
 HIDDEN = "hidden_vehicle"
@@ -107,43 +108,19 @@ def _hidden_vehicle(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
             f"the vehicle collection {vehicle.name} is not in this scene: nothing of it is scored"
         )
         yield pe.Advice(None, HIDDEN, text)
-    elif how := _hidden(found[0]):
+    elif how := hidden_how(found[0]):
         text = f"the vehicle collection {vehicle.name} is {how}: nothing of it is scored"
         yield pe.Advice(None, HIDDEN, text, fix="show_vehicle")
     else:
         for child in _hidden_children(found[0]):
-            text = f"the vehicle's collection {child.name} is {_hidden(child)}: it is not scored"
+            text = f"the vehicle's collection {child.name} is {hidden_how(child)}: it is not scored"
             yield pe.Advice(None, HIDDEN, text)
-
-
-def layers_of(
-    layer: bpy.types.LayerCollection, collection: bpy.types.Collection
-) -> list[bpy.types.LayerCollection]:
-    """Return a collection in a view layer and those that it is in, from it upwards.
-
-    Nothing where the view layer does not hold it.
-    """
-    if layer.collection == collection:
-        return [layer]
-    for child in layer.children:
-        if found := layers_of(child, collection):
-            return [*found, layer]
-    return []
-
-
-def _hidden(layer: bpy.types.LayerCollection) -> str:
-    """Say in which way a collection is out of the view; empty where it is in it."""
-    if layer.exclude:
-        return "excluded from the view layer"
-    if layer.collection.hide_render:
-        return "hidden in renders"
-    return "" if layer.is_visible else "hidden in the viewport"
 
 
 def _hidden_children(layer: bpy.types.LayerCollection) -> Iterator[bpy.types.LayerCollection]:
     """Yield collections in one that are hidden, and hold something; not those in these."""
     for child in layer.children:
-        if not _hidden(child):
+        if not hidden_how(child):
             yield from _hidden_children(child)
         elif any(obj.type == "MESH" for obj in child.collection.all_objects):
             yield child

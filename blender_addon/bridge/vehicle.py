@@ -40,8 +40,11 @@ def vehicle_from_collection(
     """
     parts = sorted(_parts(collection, depsgraph), key=lambda part: part.name)
     if not parts:
+        layers = layers_of(depsgraph.view_layer.layer_collection, collection)
+        how = hidden_how(layers[0]) if layers else ""
+        found = f"none: it is {how}" if how else "none"
         field = f"vehicle collection {collection.name!r}"
-        raise pe.InputError("scene", field, "visible meshes", "none")
+        raise pe.InputError("scene", field, "visible meshes", found)
     names = list(dict.fromkeys(part.name for part in parts))
     labels = [np.full(len(part.triangles), names.index(part.name), np.int32) for part in parts]
     triangles = np.concatenate([part.triangles for part in parts])
@@ -61,6 +64,30 @@ def visible_members(
         if obj.visible_get(view_layer=layer) and not obj.hide_render
     }
     return found.union(*(visible_members(child, layer) for child in collection.children))
+
+
+def layers_of(
+    layer: bpy.types.LayerCollection, collection: bpy.types.Collection
+) -> list[bpy.types.LayerCollection]:
+    """Return a collection in a view layer and those that it is in, from it upwards.
+
+    Nothing where the view layer does not hold it.
+    """
+    if layer.collection == collection:
+        return [layer]
+    for child in layer.children:
+        if found := layers_of(child, collection):
+            return [*found, layer]
+    return []
+
+
+def hidden_how(layer: bpy.types.LayerCollection) -> str:
+    """Say in which way a collection is out of the view; empty where it is in it."""
+    if layer.exclude:
+        return "excluded from the view layer"
+    if layer.collection.hide_render:
+        return "hidden in renders"
+    return "" if layer.is_visible else "hidden in the viewport"
 
 
 def drawn_meshes(

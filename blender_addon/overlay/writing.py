@@ -21,6 +21,8 @@ RISE, PADDING = 10.0, 4.0
 MARGIN, GAP = 16.0, 12.0
 GIZMOS = 330.0
 """Room for Blender's own gizmos, from the top."""
+BESIDE_GIZMOS = 48.0
+"""What they take from the right, where a legend is as high up as they are."""
 LEAST_WIDTH, BAR, ROW = 150.0, 10.0, 17.0
 INK: graphics.Rgba = (0.92, 0.92, 0.92, 1.0)
 FAINT_INK: graphics.Rgba = (0.72, 0.72, 0.72, 1.0)
@@ -33,8 +35,8 @@ _bars: dict[tuple[graphics.Rgba, ...], gpu.types.GPUBatch] = {}
 
 
 def write_labels(context: bpy.types.Context, labels: Sequence[graphics.Tag]) -> None:
-    """Write labels above their places; of those that overlap the later ones are left out."""
-    scale, taken = _scale(), []
+    """Write labels above their places, but those that would cover another one or a plate."""
+    scale, taken = _scale(), list(corners.boxes(context.region.as_pointer()))
     for label in sorted(labels, key=lambda each: not each.strong):
         place = location_3d_to_region_2d(context.region, context.region_data, label.place)
         if place is None:
@@ -65,6 +67,8 @@ def write_legends(context: bpy.types.Context, legends: Sequence[graphics.ColorKe
     region, sides = context.region.as_pointer(), (right - width, right)
     bottom = corners.bottom_above(region, sides, MARGIN * scale, GAP * scale / 2.0)
     room = context.region.height - GIZMOS * scale - (bottom - MARGIN * scale)
+    if legends and room < _height(legends[0], scale):
+        sides = (sides[0] - BESIDE_GIZMOS * scale, sides[1] - BESIDE_GIZMOS * scale)
     fitting = _fitting(legends, room, scale)
     for legend in reversed(fitting):
         bottom = _legend(legend, sides, bottom, scale) + GAP * scale / 2.0

@@ -12,8 +12,8 @@ from ..operators import FIX_LABELS, warnings_are_behind
 
 LETTER_PX = 6.2
 """About how wide a letter is, at a scale of 1."""
-BESIDE_PX = 78
-"""What borders, the tab's name and an icon take from a line, at a scale of 1."""
+BESIDE_PX, ICON_PX = 72, 20
+"""What borders and the tab's name take from a line, and what an icon takes, at a scale of 1."""
 BUTTON_PX = 26
 """What a small button beside a sentence takes from it, at a scale of 1."""
 FEWEST = 10
@@ -24,7 +24,8 @@ FONT = 0
 
 def letters(context: bpy.types.Context) -> int:
     """Return about how many letters a line of the sidebar has room for."""
-    return max(FEWEST, int((context.region.width / _scale(context) - BESIDE_PX) / LETTER_PX))
+    room = context.region.width / _scale(context) - BESIDE_PX - ICON_PX
+    return max(FEWEST, int(room / LETTER_PX))
 
 
 def wrapped(context: bpy.types.Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
@@ -85,6 +86,7 @@ def draw_sentence(
     column = layout.column(align=True)
     column.scale_y = 0.8
     rest = "NONE" if icon == "NONE" else "BLANK1"
+    beside_px += 0.0 if icon == "NONE" else ICON_PX
     for k, line in enumerate(wrapped(context, text, beside_px)):
         column.label(text=line, icon=rest if k else icon, translate=False)
 

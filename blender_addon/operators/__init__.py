@@ -17,6 +17,7 @@ from . import (
     exporting,
     fix_colors,
     focus,
+    inset,
     job,
     known_rigs,
     live_reference,
@@ -102,6 +103,7 @@ def register() -> None:
     """Have Esc come back from looking through a sensor, and dropped sensors stand."""
     look.register()
     upright.register()
+    inset.register()
 
 
 def unregister() -> None:
@@ -109,5 +111,6 @@ def unregister() -> None:
     running.unregister()
     placing.end()
     exporting.unregister()
+    inset.unregister()
     upright.unregister()
     look.unregister()

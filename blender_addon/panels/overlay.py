@@ -41,6 +41,7 @@ def draw_layers(layout: UILayout, settings: Settings) -> None:
     row = layout.row()
     row.prop(view, "show_labels")
     row.prop(view, "show_legend")
+    layout.prop(view, "show_inset")
 
 
 def _ground(layout: UILayout, settings: Settings) -> None:

@@ -31,7 +31,10 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         layout.prop(settings, "model")
         layout.prop(settings, "fusion")
         draw_pose(layout, context, obj)
-        layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
+        row = layout.row(align=True)
+        row.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
+        view = context.scene.perception_entropy.view
+        row.prop(view, "show_inset", toggle=True, icon="IMAGE_PLANE")
         layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
         draw_mirror(layout, obj)
         draw_mounted(layout, settings)

@@ -291,6 +291,11 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         default=True,
         update=redraw,
     )
+    show_inset: BoolProperty(
+        name="Picture in View",
+        description="Show what the selected sensor sees in a corner of the 3D view",
+        update=redraw,
+    )
     show_legend: BoolProperty(
         name="Legend",
         description="Say in the lower right corner what the colours mean",

@@ -65,7 +65,8 @@ ALLOWED = {
     "review": {"bridge", "engine"},
     "operators": {
         *("asking", "body", "bridge", "changes", "choices", "engine", "explaining", "housing"),
-        *("live", "overlay", "properties", "redraw", "review", "roster", "searching", "stale"),
+        *("corners", "live", "overlay", "properties", "redraw", "review", "roster"),
+        *("searching", "stale"),
         "worker",
     },
     "panels": {"choices", "operators", "properties"},

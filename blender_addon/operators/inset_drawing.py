@@ -60,7 +60,7 @@ class Camera:
             view.region,
             camera_from_ground,
             projection,
-            do_color_management=True,
+            do_color_management=False,  # the view that it is drawn into does that
             draw_background=True,
         )
 
@@ -76,7 +76,7 @@ class Image:
 
     def __init__(self, pixels: Pixels) -> None:
         self.height, self.width = pixels.shape[:2]
-        self._pixels = np.ascontiguousarray(pixels[::-1], np.float32)
+        self._pixels = np.ascontiguousarray(linear(pixels[::-1]), np.float32)
         self._texture: gpu.types.GPUTexture | None = None
 
     @property
@@ -87,6 +87,13 @@ class Image:
             size = (self.width, self.height)
             self._texture = gpu.types.GPUTexture(size, format="RGBA16F", data=data)
         return self._texture
+
+
+def linear(pixels: Pixels) -> Pixels:
+    """Return sRGB as linear light, which views take textures to be; alpha stays (IEC 61966-2-1)."""
+    rgb = pixels[..., :3]
+    low, high = rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4
+    return np.concatenate([np.where(rgb <= 0.04045, low, high), pixels[..., 3:]], axis=-1)
 
 
 def draw_picture(

@@ -9,7 +9,7 @@ from mathutils import Vector
 
 from blender_addon import bridge
 from blender_addon.engine import catalog, pe
-from blender_addon.operators import inset
+from blender_addon.operators import inset, inset_drawing
 from tests.addon import scenes
 
 
@@ -74,3 +74,9 @@ def test_a_bent_lens_is_told_in_the_title(car):
     assert inset.title_of(straight) == "front"
     bent = next(n for n in catalog.names("camera") if catalog.load(n).lens is not None)
     assert "as a pinhole" in inset.title_of(pe.Sensor("side", catalog.load(bent)))
+
+
+def test_pixels_are_linear_light_again_where_a_view_encodes_them():
+    pixels = np.array([[[0.0, 0.5, 1.0, 0.25]]], np.float32)
+    found = inset_drawing.linear(pixels)[0, 0]
+    assert found == pytest.approx([0.0, 0.21404, 1.0, 0.25], abs=1e-4)

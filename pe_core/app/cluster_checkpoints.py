@@ -102,7 +102,7 @@ class ClusterCheckpoints:
         self._searches: dict[str, _Search] = {}
         client.subscribe_topic(self._topic, self._receive)
 
-    def of(self, run: SweepRun, folder: Path) -> PostedCheckpoints:
+    def for_run(self, run: SweepRun, folder: Path) -> PostedCheckpoints:
         """Return the checkpoints of a run; they begin with those in its folder."""
         search = self._searches.get(run.name)
         if search is None:

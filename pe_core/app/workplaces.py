@@ -103,7 +103,7 @@ class DaskWorkers:
 
     def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
         """Have the worker, which may be another machine, send them here to be saved."""
-        return self._saved.of(run, folder)
+        return self._saved.for_run(run, folder)
 
     def _count(self) -> int:
         """How many threads its workers have."""

@@ -60,7 +60,7 @@ class PostedCheckpoints:
 
 
 @dataclass
-class _Search:
+class _RunSearch:
     """The search of a run as far as its events have come."""
 
     study: Study
@@ -99,14 +99,14 @@ class ClusterCheckpoints:
     def __init__(self, client: Any) -> None:
         self._topic = f"perception-entropy-{secrets.token_hex(8)}"
         self._events: queue.SimpleQueue[Mapping[str, Any]] = queue.SimpleQueue()
-        self._searches: dict[str, _Search] = {}
+        self._searches: dict[str, _RunSearch] = {}
         client.subscribe_topic(self._topic, self._receive)
 
     def for_run(self, run: SweepRun, folder: Path) -> PostedCheckpoints:
         """Return the checkpoints of a run; they begin with those in its folder."""
         search = self._searches.get(run.name)
         if search is None:
-            search = _Search(run.study, folder, _entries_in(folder, run.study), run.study)
+            search = _RunSearch(run.study, folder, _entries_in(folder, run.study), run.study)
             self._searches[run.name] = search
         return PostedCheckpoints(self._topic, run.name, tuple(search.entries))
 

@@ -28,9 +28,8 @@ BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
 LENS_FRAME, FOOT_FRAME, OWN_FRAME = "/camera_link", "_base_link", "_link"
 PLACE, TURN = ("x", "y", "z"), ("roll", "pitch", "yaw")
-Unit = tuple[str, dict[str, Pose]]
+KitUnit = tuple[str, dict[str, Pose]]
 """A file, and the frames in it."""
-Units = Mapping[str, Unit]
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
 
 
@@ -152,7 +151,7 @@ def kit_texts(folder: Path) -> dict[str, str]:
     return {name: text_of(folder / name) for name in (TO_KIT, *kit, *units)}
 
 
-def units_of(folder: Path, texts: Mapping[str, str]) -> tuple[dict[str, Pose], dict[str, Unit]]:
+def units_of(folder: Path, texts: Mapping[str, str]) -> tuple[dict[str, Pose], dict[str, KitUnit]]:
     """Return the frames on base_link, and units by their frames: the kit, or several of them.
 
     A unit's file is UNIT_calibration.yaml, as tier4's aip_x2 has them: top_unit, front_unit, ...

@@ -95,7 +95,7 @@ def import_rig(
     row = told_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
     with _in_file(path), told_if_too_much(path):
-        return _imported(path, row, _Placing(origin, placed), models or {})
+        return _imported(path, row, _FileOrigin(origin, placed), models or {})
 
 
 @contextmanager
@@ -111,7 +111,7 @@ def _in_file(path: Path) -> Iterator[None]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Placing:
+class _FileOrigin:
     """Where a format's origin is in the ground frame, and where the file's own was put."""
 
     origin: tuple[float, ...]
@@ -122,7 +122,7 @@ class _Placing:
 
 
 def _imported(
-    path: Path, row: RigFormat, place: _Placing, models: Mapping[str, str]
+    path: Path, row: RigFormat, place: _FileOrigin, models: Mapping[str, str]
 ) -> ImportedRig:
     read = row.read(path)
     require_at_most(path, "sensors", len(read), MAX_SENSORS, "sensors")

@@ -38,7 +38,7 @@ from .pictures import (
 )
 
 Carried = tuple[CarriedSensor, ...]
-Texts = Mapping[str, str]
+FileTexts = Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +86,8 @@ class RigFormat:
     holds: frozenset[str] = frozenset()
     usual_size: Size | None = None
     beside: bool = False
-    write_over: Callable[[Texts, Carried], tuple[Written, list[str]]] | None = None
-    source: Callable[[Path], Texts] = lambda path: {}
+    write_over: Callable[[FileTexts, Carried], tuple[Written, list[str]]] | None = None
+    source: Callable[[Path], FileTexts] = lambda path: {}
     passes_through: bool = False
 
 

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from .yaml_blocks import LINE, PLAIN_REST, unquoted
 
-Path = tuple[str, ...]
+KeyPath = tuple[str, ...]
 
 
-def with_values(text: str, values: Mapping[Path, str]) -> str:
+def with_values(text: str, values: Mapping[KeyPath, str]) -> str:
     """Return a text with the values at some paths replaced; other bytes stay.
 
     Parameters
@@ -24,7 +24,7 @@ def with_values(text: str, values: Mapping[Path, str]) -> str:
     )
 
 
-def comments_of(text: str) -> dict[Path, str]:
+def comments_of(text: str) -> dict[KeyPath, str]:
     """Return the comments behind keys that have no value, by their paths."""
     return {
         path: line.partition("#")[2].strip()
@@ -33,7 +33,7 @@ def comments_of(text: str) -> dict[Path, str]:
     }
 
 
-def with_comments(text: str, comments: Mapping[Path, str]) -> str:
+def with_comments(text: str, comments: Mapping[KeyPath, str]) -> str:
     """Return a text with other comments behind keys that have some; an empty one takes it away."""
     done = []
     for path, line in _lines(text):
@@ -56,7 +56,7 @@ def _opens_block(line: str) -> bool:
     return rest["value"] is None
 
 
-def with_more_lines(text: str, path: Path, more: Sequence[str]) -> str:
+def with_more_lines(text: str, path: KeyPath, more: Sequence[str]) -> str:
     """Return a text with further lines at the end of the block at a path.
 
     `more` are indented against the block's own keys; the block is not empty.
@@ -74,7 +74,7 @@ def with_more_lines(text: str, path: Path, more: Sequence[str]) -> str:
     )
 
 
-def _lines(text: str) -> Iterator[tuple[Path, str]]:
+def _lines(text: str) -> Iterator[tuple[KeyPath, str]]:
     """Yield each line with the path of its key; comments and empty lines have no path."""
     levels: list[tuple[int, str]] = []
     for line in text.splitlines(keepends=True):

@@ -15,7 +15,7 @@ from .plan import outline_of
 from .svg import Canvas, hexadecimal
 
 Floats = NDArray[np.float64]
-Span = tuple[float, float]
+Extent1d = tuple[float, float]
 
 WIDE = 460.0
 LEFT, RIGHT, TOP, BOTTOM = 62.0, 58.0, 34.0, 76.0
@@ -55,8 +55,8 @@ class ViewPlane:
     """
 
     outlines: Sequence[Floats]
-    across: Span
-    up: Span
+    across: Extent1d
+    up: Extent1d
     sensors: Floats
     ordinates: Floats
     below: str

@@ -20,13 +20,13 @@ def bill(each: tuple[Reviewed, ...]) -> Section:
     return Section("bill", "Bill of materials", f"{inside}{_missing(each)}")
 
 
-Position = tuple[str, float | None]
+BillRow = tuple[str, float | None]
 """A model's name and its unit price; None where the study gives none."""
 
 
-def _positions(one: Reviewed) -> dict[Position, list[pe.Sensor]]:
+def _positions(one: Reviewed) -> dict[BillRow, list[pe.Sensor]]:
     """Return the sensors of each model, in the rig's order."""
-    found: dict[Position, list[pe.Sensor]] = {}
+    found: dict[BillRow, list[pe.Sensor]] = {}
     for sensor in one.rig:
         key = sensor.model.name, price_of(one.found, sensor)
         found.setdefault(key, []).append(sensor)

@@ -11,14 +11,13 @@ from pathlib import Path
 
 from .. import catalog
 from ..scene.geometry import Pose
-from ..text.yaml_edit import Path as Keys
-from ..text.yaml_edit import with_comments, with_more_lines, with_values
+from ..text.yaml_edit import KeyPath, with_comments, with_more_lines, with_values
 from .autoware import (
     BASE,
     PLACE,
     TO_KIT,
     TURN,
-    Units,
+    KitUnit,
     base_frame,
     base_lines,
     frame_lines,
@@ -51,7 +50,7 @@ def source(path: Path) -> dict[str, str]:
     return texts
 
 
-def _all_frames(base: Mapping[str, Pose], units: Units) -> list[str]:
+def _all_frames(base: Mapping[str, Pose], units: Mapping[str, KitUnit]) -> list[str]:
     return [*base, *(frame for _, frames in units.values() for frame in frames)]
 
 
@@ -89,14 +88,14 @@ def _patched(
     unit: Pose | None,
 ) -> str:
     """Return a file's text, with the frames of those that moved where these are now."""
-    values: dict[Keys, str] = {}
+    values: dict[KeyPath, str] = {}
     for frame, old in frames.items():
         if frame in own:
             now = base_frame(own[frame])
             now = now if unit is None else seen_from(unit, now)
             texts = pose_texts(now)
             values |= {(parent, frame, key): texts[key] for key in _changed(old, now)}
-    comments: dict[Keys, str] = {}
+    comments: dict[KeyPath, str] = {}
     for frame in models_of([text]):
         model = _catalogued(own[frame]) if frame in own else None
         if model is not None:

@@ -7,11 +7,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..engine import graphics, pe, sight
 from ..markup import Markup
 from .plan import PlanDrawing, PlanEdges
 from .svg import hexadecimal
+
+Floats = NDArray[np.float64]
 
 RIG, BEFORE = "#0b5cad", "#8c959f"
 GRID = "#c8cfd6"
@@ -36,12 +39,12 @@ def reach_plan(
     size: dict[str, Any] = {"fill": "none", "stroke_linejoin": "round"}
     for number, sensor in enumerate(rig):
         color = hexadecimal(graphics.sensor_color_on_paper(number))
-        line = plan.at(sight.reach_line(found, found.per_sensor[sensor.name]).points)
+        line = plan.at(_line(found, found.per_sensor[sensor.name], bounds))
         plan.canvas.path([line], stroke=color, stroke_width=1.2, stroke_opacity="0.85", **size)
     if before is not None:
-        line = plan.at(sight.reach_line(before, before.distance).points)
+        line = plan.at(_line(before, before.distance, bounds))
         plan.canvas.path([line], stroke=BEFORE, stroke_width=1.6, stroke_dasharray="5 4", **size)
-    line = plan.at(sight.reach_line(found, found.distance).points)
+    line = plan.at(_line(found, found.distance, bounds))
     plan.canvas.path([line], fill=RIG, fill_opacity="0.09", stroke=RIG, stroke_width=2.2)
     plan.vehicle(vehicle)
     _figures(plan, found)
@@ -64,6 +67,12 @@ def reach_key(rig: pe.Rig) -> list[tuple[str, str]]:
     """Return each sensor's colour and name."""
     numbered = enumerate(rig)
     return [(hexadecimal(graphics.sensor_color_on_paper(number)), s.name) for number, s in numbered]
+
+
+def _line(found: sight.Reach, distance: Floats, bounds: PlanEdges) -> Floats:
+    """(N, 2) the closed line of a reach, held at the plan's edges: lone objects are beyond them."""
+    low, high = np.transpose(bounds)
+    return np.clip(sight.reach_line(found, distance).points, low, high)
 
 
 def _figures(plan: PlanDrawing, found: sight.Reach) -> None:

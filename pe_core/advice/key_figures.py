@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ..scene.sensors import Rig
-from ..sight import Reach, Sight
+from ..sight import Reach, Sight, ends_with_space
 from .outlook import BLIND_TO_M, class_of
 
 
@@ -83,5 +83,5 @@ def key_figures(
 
 def ahead(reach: Reach) -> tuple[float, bool]:
     """Return the reach straight ahead [m], and whether the space ends there."""
-    distance, limit = float(reach.distance[0]), float(reach.limit[0])  # bearings begin ahead
-    return distance, 0.0 < limit <= distance
+    distance = float(reach.distance[0])  # bearings begin ahead
+    return distance, distance > 0.0 and bool(ends_with_space(reach, reach.distance)[0])

@@ -8,7 +8,9 @@ import pytest
 import pe_core as pe
 from pe_core.kinds import Voxels, kind_of
 from pe_core.kinds.camera.bent_area import bent_pixel_area
+from pe_core.kinds.camera.bent_points import bent_pixel_areas
 from pe_core.kinds.camera.lens import BrownConrady, FTheta, KannalaBrandt, Pinhole
+from pe_core.kinds.camera.ties import axes_of
 from tests.engine import shapes
 
 RAYS = 1
@@ -130,3 +132,64 @@ def test_a_camera_sees_between_its_ranges_alone():
     own = pe.Sensor("eye", model, pe.Pose((0.0, 0.0, 0.0)))
     centers = [[0.35, 0.0, 0.0], [0.45, 0.0, 0.0], [5.95, 0.0, 0.0], [6.05, 0.0, 0.0]]
     assert (pe.measure(own, centers, 0.1) > 0.0).tolist() == [False, True, True, False]
+
+
+def by_patches(model, axes, offset, side, count=100):
+    """Pixels of a cube by its sides in count x count patches, each as its projected corners.
+
+    A patch counts where its middle is in the picture and in the field.
+    """
+    lens, ends, found = model.projection, np.linspace(-0.5, 0.5, count + 1) * side, 0.0
+    for axis in np.flatnonzero(np.abs(offset) > side / 2.0):
+        a, b = np.meshgrid(ends, ends, indexing="ij")
+        points = np.empty((*a.shape, 3))
+        points[..., axis] = offset[axis] - np.sign(offset[axis]) * side / 2.0
+        points[..., (axis + 1) % 3] = offset[(axis + 1) % 3] + a
+        points[..., (axis + 2) % 3] = offset[(axis + 2) % 3] + b
+        corners = points @ axes
+        x, y = lens.project(*np.moveaxis(corners, -1, 0))
+        across = (x[1:, 1:] - x[:-1, :-1], y[1:, 1:] - y[:-1, :-1])
+        other = (x[:-1, 1:] - x[1:, :-1], y[:-1, 1:] - y[1:, :-1])
+        areas = np.abs(across[0] * other[1] - across[1] * other[0]) / 2.0
+        middle = (corners[1:, 1:] + corners[:-1, :-1]) / 2.0
+        u, v = lens.project(*np.moveaxis(middle, -1, 0))
+        theta = np.arctan2(np.hypot(middle[..., 1], middle[..., 2]), middle[..., 0])
+        seen = (theta < lens.edge) & (u > 0) & (u < model.width) & (v > 0) & (v < model.height)
+        found += float(areas[seen].sum())
+    return found
+
+
+CATALOGUE = ("WoodScape surround view", "PandaSet front", "PandaSet wide")
+OFF, CUT_OFF = 0.005, 0.001
+"""How far areas may be off: of themselves, and of a face on the lens's axis where they are cut."""
+
+
+def around_the_edge(lens, side, rng):
+    """Directions (12, 3) to cubes 1 m away: six in the field, six on and across its edge.
+
+    Where the picture ends before the field does, as far from the axis as its corner.
+    """
+    corner = float(lens.unproject(np.zeros(1), np.zeros(1))[0, 0])
+    edge = lens.edge if math.isnan(corner) else math.acos(corner)
+    inside, across = rng.uniform(0.0, edge, 6), edge + rng.uniform(-1.5, 0.7, 6) * side
+    theta, turn = np.r_[inside, across], rng.uniform(0.0, 2.0 * math.pi, 12)
+    aside = np.sin(theta)
+    return np.stack([np.cos(theta), aside * np.cos(turn), aside * np.sin(turn)], axis=1)
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("away", [2.5, 6.0, 16.0, 30.0])
+def test_areas_keep_to_the_tolerance_that_the_page_states(name, away):
+    """Definition and sample, in the field and across its edge, near a fold as well."""
+    model, rng = pe.catalog.load(name), np.random.default_rng(int(away))
+    pose = pe.Pose.from_degrees((0.0, 0.0, 0.0), rng.uniform(-180.0, 180.0, 3))
+    axes, side = axes_of(pose), 1.0 / away
+    offsets = around_the_edge(model.projection, side, rng) @ axes.T
+    exact = np.array([by_patches(model, axes, offset, side) for offset in offsets])
+    defined = bent_pixel_area(model, axes, offsets, side)
+    sampled = bent_pixel_areas(model, pose, offsets, side, None)
+    assert np.count_nonzero(exact) >= 3
+    lens = model.projection
+    face = lens.fx * lens.fy * float(lens.slope(np.array(1e-6))) ** 2 * side**2
+    for found in (defined, sampled):
+        np.testing.assert_allclose(found, exact, rtol=OFF, atol=CUT_OFF * face)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .area import clamped_integral
+from .lens import Lens
 from .model import Camera
 
 Floats = NDArray[np.float64]
@@ -32,9 +33,13 @@ class Aperture:
 
 @dataclass(frozen=True)
 class RoundAperture(Aperture):
-    """A picture that the edge of the field runs through: an ellipse of half axes `wide`, `high`."""
+    """A picture that the edge of the field runs through: an ellipse of half axes `wide`, `high`.
 
-    center: tuple[float, float]
+    A lens that shifts its image moves the ellipse, by another way on each side: an outline is cut
+    by the ellipse as it is moved where the outline is.
+    """
+
+    lens: Lens
     wide: float
     high: float
 
@@ -45,13 +50,28 @@ class RoundAperture(Aperture):
         """
         x, y = places
         inside = ((x >= 0.0) & (x <= self.width) & (y >= 0.0) & (y <= self.height)).all(axis=1)
-        area = np.empty(len(x))
-        area[inside] = self._in_ellipse((x[inside], y[inside]))
-        area[~inside] = self._in_ellipse(self._folded((x[~inside], y[~inside])))
+        area, centers = np.empty(len(x)), self._centers(places)
+        for some, folds in ((inside, False), (~inside, True)):
+            held = x[some], y[some]
+            area[some] = self._in_ellipse(self._folded(held) if folds else held, centers[some])
         return area
 
-    def _in_ellipse(self, places: ImagePoints) -> Floats:
-        (x, y), (cx, cy) = places, self.center
+    def _centers(self, places: ImagePoints) -> Floats:
+        """(V, 2) middles of the ellipse, as moved on the side that outlines are on."""
+        lens = self.lens
+        centers = np.broadcast_to([lens.cx, lens.cy], (len(places[0]), 2))
+        if not lens.shifts:
+            return centers
+        x, y = (
+            (w.mean(axis=1) - c) / f
+            for w, c, f in zip(places, (lens.cx, lens.cy), (lens.fx, lens.fy), strict=True)
+        )
+        away = np.maximum(np.hypot(x, y), 1e-12)
+        moved = lens.shift(np.full(len(x), lens.edge), x / away, y / away)
+        return centers + np.stack(moved, axis=1) * (lens.fx, lens.fy)
+
+    def _in_ellipse(self, places: ImagePoints, centers: Floats) -> Floats:
+        (x, y), (cx, cy) = places, centers.T[..., None]
         circle = _area_in_circle(((x - cx) / self.wide, (y - cy) / self.high))
         return circle * (self.wide * self.high)
 
@@ -79,7 +99,7 @@ def aperture_of(camera: Camera) -> Aperture:
     x, y = max(lens.cx, width - lens.cx), max(lens.cy, height - lens.cy)
     if (x / wide) ** 2 + (y / high) ** 2 <= 1.0:
         return Aperture(width, height)
-    return RoundAperture(width, height, (lens.cx, lens.cy), wide, high)
+    return RoundAperture(width, height, lens, wide, high)
 
 
 def _next(places: ImagePoints) -> ImagePoints:

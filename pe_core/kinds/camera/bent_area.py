@@ -6,8 +6,9 @@ lies in the picture and inside the edge of the field is found by Green's theorem
 a cube that reaches behind a fisheye's shoulders, or across the edge of its field, counts by the
 part that is seen.
 
-Against dense rays through the model the area is within 0.2 % from two sides on, and 1 % of a cube
-nearer than that; one that is that near and mostly beyond the edge of the field may be 10 % off.
+Against the sides of cubes in small patches, each projected by itself, areas are within 0.5 %; of
+images that the picture or the edge of the field cuts, within 0.1 % of a side of the cube on the
+lens's axis besides.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ from .model import Camera
 Floats = NDArray[np.float64]
 PIECES = 8
 """Straight pieces that an edge of a face is taken for."""
+BESIDE_SIDES, BESIDE_PIECES = 4.0, 32
+"""Nearer than so many sides, where an edge takes 15 degrees and more, it is taken for so many."""
 BALL = math.sqrt(3.0) / 2.0
 """Radius of the ball round a cube, in sides."""
 RIGHT_BEHIND = math.pi - 1e-3
@@ -52,10 +55,13 @@ def bent_pixel_area(
         Of an edge; fewer are enough from afar.
     """
     area = np.zeros(len(offsets))
-    near = np.flatnonzero(in_reach(camera.projection, axes, offsets, side))
-    for start in range(0, len(near), CUBES_AT_ONCE):
-        some = near[start : start + CUBES_AT_ONCE]
-        area[some] = _area(camera, axes, offsets[some], side, pieces)
+    shown = in_reach(camera.projection, axes, offsets, side)
+    beside = dot(offsets, offsets) < (BESIDE_SIDES * side) ** 2
+    for which, count in ((shown & beside, max(pieces, BESIDE_PIECES)), (shown & ~beside, pieces)):
+        near = np.flatnonzero(which)
+        for start in range(0, len(near), CUBES_AT_ONCE):
+            some = near[start : start + CUBES_AT_ONCE]
+            area[some] = _area(camera, axes, offsets[some], side, count)
     return area
 
 

@@ -19,6 +19,8 @@ Pixels = NDArray[np.float32]
 """(H, W, 4) sRGB, the top row first."""
 FONT, TEXT_PX, TITLE_PX, PAD_PX = 0, 11.0, 20.0, 6.0
 PLATE, INK = (0.08, 0.08, 0.08, 0.78), (0.92, 0.92, 0.92, 1.0)
+TAKES_SRGB = bpy.app.version >= (5, 0, 0)
+"""Whether textures drawn over a view are taken as they are; before 5.0 they are linear light."""
 EDGE = (0.75, 0.75, 0.75, 1.0)
 
 
@@ -60,7 +62,7 @@ class Camera:
             view.region,
             camera_from_ground,
             projection,
-            do_color_management=False,  # the view that it is drawn into does that
+            do_color_management=TAKES_SRGB,
             draw_background=True,
         )
 
@@ -76,7 +78,8 @@ class Image:
 
     def __init__(self, pixels: Pixels) -> None:
         self.height, self.width = pixels.shape[:2]
-        self._pixels = np.ascontiguousarray(linear(pixels[::-1]), np.float32)
+        upwards = pixels[::-1]
+        self._pixels = np.ascontiguousarray(upwards if TAKES_SRGB else linear(upwards), np.float32)
         self._texture: gpu.types.GPUTexture | None = None
 
     @property
@@ -90,7 +93,7 @@ class Image:
 
 
 def linear(pixels: Pixels) -> Pixels:
-    """Return sRGB as linear light, which views take textures to be; alpha stays (IEC 61966-2-1)."""
+    """Return sRGB as linear light; alpha stays (IEC 61966-2-1)."""
     rgb = pixels[..., :3]
     low, high = rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4
     return np.concatenate([np.where(rgb <= 0.04045, low, high), pixels[..., 3:]], axis=-1)

@@ -112,7 +112,9 @@ def test_files_say_what_the_arrays_do():
     told = {each["sensor"]: each for each in json.loads(files["masks.json"])["masks"]}
     for sensor in study().rig:
         mask = ego_mask(sensor, BODY)
-        pixels = decoded(files[told[sensor.name]["file"]])[..., 0]
+        own = told[sensor.name]
+        pixels = decoded(files[own["file"]])[..., 0]
+        assert (own["height"], own["width"]) == pixels.shape
         np.testing.assert_array_equal(pixels, np.where(mask.sees_out, 255, 0))
         stopped = (mask.parts >= 0).mean()
         assert told[sensor.name]["stopped_share"] == pytest.approx(stopped, abs=1e-6)

@@ -6,6 +6,7 @@ score says of the scene as it is, or was a moment ago.
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 
 from ..engine import pe
@@ -39,6 +40,8 @@ class Reading:
         How far a body of very many triangles was moved by making it simpler, at most; 0 as a rule.
     number : int
         Which of the scene's requests it answers.
+    problem : Hashable
+        Tells vehicle, prior, space and settings it was scored under from others.
     """
 
     glance: pe.Glance
@@ -47,6 +50,7 @@ class Reading:
     rig: pe.Rig
     moved_m: float = 0.0
     number: int = 0
+    problem: Hashable = None
 
     @property
     def before(self) -> pe.Glance | None:
@@ -56,6 +60,7 @@ class Reading:
 
 _scored: dict[str, Scored] = {}
 _readings: dict[str, Reading] = {}
+_exact: dict[str, Reading] = {}
 _notes: dict[str, str] = {}
 _requests: dict[str, int] = {}
 """By the scene's name."""
@@ -79,7 +84,14 @@ def reading(scene_name: str) -> Reading | None:
 def note_reading(scene_name: str, found: Reading) -> None:
     """Keep what the live score says; what was in its way no longer is."""
     _readings[scene_name] = found
+    if found.rested:
+        _exact[scene_name] = found
     _notes.pop(scene_name, None)
+
+
+def exact(scene_name: str) -> Reading | None:
+    """Return the last exact reading: previews may have come since."""
+    return _exact.get(scene_name)
 
 
 def note_request(scene_name: str) -> int:
@@ -106,10 +118,11 @@ def set_note(scene_name: str, line: str) -> None:
 def forget_reading(scene_name: str) -> None:
     """Drop what the live score said of a scene: it no longer is asked."""
     _readings.pop(scene_name, None)
+    _exact.pop(scene_name, None)
     _notes.pop(scene_name, None)
 
 
 def forget() -> None:
     """Drop everything: another file is about to be shown, or nothing any more."""
-    for each in (_scored, _readings, _notes, _requests):
+    for each in (_scored, _readings, _exact, _notes, _requests):
         each.clear()

@@ -19,7 +19,7 @@ from .. import body, bridge, changes, motion, worker
 from ..engine import pe
 from . import against, background, latest
 from .asking import EvaluatorStore, ScoreWish, priors, read
-from .reference import Moves, ReadRig, Reference
+from .reference import Moves, ReadRig, Reference, rig_key
 
 VEHICLE_MOVES = "The vehicle changes: measured again when it rests"
 
@@ -37,8 +37,8 @@ MOVING = "TRANSFORM_OT_"
 
 _evaluators = EvaluatorStore()
 _moves = Moves()
-_last: dict[str, pe.Rig] = {}
-"""By the scene's name: the rig that was read last."""
+_last: dict[str, tuple[pe.Rig, Hashable]] = {}
+"""By the scene's name: the rig that was read last, and what tells its problem from others."""
 _seen: dict[str, Seen] = {}
 """By the scene's name: what there was when it was read."""
 _generation = 0
@@ -86,7 +86,7 @@ def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) 
     seen, known = Seen(motion.count(), body.shared.version, wish.prior_key), _seen.get(name)
     if known is not None and known.prior != seen.prior:
         _moves.drop(name)  # entropies under two priors are no change
-    _seen[name], _last[name] = seen, wish.rig
+    _seen[name], _last[name] = seen, (wish.rig, wish.problem.key)
     reference = against.reference_of(scene, wish, _moves)
     job = partial(work, name, wish, number, reference, _generation)
     worker.hand.ask(name, job, lambda _: changes.reading.tell(), partial(failed, name))
@@ -103,7 +103,8 @@ def work(
         reference.glance, _ = _evaluators.glance(name, replace(wish, rig=reference.rig))
     glance, moved_m = _evaluators.glance(name, wish)
     if generation == _generation:
-        reading = latest.Reading(glance, reference, exact, wish.rig, moved_m, number)
+        of = wish.rig, moved_m, number, wish.problem.key
+        reading = latest.Reading(glance, reference, exact, *of)
         latest.note_reading(name, reading)
 
 
@@ -172,11 +173,11 @@ def forget(*_: object) -> None:
 
 def _last_read(name: str) -> ReadRig | None:
     """Return the rig that was read last, and its exact score where that is there already."""
-    rig, reading = _last.get(name), latest.reading(name)
-    if rig is None:
+    if name not in _last:
         return None
-    known = reading is not None and latest.is_exact(name, reading)
-    return ReadRig(rig, reading.glance if known else None)
+    (rig, problem), exact = _last[name], latest.exact(name)
+    known = exact is not None and exact.problem == problem and rig_key(exact.rig) == rig_key(rig)
+    return ReadRig(rig, exact.glance if known else None)
 
 
 def _moving_operator() -> int:

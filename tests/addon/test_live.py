@@ -140,6 +140,17 @@ def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
     assert reading(live).before == start
 
 
+def test_an_update_that_moves_nothing_does_not_hide_where_the_next_move_begins(live):
+    """A variant is put there in several updates, and the first one moves nothing."""
+    drag(live.objects["roof"])
+    rest()
+    second = reading(live).glance
+    live.objects["roof"].update_tag()
+    bpy.context.view_layer.update()
+    drag(live.objects["roof"])
+    assert reading(live).before == second
+
+
 def test_of_two_moves_in_a_row_the_first_one_s_end_is_scored_later(live, monkeypatch):
     for operator in (4711, 0, 4712):
         monkeypatch.setattr(session, "_moving_operator", lambda op=operator: op)

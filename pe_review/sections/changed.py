@@ -76,6 +76,8 @@ def _words(names: Sequence[str], differing: Sequence[str]) -> str:
     each = [f"<b>{escaped(name)}</b>" for name in differing[:NAMED]]
     more = len(differing) - NAMED
     named = joined(each) if more <= 0 else f"{', '.join(each)} and {more} more"
+    if len(names) == 1:
+        return f"The one sensor differs: {named}."
     whole = "All" if len(differing) == len(names) else f"Of {count(len(names), 'sensor')}"
     return f"{whole} {len(differing)} differ: {named}."
 

@@ -6,13 +6,13 @@ same redraw stands above it. Plain numbers by region: nothing of Blender's is he
 
 from __future__ import annotations
 
-Box = tuple[float, float, float, float]
+PlateBox = tuple[float, float, float, float]
 """Left, bottom, right, top in the region [px]."""
 
-_boxes: dict[int, dict[str, Box]] = {}
+_boxes: dict[int, dict[str, PlateBox]] = {}
 
 
-def reserve(region: int, plate: str, box: Box | None) -> None:
+def reserve(region: int, plate: str, box: PlateBox | None) -> None:
     """Note where a plate stands in a region, by the region's pointer; None: it is not drawn."""
     boxes = _boxes.setdefault(region, {})
     if box is None:
@@ -27,7 +27,7 @@ def forget(plate: str) -> None:
         boxes.pop(plate, None)
 
 
-def boxes(region: int) -> tuple[Box, ...]:
+def boxes(region: int) -> tuple[PlateBox, ...]:
     """Return where plates stand in a region."""
     return tuple(_boxes.get(region, {}).values())
 

@@ -21,7 +21,7 @@ class SimpleBodies:
         self._lock = threading.Lock()
         self._made: list[tuple[pe.Vehicle, dict[int, tuple[pe.Vehicle, float]]]] = []
 
-    def of(self, vehicle: pe.Vehicle, triangles: int) -> tuple[pe.Vehicle, float]:
+    def simplified(self, vehicle: pe.Vehicle, triangles: int) -> tuple[pe.Vehicle, float]:
         """Return a vehicle of so many triangles or fewer, and how far its surface moved [m].
 
         Parameters

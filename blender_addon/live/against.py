@@ -11,18 +11,18 @@ from .. import bridge
 from ..choices import BEFORE_MOVE, PINNED
 from ..engine import pe
 from .asking import ScoreWish
-from .reference import PINNED_LABEL, Moves, Reference, rig_key
+from .reference import PINNED_LABEL, Baseline, Moves, rig_key
 
 
-class _Chosen(NamedTuple):
+class _ChosenBaseline(NamedTuple):
     """A reference, and what it was made of."""
 
     key: Hashable
-    reference: Reference
+    reference: Baseline
 
 
 _pinned: dict[str, pe.Rig] = {}
-_chosen: dict[str, _Chosen] = {}
+_chosen: dict[str, _ChosenBaseline] = {}
 """By the scene's name."""
 
 
@@ -36,7 +36,7 @@ def is_pinned(scene_name: str) -> bool:
     return scene_name in _pinned
 
 
-def reference_of(scene: bpy.types.Scene, wish: ScoreWish, moves: Moves) -> Reference | None:
+def reference_of(scene: bpy.types.Scene, wish: ScoreWish, moves: Moves) -> Baseline | None:
     """Return what a scene is compared with; None where there is nothing yet.
 
     A variant is read again whenever things rest; while they move it stays what it was.
@@ -52,7 +52,7 @@ def reference_of(scene: bpy.types.Scene, wish: ScoreWish, moves: Moves) -> Refer
     rig, label = found
     key = choice, wish.problem.key, rig_key(rig), label
     if known is None or known.key != key:
-        known = _chosen[name] = _Chosen(key, Reference(label, rig))
+        known = _chosen[name] = _ChosenBaseline(key, Baseline(label, rig))
     return known.reference
 
 

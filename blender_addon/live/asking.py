@@ -142,4 +142,6 @@ def judge_of(problem: Problem, vehicle: pe.Vehicle | None) -> pe.RigJudge:
 
 def light(vehicle: pe.Vehicle | None) -> tuple[pe.Vehicle | None, float]:
     """Return a vehicle of few enough triangles, and how far that moved its surface, at most [m]."""
-    return (None, 0.0) if vehicle is None else simple_bodies.shared.of(vehicle, MOST_TRIANGLES)
+    return (
+        (None, 0.0) if vehicle is None else simple_bodies.shared.simplified(vehicle, MOST_TRIANGLES)
+    )

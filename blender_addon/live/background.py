@@ -19,7 +19,7 @@ from ..choices import NO_ANCHOR
 from ..engine import advice, catalog, pe, sight
 from . import latest
 from .asking import EvaluatorStore, Problem, ScoreWish, light
-from .reference import Reference, rig_key
+from .reference import Baseline, rig_key
 
 KEPT = 24
 """Rigs whose figures are kept: those of the last moves, and what they are compared with."""
@@ -54,14 +54,14 @@ class FigureStore:
 known = FigureStore()
 
 
-class Looks:
+class SightCache:
     """What tells what rigs see, of the problem that was asked about last. For one thread alone."""
 
     def __init__(self) -> None:
         self._key: Hashable = None
         self._sight: sight.Sight | None = None
 
-    def of(self, problem: Problem) -> sight.Sight:
+    def sight_of(self, problem: Problem) -> sight.Sight:
         """Return what tells it, made anew for another problem."""
         if self._sight is None or self._key != problem.key:
             self._sight = None  # two of them need not fit in memory
@@ -72,7 +72,7 @@ class Looks:
         return self._sight
 
 
-_looks = Looks()
+_sight_cache = SightCache()
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ class _Asked(NamedTuple):
     """What was asked of a scene that rested: of which wish, compared with what, by which rule."""
 
     wish: ScoreWish
-    reference: Reference | None
+    reference: Baseline | None
     rule: bridge.FigureRule | None
 
 
@@ -111,7 +111,7 @@ def rule_of(scene: bpy.types.Scene, prior: pe.Prior) -> bridge.FigureRule | None
     return bridge.figure_rule(scene, prior) if scene.perception_entropy.live.figures else None
 
 
-def ask(scene: bpy.types.Scene, wish: ScoreWish, reference: Reference | None) -> None:
+def ask(scene: bpy.types.Scene, wish: ScoreWish, reference: Baseline | None) -> None:
     """Ask for what is not known yet of a scene at rest."""
     name, rule = scene.name, rule_of(scene, wish.problem.prior)
     _asked[name] = _Asked(wish, reference, rule)
@@ -181,7 +181,7 @@ def _rigs(asked: _Asked) -> list[pe.Rig]:
 
 def _work_out(problem: Problem, rule: bridge.FigureRule, rigs: list[pe.Rig]) -> None:
     """In the thread: work out figures; what is known by now is left."""
-    looking, voxels = _looks.of(problem), not problem.targets.are_objects
+    looking, voxels = _sight_cache.sight_of(problem), not problem.targets.are_objects
     for rig in rigs:
         found = advice.key_figures(looking, rig, rule.height, rule.class_name, of_voxels=voxels)
         known.put(_key(problem, rule, rig), found)

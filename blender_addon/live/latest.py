@@ -10,7 +10,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 
 from ..engine import pe
-from .reference import Reference
+from .reference import Baseline
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Reading:
     ----------
     glance : Glance
         The whole rig's entropy and coverage, by class and by zone; a draft while it moves.
-    reference : Reference or None
+    reference : Baseline or None
         What it is compared with; None where there is nothing to compare with yet.
     rested : bool
         Whether it was read of a scene at rest: exactly, and to the bit as any front end would.
@@ -45,7 +45,7 @@ class Reading:
     """
 
     glance: pe.Glance
-    reference: Reference | None
+    reference: Baseline | None
     rested: bool
     rig: pe.Rig
     moved_m: float = 0.0

@@ -20,7 +20,7 @@ def rig_key(rig: pe.Rig) -> Hashable:
 
 
 @dataclass(slots=True, eq=False)
-class Reference:
+class Baseline:
     """What a live score is compared with.
 
     Attributes
@@ -57,7 +57,7 @@ class Moves:
 
     def __init__(self) -> None:
         self._operators: dict[str, int] = {}
-        self._before: dict[str, Reference] = {}
+        self._before: dict[str, Baseline] = {}
 
     def note(self, scene: str, operator: int, last: ReadRig | None, now: pe.Rig | None) -> None:
         """Note an update in which something moves.
@@ -80,7 +80,7 @@ class Moves:
             return
         self._operators[scene] = operator
         if operator or last.glance is not None:  # else: a field is dragged, or typed in, in a row
-            self._before[scene] = Reference(
+            self._before[scene] = Baseline(
                 MOVE_LABEL, None if now is None else last.rig, last.glance
             )
 
@@ -88,7 +88,7 @@ class Moves:
         """All rests, and no operator moves anything: what moves next is another move."""
         self._operators.clear()
 
-    def before(self, scene: str) -> Reference | None:
+    def before(self, scene: str) -> Baseline | None:
         """Return what stood before the move that is under way, or the last one."""
         return self._before.get(scene)
 

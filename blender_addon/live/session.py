@@ -19,7 +19,7 @@ from .. import body, bridge, changes, motion, worker
 from ..engine import pe
 from . import against, background, latest
 from .asking import EvaluatorStore, ScoreWish, priors, read
-from .reference import Moves, ReadRig, Reference, rig_key
+from .reference import Baseline, Moves, ReadRig, rig_key
 
 VEHICLE_MOVES = "The vehicle changes: measured again when it rests"
 
@@ -95,7 +95,7 @@ def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) 
 
 
 def work(
-    name: str, wish: ScoreWish, number: int, reference: Reference | None, generation: int
+    name: str, wish: ScoreWish, number: int, reference: Baseline | None, generation: int
 ) -> None:
     """In the thread: score, and put what was found where the next drawing looks."""
     exact = not wish.draft

@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import bridge
 from ..engine import exchange, outputs
-from .exporting import ExportJob, ExportOperator, Steps, WrittenFiles
+from .exporting import ExportJob, ExportOperator, ExportSteps, WrittenFiles
 from .reports import chosen_file
 
 _ROWS = tuple((row.name, row.title, "", k) for k, row in enumerate(outputs.SCENE_OUTPUTS.values()))
@@ -52,7 +52,7 @@ class PE_OT_export_scene(ExportOperator, bpy.types.Operator):
     @staticmethod
     def steps(
         job: ExportJob, row: outputs.SceneOutput, path: Path, reach: float | None, replace: bool
-    ) -> Steps:
+    ) -> ExportSteps:
         """Make the files in a thread, then write them."""
 
         def work() -> tuple[dict[str, bytes], list[str]]:

@@ -40,7 +40,7 @@ class WrittenFiles:
         return self.paths[0].parent
 
 
-Steps = Generator[pe.Progress, None, WrittenFiles | None]
+ExportSteps = Generator[pe.Progress, None, WrittenFiles | None]
 
 
 class ExportStopped(Exception):
@@ -59,7 +59,7 @@ class ExportJob(pe.Job):
         stopped.
     """
 
-    def __init__(self, study: pe.Study, steps: Callable[[ExportJob], Steps]) -> None:
+    def __init__(self, study: pe.Study, steps: Callable[[ExportJob], ExportSteps]) -> None:
         super().__init__(study)
         self._steps = steps
         self._share = 0.0

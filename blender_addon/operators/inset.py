@@ -21,7 +21,7 @@ from .. import body, bridge, corners, redraw
 from ..engine import catalog, kinds, pe
 from ..worker import desk
 from . import inset_drawing, range_image
-from .inset_drawing import View
+from .inset_drawing import PictureView
 
 VIEWS = bpy.types.SpaceView3D
 PLATE, TOPIC = "inset", "inset ranges"
@@ -42,7 +42,7 @@ _handles: list[object] = []
 _changed = 0
 """How often a scene has changed: pictures of before are not those of now."""
 _rendering = False
-_known: dict[int, tuple[Hashable, inset_drawing.Camera]] = {}
+_known: dict[int, tuple[Hashable, inset_drawing.InsetCamera]] = {}
 """Pictures of cameras by the region's pointer, with what they were made of."""
 _wanted: dict[int, tuple[Hashable, pe.Sensor, InsetSize]] = {}
 """Pictures that are to be rendered, by the region's pointer."""
@@ -173,23 +173,25 @@ def render_wanted() -> None:
         found = _view_of(pointer)
         if found is not None:
             known = _known.get(pointer)
-            camera = known[1] if known is not None else inset_drawing.Camera()
+            camera = known[1] if known is not None else inset_drawing.InsetCamera()
             _render(found, camera, sensor, size)
             _known[pointer] = made_of, camera
     redraw.editors()
 
 
-def _view_of(pointer: int) -> View | None:
+def _view_of(pointer: int) -> PictureView | None:
     """Return where a region is, by its pointer; None where it is gone."""
     for window in bpy.context.window_manager.windows:
         for area in (each for each in window.screen.areas if each.type == "VIEW_3D"):
             for region in area.regions:
                 if region.as_pointer() == pointer:
-                    return View(window, area.spaces.active, region)
+                    return PictureView(window, area.spaces.active, region)
     return None
 
 
-def _render(view: View, camera: inset_drawing.Camera, sensor: pe.Sensor, size: InsetSize) -> None:
+def _render(
+    view: PictureView, camera: inset_drawing.InsetCamera, sensor: pe.Sensor, size: InsetSize
+) -> None:
     """Have the viewport draw what a camera sees, without anything that is drawn over it."""
     global _rendering
     turned = Matrix(sensor.pose.ground_from_sensor.tolist())

@@ -13,7 +13,7 @@ from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from ..corners import Box
+from ..corners import PlateBox
 
 Pixels = NDArray[np.float32]
 """(H, W, 4) sRGB, the top row first."""
@@ -24,7 +24,7 @@ TAKES_SRGB = bpy.app.version >= (5, 0, 0)
 EDGE = (0.75, 0.75, 0.75, 1.0)
 
 
-class View(NamedTuple):
+class PictureView(NamedTuple):
     """A 3D view on the screen."""
 
     window: bpy.types.Window
@@ -32,7 +32,7 @@ class View(NamedTuple):
     region: bpy.types.Region
 
 
-class Camera:
+class InsetCamera:
     """A picture that the viewport renders."""
 
     def __init__(self) -> None:
@@ -46,7 +46,7 @@ class Camera:
 
     def render(
         self,
-        view: View,
+        view: PictureView,
         size: tuple[int, int],
         camera_from_ground: Matrix,
         projection: Matrix,
@@ -108,7 +108,9 @@ def draw_picture(
     draw_texture_2d(texture, corner, *size)
 
 
-def draw_frame(corner: tuple[float, float], size: tuple[int, int], title: str, scale: float) -> Box:
+def draw_frame(
+    corner: tuple[float, float], size: tuple[int, int], title: str, scale: float
+) -> PlateBox:
     """Draw a frame round a picture and its title on top; return the box of all of it."""
     (left, bottom), (width, height) = corner, size
     right, top = left + width, bottom + height

@@ -12,7 +12,7 @@ from bpy.props import BoolProperty, StringProperty
 
 from .. import bridge
 from ..engine import app, page, pe, studies
-from .exporting import ExportJob, ExportOperator, Steps, WrittenFiles
+from .exporting import ExportJob, ExportOperator, ExportSteps, WrittenFiles
 from .reports import chosen_file
 
 SCORED, RENDERED = 0.25, 0.4
@@ -47,7 +47,7 @@ class PE_OT_render_review(ExportOperator, bpy.types.Operator):
         return ExportJob(study, lambda job: PE_OT_render_review.steps(job, path, scene))
 
     @staticmethod
-    def steps(job: ExportJob, path: Path, scene: str) -> Steps:
+    def steps(job: ExportJob, path: Path, scene: str) -> ExportSteps:
         """Score, then render: the latter in Blender's own turn."""
         from .. import review  # only who wants a picture pays for it
 
@@ -98,7 +98,7 @@ class PE_OT_export_review(ExportOperator, bpy.types.Operator):
     @staticmethod
     def steps(
         job: ExportJob, path: Path, scene: str, told: dict[str, Any], about: page.About
-    ) -> Steps:
+    ) -> ExportSteps:
         """Score, render the picture of a scene, if one is wanted, and make the page in a thread."""
         from .. import review  # only who wants a page pays for it
 

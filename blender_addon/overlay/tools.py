@@ -32,7 +32,9 @@ class Tools:
     def body(self, wish: PictureWish) -> pe.Vehicle | None:
         """Return the vehicle, simplified where it has very many triangles."""
         vehicle = wish.vehicle
-        return None if vehicle is None else simple_bodies.shared.of(vehicle, MOST_TRIANGLES)[0]
+        return (
+            None if vehicle is None else simple_bodies.shared.simplified(vehicle, MOST_TRIANGLES)[0]
+        )
 
     def sight(self, wish: PictureWish) -> sight.Sight:
         """Return what tells what rigs see."""

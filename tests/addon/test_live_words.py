@@ -5,7 +5,7 @@ import pytest
 from blender_addon.engine import advice, pe
 from blender_addon.live import figure_words, latest, readout, words
 from blender_addon.live.background import ShownFigures
-from blender_addon.live.reference import Reference
+from blender_addon.live.reference import Baseline
 from blender_addon.live.shown import ShownScore
 
 
@@ -23,7 +23,7 @@ def score_of(now, exact=True, stored=False):
 
 
 def reading_of(now, before=None, moved_m=0.0, label="before this move"):
-    reference = None if before is None else Reference(label, None, before)
+    reference = None if before is None else Baseline(label, None, before)
     return latest.Reading(now, reference, True, None, moved_m)
 
 

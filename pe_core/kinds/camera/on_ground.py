@@ -40,7 +40,7 @@ class CameraGround(GroundKernel):
     def see(self, sensor: Sensor, draft: bool) -> VisibleGround:
         """Look at one post of each block, then at those along the edges of what is seen."""
         grid = self._view.grid
-        look = _Look(sensor, self._view)
+        look = _PostsSeen(sensor, self._view)
         side = max(1, int(BLOCK_M / grid.step + 1e-9))
         marked = np.zeros(grid.shape, bool)
         flat = marked.reshape(-1)
@@ -54,7 +54,7 @@ class CameraGround(GroundKernel):
         return VisibleGround(sensor, marked)
 
 
-class _Look:
+class _PostsSeen:
     """A camera that looks at posts."""
 
     def __init__(self, sensor: Sensor, view: GroundView) -> None:

@@ -15,8 +15,8 @@ from ..study import (
     Study,
     files_of_other_runs,
     prepare_folder,
-    remove_files_of_other_runs,
     result_dict,
+    set_aside_files_of_other_runs,
     write_outcome,
 )
 from ..text import dump_json
@@ -115,7 +115,8 @@ def keep(
         except InputError as error:
             tell(str(error))
             if folder in kept:
-                remove_files_of_other_runs(folder)
+                for name, aside in set_aside_files_of_other_runs(folder).items():
+                    tell(f"{folder / name}: of an earlier run; it is {aside} now")
             continue
         _tell_of_other_runs(folder)
         if folder != output:

@@ -25,9 +25,9 @@ from .results import (
     add_to_result,
     files_of_other_runs,
     placements,
-    remove_files_of_other_runs,
     result_dict,
     result_names,
+    set_aside_files_of_other_runs,
     write_outcome,
 )
 from .search_state import BegunSearch, SearchState, read_search
@@ -80,10 +80,10 @@ __all__ = [
     "placements",
     "prepare_folder",
     "read_search",
-    "remove_files_of_other_runs",
     "result_dict",
     "result_names",
     "save_study",
+    "set_aside_files_of_other_runs",
     "study_from_dict",
     "study_to_dict",
     "study_writers",

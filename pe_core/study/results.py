@@ -32,6 +32,8 @@ from .outcome import HistoryRow, Outcome
 from .search_state import SearchState
 from .study import Study
 
+EARLIER = ".earlier"
+
 
 def result_names(study: Study, kind: str) -> list[str]:
     """Names of the files that a run of this kind (score or optimize) writes to its folder."""
@@ -167,17 +169,26 @@ def files_of_other_runs(folder: Path) -> list[str]:
         return []
 
 
-def remove_files_of_other_runs(folder: Path) -> None:
-    """Remove an earlier run's files that this program wrote and nobody changed.
+def set_aside_files_of_other_runs(folder: Path) -> dict[str, str]:
+    """Rename an earlier run's files that stand beside a new result: ``optimized.earlier.blend``.
 
-    Where a later file of a run could not be written, that of an earlier run would stand beside the
-    new result.
+    Where a later file of a run cannot be written, on a full disk for instance, that of an earlier
+    run would be taken for one of the same set. Nothing is removed.
+
+    Returns
+    -------
+    dict of str
+        New names by name; what cannot be renamed, or has been set aside before, stays.
     """
-    ours = set(our_files(folder))
+    renamed = {}
     for name in files_of_other_runs(folder):
-        if name in ours:
-            with suppress(OSError):
-                (folder / name).unlink()
+        path = folder / name
+        aside = path.with_name(f"{path.stem}{EARLIER}{path.suffix}")
+        with suppress(OSError):
+            if not aside.exists():
+                path.rename(aside)
+                renamed[name] = aside.name
+    return renamed
 
 
 def history_csv(history: tuple[HistoryRow, ...]) -> str:

@@ -87,7 +87,7 @@ def test_a_full_stderr_ends_nothing(blend, tmp_path):
     assert (out / "result.json").exists()
 
 
-def test_a_scene_that_does_not_fit_on_the_disk_leaves_the_old_one(blend, tmp_path):
+def test_a_scene_that_does_not_fit_on_the_disk_sets_the_old_one_aside(blend, tmp_path):
     """What Blender saves may have no more bytes than the engine's files; nothing else fails."""
     import resource
 
@@ -109,11 +109,10 @@ def test_a_scene_that_does_not_fit_on_the_disk_leaves_the_old_one(blend, tmp_pat
     assert answer.returncode == 1, answer.stderr
     told = complaints(answer)
     assert told and told[0].startswith(f"pe: {out / 'optimized.blend'}: file: expected ")
-    assert told[-2:] == [
-        f"pe: all else is in {out}",
-        f"pe: {out / 'optimized.blend'}: not of this run",
-    ]
-    assert (out / "optimized.blend").read_bytes() == before
+    aside = f"{out / 'optimized.blend'}: of an earlier run; it is optimized.earlier.blend now"
+    assert told[1] == f"pe: {aside}" and told[-1] == f"pe: all else is in {out}"
+    assert (out / "optimized.earlier.blend").read_bytes() == before
+    assert not (out / "optimized.blend").exists()
     assert [p.name for p in out.glob(".*")] == [".perception-entropy.json"]
 
 

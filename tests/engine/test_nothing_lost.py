@@ -330,7 +330,9 @@ def test_a_file_of_the_user_s_that_appears_meanwhile_moves_the_whole_set(study, 
     assert result(folder)["stopped"] and (folder / "review.html").exists()
 
 
-def test_a_file_that_fails_after_the_result_leaves_none_of_an_older_set(study, tmp_path, elsewhere):
+def test_a_file_that_fails_after_the_result_sets_that_of_an_older_run_aside(
+    study, tmp_path, elsewhere
+):
     """Blender's scene and picture are written behind result.json: a full disk may end that."""
     from pe_core.app import More
     from pe_core.app.work import keep
@@ -350,4 +352,5 @@ def test_a_file_that_fails_after_the_result_leaves_none_of_an_older_set(study, t
     job.outcome = replace(job.outcome, seconds=99.0)
     assert keep(job.outcome, tmp_path / "out", None, More(names, write))[0] == 1
     assert not (tmp_path / "out" / names[0]).exists(), "it would be of another run"
+    assert (tmp_path / "out" / "optimized.earlier.blend").read_bytes() == b"scene"
     assert pe.study.files_of_other_runs(tmp_path / "out") == []

@@ -18,7 +18,7 @@ FIGURES_SHARE = 0.1
 """About how much of a score's time its figures take."""
 LABEL_PX, COLUMN_PX = 190, 140
 LEAST_PX, LETTER_PX = 560, 7
-"""Width of the table at least, and of a letter of the sentences below it."""
+"""Width of the table at least, and of a letter of the sentences above it."""
 MOST_COLUMNS = 8
 TITLES = {
     "entropy": "Entropy [nats], lower is better",
@@ -179,15 +179,15 @@ class PE_OT_show_comparison(bpy.types.Operator):
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw it, a column a variant; figures are from the scores that are stored."""
         self.layout.label(text=self.bl_label, icon="MOD_ARRAY")
+        said = self.layout.column(align=True)  # first: the table may be taller than the window
+        for line in self.said:
+            said.label(text=line, translate=False)
         split = self.layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(self.names)))
         names, *columns = columns_of(self.names, self.rows)
         draw_column(split.column(align=True), names, "LEFT")
         figures = split.row()
         for column in columns:
             draw_column(figures.column(align=True), column, "RIGHT")
-        said = self.layout.column(align=True)
-        for line in self.said:
-            said.label(text=line, translate=False)
         text = f"A star marks the best; in brackets the difference to {self.names[0]}"
         self.layout.label(text=text, translate=False)
 

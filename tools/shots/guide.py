@@ -179,7 +179,7 @@ def optimized(camera: Camera) -> None:
     stage.do("bpy.ops.pe.compare_variants('INVOKE_DEFAULT')")
     stage.wait_until(f"{RUNNING}.current is None", 300)
     stage.rest(3.0)
-    camera.still("guide_compare", (60, 32, 1000, 898))
+    camera.still("guide_compare", (380, 32, 1320, 898))
     stage.key("Escape")
 
 

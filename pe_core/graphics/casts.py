@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinds import Lidar
-from ..scene import Sensor, Vehicle
+from ..scene import Sensor, Vehicle, rotate
 from .models import lidar_of
 
 Floats = NDArray[np.float64]
@@ -55,7 +55,7 @@ def cast(sensor: Sensor, vehicle: Vehicle | None, most: int = MOST) -> Cast:
     lidar = lidar_of(sensor)
     rows, columns = grid(lidar, most)
     numbers = (rows[:, None] * len(lidar.azimuth_steps) + columns).ravel()
-    directions = lidar.directions[numbers] @ sensor.pose.ground_from_sensor.T
+    directions = rotate(sensor.pose.ground_from_sensor, lidar.directions[numbers])
     if vehicle is None or not len(numbers):
         ends, face = np.full(len(numbers), lidar.max_range), np.full(len(numbers), -1)
         return Cast(sensor, rows, columns, directions, ends, face)

@@ -23,8 +23,8 @@ def small(car, monkeypatch):
 def page_job(path):
     """Return the job of a page, as the operator makes it."""
     told = {"command": "", "versions": {}}
-    steps = exports.PE_OT_export_review.steps
-    return exporting.ExportJob(scenes.study(), lambda job: steps(job, path, "Scene", told))
+    steps, about = exports.PE_OT_export_review.steps, exports.page.About()
+    return exporting.ExportJob(scenes.study(), lambda job: steps(job, path, "Scene", told, about))
 
 
 def scene_job(path):

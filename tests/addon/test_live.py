@@ -477,11 +477,13 @@ def test_a_simple_body_is_made_once_and_a_smaller_one_of_it(monkeypatch):
 
     monkeypatch.setattr(simple_bodies.geometry, "simplified", watched)
     bodies = simple_bodies.SimpleBodies()
-    assert bodies.of(whole, 10_000) == (whole, 0.0) and not made
-    first, moved = bodies.of(whole, 4000)
-    second, more = bodies.of(whole, 1500)
-    assert bodies.of(whole, 4000)[0] is first and bodies.of(whole, 1500)[0] is second
+    assert bodies.simplified(whole, 10_000) == (whole, 0.0) and not made
+    first, moved = bodies.simplified(whole, 4000)
+    second, more = bodies.simplified(whole, 1500)
+    assert (
+        bodies.simplified(whole, 4000)[0] is first and bodies.simplified(whole, 1500)[0] is second
+    )
     assert made == [9000, len(first.triangles)] and more > moved > 0.0
     assert len(second.triangles) <= 1500 < len(first.triangles) <= 4000
     bodies.clear()
-    assert bodies.of(whole, 1500)[0] is not second
+    assert bodies.simplified(whole, 1500)[0] is not second

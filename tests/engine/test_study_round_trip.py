@@ -285,7 +285,7 @@ def selections(draw, rig):
 
 
 CURVES = st.builds(pe.ApCurve, st.floats(1e-3, 9), st.floats(-9, 9))
-OBJECTS = st.builds(pe.TargetRule, st.just("objects"), st.booleans(), st.integers(8, 10**6))
+OBJECTS = st.builds(pe.TargetRule, st.just("objects"), st.booleans(), st.integers(8, 20_000))
 TARGETS = st.one_of(st.builds(pe.TargetRule, scenes=st.integers(8, 999)), OBJECTS)
 
 

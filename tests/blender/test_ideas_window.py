@@ -20,6 +20,7 @@ def test_save_move_and_come_back_by_clicks(window, screenshots):
     window.wait_for(lambda: window.state["variant_changed"], EFFECT_TIMEOUT_S, "the mark")
     window.screenshot(screenshots / "window_variant_changed.png")
 
+    window.scroll_sidebar()  # the way back stands below the list
     window.press("pe.switch_variant")
     window.wait_for(lambda: window.state["places"] == start, EFFECT_TIMEOUT_S, "the way back")
     window.wait_for(

@@ -29,6 +29,7 @@ SETTLE_S = 0.1  # between moving and pressing: Blender finds the button by the m
 
 # A button is 20 pixels high at this scale; steps of less can't miss one.
 ROW_STEP = 12
+SCROLLS = 30  # of the wheel: more than the sidebar is long
 # Where to ask in a row: its middle may be the gap between two buttons.
 COLUMNS = (0.7, 0.25, 0.5)
 # How long to wait for an answer; the second time around for a machine that is busy.
@@ -120,6 +121,13 @@ class Window:
         Of several, the first whose call holds the `words`.
         """
         self.click(*self.find_button(operator, words))
+
+    def scroll_sidebar(self) -> None:
+        """Scroll the sidebar to its end, where sections are that have no room in the window."""
+        self._move(*next(self._sidebar_places()))
+        for _ in range(SCROLLS):
+            self.press_button(5)
+        time.sleep(REST_S)
 
     def find_button(self, operator: str, words: str = "") -> tuple[int, int]:
         """Return a place inside the sidebar's button of an operator."""

@@ -3,7 +3,7 @@
 SHELL := /bin/bash
 PYTHON_VENV := .venv/bin/python
 ARGS ?=
-ON_ALL_PROCESSORS := --numprocesses auto --maxprocesses 4 --dist loadscope --no-loadscope-reorder
+ON_ALL_PROCESSORS := --numprocesses auto --dist loadscope --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 .PHONY: demo test properties mutants bench lint extension screenshots clean help
@@ -11,6 +11,8 @@ ON_ALL_PROCESSORS := --numprocesses auto --maxprocesses 4 --dist loadscope --no-
 demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, the better .blend
 	@tools/demo.sh $(ARGS)
 
+# Tests start more than a hundred processes: each would compile the engine anew if none may keep it.
+test: export PYTHONDONTWRITEBYTECODE =
 test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
 	@$(PYTHON_VENV) -m pytest $(ON_ALL_PROCESSORS) $(or $(ARGS),tests)
 

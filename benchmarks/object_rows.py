@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import pe_core as pe
-from pe_core.kinds import ObjectsByName
 from pe_core.prior import ROAD_CLASSES
+from pe_core.sensors import ObjectMeasurementCache
 
 from .problems import car, four_on_car, moved_a_little, plain_study
 from .timing import Timing, best_of_processor, peak_mb
@@ -66,7 +66,7 @@ def _against_samples(study: pe.Study, objects: pe.Objects, traffic: bool, what: 
 def _after_moves(
     rig: pe.Rig, objects: pe.Objects, vehicle: pe.Vehicle | None, traffic: bool
 ) -> float:
-    known = ObjectsByName(objects, vehicle, traffic)
+    known = ObjectMeasurementCache(objects, vehicle, traffic)
     known.measure(rig)
     rigs = iter([moved_a_little(rig, along) for along in np.linspace(0.01, 0.05, MOVES)])
     return best_of_processor(lambda: known.measure(next(rigs)), MOVES)

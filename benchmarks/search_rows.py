@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import pe_core as pe
-from pe_core.search import judge_all, started
+from pe_core.search import evaluate_all, start_processes
 
 from .timing import Timing, best_in_turn, peak_mb
 
@@ -35,7 +35,7 @@ def candidate() -> Timing:
         for sensor in lidars:
             assert len(pe.beam_field(sensor, study.vehicle).ends)
 
-    ours, theirs = best_in_turn(lambda: judge_all(evaluator, rigs), every_beam)
+    ours, theirs = best_in_turn(lambda: evaluate_all(evaluator, rigs), every_beam)
     work = f"{CANDIDATES} candidates near the optimum of experiment 4, {SAMPLES:,} samples"
     return Timing(work, ours, peak_mb(), "first hits of all their beams", theirs)
 
@@ -44,13 +44,14 @@ def candidates_in_processes() -> Timing:
     """The same by a process a processor, against this one alone."""
     study = pe.load_study(EXPERIMENT)
     evaluator, rigs = study.evaluator(SAMPLES), list(_near_the_optimum(study))
-    pool = started()
+    pool = start_processes()
     if pool is None:
         raise SystemExit("no processes can be started")
     with pool:
-        judge_all(evaluator, rigs, executor=pool)  # each has the objective now
+        evaluate_all(evaluator, rigs, executor=pool)  # each has the objective now
         ours, theirs = best_in_turn(
-            lambda: judge_all(evaluator, rigs, executor=pool), lambda: judge_all(evaluator, rigs)
+            lambda: evaluate_all(evaluator, rigs, executor=pool),
+            lambda: evaluate_all(evaluator, rigs),
         )
     return Timing("the same, a process a processor", ours, peak_mb(), "one process", theirs)
 

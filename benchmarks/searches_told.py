@@ -67,14 +67,14 @@ def middle(some: list[Json]) -> tuple[list[float], list[list[float]]]:
 
 def plot(runs: list[Json], path: Path) -> None:
     """Draw the best so far against time: the median of the seeds, and from lowest to highest."""
-    from pe_report import style
+    from pe_tools.reproduction import plotting
 
-    looks = dict(zip(pe.METHODS, style.PALETTE, strict=False))
+    looks = dict(zip(pe.METHODS, plotting.PALETTE, strict=False))
 
-    @style.style
+    @plotting.styled
     def draw() -> None:
         shown = [e for e in EXPERIMENTS if any(run["experiment"] == e for run in runs)]
-        figure, axes = style.plt.subplots(1, len(shown), figsize=(2.6 * len(shown), 3.0))
+        figure, axes = plotting.pyplot().subplots(1, len(shown), figsize=(2.6 * len(shown), 3.0))
         for axis, experiment in zip(list(getattr(axes, "flat", [axes])), shown, strict=True):
             for (own, method), some in groups(runs).items():
                 if own == experiment:
@@ -83,12 +83,12 @@ def plot(runs: list[Json], path: Path) -> None:
             axis.set(xscale="log", title=f"Experiment {number}\n{what}", xlabel="time [s]")
             axis.set_xticks(TICKS_S, map(str, TICKS_S), minor=False)
             axis.minorticks_off()
-            style.finished(axis)
+            plotting.remove_frame(axis)
         figure.axes[0].set_ylabel("perception entropy [nats]")
         handles = figure.axes[0].get_legend_handles_labels()
         figure.legend(*handles, loc="lower center", ncols=len(handles[0]), frameon=False)
         figure.tight_layout(rect=(0.0, 0.08, 1.0, 1.0))
-        style.save(figure, path)
+        plotting.save_plot(figure, path)
 
     draw()
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 import pe_core as pe
+from pe_tools.graphics import simplified
 
 from .problems import car, four_on_car, moved_a_little
 from .timing import Timing, best, best_in_turn, peak_mb
@@ -39,7 +40,7 @@ def reach() -> Timing:
 def simplify() -> Timing:
     """Millions of triangles to 200,000, against the tree that casting rays needs of them."""
     vehicle = car(2_000_000)
-    ours, _ = best(lambda: pe.scene.simplified(vehicle), 2)
+    ours, _ = best(lambda: simplified(vehicle), 2)
     peak = peak_mb()
     fresh = pe.Vehicle(vehicle.triangles)
     theirs, _ = best(lambda: fresh.seen_from((0.0, 0.0, 2.0)), 1)

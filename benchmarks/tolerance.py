@@ -2,8 +2,8 @@
 
     python -m benchmarks.tolerance --seeds 0 1
 
-Prints the table of docs/study.md. What was found is judged on other voxels and with other errors
-than those that were searched with, 32 draws in 4 combinations. A search for errors tries fewer
+Prints the table of docs/mounts_and_search.md. Results are scored on other voxels and with other
+errors than those of the search, 32 draws in 4 combinations. A search for errors tries fewer
 candidates, so that both take about as long: a few minutes each.
 """
 
@@ -19,7 +19,7 @@ import numpy as np
 
 import pe_core as pe
 from pe_core.search import METHODS, mounted_off, objective_of
-from pe_report.problems import study_of
+from pe_tools.reproduction.paper import study_of
 
 OFF_DEG = (0.1, 0.3)
 """1 sigma of roll, pitch and yaw."""

@@ -14,7 +14,7 @@ sys.path.insert(0, str(HERE.parent))
 
 import blender_addon  # noqa: E402
 from blender_addon import bridge  # noqa: E402
-from pe_core.formats import Mesh, write_mesh  # noqa: E402
+from pe_tools.formats import Mesh, write_mesh  # noqa: E402
 
 
 def mesh_of_scene() -> Mesh:

@@ -5,71 +5,59 @@ from __future__ import annotations
 import bpy
 
 from . import (
-    asking,
-    body,
+    change_events,
     commands,
-    explaining,
+    consistency,
+    diagnostics,
     library,
     live,
-    motion,
+    location_query,
     operators,
     panels,
     properties,
-    roster,
-    searching,
-    stale,
-    unsaved,
-    upkeep,
+    search_curve,
+    sensor_cache,
+    vehicle_cache,
+    wiring,
     worker,
 )
-from .housing import fitting
-from .overlay import handler as overlay
+from .overlay import draw_handler as overlay
 
 CLASSES = (*library.CLASSES, *properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
 
 def register() -> None:
-    """Called by Blender when the add-on is switched on."""
+    """Called by Blender when the add-on is enabled."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties.add_pointers()
-    roster.register()
-    body.register()
+    wiring.register()
     operators.register()
-    upkeep.register()
-    motion.register()
-    stale.register()
-    unsaved.register()
     live.register()
-    searching.register()
-    explaining.register()
-    asking.register()
+    search_curve.register()
     overlay.register()
     panels.register()
-    fitting.register()
     commands.register()
     library.register()
 
 
 def unregister() -> None:
-    """Called by Blender when the add-on is switched off: everything above, backwards."""
+    """Called by Blender when the add-on is disabled: what runs ends first, then all is removed."""
     operators.unregister()
     worker.unregister()
+    wiring.unregister()
     library.unregister()
     commands.unregister()
-    fitting.unregister()
     panels.unregister()
     overlay.unregister()
-    searching.unregister()
+    search_curve.unregister()
     live.unregister()
-    asking.unregister()
-    explaining.unregister()
-    unsaved.unregister()
-    stale.unregister()
-    motion.unregister()
-    upkeep.unregister()
-    body.unregister()
-    roster.unregister()
+    location_query.clear()
+    diagnostics.postpone_checks()
+    change_events.unregister()
+    consistency.unregister()
+    vehicle_cache.clear()
+    sensor_cache.invalidate()
     properties.remove_pointers()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

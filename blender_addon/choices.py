@@ -1,6 +1,6 @@
-"""What the panel offers to choose from: priors, and regions of the ground.
+"""What menus of the panel list: priors, targets, and regions of the ground.
 
-A .blend file holds numbers and places in these lists: new ones go to the end.
+A .blend file holds numbers of these lists: new entries go to the end.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ VERSION = 1
 
 Range = tuple[float, float]
 """Low and high bound [m]."""
-Area = tuple[Range, Range]
+FocusArea = tuple[Range, Range]
 """Ranges of x and y."""
 
 ALL: Range = (-math.inf, math.inf)
@@ -25,15 +25,15 @@ ROAD, HIGHWAY, UNIFORM, FROM_BOXES = "road", "highway", "uniform", "boxes"
 ON_SURFACE, ON_SLOTS = "SURFACE", "SLOTS"
 """Kinds of mounts."""
 BY_PARTS, BY_MATERIAL, BY_GROUP = "PARTS", "MATERIAL", "GROUP"
-"""What faces a surface is made of."""
+"""Which faces a surface is made of."""
 
 PRIORS = (
     (ROAD, "Road", "Cars, trucks, cyclists, pedestrians and cones as met on public roads", 0),
     (HIGHWAY, "Highway", "Cars, trucks, motorcyclists and cones on and round three lanes", 2),
-    (UNIFORM, "Uniform", "Every place in the perception space matters the same", 1),
-    (FROM_BOXES, "Labelled Boxes", "Objects where a file of labels has them", 3),
+    (UNIFORM, "Uniform", "Every location in the perception space has the same weight", 1),
+    (FROM_BOXES, "Labelled Boxes", "Objects as in a file of labelled boxes", 3),
 )
-"""As Blender wants a menu; the numbers are what a .blend file holds."""
+"""In the form of a Blender menu; a .blend file holds the numbers."""
 
 
 VOXELS, OBJECTS = "voxels", "objects"
@@ -41,13 +41,13 @@ TARGETS = (
     (
         VOXELS,
         "Voxels",
-        "How well each cube is measured: perception entropy, as in the paper",
+        "How well each voxel is measured: perception entropy, as in the paper",
         0,
     ),
     (
         OBJECTS,
         "Objects",
-        "How well objects of the prior are found: expected AP, and how far",
+        "How well objects of the prior are detected: expected AP, and range",
         1,
     ),
 )
@@ -55,37 +55,39 @@ TARGETS = (
 
 @dataclass(frozen=True)
 class Region:
-    """A part of the ground that a focus can be chosen for; several areas where it is not one."""
+    """A part of the ground that a focus can be set to: one or several areas."""
 
     key: str
     label: str
     short: str
     description: str
-    areas: tuple[Area, ...] = ()
+    areas: tuple[FocusArea, ...] = ()
 
 
 REGIONS = {
     region.key: region
     for region in (
         Region("everywhere", "Everywhere", "everywhere", "The whole space", ((ALL, ALL),)),
-        Region("front", "Front", "x > 0", "All that is ahead of the origin", ((AHEAD, ALL),)),
-        Region("rear", "Rear", "x < 0", "All that is behind the origin", ((BEHIND, ALL),)),
-        Region("left", "Left", "y > 0", "All on the vehicle's left", ((ALL, AHEAD),)),
-        Region("right", "Right", "y < 0", "All on the vehicle's right", ((ALL, BEHIND),)),
+        Region("front", "Front", "x > 0", "Everything ahead of the origin", ((AHEAD, ALL),)),
+        Region("rear", "Rear", "x < 0", "Everything behind the origin", ((BEHIND, ALL),)),
+        Region("left", "Left", "y > 0", "Everything to the left of the vehicle", ((ALL, AHEAD),)),
+        Region(
+            "right", "Right", "y < 0", "Everything to the right of the vehicle", ((ALL, BEHIND),)
+        ),
         Region(
             "far",
             "Far Ahead and Behind",
             f"|x| > {FAR_M:g} m",
-            f"What is more than {FAR_M:g} m ahead or behind",
+            f"Everything more than {FAR_M:g} m ahead or behind",
             (((-math.inf, -FAR_M), ALL), ((FAR_M, math.inf), ALL)),
         ),
-        Region(CUSTOM, "Custom", "custom", "Bounds of your own"),
+        Region(CUSTOM, "Custom", "custom", "Bounds that you set"),
     )
 }
-"""The regions in the order of the menu; a .blend file holds the place in it."""
+"""The regions in the order of the menu; a .blend file holds the position in it."""
 
 REGION_ITEMS = tuple((each.key, each.label, each.description) for each in REGIONS.values())
-"""As Blender wants a menu."""
+"""In the form of a Blender menu."""
 
 
 BEFORE_MOVE, PINNED = 0, -1
@@ -96,7 +98,7 @@ NO_ANCHOR = "NONE"
 
 
 def free_name(wanted: str, taken: set[str]) -> str:
-    """Return a name, with a number behind it where it is taken: "Idea", "Idea 2"."""
+    """Return a name that is not taken, numbered if necessary: "Idea", "Idea 2"."""
     name, number = wanted, 2
     while name in taken:
         name, number = f"{wanted} {number}", number + 1

@@ -1,30 +1,34 @@
-"""The one door to the engine and to the page of a review: the copies packed into the extension,
-else the checkout's.
+"""The one door to the engine and to the tools around it.
 
-Everything else in the add-on takes them from here, so that there is never a second copy of
-it in a running Blender.
+Everything else in the add-on takes them from here. In Blender's extension both packages lie inside
+the add-on: the build turns these imports into relative ones.
 """
 
-from importlib import import_module
-from importlib.util import find_spec
+import pe_core as pe
+from pe_core import base as text
+from pe_core import catalog, scoring, search
+from pe_core import scene as geometry
+from pe_core import sensors as kinds
+from pe_core import study as studies
+from pe_core.scoring import sight
+from pe_tools import advice, exchange, graphics, jobs, outputs, page
+from pe_tools import cli as app
 
-_PACKED = f"{__package__}.pe_core"
-_NAME = _PACKED if find_spec(_PACKED) else "pe_core"
-
-pe = import_module(_NAME)
-advice = import_module(f"{_NAME}.advice")
-app = import_module(f"{_NAME}.app")
-catalog = import_module(f"{_NAME}.catalog")
-exchange = import_module(f"{_NAME}.exchange")
-graphics = import_module(f"{_NAME}.graphics")
-geometry = import_module(f"{_NAME}.scene")
-kinds = import_module(f"{_NAME}.kinds")
-outputs = import_module(f"{_NAME}.outputs")
-search = import_module(f"{_NAME}.search")
-scoring = import_module(f"{_NAME}.scoring")
-sight = import_module(f"{_NAME}.sight")
-studies = import_module(f"{_NAME}.study")
-text = import_module(f"{_NAME}.text")
-
-_PACKED_PAGE = f"{__package__}.pe_review"
-page = import_module(_PACKED_PAGE if find_spec(_PACKED_PAGE) else "pe_review")
+__all__ = [
+    "advice",
+    "app",
+    "catalog",
+    "exchange",
+    "geometry",
+    "graphics",
+    "jobs",
+    "kinds",
+    "outputs",
+    "page",
+    "pe",
+    "scoring",
+    "search",
+    "sight",
+    "studies",
+    "text",
+]

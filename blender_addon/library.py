@@ -1,4 +1,4 @@
-"""The sensors in Blender's asset browser: a library of its own, which comes and goes with us."""
+"""The sensors in Blender's asset browser: a library that is there while the add-on is enabled."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ NAME = "Perception Entropy"
 FOLDER = Path(__file__).resolve().parent / "assets"
 
 
-def follow_wish(preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
-    """Update callback: show the library, or take it away."""
+def show_or_hide(preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
+    """Update callback: show the library, or hide it."""
     (show if preferences.show_library else hide)()
 
 
 class PE_Preferences(bpy.types.AddonPreferences):
-    """What is set for the extension as a whole"""
+    """Preferences of the extension"""
 
     bl_idname = __package__
 
@@ -25,7 +25,7 @@ class PE_Preferences(bpy.types.AddonPreferences):
         name="Sensors in the Asset Browser",
         description="A library of LiDARs and cameras: drag one onto the vehicle",
         default=True,
-        update=follow_wish,
+        update=show_or_hide,
     )
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -33,7 +33,7 @@ class PE_Preferences(bpy.types.AddonPreferences):
 
 
 def show() -> None:
-    """Have the library among Blender's, once; whatever else has its name is left alone."""
+    """Add the library to Blender's, once; another library of the same name is left alone."""
     libraries = bpy.context.preferences.filepaths.asset_libraries
     if not any(map(_is_ours, libraries)):
         made = libraries.new(name=NAME, directory=str(FOLDER))
@@ -41,7 +41,7 @@ def show() -> None:
 
 
 def hide() -> None:
-    """Take the library away from Blender's; do nothing if it is not there."""
+    """Remove the library from Blender's; do nothing if it is not there."""
     libraries = bpy.context.preferences.filepaths.asset_libraries
     for library in [each for each in libraries if _is_ours(each)]:
         libraries.remove(library)
@@ -53,7 +53,7 @@ def _is_ours(library: bpy.types.UserAssetLibrary) -> bool:
 
 
 def is_wanted() -> bool:
-    """Whether to show it: as the preferences say; without any, where somebody looks at a window."""
+    """Whether to show it: as the preferences say; without preferences, where there is a window."""
     addon = bpy.context.preferences.addons.get(__package__)
     return not bpy.app.background if addon is None else addon.preferences.show_library
 
@@ -65,7 +65,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take it away."""
+    """Hide the library."""
     hide()
 
 

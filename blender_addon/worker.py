@@ -1,9 +1,9 @@
-"""Work beside the window: a thread, the latest wish of each topic, answers in Blender's own turn.
+"""Work beside the window: two threads, the latest request of each topic, results by a timer.
 
-Whoever draws or shows asks for work by topic. A wish that has not begun when the next one of its
-topic comes is forgotten: nothing queues up behind the mouse. Answers are handed over by a timer,
-where data of Blender may be touched. Without a window, work is done at once: there is no timer
-then, and nobody drags.
+Work is requested by topic. A request that has not begun when the next one of its topic comes is
+dropped: nothing queues up behind the mouse. Results are delivered by a timer, on the main thread,
+where Blender's data may be read and written. Without a window, work is done at once: there is no
+timer then.
 """
 
 from __future__ import annotations
@@ -15,74 +15,74 @@ from typing import Any
 import bpy
 
 POLL_S = 0.005
-"""How often it is asked whether an answer is there, while one is awaited."""
-PATIENCE_S = 5.0
-"""How long the end of the add-on waits for work that is under way."""
+"""How often the timer looks for results, while one is awaited."""
+JOIN_TIMEOUT_S = 5.0
+"""How long unregistering waits for work in progress."""
 
-Errand = Callable[[], Any]
+WorkerTask = Callable[[], Any]
 Deliver = Callable[[Any], None]
 Fail = Callable[[Exception], None]
 
 
 class Worker:
-    """One thread, made when first asked for something, ended by `stop`."""
+    """One thread: started at the first request, ended by `stop`."""
 
     def __init__(self) -> None:
-        self._wanted: dict[str, tuple[Errand, Deliver, Fail]] = {}
+        self._pending: dict[str, tuple[WorkerTask, Deliver, Fail]] = {}
         self._done: list[tuple[str, Callable[[], None]]] = []
-        self._round: dict[str, int] = {}
+        self._generation: dict[str, int] = {}
         self._changed = threading.Condition()
         self._thread: threading.Thread | None = None
-        self._under_way: str | None = None
+        self._in_progress: str | None = None
         self._end = threading.Event()
-        self._timer = self._hand_over  # one object: Blender knows timers by it
+        self._timer = self._deliver_all  # one object: Blender knows timers by it
 
-    def ask(self, topic: str, work: Errand, deliver: Deliver, fail: Fail) -> None:
-        """Have `work` done off the main thread, and its answer delivered on it.
+    def ask(self, topic: str, work: WorkerTask, deliver: Deliver, fail: Fail) -> None:
+        """Run `work` on the thread, and deliver its result on the main thread.
 
-        What was asked on the same topic and has not begun is forgotten; of what is under way the
-        answer is delivered all the same: the newest there is. `fail` takes what `work` raised.
+        A request of the same topic that has not begun is dropped; the result of one in progress is
+        delivered all the same: it is the latest there is. `fail` takes what `work` raised.
         """
         if bpy.app.background:
-            _answer(work, deliver, fail)()
+            _run_task(work, deliver, fail)()
             return
         with self._changed:
-            self._wanted.pop(topic, None)  # the newest comes last: other topics have waited longer
-            self._wanted[topic] = work, deliver, fail
+            self._pending.pop(topic, None)  # the latest goes last: other topics have waited longer
+            self._pending[topic] = work, deliver, fail
             self._start()
             self._changed.notify()
         if not bpy.app.timers.is_registered(self._timer):
             bpy.app.timers.register(self._timer, first_interval=POLL_S, persistent=True)
 
     def drop(self, topic: str) -> None:
-        """Forget what was asked on a topic; an answer under way is not delivered any more."""
+        """Drop the request of a topic; a result in progress is not delivered any more."""
         with self._changed:
-            self._wanted.pop(topic, None)
-            self._round[topic] = self._round.get(topic, 0) + 1
+            self._pending.pop(topic, None)
+            self._generation[topic] = self._generation.get(topic, 0) + 1
             self._done = [each for each in self._done if each[0] != topic]
 
     def busy(self, topic: str | None = None) -> bool:
-        """Whether an answer is awaited, on a topic or on any."""
+        """Whether a result is awaited, of a topic or of any."""
         with self._changed:
-            topics = {*self._wanted, *(t for t, _ in self._done), self._under_way} - {None}
+            topics = {*self._pending, *(t for t, _ in self._done), self._in_progress} - {None}
         return bool(topics) if topic is None else topic in topics
 
     def awaits(self, beginning: str) -> bool:
-        """Whether an answer is awaited on a topic that begins so."""
+        """Whether a result is awaited of a topic that begins so."""
         with self._changed:
-            topics = (*self._wanted, *(topic for topic, _ in self._done), self._under_way or "")
+            topics = (*self._pending, *(topic for topic, _ in self._done), self._in_progress or "")
             return any(topic.startswith(beginning) for topic in topics)
 
     def stop(self) -> None:
-        """Forget all wishes and answers, and end the thread, after what it has under way."""
+        """Drop all requests and results, and end the thread after the work in progress."""
         with self._changed:
-            self._wanted.clear()
+            self._pending.clear()
             self._done.clear()
             self._end.set()
             self._changed.notify()
         if self._thread is not None:
-            self._thread.join(PATIENCE_S)  # one that takes longer ends by itself, unheard
-        self._thread, self._under_way = None, None
+            self._thread.join(JOIN_TIMEOUT_S)  # a longer one ends later, without effect
+        self._thread, self._in_progress = None, None
         if bpy.app.timers.is_registered(self._timer):
             bpy.app.timers.unregister(self._timer)
 
@@ -93,49 +93,48 @@ class Worker:
             self._thread.start()
 
     def _run(self, end: threading.Event) -> None:
-        """Work off wishes, the oldest topic first, until the end is asked for."""
+        """Run requests, the topic that has waited longest first, until `stop`."""
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._wanted or end.is_set())
+                self._changed.wait_for(lambda: self._pending or end.is_set())
                 if end.is_set():
                     return
-                topic = self._under_way = next(iter(self._wanted))
-                work, deliver, fail = self._wanted.pop(topic)
-                number = self._round.get(topic, 0)
-            answer = _answer(work, deliver, fail)
+                topic = self._in_progress = next(iter(self._pending))
+                work, deliver, fail = self._pending.pop(topic)
+                number = self._generation.get(topic, 0)
+            result = _run_task(work, deliver, fail)
             with self._changed:
                 if end.is_set():
                     return
-                self._under_way = None
-                if number == self._round.get(topic, 0):
-                    self._done.append((topic, answer))
+                self._in_progress = None
+                if number == self._generation.get(topic, 0):
+                    self._done.append((topic, result))
 
-    def _hand_over(self) -> float | None:
-        """Deliver answers; the timer ends when none is awaited."""
+    def _deliver_all(self) -> float | None:
+        """Deliver results; the timer ends when none is awaited."""
         with self._changed:
-            answers, self._done = self._done, []
-        for _, deliver in answers:
+            results, self._done = self._done, []
+        for _, deliver in results:
             deliver()
         return POLL_S if self.busy() else None
 
 
-def _answer(work: Errand, deliver: Deliver, fail: Fail) -> Callable[[], None]:
-    """Do the work; return how its answer is handed over."""
+def _run_task(work: WorkerTask, deliver: Deliver, fail: Fail) -> Callable[[], None]:
+    """Run a task; return the function that delivers its result."""
     try:
-        found = work()
-    except Exception as error:  # whatever it is, the one who asked has to know
+        result = work()
+    except Exception as error:  # whatever it is, `fail` has to know
         return lambda problem=error: fail(problem)
-    return lambda: deliver(found)
+    return lambda: deliver(result)
 
 
-desk = Worker()
-"""The one that all parts of the add-on share: so that they take turns, and one thread ends."""
-hand = Worker()
-"""For what follows the hand, and is done in a few hundredths of a second: it is not kept waiting by
-what takes longer."""
+background_worker = Worker()
+"""For what may take long; all parts of the add-on share it, and take turns."""
+interactive_worker = Worker()
+"""For what follows the mouse and takes a few hundredths of a second: it never waits."""
 
 
 def unregister() -> None:
-    """Leave nothing running."""
-    hand.stop()
-    desk.stop()
+    """End both threads."""
+    interactive_worker.stop()
+    background_worker.stop()

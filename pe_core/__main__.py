@@ -1,32 +1,9 @@
-"""``python -m pe_core`` and the script ``pe``: Ctrl-C is answered from the start.
+"""``python -m pe_core``: the command ``pe``, of the tools around the engine.
 
-Nothing is imported on top that takes long.
+Nothing is imported on top that takes long: Ctrl-C is answered from the start.
 """
 
-import os
-import signal
-from types import FrameType
-
-
-def main() -> None:
-    """Run the command and exit with its status."""
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, _leave)
-    from .app import leave
-    from .app.cli import main as run
-
-    if signal.getsignal(signal.SIGINT) is _leave:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-    leave(run())
-
-
-def _leave(_signum: int, _frame: FrameType | None) -> None:
-    """While loading there is nothing to lose."""
-    try:
-        os.write(2, b"pe: interrupted\n")
-    finally:
-        os._exit(130)
-
+from importlib import import_module
 
 if __name__ == "__main__":
-    main()
+    import_module("pe_tools.__main__").main()

@@ -1,23 +1,7 @@
 """The names of the engine that other programs use."""
 
-from . import advice, catalog
-from .advice import Advice
-from .errors import InputError
-from .exchange import export_rig, import_rig
-from .formats import Mesh, MeshAxes, read_boxes, read_mesh, write_boxes, write_mesh
-from .kinds import (
-    BeamField,
-    BrownConrady,
-    Camera,
-    FTheta,
-    KannalaBrandt,
-    Lidar,
-    PerceptionModel,
-    Pinhole,
-    beam_field,
-    measure,
-    measure_objects,
-)
+from . import catalog
+from .base.errors import InputError
 from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import (
@@ -32,6 +16,7 @@ from .scene import (
     cuts_body,
     guessed_reference,
 )
+from .scene.mesh import Mesh, MeshAxes
 from .scoring import (
     Evaluator,
     Glance,
@@ -43,6 +28,8 @@ from .scoring import (
     Score,
     SensorScore,
 )
+from .scoring.sight import BlindGround, GroundSight, Reach, Sight
+from .scoring.targets import ObjectEvaluator, TargetRule
 from .search import (
     METHODS,
     Choice,
@@ -63,34 +50,24 @@ from .search import (
     Tolerance,
     optimize,
 )
-from .sight import BlindGround, GroundSight, Reach, Sight
-from .study import (
-    ChoiceJob,
-    Design,
-    Job,
-    OptimizeJob,
-    Outcome,
-    Progress,
-    ScoreJob,
-    Search,
-    Study,
-    TradeOff,
-    export_study,
-    load_study,
-    prepare_folder,
-    result_dict,
-    save_study,
-    study_from_dict,
-    study_to_dict,
-    write_front,
-    write_outcome,
+from .sensors import (
+    BeamField,
+    BrownConrady,
+    Camera,
+    FTheta,
+    KannalaBrandt,
+    Lidar,
+    PerceptionModel,
+    Pinhole,
+    beam_field,
+    measure,
+    measure_objects,
 )
-from .targets import ObjectEvaluator, TargetRule
+from .study import Search, Study, load_study, save_study, study_from_dict, study_to_dict
 from .version import __version__
 
 __all__ = [
     "METHODS",
-    "Advice",
     "ApCurve",
     "BeamField",
     "BlindGround",
@@ -99,9 +76,7 @@ __all__ = [
     "BrownConrady",
     "Camera",
     "Choice",
-    "ChoiceJob",
     "Constraints",
-    "Design",
     "Evaluator",
     "FTheta",
     "Focus",
@@ -110,7 +85,6 @@ __all__ = [
     "GroundSight",
     "Housing",
     "InputError",
-    "Job",
     "KannalaBrandt",
     "Lidar",
     "Mesh",
@@ -124,16 +98,13 @@ __all__ = [
     "ObjectScore",
     "Objective",
     "Objects",
-    "OptimizeJob",
     "Option",
-    "Outcome",
     "PartScore",
     "PerceptionModel",
     "PerceptionSpace",
     "Pinhole",
     "Pose",
     "Prior",
-    "Progress",
     "Reach",
     "Reference",
     "Rig",
@@ -141,7 +112,6 @@ __all__ = [
     "Scatter",
     "Schedule",
     "Score",
-    "ScoreJob",
     "Search",
     "SearchSpace",
     "Selection",
@@ -155,30 +125,17 @@ __all__ = [
     "SurfaceMount",
     "TargetRule",
     "Tolerance",
-    "TradeOff",
     "Vehicle",
     "__version__",
-    "advice",
     "beam_field",
     "catalog",
     "cuts_body",
-    "export_rig",
-    "export_study",
     "guessed_reference",
-    "import_rig",
     "load_study",
     "measure",
     "measure_objects",
     "optimize",
-    "prepare_folder",
-    "read_boxes",
-    "read_mesh",
-    "result_dict",
     "save_study",
     "study_from_dict",
     "study_to_dict",
-    "write_boxes",
-    "write_front",
-    "write_mesh",
-    "write_outcome",
 ]

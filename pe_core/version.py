@@ -1,3 +1,3 @@
-"""The version, said once for the engine; pyproject.toml and the add-on agree with it."""
+"""Version of the engine; pyproject.toml and the add-on's manifest have the same."""
 
 __version__ = "0.1.0"

@@ -1,10 +1,14 @@
 """Which tests share a processor, when `make test` gives them several."""
 
+import os
+
 import pytest
 from xdist.scheduler import LoadScopeScheduling
 
 WINDOWS = "tests/blender/"
 """The folder whose tests open a real Blender's window: one at a time, and begun first."""
+ORDER = (WINDOWS, "tests/review/", "tests/report/", "tests/addon/", "tests/engine/")
+"""Folders whose files take long come first; the many short files at the end level the load."""
 
 
 class Together(LoadScopeScheduling):
@@ -20,6 +24,13 @@ def pytest_xdist_make_scheduler(config, log):
     return Together(config, log)
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config):
+    """One more than there are processors: tests with windows mostly wait for Blender to draw."""
+    return min(os.cpu_count() or 1, 4) + 1
+
+
 def pytest_collection_modifyitems(items):
     """Begin with those that open windows: they take longest."""
-    items.sort(key=lambda item: not item.nodeid.startswith(WINDOWS))
+    rank = {folder: place for place, folder in enumerate(ORDER)}
+    items.sort(key=lambda item: rank.get("/".join(item.nodeid.split("/")[:2]) + "/", len(rank)))

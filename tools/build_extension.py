@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Build the Blender extension: ``dist/perception_entropy-VERSION.zip``.
 
-``blender_addon/`` and copies of ``pe_core/`` and ``pe_review/`` inside it are staged in a temporary
-folder, then validated and built by Blender's own tool. The same sources give the same bytes.
+``blender_addon/`` and copies of ``pe_core/`` and ``pe_tools/`` inside it are staged in a temporary
+folder, then validated and built by Blender's own tool. There all imports of the two packages become
+relative: an extension may not add packages to the top level. The same sources give the same bytes.
 """
 
+import ast
 import importlib.util
 import re
 import shutil
@@ -18,8 +20,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "blender_addon"
 ENGINE = ROOT / "pe_core"
-REVIEW = ROOT / "pe_review"
+TOOLS = ROOT / "pe_tools"
 MANIFEST = ADDON / "blender_manifest.toml"
+PACKED = (ENGINE.name, TOOLS.name)
+REPORTS = ("reproduction", "validity")
+"""Rooms of the tools that the extension has no use for: they plot with Matplotlib."""
+FROM_PACKED = re.compile(r"^(\s*)from ((?:pe_core|pe_tools)\b[\w.]*) import", re.MULTILINE)
+PACKED_AS = re.compile(r"^(\s*)import ((?:pe_core|pe_tools)(?: as \w+)?)$", re.MULTILINE)
 
 # Of no use inside Blender, or in the way of the same bytes again.
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.pyc", "tests", "test_*.py", ".*", "*.blend1")
@@ -55,13 +62,54 @@ def read(path: str | Path) -> str:
 
 
 def stage(target: Path) -> None:
-    """Copy add-on, engine, page and licence; links become files: Blender's tool would drop them."""
+    """Copy add-on, engine, tools, licence; links become files: Blender's tool would drop them."""
     shutil.copytree(ADDON, target, ignore=LEFT_OUT)
-    for package in (ENGINE, REVIEW):
+    for package in (ENGINE, TOOLS):
         # A developer's link to it may stand in the add-on's folder.
         shutil.rmtree(target / package.name, ignore_errors=True)
         shutil.copytree(package, target / package.name, ignore=LEFT_OUT)
+    for room in REPORTS:
+        shutil.rmtree(target / TOOLS.name / room)
     shutil.copy(ROOT / "LICENSE", target / "LICENSE")
+    for path in target.rglob("*.py"):
+        source = path.read_text("utf-8")
+        relative = with_relative_imports(source, len(path.relative_to(target).parts))
+        if relative != source:
+            path.write_text(relative, "utf-8")
+
+
+def with_relative_imports(source: str, dots: int) -> str:
+    """Return a module's text with imports of the packed packages relative to the extension.
+
+    Parameters
+    ----------
+    source : str
+    dots : int
+        How many dots lead from the module to the extension's package: 1 for a module in it.
+
+    Raises
+    ------
+    BuildError
+        An import that has no relative form: ``import pe_core.scene``.
+    """
+    up = "." * dots
+    source = FROM_PACKED.sub(rf"\1from {up}\2 import", source)
+    source = PACKED_AS.sub(rf"\1from {up} import \2", source)
+    left = [name for name in imported_names(source) if name.split(".")[0] in PACKED]
+    if left:
+        raise BuildError(f"an import has no relative form: {left[0]}")
+    return source
+
+
+def imported_names(source: str) -> list[str]:
+    """Return the modules that a source imports absolutely."""
+    names = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            names.append(node.module or "")
+    return names
 
 
 def bpy_tool() -> Path | None:
@@ -134,7 +182,7 @@ def check_contents(archive: Path) -> None:
         names = set(packed.namelist())
     presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("catalog/**/*.toml")}
     always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py"}
-    always |= {path.relative_to(ROOT).as_posix() for path in REVIEW.rglob("*.[cj]s*")}
+    always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("page/**/*.[cj]s*")}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}
     for wanted in sorted(always | presets | assets):
         if wanted not in names:

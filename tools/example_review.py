@@ -18,10 +18,11 @@ ROOT = Path(__file__).resolve().parents[1]
 if str(ROOT) not in sys.path:  # run as a script
     sys.path.insert(0, str(ROOT))
 
-from pe_core.app import drive  # noqa: E402
-from pe_core.study import Outcome, ScoreJob, Study  # noqa: E402
-from pe_review import Reviewed, page_bytes  # noqa: E402
-from pe_review.folder import outcome_of_folder  # noqa: E402
+from pe_core.study import Study  # noqa: E402
+from pe_tools.cli import drive  # noqa: E402
+from pe_tools.jobs import Outcome, ScoreJob  # noqa: E402
+from pe_tools.page import ReportContext, page_bytes  # noqa: E402
+from pe_tools.page.build import outcome_of_folder  # noqa: E402
 from tests.review.browser import opened, started  # noqa: E402
 
 EXAMPLE = Path("blend_assets/examples/four_corners")
@@ -37,11 +38,11 @@ def scored(study: Study) -> Outcome:
     return outcome
 
 
-def reviewed(results: Path) -> Reviewed:
-    """Return the search that is in a folder, as its page tells it."""
+def reviewed(results: Path) -> ReportContext:
+    """Return the search in a folder of results as the content of its page."""
     outcome = outcome_of_folder(results, scored)
     assert outcome is not None, f"{results} holds no search"
-    return Reviewed("The shuttle's four corners", outcome, command=" ".join(COMMAND))
+    return ReportContext("The shuttle's four corners", outcome, command=" ".join(COMMAND))
 
 
 def write(results: Path) -> None:
@@ -54,7 +55,7 @@ def write(results: Path) -> None:
 
 
 def photograph() -> None:
-    """Keep the page's 3-D view as a picture, as Chromium shows it."""
+    """Write a screenshot of the page's 3-D view in Chromium."""
     with started() as browser, opened(browser, PAGE, (1280, 900)) as (page, _):
         page.locator(".v3-stage").screenshot(path=PICTURE)
 
@@ -66,7 +67,7 @@ def main(arguments: list[str]) -> int:
         return 0
     os.chdir(ROOT)
     with TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "pe_core", *COMMAND[1:-1], folder, "--no-review"]
+        command = [sys.executable, "-m", "pe_tools", *COMMAND[1:-1], folder, "--no-review"]
         status = subprocess.run(command).returncode
         if status == 0:
             write(Path(folder))

@@ -16,7 +16,7 @@ if str(ROOT) not in sys.path:  # run as a script
 
 import pe_core as pe  # noqa: E402
 from pe_core import catalog  # noqa: E402
-from pe_core.app import study_of_rig  # noqa: E402
+from pe_tools.cli import study_of_rig  # noqa: E402
 
 PAGE = ROOT / "docs" / "known_rigs.md"
 SAMPLES = 65_536

@@ -35,7 +35,7 @@ from cosmic_ray.plugins import get_operator, operator_names
 
 ROOT = Path(__file__).resolve().parent.parent
 SETTINGS = ROOT / "tests" / "mutants.toml"
-COPIED = ("pe_core", "pe_report", "pe_review", "blend_assets", "tests", "docs/objects")
+COPIED = ("pe_core", "pe_tools", "blend_assets", "tests", "docs/objects")
 
 KILLED, SURVIVED, TIMED_OUT = "killed", "survived", "timed out"
 LEAST_TIMEOUT_S, TIMEOUT_FACTOR = 20.0, 4.0

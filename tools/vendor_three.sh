@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Makes pe_review/scene3d/_vendor/three.min.js again: what the review's 3-D view uses of three.js, as
+# Makes pe_tools/page/scene3d/_vendor/three.min.js again: what the review's 3-D view uses of three.js, as
 # one file. Needs npm. The same versions give the same bytes; a test holds the file's hash.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 readonly THREE=0.187.0 ESBUILD=0.28.2
-readonly TARGET=pe_review/scene3d/_vendor
+readonly TARGET=pe_tools/page/scene3d/_vendor
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

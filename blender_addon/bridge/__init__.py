@@ -1,14 +1,12 @@
-"""The only place that turns Blender's data into the engine's and back."""
+"""The bridge: the only package that converts Blender's data to the engine's, and back."""
 
-from .advanced import clearance_of, perception_of, space_of
-from .axles import reference_of, write_reference
-from .figures import FigureRule, figure_rule, figures_of, figures_signature, write_figures
+from .apply_variant import apply_records, sensors_collection, shown_collection
+from .duplicates import SENSORS, drop_foreign_results, unlink_duplicates
 from .fingerprint import Fingerprint, fingerprint, signature
-from .holds import constrained, free_axes, locked_axes
-from .loading import load_into
+from .loading import load_into, record_of_study
 from .mirroring import (
+    clear_mirrors,
     follow_mirrors,
-    forget_mirrors,
     in_the_middle,
     link_mirror,
     mirror_of,
@@ -16,21 +14,15 @@ from .mirroring import (
     mirrored_pose,
     unlink_mirror,
 )
-from .mount_shapes import LimitBox, bounds_box, mount_faces, mount_key, no_go_boxes
-from .mounting import mount_of_row, mounting_of
-from .newcomers import SENSORS, drop_foreign_results, unlink_doubles
-from .oddities import missing_pieces, scene_advice
+from .mounting import LimitBox, bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes
 from .outcome import blender_version, store_outcome, store_warnings, store_words
-from .own_sensors import add_own_sensor, forget_own_sensors, sync_own_sensors, table_of
-from .passthrough import passthrough_of, write_passthrough
-from .placeable import check_placeable, holder_of
+from .own_sensors import add_own_sensor, remove_own_sensors, sync_own_sensors, table_of
 from .plain_objects import plain_objects, put_objects, sensors_of_objects
 from .prior import focus_rows, prior_from_scene, prior_key
-from .records import Record, alike, records_of, records_of_scene, rig_of, write_records
-from .restored import restore_result
 from .rig import (
-    held_pose,
+    last_written_pose,
     mounted_on_sensor,
+    place_at,
     place_poses,
     place_rig,
     pose_from_numbers,
@@ -40,39 +32,73 @@ from .rig import (
     rig_from_objects,
     sensor_from_object,
     sensor_objects,
-    stand_at,
     view_layer_of,
 )
-from .scene import check_scene, study_from_scene, study_of_rig, vehicle_of_scene
-from .selection import check_choosable, keep_front
-from .standing import sensors_collection, shown_collection, stand
-from .targets import targets_of
+from .scene_diagnostics import check_placeable, missing_data, scene_advice
+from .scene_record import (
+    SceneRecord,
+    check_scene,
+    record_of_scene,
+    study_from_scene,
+    study_of,
+    study_of_rig,
+    vehicle_of_scene,
+)
+from .scene_settings import (
+    clearance_of,
+    passthrough_of,
+    perception_of,
+    reference_of,
+    space_of,
+    targets_of,
+    write_passthrough,
+    write_reference,
+)
+from .sensor_records import (
+    SensorRecord,
+    records_of,
+    records_of_scene,
+    rig_of,
+    same_sensors,
+    write_records,
+)
+from .transform_constraints import free_axes, holder_of, locked_axes
+from .variant_results import (
+    FigureRule,
+    check_choosable,
+    copy_scene_score,
+    copy_score,
+    figure_rule,
+    figures_of,
+    figures_signature,
+    restore_result,
+    same_score,
+    score_of,
+    store_front,
+    store_search,
+    store_variant_score,
+    store_variant_scores,
+    write_figures,
+)
 from .variants import (
+    activate_variant,
     active_variant,
     add_variant,
     check_variants,
-    choose_variant,
-    copy_score,
-    keep_score,
-    keep_search,
-    put_variant,
-    same_score,
-    same_variant,
-    score_of,
+    mark_active,
+    matching_variant,
     study_of_variant,
-    take_scene_s_score,
     variant_dict,
     variant_named,
-    write_score,
 )
 from .vehicle import layers_of, vehicle_from_collection, visible_members
-from .versions import bring_up_to_date, newer_version
+from .versions import migrate_scene, newer_version_message
 from .view_camera import (
     CAMERA_FROM_SENSOR,
     look_back,
     look_through,
     shown_fov,
-    tend_views,
+    update_view_cameras,
     view_camera,
 )
 
@@ -82,21 +108,22 @@ __all__ = [
     "FigureRule",
     "Fingerprint",
     "LimitBox",
-    "Record",
+    "SceneRecord",
+    "SensorRecord",
+    "activate_variant",
     "active_variant",
     "add_own_sensor",
     "add_variant",
-    "alike",
+    "apply_records",
     "blender_version",
     "bounds_box",
-    "bring_up_to_date",
     "check_choosable",
     "check_placeable",
     "check_scene",
     "check_variants",
-    "choose_variant",
+    "clear_mirrors",
     "clearance_of",
-    "constrained",
+    "copy_scene_score",
     "copy_score",
     "drop_foreign_results",
     "figure_rule",
@@ -105,34 +132,32 @@ __all__ = [
     "fingerprint",
     "focus_rows",
     "follow_mirrors",
-    "forget_mirrors",
-    "forget_own_sensors",
     "free_axes",
-    "held_pose",
     "holder_of",
     "in_the_middle",
-    "keep_front",
-    "keep_score",
-    "keep_search",
+    "last_written_pose",
     "layers_of",
     "link_mirror",
     "load_into",
     "locked_axes",
     "look_back",
     "look_through",
+    "mark_active",
+    "matching_variant",
+    "migrate_scene",
     "mirror_of",
     "mirrored_name",
     "mirrored_pose",
-    "missing_pieces",
+    "missing_data",
     "mount_faces",
     "mount_key",
     "mount_of_row",
     "mounted_on_sensor",
-    "mounting_of",
-    "newer_version",
+    "newer_version_message",
     "no_go_boxes",
     "passthrough_of",
     "perception_of",
+    "place_at",
     "place_poses",
     "place_rig",
     "plain_objects",
@@ -143,15 +168,17 @@ __all__ = [
     "prior_from_scene",
     "prior_key",
     "put_objects",
-    "put_variant",
+    "record_of_scene",
+    "record_of_study",
     "records_of",
     "records_of_scene",
     "reference_of",
+    "remove_own_sensors",
     "restore_result",
     "rig_from_objects",
     "rig_of",
     "same_score",
-    "same_variant",
+    "same_sensors",
     "scene_advice",
     "score_of",
     "sensor_from_object",
@@ -162,21 +189,23 @@ __all__ = [
     "shown_fov",
     "signature",
     "space_of",
-    "stand",
-    "stand_at",
+    "store_front",
     "store_outcome",
+    "store_search",
+    "store_variant_score",
+    "store_variant_scores",
     "store_warnings",
     "store_words",
     "study_from_scene",
+    "study_of",
     "study_of_rig",
     "study_of_variant",
     "sync_own_sensors",
     "table_of",
-    "take_scene_s_score",
     "targets_of",
-    "tend_views",
-    "unlink_doubles",
+    "unlink_duplicates",
     "unlink_mirror",
+    "update_view_cameras",
     "variant_dict",
     "variant_named",
     "vehicle_from_collection",
@@ -188,5 +217,4 @@ __all__ = [
     "write_passthrough",
     "write_records",
     "write_reference",
-    "write_score",
 ]

@@ -1,72 +1,109 @@
-"""A study put into a scene: vehicle, sensors, mounts, and how it is scored and searched."""
+"""Load an imported study: convert it to the record of a scene, and write the record to the scene.
+
+A comparison of the imported study with the study of the scene finds what the scene cannot hold.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import bpy
 
 from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
-from ..engine import catalog, kinds, pe, search, studies
-from .axles import write_reference
-from .loaded_body import make_body, paint_area, same_body
-from .offers import put_selection
-from .passthrough import write_passthrough
-from .records import NO_BOUNDS, ZEROS, Record
-from .rig import stand_at, view_layer_of
-from .scene import study_from_scene, vehicle_of_scene
-from .standing import stand
-from .targets import put_targets
+from ..engine import catalog, pe, search, studies
+from .apply_variant import apply_records
+from .model_options import ModelOption, write_options
+from .prior import write_prior
+from .rig import place_at, view_layer_of
+from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene
+from .scene_settings import write_settings, write_values
+from .sensor_records import NO_BOUNDS, ZEROS, SensorRecord
+from .vehicle import make_body, paint_area, same_body
 
 RACK = "rack {}"
 FAR_M = 1e4
 
 
 def load_into(scene: bpy.types.Scene, study: pe.Study) -> list[str]:
-    """Have a scene hold a study; return the keys of its file that the scene cannot hold.
+    """Write a study to a scene; return the keys of its file that the scene cannot hold.
 
-    The scene's vehicle stays where it is the study's to the bit.
+    The scene's vehicle is kept if its triangles are equal to the study's to the bit.
 
     Raises
     ------
     InputError
-        When a sensor is of a model that the catalogue does not have.
+        When the study has no vehicle, or a sensor is of a model that the catalogue does not have.
     """
-    records = records_of_study(study)  # what is wrong is said before anything is changed
-    _put_vehicle(scene, study)
-    _put_settings(scene.perception_entropy, study)
-    _put_mounts(scene, study.search.mounting)
-    _put_constraints(scene, study.search.mounting.constraints)
-    stand(scene, records)
-    put_selection(scene, study)
+    record = record_of_study(study)  # an error comes before anything is changed
+    _write_vehicle(scene, record.vehicle)
+    write_settings(scene.perception_entropy, record)
+    write_prior(scene.perception_entropy, record.prior)
+    _write_mounts(scene, record.mounts)
+    _write_constraints(scene, record.constraints)
+    names = apply_records(scene, record.sensors)
+    for sensor in record.sensors:
+        write_options(scene.objects[names[sensor.name]].perception_entropy, sensor)
     layer = view_layer_of(scene)
     layer.update()
     return differences(study, study_from_scene(scene, layer.depsgraph))
 
 
+def record_of_study(study: pe.Study) -> SceneRecord:
+    """Return an imported study as the record of a scene.
+
+    If sensors choose their model together, each of them gets the options. A scene cannot store a
+    limit by kind.
+
+    Raises
+    ------
+    InputError
+        When the study has no vehicle, or a sensor is of a model that the catalogue does not have.
+    """
+    if study.vehicle is None:
+        raise pe.InputError("study", "vehicle.mesh", "a vehicle", "none")
+    mounting = study.search.mounting
+    return SceneRecord(
+        source="study",
+        sensors=_sensor_records(study),
+        vehicle=study.vehicle,
+        space=study.space,
+        prior=study.prior,
+        model=study.model,
+        targets=study.targets,
+        samples=study.samples,
+        search=replace(study.search, free={}, limits={}, mounting=pe.Mounting()),
+        mounts=mounting.mounts,
+        constraints=mounting.constraints,
+        selection=replace(study.selection, choices=()),
+        reference=study.reference,
+        passthrough=study.passthrough,
+    )
+
+
 def differences(study: pe.Study, held: pe.Study) -> list[str]:
-    """Return the keys of two studies' files that differ; files' names count for nothing."""
-    one, other = (_told(each) for each in (study, held))
-    found = sorted(key for key in {*one, *other} if one.get(key) != other.get(key))
+    """Return the keys in which two studies differ; names of other files are left out."""
+    one, other = _comparable(study), _comparable(held)
+    keys = sorted(key for key in {*one, *other} if one.get(key) != other.get(key))
     if not same_body(study.vehicle, held.vehicle):
-        found.append("vehicle.mesh")
-    now = held.search.mounting.mounts
+        keys.append("vehicle.mesh")
+    held_mounts = held.search.mounting.mounts
     for name, mount in study.search.mounting.mounts.items():
-        if _faces(mount) != _faces(now.get(name)):
-            found.append(f"area of mount {name!r}")
-    return found
+        if _faces(mount) != _faces(held_mounts.get(name)):
+            keys.append(f"area of mount {name!r}")
+    return keys
 
 
 def _faces(mount: search.AnyMount | None) -> object:
-    """The faces of an area, to be compared; None for all else."""
+    """Return the triangles of a mount's area; None for a mount without one."""
     area = getattr(mount, "area", None)
     return None if area is None else area.triangles.tolist()
 
 
-def _told(study: pe.Study) -> dict[str, object]:
-    """A study's file by key, without the names of other files."""
+def _comparable(study: pe.Study) -> dict[str, object]:
+    """Return the values of a study's file by key, without the names of other files."""
     data = studies.study_to_dict(study)
     flat = {**data, **{f"optimize.{key}": value for key, value in data["optimize"].items()}}
     del flat["optimize"]
@@ -78,105 +115,77 @@ def _told(study: pe.Study) -> dict[str, object]:
     return flat
 
 
-def records_of_study(study: pe.Study) -> tuple[Record, ...]:
-    """Return a study's sensors as variants hold them, by name.
-
-    Raises
-    ------
-    InputError
-        When the catalogue does not have one's model.
-    """
+def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
+    """Return a study's sensors as records, by name."""
     mounting = study.search.mounting
     linked = {a: b for a, b in mounting.pairs} | {b: a for a, b in mounting.pairs}
-    racks = {name: RACK.format(n) for n, g in enumerate(mounting.groups, 1) for name in g}
-    found = []
+    racks = {name: RACK.format(n) for n, group in enumerate(mounting.groups, 1) for name in group}
+    records = []
     for sensor in study.rig:
         _check_model(sensor)
-        name, own = sensor.name, study.search.limits.get(sensor.name, {})
-        free = study.search.free[name]
-        found.append(
-            Record(
-                *(name, sensor.model.name, sensor.fusion or "", sensor.pose),
-                tuple(axis in free for axis in search.AXES),
-                **_bounds(own),
+        name, free = sensor.name, study.search.free[sensor.name]
+        mount = mounting.on.get(name, "")
+        records.append(
+            SensorRecord(
+                name=name,
+                model=sensor.model.name,
+                pose=sensor.pose,
+                fusion=sensor.fusion or "",
+                free=tuple(axis in free for axis in search.AXES),
+                **_bounds(study.search.limits.get(name, {})),
                 mirror_of=linked.get(name, ""),
-                mount=mounting.on.get(name, ""),
+                mount=mount,
                 rack=racks.get(name, ""),
                 curve=sensor.curve,
+                **_options(study.selection, name, mount),
             )
         )
-    return tuple(sorted(found, key=lambda record: record.name))
+    return tuple(sorted(records, key=lambda record: record.name))
 
 
-def _bounds(own: Mapping[str, tuple[float, float]]) -> dict[str, tuple]:
-    """Bounds as a record has them: degrees for angles."""
+def _options(selection: pe.Selection, name: str, mount: str) -> dict[str, object]:
+    """Return the models that a sensor is offered, and whether it may be left out."""
+    choices = [c for c in selection.choices if name in c.sensors or c.mount == mount]
+    options = tuple(ModelOption(o.model.name, o.price) for c in choices for o in c.options)
+    return {"options": options, "may_be_left_out": bool(choices) and choices[-1].optional}
+
+
+def _bounds(limits: Mapping[str, tuple[float, float]]) -> dict[str, tuple]:
+    """Return bounds in the units of a record: metres and degrees."""
     bounded, low, high = list(NO_BOUNDS), list(ZEROS), list(ZEROS)
     for number, axis in enumerate(search.AXES):
-        if axis in own:
-            ends = own[axis] if axis in "xyz" else tuple(map(math.degrees, own[axis]))
+        if axis in limits:
+            is_length = axis in search.POSITION_AXES
+            ends = limits[axis] if is_length else tuple(map(math.degrees, limits[axis]))
             bounded[number], (low[number], high[number]) = True, ends
     return {"bounded": tuple(bounded), "low": tuple(low), "high": tuple(high)}
 
 
 def _check_model(sensor: pe.Sensor) -> None:
-    known = None
+    """Raise `InputError` where a sensor's model is not the catalogue's of that name."""
+    model = None
     with contextlib.suppress(pe.InputError):
-        known = catalog.load(sensor.model.name)
-    if known is None or catalog.to_table(known) != catalog.to_table(sensor.model):
+        model = catalog.load(sensor.model.name)
+    if model is None or catalog.to_table(model) != catalog.to_table(sensor.model):
         field = f"sensor {sensor.name!r}: model"
         raise pe.InputError("study", field, "one of the catalogue's", repr(sensor.model.name))
 
 
-def _put_vehicle(scene: bpy.types.Scene, study: pe.Study) -> None:
-    if study.vehicle is None:
-        raise pe.InputError("study", "vehicle.mesh", "a vehicle", "none")
-    settings, layer, here = scene.perception_entropy, view_layer_of(scene), None
+def _write_vehicle(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> None:
+    settings, layer, present = scene.perception_entropy, view_layer_of(scene), None
     with contextlib.suppress(pe.InputError):
-        here = vehicle_of_scene(scene, layer.depsgraph)
-    settings.clearance = study.vehicle.clearance
-    if not same_body(here, study.vehicle):
-        settings.vehicle = make_body(scene, study.vehicle)
+        present = vehicle_of_scene(scene, layer.depsgraph)
+    write_values(settings, vehicle)
+    if not same_body(present, vehicle):
+        settings.vehicle = make_body(scene, vehicle)
         layer.update()
 
 
-def _put_settings(settings: bpy.types.PropertyGroup, study: pe.Study) -> None:
-    """Space, prior, AP curves, and the search's own."""
-    own = study.search
-    settings.space_x, settings.space_y, settings.space_z = (
-        getattr(study.space, f"{axis}") for axis in "xyz"
-    )
-    settings.space_interval = study.space.interval
-    with contextlib.suppress(TypeError):  # a model of boxes: told as a difference
-        settings.prior = study.prior.model
-    put_targets(settings, study.targets)
-    settings.focus.clear()
-    settings.curves.clear()
-    usual = pe.PerceptionModel()
-    for kind in kinds.KINDS:
-        if (curve := study.model.curve(kind)) != usual.curve(kind):
-            row = settings.curves.add()
-            row.name, row.own, row.a, row.b = kind, True, curve.a, curve.b
-    settings.score_samples, settings.search_samples = study.samples, own.samples
-    settings.candidates, settings.seed = own.schedule.candidates, min(own.seed, 2**31 - 1)
-    settings.method, settings.evaluations = own.method, own.evaluations
-    _put_tolerance(settings, own.tolerance)
-    write_reference(settings, study.reference)
-    write_passthrough(settings, study.passthrough)
-
-
-def _put_tolerance(settings: bpy.types.PropertyGroup, own: pe.Tolerance) -> None:
-    settings.mounting_errors = own.position > 0.0 or own.angle > 0.0
-    if settings.mounting_errors:
-        settings.tolerance_position = own.position
-        settings.tolerance_angle = math.degrees(own.angle)
-    settings.failures, settings.worst = own.failures, own.worst
-
-
-def _put_mounts(scene: bpy.types.Scene, mounting: pe.Mounting) -> None:
+def _write_mounts(scene: bpy.types.Scene, mounts: Mapping[str, search.AnyMount]) -> None:
     settings = scene.perception_entropy
     settings.mounts.clear()
     members = settings.vehicle.all_objects
-    for name, mount in mounting.mounts.items():
+    for name, mount in mounts.items():
         row = settings.mounts.add()
         row.name = name
         if isinstance(mount, pe.SlotMount):
@@ -193,7 +202,7 @@ def _put_mounts(scene: bpy.types.Scene, mounting: pe.Mounting) -> None:
 
 
 def _slots(scene: bpy.types.Scene, name: str, mount: pe.SlotMount) -> bpy.types.Collection:
-    """Return a collection of that name with an empty a slot, and nothing else."""
+    """Return the named collection with exactly one empty for each slot."""
     made = bpy.data.collections.get(name) or bpy.data.collections.new(name)
     if made not in scene.collection.children_recursive:
         scene.collection.children.link(made)
@@ -202,25 +211,23 @@ def _slots(scene: bpy.types.Scene, name: str, mount: pe.SlotMount) -> bpy.types.
     for slot in mount.slots:
         obj = _empty(slot.name)
         made.objects.link(obj)
-        stand_at(obj, slot.pose)
+        place_at(obj, slot.pose)
     return made
 
 
 def _empty(name: str) -> bpy.types.Object:
-    """Return an empty of that name: one that there is and that is no sensor, or a new one."""
-    found = bpy.data.objects.get(name)
-    usable = found is not None and found.type == "EMPTY" and not found.perception_entropy.is_sensor
-    return found if usable else bpy.data.objects.new(name, None)
+    """Return the empty with that name, or a new one; a sensor is never returned."""
+    obj = bpy.data.objects.get(name)
+    usable = obj is not None and obj.type == "EMPTY" and not obj.perception_entropy.is_sensor
+    return obj if usable else bpy.data.objects.new(name, None)
 
 
-def _put_constraints(scene: bpy.types.Scene, own: pe.Constraints) -> None:
-    settings = scene.perception_entropy
-    settings.max_height, settings.max_width = own.max_height or 0.0, own.max_width or 0.0
-    settings.min_distance, settings.clear_housings = own.min_distance, own.clear_housings
+def _write_constraints(scene: bpy.types.Scene, constraints: pe.Constraints) -> None:
+    write_values(scene.perception_entropy, constraints)
     for obj in scene.objects:
         if obj.perception_entropy.is_no_go:
             obj.perception_entropy.is_no_go = False
-    for area in own.no_go:
+    for area in constraints.no_go:
         obj = _empty(area.name)
         obj.empty_display_type, obj.empty_display_size = "CUBE", 1.0
         sides = [getattr(area, axis) or (-FAR_M, FAR_M) for axis in "xyz"]

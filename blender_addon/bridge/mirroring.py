@@ -1,4 +1,4 @@
-"""Sensors mirrored to the vehicle's other side, and pairs that stay each other's mirror image."""
+"""Sensors mirrored to the vehicle's other side, and linked pairs that stay mirror images."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ SIDES = (("left", "right"), ("l", "r"))
 MIDDLE_M, MIDDLE_RAD = 1e-4, 1e-5
 """A sensor this near to the vehicle's middle plane is its own mirror image."""
 
-_known: dict[tuple[str, str], pe.Pose] = {}
-"""Where linked sensors stood when looked at last, by scene and name: which of a pair has moved."""
+_last_poses: dict[tuple[str, str], pe.Pose] = {}
+"""Last poses of linked sensors by scene and name: they tell which of a pair has moved."""
 
 
 def mirrored_pose(pose: pe.Pose) -> pe.Pose:
-    """Return a pose on the other side of the x-z plane."""
+    """Return the mirror image of a pose across the x-z plane."""
     (x, y, z), (roll, pitch, yaw) = pose.position, pose.rotation_deg
     return pe.Pose.from_degrees((x, 0.0 - y, z), (0.0 - roll, pitch, 0.0 - yaw))
 
 
 def mirrored_name(name: str) -> str:
-    """Return what a sensor is called on the other side: front_left and front_right, A.L and A.R."""
+    """Return the name of the mirrored sensor: front_left gives front_right, A.L gives A.R."""
     for pair in SIDES:
         for one, other in (pair, pair[::-1]):
-            found = re.search(rf"(?:(?<=^)|(?<=[^A-Za-z]))({one})(?=[^A-Za-z]|$)", name, re.I)
-            if found:
-                return name[: found.start()] + _cased(other, found[0]) + name[found.end() :]
+            match = re.search(rf"(?:(?<=^)|(?<=[^A-Za-z]))({one})(?=[^A-Za-z]|$)", name, re.I)
+            if match:
+                return name[: match.start()] + _cased(other, match[0]) + name[match.end() :]
     return f"{name} mirrored"
 
 
@@ -44,13 +44,13 @@ def in_the_middle(pose: pe.Pose) -> bool:
 
 
 def link_mirror(one: bpy.types.Object, other: bpy.types.Object) -> None:
-    """Have two sensors stay each other's mirror image."""
+    """Link two sensors, so that they stay mirror images of each other."""
     one.perception_entropy.mirror_of = other.name
     other.perception_entropy.mirror_of = one.name
 
 
 def unlink_mirror(obj: bpy.types.Object) -> None:
-    """Let a sensor and its mirror image go their own ways."""
+    """Remove the link between a sensor and its mirror image."""
     other = bpy.data.objects.get(obj.perception_entropy.mirror_of)
     obj.perception_entropy.mirror_of = ""
     if other is not None and other.perception_entropy.mirror_of == obj.name:
@@ -58,7 +58,7 @@ def unlink_mirror(obj: bpy.types.Object) -> None:
 
 
 def mirror_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object | None:
-    """Return the sensor that is linked as a sensor's mirror image; None without."""
+    """Return the sensor that is linked as a sensor's mirror image; None without a link."""
     other = scene.objects.get(obj.perception_entropy.mirror_of)
     if other is None or other == obj or not other.perception_entropy.is_sensor:
         return None
@@ -68,34 +68,36 @@ def mirror_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object
 def follow_mirrors(
     scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, sensors: Sequence[bpy.types.Object]
 ) -> list[str]:
-    """Put those of linked sensors right whose mirror image has moved; return their names.
+    """Move linked sensors whose mirror image has moved; return their names.
 
-    Where both have moved, and are no longer mirror images, the first by name leads. Links of
-    duplicates, and of sensors that are gone, are taken away.
+    If both have moved and are no longer mirror images, the first by name leads. Links of
+    duplicates and links to deleted sensors are removed.
     """
-    _mend_links(scene, sensors)
+    _repair_links(scene, sensors)
     moved: dict[str, pe.Pose] = {}
-    seen: dict[tuple[str, str], pe.Pose] = {}
+    current_poses: dict[tuple[str, str], pe.Pose] = {}
     for obj in sensors:
         other = mirror_of(obj, scene)
         if other is None or other.name < obj.name:
             continue
-        with contextlib.suppress(pe.InputError):  # a scaled one is told of where it is
+        with contextlib.suppress(pe.InputError):  # a scaled sensor has no pose
             poses = pose_of(obj, depsgraph), pose_of(other, depsgraph)
             poses = _mirror_images(scene, (obj.name, other.name), poses, moved)
-            seen |= {(scene.name, o.name): p for o, p in zip((obj, other), poses, strict=True)}
+            current_poses |= {
+                (scene.name, o.name): p for o, p in zip((obj, other), poses, strict=True)
+            }
     if moved:
-        with contextlib.suppress(pe.InputError):  # held by a constraint: it stays where it is
+        with contextlib.suppress(pe.InputError):  # a constraint holds it
             place_poses(scene, moved)
-    for key in [key for key in _known if key[0] == scene.name]:
-        del _known[key]
-    _known.update(seen)
+    for key in [key for key in _last_poses if key[0] == scene.name]:
+        del _last_poses[key]
+    _last_poses.update(current_poses)
     return list(moved)
 
 
-def forget_mirrors() -> None:
-    """Forget where sensors stood, as another file comes."""
-    _known.clear()
+def clear_mirrors() -> None:
+    """Clear the last poses when another file is opened."""
+    _last_poses.clear()
 
 
 def _mirror_images(
@@ -104,31 +106,31 @@ def _mirror_images(
     poses: tuple[pe.Pose, pe.Pose],
     moved: dict[str, pe.Pose],
 ) -> tuple[pe.Pose, pe.Pose]:
-    """Return poses that are mirror images of each other; note which one has to be moved."""
+    """Return poses that are mirror images of each other; add the one to be moved to `moved`."""
     first, second = poses
     if mirrored_pose(first) == second:
         return poses
-    still_first = _known.get((scene.name, names[0])) == first
-    if still_first and _known.get((scene.name, names[1])) != second:
+    still_first = _last_poses.get((scene.name, names[0])) == first
+    if still_first and _last_poses.get((scene.name, names[1])) != second:
         moved[names[0]] = mirrored_pose(second)
         return moved[names[0]], second
     moved[names[1]] = mirrored_pose(first)
     return first, moved[names[1]]
 
 
-def _mend_links(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
-    """Have links follow a rename; take away those that are not mutual."""
+def _repair_links(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
+    """Update links to a renamed sensor; remove links that are not mutual."""
     for obj in sensors:
         wanted = obj.perception_entropy.mirror_of
         if not wanted or mirror_of(obj, scene) is not None:
             continue
         other = scene.objects.get(wanted)
-        if other is None:  # renamed: the one that still points here
+        if other is None:  # it was renamed: the sensor that is still linked to this one
             (other,) = _pointing_at(obj, sensors) or (None,)
         elif other.perception_entropy.mirror_of in scene.objects or _pointing_at(
             other, sensors
         ) != (obj,):
-            other = None  # linked to another: this one is a copy
+            other = None  # it is linked to another sensor: this one is a duplicate
         if other is None:
             obj.perception_entropy.mirror_of = ""
         else:
@@ -138,13 +140,13 @@ def _mend_links(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> 
 def _pointing_at(
     obj: bpy.types.Object, sensors: Sequence[bpy.types.Object]
 ) -> tuple[bpy.types.Object, ...]:
-    """The one other sensor that is linked to a sensor, if it is one alone."""
-    found = [o for o in sensors if o.perception_entropy.mirror_of == obj.name and o != obj]
-    return tuple(found) if len(found) == 1 else ()
+    """Return the only other sensor that links to a sensor, as a tuple; empty if there are more."""
+    linked = [o for o in sensors if o.perception_entropy.mirror_of == obj.name and o != obj]
+    return tuple(linked) if len(linked) == 1 else ()
 
 
 def _cased(word: str, like: str) -> str:
-    """Return a word in the case of another one."""
+    """Return a word in upper, title or lower case, as the word `like`."""
     if like.isupper():
         return word.upper()
     return word.capitalize() if like[0].isupper() else word

@@ -1,49 +1,74 @@
-"""Where a search may put the sensors of a scene: mounts, pairs, groups and constraints."""
+"""Where a search may put the sensors of a scene: mounts, pairs, groups and constraints.
+
+A mount's faces are painted, or have a certain material. The faces and boxes that the 3D view shows
+are computed here, too.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Mapping, Sequence
+from typing import NamedTuple
 
 import bpy
 import numpy as np
 
-from ..choices import BY_PARTS, ON_SLOTS
+from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE
 from ..engine import pe, search, studies
-from .areas import area_problem, painted_area
-from .mirroring import mirror_of
+from .float32 import as_typed
 from .rig import pose_of
-from .typed import as_typed
+from .scene_settings import values_of
+from .sensor_records import SensorRecord, bounds_by_axis
+from .transform_constraints import free_axes, limit_constraints, search_bounds
+from .vehicle import drawn_meshes, placed_triangles, triangles_of
 
 MountSettings = bpy.types.PropertyGroup
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
+PAINTED = 0.5
+"""A vertex with a larger weight counts as painted."""
 
 
-def mounting_of(
+def mounts_of(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph,
-    sensors: Sequence[bpy.types.Object],
-) -> pe.Mounting:
-    """Return what a scene says of where its sensors may sit; `sensors` are those that count.
+    records: Sequence[SensorRecord],
+) -> dict[str, search.AnyMount]:
+    """Return the scene's mounts that visible sensors are on, by name.
 
     Raises
     ------
     InputError
-        When a mount that a sensor is on has no faces or slots, or is none.
+        When a mount that a sensor is on has no faces or slots, or does not exist.
     """
-    pairs, groups = pairs_of(scene, sensors), groups_of(sensors)
-    follow = followers_of(pairs, groups)
-    on = {o.name: m for o in sensors if (m := o.perception_entropy.mount) and o.name not in follow}
-    rows = {row.name: row for row in scene.perception_entropy.mounts}
+    rows, on = {row.name: row for row in scene.perception_entropy.mounts}, mounted(records)
     for name, mount in on.items():
         if mount not in rows:
             expected = f"one of {', '.join(rows)}" if rows else "a mount of the scene"
             raise pe.InputError("scene", f"sensor {name!r}: mount", expected, repr(mount))
     used = [name for name in rows if name in on.values()]
     try:
-        mounts = {name: mount_of_row(scene, depsgraph, rows[name]) for name in used}
-        return pe.Mounting(mounts, on, pairs, groups, constraints_of(scene))
+        return {name: mount_of_row(scene, depsgraph, rows[name]) for name in used}
     except pe.InputError as error:
-        raise _of_scene(error) from None
+        raise of_scene(error) from None
+
+
+def mounting_of(
+    records: Sequence[SensorRecord],
+    mounts: Mapping[str, search.AnyMount],
+    constraints: pe.Constraints,
+) -> pe.Mounting:
+    """Return where a search may put the visible sensors of some records.
+
+    Raises
+    ------
+    InputError
+        When a sensor is in two groups, or a mount is missing.
+    """
+    try:
+        return pe.Mounting(
+            mounts, mounted(records), pairs_of(records), groups_of(records), constraints
+        )
+    except pe.InputError as error:
+        raise of_scene(error) from None
 
 
 def mount_of_row(
@@ -69,29 +94,44 @@ def mount_of_row(
     return pe.SurfaceMount((), standoff, row.orientation, area)
 
 
-def pairs_of(
-    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]
-) -> tuple[tuple[str, str], ...]:
-    """Return sensors that are linked mirror images, the first by name leading."""
-    names, found = {obj.name for obj in sensors}, []
-    for obj in sensors:
-        other = mirror_of(obj, scene)
-        if other is not None and obj.name < other.name and other.name in names:
-            found.append((obj.name, other.name))
-    return tuple(found)
+def mounted(records: Sequence[SensorRecord]) -> dict[str, str]:
+    """Return the mount of each visible sensor that is on one and follows no other sensor."""
+    followers = followers_of(pairs_of(records), groups_of(records))
+    return {
+        record.name: record.mount
+        for record in records
+        if record.visible and record.mount and record.name not in followers
+    }
 
 
-def groups_of(sensors: Sequence[bpy.types.Object]) -> tuple[tuple[str, ...], ...]:
-    """Return sensors of one rack; the first by name leads, one that is on a mount before others."""
-    racks: dict[tuple[str, str], list[bpy.types.Object]] = {}
-    for obj in sensors:
-        if (key := _rack_of(obj)) is not None:
-            racks.setdefault(key, []).append(obj)
+def pairs_of(records: Sequence[SensorRecord]) -> tuple[tuple[str, str], ...]:
+    """Return visible sensors that are linked mirror images, the first by name leading."""
+    visible = {record.name: record for record in records if record.visible}
+    pairs = []
+    for name, record in visible.items():
+        other = visible.get(record.mirror_of)
+        if other is not None and name < other.name and other.mirror_of == name:
+            pairs.append((name, other.name))
+    return tuple(pairs)
+
+
+def groups_of(records: Sequence[SensorRecord]) -> tuple[tuple[str, ...], ...]:
+    """Return groups of visible sensors that are on one rack.
+
+    The first by name leads; one that is on a mount comes before the others.
+    """
+    racks: dict[tuple[str, str], list[SensorRecord]] = {}
+    for record in records:
+        if record.visible and (record.rack or record.parent_rack):
+            key = ("rack", record.rack) if record.rack else ("parent", record.parent_rack)
+            racks.setdefault(key, []).append(record)
     ordered = (
-        sorted(each, key=lambda o: (not o.perception_entropy.mount, o.name))
-        for each in racks.values()
+        sorted(members, key=lambda record: (not record.mount, record.name))
+        for members in racks.values()
     )
-    return tuple(tuple(obj.name for obj in each) for each in ordered if len(each) > 1)
+    return tuple(
+        tuple(record.name for record in members) for members in ordered if len(members) > 1
+    )
 
 
 def followers_of(pairs: Sequence[Sequence[str]], groups: Sequence[Sequence[str]]) -> frozenset[str]:
@@ -100,13 +140,18 @@ def followers_of(pairs: Sequence[Sequence[str]], groups: Sequence[Sequence[str]]
 
 
 def constraints_of(scene: bpy.types.Scene) -> pe.Constraints:
-    """Return what every placement of a scene's search keeps to."""
-    settings = scene.perception_entropy
-    height, width = (
-        as_typed(value) if value else None for value in (settings.max_height, settings.max_width)
-    )
-    distance = as_typed(settings.min_distance)
-    return pe.Constraints(height, width, distance, settings.clear_housings, no_go_of(scene))
+    """Return the constraints of a scene's search.
+
+    Raises
+    ------
+    InputError
+        When a limit or a no-go area is impossible.
+    """
+    values = values_of(scene.perception_entropy, pe.Constraints)
+    try:
+        return pe.Constraints(**values, no_go=no_go_of(scene))
+    except pe.InputError as error:
+        raise of_scene(error) from None
 
 
 def no_go_of(scene: bpy.types.Scene) -> tuple[pe.NoGo, ...]:
@@ -116,19 +161,19 @@ def no_go_of(scene: bpy.types.Scene) -> tuple[pe.NoGo, ...]:
 
 
 def _no_go(obj: bpy.types.Object) -> pe.NoGo:
-    """The box along the axes of the ground frame round an empty or a mesh."""
+    """Return the axis-aligned box in the ground frame round an empty or a mesh."""
     if obj.type == "EMPTY":
         local = CORNERS * obj.empty_display_size
     else:
         local = np.array(obj.bound_box, dtype=float)
     ground_from_object = np.array(obj.matrix_world, dtype=float)
     corners = local @ ground_from_object[:3, :3].T + ground_from_object[:3, 3]
-    low, high = (np.round(each(axis=0), 5) + 0.0 for each in (corners.min, corners.max))
+    low, high = (np.round(extreme(axis=0), 5) + 0.0 for extreme in (corners.min, corners.max))
     return pe.NoGo(obj.name, *zip(low.tolist(), high.tolist(), strict=True))
 
 
 def _slots(row: MountSettings, depsgraph: bpy.types.Depsgraph) -> list[pe.Slot]:
-    """The empties of a mount's collection as slots, by name."""
+    """Return the empties of a mount's collection as slots, by name."""
     objects = () if row.slots is None else row.slots.all_objects
     empties = (o for o in objects if o.type == "EMPTY" and not o.perception_entropy.is_sensor)
     return [pe.Slot(o.name, pose_of(o, depsgraph)) for o in sorted(empties, key=lambda o: o.name)]
@@ -136,21 +181,160 @@ def _slots(row: MountSettings, depsgraph: bpy.types.Depsgraph) -> list[pe.Slot]:
 
 def part_names(row: MountSettings) -> list[str]:
     """Return the names of the objects whose faces a mount is made of."""
-    return list(dict.fromkeys(each.part.name_full for each in row.parts if each.part is not None))
+    return list(dict.fromkeys(item.part.name_full for item in row.parts if item.part is not None))
 
 
-def _rack_of(obj: bpy.types.Object) -> tuple[str, str] | None:
-    """What a sensor moves with: a rack of a name, or the object it is parented to."""
-    if rack := obj.perception_entropy.rack:
-        return "rack", rack
-    parent = obj.parent
-    if parent is not None and parent.perception_entropy.is_rack:
-        return "parent", parent.name
-    return None
-
-
-def _of_scene(error: pe.InputError) -> pe.InputError:
-    """Say of the scene what the engine says of a mount or a search."""
+def of_scene(error: pe.InputError) -> pe.InputError:
+    """Return an engine's error with the source "scene"; its own source moves to the field."""
     if error.source == "scene":
         return error
     return pe.InputError("scene", f"{error.source}: {error.field}", error.expected, error.found)
+
+
+def painted_area(
+    vehicle: bpy.types.Collection,
+    depsgraph: bpy.types.Depsgraph,
+    mount: bpy.types.PropertyGroup,
+) -> np.ndarray:
+    """Return a mount's faces (F, 3, 3) [m], with modifiers, parents and instances applied.
+
+    They equal triangles of the engine's vehicle to the bit. The array is empty if no face is
+    painted or has the material.
+    """
+    areas = []
+    for obj, ground_from_object in drawn_meshes(vehicle, depsgraph):
+        if not _may_have(obj, mount):
+            continue
+        mesh = obj.to_mesh()
+        is_painted = _chosen(obj, mesh, mount)
+        triangles = placed_triangles(triangles_of(mesh)[is_painted], ground_from_object)
+        areas.append((obj.original.name_full, triangles))
+        obj.to_mesh_clear()
+    areas.sort(key=lambda pair: pair[0])
+    return np.concatenate([area for _, area in areas]) if areas else np.empty((0, 3, 3))
+
+
+def _may_have(obj: bpy.types.Object, mount: bpy.types.PropertyGroup) -> bool:
+    """Whether an evaluated object has the vertex group or the material of a mount."""
+    if mount.faces == BY_GROUP:
+        return mount.group in obj.vertex_groups
+    return mount.faces == BY_MATERIAL and bool(_slots_of(obj, mount.material))
+
+
+def _chosen(
+    obj: bpy.types.Object, mesh: bpy.types.Mesh, mount: bpy.types.PropertyGroup
+) -> np.ndarray:
+    """Return a mask (F,) of the triangles of a mesh that belong to the mount."""
+    count = len(mesh.loop_triangles) if mesh.loop_triangles else _triangulated(mesh)
+    if mount.faces == BY_MATERIAL:
+        index = np.empty(count, np.int32)
+        mesh.loop_triangles.foreach_get("material_index", index)
+        return np.isin(index, _slots_of(obj, mount.material))
+    corners = np.empty(3 * count, np.int32)
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    return _painted(mesh, obj.vertex_groups[mount.group].index)[corners.reshape(-1, 3)].all(axis=1)
+
+
+def _painted(mesh: bpy.types.Mesh, group: int) -> np.ndarray:
+    """Return a mask (P,) of the vertices with a weight above 0.5 in a vertex group."""
+    weights = (
+        any(element.group == group and element.weight > PAINTED for element in vertex.groups)
+        for vertex in mesh.vertices
+    )
+    return np.fromiter(weights, bool, len(mesh.vertices))
+
+
+def _triangulated(mesh: bpy.types.Mesh) -> int:
+    mesh.calc_loop_triangles()
+    return len(mesh.loop_triangles)
+
+
+def _slots_of(obj: bpy.types.Object, material: bpy.types.Material | None) -> list[int]:
+    """Return the indices of a material among an object's slots."""
+    slots = (slot.material for slot in obj.material_slots)
+    return [n for n, each in enumerate(slots) if each is not None and each.original == material]
+
+
+def area_problem(mount: bpy.types.PropertyGroup) -> pe.InputError:
+    """Return the error of a surface that has no faces."""
+    if mount.faces == BY_GROUP:
+        expected = "faces of the vehicle that are painted in it, with weights above 0.5"
+        return _of_mount(mount, f"vertex group {mount.group!r}", expected)
+    if mount.material is None:
+        return _of_mount(mount, "material", "a material of the vehicle", found="none chosen")
+    return _of_mount(mount, f"material {mount.material.name!r}", "faces of the vehicle with it")
+
+
+def _of_mount(
+    mount: bpy.types.PropertyGroup, field: str, expected: str, found: str = "none"
+) -> pe.InputError:
+    return pe.InputError("scene", f"mount {mount.name!r}: {field}", expected, found)
+
+
+class LimitBox(NamedTuple):
+    """An axis-aligned box in the ground frame [m], and whether it is a no-go area."""
+
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    forbidden: bool
+
+
+def mount_key(row: bpy.types.PropertyGroup) -> Hashable:
+    """Return a cache key of a mount's faces, besides the vehicle; None for a list of slots."""
+    if row.kind != ON_SURFACE:
+        return None
+    said: dict[str, Hashable] = {
+        BY_PARTS: tuple(part_names(row)),
+        BY_MATERIAL: row.material.name_full if row.material else None,
+        BY_GROUP: row.group,
+    }
+    return row.faces, said[row.faces]
+
+
+def mount_faces(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+    row: bpy.types.PropertyGroup,
+    vehicle: pe.Vehicle,
+) -> np.ndarray:
+    """Return the faces (F, 3, 3) of a surface mount [m]; an empty array without faces."""
+    if row.faces == BY_PARTS:
+        wanted = [n for n, name in enumerate(vehicle.part_names) if name in part_names(row)]
+        return vehicle.triangles[np.isin(vehicle.parts, wanted)]
+    return painted_area(scene.perception_entropy.vehicle, depsgraph, row)
+
+
+def bounds_box(
+    obj: bpy.types.Object,
+    sensor: pe.Sensor,
+    vehicle: pe.Vehicle | None,
+    around: np.ndarray | None = None,
+) -> LimitBox | None:
+    """Return the box of a sensor's own bounds and constraints; None for one without any.
+
+    On a fixed axis the box has no extent. On a free axis without bounds it has the default bounds;
+    for a sensor on a surface it spans the faces `around` (F, 3, 3) and the sensor.
+    """
+    settings = obj.perception_entropy
+    bounds = bounds_by_axis(settings.bounded, settings.bounds_low, settings.bounds_high)
+    limits = search_bounds(sensor, vehicle, bounds, limit_constraints(obj))
+    if not set("xyz") & set(limits):
+        return None
+    usual, free = search.default_bounds(sensor, vehicle), free_axes(obj)
+    ends = []
+    for number, axis in enumerate("xyz"):
+        position = sensor.pose.position[number]
+        side_range = (position, position) if axis not in free else usual[axis]
+        if around is not None:
+            side = around[:, :, number]
+            side_range = (min(float(side.min()), position), max(float(side.max()), position))
+        ends.append(
+            limits.get(axis, side_range) if around is not None or axis in free else side_range
+        )
+    return LimitBox(*zip(*ends, strict=True), False)
+
+
+def no_go_boxes(scene: bpy.types.Scene) -> tuple[LimitBox, ...]:
+    """Return the no-go areas of a scene."""
+    sides = ((area.x, area.y, area.z) for area in no_go_of(scene))
+    return tuple(LimitBox(*zip(*ranges, strict=True), True) for ranges in sides)

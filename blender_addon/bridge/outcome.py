@@ -1,4 +1,4 @@
-"""What a job found, written to the scene for the panel to show."""
+"""The outcome of a job, stored in the scene for the panel."""
 
 from __future__ import annotations
 
@@ -8,16 +8,14 @@ from collections.abc import Sequence
 import bpy
 
 from ..engine import advice, pe
-from .oddities import DRIVER, MISSING
 from .rig import sensor_objects
-from .targets import store_found
-from .tolerance import store_robustness
-from .versions import figures_of
+from .scene_diagnostics import DRIVER, MISSING
+from .versions import score_to_dict
 
 PARTS_NAMED = 3
-"""How many parts of the vehicle the panel names as stopping beams."""
+"""The panel names so many parts of the vehicle that block beams."""
 MARKING = (MISSING, DRIVER)
-"""Warnings that mark a result: what was scored is not what was meant."""
+"""Codes of warnings that mark a result: what was scored is not what was meant."""
 
 
 def store_outcome(
@@ -26,10 +24,10 @@ def store_outcome(
     signature: str,
     sensors: Sequence[bpy.types.Object] | None = None,
 ) -> None:
-    """Keep a result in the scene: figures for display, and result.json in full.
+    """Store an outcome in the scene: figures for display, and result.json in full.
 
-    `signature` is that of what was scored, taken when it was read: the scene may have changed.
-    `sensors` are the scene's, when they have been looked for already.
+    `signature` is the scene's signature at the time when it was read: the scene may have changed
+    since. `sensors` are the scene's sensors, if the caller has already read them.
     """
     settings = scene.perception_entropy
     settings.result_kind = outcome.kind
@@ -38,7 +36,7 @@ def store_outcome(
     settings.result_coverage = outcome.after.coverage
     settings.result_stderr = outcome.after.stderr
     result = pe.result_dict(outcome, blender_version())
-    result["after"] = figures_of(outcome.after)
+    result["after"] = score_to_dict(outcome.after)
     settings.result_json = json.dumps(result)
     store_warnings(settings, outcome.warnings)
     store_robustness(settings, outcome)
@@ -50,7 +48,7 @@ def store_outcome(
         obj.perception_entropy.result_run = signature
     store_words(scene, outcome.study, outcome.after)
     _store_breakdown(settings, outcome.after)
-    store_found(settings, outcome.after.objects)
+    store_object_score(settings, outcome.after.objects)
     settings.result_stale = False
     settings.has_result = True
 
@@ -61,20 +59,22 @@ def store_words(
     score: pe.Score,
     seen: advice.Outlook | None = None,
 ) -> None:
-    """Keep a result in words: the rig's with the scene, each sensor's with its object."""
+    """Store a result's sentences: on the rig in the scene, on each sensor in its object."""
     scene.perception_entropy.result_words = "\n".join(advice.rig_words(score, seen, study.rig))
     for row in advice.sensor_rows(score, study.rig, study.vehicle, seen):
         obj = scene.objects.get(row.name)
         if obj is not None and obj.perception_entropy.is_sensor:
             _store_row(obj.perception_entropy, row)
             zones = None if seen is None or score.objects else seen.shares.zones[row.name]
-            own, sensor = score.per_sensor[row.name], study.rig[row.name]
-            told = advice.sensor_words(own, sensor, study.vehicle, zones, alone=row.loss is None)
-            obj.perception_entropy.words = "\n".join(told)
+            sensor_score, sensor = score.per_sensor[row.name], study.rig[row.name]
+            sentences = advice.sensor_words(
+                sensor_score, sensor, study.vehicle, zones, alone=row.loss is None
+            )
+            obj.perception_entropy.words = "\n".join(sentences)
 
 
 def _store_row(settings: bpy.types.PropertyGroup, row: advice.SensorRow) -> None:
-    """Store a sensor's row of the table: loss, where it costs most, and the parts that hide it."""
+    """Store a sensor's table row: loss, the zone of the largest loss, and occluding parts."""
     _, settings.loss_text, settings.loss_where, _ = row.cells
     settings.stopped_parts.clear()
     for name, share in list(row.hidden_by.items())[:PARTS_NAMED]:
@@ -83,7 +83,7 @@ def _store_row(settings: bpy.types.PropertyGroup, row: advice.SensorRow) -> None
 
 
 def _store_breakdown(settings: bpy.types.PropertyGroup, score: pe.Score) -> None:
-    """Keep entropy and coverage by zone and by class, for the panel's table."""
+    """Store entropy and coverage by zone and by class, for the panel's table."""
     settings.result_parts.clear()
     zones = {advice.WHERE.get(name, name): part for name, part in score.per_zone.items()}
     for is_class, parts in ((False, zones), (True, score.per_class)):
@@ -93,19 +93,19 @@ def _store_breakdown(settings: bpy.types.PropertyGroup, score: pe.Score) -> None
             row.entropy, row.coverage = part.entropy, part.coverage
 
 
-def store_warnings(settings: bpy.types.PropertyGroup, told: Sequence[pe.Advice]) -> None:
-    """Keep what is odd about a scene's sensors and vehicle in its settings, for the panel."""
+def store_warnings(settings: bpy.types.PropertyGroup, warnings: Sequence[pe.Advice]) -> None:
+    """Store the warnings about a scene's sensors and vehicle, for the panel."""
     settings.result_warnings.clear()
-    for each in (each for each in told if each.code != advice.FRAGILE):
+    for warning in (w for w in warnings if w.code != advice.FRAGILE):
         row = settings.result_warnings.add()
-        row.subject, row.code, row.text = each.subject or "", each.code, each.text
-        row.part, row.fix = each.part or "", each.fix or ""
-        row.amounts = len(each.amount)
-        row.amount = (*each.amount, 0.0, 0.0, 0.0)[:3]
+        row.subject, row.code, row.text = warning.subject or "", warning.code, warning.text
+        row.part, row.fix = warning.part or "", warning.fix or ""
+        row.amounts = len(warning.amount)
+        row.amount = (*warning.amount, 0.0, 0.0, 0.0)[:3]
 
 
 def blender_version() -> dict[str, str]:
-    """Return what a result says about the program it came from."""
+    """Return the version of Blender, as result.json holds it."""
     return {"blender": bpy.app.version_string}
 
 
@@ -119,8 +119,44 @@ def _store_sensor(settings: bpy.types.PropertyGroup, score: pe.SensorScore | Non
 
 
 def _stopped_text(score: pe.SensorScore) -> str:
-    """Return who stops the beams, most first: "roof 7.5%, hood 1.2%"."""
+    """Return the parts that block most beams: "roof 7.5%, hood 1.2%"."""
     by_count = sorted(score.stopped_by.items(), key=lambda item: (-item[1], item[0]))
     named = [f"{part} {count / score.beams:.1%}" for part, count in by_count[:PARTS_NAMED] if count]
     more = ["..."] if len(by_count) > PARTS_NAMED else []
     return ", ".join(named + more)
+
+
+def store_robustness(settings: bpy.types.PropertyGroup, outcome: pe.Outcome) -> None:
+    """Store how much mounting errors and failures raise the entropy of a search's start and end."""
+    robustness = outcome.robustness
+    off = lost = ""
+    if robustness is not None:
+        off = _change(robustness.before.rise, robustness.after.rise)
+        lost = _change(robustness.before.loss, robustness.after.loss)
+    settings.result_mounted_off, settings.result_sensor_lost = off, lost
+    fragile = (warning.text for warning in outcome.warnings if warning.code == advice.FRAGILE)
+    settings.result_fragile = next(fragile, "")
+
+
+def _change(before: float | None, after: float | None) -> str:
+    if before is None or after is None:
+        return ""
+    return f"{before:+.3f} \N{RIGHTWARDS ARROW} {after:+.3f} nats"
+
+
+def store_object_score(settings: bpy.types.PropertyGroup, score: pe.ObjectScore | None) -> None:
+    """Store the expected AP of objects for the panel: of all objects, and by class."""
+    settings.result_ap = ""
+    if score is None:
+        return
+    settings.result_ap = f"{score.ap:.3f} \N{PLUS-MINUS SIGN} {max(score.ap_stderr, 1e-3):.3f}"
+    by_name = {_shown(name): class_score for name, class_score in score.per_class.items()}
+    for row in settings.result_parts:
+        class_score = by_name.get(row.name) if row.is_class else None
+        if class_score is not None:
+            row.ap = f"{class_score.ap:.2f}"
+            row.reach = advice.lone_reach(class_score.reach["front"])
+
+
+def _shown(name: str) -> str:
+    return name[:1].upper() + name[1:]

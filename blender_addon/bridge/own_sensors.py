@@ -1,7 +1,11 @@
-"""A file's own sensors: figures in the .blend, entries of the catalogue while it is open."""
+"""A file's own sensors: stored in the .blend, and in the catalogue while the file is open.
+
+A camera's lens is stored as one line of text, with the keys of a study file.
+"""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,18 +13,20 @@ import bpy
 
 from ..choices import free_name
 from ..engine import catalog, pe
-from .lens_text import LENS_KEYS, lens_text, read_lens
+from .float32 import as_typed, pair_as_typed
 from .rig import sensor_objects
-from .typed import as_typed, pair_as_typed
 
 _added: dict[str, dict[str, Any]] = {}
-"""What this add-on has put into the catalogue, by name: tables."""
+"""Tables that this add-on has added to the catalogue, by name."""
+LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "fov_deg", "distortion"})
+"""Any of these takes the place of a field of view."""
+LINE_KEYS = ("fx", "fy", "cx", "cy", "fov_deg", "min_range_m", "max_range_m", "distortion")
 
 
 def sync_own_sensors() -> None:
-    """Have the catalogue hold the own sensors of the open file, as they are now, and no others.
+    """Update the catalogue so that it holds exactly the own sensors of the open file.
 
-    A row whose figures are impossible, or whose name is taken, says so and is left out.
+    A row with impossible figures or a name that is taken shows its error and is left out.
     """
     wanted: dict[str, dict[str, Any]] = {}
     for scene in bpy.data.scenes:
@@ -33,26 +39,31 @@ def sync_own_sensors() -> None:
     problems = {name: _add(name, table) for name, table in wanted.items() if name not in _added}
     for scene in bpy.data.scenes:
         for row in scene.perception_entropy.own_sensors:
-            said = problems.get(row.name, "")
-            if row.problem != said:
-                row.problem = said
+            problem = problems.get(row.name, "")
+            if row.problem != problem:
+                row.problem = problem
 
 
-def forget_own_sensors() -> None:
-    """Take them all out of the catalogue."""
+def remove_own_sensors() -> None:
+    """Remove all own sensors from the catalogue."""
     while _added:
         catalog.remove(_added.popitem()[0])
 
 
 def table_of(row: bpy.types.PropertyGroup) -> dict[str, Any]:
-    """Return an own sensor's figures as the catalogue takes them."""
-    if row.kind == "camera":
-        size = {"kind": "camera", "width": row.width, "height": row.height}
-        lens = read_lens(row.lens)
-        return size | ({} if LENS_KEYS & set(lens) else {"hfov_deg": as_typed(row.hfov)}) | lens
-    least = {"min_range_m": as_typed(row.min_range)} if row.min_range > 0.0 else {}
-    return least | {
-        "kind": "lidar",
+    """Return an own sensor's figures as a table of the catalogue."""
+    to_table, _ = CONVERSIONS.get(row.kind, OTHER)
+    return {"kind": row.kind} | to_table(row)
+
+
+def _camera_table(row: bpy.types.PropertyGroup) -> dict[str, Any]:
+    size, lens = {"width": row.width, "height": row.height}, read_line(row.lens, "distortion")
+    return size | ({} if LENS_KEYS & set(lens) else {"hfov_deg": as_typed(row.hfov)}) | lens
+
+
+def _lidar_table(row: bpy.types.PropertyGroup) -> dict[str, Any]:
+    min_range = {"min_range_m": as_typed(row.min_range)} if row.min_range > 0.0 else {}
+    return min_range | {
         "elevations_deg": _elevations(row),
         "azimuth_step_deg": as_typed(row.azimuth_step),
         "max_range_m": as_typed(row.max_range),
@@ -61,25 +72,27 @@ def table_of(row: bpy.types.PropertyGroup) -> dict[str, Any]:
 
 
 def add_own_sensor(scene: bpy.types.Scene, name: str, table: Mapping[str, Any]) -> str:
-    """Add an own sensor with a catalogue table's figures, and return what it is called.
+    """Add an own sensor with the values of a catalogue table; return its name.
 
-    LiDARs have evenly spread channels here.
+    The channels of a LiDAR become evenly spread.
     """
     row = scene.perception_entropy.own_sensors.add()
     row.kind = table["kind"]
-    for key, value in _figures(table).items():
+    _, to_figures = CONVERSIONS.get(table["kind"], OTHER)
+    for key, value in to_figures(table).items():
         setattr(row, key, value)
     row.name = free_name(name, set(catalog.entries()))
     sync_own_sensors()
     return str(row.name)
 
 
-def _figures(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the properties of a row that has a table's figures."""
-    if table["kind"] == "camera":
-        known = {k: table[k] for k in ("width", "height")}
-        known |= {"hfov": table["hfov_deg"]} if "hfov_deg" in table else {}
-        return known | {"lens": lens_text(table)}
+def _camera_figures(table: Mapping[str, Any]) -> dict[str, Any]:
+    size = {key: table[key] for key in ("width", "height")}
+    fov = {"hfov": table["hfov_deg"]} if "hfov_deg" in table else {}
+    return size | fov | {"lens": lens_text(table)}
+
+
+def _lidar_figures(table: Mapping[str, Any]) -> dict[str, Any]:
     elevations = table["elevations_deg"]
     step = table.get("azimuth_step_deg") or 360.0 / table["azimuth_count"]
     return {
@@ -93,7 +106,7 @@ def _figures(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def own_sensors_signature(scene: bpy.types.Scene) -> list[object]:
-    """Return what a score depends on of own sensors that are mounted."""
+    """Return the tables of the own sensors in use, because a score depends on them."""
     rows = {row.name: row for row in scene.perception_entropy.own_sensors}
     if not rows:
         return []
@@ -102,14 +115,14 @@ def own_sensors_signature(scene: bpy.types.Scene) -> list[object]:
 
 
 def _elevations(row: bpy.types.PropertyGroup) -> list[float]:
-    """Elevations of channels that are evenly spread, lowest first [deg]."""
+    """Return elevations of evenly spread channels, lowest first [deg]."""
     low, high = pair_as_typed(row.elevations)
     steps = max(row.channels - 1, 1)
     return [round(low + (high - low) * n / steps, 6) for n in range(row.channels)]
 
 
 def _follow_name(scene: bpy.types.Scene, row: bpy.types.PropertyGroup) -> None:
-    """Have sensors of a renamed model go with it."""
+    """Update the sensors of a model that was renamed."""
     before = row.known_as
     if before == row.name:
         return
@@ -120,10 +133,49 @@ def _follow_name(scene: bpy.types.Scene, row: bpy.types.PropertyGroup) -> None:
 
 
 def _add(name: str, table: dict[str, Any]) -> str:
-    """Put one into the catalogue; return why that is not possible, or nothing."""
+    """Add a table to the catalogue; return the error, or "" for none."""
     try:
         catalog.add(name, table)
     except pe.InputError as error:
         return str(error)
     _added[name] = table
     return ""
+
+
+def read_line(text: str, refused_as: str) -> dict[str, Any]:
+    """Return the keys of a line of text.
+
+    A line that cannot be parsed becomes the value of the key `refused_as`, so that the engine
+    reports it as an error.
+    """
+    try:
+        return dict(tomllib.loads(f"line = {{ {text} }}")["line"])
+    except tomllib.TOMLDecodeError:
+        return {refused_as: text}
+
+
+def lens_text(table: Mapping[str, Any]) -> str:
+    """Return the lens of a camera's table as a line of text; empty without lens keys."""
+    return _line({key: table[key] for key in LINE_KEYS if key in table})
+
+
+def _line(table: Mapping[str, Any]) -> str:
+    return ", ".join(f"{key} = {_value(value)}" for key, value in table.items())
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{{ {_line(value)} }}"
+    return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+CONVERSIONS = {
+    "lidar": (_lidar_table, _lidar_figures),
+    "camera": (_camera_table, _camera_figures),
+}
+"""By kind: from an own sensor to a table of the catalogue, and from such a table to properties."""
+OTHER = (
+    lambda row: read_line(row.keys, "keys"),
+    lambda table: {"keys": _line({key: table[key] for key in table if key != "kind"})},
+)
+"""Of a kind without fields of its own: a line of text has its keys."""

@@ -1,7 +1,7 @@
-"""Blender's own cameras and empties as sensors, and sensors as cameras and empties of Blender's.
+"""Convert Blender's cameras and empties to sensors, and sensors to cameras and empties.
 
-A sensor's name and model stand in the object's custom properties, a picture's size in the camera's:
-a scene has one size of pictures, a rig has many.
+A sensor's name and model are custom properties of the object. The image size is a custom property
+of the camera, because a scene has one image size and a rig may have several.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ DIGITS_PX, DIGITS_M = 4, 6
 
 
 def plain_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
-    """Return those that are cameras or empties, and no sensors or parts of one."""
+    """Return the cameras and empties that are neither sensors nor view cameras."""
     kinds = {"CAMERA", "EMPTY"}
-    mine = (each for each in objects if each.type in kinds and not _is_ours(each))
-    return [each for each in mine if each.instance_collection is None]
+    candidates = (obj for obj in objects if obj.type in kinds and not _is_ours(obj))
+    return [obj for obj in candidates if obj.instance_collection is None]
 
 
 def _is_ours(obj: bpy.types.Object) -> bool:
-    own = obj.perception_entropy
-    return own.is_sensor or own.is_view
+    settings = obj.perception_entropy
+    return settings.is_sensor or settings.is_view
 
 
 def sensors_of_objects(
@@ -47,32 +47,32 @@ def sensors_of_objects(
     models: Mapping[str, str],
     stand_in: str,
 ) -> tuple[list[pe.Sensor], list[str]]:
-    """Return cameras and empties as sensors, and a line for each that another model stands in for.
+    """Return cameras and empties as sensors, and a message for each one with a substitute model.
 
-    `models` are those chosen by the sensors' names; an empty that says none has the `stand_in`.
+    `models` are the chosen models by sensor name; an empty without a model gets `stand_in`.
 
     Raises
     ------
     InputError
         When there is none, or a camera has no perspective or no possible lens.
     """
-    found, lines = [], []
+    sensors, lines = [], []
     for obj in plain_objects(objects):
         name = str(obj.get(NAME, obj.name))
-        chosen = models.get(name) or _model_of(obj)
-        if obj.type == "EMPTY" and chosen is None:
+        model_name = models.get(name) or _model_of(obj)
+        if obj.type == "EMPTY" and model_name is None:
             lines.append(f"{name}: no model on the empty; {stand_in} stands in: choose its model")
-        model = _camera(scene, obj, name, chosen) if obj.type == "CAMERA" else None
-        found.append(pe.Sensor(name, model or catalog.load(chosen or stand_in), _pose(obj)))
-    if not found:
+        model = _camera(scene, obj, name, model_name) if obj.type == "CAMERA" else None
+        sensors.append(pe.Sensor(name, model or catalog.load(model_name or stand_in), _pose(obj)))
+    if not sensors:
         raise pe.InputError("scene", "objects", "cameras or empties", "none")
-    return found, lines
+    return sensors, lines
 
 
 def _model_of(obj: bpy.types.Object) -> str | None:
-    """Return what an object says of its model, if the catalogue has it."""
-    said = str(obj.get(MODEL, ""))
-    return said if said in catalog.entries() else None
+    """Return the model name in an object's custom property, if the catalogue has that model."""
+    name = str(obj.get(MODEL, ""))
+    return name if name in catalog.entries() else None
 
 
 def _pose(obj: bpy.types.Object) -> pe.Pose:
@@ -84,15 +84,15 @@ def _pose(obj: bpy.types.Object) -> pe.Pose:
 
 
 def _camera(
-    scene: bpy.types.Scene, obj: bpy.types.Object, name: str, chosen: str | None
+    scene: bpy.types.Scene, obj: bpy.types.Object, name: str, model_name: str | None
 ) -> pe.Camera:
-    """Return a camera's model: the chosen one while the lens is its, else the lens's own."""
+    """Return a camera's model: the chosen one if the lens matches it, else a model of the lens."""
     camera = obj.data
     if camera.type != "PERSP":
         raise pe.InputError("scene", f"camera {name!r}", "a perspective lens", camera.type)
     table = _table(scene, camera)
-    if chosen is not None:
-        model = catalog.load(chosen)
+    if model_name is not None:
+        model = catalog.load(model_name)
         picture = exchange.picture_of(model)
         if picture is None or _is_of(picture, table):
             return model
@@ -102,7 +102,7 @@ def _camera(
 def _table(scene: bpy.types.Scene, camera: bpy.types.Camera) -> dict[str, object]:
     """Return a camera's figures with the keys of a study.
 
-    Blender measures the film along the picture's longer side, unless the fit says which one.
+    Blender measures the sensor along the image's longer side, unless the sensor fit names a side.
     """
     width, height, aspect = _picture(scene, camera)
     fit = camera.sensor_fit
@@ -121,7 +121,7 @@ def _table(scene: bpy.types.Scene, camera: bpy.types.Camera) -> dict[str, object
 
 
 def _picture(scene: bpy.types.Scene, camera: bpy.types.Camera) -> tuple[int, int, float]:
-    """Return width and height [px] and a pixel's height over its width: its own, or the scene's."""
+    """Return width, height [px] and pixel aspect (height / width) of the camera or the scene."""
     render = scene.render
     share = render.resolution_percentage / 100.0
     size = camera.get(SIZE) or [
@@ -133,7 +133,7 @@ def _picture(scene: bpy.types.Scene, camera: bpy.types.Camera) -> tuple[int, int
 
 
 def _is_of(picture: exchange.Picture, table: Mapping[str, object]) -> bool:
-    """Whether a camera's figures are those of a picture, on its axis."""
+    """Whether a camera's image has the given figures, with the principal point on the axis."""
     figures = (*(picture.size or ()), picture.fx, picture.fy, *picture.center)
     keys = ("width", "height", "fx", "fy", "cx", "cy")
     return all(
@@ -143,9 +143,9 @@ def _is_of(picture: exchange.Picture, table: Mapping[str, object]) -> bool:
 
 
 def put_objects(scene: bpy.types.Scene, rig: pe.Rig) -> tuple[list[bpy.types.Object], list[str]]:
-    """Add a rig's cameras and empties to a scene, in a collection of their own; return them.
+    """Add a rig to a scene as cameras and empties in a new collection; return them and messages.
 
-    The lines say what Blender's cameras and empties cannot show.
+    The messages name properties that Blender's cameras and empties cannot represent.
     """
     collection = bpy.data.collections.new(COLLECTION)
     scene.collection.children.link(collection)
@@ -185,8 +185,8 @@ def _camera_data(sensor: pe.Sensor, picture: exchange.Picture) -> bpy.types.Came
     cx, cy = picture.center
     camera.shift_x = (width / 2.0 - cx) / width
     camera.shift_y = (cy - height / 2.0) * aspect / width
-    least, most = sensor.model.min_range, sensor.model.max_range
-    camera.clip_start = least or CLIPS[0]
-    camera.clip_end = most if math.isfinite(most) else FAR_M
+    min_range, max_range = sensor.model.min_range, sensor.model.max_range
+    camera.clip_start = min_range or CLIPS[0]
+    camera.clip_end = max_range if math.isfinite(max_range) else FAR_M
     camera[SIZE], camera[ASPECT] = (width, height), aspect
     return camera

@@ -1,15 +1,16 @@
-"""The scene's prior with its focus weights w(s, c): what counts more, where."""
+"""The scene's prior with its focus weights w(s, c): regions and classes that count more."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import contextlib
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import bpy
 
-from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, Area
+from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, FocusArea
 from ..engine import pe
-from .typed import as_typed
+from .float32 import as_typed
 
 MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.uniform}
 
@@ -31,7 +32,7 @@ def prior_from_scene(scene: bpy.types.Scene) -> pe.Prior:
 
 
 def prior_signature(scene: bpy.types.Scene) -> list[object]:
-    """Return what the prior depends on; unlike the prior itself, also of a focus that is wrong."""
+    """Return the settings that the prior depends on, including invalid focus weights."""
     settings = scene.perception_entropy
     rows = [(as_typed(row.factor), _areas(row), _classes(row)) for row in settings.focus]
     boxes = [settings.boxes] if settings.prior == FROM_BOXES else []
@@ -39,16 +40,48 @@ def prior_signature(scene: bpy.types.Scene) -> list[object]:
 
 
 def prior_key(scene: bpy.types.Scene) -> str:
-    """Return a text that is another one for another prior, as long as files are what they were."""
+    """Return a cache key of the prior, valid as long as the file of boxes does not change."""
     return repr(prior_signature(scene))
 
 
 def focus_rows(
     scene: bpy.types.Scene,
-) -> tuple[tuple[str, float, tuple[Area, ...], tuple[str, ...] | None], ...]:
-    """Return name, factor, areas and classes (None: all) of each focus, as they are typed."""
+) -> tuple[tuple[str, float, tuple[FocusArea, ...], tuple[str, ...] | None], ...]:
+    """Return name, factor, areas and classes (None: all) of each focus weight."""
     rows = scene.perception_entropy.focus
     return tuple((row.name, as_typed(row.factor), _areas(row), _classes(row)) for row in rows)
+
+
+def write_prior(settings: bpy.types.PropertyGroup, prior: pe.Prior) -> None:
+    """Write a prior's model and its focus weights to a scene.
+
+    A prior of labelled boxes and a focus on a class that is not in the menu are left out.
+    """
+    with contextlib.suppress(TypeError):  # the menu does not have the model
+        settings.prior = prior.model
+    settings.focus.clear()
+    for number, (region, focus) in enumerate(_by_region(prior.focus), start=1):
+        row = settings.focus.add()
+        row.name, row.factor, row.region = f"Focus {number}", focus.factor, region
+        row.x_range, row.y_range = focus.x, focus.y
+        if focus.classes is not None:
+            with contextlib.suppress(TypeError):  # the menu does not have the class
+                row.classes = set(focus.classes)
+
+
+def _by_region(weights: Sequence[pe.Focus]) -> Iterator[tuple[str, pe.Focus]]:
+    """Yield focus weights with their region in the menu; several areas may form one region."""
+    left = list(weights)
+    while left:
+        first = left[0]
+        for region in REGIONS.values():
+            same = [replace(first, x=x, y=y) for x, y in region.areas]
+            if same and left[: len(same)] == same:
+                break
+        else:
+            region, same = REGIONS[CUSTOM], [first]
+        yield region.key, first
+        del left[: len(same)]
 
 
 def _prior_from_boxes(path: str) -> pe.Prior:
@@ -60,7 +93,7 @@ def _prior_from_boxes(path: str) -> pe.Prior:
 
 
 def _checked(prior: pe.Prior, number: int, row: bpy.types.PropertyGroup) -> list[pe.Focus]:
-    """Return the focus of one row; errors say which row it is."""
+    """Return the focus weights of one row, one for each area; errors name the row."""
     try:
         _check_classes(prior, row)
         return list(_focus_of(row))
@@ -74,8 +107,8 @@ def _focus_of(row: bpy.types.PropertyGroup) -> Iterator[pe.Focus]:
         yield pe.Focus(as_typed(row.factor), x, y, _classes(row))
 
 
-def _areas(row: bpy.types.PropertyGroup) -> tuple[Area, ...]:
-    """Return the areas that a row weighs."""
+def _areas(row: bpy.types.PropertyGroup) -> tuple[FocusArea, ...]:
+    """Return the areas of a focus weight."""
     if row.region != CUSTOM:
         return REGIONS[row.region].areas
     (x_low, x_high), (y_low, y_high) = (map(as_typed, v) for v in (row.x_range, row.y_range))
@@ -83,18 +116,18 @@ def _areas(row: bpy.types.PropertyGroup) -> tuple[Area, ...]:
 
 
 def _classes(row: bpy.types.PropertyGroup) -> tuple[str, ...] | None:
-    """Return the classes that a row weighs, None for all, in the order of the menu."""
-    known = [item.identifier for item in row.bl_rna.properties["classes"].enum_items]
-    return None if row.classes == set(known) else tuple(c for c in known if c in row.classes)
+    """Return the classes of a focus weight in the order of the menu; None for all classes."""
+    names = [item.identifier for item in row.bl_rna.properties["classes"].enum_items]
+    return None if row.classes == set(names) else tuple(c for c in names if c in row.classes)
 
 
 def _check_classes(prior: pe.Prior, row: bpy.types.PropertyGroup) -> None:
-    chosen = _classes(row)
-    if chosen == ():
+    classes = _classes(row)
+    if classes == ():
         raise pe.InputError("focus", "classes", "at least one class", "none")
-    if chosen is not None and prior.model == UNIFORM:
+    if classes is not None and prior.model == UNIFORM:
         expected = "all classes, which the uniform prior does not tell apart"
-        raise pe.InputError("focus", "classes", expected, ", ".join(chosen))
-    for name in chosen or ():
+        raise pe.InputError("focus", "classes", expected, ", ".join(classes))
+    for name in classes or ():
         if name not in prior.class_names:
             raise pe.InputError("focus", "classes", f"some of {', '.join(prior.class_names)}", name)

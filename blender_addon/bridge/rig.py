@@ -1,4 +1,4 @@
-"""Sensors: objects of the scene to a rig, and a rig's placements back to the objects."""
+"""Sensors: read objects of the scene as the engine's rig, and write the poses of a rig to them."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ import numpy as np
 from mathutils import Matrix
 
 from ..engine import catalog, geometry, pe, search
-from .own_curves import curve_of
+from .float32 import as_typed
 
 SCALE_TOLERANCE = 1e-4
 """How far a sensor's axes may be from unit length and from right angles."""
 HELD_POSITION_M = 4e-6
 HELD_ROTATION = 2e-6
-"""An object this near to where a search put it still stands there: Blender's single precision,
-and a chain of parents, move it by less. Both are below half a step of the rounding."""
+"""An object this near to its last written pose has not moved: single precision and a chain of
+parents move it by less. Both tolerances are below half a step of the rounding."""
 
 
 def sensor_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """All sensors of a scene by name, hidden ones included."""
-    found = [obj for obj in scene.objects if obj.perception_entropy.is_sensor]
-    return sorted(found, key=lambda obj: obj.name)
+    """Return all sensors of a scene by name, hidden ones included."""
+    sensors = [obj for obj in scene.objects if obj.perception_entropy.is_sensor]
+    return sorted(sensors, key=lambda obj: obj.name)
 
 
 def rig_from_objects(objects: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> pe.Rig:
-    """Return the visible ones of a scene's sensors as a rig.
+    """Return the visible sensors among some objects as a rig.
 
     Raises
     ------
@@ -66,44 +66,44 @@ def sensor_from_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) ->
 def possible_sensors(
     objects: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph
 ) -> list[pe.Sensor]:
-    """Return the visible ones of a scene's sensors, without those that a score would refuse."""
-    found = []
+    """Return the visible sensors among some objects, without those that cannot be scored."""
+    sensors = []
     for obj in objects:
         if obj.visible_get(view_layer=depsgraph.view_layer):
             with contextlib.suppress(pe.InputError):
-                found.append(sensor_from_object(obj, depsgraph))
-    return found
+                sensors.append(sensor_from_object(obj, depsgraph))
+    return sensors
 
 
 def pose_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> pe.Pose:
-    """Return where a sensor stands in the ground frame, rounded as placements are.
+    """Return the pose of a sensor in the ground frame, rounded as placements are.
 
-    The rounding takes away what single precision adds, so that a study file and the scene hold
-    the same numbers.
+    Rounding removes the error of single precision, so that a study file and the scene hold the
+    same numbers.
     """
     ground_from_sensor = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=float)
-    held = held_pose(obj, ground_from_sensor)
+    held = last_written_pose(obj, ground_from_sensor)
     return pose_of_matrix(ground_from_sensor) if held is None else held
 
 
-def held_pose(obj: bpy.types.Object, ground_from_sensor: np.ndarray) -> pe.Pose | None:
-    """Return the pose that was last written to a sensor, while it still stands there."""
+def last_written_pose(obj: bpy.types.Object, ground_from_sensor: np.ndarray) -> pe.Pose | None:
+    """Return the pose that was last written to a sensor; None if the sensor has moved since."""
     _check_rigid(ground_from_sensor)
     written = pose_from_numbers(obj.perception_entropy.placed)
     return written if _stands_at(ground_from_sensor, written) else None
 
 
 def pose_of_matrix(ground_from_sensor: np.ndarray) -> pe.Pose:
-    """Return a (4, 4) placement as a pose, rounded."""
+    """Return a (4, 4) matrix, ground from sensor, as a rounded pose."""
     rpy = geometry.rpy_from_matrix(ground_from_sensor[:3, :3])
     values = (*ground_from_sensor[:3, 3].tolist(), *rpy)
     return search.pose_from_values(dict(zip(search.AXES, values, strict=True)))
 
 
 def place_rig(scene: bpy.types.Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[str]:
-    """Put the sensors where a rig has them; return the names of those that are gone.
+    """Place the scene's sensors as in a rig; return the names of sensors that no longer exist.
 
-    Those that stand as they did at the `start` are left alone, wherever they are by now.
+    Sensors with the same pose in the rig `start` are not moved, wherever they are now.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def place_rig(scene: bpy.types.Scene, rig: pe.Rig, start: pe.Rig | None = None) 
 
 
 def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[str]:
-    """Put sensors, by name, at poses; return the names of those that are gone.
+    """Place sensors, by name, at poses; return the names of sensors that no longer exist.
 
     Raises
     ------
@@ -131,24 +131,24 @@ def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[st
     for obj, pose in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):
         _check_own(obj)
         layer.update()
-        stand_at(obj, pose)
+        place_at(obj, pose)
     layer.update()
     for obj, pose in present:
-        seen = obj.visible_get(view_layer=layer)  # of others Blender does not work out the place
+        seen = obj.visible_get(view_layer=layer)  # Blender evaluates visible objects only
         if seen and not _stands_at(np.array(obj.matrix_world, dtype=float), pose):
             found = "a constraint, driver or animation that holds it"
             raise _not_placed(obj, found)
     return [name for name in poses if not _is_sensor(scene.objects.get(name))]
 
 
-def stand_at(obj: bpy.types.Object, pose: pe.Pose) -> None:
-    """Put an object at a pose, and note it: what single precision makes of it is read as that."""
+def place_at(obj: bpy.types.Object, pose: pe.Pose) -> None:
+    """Place an object at a pose; store the pose, because single precision would round it."""
     _move(obj, pose)
     obj.perception_entropy.placed = (*pose.position, *pose.rotation_deg)
 
 
 def _check_own(obj: bpy.types.Object) -> None:
-    """Complain about a sensor that is linked: its place is its own file's."""
+    """Raise `InputError` for a sensor linked from another file: that file defines its pose."""
     if obj.library is not None:
         raise _not_placed(obj, f"linked from {obj.library.filepath}")
 
@@ -159,8 +159,8 @@ def _not_placed(obj: bpy.types.Object, found: str) -> pe.InputError:
 
 
 def mounted_on_sensor(obj: bpy.types.Object) -> bool:
-    """Whether an object rides on a sensor: its housing, which does not stop its own beams."""
-    return any(_is_sensor(each) for each in (obj, *_ancestors(obj)))
+    """Whether an object is mounted on a sensor, as a housing is; it occludes no beam."""
+    return any(_is_sensor(ancestor) for ancestor in (obj, *_ancestors(obj)))
 
 
 def _is_sensor(obj: bpy.types.Object | None) -> bool:
@@ -168,20 +168,20 @@ def _is_sensor(obj: bpy.types.Object | None) -> bool:
 
 
 def _ancestors(obj: bpy.types.Object) -> list[bpy.types.Object]:
-    found = []
+    ancestors = []
     while obj.parent is not None:
         obj = obj.parent
-        found.append(obj)
-    return found
+        ancestors.append(obj)
+    return ancestors
 
 
 def view_layer_of(scene: bpy.types.Scene) -> bpy.types.ViewLayer:
-    """The view layer in use, or the scene's first when another scene is open."""
+    """Return the view layer in use; the scene's first one when another scene is open."""
     return bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
 
 
 def _check_rigid(matrix: np.ndarray) -> None:
-    """Complain about a sensor that is scaled, sheared or mirrored, or nowhere at all."""
+    """Raise `InputError` for a matrix that scales, shears or mirrors, or is not finite."""
     if not np.isfinite(matrix).all():
         raise pe.InputError("object", "placement", "finite numbers", "NaN or infinity")
     axes = matrix[:3, :3]
@@ -197,36 +197,57 @@ def _check_rigid(matrix: np.ndarray) -> None:
 
 
 def _stands_at(ground_from_sensor: np.ndarray, pose: pe.Pose) -> bool:
-    """Whether a (4, 4) placement is a pose, up to single precision."""
+    """Whether a (4, 4) matrix equals a pose, up to single precision."""
     rotation = np.abs(ground_from_sensor[:3, :3] - pose.ground_from_sensor).max()
     position = np.abs(ground_from_sensor[:3, 3] - np.array(pose.position)).max()
     return bool(rotation < HELD_ROTATION and position < HELD_POSITION_M)
 
 
 def pose_from_numbers(numbers: Sequence[float]) -> pe.Pose:
-    """Pose from x, y, z [m], roll, pitch, yaw [deg] in single precision."""
+    """Return a pose from x, y, z [m], roll, pitch, yaw [deg] in single precision."""
     position, degrees = numbers[:3], numbers[3:]
     radians = (math.radians(angle) for angle in degrees)
     return search.pose_from_values(dict(zip(search.AXES, (*position, *radians), strict=True)))
 
 
 def _move(obj: bpy.types.Object, pose: pe.Pose) -> None:
-    """Put an object at a pose, whatever its parents."""
+    """Set the transform of an object to a pose, whatever its parents."""
     ground_from_sensor = np.eye(4)
     ground_from_sensor[:3, :3] = pose.ground_from_sensor
     ground_from_sensor[:3, 3] = pose.position
     obj.matrix_world = Matrix(ground_from_sensor.tolist())
     plain = obj.parent_type == "OBJECT" and not any(obj.delta_rotation_euler)
     if obj.rotation_mode == "XYZ" and plain:
-        # Blender has found the angles in single precision, which is too little near +-90 degrees.
+        # Blender computes the angles in single precision, which is too coarse near +-90 degrees.
         rotation = (np.linalg.inv(_ground_from_parent(obj)) @ ground_from_sensor)[:3, :3]
         lengths = np.sqrt((rotation**2).sum(axis=0))
         obj.rotation_euler = geometry.rpy_from_matrix(rotation / lengths)
 
 
 def _ground_from_parent(obj: bpy.types.Object) -> np.ndarray:
-    """(4, 4) frame that an object's own location and rotation are in."""
+    """Return the (4, 4) frame in which an object's location and rotation are given."""
     if obj.parent is None:
         return np.eye(4)
     parent = np.array(obj.parent.matrix_world, dtype=float)
     return parent @ np.array(obj.matrix_parent_inverse, dtype=float)
+
+
+def curve_of(settings: bpy.types.PropertyGroup) -> pe.ApCurve | None:
+    """Return a sensor's own AP curve; None where it uses that of its kind.
+
+    Raises
+    ------
+    InputError
+        When the numbers are no curve.
+    """
+    if not settings.own_curve:
+        return None
+    return pe.ApCurve(as_typed(settings.curve_a), as_typed(settings.curve_b))
+
+
+def put_curve(settings: bpy.types.PropertyGroup, curve: pe.ApCurve | None) -> None:
+    """Set or remove a sensor's own AP curve; equal values are not written again."""
+    if curve is not None and (settings.curve_a, settings.curve_b) != (curve.a, curve.b):
+        settings.curve_a, settings.curve_b = curve.a, curve.b
+    if settings.own_curve != (curve is not None):
+        settings.own_curve = curve is not None

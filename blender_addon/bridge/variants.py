@@ -1,4 +1,4 @@
-"""Variants of a scene: found, kept, put there, and given the results that are theirs."""
+"""Variants of a scene: find, store and apply them, and convert them to studies."""
 
 from __future__ import annotations
 
@@ -10,29 +10,25 @@ import bpy
 
 from ..choices import free_name
 from ..engine import pe
-from .advanced import bounds_as_limits
+from .apply_variant import apply_records
 from .fingerprint import Fingerprint
-from .records import (
-    Record,
-    alike,
-    free_axes_of,
+from .scene_record import record_of_scene, study_of
+from .sensor_records import (
+    SensorRecord,
     records_of,
     records_of_scene,
-    rig_of,
+    same_sensors,
     write_records,
 )
-from .scene import study_of_rig
-from .standing import stand
-from .versions import figures_of, score_from_dict
 
 Variant = bpy.types.PropertyGroup
 
 
 def active_variant(scene: bpy.types.Scene) -> Variant | None:
-    """Return the variant that was last put into the scene, or saved from it."""
+    """Return the variant that was last applied to the scene, or saved from it."""
     settings = scene.perception_entropy
-    found = (row for row in settings.variants if row.key == settings.variant_key)
-    return next(found, None)
+    matches = (row for row in settings.variants if row.key == settings.variant_key)
+    return next(matches, None)
 
 
 def variant_named(scene: bpy.types.Scene, name: str) -> Variant:
@@ -41,7 +37,7 @@ def variant_named(scene: bpy.types.Scene, name: str) -> Variant:
     Raises
     ------
     InputError
-        When there is none; the line names those there are.
+        When there is no such variant; the message names the existing ones.
     """
     rows = scene.perception_entropy.variants
     for row in rows:
@@ -51,13 +47,13 @@ def variant_named(scene: bpy.types.Scene, name: str) -> Variant:
     raise pe.InputError("scene", "variant", expected, repr(name))
 
 
-def same_variant(scene: bpy.types.Scene, records: Sequence[Record]) -> Variant | None:
-    """Return a variant that is this very idea: the active one first."""
+def matching_variant(scene: bpy.types.Scene, records: Sequence[SensorRecord]) -> Variant | None:
+    """Return a variant with exactly these sensors, the active one first; None without."""
     rows = [active_variant(scene), *scene.perception_entropy.variants]
-    return next((r for r in rows if r is not None and alike(records_of(r), records)), None)
+    return next((r for r in rows if r is not None and same_sensors(records_of(r), records)), None)
 
 
-def add_variant(scene: bpy.types.Scene, name: str, records: Sequence[Record]) -> Variant:
+def add_variant(scene: bpy.types.Scene, name: str, records: Sequence[SensorRecord]) -> Variant:
     """Return a new variant of these sensors, at the end of the list."""
     settings = scene.perception_entropy
     key = 1 + max((row.key for row in settings.variants), default=0)
@@ -67,8 +63,8 @@ def add_variant(scene: bpy.types.Scene, name: str, records: Sequence[Record]) ->
     return row
 
 
-def put_variant(scene: bpy.types.Scene, variant: Variant) -> None:
-    """Have a variant stand in the scene, and be the active one.
+def activate_variant(scene: bpy.types.Scene, variant: Variant) -> None:
+    """Apply a variant to the scene, and make it the active one.
 
     Raises
     ------
@@ -77,19 +73,19 @@ def put_variant(scene: bpy.types.Scene, variant: Variant) -> None:
     """
     key = variant.key
     records = records_of(variant)
-    names = stand(scene, records)
+    names = apply_records(scene, records)
     if any(name != actual for name, actual in names.items()):
         write_records(variant, [_renamed(record, names) for record in records])
-    choose_variant(scene, key)
+    mark_active(scene, key)
 
 
-def _renamed(record: Record, names: Mapping[str, str]) -> Record:
+def _renamed(record: SensorRecord, names: Mapping[str, str]) -> SensorRecord:
     other = names.get(record.mirror_of, record.mirror_of)
     return replace(record, name=names[record.name], mirror_of=other)
 
 
-def choose_variant(scene: bpy.types.Scene, key: int) -> None:
-    """Note which variant stands in the scene, and select its row."""
+def mark_active(scene: bpy.types.Scene, key: int) -> None:
+    """Store the key of the active variant, and select its row in the list."""
     settings = scene.perception_entropy
     settings.variant_key, settings.variant_changed = key, False
     keys = [row.key for row in settings.variants]
@@ -97,110 +93,32 @@ def choose_variant(scene: bpy.types.Scene, key: int) -> None:
 
 
 def study_of_variant(scene: bpy.types.Scene, variant: Variant, depsgraph: object) -> pe.Study:
-    """Return the study of the scene with a variant's sensors in place of its own.
+    """Return the study that the scene would have if the variant were applied to it.
 
     Raises
     ------
     InputError
         One line that says what is wrong with the scene, or with the variant.
     """
-    records = records_of(variant)
-    limits = {r.name: bounds_as_limits(r.bounded, r.low, r.high) for r in records}
-    limits = {name: own for name, own in limits.items() if own}
     try:
-        free = free_axes_of(records)
-        return study_of_rig(scene, depsgraph, rig_of(records), free, limits=limits)
+        record = record_of_scene(scene, depsgraph, records_of(variant), source="variant")
+        return study_of(record)
     except pe.InputError as error:
         named = f"variant {variant.name!r}"
         raise error.at(named) if error.source == "variant" else error from None
 
 
-def same_score(some: Sequence[Record], others: Sequence[Record]) -> bool:
-    """Whether two lists of sensors have one score: what is free counts for nothing."""
-    return [record.scored for record in some] == [record.scored for record in others]
-
-
-def keep_score(scene: bpy.types.Scene, rig: pe.Rig, score: pe.Score, surroundings: str) -> None:
-    """Give a score to every variant of just these sensors; `surroundings` as they were scored."""
-    for row in scene.perception_entropy.variants:
-        if _is_rig(row, rig):
-            write_score(row, score, surroundings)
-
-
-def _is_rig(variant: Variant, rig: pe.Rig) -> bool:
-    """Whether what counts of a variant is this rig."""
-    try:
-        own = rig_of(records_of(variant))
-    except pe.InputError:  # a sensor that the catalogue does not know, or none
-        return False
-    return [_told_apart(sensor) for sensor in own] == [_told_apart(sensor) for sensor in rig]
-
-
-def _told_apart(sensor: pe.Sensor) -> tuple[object, ...]:
-    """What a score depends on; the catalogue gives one object for each of its sensors."""
-    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
-
-
-def keep_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) -> int:
-    """Keep where a search began and what it found as variants; return the key of the latter.
-
-    The first one is the active one from then on, as the sensors have not been moved yet.
-    """
-    now = records_of_scene(scene)
-    began, found = _moved(now, outcome.start.rig), _moved(now, outcome.study.rig)
-    before = kept_variant(scene, "Before optimize", began).key
-    name = f"Optimized, seed {outcome.start.search.seed}"
-    after = kept_variant(scene, name, found).key
-    keep_score(scene, outcome.start.rig, outcome.before, surroundings)
-    keep_score(scene, outcome.study.rig, outcome.after, surroundings)
-    choose_variant(scene, before)
-    return after
-
-
-def kept_variant(scene: bpy.types.Scene, name: str, records: Sequence[Record]) -> Variant:
-    """Return a variant of these sensors: one that there is, or a new one."""
+def find_or_add_variant(
+    scene: bpy.types.Scene, name: str, records: Sequence[SensorRecord]
+) -> Variant:
+    """Return the variant with these sensors; a new one where there is none."""
     taken = {row.name for row in scene.perception_entropy.variants}
-    known = same_variant(scene, records)
-    return known if known is not None else add_variant(scene, free_name(name, taken), records)
-
-
-def _moved(records: Sequence[Record], rig: pe.Rig) -> tuple[Record, ...]:
-    """Records, with the placements of a rig."""
-    poses = {sensor.name: sensor.pose for sensor in rig}
-    return tuple(replace(each, pose=poses.get(each.name, each.pose)) for each in records)
-
-
-def write_score(variant: Variant, score: pe.Score, surroundings: str) -> None:
-    """Keep a score with a variant."""
-    _write_figures(variant, figures_of(score))
-    variant.signature = surroundings
-
-
-def take_scene_s_score(scene: bpy.types.Scene, variant: Variant, now: Fingerprint) -> None:
-    """Give a variant the scene's own result, if the scene stands as it was scored."""
-    settings = scene.perception_entropy
-    if settings.has_result and now.text == settings.result_signature:
-        _write_figures(variant, json.loads(settings.result_json)["after"])
-        variant.signature = now.surroundings
-
-
-def copy_score(source: Variant, to: Variant) -> None:
-    """Give a variant the score of another one."""
-    to.figures_json, to.figures_of = source.figures_json, source.figures_of
-    if source.has_result:
-        _write_figures(to, json.loads(source.score_json))
-        to.signature, to.stale = source.signature, source.stale
-
-
-def _write_figures(variant: Variant, figures: dict) -> None:
-    variant.entropy, variant.coverage = figures["entropy"], figures["coverage"]
-    variant.stderr, variant.voxels = figures["stderr"], figures["voxels"]
-    variant.score_json = json.dumps(figures)
-    variant.stale, variant.has_result = False, True
+    existing = matching_variant(scene, records)
+    return existing if existing is not None else add_variant(scene, free_name(name, taken), records)
 
 
 def variant_dict(scene: bpy.types.Scene, variant: Variant) -> dict[str, object]:
-    """Return what there is to tell of a variant, as plain JSON data; None where not scored."""
+    """Return a variant's summary as plain JSON data; figures are None where it was not scored."""
     figures = json.loads(variant.score_json) if variant.has_result else {}
     return {
         "name": variant.name,
@@ -212,16 +130,11 @@ def variant_dict(scene: bpy.types.Scene, variant: Variant) -> dict[str, object]:
     }
 
 
-def score_of(variant: Variant) -> pe.Score:
-    """Return a variant's score as it is kept: all but its sensors' part."""
-    return score_from_dict(json.loads(variant.score_json))
-
-
 def check_variants(scene: bpy.types.Scene, now: Fingerprint) -> None:
-    """Set what the list shows: whether the scene is the active one, and whose score is stale."""
+    """Update the list of variants: whether the scene differs from the active one, stale scores."""
     settings, current = scene.perception_entropy, now.surroundings
     active = active_variant(scene)
-    changed = active is not None and not _stands(scene, active)
+    changed = active is not None and not _is_applied(scene, active)
     if changed != settings.variant_changed:
         settings.variant_changed = changed
     for row in settings.variants:
@@ -230,9 +143,9 @@ def check_variants(scene: bpy.types.Scene, now: Fingerprint) -> None:
             row.stale = stale
 
 
-def _stands(scene: bpy.types.Scene, variant: Variant) -> bool:
-    """Whether the scene is a variant; a sensor that is no possible one makes it another."""
+def _is_applied(scene: bpy.types.Scene, variant: Variant) -> bool:
+    """Whether the scene equals a variant; False for a variant with an invalid sensor."""
     try:
-        return alike(records_of_scene(scene), records_of(variant))
+        return same_sensors(records_of_scene(scene), records_of(variant))
     except pe.InputError:
         return False

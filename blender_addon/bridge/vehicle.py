@@ -1,8 +1,8 @@
-"""The vehicle: everything solid that can be seen in a collection, as triangles of named parts."""
+"""The vehicle: the visible solid objects of a collection as triangles of named parts, and back."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import bpy
@@ -12,7 +12,8 @@ from ..engine import geometry, pe
 from .rig import mounted_on_sensor
 
 RESIDUAL = "pe_residual"
-"""Attribute of a mesh that came from a study: its points are in double precision there."""
+"""Mesh attribute with what single precision leaves out of the points of an imported vehicle."""
+VEHICLE = "Vehicle"
 
 
 class Part(NamedTuple):
@@ -28,15 +29,15 @@ def vehicle_from_collection(
     depsgraph: bpy.types.Depsgraph,
     clearance_m: float = pe.Vehicle.clearance,
 ) -> pe.Vehicle:
-    """Return a collection's objects as they are drawn: modifiers, parents, instances and all.
+    """Return the vehicle of a collection, with modifiers, parents and instances applied.
 
-    What is hidden in the viewport or in renders does not count, nor what rides on a sensor. The
-    clearance is how proud of the skin a flush-mounted sensor counts.
+    Objects that are hidden in the viewport or in renders, or mounted on a sensor, are left out.
+    `clearance_m` is how far a flush-mounted sensor counts as protruding from the surface [m].
 
     Raises
     ------
     InputError
-        When nothing solid is left, or a coordinate is no number.
+        When no solid object remains, or a coordinate is not finite.
     """
     parts = sorted(_parts(collection, depsgraph), key=lambda part: part.name)
     if not parts:
@@ -55,23 +56,23 @@ def vehicle_from_collection(
 def visible_members(
     collection: bpy.types.Collection, layer: bpy.types.ViewLayer
 ) -> set[bpy.types.Object]:
-    """Objects of a collection and those in it, without what is hidden in either way."""
+    """Return the visible objects of a collection and of its children."""
     if collection.hide_render:
         return set()
-    found = {
+    members = {
         obj
         for obj in collection.objects
         if obj.visible_get(view_layer=layer) and not obj.hide_render
     }
-    return found.union(*(visible_members(child, layer) for child in collection.children))
+    return members.union(*(visible_members(child, layer) for child in collection.children))
 
 
 def layers_of(
     layer: bpy.types.LayerCollection, collection: bpy.types.Collection
 ) -> list[bpy.types.LayerCollection]:
-    """Return a collection in a view layer and those that it is in, from it upwards.
+    """Return a collection in a view layer and the collections it is in, innermost first.
 
-    Nothing where the view layer does not hold it.
+    Empty where the view layer does not have the collection.
     """
     if layer.collection == collection:
         return [layer]
@@ -82,7 +83,7 @@ def layers_of(
 
 
 def hidden_how(layer: bpy.types.LayerCollection) -> str:
-    """Say in which way a collection is out of the view; empty where it is in it."""
+    """Return a text that says how a collection is hidden; "" for a visible one."""
     if layer.exclude:
         return "excluded from the view layer"
     if layer.collection.hide_render:
@@ -93,14 +94,14 @@ def hidden_how(layer: bpy.types.LayerCollection) -> str:
 def drawn_meshes(
     collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
 ) -> Iterator[tuple[bpy.types.Object, np.ndarray]]:
-    """Yield every drawn mesh and instance that belongs to a vehicle, evaluated, and where it is.
+    """Yield every visible mesh and instance of a vehicle, evaluated, and its (4, 4) pose.
 
-    An object is only good until the next one: nothing of it may be kept. The places are (4, 4),
-    ground from object.
+    An object is valid only until the next one is yielded: do not store references to it. The pose
+    is ground from object.
     """
     visible = visible_members(collection, depsgraph.view_layer)
     members = {obj for obj in visible if not mounted_on_sensor(obj)}
-    # Curves, texts and metaballs come twice, as what they are and as the mesh they make.
+    # The iterator yields curves, texts and metaballs twice: as themselves and as a mesh.
     for instance in depsgraph.object_instances:
         owner = instance.parent if instance.is_instance else instance.object
         obj = instance.object
@@ -123,15 +124,15 @@ def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> 
         yield Part(original.name_full, placed, original.perception_entropy.see_through)
 
 
-def _triangles_local(obj: bpy.types.Object, known: dict[int, np.ndarray]) -> np.ndarray:
-    """(F, 3, 3) triangles of an evaluated object in its own frame, read once a mesh."""
+def _triangles_local(obj: bpy.types.Object, cache: dict[int, np.ndarray]) -> np.ndarray:
+    """Return triangles (F, 3, 3) of an evaluated object in its own frame, cached by mesh."""
     key = obj.data.as_pointer()
-    if key in known:
-        return known[key]
+    if key in cache:
+        return cache[key]
     mesh = obj.to_mesh()
-    known[key] = triangles_of(mesh)
+    cache[key] = triangles_of(mesh)
     obj.to_mesh_clear()
-    return known[key]
+    return cache[key]
 
 
 def triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
@@ -145,16 +146,20 @@ def triangles_of(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def residual_of(mesh: bpy.types.Mesh) -> np.ndarray:
-    """Return what single precision leaves out of a mesh's points (P, 3), where that is kept."""
-    kept = mesh.attributes.get(RESIDUAL)
-    found = np.zeros(3 * len(mesh.vertices), np.float32)
-    if kept is not None and kept.domain == "POINT" and kept.data_type == "FLOAT_VECTOR":
-        kept.data.foreach_get("vector", found)
-    return found.reshape(-1, 3).astype(float)
+    """Return the rounding errors (P, 3) of a mesh's single-precision points; else zeros."""
+    attribute = mesh.attributes.get(RESIDUAL)
+    residual = np.zeros(3 * len(mesh.vertices), np.float32)
+    if (
+        attribute is not None
+        and attribute.domain == "POINT"
+        and attribute.data_type == "FLOAT_VECTOR"
+    ):
+        attribute.data.foreach_get("vector", residual)
+    return residual.reshape(-1, 3).astype(float)
 
 
 def placed_triangles(triangles: np.ndarray, ground_from_object: np.ndarray) -> np.ndarray:
-    """Return triangles in the ground frame; a mirrored object keeps its faces looking outwards."""
+    """Return triangles in the ground frame; faces of a mirrored object still point outwards."""
     linear = ground_from_object[:3, :3]
     placed = placed_points(triangles, ground_from_object)
     return placed[:, ::-1] if np.linalg.det(linear) < 0.0 else placed
@@ -163,3 +168,57 @@ def placed_triangles(triangles: np.ndarray, ground_from_object: np.ndarray) -> n
 def placed_points(points: np.ndarray, ground_from_object: np.ndarray) -> np.ndarray:
     """Return points (..., 3) in the ground frame."""
     return geometry.rotate(ground_from_object[:3, :3], points) + ground_from_object[:3, 3]
+
+
+def same_body(one: pe.Vehicle | None, other: pe.Vehicle | None) -> bool:
+    """Return whether two vehicles are equal to the bit: triangles, parts, their names, glass."""
+    if one is None or other is None:
+        return one is other
+    same = one.part_names == other.part_names and set(one.glass) == set(other.glass)
+    same = same and np.array_equal(one.triangles, other.triangles)
+    return same and np.array_equal(one.parts, other.parts)
+
+
+def make_body(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> bpy.types.Collection:
+    """Return a new collection of the scene with one object for each part of a vehicle."""
+    made = bpy.data.collections.new(VEHICLE)
+    scene.collection.children.link(made)
+    for number, name in enumerate(vehicle.part_names):
+        triangles = vehicle.triangles[vehicle.parts == number]
+        if len(triangles):
+            obj = bpy.data.objects.new(name, mesh_of(name, triangles))
+            made.objects.link(obj)
+            obj.perception_entropy.see_through = name in vehicle.glass
+    return made
+
+
+def mesh_of(name: str, triangles: np.ndarray) -> bpy.types.Mesh:
+    """Return a mesh of triangles (F, 3, 3) [m]; equal corners are merged.
+
+    Blender's points have single precision: the rounding errors are stored in an attribute.
+    """
+    points, corner = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    faces = corner.reshape(-1, 3)
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(points.astype(np.float32).tolist(), [], faces.tolist())
+    left = points - points.astype(np.float32)
+    if left.any():
+        attribute = mesh.attributes.new(RESIDUAL, "FLOAT_VECTOR", "POINT")
+        attribute.data.foreach_set("vector", left.astype(np.float32).reshape(-1))
+    return mesh
+
+
+def paint_area(objects: Sequence[bpy.types.Object], name: str, area: np.ndarray) -> None:
+    """Paint the faces (F, 3, 3) of an area in a vertex group on the meshes of a vehicle."""
+    wanted = {corner.tobytes() for corner in np.ascontiguousarray(area.reshape(-1, 3) + 0.0)}
+    for obj in objects:
+        if obj.type != "MESH":
+            continue
+        ground_from_object = np.array(obj.matrix_world, dtype=float)
+        points = np.empty(3 * len(obj.data.vertices), np.float32)
+        obj.data.vertices.foreach_get("co", points)
+        local = points.reshape(-1, 3).astype(float) + residual_of(obj.data)
+        placed = placed_points(local, ground_from_object) + 0.0
+        vertices = [n for n, point in enumerate(placed) if point.tobytes() in wanted]
+        if vertices:
+            obj.vertex_groups.new(name=name).add(vertices, 1.0, "REPLACE")

@@ -1,4 +1,4 @@
-"""Files of older versions brought up to date: what is stored, step by step, as plain values."""
+"""Migration of files of older versions, step by step, as plain values; scores as plain data."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EARLIER = "This was scored by an earlier version: score again"
 
 @dataclass(frozen=True, slots=True)
 class Stored:
-    """What a scene's settings hold that versions differ in; names are the settings' own."""
+    """Stored settings in which versions differ; fields have the names of the properties."""
 
     version: int = 0
     has_result: bool = False
@@ -26,25 +26,25 @@ class Stored:
 
 
 def migrated(old: Stored) -> Stored:
-    """Return settings as this version would have stored them; newer ones stay as they are."""
+    """Return settings in the form of this version; settings of a newer version are unchanged."""
     while old.version in STEPS:
         old = replace(STEPS[old.version](old), version=old.version + 1)
     return old
 
 
 def _with_words(old: Stored) -> Stored:
-    """Results are told in words since version 1, and are known to stand by another signature."""
+    """Migrate to version 1, which stores the sentences of a result and a new signature."""
     if not old.has_result:
         return old
     return replace(old, result_words="\n".join(_words_of(old.result_json)), result_stale=True)
 
 
 STEPS: dict[int, Callable[[Stored], Stored]] = {0: _with_words}
-"""What makes of a version the next one."""
+"""The step from each version to the next."""
 
 
-def bring_up_to_date(scene: bpy.types.Scene) -> None:
-    """Migrate a scene's settings; one of another file is left as that file has it."""
+def migrate_scene(scene: bpy.types.Scene) -> None:
+    """Migrate a scene's settings; a scene linked from another file is not changed."""
     if scene.library is not None:
         return
     settings = scene.perception_entropy
@@ -55,40 +55,40 @@ def bring_up_to_date(scene: bpy.types.Scene) -> None:
             setattr(settings, name, getattr(new, name))
 
 
-def newer_version(scene: bpy.types.Scene) -> str:
-    """Return a line on a scene that a newer version wrote; "" for others."""
+def newer_version_message(scene: bpy.types.Scene) -> str:
+    """Return a warning about a scene that a newer version wrote; "" for others."""
     version = scene.perception_entropy.version
     if version <= VERSION:
         return ""
     return (
         f"scene {scene.name!r} is of a newer version of the extension ({version}; this one knows "
-        f"{VERSION}): what is new in it is not seen here"
+        f"{VERSION}): what is new in it is not shown here"
     )
 
 
-def figures_of(score: pe.Score) -> dict:
-    """Return a score's plain data, with the scatter that errors of differences come from."""
+def score_to_dict(score: pe.Score) -> dict:
+    """Return a score as plain data, with the scatter that the error of a difference needs."""
     scatter = {} if score.scatter is None else {"scatter": score.scatter.to_dict()}
     return {**score.to_dict(), **scatter}
 
 
 def score_from_dict(figures: dict) -> pe.Score:
-    """Return a score from its plain data: all but its sensors' part."""
+    """Return a score from plain data, without the scores of its sensors."""
     by_class, by_zone = (
         {name: pe.PartScore(**part) for name, part in figures[which].items()}
         for which in ("per_class", "per_zone")
     )
     whole = (figures["entropy"], figures["coverage"], figures["stderr"])
     objects = figures.get("objects")
-    found = None if objects is None else pe.ObjectScore.from_dict(objects)
+    object_score = None if objects is None else pe.ObjectScore.from_dict(objects)
     scatter = figures.get("scatter")
-    kept = None if scatter is None else pe.Scatter.from_dict(scatter)
+    residuals = None if scatter is None else pe.Scatter.from_dict(scatter)
     voxels = figures["voxels"]
-    return pe.Score(*whole, by_class, by_zone, {}, voxels, objects=found, scatter=kept)
+    return pe.Score(*whole, by_class, by_zone, {}, voxels, objects=object_score, scatter=residuals)
 
 
 def _words_of(result_json: str) -> tuple[str, ...]:
     try:
         return advice.rig_words(score_from_dict(json.loads(result_json)["after"]))
-    except (ValueError, KeyError, TypeError):  # a damaged result says nothing
+    except (ValueError, KeyError, TypeError):  # a damaged result has no sentences
         return (EARLIER,)

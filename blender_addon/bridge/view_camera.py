@@ -1,4 +1,4 @@
-"""A camera of Blender's that shows what a camera sensor sees: its child, with the right lens."""
+"""View cameras: a camera of Blender as the child of a camera sensor, with its field of view."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ CAMERA_FROM_SENSOR = Matrix(((0, 0, -1, 0), (-1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 
 
 
 def view_camera(obj: bpy.types.Object) -> bpy.types.Object | None:
-    """Return the camera that shows what a sensor sees, if it has one."""
-    views = (each for each in obj.children if each.perception_entropy.is_view)
+    """Return a sensor's view camera; None if it does not exist."""
+    views = (child for child in obj.children if child.perception_entropy.is_view)
     return next(views, None)
 
 
 def make_view_camera(obj: bpy.types.Object, model: pe.Camera) -> bpy.types.Object:
-    """Return a sensor's camera, made unless it has one, its lens as the model's."""
+    """Return a sensor's view camera with the model's lens; create it if it does not exist."""
     view = view_camera(obj)
     if view is None:
         name = f"{obj.name} view"
@@ -45,10 +45,10 @@ def make_view_camera(obj: bpy.types.Object, model: pe.Camera) -> bpy.types.Objec
 
 
 def shown_fov(model: pe.Camera) -> float:
-    """Horizontal field of view [rad] of the pinhole that shows a camera's whole view.
+    """Return the horizontal field of view [rad] of the pinhole that shows a camera's whole view.
 
-    Blender's camera bends no lines: of a lens that does, and of one off the picture's centre, it is
-    the narrowest centred pinhole round the field, WIDEST at most.
+    Blender's camera has no distortion. For a lens with distortion or with a principal point off
+    the centre, it is the narrowest centred pinhole that contains the field, at most WIDEST.
     """
     if model.lens is None:
         return float(model.hfov)
@@ -73,7 +73,7 @@ def set_lens(camera: bpy.types.Camera, model: pe.Camera) -> None:
 def look_through(
     scene: bpy.types.Scene, obj: bpy.types.Object, model: pe.Camera
 ) -> bpy.types.Object:
-    """Make a sensor's camera the scene's, and pictures its size; what was before is noted."""
+    """Make a sensor's view camera the scene's camera; the previous settings are stored."""
     view = make_view_camera(obj, model)
     if not scene.perception_entropy.before_look:
         scene.perception_entropy.before_look = json.dumps(_settings(scene))
@@ -86,7 +86,7 @@ def look_through(
 
 
 def look_back(scene: bpy.types.Scene) -> None:
-    """Bring back the scene's camera and size of pictures from before; do nothing without."""
+    """Restore the scene's camera and picture size, if they were stored."""
     noted = scene.perception_entropy.before_look
     if not noted:
         return
@@ -97,20 +97,20 @@ def look_back(scene: bpy.types.Scene) -> None:
     scene.perception_entropy.before_look = ""
 
 
-def tend_views(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
-    """Have cameras fit their sensors' models, and go with the sensors that they were of."""
+def update_view_cameras(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> None:
+    """Update view cameras to their sensors' models; remove those whose sensor is gone."""
     for obj in sensors:
         view, model = view_camera(obj), _camera_of(obj)
         if view is not None and model is not None:
             _follow(scene, view, model)
-    cameras = [each for each in scene.objects if each.type == "CAMERA"]
-    for view in (each for each in cameras if each.perception_entropy.is_view):
+    cameras = [camera for camera in scene.objects if camera.type == "CAMERA"]
+    for view in (camera for camera in cameras if camera.perception_entropy.is_view):
         if view.parent is None or _camera_of(view.parent) is None:
             _remove(scene, view)
 
 
 def _follow(scene: bpy.types.Scene, view: bpy.types.Object, model: pe.Camera) -> None:
-    """Set a lens when the model is another one than it is of."""
+    """Update the lens of a view camera when its sensor has another model."""
     size = model.width, model.height
     if abs(view.data.angle_x - shown_fov(model)) > 1e-5:
         set_lens(view.data, model)
@@ -129,7 +129,7 @@ def _remove(scene: bpy.types.Scene, view: bpy.types.Object) -> None:
 
 
 def _camera_of(obj: bpy.types.Object) -> pe.Camera | None:
-    """Return the model of a camera sensor; None of anything else."""
+    """Return the model of a camera sensor; None for any other object."""
     if not obj.perception_entropy.is_sensor:
         return None
     try:
@@ -140,7 +140,7 @@ def _camera_of(obj: bpy.types.Object) -> pe.Camera | None:
 
 
 def _settings(scene: bpy.types.Scene) -> dict[str, object]:
-    """What looking through a sensor changes, as it is."""
+    """Return the scene's settings that `look_through` changes."""
     names = ("resolution_x", "resolution_y", "resolution_percentage")
     names += ("pixel_aspect_x", "pixel_aspect_y")
     values = {name: getattr(scene.render, name) for name in names}

@@ -5,12 +5,9 @@ from __future__ import annotations
 import argparse
 
 from ..engine import app, page, pe
-from .leaving import REVIEW
-from .plain_objects import OBJECTS, add_objects_options
-from .reviewing import review_scene
-from .scene_verbs import explain_study, export_study, run_job
-from .sweeping import sweep_scene
-from .variants import compare_variants, list_variants
+from .open_file import REVIEW
+from .scene_verbs import OBJECTS, add_objects_options, explain_study, export_study, run_job
+from .variant_verbs import compare_variants, list_variants, review_scene, sweep_scene
 
 
 def parser(prog: str) -> argparse.ArgumentParser:

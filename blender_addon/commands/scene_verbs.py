@@ -1,4 +1,4 @@
-"""The verbs of the scene's own study: score, optimize, export, explain."""
+"""Verbs of the scene: score, optimize, export, explain, and import of Blender's own objects."""
 
 from __future__ import annotations
 
@@ -8,11 +8,65 @@ from pathlib import Path
 import bpy
 
 from .. import bridge
-from ..engine import app, pe, studies
-from .leaving import OPTIMIZED, REVIEW, leave_front, leave_scene
-from .opened import from_file, opened_study
-from .plain_objects import OBJECTS, export_objects
+from ..engine import app, catalog, exchange, jobs, pe, studies
+from .open_file import (
+    OPTIMIZED,
+    REVIEW,
+    from_file,
+    opened_study,
+    save_copy,
+    write_artifacts,
+    write_front,
+)
 from .streams import quiet_blender
+
+OBJECTS, LIDAR = "blender", "lidar"
+
+
+def add_objects_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``import`` to a parser."""
+    parser.add_argument("-o", "--output", required=True, metavar="STUDY", help="study to write")
+    about = "an object's model, for those that say none; any number"
+    parser.add_argument("--model", action="append", default=[], metavar="NAME=MODEL", help=about)
+    parser.add_argument("--replace", action="store_true", help="replace a study that is there")
+    parser.set_defaults(function=import_objects)
+
+
+def import_objects(args: argparse.Namespace) -> app.Answer:
+    """Write a study of the scene's vehicle, with its cameras and empties as the sensors."""
+    scene, output = bpy.context.scene, Path(args.output)
+    if output.exists() and not args.replace:
+        raise pe.InputError(output, "file", "a new file (or --replace)", "one is there")
+    with from_file():
+        models = app.chosen_models(args.model)
+        for model in models.values():
+            catalog.load(model)
+        stand_in = exchange.STAND_INS[LIDAR]
+        found, lines = bridge.sensors_of_objects(scene, scene.objects, models, stand_in)
+        study = _study_of_rig(scene, pe.Rig(found))
+    pe.export_study(study, output, replace_study=args.replace)
+    for line in lines:
+        app.tell(line)
+    return f"wrote {output}: {len(found)} sensor{'s' if len(found) > 1 else ''}", app.DONE
+
+
+def _study_of_rig(scene: bpy.types.Scene, rig: pe.Rig) -> pe.Study:
+    if scene.perception_entropy.vehicle is None:
+        return pe.Study(rig, reference=bridge.reference_of(scene.perception_entropy))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return bridge.study_of_rig(scene, depsgraph, rig)
+
+
+def export_objects(study: pe.Study, args: argparse.Namespace) -> app.Answer:
+    """Save the scene to another file, with a camera or an empty for each sensor."""
+    path = Path(args.output)
+    if path.exists() and not args.replace:
+        raise pe.InputError(path, "file", "a new file (or --replace)", "one is there")
+    _, lines = bridge.put_objects(bpy.context.scene, study.rig)
+    save_copy(path)
+    for line in lines:
+        app.tell(line)
+    return f"wrote {path}", app.DONE
 
 
 def run_job(args: argparse.Namespace) -> app.Answer:
@@ -28,12 +82,12 @@ def run_job(args: argparse.Namespace) -> app.Answer:
 
     def leave(outcome: pe.Outcome, data: dict, folder: Path) -> None:
         with quiet_blender():
-            leave_scene(outcome, data, folder, render=args.render)
+            write_artifacts(outcome, data, folder, render=args.render)
 
     more = app.with_pages(args, app.More(ours, leave))
     if output is not None:
-        output = pe.prepare_folder(output, [*more.names, *studies.result_names(study, kind)])
-    job.notes = bridge.missing_pieces(bpy.context.scene)
+        output = pe.prepare_folder(output, [*more.names, *jobs.result_names(study, kind)])
+    job.notes = bridge.missing_data(bpy.context.scene)
     return app.carry_out(
         job,
         output,
@@ -54,7 +108,7 @@ def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
 
     def leave(found: pe.TradeOff, folder: Path) -> None:
         with quiet_blender():
-            leave_front(found, folder)
+            write_front(found, folder)
 
     job, host = pe.ChoiceJob(study, args.workers), bridge.blender_version()
     return app.choose(job, output, as_json=args.json, host=host, more=leave)

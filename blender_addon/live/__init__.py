@@ -1,39 +1,46 @@
-"""The score that follows the hand.
+"""The live score: it follows every move of a sensor.
 
-`latest` is what is known now, `session` asks for it, `reference` and `against` say what it is
-compared with, `shown` which score is shown, `background` works out the figures below it, `words`
-and `figure_words` put it into words, `readout` draws those in the corner of the 3D view.
+`state` holds what is known of each scene, `session` requests scores, `evaluation` makes them,
+`baseline` says what a score is compared with, `background_figures` computes the figures below it,
+`readout_text` puts all of it into text, and `readout` draws that in a corner of the 3D view.
 """
 
 from __future__ import annotations
 
 import bpy
 
-from . import against, background, figure_words, latest, readout, session
-from .shown import ShownScore, shown_score
+from . import background_figures, readout, readout_text, session
+from .state import FinishedScore, ShownScore, live_state, shown_score
 
-__all__ = ["ShownScore", "against", "latest", "live_lines", "register", "shown_score", "unregister"]
+__all__ = [
+    "FinishedScore",
+    "ShownScore",
+    "live_lines",
+    "live_state",
+    "register",
+    "shown_score",
+    "unregister",
+]
 
 
 def live_lines(scene: bpy.types.Scene) -> list[str]:
     """Return the lines below a live score, for the panel: those of the read-out."""
-    reading, score = latest.reading(scene.name), shown_score(scene)
-    if reading is None or score is None:
+    score, shown = live_state(scene.name).score, shown_score(scene)
+    if score is None or shown is None:
         return []
-    figures = background.figures_of(scene.name, reading, score.exact)
-    anchor = background.anchor_of(scene.name)
-    lines = [] if figures is None else [*figure_words.figure_lines(figures)]
-    lines += [] if anchor is None else [figure_words.anchor_line(anchor, reading.glance)]
+    figures = background_figures.figures_of(scene.name, score, shown.exact)
+    known_rig = background_figures.known_rig_score(scene.name)
+    lines = [] if figures is None else [*readout_text.figure_lines(figures)]
+    lines += [] if known_rig is None else [readout_text.known_rig_line(known_rig, score.summary)]
     return [line for line in lines if line]
 
 
 def register() -> None:
-    """Start following and drawing."""
-    session.register()
+    """Start drawing."""
     readout.register()
 
 
 def unregister() -> None:
-    """Stop both; the worker has ended before."""
+    """Stop drawing, and drop everything; the worker has ended before."""
     readout.unregister()
     session.unregister()

@@ -1,207 +1,161 @@
-"""Live: while something moves a draft of the score follows, once it rests an exact one.
+"""Requests live scores: an approximate one while something moves, an exact one once it is idle.
 
-A wish is read inside Blender's own update, which costs a fraction of a millisecond, and scored
-beside the window at once, while Blender draws; the newest wish is the only one that waits. What
-was found is shown by the drawing that is under way, or by the next one.
+A request is read inside Blender's own update, which costs a fraction of a millisecond, and scored
+on the interactive worker's thread at once, while Blender draws; only the latest request waits. The
+score is shown by the redraw that is in progress, or by the next one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 import bpy
-from bpy.app.handlers import persistent
 
-from .. import body, bridge, changes, motion, worker
+from .. import bridge, change_events, signals, vehicle_cache, worker
 from ..engine import pe
-from . import against, background, latest
-from .asking import EvaluatorStore, ScoreWish, priors, read
-from .reference import Baseline, Moves, ReadRig, rig_key
+from . import background_figures
+from .baseline import baseline_of, note_move
+from .evaluation import EvaluatorCache, ScoreRequest, read_request
+from .state import Baseline, LastRead, LiveScore, live_state, states
 
-VEHICLE_MOVES = "The vehicle changes: measured again when it rests"
-
-
-class Seen(NamedTuple):
-    """How often things had moved, the vehicle's version, and what the prior depends on."""
-
-    moves: int
-    version: int
-    prior: Hashable
-
-
+VEHICLE_MOVES = "The vehicle is moving: scored again when it stops"
 MOVING = "TRANSFORM_OT_"
 """How the names of Blender's operators begin that move things."""
 
-_evaluators = EvaluatorStore()
-_moves = Moves()
-_last: dict[str, tuple[pe.Rig, Hashable]] = {}
-"""By the scene's name: the rig that was read last, and what tells its problem from others."""
-_seen: dict[str, Seen] = {}
-"""By the scene's name: what there was when it was read."""
+_evaluators = EvaluatorCache()
 _generation = 0
-"""Rises when nothing that is under way may be shown any more."""
+"""Increases when no request in progress may be shown any more."""
 
 
-@persistent
-def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """After an update: ask for a draft where a sensor has moved."""
+def follow_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """After an update: request an approximate score where a sensor has moved."""
     if bpy.app.background or not scene.perception_entropy.live.on:
         return
-    seen = _seen.get(scene.name)
-    if seen is None or seen.moves == motion.count():
+    state = live_state(scene.name)
+    last = state.last_read
+    if last is None or last.changes == change_events.change_count():
         return
-    if seen.version != body.shared.version:
+    if last.vehicle_version != vehicle_cache.shared.version:
         if operator := _moving_operator():  # the vehicle is dragged; an undo is no move
-            _moves.note(scene.name, operator, _last_read(scene.name), None)
-        latest.note_request(scene.name)
-        latest.set_note(scene.name, VEHICLE_MOVES)
+            note_move(state, operator, None)
+        state.next_request()
+        state.note = VEHICLE_MOVES
         return
-    ask(scene, depsgraph, draft=True)
+    request_score(scene, depsgraph, draft=True)
 
 
-def rest() -> None:
-    """All rests: ask for the exact score of every scene that is shown."""
+def on_idle() -> None:
+    """Request the exact score of every scene that is shown: nothing moves any more."""
     if not _moving_operator():
-        _moves.end()
+        for state in list(states.values()):
+            state.operator = 0  # what moves next is another move
     for scene in shown_scenes():
         depsgraph = bridge.view_layer_of(scene).depsgraph
         if depsgraph is not None:
-            ask(scene, depsgraph, draft=False)
+            request_score(scene, depsgraph, draft=False)
 
 
-def ask(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) -> None:
-    """Read a scene, and have it scored beside the window."""
-    name = scene.name
-    last, number = _last_read(name), latest.note_request(name)
+def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) -> None:
+    """Read a scene, and have it scored by the interactive worker."""
+    name, state = scene.name, live_state(scene.name)
+    number = state.next_request()
     try:
-        wish = read(scene, depsgraph, draft=draft)
+        request = read_request(scene, depsgraph, draft=draft)
     except pe.InputError as error:
-        say(name, str(error))
+        show_note(name, str(error))
         return
     if draft:
-        _moves.note(name, _moving_operator(), last, wish.rig)
-    seen, known = Seen(motion.count(), body.shared.version, wish.prior_key), _seen.get(name)
-    if known is not None and known.prior != seen.prior:
-        _moves.drop(name)  # entropies under two priors are no change
-    _seen[name], _last[name] = seen, (wish.rig, wish.problem.key)
-    reference = against.reference_of(scene, wish, _moves)
-    job = partial(work, name, wish, number, reference, _generation)
-    worker.hand.ask(name, job, lambda _: changes.reading.tell(), partial(failed, name))
+        note_move(state, _moving_operator(), request.rig)
+    if state.last_read is not None and state.last_read.prior != request.prior_key:
+        state.before_move = None  # entropies under two priors cannot be compared
+    counts = change_events.change_count(), vehicle_cache.shared.version
+    state.last_read = LastRead(*counts, request.prior_key, request.rig, request.problem.key)
+    baseline = baseline_of(scene, request)
+    job = partial(score_in_thread, name, request, number, baseline, _generation)
+    worker.interactive_worker.ask(
+        name, job, lambda _: signals.live_score_changed.emit(), partial(report_failure, name)
+    )
     if not draft:
-        background.ask(scene, wish, reference)
+        background_figures.request(scene, request, baseline)
 
 
-def work(
-    name: str, wish: ScoreWish, number: int, reference: Baseline | None, generation: int
+def score_in_thread(
+    name: str, request: ScoreRequest, number: int, baseline: Baseline | None, generation: int
 ) -> None:
-    """In the thread: score, and put what was found where the next drawing looks."""
-    exact = not wish.draft
-    if exact and reference is not None and reference.glance is None and reference.rig is not None:
-        reference.glance, _ = _evaluators.glance(name, replace(wish, rig=reference.rig))
-    glance, moved_m = _evaluators.glance(name, wish)
+    """On the worker's thread: score, and store the score where the next redraw reads it."""
+    exact = not request.draft
+    if exact and baseline is not None and baseline.summary is None and baseline.rig is not None:
+        baseline.summary, _ = _evaluators.summary(name, replace(request, rig=baseline.rig))
+    summary, moved_m = _evaluators.summary(name, request)
     if generation == _generation:
-        of = wish.rig, moved_m, number, wish.problem.key
-        reading = latest.Reading(glance, reference, exact, *of)
-        latest.note_reading(name, reading)
+        scored = request.rig, moved_m, number, request.problem.key
+        live_state(name).put(LiveScore(summary, baseline, exact, *scored))
 
 
-def failed(name: str, error: Exception) -> None:
-    """Say what was wrong; a mistake of ours is Blender's to tell as well."""
-    say(name, str(error) if isinstance(error, pe.InputError) else f"Not scored: {error!r}")
+def report_failure(name: str, error: Exception) -> None:
+    """Show why there is no score; let Blender report our own mistakes as well."""
+    show_note(name, str(error) if isinstance(error, pe.InputError) else f"Not scored: {error!r}")
     if not isinstance(error, (pe.InputError, MemoryError)):
         raise error
 
 
-def say(name: str, line: str) -> None:
-    """Show why there is no newer reading."""
-    drop(name)
-    latest.set_note(name, line)
-    changes.reading.tell()
+def show_note(name: str, line: str) -> None:
+    """Show why there is no newer score."""
+    cancel(name)
+    live_state(name).note = line
+    signals.live_score_changed.emit()
 
 
-def drop(name: str) -> None:
-    """Have nothing shown any more of what was asked of a scene."""
+def cancel(name: str) -> None:
+    """Drop the request of a scene; one that is in progress will not be shown."""
     global _generation
     _generation += 1
-    worker.hand.drop(name)
+    worker.interactive_worker.drop(name)
 
 
-def switched() -> None:
-    """The switch was used: begin where it is on, forget where it is off."""
+def on_toggled() -> None:
+    """Begin in scenes where *Live* is on, drop everything in those where it is off."""
     for scene in bpy.data.scenes:
         if not scene.perception_entropy.live.on:
-            drop(scene.name)
-            latest.forget_reading(scene.name)
-            background.drop(scene.name)
-            _seen.pop(scene.name, None)
-            _last.pop(scene.name, None)
-            _moves.drop(scene.name)
+            cancel(scene.name)
+            background_figures.cancel(scene.name)
+            live_state(scene.name).switch_off()
     if not bpy.app.background:
-        rest()
-    changes.reading.tell()
+        on_idle()
+    signals.live_score_changed.emit()
 
 
 def shown_scenes() -> list[bpy.types.Scene]:
-    """Scenes that some window shows and that are live."""
+    """Return the scenes that a window shows and whose *Live* is on."""
     windows = (w for manager in bpy.data.window_managers for w in manager.windows)
     shown = {window.scene.name: window.scene for window in windows}
     return [scene for scene in shown.values() if scene.perception_entropy.live.on]
 
 
-def look_at_settings() -> None:
-    """What the 3D view shows may be set for another height or class: so are the figures."""
+def on_view_changed() -> None:
+    """Request figures again where the 3D view is set to another height or class."""
     if not bpy.app.background:
         for scene in shown_scenes():
-            background.ask_again(scene)
+            background_figures.request_if_rule_changed(scene)
 
 
-@persistent
-def forget(*_: object) -> None:
-    """Before another file comes: nothing of this one is kept or delivered."""
-    for name in tuple(_seen):
-        drop(name)
-    for each in (_moves, _seen, _last):
-        each.clear()
-    priors.clear()
-    against.forget()
-    background.forget()
-    latest.forget()
-
-
-def _last_read(name: str) -> ReadRig | None:
-    """Return the rig that was read last, and its exact score where that is there already."""
-    if name not in _last:
-        return None
-    (rig, problem), exact = _last[name], latest.exact(name)
-    known = exact is not None and exact.problem == problem and rig_key(exact.rig) == rig_key(rig)
-    return ReadRig(rig, exact.glance if known else None)
+def clear(*_: object) -> None:
+    """Drop everything before another file is opened: nothing of this one is kept or delivered."""
+    for name in tuple(states):
+        cancel(name)
+    background_figures.clear()
+    states.clear()
 
 
 def _moving_operator() -> int:
-    """Which operator moves things with the mouse, by a number of its own; 0 when there is none."""
+    """Return a number of the operator that moves things with the mouse; 0 when there is none."""
     windows = (w for manager in bpy.data.window_managers for w in manager.windows)
     running = (each for window in windows for each in window.modal_operators)
     return next((o.as_pointer() for o in running if o.bl_idname.startswith(MOVING)), 0)
 
 
-def register() -> None:
-    """Start listening; what moves is noted before it is followed."""
-    bpy.app.handlers.depsgraph_update_post.append(follow)
-    bpy.app.handlers.load_pre.append(forget)
-    changes.rested.connect(rest)
-    changes.live.connect(switched)
-    changes.picture.connect(look_at_settings)
-
-
 def unregister() -> None:
-    """Stop listening and forget everything; the thread has ended."""
-    changes.picture.disconnect(look_at_settings)
-    changes.live.disconnect(switched)
-    changes.rested.disconnect(rest)
-    bpy.app.handlers.load_pre.remove(forget)
-    bpy.app.handlers.depsgraph_update_post.remove(follow)
-    forget()
+    """Drop everything; the thread has ended."""
+    clear()
     _evaluators.clear()

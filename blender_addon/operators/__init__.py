@@ -1,48 +1,38 @@
-"""Operators: what can be pressed. Each reads the scene, calls the engine, writes the result.
+"""Operators: each reads the scene, calls the engine, and writes the result.
 
-Panels take from here what there is to press and to choose from.
+Panels take from here the operators, and what menus list.
 """
 
-from ..explaining import is_behind as warnings_are_behind
+from ..diagnostics import warnings_outdated
 from ..live import ShownScore, live_lines, shown_score
+from ..sensor_kinds import kind_label
 from . import (
     add_sensor,
-    apply_scale,
-    ask_place,
-    axles,
-    comparing,
-    exchange,
-    export,
-    export_scene,
-    exporting,
-    fix_colors,
-    focus,
+    compare_variants,
+    edit_sensors,
+    export_files,
+    export_job,
+    fix_warnings,
     inset,
-    job,
-    known_rigs,
-    live_reference,
-    look,
-    mending,
-    mirror_sensor,
+    look_through,
     mounts,
-    own_sensors,
+    panel_rows,
     place_sensor,
-    placing,
-    plain_objects,
-    review,
-    running,
-    search_sensor,
-    select,
-    selection,
+    placement,
+    query_location,
+    replace_sensors,
+    rig_files,
+    running_job,
+    score_jobs,
     upright,
     variants,
 )
-from .ask_place import answer
-from .known_rigs import rigs
-from .live_reference import reference_label
-from .mending import LABELS as FIX_LABELS
-from .offered import SENSOR_COLORS, Offer, brief, held_by, makers, models, offers
-from .select import listed_sensors
+from .add_sensor import SENSOR_COLORS, Offer, brief, holder_of, makers, models, offers
+from .edit_sensors import listed_sensors
+from .fix_warnings import FIX_LABELS
+from .panel_rows import own_fields, reference_label
+from .query_location import answer
+from .replace_sensors import known_rigs
 
 __all__ = [
     "CLASSES",
@@ -52,65 +42,54 @@ __all__ = [
     "ShownScore",
     "answer",
     "brief",
-    "exporting",
-    "held_by",
+    "export_job",
+    "holder_of",
+    "kind_label",
+    "known_rigs",
     "listed_sensors",
     "live_lines",
     "makers",
     "models",
     "offers",
+    "own_fields",
     "reference_label",
     "register",
-    "rigs",
-    "running",
+    "running_job",
     "shown_score",
     "unregister",
-    "warnings_are_behind",
+    "warnings_outdated",
 ]
 
 CLASSES = (
     *add_sensor.CLASSES,
     *place_sensor.CLASSES,
-    *search_sensor.CLASSES,
-    *mirror_sensor.CLASSES,
+    *edit_sensors.CLASSES,
     *mounts.CLASSES,
-    *own_sensors.CLASSES,
-    *apply_scale.CLASSES,
-    *look.CLASSES,
+    *panel_rows.CLASSES,
+    *look_through.CLASSES,
     *upright.CLASSES,
-    *select.CLASSES,
-    *focus.CLASSES,
-    *fix_colors.CLASSES,
-    *job.CLASSES,
-    *selection.CLASSES,
-    *exporting.CLASSES,
-    *export.CLASSES,
-    *exchange.CLASSES,
-    *plain_objects.CLASSES,
-    *export_scene.CLASSES,
-    *axles.CLASSES,
-    *review.CLASSES,
+    *score_jobs.CLASSES,
+    *export_job.CLASSES,
+    *export_files.CLASSES,
+    *rig_files.CLASSES,
+    *replace_sensors.CLASSES,
     *variants.CLASSES,
-    *comparing.CLASSES,
-    *known_rigs.CLASSES,
-    *live_reference.CLASSES,
-    *mending.CLASSES,
-    *ask_place.CLASSES,
+    *compare_variants.CLASSES,
+    *fix_warnings.CLASSES,
+    *query_location.CLASSES,
 )
 
 
 def register() -> None:
-    """Have Esc come back from looking through a sensor, and dropped sensors stand."""
-    look.register()
-    upright.register()
+    """Add keys, draw handlers and listeners of operators."""
+    look_through.register()
     inset.register()
 
 
 def unregister() -> None:
-    """Let go of what runs, and of what waits for the mouse."""
-    running.unregister()
-    placing.end()
-    exporting.unregister()
+    """End what is running, and what waits for the mouse; remove what `register` added."""
+    running_job.unregister()
+    placement.end()
+    export_job.unregister()
     inset.unregister()
-    upright.unregister()
-    look.unregister()
+    look_through.unregister()

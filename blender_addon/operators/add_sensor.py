@@ -1,17 +1,130 @@
-"""Add a sensor: an empty that carries its settings, at a place that makes sense."""
+"""Add a sensor of the catalogue: the menus' entries, and the location of a new sensor."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import bpy
-from bpy.props import BoolProperty, StringProperty
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, StringProperty
+from mathutils import Vector
 
 from .. import bridge
-from ..engine import catalog, kinds
-from ..housing import known_housing
+from ..engine import catalog, graphics, kinds, pe
+from ..housing import measured_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
-from .mounting import Mount, mount_of, sensible_place
-from .offered import described
-from .reports import REFUSALS, refuse
+from ..sensor_kinds import Mount, mount_of
+from .reports import USER_ERRORS, report_error
+from .surface_pose import nearest_spot, parts_of
+
+ROOF_DEPTH_M = 0.1
+"""Points this near to the vehicle's highest point belong to the roof."""
+FRONT_INSET_M = 0.05
+"""How far behind the roof's front edge a camera is placed."""
+DOWN = (0.0, 0.0, -1.0)
+
+
+def default_location(context: bpy.types.Context, mount: Mount) -> Vector:
+    """Return the 3D cursor; while that is at the origin, a location on the vehicle's roof.
+
+    If the cursor is on the vehicle's surface or near it, the sensor's origin is moved away from
+    the surface by the sensor's stand-off.
+    """
+    cursor = context.scene.cursor.location
+    collection = context.scene.perception_entropy.vehicle
+    if collection is None:
+        return cursor.copy() if cursor.length > 0.0 else Vector((0.0, 0.0, mount.height_m))
+    depsgraph = context.evaluated_depsgraph_get()
+    if cursor.length > 0.0:
+        return moved_out_of_surface(
+            cursor, mount.stand_off_m, parts_of(collection, depsgraph), depsgraph
+        )
+    return Vector(roof_location(bridge.vehicle_from_collection(collection, depsgraph), mount))
+
+
+def moved_out_of_surface(
+    point: Vector, stand_off_m: float, parts: set[str], depsgraph: bpy.types.Depsgraph
+) -> Vector:
+    """Return a point, moved away from any surface nearer than a sensor's stand-off."""
+    spot = nearest_spot(depsgraph, parts, point, stand_off_m)
+    return point.copy() if spot is None else spot.point + spot.normal * stand_off_m
+
+
+def roof_location(vehicle: pe.Vehicle, mount: Mount) -> tuple[float, float, float]:
+    """Return a location on the middle of the roof, or behind its front edge."""
+    corners = vehicle.triangles.reshape(-1, 3)
+    top = corners[:, 2].max()
+    roof = corners[corners[:, 2] > top - ROOF_DEPTH_M]
+    low, high = roof.min(axis=0), roof.max(axis=0)
+    x, y = (low[:2] + high[:2]) / 2.0
+    if mount.at_front:
+        x = max(x, high[0] - FRONT_INSET_M)
+    depth = float(vehicle.first_hit((x, y, top + 1.0), [DOWN]).distance[0])
+    surface = top + 1.0 - depth if np.isfinite(depth) else top  # there may be a hole
+    x, y, z = np.round((x, y, surface + mount.stand_off_m), 2).tolist()
+    return x, y, z
+
+
+SENSOR_COLORS = graphics.SENSOR_COLORS
+"""Colours of sensors in the 3D view, in the order of the list, again from the first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """A kind of sensor in the menus: its name, its label, its usual model."""
+
+    kind: str
+    label: str
+    usual: str
+
+
+def offers() -> Iterator[Offer]:
+    """Yield the engine's kinds that have a model in the catalogue."""
+    for kind in kinds.KINDS.values():
+        models = catalog.names(kind.name)
+        if models:
+            yield Offer(kind.name, kind.label, mount_of(kind.name).usual or models[0])
+
+
+def makers(kind: str | None) -> list[str]:
+    """Return the makers of sensors of one kind or all kinds, in the order of the catalogue."""
+    return list(
+        dict.fromkeys(
+            entry.maker for entry in catalog.entries().values() if _is_of_kind(entry, kind)
+        )
+    )
+
+
+def models(kind: str | None, maker: str | None = None) -> list[str]:
+    """Return the names of sensors of a kind, of one maker or of all."""
+    entries = (entry for entry in catalog.entries().values() if _is_of_kind(entry, kind))
+    return [entry.name for entry in entries if maker in (None, entry.maker)]
+
+
+def brief(model: str) -> str:
+    """Return a sensor of the catalogue in a few words: channels, field of view, range."""
+    loaded = catalog.load(model)
+    return kinds.kind_of(loaded).summary(loaded)
+
+
+def tooltip_of(model: str) -> str:
+    """Return a sensor of the catalogue in a few lines, for a tooltip; empty for an unknown name."""
+    entry = catalog.entries().get(model)
+    if entry is None:
+        return ""
+    loaded = catalog.load(model)
+    lines = [" ".join(line.split()) for line in kinds.kind_of(loaded).data_sheet(loaded)]
+    return "\n".join([model, *lines])
+
+
+def _is_of_kind(entry: catalog.Entry, kind: str | None) -> bool:
+    return entry.kind in kinds.KINDS and kind in (None, entry.kind)
+
+
+def holder_of(obj: bpy.types.Object) -> str:
+    """Return the name of what fixes a sensor's pose; empty if the pose can be edited."""
+    return bridge.holder_of(obj)
 
 
 class PE_OT_add_sensor(bpy.types.Operator):
@@ -36,7 +149,7 @@ class PE_OT_add_sensor(bpy.types.Operator):
 
     @classmethod
     def description(cls, _context: bpy.types.Context, chosen: bpy.types.OperatorProperties) -> str:
-        return f"{cls.__doc__}\n\n{described(chosen.model)}"
+        return f"{cls.__doc__}\n\n{tooltip_of(chosen.model)}"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -50,10 +163,10 @@ class PE_OT_add_sensor(bpy.types.Operator):
             kind = kinds.kind_of(catalog.load(self.model))
             mount = mount_of(kind.name)
             choose_vehicle(context.scene)
-            location = sensible_place(context, mount)
-        except REFUSALS as error:
-            return refuse(self, error)
-        body = known_housing(self.model) if self.housing else None
+            location = default_location(context, mount)
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        body = measured_housing(self.model) if self.housing else None
         obj = new_sensor(context, kind.label, self.model, mount, body)
         obj.location = location
         select_only(context, obj)
@@ -61,7 +174,7 @@ class PE_OT_add_sensor(bpy.types.Operator):
 
 
 def choose_vehicle(scene: bpy.types.Scene) -> None:
-    """Take the only collection with meshes for the vehicle, if none has been chosen."""
+    """Choose the only collection with meshes as the vehicle, if none has been chosen."""
     settings = scene.perception_entropy
     if settings.vehicle is None:
         solid = [
@@ -72,7 +185,7 @@ def choose_vehicle(scene: bpy.types.Scene) -> None:
 
 
 def is_part(obj: bpy.types.Object) -> bool:
-    """Whether an object is something that a vehicle may be made of."""
+    """Whether an object may be a part of a vehicle."""
     return obj.type == "MESH" and not bridge.mounted_on_sensor(obj)
 
 
@@ -83,7 +196,7 @@ def new_sensor(
     mount: Mount,
     body: bpy.types.Mesh | None = None,
 ) -> bpy.types.Object:
-    """Make a sensor in the scene's collection of sensors: an empty, unless it has a body."""
+    """Create a sensor in the scene's collection of sensors: its `body` mesh, or an empty."""
     obj = bpy.data.objects.new(name, body)
     if body is None:
         obj.empty_display_type, obj.empty_display_size = mount.display, mount.size_m
@@ -101,4 +214,39 @@ def select_only(context: bpy.types.Context, obj: bpy.types.Object) -> None:
     context.view_layer.objects.active = obj
 
 
-CLASSES = (PE_OT_add_sensor,)
+_listed: list[tuple[str, str, str, int]] = []
+"""What the popup lists: Blender reads the texts after the function that made them returned."""
+
+
+def _menu_items(
+    operator: bpy.types.OperatorProperties, _context: bpy.types.Context
+) -> list[tuple[str, str, str, int]]:
+    """Return the catalogue's sensors of the operator's kind, as items of a Blender menu."""
+    names = models(operator.kind or None)
+    _listed[:] = [(n, n, tooltip_of(n), i) for i, n in enumerate(names)]
+    return _listed
+
+
+class PE_OT_search_sensor(bpy.types.Operator):
+    """Type a part of a sensor's name, such as QT128, and place it by pointing"""
+
+    bl_idname = "pe.search_sensor"
+    bl_label = "Search Sensors"
+    bl_options = {"INTERNAL"}
+    bl_property = "model"
+
+    kind: StringProperty(name="Kind", description="Kind of sensors to list; all when empty")
+    model: EnumProperty(name="Model", description="Sensor of the catalogue", items=_menu_items)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        context.window_manager.invoke_search_popup(self)
+        return {"FINISHED"}
+
+    def execute(self, _context: bpy.types.Context) -> set[str]:
+        return bpy.ops.pe.place_sensor("INVOKE_DEFAULT", True, model=self.model)
+
+
+CLASSES = (
+    PE_OT_add_sensor,
+    PE_OT_search_sensor,
+)

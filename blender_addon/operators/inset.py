@@ -1,9 +1,9 @@
 """The picture of the selected sensor in a corner of the 3D view, while the view stays as it is.
 
-A camera's is drawn by Blender's own viewport, from where the camera is; it is made again when the
-scene has changed, not when the view is turned. A LiDAR's is that of its ranges, worked out beside
-the window. Blender's camera bends no lines: of a lens that does, the picture is the pinhole that
-*Look Through* shows.
+Blender's viewport renders the picture of a camera from the camera's pose. It is rendered again when
+the scene has changed, not when the view is turned. The background worker computes the picture of a
+LiDAR's ranges. Blender's camera has no distortion: for a lens with distortion, the picture is the
+pinhole view of *Look Through*.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from bpy.app.handlers import persistent
 from mathutils import Matrix
 
-from .. import body, bridge, corners, redraw
-from ..engine import catalog, kinds, pe
-from ..worker import desk
-from . import inset_drawing, range_image
-from .inset_drawing import PictureView
+from .. import bridge, vehicle_cache, viewport
+from ..engine import catalog, pe
+from ..sensor_kinds import Pixels, row_of
+from ..worker import background_worker
+from . import sensor_pictures
+from .sensor_pictures import PictureView
 
 VIEWS = bpy.types.SpaceView3D
-PLATE, TOPIC = "inset", "inset ranges"
-SHARE, HIGHEST_SHARE, WIDEST_PX = 0.3, 0.4, 380.0
-"""The picture's part of the view's width and height at most, and its width at a scale of 1."""
-MARGIN_PX, TITLE_PX = 14.0, 20.0
+PLATE_NAME, TOPIC = "inset", "inset ranges"
+WIDTH_SHARE, MAX_HEIGHT_SHARE, MAX_WIDTH_PX = 0.3, 0.4, 380.0
+"""Largest share of the view's width and height, and largest width at a scale of 1."""
+TITLE_PX = 20.0
 NEAR_M, FAR_M = 0.02, 500.0
 
 
@@ -39,91 +39,89 @@ class InsetSize(NamedTuple):
 
 
 _handles: list[object] = []
-_changed = 0
-"""How often a scene has changed: pictures of before are not those of now."""
+_change_count = 0
+"""How often a scene has changed: earlier pictures are out of date."""
 _rendering = False
-_known: dict[int, tuple[Hashable, inset_drawing.InsetCamera]] = {}
-"""Pictures of cameras by the region's pointer, with what they were made of."""
-_wanted: dict[int, tuple[Hashable, pe.Sensor, InsetSize]] = {}
+_pictures: dict[int, tuple[Hashable, sensor_pictures.InsetCamera]] = {}
+"""Pictures of cameras by the region's pointer, with the key of what they were made from."""
+_requested: dict[int, tuple[Hashable, pe.Sensor, InsetSize]] = {}
 """Pictures that are to be rendered, by the region's pointer."""
-_ranges: tuple[Hashable, inset_drawing.Image] | None = None
-_asked: Hashable = None
+_ranges: tuple[Hashable, sensor_pictures.PixelImage] | None = None
+_requested_ranges: Hashable = None
 
 
 def register() -> None:
     """Start drawing, where there is a window."""
     if not _handles and not bpy.app.background:
         _handles.append(VIEWS.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL"))
-        bpy.app.handlers.depsgraph_update_post.append(note_change)
 
 
 def unregister() -> None:
-    """Stop drawing, and let go of all pictures."""
-    global _ranges, _asked
+    """Stop drawing, and release all pictures."""
+    global _ranges, _requested_ranges
     while _handles:
         VIEWS.draw_handler_remove(_handles.pop(), "WINDOW")
-        bpy.app.handlers.depsgraph_update_post.remove(note_change)
-    for timer in (ask_ranges, render_wanted):
+    for timer in (request_ranges, render_requested):
         if not bpy.app.background and bpy.app.timers.is_registered(timer):
             bpy.app.timers.unregister(timer)
-    for _, camera in _known.values():
+    for _, camera in _pictures.values():
         camera.free()
-    _known.clear()
-    _wanted.clear()
-    corners.forget(PLATE)
-    _ranges = _asked = None
+    _pictures.clear()
+    _requested.clear()
+    viewport.release_plate(PLATE_NAME)
+    _ranges = _requested_ranges = None
 
 
-@persistent
 def note_change(*_: object) -> None:
-    """After an update: pictures are made again when they are drawn next."""
-    global _changed
-    _changed += 1
+    """Invalidate the pictures after an update; they are made again at the next redraw."""
+    global _change_count
+    _change_count += 1
 
 
 def draw() -> None:
-    """Draw into the current 3D view, if it is wanted; Blender calls this at each redraw."""
+    """Draw into the current 3D view, if it is switched on; Blender calls this at each redraw."""
     context = bpy.context
     if _rendering or context.region is None:
         return
     region, box = context.region.as_pointer(), None
     sensor = shown_sensor(context)
     if sensor is None:
-        _drop(region)
-    elif isinstance(sensor.model, pe.Camera):
+        _release(region)
+    elif row_of(sensor.kind).camera is not None:
         box = _draw_camera(context, sensor)
     else:
         box = _draw_ranges(context, sensor)
-    corners.reserve(region, PLATE, box)
+    viewport.reserve_plate(region, PLATE_NAME, box)
 
 
 def shown_sensor(context: bpy.types.Context) -> pe.Sensor | None:
-    """Return the active sensor, where the view is to show its picture, and where it is."""
+    """Return the active sensor, where the view is to show its picture."""
     obj, space = context.active_object, context.space_data
     if not context.scene.perception_entropy.view.show_inset or obj is None:
         return None
     if space is None or space.type != "VIEW_3D" or context.region_data != space.region_3d:
-        return None  # of four views the one that can be turned has it
+        return None  # in a quad view, only the view that can be turned
     settings = obj.perception_entropy
     if not settings.is_sensor or space.region_3d.view_perspective == "CAMERA":
         return None
     try:
         pose = bridge.pose_of_matrix(np.array(obj.matrix_world, dtype=float))
         sensor = pe.Sensor(obj.name, catalog.load(settings.model), pose)
-    except pe.InputError:  # it is told below its row
+    except pe.InputError:  # the list of sensors says why
         return None
-    return sensor if isinstance(sensor.model, pe.Camera | pe.Lidar) else None
+    row = row_of(sensor.kind)
+    return None if row.camera is None and row.pixels is None else sensor
 
 
 def size_of(region: tuple[int, int], picture: tuple[int, int], scale: float) -> InsetSize:
     """Return the size of a picture of these proportions in a region [px]."""
     ratio = picture[1] / picture[0]
-    width = min(SHARE * region[0], WIDEST_PX * scale, HIGHEST_SHARE * region[1] / ratio)
+    width = min(WIDTH_SHARE * region[0], MAX_WIDTH_PX * scale, MAX_HEIGHT_SHARE * region[1] / ratio)
     return InsetSize(max(int(width), 2), max(int(width * ratio), 2))
 
 
 def projection(model: pe.Camera) -> Matrix:
-    """(4, 4) clip space from the camera's frame, of the pinhole that shows a model's view."""
+    """Return the matrix (4, 4), clip space from camera, of the pinhole for a model's view."""
     across = math.tan(bridge.shown_fov(model) / 2.0)
     up = across * model.height / model.width
     depth = FAR_M - NEAR_M
@@ -138,49 +136,51 @@ def projection(model: pe.Camera) -> Matrix:
 
 
 def title_of(sensor: pe.Sensor) -> str:
-    """Return what is written above a picture."""
-    if isinstance(sensor.model, pe.Lidar):
+    """Return the title above a picture."""
+    camera_of = row_of(sensor.kind).camera
+    if camera_of is None:
         return f"{sensor.name}: ranges, ahead in the middle"
-    bent = sensor.model.lens is not None
-    fov = math.degrees(bridge.shown_fov(sensor.model))
+    camera = camera_of(sensor.model)
+    bent = camera.lens is not None
+    fov = math.degrees(bridge.shown_fov(camera))
     return f"{sensor.name}{f' (as a pinhole, {fov:.0f}°)' if bent else ''}"
 
 
-def _draw_camera(context: bpy.types.Context, sensor: pe.Sensor) -> corners.Box | None:
-    """Draw the newest picture of a camera; have it rendered if anything has changed."""
+def _draw_camera(context: bpy.types.Context, sensor: pe.Sensor) -> viewport.PlateBox | None:
+    """Draw the latest picture of a camera; request a new one if anything has changed."""
     scale, region = context.preferences.system.ui_scale, context.region
-    model, pointer = sensor.model, region.as_pointer()
+    model, pointer = row_of(sensor.kind).camera(sensor.model), region.as_pointer()
     size = size_of((region.width, region.height), (model.width, model.height), scale)
     shading = context.space_data.shading
     look = (shading.type, shading.light, shading.color_type)
-    made_of = (size, sensor.pose, model.name, _changed, context.scene.name, look)
-    known = _known.get(pointer)
-    if known is None or known[0] != made_of:
-        _wanted[pointer] = made_of, sensor, size
-        if not bpy.app.timers.is_registered(render_wanted):
-            bpy.app.timers.register(render_wanted, first_interval=0.0)
-    if known is None:
+    made_of = (size, sensor.pose, model.name, _change_count, context.scene.name, look)
+    cached = _pictures.get(pointer)
+    if cached is None or cached[0] != made_of:
+        _requested[pointer] = made_of, sensor, size
+        if not bpy.app.timers.is_registered(render_requested):
+            bpy.app.timers.register(render_requested, first_interval=0.0)
+    if cached is None:
         return None
-    left, bottom = _corner(context, known[1].size)
-    inset_drawing.draw_picture(known[1].texture, (left, bottom), known[1].size)
-    return inset_drawing.draw_frame((left, bottom), known[1].size, title_of(sensor), scale)
+    left, bottom = _corner(context, cached[1].size)
+    sensor_pictures.draw_picture(cached[1].texture, (left, bottom), cached[1].size)
+    return sensor_pictures.draw_frame((left, bottom), cached[1].size, title_of(sensor), scale)
 
 
-def render_wanted() -> None:
-    """Timer: have pictures of cameras rendered, which cannot be while a view is drawn."""
-    for pointer, (made_of, sensor, size) in list(_wanted.items()):
-        del _wanted[pointer]
-        found = _view_of(pointer)
-        if found is not None:
-            known = _known.get(pointer)
-            camera = known[1] if known is not None else inset_drawing.InsetCamera()
-            _render(found, camera, sensor, size)
-            _known[pointer] = made_of, camera
-    redraw.editors()
+def render_requested() -> None:
+    """Timer: render the requested pictures of cameras; that is impossible while a view is drawn."""
+    for pointer, (made_of, sensor, size) in list(_requested.items()):
+        del _requested[pointer]
+        view = _view_of(pointer)
+        if view is not None:
+            cached = _pictures.get(pointer)
+            camera = cached[1] if cached is not None else sensor_pictures.InsetCamera()
+            _render(view, camera, sensor, size)
+            _pictures[pointer] = made_of, camera
+    viewport.redraw_editors()
 
 
 def _view_of(pointer: int) -> PictureView | None:
-    """Return where a region is, by its pointer; None where it is gone."""
+    """Return the 3D view of a region, by its pointer; None where it was closed."""
     for window in bpy.context.window_manager.windows:
         for area in (each for each in window.screen.areas if each.type == "VIEW_3D"):
             for region in area.regions:
@@ -190,9 +190,9 @@ def _view_of(pointer: int) -> PictureView | None:
 
 
 def _render(
-    view: PictureView, camera: inset_drawing.InsetCamera, sensor: pe.Sensor, size: InsetSize
+    view: PictureView, camera: sensor_pictures.InsetCamera, sensor: pe.Sensor, size: InsetSize
 ) -> None:
-    """Have the viewport draw what a camera sees, without anything that is drawn over it."""
+    """Render a camera's view by the viewport, without overlays."""
     global _rendering
     turned = Matrix(sensor.pose.ground_from_sensor.tolist())
     ground_from_sensor = Matrix.LocRotScale(sensor.pose.position, turned, None)
@@ -201,30 +201,32 @@ def _render(
     before, _rendering = overlay.show_overlays, True
     overlay.show_overlays = False
     try:
-        camera.render(view, size, camera_from_ground, projection(sensor.model))
+        camera.render(
+            view, size, camera_from_ground, projection(row_of(sensor.kind).camera(sensor.model))
+        )
     finally:
         overlay.show_overlays, _rendering = before, False
 
 
-def _draw_ranges(context: bpy.types.Context, sensor: pe.Sensor) -> corners.Box | None:
-    """Draw the newest picture of a LiDAR's ranges; have one made if it is not that of now."""
-    global _asked
-    made_of = sensor.name, sensor.pose, sensor.model.name, body.shared.version
-    if made_of != _asked:
-        _asked = made_of
-        if not bpy.app.timers.is_registered(ask_ranges):
-            bpy.app.timers.register(ask_ranges, first_interval=0.0)
+def _draw_ranges(context: bpy.types.Context, sensor: pe.Sensor) -> viewport.PlateBox | None:
+    """Draw the latest picture of ranges; request a new one if anything has changed."""
+    global _requested_ranges
+    made_of = sensor.name, sensor.pose, sensor.model.name, vehicle_cache.shared.version
+    if made_of != _requested_ranges:
+        _requested_ranges = made_of
+        if not bpy.app.timers.is_registered(request_ranges):
+            bpy.app.timers.register(request_ranges, first_interval=0.0)
     if _ranges is None or _ranges[0] != (sensor.name, sensor.model.name):
         return None
     scale, region, image = context.preferences.system.ui_scale, context.region, _ranges[1]
     size = size_of((region.width, region.height), (image.width, image.height), scale)
     left, bottom = _corner(context, size)
-    inset_drawing.draw_picture(image.texture, (left, bottom), size)
-    return inset_drawing.draw_frame((left, bottom), size, title_of(sensor), scale)
+    sensor_pictures.draw_picture(image.texture, (left, bottom), size)
+    return sensor_pictures.draw_frame((left, bottom), size, title_of(sensor), scale)
 
 
-def ask_ranges() -> None:
-    """Timer: have the picture of the active LiDAR's ranges made beside the window."""
+def request_ranges() -> None:
+    """Timer: request the picture of the active sensor from the background worker."""
     scene, obj = bpy.context.scene, bpy.context.view_layer.objects.active
     if obj is None or not obj.perception_entropy.is_sensor:
         return
@@ -233,38 +235,34 @@ def ask_ranges() -> None:
         sensor = bridge.sensor_from_object(obj, depsgraph)
     except pe.InputError:
         return
-    vehicle = body.shared.read(scene, depsgraph).vehicle
-    if not isinstance(sensor.model, pe.Lidar):
+    vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
+    pixels_of = row_of(sensor.kind).pixels
+    if pixels_of is None:
         return
 
-    def deliver(pixels: inset_drawing.Pixels) -> None:
+    def deliver(pixels: Pixels) -> None:
         global _ranges
-        _ranges = (sensor.name, sensor.model.name), inset_drawing.Image(pixels)
-        redraw.editors()
+        _ranges = (sensor.name, sensor.model.name), sensor_pictures.PixelImage(pixels)
+        viewport.redraw_editors()
 
-    desk.ask(
+    background_worker.ask(
         TOPIC,
-        lambda: range_image.painted(kinds.range_picture(sensor, vehicle), sensor.model.max_range),
+        lambda: pixels_of(sensor, vehicle),
         deliver,
         lambda _error: None,  # Look Through says why
     )
 
 
 def _corner(context: bpy.types.Context, size: InsetSize) -> tuple[float, float]:
-    """Lower left corner of a picture in the region: above what else is there [px]."""
-    scale, region = context.preferences.system.ui_scale, context.region
-    left, margin = 0.0, MARGIN_PX * scale
-    for each in context.area.regions:
-        if each.type == "TOOLS" and each.x < region.x + region.width / 2:
-            left = max(left, each.x + each.width - region.x)
-    left += margin
-    pointer = region.as_pointer()
-    corners.reserve(pointer, PLATE, None)
-    bottom = corners.bottom_above(pointer, (left, left + size.width), margin, margin)
-    return left, min(bottom, region.height - size.height - TITLE_PX * scale)
+    """Return the lower left corner of a picture in the region [px]: above the other plates."""
+    region, margin = context.region, viewport.MARGIN * viewport.ui_scale()
+    left, pointer = viewport.beside_toolbar(context), region.as_pointer()
+    viewport.reserve_plate(pointer, PLATE_NAME, None)
+    bottom = viewport.free_bottom(pointer, (left, left + size.width), margin, margin)
+    return left, min(bottom, region.height - size.height - TITLE_PX * viewport.ui_scale())
 
 
-def _drop(region: int) -> None:
-    known = _known.pop(region, None)
-    if known is not None:
-        known[1].free()
+def _release(region: int) -> None:
+    cached = _pictures.pop(region, None)
+    if cached is not None:
+        cached[1].free()

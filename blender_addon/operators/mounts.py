@@ -1,4 +1,4 @@
-"""Mounts: rows of the panel's list, what they are made of, and sensors put on them."""
+"""Mounts: rows of the panel's list, their faces, and sensors that are put on them."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty, StringProperty
 
-from .. import bridge, changes
+from .. import bridge, signals
 from ..choices import BY_GROUP, BY_PARTS, free_name
 from ..engine import catalog, pe, search
-from .reports import REFUSALS, refuse, tell
+from .reports import USER_ERRORS, report, report_error
 
 IN_A_BOX = "BOX"
-"""What the menu of a sensor's mounts calls none."""
+"""The entry for no mount in the menu of a sensor's mounts."""
 NO_GO_SIZE_M = 0.25
-"""Half a side of a no-go area that is round no part."""
-CLEAR_OF_PART_M, LEAST_SIDE_M = 0.02, 0.01
-"""How far an area round parts goes beyond them, and what a flat one has at least."""
-_shown: list[tuple[str, str, str]] = []
-"""What the menu lists: Blender reads the texts after the function that made them is done."""
+"""Half a side of a no-go area that encloses no part."""
+PART_MARGIN_M, MIN_SIDE_M = 0.02, 0.01
+"""Margin of a no-go area round parts, and its smallest side."""
+_listed: list[tuple[str, str, str]] = []
+"""What the menu lists: Blender reads the texts after the function that made them returned."""
 
 
 class PE_OT_add_mount(bpy.types.Operator):
@@ -37,9 +37,9 @@ class PE_OT_add_mount(bpy.types.Operator):
         row = settings.mounts.add()
         row.name = free_name(name, taken)
         row.faces, row.group = (BY_GROUP, painted) if painted else (BY_PARTS, "")
-        _take(row, parts)
+        _set_parts(row, parts)
         settings.mount_index = len(settings.mounts) - 1
-        changes.picture.tell()
+        signals.view_changed.emit()
         return {"FINISHED"}
 
 
@@ -72,12 +72,12 @@ class PE_OT_remove_mount(MountRow, bpy.types.Operator):
         for obj in bridge.sensor_objects(scene):
             if obj.perception_entropy.mount == name:
                 obj.perception_entropy.mount = ""
-        changes.picture.tell()
+        signals.view_changed.emit()
         return {"FINISHED"}
 
 
 class PE_OT_mount_parts(MountRow, bpy.types.Operator):
-    """Make the mount of the vehicle's objects that are selected, all of their faces"""
+    """Make this mount of all faces of the selected objects of the vehicle"""
 
     bl_idname = "pe.mount_parts"
     bl_label = "Take Selected"
@@ -86,31 +86,31 @@ class PE_OT_mount_parts(MountRow, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         settings, parts = context.scene.perception_entropy, selected_parts(context)
         if not parts:
-            tell(self, "WARNING", "Select objects of the vehicle's collection first")
+            report(self, "WARNING", "Select objects of the vehicle's collection first")
             return {"CANCELLED"}
-        _take(settings.mounts[settings.mount_index], parts)
-        changes.picture.tell()
+        _set_parts(settings.mounts[settings.mount_index], parts)
+        signals.view_changed.emit()
         return {"FINISHED"}
 
 
-def _mounts(
+def _menu_items(
     _operator: bpy.types.OperatorProperties, context: bpy.types.Context
 ) -> list[tuple[str, str, str]]:
     """Return the scene's mounts as Blender wants a menu."""
     rows = context.scene.perception_entropy.mounts
-    free = (IN_A_BOX, "Box of Coordinates", "The search moves it in its bounds, wherever they go")
-    _shown[:] = [free, *((row.name, row.name, "Put it on this mount") for row in rows)]
-    return _shown
+    free = (IN_A_BOX, "Box of Coordinates", "The search moves it within its bounds")
+    _listed[:] = [free, *((row.name, row.name, "Put it on this mount") for row in rows)]
+    return _listed
 
 
 class PE_OT_mount_sensor(bpy.types.Operator):
-    """Choose where the search may put this sensor, and put it on that mount where it is nearest"""
+    """Choose the mount of this sensor, and move it to the nearest point of that mount"""
 
     bl_idname = "pe.mount_sensor"
     bl_label = "Mount Sensor"
     bl_options = {"REGISTER", "UNDO"}
 
-    mount: EnumProperty(name="Mount", description="Where it may sit", items=_mounts)
+    mount: EnumProperty(name="Mount", description="Where it may sit", items=_menu_items)
     name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -119,10 +119,10 @@ class PE_OT_mount_sensor(bpy.types.Operator):
         try:
             if self.mount != IN_A_BOX:
                 put_on_mount(scene, context.evaluated_depsgraph_get(), obj, self.mount)
-        except REFUSALS as error:
-            return refuse(self, error)
+        except USER_ERRORS as error:
+            return report_error(self, error)
         obj.perception_entropy.mount = "" if self.mount == IN_A_BOX else self.mount
-        changes.study.tell()
+        signals.study_changed.emit()
         return {"FINISHED"}
 
 
@@ -139,7 +139,7 @@ class PE_OT_add_no_go(bpy.types.Operator):
         obj.empty_display_type, obj.empty_display_size = "CUBE", NO_GO_SIZE_M
         low, high = no_go_extent(context)
         obj.location = (low + high) / 2.0
-        obj.scale = np.maximum(high - low, LEAST_SIDE_M) / (2.0 * NO_GO_SIZE_M)
+        obj.scale = np.maximum(high - low, MIN_SIDE_M) / (2.0 * NO_GO_SIZE_M)
         bridge.shown_collection(context.scene).objects.link(obj)
         obj.perception_entropy.is_no_go = True
         for other in context.selected_objects:
@@ -153,10 +153,10 @@ def no_go_extent(context: bpy.types.Context) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest and the highest corner (3,) [m] that a new no-go area has."""
     if parts := selected_parts(context):
         points = np.concatenate([_corners(part) for part in parts])
-        return points.min(axis=0) - CLEAR_OF_PART_M, points.max(axis=0) + CLEAR_OF_PART_M
+        return points.min(axis=0) - PART_MARGIN_M, points.max(axis=0) + PART_MARGIN_M
     half = np.full(3, NO_GO_SIZE_M)
     middle = np.array(context.scene.cursor.location)
-    if not middle.any():  # where the cursor is unless somebody has put it elsewhere: in the car
+    if not middle.any():  # the default position of the cursor is inside the car
         vehicle = context.scene.perception_entropy.vehicle
         meshes = [o for o in (vehicle.all_objects if vehicle else ()) if o.type == "MESH"]
         points = np.concatenate([np.zeros((1, 3)), *map(_corners, meshes)])
@@ -177,12 +177,12 @@ def put_on_mount(
     obj: bpy.types.Object | None,
     name: str,
 ) -> None:
-    """Put a sensor on a mount, where that is nearest to where it stands.
+    """Put a sensor on a mount, at the nearest point to where it is.
 
     Raises
     ------
     InputError
-        When it is no possible sensor, the mount has no faces or slots, or something holds it.
+        When it is no valid sensor, the mount has no faces or slots, or its pose is fixed.
     """
     if obj is None or not obj.perception_entropy.is_sensor:
         raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
@@ -191,15 +191,15 @@ def put_on_mount(
     vehicle = bridge.vehicle_of_scene(scene, depsgraph)
     sensor = bridge.sensor_from_object(obj, depsgraph)
     housing = catalog.housing(sensor.model.name)
-    bridge.place_poses(scene, {obj.name: search.seated(sensor, mount, vehicle, housing)})
+    bridge.place_poses(scene, {obj.name: search.snap_to_mount(sensor, mount, vehicle, housing)})
 
 
 def selected_parts(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Return the vehicle's objects that are selected, by name."""
     vehicle = context.scene.perception_entropy.vehicle
     members = set() if vehicle is None else set(vehicle.all_objects)
-    found = (o for o in context.selected_objects if o.type == "MESH" and o in members)
-    return sorted(found, key=lambda o: o.name)
+    parts = (o for o in context.selected_objects if o.type == "MESH" and o in members)
+    return sorted(parts, key=lambda o: o.name)
 
 
 def painted_group(context: bpy.types.Context) -> str:
@@ -210,7 +210,7 @@ def painted_group(context: bpy.types.Context) -> str:
     return obj.vertex_groups.active.name
 
 
-def _take(row: bpy.types.PropertyGroup, parts: list[bpy.types.Object]) -> None:
+def _set_parts(row: bpy.types.PropertyGroup, parts: list[bpy.types.Object]) -> None:
     row.parts.clear()
     for part in parts:
         row.parts.add().part = part

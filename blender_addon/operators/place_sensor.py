@@ -10,22 +10,20 @@ from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, StringPr
 from mathutils import Matrix, Vector
 
 from ..engine import catalog, kinds
-from ..housing import known_housing
+from ..housing import measured_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
-from . import placing
-from .add_sensor import choose_vehicle, new_sensor, select_only
-from .mounting import Mount, mount_for, sensible_place
-from .offered import described
-from .pointing import STEP_M, Stance, view_under
-from .reports import REFUSALS, refuse
-from .surface import Spot
+from ..sensor_kinds import Mount, mount_for
+from . import placement
+from .add_sensor import choose_vehicle, default_location, new_sensor, select_only, tooltip_of
+from .reports import USER_ERRORS, report_error
+from .surface_pose import STAND_OFF_STEP_M, Stance, SurfaceSpot, view_under
 
 BY_KIND = -1.0
 STEPS = {
-    "LEFT_BRACKET": -STEP_M,
-    "WHEELDOWNMOUSE": -STEP_M,
-    "RIGHT_BRACKET": STEP_M,
-    "WHEELUPMOUSE": STEP_M,
+    "LEFT_BRACKET": -STAND_OFF_STEP_M,
+    "WHEELDOWNMOUSE": -STAND_OFF_STEP_M,
+    "RIGHT_BRACKET": STAND_OFF_STEP_M,
+    "WHEELUPMOUSE": STAND_OFF_STEP_M,
 }
 """Keys that bring a sensor nearer to the surface, or farther from it [m]."""
 TURN_DEG, FINE_TURN_DEG = 5.0, 1.0
@@ -96,52 +94,52 @@ class PE_OT_place_sensor(bpy.types.Operator):
 
     @classmethod
     def description(cls, _context: bpy.types.Context, chosen: bpy.types.OperatorProperties) -> str:
-        return f"{cls.__doc__}\n\n{described(chosen.model)}"
+        return f"{cls.__doc__}\n\n{tooltip_of(chosen.model)}"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
             cls.poll_message_set("Sensors are added in Object Mode")
             return False
-        if placing.busy():
+        if placement.busy():
             cls.poll_message_set("Something else waits for Esc: a search, or a sensor to place")
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Place it at the location that is given."""
+        """Place the sensor at the given location."""
         try:
             model = catalog.load(self.model)
             kind = kinds.kind_of(model)
-        except REFUSALS as error:
-            return refuse(self, error)
+        except USER_ERRORS as error:
+            return report_error(self, error)
         choose_vehicle(context.scene)
-        spot = Spot(Vector(self.location), Vector(self.normal).normalized(), "")
+        spot = SurfaceSpot(Vector(self.location), Vector(self.normal).normalized(), "")
         mount = mount_for(model)
-        middle = placing.middle_of(context.scene.perception_entropy.vehicle)
+        middle = placement.vehicle_center(context.scene.perception_entropy.vehicle)
         self._add(context, mount, kind.label, self._stance(mount).placed(spot, mount, middle))
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Hold it under the mouse."""
+        """Hold the sensor under the mouse."""
         if bpy.app.background:
             return self.execute(context)
         try:
             model = catalog.load(self.model)
             choose_vehicle(context.scene)
-            placing.begin(context, model, self._stance(mount_for(model)))
-        except REFUSALS as error:
-            return refuse(self, error)
+            placement.begin(context, model, self._stance(mount_for(model)))
+        except USER_ERRORS as error:
+            return report_error(self, error)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Follow the mouse; what is not ours to take goes on to Blender."""
-        held = placing.current
-        if held is None:  # the add-on let go of it
+        """Follow the mouse; events that are not handled here are passed to Blender."""
+        held = placement.current
+        if held is None:  # the add-on has ended the placement
             return {"CANCELLED"}
         if event.type == "ESC" and event.value == "PRESS":
-            placing.end()
+            placement.end()
             return {"CANCELLED"}
         if event.type == "MOUSEMOVE":
             held.point(context, event)
@@ -151,21 +149,21 @@ class PE_OT_place_sensor(bpy.types.Operator):
         return self._pressed(context, event, held)
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """Called by Blender when the window or the file goes: nothing is kept."""
-        placing.end()
+        """Called by Blender when the window or the file is closed: no sensor is placed."""
+        placement.end()
 
     def _pressed(
-        self, context: bpy.types.Context, event: bpy.types.Event, held: placing.Placing
+        self, context: bpy.types.Context, event: bpy.types.Event, held: placement.HeldSensor
     ) -> set[str]:
-        """Take a key or a button that was pressed over a 3D view."""
+        """Handle a key or a button that was pressed over a 3D view."""
         if event.type == "RIGHTMOUSE":
-            placing.end()
+            placement.end()
             return {"CANCELLED"}
         if event.type == "LEFTMOUSE":
             held.point(context, event)
             return self._click(context, held, more=event.shift)
         if event.type in {"RET", "NUMPAD_ENTER"}:
-            held.matrix = Matrix.Translation(sensible_place(context, held.mount))
+            held.matrix = Matrix.Translation(default_location(context, held.mount))
             return self._click(context, held, more=False)
         if event.type == "N" and not (event.ctrl or event.alt):
             held.stand(replace(held.stance, along_normal=not held.stance.along_normal))
@@ -180,8 +178,10 @@ class PE_OT_place_sensor(bpy.types.Operator):
             return {"PASS_THROUGH"}
         return {"RUNNING_MODAL"}
 
-    def _click(self, context: bpy.types.Context, held: placing.Placing, more: bool) -> set[str]:
-        """Place it where it is held; go on with the next one, or leave."""
+    def _click(
+        self, context: bpy.types.Context, held: placement.HeldSensor, more: bool
+    ) -> set[str]:
+        """Place the held sensor; then hold the next one, or finish."""
         if held.matrix is None:
             return {"RUNNING_MODAL"}
         self._add(context, held.mount, held.kind.label, held.matrix)
@@ -189,18 +189,20 @@ class PE_OT_place_sensor(bpy.types.Operator):
             bpy.ops.ed.undo_push(message=self.bl_label)
             held.more(context)
             return {"RUNNING_MODAL"}
-        placing.end()
+        placement.end()
         return {"FINISHED"}
 
     def _add(self, context: bpy.types.Context, mount: Mount, name: str, placed: Matrix) -> None:
-        body = known_housing(self.model) if self.housing else None
+        body = measured_housing(self.model) if self.housing else None
         obj = new_sensor(context, name, self.model, mount, body)
         obj.location, obj.rotation_euler = placed.to_translation(), placed.to_euler()
         select_only(context, obj)
 
     def _stance(self, mount: Mount) -> Stance:
-        own = mount.stand_off_m if self.stand_off < 0.0 else self.stand_off
-        return Stance(own, self.along_normal, math.degrees(self.yaw), math.degrees(self.pitch))
+        stand_off_m = mount.stand_off_m if self.stand_off < 0.0 else self.stand_off
+        return Stance(
+            stand_off_m, self.along_normal, math.degrees(self.yaw), math.degrees(self.pitch)
+        )
 
 
 CLASSES = (PE_OT_place_sensor,)

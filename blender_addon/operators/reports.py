@@ -1,4 +1,4 @@
-"""What operators tell in the status bar: one line, whatever was typed."""
+"""Reports of operators in the status bar: one line each, whatever the input was."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ import bpy
 
 from ..engine import pe
 
-REFUSALS = (pe.InputError, MemoryError)
-"""What ends an operator with a line: wrong input, and numbers too large for this machine."""
-LONGEST = 400
+USER_ERRORS = (pe.InputError, MemoryError)
+"""Errors that end an operator with one line: wrong input, and too little memory."""
+MAX_LETTERS = 400
 
 
-def refuse(operator: bpy.types.Operator, error: Exception) -> set[str]:
-    """Say what is wrong; the operator has changed nothing."""
+def report_error(operator: bpy.types.Operator, error: Exception) -> set[str]:
+    """Report an error; the operator has changed nothing."""
     text = str(error)
     if isinstance(error, MemoryError):
         text = f"Not enough memory for this many voxels or candidates: {text}".rstrip(": ")
-    tell(operator, "ERROR", text)
+    report(operator, "ERROR", text)
     return {"CANCELLED"}
 
 
-def tell(operator: bpy.types.Operator, level: str, text: str) -> None:
-    """Report one line; what would turn or break it is written out."""
-    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[:LONGEST])
+def report(operator: bpy.types.Operator, level: str, text: str) -> None:
+    """Report one line; characters that would break or reverse it are escaped."""
+    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[:MAX_LETTERS])
     operator.report({level}, shown)
 
 
 def chosen_file(filepath: str) -> Path:
-    """Return the file that was chosen.
+    """Return the chosen file.
 
     Raises
     ------
     InputError
-        When none was.
+        When no file was chosen.
     """
     path = Path(bpy.path.abspath(filepath))
     if not path.name:

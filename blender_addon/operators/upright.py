@@ -1,8 +1,8 @@
-"""Sensors that stand upright and look away from the vehicle: by a button, or dropped as assets.
+"""Sensors that are upright and look away from the vehicle: by a button, or dropped as assets.
 
 Blender turns an asset that is dropped onto a surface so that its z axis is the surface's normal: a
-camera on a tailgate would look along the tailgate. A dropped sensor is put as *Place* puts one, in
-Blender's next turn; undo of the drop takes both back.
+camera on a tailgate would look along the tailgate. A dropped sensor is turned as *Place* does it,
+by the next timer; undo of the drop takes both back.
 """
 
 from __future__ import annotations
@@ -14,19 +14,18 @@ import numpy as np
 from bpy.props import StringProperty
 from mathutils import Matrix, Vector
 
-from .. import bridge, changes, roster
+from .. import bridge, sensor_cache
 from ..engine import catalog, pe
-from .mounting import Mount, mount_for
-from .placing import middle_of
-from .pointing import UPRIGHT_M, Stance, outward
-from .reports import REFUSALS, refuse, tell
-from .surface import Spot
+from ..sensor_kinds import Mount, mount_for
+from .placement import vehicle_center
+from .reports import USER_ERRORS, report, report_error
+from .surface_pose import NO_HEADING_M, Stance, SurfaceSpot, outward_yaw
 
 
 class PE_OT_stand_upright(bpy.types.Operator):
-    """Turn the selected sensors upright where they are: cameras look away from the vehicle.
+    """Turn the selected sensors upright; cameras look away from the vehicle.
 
-    So do LiDARs with a limited horizontal field of view; others keep their heading"""
+    So do LiDARs with a limited horizontal field of view; others keep their yaw"""
 
     bl_idname = "pe.stand_upright"
     bl_label = "Stand Upright, Look Outward"
@@ -43,23 +42,23 @@ class PE_OT_stand_upright(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
-        middle = middle_of(scene.perception_entropy.vehicle)
+        middle = vehicle_center(scene.perception_entropy.vehicle)
         try:
-            chosen = self._chosen(context)
-            poses = {obj.name: upright_pose(obj, depsgraph, middle) for obj in chosen}
+            sensors = self._chosen(context)
+            poses = {obj.name: upright_pose(obj, depsgraph, middle) for obj in sensors}
             bridge.place_poses(scene, poses)
-        except REFUSALS as error:
-            return refuse(self, error)
-        tell(self, "INFO", f"Upright: {', '.join(poses)}")
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        report(self, "INFO", f"Upright: {', '.join(poses)}")
         return {"FINISHED"}
 
     def _chosen(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         named = context.scene.objects.get(self.name)
         objects = [named] if self.name else [*context.selected_objects, context.active_object]
-        found = [obj for obj in objects if obj is not None and obj.perception_entropy.is_sensor]
-        if not found:
+        sensors = [obj for obj in objects if obj is not None and obj.perception_entropy.is_sensor]
+        if not sensors:
             raise pe.InputError("scene", "selection", "at least one sensor", self.name or "none")
-        return list(dict.fromkeys(found))
+        return list(dict.fromkeys(sensors))
 
 
 def upright_pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, middle: Vector) -> pe.Pose:
@@ -68,45 +67,45 @@ def upright_pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, middle: 
     Raises
     ------
     InputError
-        When it is no possible sensor.
+        When it is no valid sensor.
     """
     sensor = bridge.sensor_from_object(obj, depsgraph)
     position, ahead = sensor.pose.position, sensor.pose.ground_from_sensor[:, 0]
     if mount_for(sensor.model).outward:
-        yaw = outward(Vector(position), middle)
-    elif math.hypot(ahead[0], ahead[1]) > UPRIGHT_M:
+        yaw = outward_yaw(Vector(position), middle)
+    elif math.hypot(ahead[0], ahead[1]) > NO_HEADING_M:
         yaw = math.atan2(ahead[1], ahead[0])
     else:
-        yaw = 0.0  # it looks straight up or down: it has no heading to keep
+        yaw = 0.0  # it looks straight up or down: it has no yaw to keep
     return pe.Pose(position, (0.0, 0.0, yaw))
 
 
-def stand_dropped() -> None:
-    """Put sensors that have just been dropped from the asset browser as *Place* puts them."""
+def place_dropped() -> None:
+    """Turn sensors that were just dropped from the asset browser as *Place* does."""
     scene = bpy.context.scene
-    dropped = [obj for obj in roster.sensors(scene) if is_dropped(obj)]
+    dropped = [obj for obj in sensor_cache.sensors(scene) if is_dropped(obj)]
     if dropped:
         bpy.context.view_layer.update()  # Blender has noted where they are, not worked it out
-        middle = middle_of(scene.perception_entropy.vehicle)
+        middle = vehicle_center(scene.perception_entropy.vehicle)
     for obj in dropped:
         obj.perception_entropy.stands_when_dropped = False
-        stand_on_surface(obj, middle)
+        place_on_surface(obj, middle)
 
 
 def is_dropped(obj: bpy.types.Object) -> bool:
-    """Whether a sensor came from the asset browser and does not stand yet.
+    """Whether a sensor was dropped from the asset browser and is not turned yet.
 
-    Blender takes the mark of an asset from what is dropped; on what is appended otherwise it stays.
+    Blender removes the mark of an asset from what is dropped, not from what is appended otherwise.
     """
-    own = obj.library is None and obj.asset_data is None
-    return own and obj.perception_entropy.stands_when_dropped
+    is_local = obj.library is None and obj.asset_data is None
+    return is_local and obj.perception_entropy.stands_when_dropped
 
 
-def stand_on_surface(obj: bpy.types.Object, middle: Vector) -> None:
+def place_on_surface(obj: bpy.types.Object, middle: Vector) -> None:
     """Put a sensor upright on the surface that the base of its body was dropped on."""
     try:
         mount = mount_for(catalog.load(obj.perception_entropy.model))
-    except pe.InputError:  # a model of another catalogue: where it looks is not known
+    except pe.InputError:  # the model is not in this catalogue: its view is unknown
         return
     spot = spot_below(obj)
     upright = Stance(0.0).placed(spot, mount, middle)
@@ -115,12 +114,12 @@ def stand_on_surface(obj: bpy.types.Object, middle: Vector) -> None:
     obj.matrix_world = placed @ Matrix.Diagonal((*obj.scale, 1.0))
 
 
-def spot_below(obj: bpy.types.Object) -> Spot:
-    """Return where a dropped object stands: Blender puts the base of its bounding box there."""
+def spot_below(obj: bpy.types.Object) -> SurfaceSpot:
+    """Return the spot of a dropped object: Blender puts the base of its bounding box there."""
     low, high = np.min(obj.bound_box, axis=0), np.max(obj.bound_box, axis=0)
     base = Vector(((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, low[2]))
     ground_from_local = obj.matrix_world
-    return Spot(ground_from_local @ base, ground_from_local.col[2].to_3d().normalized(), "")
+    return SurfaceSpot(ground_from_local @ base, ground_from_local.col[2].to_3d().normalized(), "")
 
 
 def clearance(
@@ -136,15 +135,10 @@ def clearance(
     return max(0.0, *(-normal.dot(turned @ Vector(corner)) for corner in obj.bound_box))
 
 
-def register() -> None:
-    """Have dropped sensors stand."""
-    if not bpy.app.background:  # a script puts what it appends itself
-        changes.moved.connect(stand_dropped)
-
-
-def unregister() -> None:
-    """Leave them as they are dropped."""
-    changes.moved.disconnect(stand_dropped)
+def on_moving() -> None:
+    """Place dropped sensors, where there is a window: a script places what it appends itself."""
+    if not bpy.app.background:
+        place_dropped()
 
 
 CLASSES = (PE_OT_stand_upright,)

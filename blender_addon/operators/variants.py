@@ -1,4 +1,4 @@
-"""Variants: keep the sensors as they are under a name, and put another idea in their place."""
+"""Operators of variants: save, update, switch, duplicate, delete, show as a ghost."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import contextlib
 import bpy
 from bpy.props import IntProperty
 
-from .. import bridge, changes, explaining, stale
+from .. import bridge, diagnostics, result_staleness, signals
 from ..choices import BEFORE_MOVE, free_name
 from ..engine import pe
-from .reports import REFUSALS, refuse, tell
+from .reports import USER_ERRORS, report, report_error
 
 UNSAVED = "Unsaved"
 
 
 class VariantOperator:
-    """What they share: a variant by its key, or the selected one; no work while a job runs."""
+    """Base of these operators: the variant by its key, or the selected one."""
 
     bl_options = {"REGISTER", "UNDO"}
     least = 1
@@ -41,9 +41,9 @@ class VariantOperator:
         wanted = [row for row in rows if row.key == self.key] or rows[settings.variant_index :][:1]
         try:
             self.act(context.scene, wanted[0] if wanted else None)
-        except REFUSALS as error:
-            return refuse(self, error)
-        changes.study.tell()
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        signals.study_changed.emit()
         return {"FINISHED"}
 
 
@@ -57,11 +57,11 @@ class PE_OT_save_variant(VariantOperator, bpy.types.Operator):
     def act(self, scene: bpy.types.Scene, _variant: object) -> None:
         """Add the scene's sensors to the list."""
         row = save_scene(scene, "Variant")
-        tell(self, "INFO", f"Saved {row.name}")
+        report(self, "INFO", f"Saved {row.name}")
 
 
 class PE_OT_update_variant(VariantOperator, bpy.types.Operator):
-    """Have the variant that was put here hold the sensors as they are now"""
+    """Store the sensors as they are now in the variant that was put here"""
 
     bl_idname = "pe.update_variant"
     bl_label = "Update Variant"
@@ -74,14 +74,14 @@ class PE_OT_update_variant(VariantOperator, bpy.types.Operator):
         return super().poll(context)
 
     def act(self, scene: bpy.types.Scene, _variant: object) -> None:
-        """Write the scene over the active variant; its score is of what it was."""
+        """Overwrite the active variant; its score is removed if the sensors differ."""
         row = bridge.active_variant(scene)
         records = bridge.records_of_scene(scene)
         if not bridge.same_score(bridge.records_of(row), records):
             row.has_result, row.figures_json = False, ""
         bridge.write_records(row, records)
-        bridge.choose_variant(scene, row.key)
-        tell(self, "INFO", f"Updated {row.name}")
+        bridge.mark_active(scene, row.key)
+        report(self, "INFO", f"Updated {row.name}")
 
 
 class PE_OT_switch_variant(VariantOperator, bpy.types.Operator):
@@ -93,13 +93,13 @@ class PE_OT_switch_variant(VariantOperator, bpy.types.Operator):
     bl_label = "Switch to Variant"
 
     def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
-        """Keep what is here, then have the variant stand."""
+        """Store the present sensors if they are no variant, then apply the variant."""
         key, before = variant.key, bridge.records_of_scene(scene)
         kept = keep_unsaved(scene, before)
         variant = next(row for row in scene.perception_entropy.variants if row.key == key)
         switch(scene, variant, before)
         aside = f"; what was here is kept as {kept}" if kept else ""
-        tell(self, "INFO", f"Switched to {variant.name}{aside}")
+        report(self, "INFO", f"Switched to {variant.name}{aside}")
 
 
 class PE_OT_duplicate_variant(VariantOperator, bpy.types.Operator):
@@ -109,14 +109,14 @@ class PE_OT_duplicate_variant(VariantOperator, bpy.types.Operator):
     bl_label = "Duplicate Variant"
 
     def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
-        """Copy sensors and score; what stands in the scene stays the active one."""
+        """Copy sensors and score; the active variant stays active."""
         source, name = variant.key, variant.name
         copy = bridge.add_variant(scene, _free(scene, name), bridge.records_of(variant))
         settings = scene.perception_entropy
         original = next(row for row in settings.variants if row.key == source)
         bridge.copy_score(original, copy)
         settings.variant_index = len(settings.variants) - 1
-        tell(self, "INFO", f"{name} is copied as {copy.name}")
+        report(self, "INFO", f"{name} is copied as {copy.name}")
 
 
 class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
@@ -126,7 +126,7 @@ class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
     bl_label = "Delete Variant"
 
     def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
-        """Take its row out of the list."""
+        """Remove the variant's row from the list."""
         settings, name = scene.perception_entropy, variant.name
         index = [row.key for row in settings.variants].index(variant.key)
         if variant.key == settings.view.ghost_key:
@@ -137,7 +137,7 @@ class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
             settings.variant_key, settings.variant_changed = 0, False
         settings.variants.remove(index)
         settings.variant_index = max(0, min(index, len(settings.variants) - 1))
-        tell(self, "INFO", f"Deleted {name}")
+        report(self, "INFO", f"Deleted {name}")
 
 
 class PE_OT_ghost_variant(VariantOperator, bpy.types.Operator):
@@ -148,22 +148,22 @@ class PE_OT_ghost_variant(VariantOperator, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
-        """Switch it: one variant at a time."""
+        """Switch the ghost of one variant on or off."""
         view = scene.perception_entropy.view
         view.ghost_key = 0 if view.ghost_key == variant.key else variant.key
 
 
 def save_scene(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
-    """Return the scene as a new variant, which is the active one from then on."""
+    """Store the scene's sensors as a new variant and make it the active one."""
     row = bridge.add_variant(scene, _free(scene, name), bridge.records_of_scene(scene))
-    bridge.take_scene_s_score(scene, row, stale.fingerprint(scene))
-    bridge.choose_variant(scene, row.key)
+    bridge.copy_scene_score(scene, row, result_staleness.fingerprint(scene))
+    bridge.mark_active(scene, row.key)
     return row
 
 
-def keep_unsaved(scene: bpy.types.Scene, records: tuple[bridge.Record, ...]) -> str:
-    """Keep what stands in the scene as a variant unless it is one; return that one's name."""
-    if not records or bridge.same_variant(scene, records) is not None:
+def keep_unsaved(scene: bpy.types.Scene, records: tuple[bridge.SensorRecord, ...]) -> str:
+    """Store the scene's sensors as a variant unless they are one; return the new name or ""."""
+    if not records or bridge.matching_variant(scene, records) is not None:
         return ""
     return save_scene(scene, UNSAVED).name
 
@@ -171,20 +171,20 @@ def keep_unsaved(scene: bpy.types.Scene, records: tuple[bridge.Record, ...]) -> 
 def switch(
     scene: bpy.types.Scene,
     variant: bpy.types.PropertyGroup,
-    before: tuple[bridge.Record, ...],
+    before: tuple[bridge.SensorRecord, ...],
 ) -> None:
-    """Have a variant stand with its own result; when it can't, put everything back as it was."""
+    """Apply a variant and show its result; restore the sensors where it cannot be applied."""
     try:
-        bridge.put_variant(scene, variant)
+        bridge.activate_variant(scene, variant)
     except pe.InputError:
-        bridge.stand(scene, before)
+        bridge.apply_records(scene, before)
         raise
     show_own_result(scene, variant)
 
 
 def show_own_result(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
-    """Show the score of the variant that stands; any other result is marked as of before."""
-    settings, now = scene.perception_entropy, stale.fingerprint(scene)
+    """Show the score of the applied variant; a result of other sensors is marked stale."""
+    settings, now = scene.perception_entropy, result_staleness.fingerprint(scene)
     settings.result_stale = settings.has_result and settings.result_signature != now.text
     if settings.has_result and not settings.result_stale:
         return
@@ -192,7 +192,7 @@ def show_own_result(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) ->
         depsgraph = bridge.view_layer_of(scene).depsgraph
         outcome = bridge.restore_result(scene, variant, now, depsgraph)
         if outcome is not None:
-            explaining.look_round(scene, outcome, now.text)
+            diagnostics.explain_score(scene, outcome, now.text)
 
 
 def _free(scene: bpy.types.Scene, name: str) -> str:
@@ -202,11 +202,11 @@ def _free(scene: bpy.types.Scene, name: str) -> str:
 def stand_as_variant(
     scene: bpy.types.Scene,
     title: str,
-    records: tuple[bridge.Record, ...],
+    records: tuple[bridge.SensorRecord, ...],
     note: str,
-    before: tuple[bridge.Record, ...],
+    before: tuple[bridge.SensorRecord, ...],
 ) -> str:
-    """Keep what is here, and have other sensors stand, as a variant; return its name.
+    """Store the present sensors, and apply other sensors as a new variant; return its name.
 
     Raises
     ------

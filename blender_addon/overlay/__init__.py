@@ -1,1 +1,1 @@
-"""What the 3D view shows of the sensors: beams, and where the vehicle stops them; frustums."""
+"""Layers of the 3D view: beams and what blocks them, camera views, ground map, reach, marks."""

@@ -1,24 +1,26 @@
-"""Shapes on the graphics card: uploaded once, drawn as often as the view is."""
+"""Shapes on the graphics card: uploaded once, drawn at every redraw; a depth offset for ground."""
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
+from mathutils import Matrix
 
 from ..engine import graphics
+from ..viewport import shader
 
 THIN_PX = 1.0
 EDGE_PX, EDGE = 2.0, (0.05, 0.05, 0.05, 0.35)
 
-_shaders: dict[str, gpu.types.GPUShader] = {}
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Batches:
-    """What one shape became: triangles, lines, and a sheet."""
+    """The batches of one shape: triangles, lines, and a sheet; None where there is nothing."""
 
     shape: graphics.LayerShape
     lines: gpu.types.GPUBatch | None
@@ -31,54 +33,42 @@ class Batches:
     def of(cls, shape: graphics.LayerShape) -> Batches:
         """Upload a shape."""
         wide = shader("POLYLINE_SMOOTH_COLOR")
-        several = (shape.lines, shape.through, shape.thin)
-        lines, through, thin = (_batch(wide, "LINES", each) for each in several)
+        sorts = (shape.lines, shape.through, shape.thin)
+        lines, through, thin = (_batch(wide, "LINES", primitives) for primitives in sorts)
         faces = _batch(shader("SMOOTH_COLOR"), "TRIS", shape.faces)
         sheet = None if shape.sheet is None else _sheet(shape.sheet)
         return cls(shape, lines, through, thin, faces, sheet)
 
     def draw_areas(self) -> None:
         """Draw sheet and triangles."""
-        for each in (self.sheet, self.faces):
-            if each is not None:
-                each.draw(shader("SMOOTH_COLOR"))
+        for batch in (self.sheet, self.faces):
+            if batch is not None:
+                batch.draw(shader("SMOOTH_COLOR"))
 
     def draw_lines(self, region: bpy.types.Region, width_px: float, *, edged: bool) -> None:
-        """Draw the lines, that wide on the screen, perhaps with a dark edge."""
+        """Draw the lines in that width on the screen; with a dark edge where `edged`."""
         if self.through is not None:
             gpu.state.depth_test_set("NONE")
-            self.through.draw(_wide("POLYLINE_SMOOTH_COLOR", region, width_px))
+            self.through.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, width_px))
             gpu.state.depth_test_set("LESS_EQUAL")
         if self.thin is not None:
-            self.thin.draw(_wide("POLYLINE_SMOOTH_COLOR", region, THIN_PX))
+            self.thin.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, THIN_PX))
         if self.lines is None:
             return
         if edged:
-            dark = _wide("POLYLINE_UNIFORM_COLOR", region, width_px + EDGE_PX)
+            dark = _line_shader("POLYLINE_UNIFORM_COLOR", region, width_px + EDGE_PX)
             dark.uniform_float("color", EDGE)
             self.lines.draw(dark)
-        self.lines.draw(_wide("POLYLINE_SMOOTH_COLOR", region, width_px))
+        self.lines.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, width_px))
 
 
-def _wide(name: str, region: bpy.types.Region, width_px: float) -> gpu.types.GPUShader:
-    """Return a shader of lines, ready for some width in a region."""
-    found = shader(name)
-    found.bind()
-    found.uniform_float("viewportSize", (region.width, region.height))
-    found.uniform_float("lineWidth", width_px * bpy.context.preferences.system.pixel_size)
-    return found
-
-
-def shader(name: str) -> gpu.types.GPUShader:
-    """Return a built-in shader; made when first drawn, as there is no GPU in background."""
-    if name not in _shaders:
-        _shaders[name] = gpu.shader.from_builtin(name)
-    return _shaders[name]
-
-
-def forget_shaders() -> None:
-    """Leave nothing on the graphics card."""
-    _shaders.clear()
+def _line_shader(name: str, region: bpy.types.Region, width_px: float) -> gpu.types.GPUShader:
+    """Return a shader of lines, bound, for a width in a region."""
+    wide = shader(name)
+    wide.bind()
+    wide.uniform_float("viewportSize", (region.width, region.height))
+    wide.uniform_float("lineWidth", width_px * bpy.context.preferences.system.pixel_size)
+    return wide
 
 
 def _batch(
@@ -95,3 +85,32 @@ def _sheet(sheet: graphics.GroundSheet) -> gpu.types.GPUBatch:
     points, colors, triangles = sheet.mesh
     arrays = {"pos": points, "color": colors}
     return batch_for_shader(shader("SMOOTH_COLOR"), "TRIS", arrays, indices=triangles)
+
+
+OFFSET_SHARE = 0.002
+"""Share of its distance from the eye by which a thing is drawn nearer."""
+OFFSET_M = 0.02
+"""The same in a view without perspective, which has no eye [m]."""
+
+
+@contextlib.contextmanager
+def depth_offset(look: bpy.types.RegionView3D | None, wanted: bool) -> Iterator[None]:
+    """Draw nearer to the eye within, at the same place in the picture."""
+    if not wanted or look is None:
+        yield
+        return
+    gpu.matrix.push()
+    try:
+        gpu.matrix.multiply_matrix(offset_matrix(look.view_matrix, look.is_perspective))
+        yield
+    finally:
+        gpu.matrix.pop()
+
+
+def offset_matrix(view_from_world: Matrix, perspective: bool) -> Matrix:
+    """Return the matrix, world to world: towards the eye, or towards the viewer without an eye."""
+    world_from_view = view_from_world.inverted()
+    if not perspective:
+        return Matrix.Translation(world_from_view.col[2].to_3d() * OFFSET_M)
+    eye = world_from_view.translation
+    return Matrix.Translation(eye) @ Matrix.Scale(1.0 - OFFSET_SHARE, 4) @ Matrix.Translation(-eye)

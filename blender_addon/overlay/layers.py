@@ -1,4 +1,4 @@
-"""What can be shown: a row a layer, in the order in which they are drawn."""
+"""The table of layers: a row a layer, in the order in which they are drawn."""
 
 from __future__ import annotations
 
@@ -10,94 +10,100 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import graphics, pe
-from . import asked, axles, blind, focus, ghosts, ground, heat, mounts, reach
-from .tools import Tools
-from .wish import ALL, BY_CHANNEL, BY_SENSOR, RIG, PictureWish, SceneSensor, ViewSettings
+from . import annotations, ground_layers, heatmap, regions
+from .layer_cache import LayerCache
+from .request import ALL, BY_CHANNEL, BY_SENSOR, RIG, SceneSensor, ViewRequest, ViewSettings
 
 WHOLE_RIG = ""
-"""Under this name stands what belongs to no single sensor."""
+"""The name of shapes that belong to no single sensor."""
 BLIND_WITHIN_M = 10.0
 RING_ALPHA = 0.55
-GHOST = 0.35
-"""How strong stopped beams are where the body hides them: of many nothing else is seen."""
-FRUSTUM_M, NOT_SELECTED = 1.0, 0.6
-WITH_BEAMS = frozenset(name for name, drawing in graphics.DRAWINGS.items() if drawing.beams)
+OCCLUDED_ALPHA = 0.35
+"""Opacity of blocked beams behind the vehicle: many of them would hide all else."""
+FRUSTUM_M, UNSELECTED_ALPHA = 1.0, 0.6
 
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """Something that can be switched on.
+    """A layer that can be switched on.
 
-    `shapes` works it out: (wish, tools, what is asked for) to shapes by sensor, or by `WHOLE_RIG`.
-    `keys` says what is asked for, and of each what it depends on: what has the same key as before
-    is not worked out again. `rough` tells whether it is coarser while something moves, `edged`
-    whether its lines have a dark edge: they lie on colours of all sorts.
+    `keys` returns from a request the names of its shapes, sensors or `WHOLE_RIG`, each with a key
+    of all that it depends on: a shape whose key has not changed is not made again. `shape` makes
+    one from request, cache and name. `rough`: it is approximate while something moves;
+    `on_ground`: it is drawn in front of the ground; `edged`: its lines have a dark edge, as they
+    lie on colours of all sorts.
     """
 
     name: str
     label: str
-    keys: Callable[[PictureWish], dict[str, Hashable]]
-    shape: Callable[[PictureWish, Tools, str], graphics.LayerShape]
+    keys: Callable[[ViewRequest], dict[str, Hashable]]
+    shape: Callable[[ViewRequest, LayerCache, str], graphics.LayerShape]
     line_px: float = 1.2
     rough: bool = False
     on_ground: bool = False
     edged: bool = False
 
 
-def _of_rig(*settings: str, prior: bool = True) -> Callable[[PictureWish], dict[str, Hashable]]:
-    """Keys of a layer that shows the whole rig, and depends on these settings."""
+def _rig_keys(*settings: str, prior: bool = True) -> Callable[[ViewRequest], dict[str, Hashable]]:
+    """Return the keys of a layer that shows the whole rig, and depends on these settings."""
 
-    def keys(wish: PictureWish) -> dict[str, Hashable]:
-        if not wish.counted or (prior and wish.prior is None):
+    def keys(request: ViewRequest) -> dict[str, Hashable]:
+        if not request.counted or (prior and request.prior is None):
             return {}
-        who = tuple(each.key for each in wish.counted)
-        chosen = tuple(getattr(wish.view, each) for each in settings)
-        return {WHOLE_RIG: (who, wish.body_key, wish.prior_key if prior else None, chosen)}
+        who = tuple(each.key for each in request.counted)
+        chosen = tuple(getattr(request.view, each) for each in settings)
+        return {WHOLE_RIG: (who, request.body_key, request.prior_key if prior else None, chosen)}
 
     return keys
 
 
-def _rig(wish: PictureWish) -> pe.Rig:
-    return pe.Rig([each.sensor for each in wish.counted])
+def _counted_rig(request: ViewRequest) -> pe.Rig:
+    return pe.Rig([each.sensor for each in request.counted])
 
 
-def _ground_keys(wish: PictureWish) -> dict[str, Hashable]:
+def _ground_keys(request: ViewRequest) -> dict[str, Hashable]:
     settings = ("ground_quantity", "ground_height", "ground_opacity", "ground_range")
-    keys = _of_rig(*settings, "entropy_range", "coverage_range")(wish)
-    more = id(ground.as_scored(wish)), ground.compared_key(wish)
+    keys = _rig_keys(*settings, "entropy_range", "coverage_range")(request)
+    more = id(ground_layers.scored_map(request)), ground_layers.compared_key(request)
     return {name: (key, more) for name, key in keys.items()}
 
 
-def _ground(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
-    return ground.ground(wish, tools)
+def _ground(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
+    return ground_layers.ground_map(request, cache)
 
 
-def _blind(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
-    height = wish.view.blind_height
-    found = tools.sight(wish).blind(_rig(wish), height, within=BLIND_WITHIN_M, draft=wish.moving)
-    body = None if wish.vehicle is None else wish.vehicle.bounds
-    return blind.blind_ground(found, body, height)
+def _blind(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
+    height = request.view.blind_height
+    found = cache.sight(request).blind(
+        _counted_rig(request), height, within=BLIND_WITHIN_M, draft=request.moving
+    )
+    body = None if request.vehicle is None else request.vehicle.bounds
+    return ground_layers.blind_ground(found, body, height)
 
 
-def _reach_keys(wish: PictureWish) -> dict[str, Hashable]:
-    keys = _of_rig("reach_class", "reach_of")(wish)
-    chosen = tuple(each.sensor.name for each in wish.counted if each.selected)
+def _reach_keys(request: ViewRequest) -> dict[str, Hashable]:
+    keys = _rig_keys("reach_class", "reach_of")(request)
+    chosen = tuple(each.sensor.name for each in request.counted if each.selected)
     return {name: (key, chosen) for name, key in keys.items()}
 
 
-def _reach(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
-    view = wish.view
-    known = wish.prior.class_names
+def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
+    view = request.view
+    known = request.prior.class_names
     of = view.reach_class if view.reach_class in known else known[0]
-    found = tools.sight(wish).reach(
-        _rig(wish), of, ap=reach.AP, bearings=reach.BEARINGS, draft=wish.moving
+    found = cache.sight(request).reach(
+        _counted_rig(request),
+        of,
+        ap=ground_layers.REACH_AP,
+        bearings=ground_layers.BEARINGS,
+        draft=request.moving,
     )
-    whole = reach.reach_of_rig(found)
+    whole = ground_layers.reach_of_rig(found)
     if view.reach_of == RIG:
         return whole
     everyone = view.reach_of == ALL
-    named = {e.sensor.name: e.number for e in wish.counted if everyone or e.selected}
-    alone = reach.reach_of_sensors(found, named)
+    named = {e.sensor.name: e.number for e in request.counted if everyone or e.selected}
+    alone = ground_layers.reach_of_sensors(found, named)
     legend = graphics.ColorKey(
         whole.legend.title, classes=whole.legend.classes + alone.legend.classes
     )
@@ -106,22 +112,22 @@ def _reach(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
     )
 
 
-def _beam_keys(wish: PictureWish) -> dict[str, Hashable]:
-    view, shown = wish.view, wish.of_beams(WITH_BEAMS)
+def _beam_keys(request: ViewRequest) -> dict[str, Hashable]:
+    view, shown = request.view, request.of_beams()
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
     chosen = view.channels, view.channel, view.beam_colors, view.rings, view.beam_length, budget
-    return {each.sensor.name: (each.key, wish.body_key, chosen) for each in shown}
+    return {each.sensor.name: (each.key, request.body_key, chosen) for each in shown}
 
 
-def _beams(wish: PictureWish, tools: Tools, name: str) -> graphics.LayerShape:
-    view, shown = wish.view, wish.of_beams(WITH_BEAMS)
+def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.LayerShape:
+    view, shown = request.view, request.of_beams()
     of = next(each for each in shown if each.sensor.name == name)
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
     choice = graphics.BeamChoice(budget, graphics.ChannelMode(view.channels), view.channel)
-    found = tools.cast(wish, of)
+    found = cache.cast(request, of)
     beams = graphics.shown_beams(found, choice)
     colors = _beam_colors(of, view, beams.channel, beams.stopped)
-    around = None if wish.vehicle is None else wish.vehicle.bounds
+    around = None if request.vehicle is None else request.vehicle.bounds
     parts = [graphics.free_lines(of.sensor, beams, view.beam_length, colors, around)]
     if view.rings:
         rows = graphics.channels_of(of.sensor.model, choice)
@@ -129,7 +135,9 @@ def _beams(wish: PictureWish, tools: Tools, name: str) -> graphics.LayerShape:
         whole[:, 3] = RING_ALPHA
         parts.append(graphics.ground_rings(found, rows, whole))
     stopped = graphics.stopped_lines(of.sensor, beams, colors)
-    ghosts = graphics.Primitives.of(stopped.points, stopped.colors * [1.0, 1.0, 1.0, GHOST])
+    ghosts = graphics.Primitives.of(
+        stopped.points, stopped.colors * [1.0, 1.0, 1.0, OCCLUDED_ALPHA]
+    )
     lines = graphics.Primitives.joined([*parts, stopped])
     return graphics.LayerShape(lines=lines, through=ghosts, legend=_beam_legend(view))
 
@@ -154,119 +162,128 @@ def _beam_legend(view: ViewSettings) -> graphics.ColorKey:
         swatches = tuple((*map(float, color), 1.0) for color in row)
         return graphics.ColorKey("Channel", swatches, ("lowest", "highest"))
     palette = graphics.VIEWPORT
-    stopped = (graphics.with_alpha(palette.stopped, 1.0), "stopped by the vehicle")
-    if view.beam_colors == BY_SENSOR:  # free beams have the colours of the names
+    stopped = (graphics.with_alpha(palette.stopped, 1.0), "blocked by the vehicle")
+    if view.beam_colors == BY_SENSOR:  # free beams have the colours of the labels
         return graphics.ColorKey("Beams", classes=(stopped,))
     return graphics.ColorKey(
         "Beams", classes=((graphics.with_alpha(palette.free, 1.0), "free"), stopped)
     )
 
 
-def _heat_keys(wish: PictureWish) -> dict[str, Hashable]:
-    who = tuple(each.key for each in wish.of_beams(WITH_BEAMS))
-    return {WHOLE_RIG: (who, wish.body_key)} if who and wish.vehicle is not None else {}
+def _heat_keys(request: ViewRequest) -> dict[str, Hashable]:
+    who = tuple(each.key for each in request.of_beams())
+    return {WHOLE_RIG: (who, request.body_key)} if who and request.vehicle is not None else {}
 
 
-def _heat(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
-    found = [tools.cast(wish, each) for each in wish.of_beams(WITH_BEAMS)]
-    return heat.heat(found, tools.body(wish).triangles)
+def _heat(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
+    found = [cache.cast(request, each) for each in request.of_beams()]
+    return heatmap.hit_density(found, cache.body(request).triangles)
 
 
-def _view_keys(wish: PictureWish) -> dict[str, Hashable]:
-    view = wish.view
-    shown = [e for e in wish.sensors if e.drawn and e.sensor.kind not in WITH_BEAMS]
+def _view_keys(request: ViewRequest) -> dict[str, Hashable]:
+    view = request.view
+    shown = [e for e in request.sensors if e.drawn and not graphics.drawing_of(e.sensor.kind).beams]
     return {e.sensor.name: (e.key, e.selected, view.footprints, view.view_range) for e in shown}
 
 
-def _views(wish: PictureWish, _tools: Tools, name: str) -> graphics.LayerShape:
-    of = next(each for each in wish.sensors if each.sensor.name == name)
+def _views(request: ViewRequest, _cache: LayerCache, name: str) -> graphics.LayerShape:
+    of = next(each for each in request.sensors if each.sensor.name == name)
     drawing = graphics.drawing_of(of.sensor.kind)
     sketch = drawing.sketch(of.sensor, None, graphics.BeamChoice(1))
     palette = graphics.sensor_palette(of.number)
     lines, faces = [sketch.lines(FRUSTUM_M, palette)], [sketch.faces(FRUSTUM_M, palette)]
-    if drawing.footprint is not None and wish.view.footprints:
-        outline = drawing.footprint(of.sensor, wish.view.view_range)
+    if drawing.footprint is not None and request.view.footprints:
+        outline = drawing.footprint(of.sensor, request.view.view_range)
         lines.append(graphics.footprint_lines(outline, palette.camera))
         faces.append(graphics.footprint_faces(outline, palette.camera_face))
     shown, filled = graphics.Primitives.joined(lines), graphics.Primitives.joined(faces)
     for part in (shown, filled):
-        part.colors[:, 3] *= 1.0 if of.selected else NOT_SELECTED
+        part.colors[:, 3] *= 1.0 if of.selected else UNSELECTED_ALPHA
     return graphics.LayerShape(shown, filled)
 
 
-def _label_keys(wish: PictureWish) -> dict[str, Hashable]:
-    return {e.sensor.name: (e.key, e.selected) for e in wish.sensors if e.drawn}
+def _label_keys(request: ViewRequest) -> dict[str, Hashable]:
+    return {e.sensor.name: (e.key, e.selected) for e in request.sensors if e.drawn}
 
 
-def _label(wish: PictureWish, _tools: Tools, name: str) -> graphics.LayerShape:
-    of = next(each for each in wish.sensors if each.sensor.name == name)
+def _label(request: ViewRequest, _cache: LayerCache, name: str) -> graphics.LayerShape:
+    of = next(each for each in request.sensors if each.sensor.name == name)
     color = graphics.with_alpha(graphics.sensor_color(of.number), 1.0)
     return graphics.LayerShape(
         labels=(graphics.Tag(name, of.sensor.pose.position, color, strong=of.selected),)
     )
 
 
-def _ghost_keys(wish: PictureWish) -> dict[str, Hashable]:
-    if not wish.ghosts:
+def _ghost_keys(request: ViewRequest) -> dict[str, Hashable]:
+    if not request.ghosts:
         return {}
-    others = tuple((s.name, id(s.model), s.pose, s.group, s.curve) for s in wish.ghosts)
-    here = tuple((each.sensor.name, each.sensor.pose) for each in wish.counted)
-    reach_too = "reach" in wish.view.layers and wish.prior is not None
-    reached = (wish.body_key, wish.prior_key, wish.view.reach_class) if reach_too else None
-    return {WHOLE_RIG: (others, here, wish.ghosts_name, reached)}
+    others = tuple((s.name, id(s.model), s.pose, s.group, s.curve) for s in request.ghosts)
+    here = tuple((each.sensor.name, each.sensor.pose) for each in request.counted)
+    reach_too = "reach" in request.view.layers and request.prior is not None
+    reached = (request.body_key, request.prior_key, request.view.reach_class) if reach_too else None
+    return {WHOLE_RIG: (others, here, request.ghosts_name, reached)}
 
 
-def _ghosts(wish: PictureWish, tools: Tools, _name: str) -> graphics.LayerShape:
-    here, of = [e.sensor for e in wish.counted], "Search" if wish.searching else ghosts.VARIANT
-    shape = ghosts.ghosts(wish.ghosts, here, wish.ghosts_name, of)
-    if wish.searching:
+def _ghosts(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
+    here, of = (
+        [e.sensor for e in request.counted],
+        "Search" if request.searching else annotations.GHOST_TITLE,
+    )
+    shape = annotations.ghost_sensors(request.ghosts, here, request.ghosts_name, of)
+    if request.searching:
         return shape
-    if "reach" not in wish.view.layers or wish.prior is None:
+    if "reach" not in request.view.layers or request.prior is None:
         return shape
-    rig, known = pe.Rig(wish.ghosts), wish.prior.class_names
-    of = wish.view.reach_class if wish.view.reach_class in known else known[0]
-    line = reach.rig_reach(tools.sight(wish), rig, of, ghosts.GHOSTS, wish.ghosts_name)
+    rig, known = pe.Rig(request.ghosts), request.prior.class_names
+    of = request.view.reach_class if request.view.reach_class in known else known[0]
+    line = ground_layers.rig_reach(
+        cache.sight(request), rig, of, annotations.GHOST_PALETTE, request.ghosts_name
+    )
     return replace(shape, lines=line.lines)
 
 
-def _place_keys(wish: PictureWish) -> dict[str, Hashable]:
-    place = wish.place
+def _place_keys(request: ViewRequest) -> dict[str, Hashable]:
+    place = request.place
     if place is None:
         return {}
     told = tuple((s.name, s.reason, s.m) for s in place.sensors)
-    here = tuple((each.sensor.name, each.sensor.pose) for each in wish.counted)
+    here = tuple((each.sensor.name, each.sensor.pose) for each in request.counted)
     return {WHOLE_RIG: (place.center, place.ap, told, here)}
 
 
-def _place(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape:
-    return asked.asked_place(wish.place, [each.sensor for each in wish.counted])
+def _place(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    return annotations.location_mark(request.place, [each.sensor for each in request.counted])
 
 
-def _mount_keys(wish: PictureWish) -> dict[str, Hashable]:
-    if not wish.mounts and not wish.boxes:
+def _mount_keys(request: ViewRequest) -> dict[str, Hashable]:
+    if not request.mounts and not request.boxes:
         return {}
-    return {WHOLE_RIG: (tuple((each.key, each.strong) for each in wish.mounts), wish.boxes)}
+    return {WHOLE_RIG: (tuple((each.key, each.strong) for each in request.mounts), request.boxes)}
 
 
-def _mounts(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape:
-    return mounts.mounts(wish.mounts, wish.boxes)
+def _mounts(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    return regions.mount_regions(request.mounts, request.boxes)
 
 
-def _focus_keys(wish: PictureWish) -> dict[str, Hashable]:
-    return {WHOLE_RIG: (wish.focus, wish.space)} if wish.focus and wish.space is not None else {}
+def _focus_keys(request: ViewRequest) -> dict[str, Hashable]:
+    return (
+        {WHOLE_RIG: (request.focus, request.space)}
+        if request.focus and request.space is not None
+        else {}
+    )
 
 
-def _focus(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape:
-    return focus.focus_regions(wish.focus, wish.space)
+def _focus(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    return regions.focus_regions(request.focus, request.space)
 
 
-def _axle_keys(wish: PictureWish) -> dict[str, Hashable]:
-    return {} if wish.reference is None else {WHOLE_RIG: (wish.reference, wish.body_key)}
+def _axle_keys(request: ViewRequest) -> dict[str, Hashable]:
+    return {} if request.reference is None else {WHOLE_RIG: (request.reference, request.body_key)}
 
 
-def _axles(wish: PictureWish, _tools: Tools, _name: str) -> graphics.LayerShape:
-    half = None if wish.vehicle is None else float(wish.vehicle.bounds[1][1])
-    return axles.axles(wish.reference, half)
+def _axles(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    half = None if request.vehicle is None else float(request.vehicle.bounds[1][1])
+    return annotations.axles(request.reference, half)
 
 
 LAYERS = (
@@ -281,7 +298,7 @@ LAYERS = (
     Layer(
         "blind",
         "Blind Ground",
-        _of_rig("blind_height", prior=True),
+        _rig_keys("blind_height", prior=True),
         _blind,
         1.6,
         rough=True,
@@ -293,10 +310,10 @@ LAYERS = (
     Layer("focus", "Focus", _focus_keys, _focus, 1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
-    Layer("heat", "Stopped Where", _heat_keys, _heat, rough=True),
+    Layer("heat", "Blocked Beams", _heat_keys, _heat, rough=True),
     Layer("axles", "Axles", _axle_keys, _axles, 1.6, edged=True),
     Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, 1.6, edged=True),
-    Layer("place", "Asked Place", _place_keys, _place, 1.8, edged=True),
+    Layer("place", "Queried Location", _place_keys, _place, 1.8, edged=True),
     Layer("labels", "Names", _label_keys, _label),
 )
 assert all(a.name != b.name for a, b in pairwise(LAYERS))

@@ -1,53 +1,43 @@
-"""The sidebar tab: draws what is stored, computes nothing. Panels stand in the order of CLASSES."""
+"""The sidebar tab: panels draw what is stored and compute nothing.
+
+Panels appear in the order of CLASSES; a parent is registered before its children.
+"""
 
 from . import (
-    advanced,
-    breakdown,
-    explain,
-    export,
-    focus,
-    live,
+    export_panel,
+    layout,
     main,
-    mounts,
-    overlay,
-    part,
-    search,
-    selection,
-    sensor,
-    swatches,
-    tolerance,
-    variants,
+    overlay_popover,
+    score_details,
+    scoring_panels,
+    search_panels,
+    selected_object,
+    variant_panels,
 )
 
 CLASSES = (
     *main.CLASSES,
-    *live.CLASSES,
-    *sensor.CLASSES,
-    *part.CLASSES,
-    *explain.CLASSES,
-    *breakdown.CLASSES,
-    *variants.CLASSES,
-    *selection.CLASSES,
-    *search.SCORING_CLASSES,
-    *focus.CLASSES,
-    *search.CLASSES,
-    *mounts.CLASSES,
-    *tolerance.CLASSES,
-    *advanced.CLASSES,
-    *overlay.CLASSES,
-    *export.CLASSES,
+    *score_details.LIVE_CLASSES,
+    *selected_object.CLASSES,
+    *score_details.CLASSES,
+    *variant_panels.CLASSES,
+    *scoring_panels.CLASSES,
+    *search_panels.CLASSES,
+    *scoring_panels.ADVANCED_CLASSES,
+    *overlay_popover.CLASSES,
+    *export_panel.CLASSES,
 )
 
 
 def register() -> None:
-    """Add icons, and what stands in headers and menus of Blender's own."""
-    swatches.register()
-    overlay.register()
-    export.register()
+    """Add icons, and entries in Blender's own headers and menus."""
+    layout.register()
+    overlay_popover.register()
+    export_panel.register()
 
 
 def unregister() -> None:
-    """Take them out again."""
-    export.unregister()
-    overlay.unregister()
-    swatches.unregister()
+    """Remove them."""
+    export_panel.unregister()
+    overlay_popover.unregister()
+    layout.unregister()

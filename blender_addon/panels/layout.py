@@ -1,12 +1,20 @@
-"""What all panels share: the tab they are in, and ways to lay out."""
+"""What all panels share: their tab, columns, wrapped sentences, warnings and colour swatches."""
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from functools import lru_cache
+
+import blf
 import bpy
+import bpy.utils.previews
+import numpy as np
+
+from ..operators import FIX_LABELS, SENSOR_COLORS, warnings_outdated
 
 
 class Tab:
-    """Where all panels are."""
+    """The tab of all panels."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -23,10 +31,20 @@ def draw_properties(
         layout.prop(settings, name)
 
 
-def draw_whether_stale(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw a mark above figures of a result that is not that of the scene any more."""
+def draw_with_zero(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str, zero: str
+) -> None:
+    """Draw a number, and beside it what 0 means while it is 0."""
+    row = layout.row(align=True)
+    row.prop(settings, name)
+    if not getattr(settings, name):
+        row.label(text=zero)
+
+
+def draw_stale_mark(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw a mark above figures of a result that is out of date."""
     if settings.result_stale:
-        layout.label(text="Of the last score, before a change", icon="FILE_REFRESH")
+        layout.label(text="From the last score, before a change", icon="FILE_REFRESH")
 
 
 def columns(
@@ -35,3 +53,143 @@ def columns(
     """Return two rows beside each other; the first takes that share of the width."""
     split = layout.split(factor=factor)
     return split.row(), split.row()
+
+
+LETTER_PX = 6.2
+"""Mean width of a letter, at a scale of 1."""
+BESIDE_PX, ICON_PX = 72, 20
+"""Width of borders and the tab's name, and of an icon, at a scale of 1."""
+BUTTON_PX = 26
+"""Width of a small button beside a sentence, at a scale of 1."""
+MIN_LETTERS = 10
+MIN_ROOM_PX = 40
+"""A sidebar can be made narrower than any word."""
+FONT = 0
+
+
+def letters_per_line(context: bpy.types.Context) -> int:
+    """Return about how many letters fit into a line of the sidebar."""
+    room = context.region.width / _scale(context) - BESIDE_PX - ICON_PX
+    return max(MIN_LETTERS, int(room / LETTER_PX))
+
+
+def wrapped(context: bpy.types.Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
+    """Return a sentence in lines that fit the sidebar, measured in its font."""
+    scale = _scale(context)
+    room = context.region.width - (BESIDE_PX + beside_px) * scale
+    points = context.preferences.ui_styles[0].widget.points
+    return wrapped_lines(text, max(room, MIN_ROOM_PX * scale), points * scale)
+
+
+@lru_cache(maxsize=512)
+def wrapped_lines(text: str, room_px: float, size_px: float) -> tuple[str, ...]:
+    """Break a text so that no line of that size is wider than the room; a longer word is cut up."""
+    blf.size(FONT, size_px)
+    lines, line = [], ""
+    for word in text.split():
+        longer = f"{line} {word}".strip()
+        if line and _width(longer) > room_px:
+            lines.append(line)
+            longer = word
+        *full, line = _pieces(longer, room_px)
+        lines += full
+    return (*lines, line)
+
+
+def _pieces(text: str, room_px: float) -> list[str]:
+    """Cut a text where it gets too wide; a text that fits stays whole."""
+    pieces = []
+    while len(text) > 1 and _width(text) > room_px:
+        fits = bisect_left(range(1, len(text)), True, key=lambda k: _width(text[:k]) > room_px)
+        pieces.append(text[: max(fits, 1)])
+        text = text[max(fits, 1) :]
+    return [*pieces, text]
+
+
+def _width(text: str) -> float:
+    return blf.dimensions(FONT, text)[0]
+
+
+def _scale(context: bpy.types.Context) -> float:
+    return context.preferences.system.ui_scale or 1.0  # 0 without a window
+
+
+def draw_sentence(
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    text: str,
+    icon: str = "NONE",
+    beside_px: float = 0.0,
+) -> None:
+    """Draw a sentence in as many lines as it needs; the icon is before the first.
+
+    A sentence that begins with a space continues the one before, and has no icon. `beside_px` is
+    the width of what is beside the sentence, at a scale of 1.
+    """
+    if text.startswith(" "):
+        text, icon = text.strip(), "BLANK1"
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    rest = "NONE" if icon == "NONE" else "BLANK1"
+    beside_px += 0.0 if icon == "NONE" else ICON_PX
+    for k, line in enumerate(wrapped(context, text, beside_px)):
+        column.label(text=line, icon=rest if k else icon, translate=False)
+
+
+def draw_warning(
+    layout: bpy.types.UILayout, context: bpy.types.Context, warning: bpy.types.PropertyGroup
+) -> None:
+    """Draw a warning, the part that causes it as a button, and a button that fixes it.
+
+    After a move it is dimmed and marked until the checks have run again.
+    """
+    text = warning.text[:1].upper() + warning.text[1:]
+    if warnings_outdated():
+        layout = layout.column(align=True)
+        layout.active = False
+        text = f"Before this move: {text[:1].lower()}{text[1:]}"
+    draw_sentence(layout, context, text, icon="ERROR")
+    if not (warning.fix in FIX_LABELS or warning.part):
+        return
+    row = layout.row(align=True)
+    row.label(text="", icon="BLANK1")
+    if warning.part:
+        part = row.operator("pe.select_part", text=warning.part, icon="RESTRICT_SELECT_OFF")
+        part.name = warning.part
+    if warning.fix in FIX_LABELS:
+        mend = row.operator("pe.mend", text=FIX_LABELS[warning.fix], icon="TOOL_SETTINGS")
+        mend.fix, mend.subject, mend.amount = warning.fix, warning.subject, warning.amount
+
+
+SIDE_PX, MARGIN_PX = 32, 5
+
+_icons: list[bpy.utils.previews.ImagePreviewCollection] = []
+
+
+def swatch(number: int) -> int:
+    """Return the icon of a sensor by its position in the list of all sensors."""
+    return _icons[0][str(number % len(SENSOR_COLORS))].icon_id
+
+
+def pixels(color: tuple[float, float, float]) -> np.ndarray:
+    """Return a filled square with a transparent margin, (SIDE_PX * SIDE_PX * 4,)."""
+    image = np.zeros((SIDE_PX, SIDE_PX, 4), np.float32)
+    inner = slice(MARGIN_PX, SIDE_PX - MARGIN_PX)
+    image[inner, inner] = (*color, 1.0)
+    return image.reshape(-1)
+
+
+def register() -> None:
+    """Make an icon of each colour."""
+    icons = bpy.utils.previews.new()
+    for number, color in enumerate(SENSOR_COLORS):
+        made = icons.new(str(number))
+        made.icon_size = made.image_size = (SIDE_PX, SIDE_PX)
+        made.icon_pixels_float = made.image_pixels_float = pixels(color)
+    _icons.append(icons)
+
+
+def unregister() -> None:
+    """Leave no icon behind."""
+    while _icons:
+        bpy.utils.previews.remove(_icons.pop())

@@ -1,19 +1,122 @@
-"""The tab's first panel: vehicle, sensors, score and search."""
+"""The tab's first panel: vehicle, sensors, Score and Optimize, and what they found."""
 
 from __future__ import annotations
 
 import bpy
 
 from ..choices import VERSION
-from ..operators import brief, makers, models, offers
-from .layout import Tab
-from .result import draw_actions, draw_result, draw_vehicle_told
-from .sensors import draw_sensors
-from .words import draw_sentence
-from .written import draw_written
+from ..operators import (
+    ShownScore,
+    brief,
+    export_job,
+    makers,
+    models,
+    offers,
+    running_job,
+    shown_score,
+)
+from .layout import BUTTON_PX, Tab, columns, draw_sentence, draw_warning
+from .sensor_lists import draw_sensors
+
+
+def draw_written(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw which files the last export wrote, warnings, and a button for their folder."""
+    written = export_job.last
+    if written is None:
+        return
+    box = layout.box().column(align=True)
+    row = box.row()
+    draw_sentence(row.column(align=True), context, written.text, "CHECKMARK", BUTTON_PX)
+    row.operator("pe.dismiss_written", text="", icon="X", emboss=False)
+    for line in written.lines:
+        draw_sentence(box, context, line, icon="ERROR")
+    box.operator("pe.open_folder", icon="FILE_FOLDER")
+
+
+def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw the buttons of jobs; while a job runs, its progress in the same place."""
+    row = layout.row(align=True)
+    row.scale_y = 1.5
+    if running_job.current is None:
+        row.operator("pe.score", icon="VIEWZOOM")
+        row.prop(settings.live, "on", toggle=True, icon="REC")
+        row.operator("pe.optimize", icon="ORIENTATION_GIMBAL")
+        return
+    row.progress(text=running_job.current.text, factor=running_job.current.progress.fraction)
+    row.operator("pe.cancel", text="", icon="CANCEL")
+    if running_job.current.notice:
+        layout.label(text=running_job.current.notice, icon="INFO")
+
+
+def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw one score: the live one; or the stored one, where it is current or Live is off."""
+    settings, live = context.scene.perception_entropy, shown_score(context.scene)
+    if live is not None and not live.stored:
+        draw_live(layout, settings, live)
+    elif settings.has_result:
+        draw_stored(layout, context)
+
+
+def draw_live(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, live: ShownScore
+) -> None:
+    """Draw the live score, as in the corner of the 3D view."""
+    column = layout.box().column(align=True)
+    draw_figure(column, "Entropy", f"{live.entropy:.3f} ± {max(live.stderr, 1e-3):.3f} nats")
+    draw_figure(column, "Coverage", f"{live.coverage:.1%}")
+    state = "Live: exact, on a sample" if live.exact else "Live: a preview, on a sample"
+    column.label(text=state, icon="REC")
+    if settings.has_result:
+        layout.label(text="Changed since it was scored", icon="FILE_REFRESH")
+
+
+def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the stored result: figures with names and units, and whether they are current."""
+    settings = context.scene.perception_entropy
+    column = layout.box().column(align=True)
+    column.active = not settings.result_stale
+    error = f" ± {max(settings.result_stderr, 1e-4):.4f}" if settings.result_stderr else ""
+    draw_figure(column, "Entropy", f"{settings.result_entropy:.4f}{error} nats")
+    if settings.result_kind == "optimize":
+        gain = settings.result_entropy - settings.result_before
+        draw_figure(column, "Before", f"{settings.result_before:.4f}  ({gain:+.4f})")
+    draw_figure(column, "Coverage", f"{settings.result_coverage:.1%}")
+    if settings.result_ap:
+        draw_figure(column, "Expected AP", settings.result_ap)
+    for name in ("mounted_off", "sensor_lost"):
+        if text := getattr(settings, f"result_{name}"):
+            draw_figure(column, name.replace("_", " ").title(), text)
+    state = layout.column(align=True)
+    if settings.result_fragile:
+        text = settings.result_fragile
+        draw_sentence(state, context, text[:1].upper() + text[1:], icon="ERROR")
+    for line in settings.result_missing.splitlines():
+        draw_sentence(state, context, f"Scored without it: {line}", icon="ERROR")
+    if settings.result_stale:
+        state.label(text="Changed since this was scored", icon="FILE_REFRESH")
+
+
+def draw_figure(layout: bpy.types.UILayout, name: str, value: str) -> None:
+    """Draw a figure with its name."""
+    left, right = columns(layout, 0.34)
+    left.label(text=name)
+    right.label(text=value, translate=False)
+
+
+def draw_vehicle_warnings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw a line on the vehicle, and warnings about it, below its field."""
+    settings = context.scene.perception_entropy
+    if settings.vehicle is not None and settings.vehicle_line:
+        draw_sentence(layout, context, settings.vehicle_line)
+    warnings = [w for w in settings.result_warnings if not w.subject]
+    if warnings:
+        box = layout.box().column(align=True)
+        for warning in warnings:
+            draw_warning(box, context, warning)
+
 
 KIND, MAKER = "pe_kind", "pe_maker"
-"""What a button tells its menu, in Blender's context: the kind and the maker of sensors to list."""
+"""Names in Blender's context by which a button passes kind and maker to its menu."""
 
 
 class PE_PT_main(Tab, bpy.types.Panel):
@@ -25,10 +128,10 @@ class PE_PT_main(Tab, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
         if settings.version > VERSION:
-            newer = "This file is of a newer version of the extension: what is new is not seen here"
+            newer = "Saved by a newer version of the extension: its new settings are not shown"
             draw_sentence(self.layout, context, newer, icon="ERROR")
         self.layout.prop(settings, "vehicle")
-        draw_vehicle_told(self.layout, context)
+        draw_vehicle_warnings(self.layout, context)
         draw_add(self.layout)
         draw_sensors(self.layout, context)
         draw_actions(self.layout, settings)
@@ -37,13 +140,13 @@ class PE_PT_main(Tab, bpy.types.Panel):
 
 
 def draw_add(layout: bpy.types.UILayout) -> None:
-    """Draw for each kind: its usual sensor on the roof, or by pointing, and a menu of all."""
+    """Draw for each kind: add its usual sensor, place it by pointing, and a menu of all."""
     column = layout.column(align=True)
     for offer in offers():
         row = column.row(align=True)
         row.operator("pe.add_sensor", text=f"Add {offer.label}", icon="ADD").model = offer.usual
-        place = row.operator("pe.place_sensor", text="Place", icon="RESTRICT_SELECT_OFF")
-        place.model = offer.usual
+        button = row.operator("pe.place_sensor", text="Place", icon="RESTRICT_SELECT_OFF")
+        button.model = offer.usual
         row.context_string_set(KIND, offer.kind)
         row.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
 

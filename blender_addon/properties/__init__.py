@@ -8,18 +8,28 @@ from __future__ import annotations
 import bpy
 from bpy.props import PointerProperty
 
-from .advanced import OWN_KINDS, PE_CurveSettings, PE_OwnSensorSettings
-from .breakdown import PE_ResultPart
+from ..sensor_kinds import DEFAULT_MODEL
 from .callbacks import model_suggestions
-from .focus import DEFAULT_REGION, PE_FocusSettings
-from .live import PE_LiveSettings
-from .mounting import PE_MountPart, PE_MountSettings
+from .list_rows import (
+    DEFAULT_REGION,
+    PE_CurveSettings,
+    PE_FocusSettings,
+    PE_MountPart,
+    PE_MountSettings,
+    PE_OwnSensorSettings,
+    PE_SensorOption,
+)
+from .results import (
+    PE_FrontRow,
+    PE_ResultPart,
+    PE_StoppingPart,
+    PE_Variant,
+    PE_VariantSensor,
+    PE_Warning,
+)
 from .scene import PE_SceneSettings
-from .selection import PE_FrontRow, PE_SensorOption
-from .sensor import AXIS_LABELS, DEFAULT_MODEL, FREE_BY_DEFAULT, PE_ObjectSettings
-from .variants import PE_Variant, PE_VariantSensor
-from .view import PE_ViewSettings
-from .warnings import PE_StoppingPart, PE_Warning
+from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings
+from .view import PE_LiveSettings, PE_ViewSettings
 
 __all__ = [
     "AXIS_LABELS",
@@ -27,7 +37,6 @@ __all__ = [
     "DEFAULT_MODEL",
     "DEFAULT_REGION",
     "FREE_BY_DEFAULT",
-    "OWN_KINDS",
     "model_suggestions",
 ]
 
@@ -52,12 +61,12 @@ CLASSES = (
 
 
 def add_pointers() -> None:
-    """Hang the settings on scenes and objects."""
+    """Add the settings to scenes and objects."""
     bpy.types.Scene.perception_entropy = PointerProperty(type=PE_SceneSettings)
     bpy.types.Object.perception_entropy = PointerProperty(type=PE_ObjectSettings)
 
 
 def remove_pointers() -> None:
-    """Take them off again; what files hold stays in them."""
+    """Remove the settings from Blender's types; files keep their values."""
     del bpy.types.Object.perception_entropy
     del bpy.types.Scene.perception_entropy

@@ -1,30 +1,30 @@
-"""What happens when a property is set, and what its field suggests."""
+"""Update callbacks of properties, and suggestions for their fields."""
 
 from __future__ import annotations
 
 import bpy
 
-from .. import changes
+from .. import signals
 from ..engine import catalog, kinds
 
 
 def redraw(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
-    """Update callback of what only changes the picture."""
-    changes.picture.tell()
+    """Update callback of properties that change the 3D view alone."""
+    signals.view_changed.emit()
 
 
 def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
-    """Update callback of what changes the score."""
-    changes.study.tell()
+    """Update callback of properties that change the score."""
+    signals.study_changed.emit()
 
 
 def switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Update callback of the switch of the live score."""
-    changes.live.tell()
+    signals.live_toggled.emit()
 
 
 def model_chosen(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Update callback of a sensor's model: a part of a name is taken for the only one it is in."""
+    """Update callback of a sensor's model: a part of a name that is unique is completed."""
     if settings.model not in catalog.entries():
         found = catalog.matching(settings.model)
         if len(found) == 1:
@@ -34,7 +34,7 @@ def model_chosen(settings: bpy.types.PropertyGroup, context: bpy.types.Context) 
 
 
 def own_curve_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Update callback of a sensor's own AP curve: it begins as its kind's."""
+    """Update callback of a sensor's own AP curve: it starts with the values of its kind."""
     entry = catalog.entries().get(settings.model)
     if settings.own_curve and entry is not None and not settings.is_property_set("curve_a"):
         curve = kinds.KINDS[entry.kind].curve
@@ -45,11 +45,11 @@ def own_curve_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Con
 def models_of_a_kind(
     settings: bpy.types.PropertyGroup, _context: bpy.types.Context, _typed: str
 ) -> list[tuple[str, str]]:
-    """Return the models of the kind that a sensor is of, each in a few words."""
+    """Return the models of a sensor's kind, each with a short description."""
     entry = catalog.entries().get(settings.model)
     found = catalog.names(None if entry is None else entry.kind)
     models = ((name, catalog.load(name)) for name in found)
-    return [(name, kinds.kind_of(model).brief(model)) for name, model in models]
+    return [(name, kinds.kind_of(model).summary(model)) for name, model in models]
 
 
 def model_suggestions(

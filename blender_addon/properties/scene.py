@@ -15,43 +15,29 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..choices import PRIORS
-from ..engine import pe, search
-from .advanced import AdvancedSceneSettings
-from .axles import AxleSettings
-from .breakdown import PE_ResultPart
+from ..choices import PRIORS, TARGETS
+from ..engine import pe, search, studies
 from .callbacks import changed, redraw
-from .focus import PE_FocusSettings
-from .live import PE_LiveSettings
-from .mounting import MountingSettings
-from .selection import SelectionSettings
-from .targets import TargetSettings
-from .tolerance import ToleranceSettings
-from .variants import PE_Variant
-from .view import PE_ViewSettings
-from .warnings import PE_Warning
+from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
+from .results import PE_FrontRow, PE_ResultPart, PE_Variant, PE_Warning
+from .study_settings import StudySettings
+from .view import PE_LiveSettings, PE_ViewSettings
 
 METHODS = tuple(
     (name, method.label, method.about, 1 + zlib.crc32(name.encode()) % 2**30)
     for name, method in search.METHODS.items()
 )
 """Of searches; a file holds a number that stays a method's whatever others there are."""
-DEFAULT_CANDIDATES = 150
+
 DEFAULT_BEAM_LIMIT = 5_000
+
 DEFAULT_BEAM_LENGTH_M = 8.0
+
 # Before 4.5 every path could be relative to the .blend file; since then a property has to say so.
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 
 
-class PE_SceneSettings(
-    AdvancedSceneSettings,
-    AxleSettings,
-    MountingSettings,
-    SelectionSettings,
-    TargetSettings,
-    ToleranceSettings,
-    bpy.types.PropertyGroup,
-):
+class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     """The study's settings, and the last result."""
 
     version: IntProperty(
@@ -79,6 +65,12 @@ class PE_SceneSettings(
         options=PATH_OPTIONS,
         update=changed,
     )
+    targets: EnumProperty(
+        items=TARGETS,
+        name="Targets",
+        description=studies.settings_of(pe.TargetRule)["targets"].text,
+        update=changed,
+    )
     focus: CollectionProperty(
         type=PE_FocusSettings,
         name="Focus",
@@ -87,12 +79,20 @@ class PE_SceneSettings(
     focus_index: IntProperty(
         name="Selected Focus", description="Row of the list whose settings are shown", min=0
     )
-    score_samples: IntProperty(
-        name="Score Voxels",
-        description="Voxels a score looks at; 0: all, 64 million",
-        default=0,
-        min=0,
-        update=changed,
+    curves: CollectionProperty(
+        type=PE_CurveSettings, name="AP Curves", description="What measurements are worth, by kind"
+    )
+    own_sensors: CollectionProperty(
+        type=PE_OwnSensorSettings, name="Own Sensors", description="Models of this file's own"
+    )
+    own_index: IntProperty(
+        name="Selected Own Sensor", description="Row of the list whose figures are shown", min=0
+    )
+    mounts: CollectionProperty(
+        type=PE_MountSettings, name="Mounts", description="Where sensors may sit"
+    )
+    mount_index: IntProperty(
+        name="Selected Mount", description="Row of the list whose settings are shown", min=0
     )
     method: EnumProperty(
         items=METHODS,
@@ -100,32 +100,27 @@ class PE_SceneSettings(
         description="How the search looks for better placements",
         default=search.DEFAULT_METHOD,
     )
-    evaluations: IntProperty(
-        name="Budget",
-        description="Placements judged at most; 0: as many as the method takes",
-        default=0,
-        min=0,
-        soft_max=10_000,
+    mounting_errors: BoolProperty(
+        name="Mounting Errors",
+        description="Judge each candidate by its mean over small errors of mounting, so that what "
+        "is found can be bolted on. A candidate takes about eight times as long",
     )
-    candidates: IntProperty(
-        name="Candidates",
-        description="Placements tried in each of the seven rounds of a search. The paper tries "
-        "1000",
-        default=DEFAULT_CANDIDATES,
-        min=1,
-        soft_max=1000,
+    currency: StringProperty(
+        name="Currency", description="What prices are told in", default="", maxlen=12
     )
-    search_samples: IntProperty(
-        name="Search Voxels",
-        description="Voxels a candidate is judged on; 0: all, 64 million",
-        default=pe.Search().samples,
-        min=0,
+
+    passthrough: StringProperty(
+        name="Kept of the Imported File",
+        description="What the file of an imported rig had besides the rig: an export to its own "
+        "format has it again",
+        options={"HIDDEN"},
     )
-    seed: IntProperty(
-        name="Seed",
-        description="The same seed finds the same placement",
-        default=0,
-        min=0,
+
+    axles_known: BoolProperty(
+        name="Axles",
+        description="Say where the axles are: the origin of Autoware, nuScenes, ASAM OSI and "
+        "DriveWorks is the rear one",
+        update=redraw,
     )
 
     live: PointerProperty(
@@ -209,6 +204,24 @@ class PE_SceneSettings(
     result_warnings: CollectionProperty(
         type=PE_Warning, name="Warnings", description="What the last score found odd"
     )
+    result_ap: StringProperty(
+        name="Expected AP", description="Of all objects, by their weights, and its standard error"
+    )
+    result_mounted_off: StringProperty(
+        name="Mounted Off",
+        description="What mounting errors add to the entropy on average, before and after",
+    )
+    result_sensor_lost: StringProperty(
+        name="Sensor Lost",
+        description="What the loss of one sensor adds to the entropy on average, before and after",
+    )
+    result_fragile: StringProperty(
+        name="Fragile", description="Why what was found cannot be mounted exactly enough, if so"
+    )
+    front: CollectionProperty(
+        type=PE_FrontRow, name="Front", description="Designs that no other beats, cheapest first"
+    )
+    front_told: StringProperty(name="Told", description="How many designs were looked at, and how")
 
     variants: CollectionProperty(
         type=PE_Variant, name="Variants", description="Ideas for this vehicle, to come back to"

@@ -1,8 +1,15 @@
-"""What is stored on an object: what makes it a sensor, and its part in the last result."""
+"""What is stored on an object: what makes it a sensor, and its part in the last result.
+
+A sensor's pose is its transform: the fields of the pose in the ground frame store nothing.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 import bpy
+import numpy as np
 from bpy.props import (
     BoolProperty,
     BoolVectorProperty,
@@ -13,23 +20,99 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..engine import search
-from .advanced import SearchBounds
+from .. import bridge
+from ..engine import pe, search
+from ..sensor_kinds import DEFAULT_MODEL
 from .callbacks import changed, model_chosen, models_of_a_kind, own_curve_switched, redraw
-from .mounting import MountedSettings
-from .pose import GroundPose
-from .selection import OfferedModels
-from .warnings import PE_StoppingPart
+from .list_rows import PE_SensorOption
+from .results import PE_StoppingPart
 
-DEFAULT_MODEL = "Pandar64"
 AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
 """Of `search.AXES`."""
+
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
-class PE_ObjectSettings(
-    GroundPose, SearchBounds, MountedSettings, OfferedModels, bpy.types.PropertyGroup
-):
+def shown_pose(obj: bpy.types.Object) -> pe.Pose:
+    """Return where an object stands in the ground frame, rounded as a score reads it.
+
+    One that no score takes (scaled, mirrored) is told as near as a pose can tell it.
+    """
+    ground_from_sensor = np.array(obj.matrix_world, dtype=float)
+    try:
+        held = bridge.last_written_pose(obj, ground_from_sensor)
+        return bridge.pose_of_matrix(ground_from_sensor) if held is None else held
+    except pe.InputError:
+        location, rotation, _ = obj.matrix_world.decompose()
+        angles = rotation.to_euler("XYZ")
+        return bridge.pose_from_numbers((*location, *(math.degrees(angle) for angle in angles)))
+
+
+def _position(settings: bpy.types.PropertyGroup) -> tuple[float, ...]:
+    return shown_pose(settings.id_data).position
+
+
+def _rotation(settings: bpy.types.PropertyGroup) -> tuple[float, ...]:
+    return tuple(map(math.radians, shown_pose(settings.id_data).rotation_deg))
+
+
+def _set_position(settings: bpy.types.PropertyGroup, value: Sequence[float]) -> None:
+    obj = settings.id_data
+    _stand(obj, value, shown_pose(obj).rotation_deg)
+
+
+def _set_rotation(settings: bpy.types.PropertyGroup, value: Sequence[float]) -> None:
+    obj = settings.id_data
+    _stand(obj, shown_pose(obj).position, [math.degrees(angle) for angle in value])
+
+
+def _stand(obj: bpy.types.Object, position: Sequence[float], degrees: Sequence[float]) -> None:
+    bridge.place_at(obj, bridge.pose_from_numbers((*position, *degrees)))
+
+
+class GroundPose:
+    """Fields of an object's settings that are its transform: nothing is stored here."""
+
+    ground_position: FloatVectorProperty(
+        name="Position",
+        description="Optical centre in the ground frame: ahead, left, and over the ground",
+        size=3,
+        subtype="XYZ",
+        unit="LENGTH",
+        precision=3,
+        step=1,
+        get=_position,
+        set=_set_position,
+    )
+    ground_rotation: FloatVectorProperty(
+        name="Rotation",
+        description="Roll, pitch and yaw in the ground frame: a positive pitch is nose down, a "
+        "positive yaw turns left",
+        size=3,
+        subtype="EULER",
+        unit="ROTATION",
+        precision=2,
+        step=100,
+        get=_rotation,
+        set=_set_rotation,
+    )
+
+
+def mounts_of_scene(
+    _settings: bpy.types.PropertyGroup, context: bpy.types.Context, _typed: str
+) -> list[str]:
+    """Return the names of the scene's mounts."""
+    return [row.name for row in context.scene.perception_entropy.mounts]
+
+
+def racks_of_scene(
+    _settings: bpy.types.PropertyGroup, context: bpy.types.Context, _typed: str
+) -> list[str]:
+    """Return the names of the racks that sensors of the scene are on."""
+    return sorted({obj.perception_entropy.rack for obj in context.scene.objects} - {""})
+
+
+class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: BoolProperty(
@@ -68,6 +151,51 @@ class PE_ObjectSettings(
         description="What the search may change",
         size=len(search.AXES),
         default=FREE_BY_DEFAULT,
+    )
+    bounded: BoolVectorProperty(
+        name="Bounded",
+        description="The search keeps within bounds of its own here; else the vehicle's outline",
+        size=len(search.AXES),
+    )
+    bounds_low: FloatVectorProperty(
+        name="From",
+        description="Lowest value that the search may try: metres, or degrees",
+        size=len(search.AXES),
+        precision=3,
+    )
+    bounds_high: FloatVectorProperty(
+        name="To",
+        description="Highest value that the search may try: metres, or degrees",
+        size=len(search.AXES),
+        precision=3,
+    )
+    mount: StringProperty(
+        name="Mount",
+        description="Where the search may put this sensor; empty: in a box of coordinates",
+        search=mounts_of_scene,
+        search_options={"SUGGESTION"},
+        update=redraw,
+    )
+    rack: StringProperty(
+        name="Rack",
+        description="Sensors on one rack move as one in a search; the first by name leads",
+        search=racks_of_scene,
+        search_options={"SUGGESTION"},
+    )
+    is_rack: BoolProperty(
+        name="Is a Rack",
+        description="Sensors that are parented to this object move as one in a search",
+    )
+    is_no_go: BoolProperty(
+        name="No-Go Area",
+        description="No part of a sensor may be in the box round this object",
+        update=redraw,
+    )
+    options: CollectionProperty(
+        type=PE_SensorOption, name="Models", description="Models that may take this place"
+    )
+    may_be_left_out: BoolProperty(
+        name="May Be Left Out", description="A design may do without this sensor"
     )
     show: BoolProperty(
         name="Show Beams",

@@ -8,12 +8,17 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .camera import look_at
-from .caption import caption_of
-from .lettering import Lettering
-from .marks import mark_moves, mark_rings, mark_sensors
-from .page import frame_of, legend_of, write_page
-from .stage import stage
+from .captions import (
+    caption_of,
+    frame_of,
+    legend_of,
+    mark_moves,
+    mark_rings,
+    mark_sensors,
+    write_page,
+)
+from .picture_geometry import look_at
+from .stage import Lettering, stage
 from .subject import RING_TEXT, RINGS_M, Subject
 
 if TYPE_CHECKING:

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from .. import bridge
 from ..engine import graphics
-from . import shapes
-from .camera import View
-from .shapes import Faces
+from . import picture_geometry
+from .picture_geometry import Faces, View
 from .stage import Stage
 
 if TYPE_CHECKING:
@@ -47,8 +46,8 @@ class Subject:
         rig, budget = study.rig, graphics.beam_budget(list(study.rig), BEAMS)
         choice = graphics.BeamChoice(budget, graphics.ChannelMode.FEW)
         sketches = {
-            each.name: graphics.drawing_of(each.kind).sketch(each, study.vehicle, choice)
-            for each in rig
+            sensor.name: graphics.drawing_of(sensor.kind).sketch(sensor, study.vehicle, choice)
+            for sensor in rig
         }
         return cls(study, outcome.start.rig if outcome.kind == "optimize" else None, sketches)
 
@@ -62,8 +61,8 @@ class Subject:
         if self.start is None:
             return []
         pairs = zip(self.start, self.study.rig, strict=True)
-        places = [(np.array(a.pose.position), np.array(b.pose.position)) for a, b in pairs]
-        return [(a, b) for a, b in places if not np.array_equal(a, b)]
+        positions = [(np.array(a.pose.position), np.array(b.pose.position)) for a, b in pairs]
+        return [(a, b) for a, b in positions if not np.array_equal(a, b)]
 
     def points_in_view(self) -> Floats:
         """(N, 3) points that the picture has to hold [m]."""
@@ -78,29 +77,35 @@ class Subject:
         """Put everything on the stage; the vehicle's objects are those of the user's scene."""
         self._build_vehicle(stage, vehicle_objects(scene))
         for radius in RINGS_M:
-            stage.add_faces("Ring", shapes.ribbons(shapes.ring(radius, RING), view, RING_PX), view)
+            stage.add_faces(
+                "Ring",
+                picture_geometry.ribbons(picture_geometry.ground_ring(radius, RING), view, RING_PX),
+                view,
+            )
         for sensor in self.study.rig:
             self._build_view(stage, view, sensor)
 
     def _build_vehicle(self, stage: Stage, objects: list[bpy.types.Object]) -> None:
         if self.study.vehicle is None:
             return
-        for each in objects:
-            stage.scene.collection.objects.link(each)
+        for obj in objects:
+            stage.scene.collection.objects.link(obj)
         if not objects:
             corners = self.study.vehicle.triangles
             stage.add_faces("Vehicle", Faces(corners, np.tile(VEHICLE, (len(corners), 1))))
         low, high = self.study.vehicle.bounds
-        stage.add_faces("Shadow", shapes.shadow(low, high, SHADOW, SHADOW_LAYERS))
+        stage.add_faces("Shadow", picture_geometry.shadow(low, high, SHADOW, SHADOW_LAYERS))
 
     def _build_view(self, stage: Stage, view: View, sensor: pe.Sensor) -> None:
         """What one sensor sees."""
         sketch, look = self.sketches[sensor.name], _look(sensor)
         lines = sketch.lines(look.length_m, graphics.PAPER)
         if look.clear_m:
-            lines = shapes.begun_later(lines, look.clear_m)
-        stage.add_faces("View", shapes.ribbons(lines, view, look.line_px), view)
-        stage.add_faces("View", shapes.triangles(sketch.faces(look.length_m, graphics.PAPER)))
+            lines = picture_geometry.starting_farther(lines, look.clear_m)
+        stage.add_faces("View", picture_geometry.ribbons(lines, view, look.line_px), view)
+        stage.add_faces(
+            "View", picture_geometry.triangles(sketch.faces(look.length_m, graphics.PAPER))
+        )
 
     def _positions(self) -> Floats:
         return np.array([sensor.pose.position for sensor in self.study.rig])
@@ -116,4 +121,4 @@ def vehicle_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     if collection is None:
         return []
     members = bridge.visible_members(collection, bridge.view_layer_of(scene))
-    return [each for each in members if not bridge.mounted_on_sensor(each)]
+    return [obj for obj in members if not bridge.mounted_on_sensor(obj)]

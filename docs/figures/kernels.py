@@ -13,7 +13,7 @@ import numpy as np
 import worked
 from svg import BLUE, FAINT, INK, ORANGE, SKY, VERMILION, Drawing, Point
 
-from pe_core.kinds.lidar.definition import cube_crossing
+from pe_core.sensors.lidar.definition import cube_crossing
 
 IMAGES = Path(__file__).resolve().parents[1] / "images"
 CUBE = [np.array(signs) / 2.0 for signs in product((-1.0, 1.0), repeat=3)]
@@ -100,10 +100,10 @@ def _from_above_the_sensor(picture: Drawing) -> None:
     corners = [_radial(b, c @ _turn()) for c in CUBE]
     picture.text((470, 32), "From above the sensor (along its axis)", size=15, weight="bold")
     picture.area(_hull([at(*c) for c in corners]), SKY, INK, 1.2, opacity=0.25)
-    edge, part = (b.skew * b.wide, b.wide), (b.skew * b.width, b.width)
+    edge, part = (b.skew * b.width, b.width), (b.skew * b.slice_width, b.slice_width)
     picture.line([at(*edge), at(-edge[0], -edge[1])], ORANGE, 9.0)
     picture.line([at(*part), at(-part[0], -part[1])], VERMILION, 3.0)
-    for radial, words in ((-b.deep, f"near {b.near:.2f}"), (b.deep, f"far {b.far:.2f}")):
+    for radial, words in ((-b.depth, f"near {b.near:.2f}"), (b.depth, f"far {b.far:.2f}")):
         picture.line([at(radial, -1.0), at(radial, 1.0)], INK, 1.2, "7 4")
         picture.text((at(radial, 0)[0], 288), words, anchor="middle")
     picture.line([at(-2.45, 0), at(0, 0)], FAINT, 1.0)

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import pe_core as pe
-from pe_core.kinds.lidar.azimuths import Cubes, circle
-from pe_core.kinds.lidar.bracket import Bracket, Silhouettes, bracket, slice_through
-from pe_core.kinds.lidar.lattice import lattice_of
-from pe_core.kinds.lidar.ties import position_in_voxels
-from pe_core.kinds.lidar.upright import Upright
+from pe_core.sensors.lidar.bracket import Bracket, Silhouettes, bracket, slice_through
+from pe_core.sensors.lidar.lattice import lattice_of
+from pe_core.sensors.lidar.tie_rules import position_in_voxels
+from pe_core.sensors.lidar.upright import Cubes, Upright, circle
 
 SPACE = pe.PerceptionSpace()
 SIDE = SPACE.interval
@@ -83,19 +82,19 @@ class Bracketed:
     place: list[float]
     flat: float
     middle: float
-    deep: float
-    wide: float
-    tall: float
+    depth: float
     width: float
     height: float
+    slice_width: float
+    slice_height: float
     skew: float
 
     @property
     def outer(self) -> Window:
         """Holds the cube: slopes over the nearest and the farthest distance."""
         near, far, z = self.near, self.far, self.place[2]
-        reach = self.wide / near / STEP
-        low, high = z - self.tall, z + self.tall
+        reach = self.width / near / STEP
+        low, high = z - self.height, z + self.height
         return Window(
             self.middle - reach,
             self.middle + reach,
@@ -107,9 +106,9 @@ class Bracketed:
     def inner(self) -> Window:
         """Lies in the slice: slopes over its own farthest and nearest distance."""
         (near, far), z = self.inner_distances, self.place[2]
-        low, high = z - self.height, z + self.height
-        left = math.atan(self.width / (self.flat + self.skew * self.width)) / STEP
-        right = math.atan(self.width / (self.flat - self.skew * self.width)) / STEP
+        low, high = z - self.slice_height, z + self.slice_height
+        left = math.atan(self.slice_width / (self.flat + self.skew * self.slice_width)) / STEP
+        right = math.atan(self.slice_width / (self.flat - self.skew * self.slice_width)) / STEP
         return Window(
             self.middle - right,
             self.middle + left,
@@ -120,28 +119,41 @@ class Bracketed:
     @property
     def inner_distances(self) -> tuple[float, float]:
         """Least and greatest distance of the slice's rectangle from the axis."""
-        drift = abs(self.skew) * self.width
-        return self.flat - drift, math.hypot(self.flat + drift, self.width)
+        drift = abs(self.skew) * self.slice_width
+        return self.flat - drift, math.hypot(self.flat + drift, self.slice_width)
 
     @property
     def near(self) -> float:
         """Least distance of the cube from the axis."""
-        return self.flat - self.deep
+        return self.flat - self.depth
 
     @property
     def far(self) -> float:
         """Greatest distance of the cube from the axis."""
-        return math.hypot(self.flat + self.deep, self.wide)
+        return math.hypot(self.flat + self.depth, self.width)
 
 
 def bracketed() -> Bracketed:
     """See the tilted voxel as the kernel does."""
     seen = Silhouettes.of(_tilted_points(), _rotation(), np.float32(STEP))
-    width, height, skew = (float(w[0]) for w in slice_through(seen))
+    slice_width, slice_height, skew = (float(w[0]) for w in slice_through(seen))
     offset = [float(p[0]) for p in _tilted_points()]
     place = (np.array(offset) @ TILTED.pose.ground_from_sensor).tolist()
-    flat, middle, deep, wide = (float(w[0]) for w in (seen.flat, seen.middle, seen.deep, seen.wide))
-    return Bracketed(offset, place, flat, middle, deep, wide, float(seen.tall), width, height, skew)
+    flat, middle, depth, width = (
+        float(w[0]) for w in (seen.flat, seen.middle, seen.depth, seen.width)
+    )
+    return Bracketed(
+        offset,
+        place,
+        flat,
+        middle,
+        depth,
+        width,
+        float(seen.height),
+        slice_width,
+        slice_height,
+        skew,
+    )
 
 
 def kernel_bracket() -> Bracket:
@@ -161,31 +173,41 @@ def bracket_rows() -> list[str]:
         _row("the same, along the sensor's axes", "x, y, z", _together(b.place)),
         _row("distance from the sensor's axis", "flat = sqrt(x^2 + y^2)", f"{b.flat:.2f}"),
         _row("azimuth, in steps of 0.2 degrees", "middle = atan2(y, x) / step", f"{b.middle:.2f}"),
-        _row("half the cube's extents", "deep, wide, tall", _together((b.deep, b.wide, b.tall), 3)),
+        _row(
+            "half the cube's extents",
+            "depth, width, height",
+            _together((b.depth, b.width, b.height), 3),
+        ),
         _row(
             "distances of the cube",
-            "near = flat - deep, far = sqrt((flat + deep)^2 + wide^2)",
+            "near = flat - depth, far = sqrt((flat + depth)^2 + width^2)",
             f"{b.near:.2f}, {b.far:.2f}",
         ),
-        _row("**outer** azimuths", "middle -+ wide / near / step", _azimuths(outer)),
-        _row("slopes", "(z - tall) / near, (z + tall) / far", _channels(outer)),
-        _row("beams that may pass", "most = rows * columns", _product(outer)),
+        _row("**outer** azimuths", "middle -+ width / near / step", _azimuths(outer)),
+        _row("slopes", "(z - height) / near, (z + height) / far", _channels(outer)),
+        _row("beams that may pass", "upper = rows * columns", _product(outer)),
         _row("the slice: how it recedes to the left", "skew", f"{b.skew:.3f}"),
         _row(
-            "half sides of the rectangle in it", "width, height", f"{b.width:.3f}, {b.height:.3f}"
+            "half sides of the rectangle in it",
+            "slice_width, slice_height",
+            f"{b.slice_width:.3f}, {b.slice_height:.3f}",
         ),
         _row(
             "distances of that rectangle, nearest and farthest",
-            "flat - abs(skew) width, sqrt((flat + abs(skew) width)^2 + width^2)",
+            "flat - abs(skew) slice_width, sqrt((flat + abs(skew) slice_width)^2 + slice_width^2)",
             _together(b.inner_distances),
         ),
         _row(
             "**inner** azimuths",
-            "middle -+ atan(width / (flat -+ skew * width)) / step",
+            "middle -+ atan(slice_width / (flat -+ skew * slice_width)) / step",
             _azimuths(inner),
         ),
-        _row("slopes", "(z - height) / farthest, (z + height) / nearest", _channels(inner)),
-        _row("beams that must pass", "least = rows * columns", _product(inner)),
+        _row(
+            "slopes",
+            "(z - slice_height) / farthest, (z + slice_height) / nearest",
+            _channels(inner),
+        ),
+        _row("beams that must pass", "lower = rows * columns", _product(inner)),
         _row("beams that pass, each tested", "m", f"**{defined(TILTED, TILTED_CENTER)}**"),
     ]
 
@@ -237,7 +259,7 @@ def kernel_azimuths() -> list[int]:
     azimuths, unsure = circle(MODEL.azimuth_count, 0.0).meeting(cubes)
     assert not unsure[0]
     first = int(azimuths.entry[0]) - 2 * MODEL.azimuth_count
-    return [first + int(azimuths.turn[0]) * n for n in range(int(azimuths.left[0]))]
+    return [first + int(azimuths.turn[0]) * n for n in range(int(azimuths.count[0]))]
 
 
 def kernel_upright() -> tuple[int, bool]:

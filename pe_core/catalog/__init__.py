@@ -1,7 +1,7 @@
-"""Sensor presets, one TOML file a maker; each says where its figures come from.
+"""Catalogue of sensor presets: a TOML file for each maker, and the source of all figures.
 
-Three have no document behind them and say so (Waymo's: general knowledge); three are no
-product, but cameras to compare with.
+Three presets have no document as a source, which they state (Waymo's: general knowledge). Three
+are not products, but cameras for comparison.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..errors import InputError, shown
-from ..kinds import kind_named, kind_of
+from ..base.errors import InputError, shown
+from ..base.read_only import read_only_data
+from ..base.values import A_NAME, A_TEXT
 from ..scene.housing import Housing
-from ..scene.sensors import Rig, Sensor, SensorModel
+from ..scene.rig import Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
-from ..text.fixed import fixed
-from ..text.values import A_NAME, A_TEXT
+from ..sensors import kind_named, kind_of
 from .housings import read_housing
 from .rigs import KnownRig as KnownRig
 from .rigs import KnownSensor as KnownSensor
@@ -50,17 +50,17 @@ __all__ = [
 ]
 
 PAPER_FILE = "paper.toml"
-"""The paper's own sensors come first in lists."""
+"""File with the paper's sensors, which come first in lists."""
 OWN = "own"
-"""In place of a file's name, for presets that a program has added."""
-NOBODY_S = {PAPER_FILE: "Paper", "cameras.toml": "Cameras", OWN: "Own"}
-"""What files that are no maker's are called."""
+"""Replaces the file name for presets that a program has added."""
+OTHER_LABELS = {PAPER_FILE: "Paper", "cameras.toml": "Cameras", OWN: "Own"}
+"""Labels of the files that do not belong to a maker."""
 COMMON_KEYS = frozenset({"kind", "source", "note", "housing"})
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One sensor of the catalogue: its table as the file has it, and the file's name."""
+    """A sensor of the catalogue: its name, the name of its file, and its table in that file."""
 
     name: str
     file: str
@@ -78,59 +78,59 @@ class Entry:
 
     @property
     def maker(self) -> str:
-        """Whose it is, as lists are divided: a file of the catalogue is a maker's."""
-        named = self.file not in NOBODY_S
-        return self.name.split()[0] if named else NOBODY_S[self.file]
+        """Name of the maker, or another label, by which lists are grouped."""
+        has_maker = self.file not in OTHER_LABELS
+        return self.name.split()[0] if has_maker else OTHER_LABELS[self.file]
 
 
 _added: dict[str, Entry] = {}
 _loaded: dict[str, SensorModel] = {}
-"""Sensors by name, once each: as many as the catalogue has entries, shipped and added."""
+"""Cache of loaded sensors by name: at most one for each entry."""
 
 
 def entries() -> Mapping[str, Entry]:
-    """All entries by name, in the order of the files; then what programs have added."""
+    """Return all entries by name: those of the files in order, then those added by programs."""
     return MappingProxyType({**_shipped(), **_added}) if _added else _shipped()
 
 
 def names(kind: str | None = None) -> list[str]:
-    """Names in the catalogue, of one kind or of all."""
+    """Return the names in the catalogue, of one kind or of all kinds."""
     return [e.name for e in entries().values() if kind in (None, e.kind)]
 
 
 def matching(typed: str, kind: str | None = None) -> list[str]:
-    """Names, of one kind or of all, that are what was typed, or else contain it; case is one.
+    """Return the names equal to the typed text, or else those that contain it; case is ignored.
 
-    A single one is what was meant: ``"QT128"`` is in ``"Hesai QT128C2X"`` alone.
+    A single result is unambiguous: only ``"Hesai QT128C2X"`` contains ``"QT128"``.
     """
     wanted = typed.strip().casefold()
-    found = [name for name in names(kind) if wanted in name.casefold()] if wanted else []
-    exact = [name for name in found if name.casefold() == wanted]
-    return exact or found
+    containing = [name for name in names(kind) if wanted in name.casefold()] if wanted else []
+    exact = [name for name in containing if name.casefold() == wanted]
+    return exact or containing
 
 
 def add(name: str, table: Mapping[str, Any]) -> None:
-    """Add a preset of one's own to the catalogue, until the program ends.
+    """Add a preset to the catalogue, until the program ends.
 
     Parameters
     ----------
     name : str
     table : mapping
-        As `from_table` takes it.
+        Table of the sensor, see `from_table`.
 
     Raises
     ------
     InputError
-        When there is a sensor of that name, or the table is no sensor's.
+        When the name is taken, or the table does not describe a sensor.
     """
     if name in entries():
         raise InputError("catalogue", "name", "a name used once", repr(name))
     _loaded[name] = from_table(name, table)
-    _added[name] = Entry(name, OWN, fixed(table))
+    _added[name] = Entry(name, OWN, read_only_data(table))
 
 
 def remove(name: str) -> None:
-    """Take a preset that was added away again; do nothing if there is none."""
+    """Remove a preset that was added with `add`, if there is one of that name."""
     if _added.pop(name, None) is not None:
         _loaded.pop(name, None)
 
@@ -141,7 +141,7 @@ def load(name: str) -> SensorModel:
     Raises
     ------
     InputError
-        When there is no such sensor; the message offers near ones.
+        When there is no such sensor; the message has similar names.
     """
     name = A_TEXT.checked("catalogue", "model", name)
     if name not in _loaded:
@@ -153,21 +153,21 @@ def load(name: str) -> SensorModel:
 
 
 def rig_on(known: KnownRig, vehicle: Vehicle | None = None) -> Rig:
-    """Return a known rig stretched onto a vehicle's box; without one as it was published."""
+    """Return a known rig, scaled to a vehicle's bounds; without a vehicle as it was published."""
     sensors = known.sensors
     if vehicle is not None:
         low, high = vehicle.bounds
         sensors = known.on_vehicle(low.tolist(), high.tolist())
-    return Rig([Sensor(each.name, load(each.model), each.pose) for each in sensors])
+    return Rig([Sensor(s.name, load(s.model), s.pose) for s in sensors])
 
 
 def housing(name: str) -> Housing | None:
-    """Return the housing of the sensor of that name, None where no size of it is known.
+    """Return the housing of the sensor of that name; None if its size is not known.
 
     Raises
     ------
     InputError
-        When the catalogue's table of it is wrong.
+        When its table in the catalogue is not valid.
     """
     entry = entries().get(name)
     table = None if entry is None else entry.table.get("housing")
@@ -175,20 +175,20 @@ def housing(name: str) -> Housing | None:
 
 
 def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) -> SensorModel:
-    """Build a sensor from a catalogue table, or a user's own of the same form.
+    """Build a sensor from a table of the catalogue, or from a user's table of the same form.
 
     LiDAR: ``kind = "lidar"``, ``elevations_deg``, ``azimuth_count`` or ``azimuth_step_deg``,
     ``max_range_m``; optional ``azimuth_offsets_deg`` (counter-clockwise from above) and
     ``horizontal_fov_deg``. In place of elevations and offsets, ``angles``: a file that
     `read_angles` reads, relative to `folder`. Camera: ``kind = "camera"``, ``width``,
     ``height``, ``hfov_deg``, or a lens: ``fx``, ``fy``, ``cx``, ``cy``, ``distortion``,
-    ``fov_deg``; optional ``min_range_m``, ``max_range_m``. Other kinds: the keys of their row.
-    All: ``source``, ``note``, and ``housing`` (see `read_housing`), which is no part of the sensor.
+    ``fov_deg``; optional ``min_range_m``, ``max_range_m``. Other kinds: their own keys.
+    All kinds: ``source``, ``note``, and ``housing`` (see `read_housing`), which is not used here.
 
     Raises
     ------
     InputError
-        When a value or the file of angles is wrong, or there is no such kind.
+        When a value or the file of angles is not valid, or there is no such kind.
     """
     name = A_NAME.checked("sensor", "name", name)
     if not isinstance(table, Mapping):
@@ -205,22 +205,22 @@ def from_table(name: str, table: Mapping[str, Any], folder: Path | None = None) 
 
 
 def to_table(model: SensorModel) -> dict[str, Any]:
-    """Return the table that `from_table` turns into this sensor again."""
+    """Return the table from which `from_table` builds this sensor."""
     kind = kind_of(model)
     return {"kind": kind.name, **kind.write(model)}
 
 
 @cache
 def _shipped() -> Mapping[str, Entry]:
-    """The entries of the files, read once."""
-    found: dict[str, Entry] = {}
+    """Read the entries of all files; the result is cached."""
+    by_name: dict[str, Entry] = {}
     files = [f for f in resources.files(__package__).iterdir() if f.name.endswith(".toml")]
     for file in sorted(files, key=lambda f: (f.name != PAPER_FILE, f.name)):
         for name, table in tomllib.loads(file.read_text("utf-8")).items():
-            if name in found:
-                raise InputError(file.name, name, "a name used once", found[name].file)
-            found[name] = Entry(name, file.name, fixed(table))
-    return MappingProxyType(found)
+            if name in by_name:
+                raise InputError(file.name, name, "a name used once", by_name[name].file)
+            by_name[name] = Entry(name, file.name, read_only_data(table))
+    return MappingProxyType(by_name)
 
 
 def _near(name: str) -> str:

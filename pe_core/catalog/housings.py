@@ -1,13 +1,13 @@
-"""The table of a sensor's housing in the catalogue."""
+"""Reads the table of a sensor's housing in the catalogue."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from ..errors import InputError, shown
+from ..base.errors import InputError, shown
+from ..base.values import A_TEXT, LENGTH, choice, vector
 from ..scene.housing import NEAR, SHAPES, Housing
-from ..text.values import A_TEXT, LENGTH, choice, vector
 
 KEYS = {
     "cylinder": frozenset({"shape", "diameter", "height", "optical_height", "source"}),
@@ -18,30 +18,30 @@ KEYS = {
 def read_housing(name: str, table: Any) -> Housing:
     """Build a housing from its table; lengths in metres.
 
-    ``shape = "cylinder"``, ``diameter``, ``height``, and ``optical_height``, of the optical centre
-    above the base (without it: half way up). Or ``shape = "box"``, ``size`` along x, y and z, and
-    ``optical_center`` from the middle of the base (without it: in the middle of the front).
-    ``source``: where the figures come from, and what is assumed.
+    Cylinder: ``shape = "cylinder"``, ``diameter``, ``height``, and ``optical_height``: the height
+    of the optical centre above the base (default: half of the height). Box: ``shape = "box"``,
+    ``size`` (3,), and ``optical_center`` (3,) relative to the middle of the base (default: the
+    middle of the front). Both: ``source``, the source of the figures and assumptions.
 
     Raises
     ------
     InputError
-        When it is no table, a key is unknown or a value impossible.
+        When `table` is not a table, a key is unknown, or a value is not valid.
     """
     if not isinstance(table, Mapping):
         raise InputError(name, "housing", "a table", shown(table))
     shape = choice(name, "housing.shape", table.get("shape"), SHAPES)
     unknown = sorted(map(str, set(table) - KEYS[shape]))
     if unknown:
-        known = ", ".join(sorted(KEYS[shape]))
-        raise InputError(name, f"housing.{unknown[0]}", f"one of {known}", "an unknown key")
+        keys = ", ".join(sorted(KEYS[shape]))
+        raise InputError(name, f"housing.{unknown[0]}", f"one of {keys}", "an unknown key")
     source = A_TEXT.checked(name, "housing.source", table.get("source"))
     size, center = (_box if shape == "box" else _cylinder)(name, table)
     return Housing(shape, size, center, source)
 
 
 def _cylinder(name: str, table: Mapping[str, Any]) -> tuple[Any, Any]:
-    """A cylinder's size and optical centre."""
+    """Return size (3,) and optical centre (3,) of a cylinder [m]."""
     diameter, height = (
         LENGTH.checked(name, f"housing.{key}", table.get(key)) for key in ("diameter", "height")
     )
@@ -51,7 +51,7 @@ def _cylinder(name: str, table: Mapping[str, Any]) -> tuple[Any, Any]:
 
 
 def _box(name: str, table: Mapping[str, Any]) -> tuple[Any, Any]:
-    """A box's size and optical centre."""
+    """Return size (3,) and optical centre (3,) of a box [m]."""
     size = vector(name, "housing.size", table.get("size"), 3, LENGTH)
     front = (size[0] / 2.0, 0.0, size[2] / 2.0)
     given = table.get("optical_center", front)

@@ -1,6 +1,6 @@
-"""How far above the base of its housing a LiDAR scans.
+"""Height of the scan centre of LiDARs above the base of their housing.
 
-Kits and robot descriptions place a LiDAR's base frame; a score needs the centre of its scan.
+Data sets and robot descriptions have the pose of the base; a score needs the centre of the scan.
 """
 
 from __future__ import annotations
@@ -24,6 +24,6 @@ WORD = re.compile(r"[^\s()/]+")
 
 
 def scan_above_base(model: str | None) -> float:
-    """Return how far a model scans above its base frame [m]; 0 where that is not known."""
+    """Return the height of a model's scan centre above its base [m]; 0 if it is not known."""
     words = WORD.findall(model or "")
     return next((SCAN_ABOVE_BASE_M[word] for word in words if word in SCAN_ABOVE_BASE_M), 0.0)

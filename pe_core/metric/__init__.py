@@ -15,7 +15,6 @@ from .entropy import (
     precision_of,
     sigma_of,
 )
-from .fit import SATURATION, ApTable, CurveFit, fit_ap_curve, study_snippet
 from .fusion import early_fusion, late_fusion
 
 __all__ = [
@@ -26,17 +25,12 @@ __all__ = [
     "H_BLIND",
     "POINTPILLARS",
     "RTM3D",
-    "SATURATION",
     "ApCurve",
-    "ApTable",
-    "CurveFit",
     "average_precision",
     "early_fusion",
     "entropy_of",
-    "fit_ap_curve",
     "late_fusion",
     "perception_entropy",
     "precision_of",
     "sigma_of",
-    "study_snippet",
 ]

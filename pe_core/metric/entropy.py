@@ -1,7 +1,7 @@
 """Equations 4 to 9: from a measurement to perception entropy. One function an equation.
 
-Everything is element-wise over arrays of any shape and returns float64. Equation numbers are those
-of the design notes in docs/metric.md, which names the paper's beside each.
+All functions are element-wise over arrays of any shape and return float64. Equation numbers are
+those of docs/metric.md, which gives the paper's numbers beside them.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..text.values import Number
+from ..base.values import Number
 
 Floats = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ AP_MIN, AP_MAX = 0.001, 0.999
 """The paper's clamp of AP "for numerical stability"."""
 GAUSSIAN_2D = 1.0 + math.log(2.0 * math.pi)
 BLIND_PRECISION = (1.0 / AP_MIN - 1.0) ** -2
-"""1 / sigma^2 of a sensor that sees nothing: ``f`` of eq. 7."""
+"""1 / sigma^2 of a blind sensor: ``f`` of eq. 7."""
 
 SLOPE = Number(1e-12, cap=1e3, noun="slope")
 OFFSET = Number(cap=1e3)
@@ -39,7 +39,7 @@ class ApCurve:
 
     @property
     def saturation(self) -> float:
-        """The measurement from which on AP is clipped at its maximum."""
+        """Measurement m at which AP reaches its maximum; it is clipped from there on."""
         exponent = (AP_MAX - self.b) / self.a
         return math.exp(exponent) if exponent < 700.0 else math.inf
 
@@ -74,7 +74,7 @@ def entropy_of(precision: ArrayLike) -> Floats:
 
 
 def ap_of_entropy(entropies: ArrayLike) -> Floats:
-    """AP = 1 / (1 + sigma) of what has that entropy: eqs. 8 and 5 backwards."""
+    """AP = 1 / (1 + sigma) of an entropy [nats]: eqs. 8 and 5 solved for AP."""
     sigma = np.exp((np.asarray(entropies, dtype=float) - GAUSSIAN_2D) / 2.0)
     return np.asarray(1.0 / (1.0 + sigma))
 
@@ -86,6 +86,6 @@ def perception_entropy(entropies: ArrayLike, weights: ArrayLike) -> float:
 
 
 H_BLIND = float(entropy_of(BLIND_PRECISION))
-"""Entropy of a voxel nobody sees: 16.651."""
+"""Entropy of a voxel that no sensor sees [nats]: 16.651."""
 H_BEST = float(entropy_of(sigma_of(AP_MAX) ** -2))
-"""Entropy of a voxel that one group sees as well as can be: -10.976."""
+"""Entropy of a voxel at the highest AP of one fusion group [nats]: -10.976."""

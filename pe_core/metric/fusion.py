@@ -1,13 +1,18 @@
-"""Equations 6 and 7: measurements summed inside a group, groups fused; and eqs. 4 to 8 by look-up.
+"""Fusion (equations 6 and 7), and the entropy of fused groups by lookup tables (equations 4 to 8).
 
-A whole number as m, such as a count of beams, soon saturates AP: its 1 / sigma^2 is then a table,
-and so is its entropy when its group stands alone. The plain definitions come first; the tables are
-held to them.
+The plain definitions come first (`early_fusion`, `late_fusion`); tests compare the tables to them.
+
+An integer m, a count of beams, soon saturates AP, so its 1 / sigma^2 is tabulated, and also its
+entropy if no other group sees the voxel. `Fusion` works on any voxels. `PlaneFusion` works on whole
+x-planes of the grid, where each group sees only some rows: pixel areas in single precision are
+looked up, too, rounded to a few digits. Fusing is then an addition and one logarithm per voxel.
+Double precision is not rounded, but computed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import reduce
 from operator import add
 from typing import Any, NamedTuple, Protocol
@@ -19,20 +24,22 @@ from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of
 
 Floats = NDArray[np.float64]
 CurveOf = str | ApCurve
-"""Whose AP curve: a kind's ("lidar", "camera"), or one of its own."""
+"""An AP curve: the name of a kind of sensor ("lidar", "camera"), or the curve itself."""
 Measurement = tuple[CurveOf, NDArray]
-"""Curve and m of a group: whole numbers (beams) or not (pixels)."""
+"""Curve and m of a fusion group: integers (beams) or floats (pixels)."""
 
-LONGEST_TABLE = (1 << 16) - 1
-"""Counts are kept in 16 bits."""
-MOST_BYTES = 257
-"""Numbers of 8 bits whose sum 16 bits hold."""
+MAX_TABLE = (1 << 16) - 1
+"""Counts are stored in 16 bits."""
+MAX_BYTE_COUNTS = 257
+"""Maximum number of 8-bit counts whose sum fits 16 bits."""
 
 
 class Curves(Protocol):
-    """What fusion asks of a perception model: an AP curve by kind, and the rule for the blind."""
+    """The part of a perception model that fusion needs: AP curves, the rule for blind sensors."""
 
-    blind: str
+    @property
+    def blind(self) -> str:
+        """Rule for blind sensors."""
 
     def curve(self, kind: str) -> ApCurve:
         """Return the AP curve of a kind of sensor."""
@@ -44,12 +51,12 @@ def early_fusion(measurements: Iterable[ArrayLike]) -> Floats:
 
 
 def group_sum(measured: Sequence[Any]) -> Any:
-    """Sum measurements as kernels give them, eq. 6: counts of few bits each, or what adds up."""
+    """Sum measurements of kernels (eq. 6): arrays of counts, `VisibleRows`, or other arrays."""
     if len(measured) == 1:
         return measured[0]
     if not (isinstance(measured[0], np.ndarray) and is_whole(measured[0])):
         return reduce(add, measured)
-    is_short = all(m.itemsize == 1 for m in measured) and len(measured) <= MOST_BYTES
+    is_short = all(m.itemsize == 1 for m in measured) and len(measured) <= MAX_BYTE_COUNTS
     total = measured[0].astype(np.uint16 if is_short else np.uint32)
     for m in measured[1:]:
         np.add(total, m, out=total, casting="unsafe")
@@ -57,46 +64,46 @@ def group_sum(measured: Sequence[Any]) -> Any:
 
 
 def late_fusion(precisions: Iterable[ArrayLike], blind: str = "floor") -> Floats:
-    """Fuse 1 / sigma^2 over groups and cameras, eq. 7; returns the fused 1 / sigma^2.
+    """Fuse 1 / sigma^2 over fusion groups, eq. 7; returns the fused 1 / sigma^2.
 
     "floor" sums the precision above that of a blind sensor, f = 1 / 999^2:
-    ``f + sum(1 / sigma_i^2 - f)``. "literal" is the literal formula (eq. 7), the plain sum.
+    ``f + sum(1 / sigma_i^2 - f)``. "literal" is the plain sum of eq. 7 as printed.
     """
     floor = BLIND_PRECISION if blind == "floor" else 0.0
     fused = sum(np.asarray(p, dtype=float) - floor for p in precisions)
     return np.asarray(fused + floor, dtype=float)
 
 
-class ByCount(NamedTuple):
-    """1 / sigma^2 and entropy of a lone group by its m = 0, 1, ...; AP is saturated at the end."""
+class CountTables(NamedTuple):
+    """1 / sigma^2 and entropy of a single group for m = 0, 1, ... up to the saturation count."""
 
     precision: Floats
     entropy: Floats
 
 
 class Fusion:
-    """Fuses measurements of fusion groups under one perception model."""
+    """Fusion of measurements under one perception model, with tables for integer m."""
 
     def __init__(self, model: Curves) -> None:
         self.model = model
-        self._known: dict[CurveOf, ByCount] = {}  # by curve: as many as there are
+        self._tables: dict[CurveOf, CountTables] = {}
 
     def curve(self, kind: CurveOf) -> ApCurve:
-        """Return the AP curve of a kind, or the one that it is."""
+        """Return the AP curve of a kind, or the curve itself."""
         return kind if isinstance(kind, ApCurve) else self.model.curve(kind)
 
-    def tables(self, kind: CurveOf) -> ByCount:
-        """Return what whole numbers of a kind are looked up in."""
-        if kind not in self._known:
+    def tables(self, kind: CurveOf) -> CountTables:
+        """Return the lookup tables for integer m of a kind."""
+        if kind not in self._tables:
             curve = self.curve(kind)
-            precision = precision_of(np.arange(self.enough(kind) + 1), curve)
+            precision = precision_of(np.arange(self.saturation_count(kind) + 1), curve)
             entropy = entropy_of(late_fusion([precision], self.model.blind))
-            self._known[kind] = ByCount(precision, entropy)
-        return self._known[kind]
+            self._tables[kind] = CountTables(precision, entropy)
+        return self._tables[kind]
 
-    def enough(self, kind: CurveOf) -> int:
-        """Whole m from which on AP is saturated: more changes nothing."""
-        return int(min(self.curve(kind).saturation, LONGEST_TABLE - 1)) + 1
+    def saturation_count(self, kind: CurveOf) -> int:
+        """Integer m from which AP is at its maximum: a larger m changes nothing."""
+        return int(min(self.curve(kind).saturation, MAX_TABLE - 1)) + 1
 
     def precision(self, m: NDArray, kind: CurveOf) -> Floats:
         """1 / sigma^2 of a group's measurement."""
@@ -105,37 +112,185 @@ class Fusion:
         return precision_of(m, self.curve(kind))
 
     def entropies(self, groups: Sequence[Measurement]) -> tuple[Floats, NDArray[np.bool_]]:
-        """Entropy H of every voxel [nats] and whether any group sees it.
+        """Entropy H of every voxel [nats], and whether any group sees it.
 
-        Where only one group of whole numbers sees anything, H is looked up; elsewhere it is
-        computed. A blind group changes nothing, unless the literal formula (eq. 7) is asked for.
+        H is looked up at voxels that only one group with integer m sees, and computed at all
+        others. A blind group changes nothing, except by the literal formula (eq. 7).
         """
-        whole = (g for g in groups if is_whole(g[1]) and self._blind_is_silent)
-        tabled = next(whole, None)
-        others = [g for g in groups if g is not tabled]
-        if tabled is not None:
-            entropies = np.take(self.tables(tabled[0]).entropy, tabled[1], mode="clip")
-            seen = tabled[1] > 0
+        counting = (g for g in groups if is_whole(g[1]) and self._ignores_blind)
+        tabulated = next(counting, None)
+        others = [g for g in groups if g is not tabulated]
+        if tabulated is not None:
+            entropies = np.take(self.tables(tabulated[0]).entropy, tabulated[1], mode="clip")
+            visible = tabulated[1] > 0
         else:
             entropies = np.full(groups[0][1].shape, H_BLIND)
-            seen = np.zeros(entropies.shape, bool)
+            visible = np.zeros(entropies.shape, bool)
         if others:
-            voiced = np.logical_or.reduce([m > 0 for _, m in others])
-            seen |= voiced
-            where = voiced if self._blind_is_silent else np.ones_like(voiced)
+            by_others = np.logical_or.reduce([m > 0 for _, m in others])
+            visible |= by_others
+            where = by_others if self._ignores_blind else np.ones_like(by_others)
             entropies[where] = self._computed([(kind, m[where]) for kind, m in groups])
-        return entropies, seen
+        return entropies, visible
 
     @property
-    def _blind_is_silent(self) -> bool:
+    def _ignores_blind(self) -> bool:
         return self.model.blind == "floor"
 
     def _computed(self, groups: Sequence[Measurement]) -> Floats:
-        """Entropy by the equations."""
+        """Entropy by eqs. 4, 5, 7 and 8."""
         precisions = [self.precision(m, kind) for kind, m in groups]
         return entropy_of(late_fusion(precisions, self.model.blind))
 
 
 def is_whole(m: NDArray) -> bool:
-    """Whether a measurement is in whole numbers."""
+    """Whether a measurement is an array of integers."""
     return m.dtype.kind in "iu"
+
+
+@dataclass(frozen=True, slots=True)
+class VisibleRows:
+    """m (n, rows, nz) of the voxels of n x-planes in some rows (y); it is 0 in all other rows.
+
+    In single precision m is rounded to a few digits when fused; in double precision it is not.
+    """
+
+    rows: slice
+    m: NDArray[np.floating]
+
+    def __add__(self, other: VisibleRows) -> VisibleRows:
+        """Sum of two measurements of the same planes."""
+        if not (self.m.size and other.m.size):
+            return self if self.m.size else other
+        start = min(self.rows.start, other.rows.start)
+        stop = max(self.rows.stop, other.rows.stop)
+        n, _, nz = self.m.shape
+        total = np.zeros((n, stop - start, nz), np.result_type(self.m, other.m))
+        for part in (self, other):
+            total[:, part.rows.start - start : part.rows.stop - start] += part.m
+        return VisibleRows(slice(start, stop), total)
+
+
+Group = tuple[CurveOf, NDArray | VisibleRows]
+"""AP curve of a fusion group, and its m on n x-planes: integers (n, ny, nz), or visible rows."""
+GroupCounts = tuple[CurveOf, NDArray]
+Areas = tuple[CurveOf, slice, NDArray[np.floating]]
+
+DIGITS = 11
+"""Binary digits of a pixel area that are used: the rest is below 1 part in 2048."""
+SHIFT = 24 - DIGITS
+FIRST_OCTAVE, OCTAVES = -32, 64
+"""Table from 2^-32 px on: far below the rounding of a camera's exact area."""
+
+
+class PlaneFusion:
+    """Fusion on planes of (ny, nz) voxels, under the model of a `Fusion`."""
+
+    def __init__(self, fusion: Fusion, shape: tuple[int, int]) -> None:
+        self._fusion, self._shape = fusion, shape
+        self._tables: dict[tuple[str, CurveOf, int], Floats] = {}
+        """By content, kind and number of blind groups: two for each kind, and one more for each
+        number of groups that occurs (by the floor rule, one)."""
+
+    def entropies(self, groups: Sequence[Group], plane: int) -> Floats:
+        """Entropy H (ny, nz) of the voxels of one of the planes [nats]."""
+        counts, areas = _planes(groups, plane)
+        blind = 1 if self._fusion.model.blind == "floor" else len(groups)
+        if len(counts) == 1:
+            ((kind, m),) = counts
+            entropies = np.take(self._alone(kind, blind), m, mode="clip")
+        else:
+            entropies = entropy_of(self._counted(counts, blind, slice(None)))
+        rows = _rows_of(areas)
+        if rows.stop > rows.start:
+            precision = self._counted(counts, blind, rows)
+            for kind, own, m in areas:
+                added = self._added_by_areas(kind, m)
+                precision[own.start - rows.start : own.stop - rows.start] += added
+            entropies[rows] = entropy_of(precision)
+        return entropies
+
+    def seen(self, groups: Sequence[Group], plane: int) -> NDArray[np.bool_]:
+        """Whether any group sees the voxels (ny, nz) of one of the planes."""
+        counts, areas = _planes(groups, plane)
+        visible = np.zeros(self._shape, bool) if not counts else counts[0][1] > 0
+        for _, m in counts[1:]:
+            visible |= m > 0
+        for _, rows, m in areas:
+            visible[rows] |= m > 0.0
+        return visible
+
+    def added(self, kind: CurveOf, m: NDArray) -> Floats:
+        """What a group with measurement m adds to the 1 / sigma^2 of blindness."""
+        if m.dtype.kind in "iu":
+            return np.take(self._by_count(kind), m, mode="clip")
+        return self._added_by_areas(kind, np.ascontiguousarray(m))
+
+    def gained(self, kind: CurveOf) -> Floats:
+        """Table over integer m: entropy of a single group, less that of a blind voxel."""
+        return self._cached(("gained", kind, 1), lambda: self._alone(kind, 1) - H_BLIND)
+
+    def _counted(self, counts: Sequence[GroupCounts], blind: int, rows: slice) -> Floats:
+        """1 / sigma^2 of `blind` blind groups, plus that of groups with integer m, in some rows."""
+        total = np.full(self._shape, blind * BLIND_PRECISION)[rows]
+        for kind, m in counts:
+            total += np.take(self._by_count(kind), m[rows], mode="clip")
+        return total
+
+    def _added_by_areas(self, kind: CurveOf, m: NDArray) -> Floats:
+        """What m adds to 1 / sigma^2; in single precision looked up by its leading digits."""
+        if m.dtype != np.float32:
+            return np.where(m > 0.0, self._fusion.precision(m, kind) - BLIND_PRECISION, 0.0)
+        code = np.right_shift(m.view(np.int32), SHIFT)
+        code -= _CODES[0]
+        return np.take(self._by_digits(kind), code, mode="clip")
+
+    def _by_count(self, kind: CurveOf) -> Floats:
+        """Table over integer m: what m adds to 1 / sigma^2."""
+        return self._cached(
+            ("count", kind, 0), lambda: self._fusion.tables(kind).precision - BLIND_PRECISION
+        )
+
+    def _alone(self, kind: CurveOf, blind: int) -> Floats:
+        """Table over integer m: entropy of a group among `blind` blind groups."""
+        added = self._by_count(kind)
+        return self._cached(
+            ("alone", kind, blind), lambda: entropy_of(added + blind * BLIND_PRECISION)
+        )
+
+    def _by_digits(self, kind: CurveOf) -> Floats:
+        """Table over the leading digits of m: what m adds to 1 / sigma^2."""
+        return self._cached(("digits", kind, 0), lambda: self._added_by_digits(kind))
+
+    def _added_by_digits(self, kind: CurveOf) -> Floats:
+        """What the middle of the numbers with the same leading digits adds."""
+        middle = (_CODES << SHIFT) + (1 << SHIFT - 1)
+        added = self._fusion.precision(middle.view(np.float32), kind) - BLIND_PRECISION
+        added[0] = 0.0
+        return added
+
+    def _cached(self, key: tuple[str, CurveOf, int], make: Callable[[], Floats]) -> Floats:
+        if key not in self._tables:
+            self._tables[key] = make()
+        return self._tables[key]
+
+
+_CODES = np.arange(OCTAVES << DIGITS - 1, dtype=np.int32) + (127 + FIRST_OCTAVE << DIGITS - 1)
+"""Leading bits, exponent first, of the single-precision numbers in the table."""
+
+
+def _planes(groups: Sequence[Group], plane: int) -> tuple[list[GroupCounts], list[Areas]]:
+    """One plane of the groups with integer m, and of those with areas that see any plane."""
+    counts, areas = [], []
+    for kind, measured in groups:
+        if not isinstance(measured, VisibleRows):
+            counts.append((kind, measured[plane]))
+        elif measured.m.size:
+            areas.append((kind, measured.rows, measured.m[plane]))
+    return counts, areas
+
+
+def _rows_of(areas: Sequence[Areas]) -> slice:
+    """Rows from the first to the last with any area."""
+    starts, stops = [rows.start for _, rows, _ in areas], [rows.stop for _, rows, _ in areas]
+    return slice(min(starts, default=0), max(stops, default=0))

@@ -1,6 +1,6 @@
-"""Boxes to voxels: how often each column and each layer of the space is inside a box.
+"""Voxelization of labelled boxes: how often each column and each layer of the space is in a box.
 
-All counts are whole numbers, so the result does not depend on the order of the boxes.
+All counts are integers, so the result does not depend on the order of the boxes.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..scene.frozen import frozen
-from ..scene.space import PerceptionSpace
+from ..base.errors import InputError
+from ..base.read_only import read_only
+from ..geometry.grids import PerceptionSpace
 from .boxes import OUTSIDE, Boxes, BoxReport
 from .classes import Floats, Shape, normed
 
@@ -23,15 +23,15 @@ Ints = NDArray[np.int64]
 
 ROWS_AT_ONCE = 1 << 18
 TIE_DECIMALS = 9
-"""Edges are rounded to this many decimals of a voxel, so that a box whose edge runs through voxel
-centres owns its lower ones whatever its arithmetic left over."""
+"""Edges are rounded to this many decimals of a voxel: a box whose edge runs through voxel centres
+owns those at its lower edge, whatever the rounding errors."""
 STRAIGHT = 1e-12
-"""A sine or cosine below this is zero: the box stands along the grid."""
+"""A sine or cosine below this counts as zero: the box is parallel to the grid."""
 
 
 @dataclass(frozen=True, slots=True)
 class Voxelised:
-    """The shape of every class on one space, and what became of the boxes."""
+    """The density of every class on one space, and the report on the boxes."""
 
     shapes: tuple[Shape, ...]
     report: BoxReport
@@ -41,48 +41,53 @@ class Voxelised:
 def voxelised(boxes: Boxes, space: PerceptionSpace) -> Voxelised:
     """Return boxes as densities over a space, class by class in the order of `Boxes.classes`.
 
-    A voxel belongs to a box when its centre lies inside; a box without any (thinner than a voxel)
-    has the column or layer that holds its own centre. A class that is not met in the space has no
-    mass. The last two results are kept, by the boxes (the object) and the space.
+    A voxel belongs to a box if its centre lies inside. A box without any voxel centre (thinner than
+    a voxel) gets the column or layer of its own centre. A class without boxes in the space has no
+    mass. The last two results are cached.
 
     Raises
     ------
     InputError
         When no box is in the space.
     """
-    shapes, taken = [], 0
+    shapes, inside = [], 0
     for name in boxes.classes:
         shape, count = _class_counts(_Footprints(boxes, np.flatnonzero(boxes.names == name)), space)
         shapes.append(shape)
-        taken += count
-    if not taken:
+        inside += count
+    if not inside:
         bounds = ", ".join(f"{a} {list(getattr(space, a))}" for a in "xyz")
         expected = f"a box in the space ({bounds}), in the ground frame of the vehicle"
         raise InputError(boxes.source, "boxes", expected, f"all {len(boxes):,} outside")
-    outside = len(boxes) - taken
+    outside = len(boxes) - inside
     reasons = (*([(OUTSIDE, outside)] if outside else []), *boxes.left_out)
-    return Voxelised(tuple(shapes), BoxReport(boxes.source, taken, reasons))
+    return Voxelised(tuple(shapes), BoxReport(boxes.source, inside, reasons))
 
 
 class _Footprints:
-    """Some boxes, with the sines of their yaws: by scalar functions, alike in all builds."""
+    """Centres and half sizes of some boxes, and cosine and sine of their yaws.
 
-    def __init__(self, boxes: Boxes, some: Ints) -> None:
-        self.x, self.y, self.z = boxes.x[some], boxes.y[some], boxes.z[some]
-        self.along, self.across = boxes.length[some] / 2.0, boxes.width[some] / 2.0
-        self.up = boxes.height[some] / 2.0
-        yaws = boxes.yaw[some].tolist()
+    The sines are those of `math`, which are the same in all builds of NumPy.
+    """
+
+    def __init__(self, boxes: Boxes, index: Ints) -> None:
+        self.x, self.y, self.z = boxes.x[index], boxes.y[index], boxes.z[index]
+        self.along, self.across = boxes.length[index] / 2.0, boxes.width[index] / 2.0
+        self.up = boxes.height[index] / 2.0
+        yaws = boxes.yaw[index].tolist()
         self.cos, self.sin = (np.array([f(a) for a in yaws]) for f in (math.cos, math.sin))
         for values in (self.cos, self.sin):
             values[np.abs(values) < STRAIGHT] = 0.0
 
 
 def _class_counts(boxes: _Footprints, space: PerceptionSpace) -> tuple[Shape, int]:
-    """Return a class's shape, and how many of its boxes are in the space."""
+    """Return the density of a class, and how many of its boxes are in the space."""
     nx, ny, nz = space.shape
     first, last = _layers(boxes, space)
     layers = last - first
-    steps = np.zeros((nx, ny + 1), np.int64)  # differences along y: spans cost two additions each
+    steps = np.zeros(
+        (nx, ny + 1), np.int64
+    )  # differences along y: a run of columns costs two additions
     columns = np.zeros(len(layers), np.int64)
     for which, i, start, end in _rows(boxes, space):
         np.add.at(steps, (i, start), layers[which])
@@ -90,8 +95,8 @@ def _class_counts(boxes: _Footprints, space: PerceptionSpace) -> tuple[Shape, in
         np.add.at(columns, which, end - start)
     thin = np.flatnonzero(columns == 0)
     i, j = _voxel_of(boxes.x[thin], space, 0), _voxel_of(boxes.y[thin], space, 1)
-    held = (i >= 0) & (j >= 0)
-    thin, i, j = thin[held], i[held], j[held]
+    inside = (i >= 0) & (j >= 0)
+    thin, i, j = thin[inside], i[inside], j[inside]
     np.add.at(steps, (i, j), layers[thin])
     np.subtract.at(steps, (i, j + 1), layers[thin])
     columns[thin] = 1
@@ -101,7 +106,7 @@ def _class_counts(boxes: _Footprints, space: PerceptionSpace) -> tuple[Shape, in
     ground, profile = np.cumsum(steps, axis=1)[:, :-1], np.cumsum(rises)[:-1]
     shape = normed(ground, profile)
     for values in shape:
-        frozen(values)  # they are kept for the next who asks
+        read_only(values)  # the caller gets the cached arrays
     return shape, int(((columns > 0) & (layers > 0)).sum())
 
 
@@ -115,7 +120,7 @@ def _layers(boxes: _Footprints, space: PerceptionSpace) -> tuple[Ints, Ints]:
 
 
 def _rows(boxes: _Footprints, space: PerceptionSpace) -> Iterator[tuple[Ints, Ints, Ints, Ints]]:
-    """Yield the rows of columns inside boxes: box, index along x, first along y, one after last."""
+    """Yield rows of columns inside boxes: box, index along x, first along y, one past the last."""
     reach = np.abs(boxes.cos) * boxes.along + np.abs(boxes.sin) * boxes.across
     first = _first_center(boxes.x - reach, space, 0)
     counts = _first_center(boxes.x + reach, space, 0) - first
@@ -132,10 +137,10 @@ def _rows(boxes: _Footprints, space: PerceptionSpace) -> Iterator[tuple[Ints, In
 
 
 def _across(boxes: _Footprints, which: Ints, dx: Floats) -> tuple[Floats, Floats]:
-    """Where a line across, at `dx` from the boxes' centres, enters and leaves their rectangles.
+    """Where a line along y, at `dx` from the boxes' centres, enters and leaves their rectangles.
 
-    Both are lengths along y from the centre: the line is clipped to the strip between the long
-    sides and to that between the short ones.
+    Both are offsets in y from the centre: the line is clipped to the strip between the long sides
+    and to the strip between the short ones.
     """
     cos, sin = boxes.cos[which], boxes.sin[which]
     long_low, long_high = _strip(sin * dx, boxes.across[which], cos)
@@ -144,12 +149,12 @@ def _across(boxes: _Footprints, which: Ints, dx: Floats) -> tuple[Floats, Floats
 
 
 def _strip(middle: Floats, half: Floats, slope: Floats) -> tuple[Floats, Floats]:
-    """Solve |slope * y - middle| <= half for y; everything where the slope is zero."""
-    straight = slope == 0.0
-    slope = np.where(straight, 1.0, slope)
+    """Solve |slope * y - middle| <= half for y; all y where the slope is zero."""
+    parallel = slope == 0.0
+    slope = np.where(parallel, 1.0, slope)
     center, reach = middle / slope, half / np.abs(slope)
     low, high = center - reach, center + reach
-    return np.where(straight, -np.inf, low), np.where(straight, np.inf, high)
+    return np.where(parallel, -np.inf, low), np.where(parallel, np.inf, high)
 
 
 def _first_center(edge: Floats, space: PerceptionSpace, axis: int) -> Ints:

@@ -1,4 +1,4 @@
-"""Labelled boxes, and what became of them."""
+"""Labelled boxes: checked columns, and the report on boxes used and left out."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError, shown
-from ..scene.frozen import frozen
-from ..text.values import A_PATH, Number, numbers, vector
+from ..base.errors import InputError, shown
+from ..base.read_only import read_only
+from ..base.values import A_PATH, Number, numbers, vector
 
 Floats = NDArray[np.float64]
 
 KNOWN_CLASSES = ("car", "pedestrian", "cyclist", "truck", "cone")
-"""The paper's classes, in the order they stand in a prior; others follow by the alphabet."""
+"""The paper's classes, in their order in a prior; others follow alphabetically."""
 COLUMNS = ("x", "y", "z", "length", "width", "height", "yaw")
 SIZES = ("length", "width", "height")
 MAX_M = 1e9
-"""A number beyond this is no length of anything; arithmetic on it is safe up to here."""
+"""Maximum magnitude of a number [m]: arithmetic is safe up to here."""
 YAW_DECIMALS = 9
-"""Yaws are rounded to what a file holds, in degrees, so that a copy is the same to the bit."""
+"""Yaws are rounded to this many decimals of a degree: a copy in a file has the same bits."""
 ORIGIN = Number(cap=1e6, unit="m")
 OUTSIDE = "outside the space"
 MAX_CLASSES = 64
-"""Data sets have up to 30. Thousands are no classes but, for instance, numbers of tracks."""
+"""Maximum number of classes. Data sets have up to 30; thousands are probably track numbers."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,11 +46,11 @@ class Boxes:
     yaw : (N,) float
         Heading, counter-clockwise from x seen from above [rad].
     file : str, optional
-        The file they came from, as it was named.
+        The file of the boxes, as the user named it.
     origin : (x, y, z) float, optional
-        The labels' own origin in the ground frame, if it was named.
+        Origin of the labels' frame in the ground frame, if the user gave it [m].
     left_out : sequence of (reason, count)
-        What the file holds besides.
+        Boxes of the file that are not used.
 
     Raises
     ------
@@ -75,11 +75,11 @@ class Boxes:
     def __post_init__(self) -> None:
         names = np.array(self.names, dtype=np.str_).reshape(-1)
         _check_names(names)
-        object.__setattr__(self, "names", frozen(names))
+        object.__setattr__(self, "names", read_only(names))
         for column in COLUMNS:
             values = _column(column, getattr(self, column), len(names))
-            object.__setattr__(self, column, frozen(values))
-        object.__setattr__(self, "yaw", frozen(_as_in_a_file(self.yaw)))
+            object.__setattr__(self, column, read_only(values))
+        object.__setattr__(self, "yaw", read_only(_rounded_yaw(self.yaw)))
         if self.file is not None:
             object.__setattr__(self, "file", A_PATH.checked("boxes", "file", self.file))
         if self.origin is not None:
@@ -114,13 +114,13 @@ class Boxes:
 
     @property
     def classes(self) -> tuple[str, ...]:
-        """Names of the classes: the paper's in its order, then others by the alphabet."""
+        """Names of the classes: the paper's in its order, then others alphabetically."""
         present = set(self.names.tolist())
         return (*(c for c in KNOWN_CLASSES if c in present), *sorted(present - {*KNOWN_CLASSES}))
 
     @property
     def source(self) -> str:
-        """What messages call them."""
+        """Name of the boxes in messages."""
         return self.file or "boxes"
 
     def _check_classes(self) -> None:
@@ -131,17 +131,17 @@ class Boxes:
 
     def _digest(self) -> str:
         """SHA-256 of all boxes."""
-        seen = hashlib.sha256("\n".join(self.names.tolist()).encode("utf-8", "surrogatepass"))
+        digest = hashlib.sha256("\n".join(self.names.tolist()).encode("utf-8", "surrogatepass"))
         for column in COLUMNS:
-            seen.update(getattr(self, column).tobytes())
-        return seen.hexdigest()
+            digest.update(getattr(self, column).tobytes())
+        return digest.hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
 class BoxReport:
-    """How many boxes a prior is made of, and why others are not.
+    """How many boxes a prior uses, and why others are left out, as (reason, count).
 
-    `left_out` holds (reason, count); ``str()`` of the report is one line.
+    ``str()`` of the report is one line.
     """
 
     source: str
@@ -176,23 +176,23 @@ def _columns_of(rows: Any) -> dict[str, Sequence[Any]]:
 
 def _check_names(names: NDArray[np.str_]) -> None:
     for name in set(names.tolist()):
-        if not name_is_fit(name):
+        if not is_class_name(name):
             raise InputError("boxes", "class", "a name in printable letters", shown(name))
 
 
-def name_is_fit(name: str) -> bool:
-    """Whether a class may be called that: a line of a file holds it and gives it back alike."""
+def is_class_name(name: str) -> bool:
+    """Whether a text can be the name of a class: it survives being written to a line of a file."""
     return bool(name) and name.isprintable() and name == name.strip()
 
 
 def _column(name: str, values: ArrayLike, count: int) -> Floats:
-    """Return one column as finite floats of its own, or complain about its first bad box."""
-    found = numbers(values)
-    if found is None:
+    """Return one column as a new array of finite floats, or raise for its first wrong box."""
+    array = numbers(values)
+    if array is None:
         raise InputError("boxes", name, "numbers", "something else")
-    column = found.reshape(-1) + 0.0  # no negative zeros
+    column = array.reshape(-1) + 0.0  # no negative zeros
     if len(column) != count:
-        raise InputError("boxes", name, f"{count} numbers, one a box", len(column))
+        raise InputError("boxes", name, f"{count} numbers, one for each box", len(column))
     wrong = ~(np.abs(column) <= MAX_M)
     expected = "a finite number"
     if name in SIZES:
@@ -204,13 +204,13 @@ def _column(name: str, values: ArrayLike, count: int) -> Floats:
     return column
 
 
-def _as_in_a_file(yaw: Floats) -> Floats:
-    """Return yaws as they come back from degrees in a file, from -180 to 180 degrees."""
+def _rounded_yaw(yaw: Floats) -> Floats:
+    """Return yaws within +-180 degrees, as they come back from degrees in a file [rad]."""
     degrees = yaw * (180.0 / math.pi)
     degrees = degrees - 360.0 * np.rint(degrees / 360.0)
     return (np.round(degrees, YAW_DECIMALS) + 0.0) * (math.pi / 180.0)
 
 
 def degrees_of(yaw: Floats) -> Floats:
-    """Degrees as a file holds them."""
+    """Return yaws [rad] in degrees, rounded as in a file."""
     return np.round(yaw * (180.0 / math.pi), YAW_DECIMALS)

@@ -1,4 +1,4 @@
-"""Kinds of objects on the road, and the densities of where they are met."""
+"""Classes of objects on the road, and the densities of their positions."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError, shown
-from ..scene.space import PerceptionSpace
-from ..text.values import A_NAME, LENGTH, SHARE, WEIGHT, Number, listed, real, vector
+from ..base.errors import InputError, shown
+from ..base.values import A_NAME, LENGTH, SHARE, WEIGHT, Number, listed, real, vector
+from ..geometry.grids import PerceptionSpace
 
 Floats = NDArray[np.float64]
 Shape = tuple[Floats, Floats]
@@ -32,11 +32,12 @@ LANE = Number(cap=1e9, unit="m")
 
 @dataclass(frozen=True, slots=True)
 class ObjectClass:
-    """One kind of object on the road: its box and where its centre is met.
+    """One class of objects: its mean box, and the density of its centre.
 
-    The centre's density is ``exp(-|x| / decay_x) * (w Laplace(y; laplace_y) + (1 - w) N(y;
-    gauss_y))`` with w = `laplace_share`, round the vehicle's centre, or, with `lanes`, the mean of
-    that round the middle of each; the box stands on the ground along x; heights scatter normally.
+    The density is ``exp(-|x| / decay_x) * (w Laplace(y; laplace_y) + (1 - w) N(y;
+    gauss_y))`` with w = `laplace_share`, about the vehicle's centre; with `lanes`, the mean of such
+    densities about the middle of each lane. The box stands on the ground, along x. Heights are
+    normally distributed.
 
     Parameters
     ----------
@@ -50,13 +51,13 @@ class ObjectClass:
     laplace_share : float
         w, 0 to 1.
     lanes : sequence of float
-        y of the middle of each lane [m]; one named twice counts twice.
+        y of the middle of each lane [m]; a lane given twice counts twice.
     share : float
-        Mass beside the other classes', before focus weights; the paper has them all alike.
+        Mass relative to the other classes, before focus weights; equal for all in the paper.
     length_spread, width_spread : float
-        Standard deviations of the length and the width of drawn objects [m]; voxels have the mean.
+        Standard deviations of length and width of sampled objects [m]; voxels use the mean.
     any_heading : float
-        Share of drawn objects that face anywhere, 0 to 1; the others stand along x.
+        Share of sampled objects with a random heading, 0 to 1; the others stand along x.
 
     Raises
     ------
@@ -95,44 +96,46 @@ def _lanes(who: str, values: Any) -> tuple[float, ...]:
 FIELDS = tuple(field.name for field in fields(ObjectClass))
 
 
-def _met(
+def _road_class(
     name: str,
     size: tuple[float, float, float],
     height_spread: float,
-    place: tuple[float, float, float, float],
+    density: tuple[float, float, float, float],
     spread: tuple[float, float],
     any_heading: float = 0.0,
 ) -> ObjectClass:
-    """Return a class of the road; place as decay, scales and share of the density."""
-    return ObjectClass(name, size, height_spread, *place, (0.0,), 1.0, *spread, any_heading)
+    """Return a class; `density` is its decay_x, laplace_y, gauss_y and laplace_share."""
+    return ObjectClass(name, size, height_spread, *density, (0.0,), 1.0, *spread, any_heading)
 
 
 ROAD_CLASSES = (
-    _met("car", (4.6, 1.9, 1.7), 0.195, (39.4, 12.82, 20.03, 0.533), (0.362, 0.115)),
-    _met("pedestrian", (0.8, 0.7, 1.75), 0.120, (32.2, 659.55, 16.15, 0.171), (0.102, 0.059), 1.0),
-    _met("cyclist", (1.76, 0.65, 1.74), 0.267, (28.7, 170.45, 14.89, 0.033), (0.265, 0.122)),
-    _met("truck", (7.5, 2.55, 3.0), 0.785, (58.5, 20.1, 22.33, 0.365), (3.470, 0.441)),
-    _met("cone", (0.4, 0.4, 0.9), 0.232, (14.8, 34.25, 10.05, 0.024), (0.092, 0.075), 1.0),
+    _road_class("car", (4.6, 1.9, 1.7), 0.195, (39.4, 12.82, 20.03, 0.533), (0.362, 0.115)),
+    _road_class(
+        "pedestrian", (0.8, 0.7, 1.75), 0.120, (32.2, 659.55, 16.15, 0.171), (0.102, 0.059), 1.0
+    ),
+    _road_class("cyclist", (1.76, 0.65, 1.74), 0.267, (28.7, 170.45, 14.89, 0.033), (0.265, 0.122)),
+    _road_class("truck", (7.5, 2.55, 3.0), 0.785, (58.5, 20.1, 22.33, 0.365), (3.470, 0.441)),
+    _road_class("cone", (0.4, 0.4, 0.9), 0.232, (14.8, 34.25, 10.05, 0.024), (0.092, 0.075), 1.0),
 )
 """Positions: fitted by maximum likelihood to the boxes with a score of 0.4 and more that
 CenterPoint finds in the 150 scenes of nuScenes val (boxes from the public AB3DMOT repository).
 Spreads: the same boxes. Sizes: rounded between the means of nuScenes, Argoverse 2 and Waymo's
-anchor boxes. Headings: a choice; who walks and what is set down faces anywhere."""
+anchor boxes. Headings: an assumption; pedestrians and cones face any direction."""
 
 LANE_M = 3.75
 """Width of a motorway's lane: Germany's RAA; an Interstate's is 12 ft (3.66 m)."""
 LANES = (-LANE_M, 0.0, LANE_M)
-"""Middles of three lanes; the vehicle drives in the middle one. A choice."""
+"""Middles of three lanes; the vehicle drives in the middle one. An assumption."""
 LANE_EDGES = (-1.5 * LANE_M, -0.5 * LANE_M, 0.5 * LANE_M, 1.5 * LANE_M)
 IN_LANE_M = 0.3
-"""Standard deviation of where in its lane a vehicle drives. A choice."""
+"""Standard deviation of a vehicle's position across its lane. An assumption."""
 OFF_LANES = 0.2
-"""Share of vehicles anywhere else: ramps, shoulders, the other carriageway. A choice."""
+"""Share of vehicles elsewhere: ramps, shoulders, the other carriageway. An assumption."""
 OFF_LANES_M = 13.93
 """Their lateral scale: that of cars in KITTI tracking (Laplace share 0.73)."""
 
 
-def _on_lanes(
+def _highway_class(
     name: str,
     size: tuple[float, float, float],
     height_spread: float,
@@ -147,30 +150,30 @@ def _on_lanes(
 
 
 HIGHWAY_CLASSES = (
-    _on_lanes("car", (4.6, 1.9, 1.7), 0.195, 58.1, 0.4, (0.362, 0.115)),
-    _on_lanes("truck", (10.8, 2.7, 3.5), 0.327, 59.5, 0.4, (5.287, 0.235)),
-    _on_lanes("cyclist", (2.11, 0.77, 1.74), 0.267, 45.4, 0.1, (0.265, 0.122)),
-    _on_lanes("cone", (0.4, 0.4, 0.9), 0.232, 21.7, 0.1, (0.092, 0.075), 0.0, LANE_EDGES),
+    _highway_class("car", (4.6, 1.9, 1.7), 0.195, 58.1, 0.4, (0.362, 0.115)),
+    _highway_class("truck", (10.8, 2.7, 3.5), 0.327, 59.5, 0.4, (5.287, 0.235)),
+    _highway_class("cyclist", (2.11, 0.77, 1.74), 0.267, 45.4, 0.1, (0.265, 0.122)),
+    _highway_class("cone", (0.4, 0.4, 0.9), 0.232, 21.7, 0.1, (0.092, 0.075), 0.0, LANE_EDGES),
 )
-"""Cars, trucks, motorcyclists (by the name of cyclists) and the cones of road works.
+"""Cars, trucks, motorcyclists (named "cyclist") and the cones of road works.
 
-Decays: maximum likelihood fits of exp(-|x| / L) to labels that are not cut by a detector's range,
+Decays: maximum likelihood fits of exp(-|x| / L) to labels, which no detector's range limits:
 KITTI tracking for trucks (1606 boxes), five logs of Argoverse 2 for the others. Trucks' box:
 KITTI tracking's mean and spreads; motorcyclists': nuScenes' mean, as high as a cyclist; the others
-as on the road. Lanes and shares are choices, not data."""
+as on the road. Lanes and shares are assumptions, not data."""
 
 SHIPPED = {"road": ROAD_CLASSES, "highway": HIGHWAY_CLASSES}
-"""Classes of the models that have any."""
+"""Classes of the models that have classes of their own."""
 
 
 def uniform_shape(space: PerceptionSpace) -> Shape:
-    """Every voxel alike."""
+    """Return the density that is the same for every voxel."""
     nx, ny, nz = space.shape
     return np.full((nx, ny), 1.0 / (nx * ny)), np.full(nz, 1.0 / nz)
 
 
 def class_shape(cls: ObjectClass, space: PerceptionSpace) -> Shape:
-    """Density of a class's voxelised boxes."""
+    """Return the density of the voxels inside boxes of a class."""
     length, width, height = cls.size
     along = _blurred(lambda x: _exponential_mass(x, cls.decay_x), space.centers(0), length)
     across = _blurred(lambda y: _lateral_mass(y, cls), space.centers(1), width)
@@ -181,23 +184,26 @@ def class_shape(cls: ObjectClass, space: PerceptionSpace) -> Shape:
     return normed(ground, profile)
 
 
-def met_in(cls: ObjectClass, space: PerceptionSpace) -> float:
-    """Mass of a class's centres in a space, but for a constant of the class."""
+def mass_in(cls: ObjectClass, space: PerceptionSpace) -> float:
+    """Return the mass of a class's centres in a space, up to a constant factor of the class."""
     along = _exponential_mass(space.x[1], cls.decay_x) - _exponential_mass(space.x[0], cls.decay_x)
     return along * (_lateral_mass(space.y[1], cls) - _lateral_mass(space.y[0], cls))
 
 
-def places(cls: ObjectClass, space: PerceptionSpace, u: Floats, v: Floats) -> tuple[Floats, Floats]:
-    """Send numbers in [0, 1) to centres x and y [m] of a class's objects in a space, (N,) each.
+def sampled_positions(
+    cls: ObjectClass, space: PerceptionSpace, u: Floats, v: Floats
+) -> tuple[Floats, Floats]:
+    """Return centres x and y [m] of objects of a class in a space, (N,) each.
 
-    Where the class is not met at all, all of them come to one place.
+    Inverse transform sampling: `u` and `v` (N,) are uniform in [0, 1). If the class has no mass in
+    the space, all centres are the same.
     """
     x, y = _masses(cls, space.x, space.y)
     return _inverted(x, space.x, u), _inverted(y, space.y, v)
 
 
 CELLS = 2048
-"""Of a table of masses along an axis: the paper's space in steps of 8 and 4 cm."""
+"""Cells of a table of masses along an axis: 8 and 4 cm in the paper's space."""
 
 
 @lru_cache(maxsize=16)
@@ -216,7 +222,7 @@ def _edges(bounds: tuple[float, float]) -> Floats:
 
 
 def _inverted(masses: Floats, bounds: tuple[float, float], u: Floats) -> Floats:
-    """Invert a cumulative mass between bounds, straight between the entries of its table."""
+    """Invert a tabulated cumulative mass between bounds, with linear interpolation."""
     edges = _edges(bounds)
     wanted = masses[0] + u * (masses[-1] - masses[0])
     at = np.clip(np.searchsorted(masses, wanted, side="right") - 1, 0, CELLS - 1)
@@ -226,14 +232,14 @@ def _inverted(masses: Floats, bounds: tuple[float, float], u: Floats) -> Floats:
 
 
 def normed(ground: NDArray[Any], profile: NDArray[Any]) -> Shape:
-    """Let both sum to 1. A class that is not met in the space gets a ground without mass."""
+    """Scale both to sum 1. A class without mass in the space gets a ground of zeros."""
     if not (ground.sum() > 0 and profile.sum() > 0):
         return np.zeros(ground.shape), np.full(profile.shape, 1.0 / len(profile))
     return ground / ground.sum(), profile / profile.sum()
 
 
 def _blurred(mass: Callable[[float], float], centers: Floats, size: float) -> Floats:
-    """Density of being inside a box of that size whose centre has the cumulative `mass`."""
+    """Probability that each centre is inside a box of that size; `mass` is cumulative."""
     return np.array([mass(c + size / 2.0) - mass(c - size / 2.0) for c in centers.tolist()])
 
 
@@ -247,7 +253,7 @@ def _lateral_mass(y: float, cls: ObjectClass) -> float:
 
 
 def _lane_mass(y: float, cls: ObjectClass) -> float:
-    """Mass from minus infinity to y, but for a constant."""
+    """Mass from minus infinity to y, up to a constant."""
     laplace = 0.5 * math.copysign(-math.expm1(-abs(y) / cls.laplace_y), y)
     return cls.laplace_share * laplace + (1.0 - cls.laplace_share) * _normal_cdf(y / cls.gauss_y)
 

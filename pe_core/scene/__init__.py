@@ -1,14 +1,12 @@
-"""What stands on the ground: poses, the space of voxels, mounted sensors and their housings, the
-vehicle's body."""
+"""The scene: the vehicle, mounted sensors and their housings, and objects on the road."""
 
-from .geometry import Pose, rotate, rotation_matrix, rpy_from_matrix
+from ..geometry.grids import PerceptionSpace
+from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
 from .housing import Housing, cuts_body
 from .objects import Objects
-from .reference import Reference, guessed_reference
-from .sensors import Rig, Sensor
-from .simplify import simplified
-from .space import PerceptionSpace
+from .rig import Rig, Sensor
 from .vehicle import Vehicle
+from .vehicle_description import Reference, guessed_reference, vehicle_line
 
 __all__ = [
     "Housing",
@@ -24,5 +22,5 @@ __all__ = [
     "rotate",
     "rotation_matrix",
     "rpy_from_matrix",
-    "simplified",
+    "vehicle_line",
 ]

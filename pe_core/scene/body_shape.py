@@ -1,31 +1,35 @@
-"""The shape of a body in figures: its size, its parts' places, how unlike its mirror images."""
+"""Shape of a body: size, positions of parts, asymmetry, and the check of a vehicle's size."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ..base.errors import LONGEST_FOUND, InputError
 
 Floats = NDArray[np.float64]
 PartBounds = tuple[Floats, Floats, NDArray[np.bool_]]
 """Lowest and highest corners (P, 3) of the parts, and which parts have any triangles."""
 
 ROOM_M = 4.0
-"""A part is as large as a room when two of its sides are this long [m]..."""
+"""A part counts as a room if two of its sides are at least this long [m]..."""
 FAR_LARGER = 1.5
-"""...and so many times as long as those of all smaller parts together."""
+"""...and this many times as long as those of all smaller parts together."""
 BINS, ENOUGH = 256, 100_000
-"""Bins of a mesh's surface along an axis, and how many of its triangles are sorted into them."""
+"""Bins along an axis for the surface of a mesh, and about how many triangles are sampled."""
 
 
 @dataclass(frozen=True, eq=False)
 class BodyShape:
-    """Triangles (F, 3, 3) [m] of named parts, looked at without a floor that came with them.
+    """Shape of a mesh with named parts, without the floor or room that its file may contain.
 
-    Axes are those of the triangles, whatever they stand for.
+    `triangles` (F, 3, 3) [m] have any axes; `parts` (F,) are indices into `part_names`.
     """
 
     triangles: Floats
@@ -34,12 +38,12 @@ class BodyShape:
 
     @cached_property
     def rooms(self) -> tuple[str, ...]:
-        """Parts as large as a room."""
+        """Names of the parts that are as large as a room."""
         return tuple(self.part_names[k] for k in _rooms(*self._part_bounds))
 
     @cached_property
     def is_ours(self) -> NDArray[np.bool_] | None:
-        """(F,) which triangles are of no room; None: all of them."""
+        """(F,) whether a triangle belongs to the body, not to a room; None: all of them do."""
         if not self.rooms:
             return None
         names = list(self.part_names)
@@ -48,9 +52,9 @@ class BodyShape:
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner (3,) without rooms [m]."""
-        low, high, there = self._part_bounds
-        kept = there & ~np.isin(np.arange(len(low)), _rooms(low, high, there))
-        return low[kept].min(axis=0), high[kept].max(axis=0)
+        low, high, present = self._part_bounds
+        body = present & ~np.isin(np.arange(len(low)), _rooms(low, high, present))
+        return low[body].min(axis=0), high[body].max(axis=0)
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -61,23 +65,23 @@ class BodyShape:
 
     @cached_property
     def lopsided(self) -> tuple[float, float, float]:
-        """How unlike its mirror image it is along x, y, z: 0 alike, 2 as unlike as can be.
+        """Asymmetry of the surface along x, y, z: 0 if it equals its mirror image, at most 2.
 
-        The distance that its surface has to be carried along the axis to become its mirror image,
-        in half sides.
+        The earth mover's distance, along the axis, between the surface and its mirror image; the
+        unit is half the length of the body's side.
         """
-        ours = self.triangles if self.is_ours is None else self.triangles[self.is_ours]
-        every = -(-len(ours) // ENOUGH)
-        triangles = ours[::every]
+        body = self.triangles if self.is_ours is None else self.triangles[self.is_ours]
+        stride = -(-len(body) // ENOUGH)
+        triangles = body[::stride]
         normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
         area = np.sqrt((normal * normal).sum(axis=1))
         x, y, z = (_lopsided(triangles[:, :, k].mean(axis=1), area) for k in range(3))
         return x, y, z
 
     def part_centers(self) -> dict[str, Floats]:
-        """Middle of the bounds (3,) of every part that is no room [m], by name."""
-        low, high, there = self._part_bounds
-        named = ((self.part_names[k], k) for k in np.flatnonzero(there).tolist())
+        """Centre of the bounds (3,) [m] of each part that is not a room, by name."""
+        low, high, present = self._part_bounds
+        named = ((self.part_names[k], k) for k in np.flatnonzero(present).tolist())
         return {name: (low[k] + high[k]) / 2.0 for name, k in named if name not in self.rooms}
 
     @cached_property
@@ -88,15 +92,15 @@ class BodyShape:
 def corner_bounds(triangles: Floats) -> tuple[Floats, Floats]:
     """Lowest and highest corner (3,) of triangles (F, 3, 3), F at least 1."""
     axes = [triangles[..., k] for k in range(3)]  # axis by axis: many times as fast
-    return np.array([each.min() for each in axes]), np.array([each.max() for each in axes])
+    return np.array([axis.min() for axis in axes]), np.array([axis.max() for axis in axes])
 
 
-def _lopsided(at: Floats, area: Floats) -> float:
-    low, high = float(at.min()), float(at.max())
+def _lopsided(positions: Floats, area: Floats) -> float:
+    low, high = float(positions.min()), float(positions.max())
     total = float(area.sum())
     if not (high > low and total > 0.0):
         return 0.0
-    bins = np.minimum((at - low) * (BINS / (high - low)), BINS - 1).astype(np.int64)
+    bins = np.minimum((positions - low) * (BINS / (high - low)), BINS - 1).astype(np.int64)
     share = np.bincount(bins, area, BINS) / total
     return float(np.abs(np.cumsum(share) - np.cumsum(share[::-1])).sum()) * 2.0 / BINS
 
@@ -104,9 +108,9 @@ def _lopsided(at: Floats, area: Floats) -> float:
 def _part_bounds(triangles: Floats, parts: NDArray[np.int32], count: int) -> PartBounds:
     starts = np.concatenate([[0], np.flatnonzero(np.diff(parts)) + 1])  # runs of one part
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    least, most = _bounds_of_runs(triangles, starts)
-    np.minimum.at(low, parts[starts], least)
-    np.maximum.at(high, parts[starts], most)
+    run_low, run_high = _bounds_of_runs(triangles, starts)
+    np.minimum.at(low, parts[starts], run_low)
+    np.maximum.at(high, parts[starts], run_high)
     return low, high, np.isfinite(low[:, 0])
 
 
@@ -117,23 +121,110 @@ def _bounds_of_runs(triangles: Floats, starts: NDArray[np.int64]) -> tuple[Float
         pairs = [corner_bounds(triangles[a:b]) for a, b in zip(starts, stops, strict=True)]
         return np.array([low for low, _ in pairs]), np.array([high for _, high in pairs])
     a, b, c = (triangles[:, k] for k in range(3))
-    least, most = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-    low = np.minimum.reduceat(least, starts, axis=0)
-    return low, np.maximum.reduceat(most, starts, axis=0)
+    lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    low = np.minimum.reduceat(lowest, starts, axis=0)
+    return low, np.maximum.reduceat(highest, starts, axis=0)
 
 
 FEW_RUNS = 1000
-"""Runs of triangles that are quicker to look at one by one."""
+"""Below this number of runs, a loop over them is faster."""
 
 
-def _rooms(low: Floats, high: Floats, there: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Find the parts that are far larger, two ways, than all parts that no room could be."""
-    size = np.where(there[:, None], high - low, 0.0)
+def _rooms(low: Floats, high: Floats, present: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Indices of the parts whose two longest sides far exceed those of all smaller parts."""
+    size = np.where(present[:, None], high - low, 0.0)
     longest = np.sort(size, axis=1)[:, ::-1]
-    large = there & (longest[:, 1] >= ROOM_M)
-    rest = there & ~large
+    large = present & (longest[:, 1] >= ROOM_M)
+    rest = present & ~large
     if not (large.any() and rest.any()):
         return np.zeros(0, np.int64)
-    others = np.sort(high[rest].max(axis=0) - low[rest].min(axis=0))[::-1]
-    larger = (longest[:, :2] >= FAR_LARGER * others[:2]).all(axis=1)
+    rest_sides = np.sort(high[rest].max(axis=0) - low[rest].min(axis=0))[::-1]
+    larger = (longest[:, :2] >= FAR_LARGER * rest_sides[:2]).all(axis=1)
     return np.flatnonzero(large & larger)
+
+
+SMALLEST_M, LARGEST_M, WIDEST_M = 0.1, 60.0, 25.0
+"""Minimum and maximum length of a vehicle's longest side; maximum of its second longest."""
+CAR_M = 4.5
+"""Length of a typical car, for comparison."""
+MAX_UNITS = 2
+"""Maximum number of possible units in a message."""
+USUAL_M = (0.4, 30.0)
+USUAL_SECOND_M = 10.0
+"""Range of the longest side of most vehicles, and maximum of the second longest."""
+SMALLER_UNITS = {"inches": 0.0254, "centimetres": 0.01, "millimetres": 0.001, "feet": 0.3048}
+LARGER_UNITS = {"units of 100 m": 100.0, "kilometres": 1000.0}
+
+
+class Meshed(Protocol):
+    """An object with triangles and named parts: a vehicle or a mesh."""
+
+    @property
+    def triangles(self) -> NDArray[np.float64]: ...
+    @property
+    def parts(self) -> NDArray[np.int32]: ...
+    @property
+    def part_names(self) -> Sequence[str]: ...
+
+
+def require_vehicle_size(source: str, body: Meshed) -> None:
+    """Raise an error if a body is too large or too small for a vehicle; a floor does not count.
+
+    Raises
+    ------
+    InputError
+        With the size of the body, and scale factors that give it the size of a vehicle.
+    """
+    low, high = corner_bounds(body.triangles)
+    if _is_possible((high - low).tolist()):
+        return
+    size = BodyShape(body.triangles, body.parts, body.part_names).size
+    if not _is_possible(size):
+        expected = f"a vehicle, {SMALLEST_M:g} to {LARGEST_M:g} m long"
+        width_text = f" and up to {WIDEST_M:g} m wide" if max(size) <= LARGEST_M else ""
+        texts = (f"{size_words(size)}; {_hint(size, units)}" for units in range(MAX_UNITS, 0, -1))
+        found = next((text for text in texts if len(text) <= LONGEST_FOUND), "")
+        raise InputError(source, "size", f"{expected}{width_text}", found or size_words(size))
+
+
+def fitting_units(longest: float, second: float) -> list[tuple[str, float]]:
+    """Return the units in which a body with these two longest sides has a vehicle's usual size.
+
+    Pairs of name and length in metres; first the unit that makes it most similar to a car.
+    """
+    units = SMALLER_UNITS if longest > USUAL_M[0] else LARGER_UNITS
+    fitting = [(n, f) for n, f in units.items() if is_usual(f * longest, f * second)]
+    return sorted(fitting, key=lambda unit: abs(math.log(unit[1] * longest / CAR_M)))
+
+
+def is_usual(longest: float, second: float) -> bool:
+    """Whether two longest sides [m] are usual for a vehicle."""
+    return USUAL_M[0] <= longest <= USUAL_M[1] and second <= USUAL_SECOND_M
+
+
+def car_factor(longest: float) -> float:
+    """Return the scale that makes a body as long as a car, rounded to two digits."""
+    return float(f"{CAR_M / longest:.2g}")
+
+
+def size_words(size: tuple[float, ...]) -> str:
+    """Return a size as text, "4.70 x 1.85 x 1.45 m"; the number of decimals depends on the size."""
+    longest = max(size)
+    digits = 2 if 0.995 <= longest < 99.5 else 0 if longest >= 99.5 else 3
+    return f"{' x '.join(f'{side:.{digits}f}' for side in size)} m"
+
+
+def _is_possible(size: tuple[float, ...]) -> bool:
+    _, second, longest = sorted(size)
+    return SMALLEST_M <= longest <= LARGEST_M and second <= WIDEST_M
+
+
+def _hint(size: tuple[float, ...], max_units: int) -> str:
+    _, second, longest = sorted(size)
+    if longest == 0.0:
+        return "all of it is one point"
+    units = fitting_units(longest, second)[:max_units]
+    if not units:
+        return f"scale = {car_factor(longest):g} makes it as long as a car"
+    hints = (f"{factor:g} if {name} ({factor * longest:.2f} m)" for name, factor in units)
+    return f"scale = {', '.join(hints)}"

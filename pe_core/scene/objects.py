@@ -1,4 +1,4 @@
-"""Objects on the road: boxes that stand upright, alone or several to a scene."""
+"""Objects on the road: upright boxes, grouped into scenes."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError, shown
-from ..text.values import A_NAME, numbers
-from .frozen import frozen
-from .geometry import FARTHEST_M
+from ..base.errors import InputError, shown
+from ..base.read_only import read_only
+from ..base.values import A_NAME, numbers
+from ..geometry.poses import FARTHEST_M
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 STRAIGHT = 1e-12
-"""A sine or cosine below this is zero: the box stands along the ground frame's axes."""
+"""A sine or cosine below this counts as zero: the box is parallel to the ground frame's axes."""
 
 
 @dataclass(frozen=True, eq=False)
 class Objects:
-    """Boxes in the ground frame, turned by their yaw alone.
+    """Boxes in the ground frame, rotated about the vertical axis only.
 
     Parameters
     ----------
@@ -35,16 +35,16 @@ class Objects:
     yaws : (N,) float
         Heading, counter-clockwise from x seen from above [rad].
     labels : (N,) int
-        Class of each: an index into `class_names`.
+        Class of each object: an index into `class_names`.
     class_names : sequence of str
     scenes : (N,) int, optional
-        Which scene each stands in; those of one scene hide each other. Each in its own by default.
+        Scene of each object, whose objects may occlude each other; by default one scene each.
 
     Raises
     ------
     InputError
         When there is no object, arrays differ in length, a number is not finite, a size is not
-        positive, or an index is none.
+        positive, or an index is not valid.
     """
 
     centers: Floats
@@ -52,7 +52,7 @@ class Objects:
     yaws: Floats
     labels: Ints
     class_names: Sequence[str]
-    scenes: Ints = None  # type: ignore[assignment]  # all different
+    scenes: Ints = None  # type: ignore[assignment]  # one scene each
 
     def __post_init__(self) -> None:
         centers = _checked("centers", self.centers, 3)
@@ -69,26 +69,26 @@ class Objects:
             "scenes": _indices("scenes", scenes, count),
         }
         for key, values in checked.items():
-            object.__setattr__(self, key, frozen(values))
+            object.__setattr__(self, key, read_only(values))
         object.__setattr__(self, "class_names", names)
 
     def __len__(self) -> int:
         return len(self.centers)
 
     def __reduce__(self) -> tuple[object, ...]:
-        """What can be worked out again is not sent to another process."""
-        own = self.centers, self.sizes, self.yaws, self.labels, self.class_names, self.scenes
-        return type(self), own
+        """Pickle without cached properties."""
+        fields = self.centers, self.sizes, self.yaws, self.labels, self.class_names, self.scenes
+        return type(self), fields
 
     @cached_property
     def headings(self) -> Floats:
-        """(N, 2) cosine and sine of the yaws: by scalar functions, alike in all builds."""
-        turned = np.array([(math.cos(a), math.sin(a)) for a in self.yaws.tolist()])
-        turned[np.abs(turned) < STRAIGHT] = 0.0
-        return frozen(turned)
+        """(N, 2) cosine and sine of the yaws, by `math`: the same bits in all builds."""
+        directions = np.array([(math.cos(a), math.sin(a)) for a in self.yaws.tolist()])
+        directions[np.abs(directions) < STRAIGHT] = 0.0
+        return read_only(directions)
 
     def some(self, which: NDArray) -> Objects:
-        """Return some of them, by index or by flags."""
+        """Return the objects that `which` selects, by indices or flags (N,)."""
         c, s, y, n = (w[which] for w in (self.centers, self.sizes, self.yaws, self.labels))
         return Objects(c, s, y, n, self.class_names, self.scenes[which])
 
@@ -96,34 +96,34 @@ class Objects:
 def _checked(
     name: str, values: ArrayLike, width: int, count: int | None = None, above: float = -np.inf
 ) -> Floats:
-    """Return (N, width) or (N,) finite numbers of one's own, or complain."""
+    """Return a new array (N, width) or (N,) of finite numbers, or raise `InputError`."""
     shape = "(N, 3)" if width else "(N,)"
-    found = numbers(values)
-    if found is None:
+    array = numbers(values)
+    if array is None:
         raise InputError("objects", name, f"{shape} numbers", shown(values))
-    found = found + 0.0  # no negative zeros
-    if found.ndim != (2 if width else 1) or (width and found.shape[1] != width):
-        raise InputError("objects", name, f"{shape} numbers", found.shape)
-    if count is not None and len(found) != count:
-        raise InputError("objects", name, f"{count} rows, one an object", len(found))
-    good = (found > above) & (np.abs(found) <= FARTHEST_M)
-    bad = ~(good.all(axis=1) if width else good)
-    if bad.any():
-        first = int(np.flatnonzero(bad)[0])
+    array = array + 0.0  # no negative zeros
+    if array.ndim != (2 if width else 1) or (width and array.shape[1] != width):
+        raise InputError("objects", name, f"{shape} numbers", array.shape)
+    if count is not None and len(array) != count:
+        raise InputError("objects", name, f"{count} rows, one an object", len(array))
+    valid = (array > above) & (np.abs(array) <= FARTHEST_M)
+    invalid = ~(valid.all(axis=1) if width else valid)
+    if invalid.any():
+        first = int(np.flatnonzero(invalid)[0])
         expected = "lengths above 0 m" if above == 0.0 else f"numbers within +-{FARTHEST_M:g}"
-        raise InputError("objects", f"object {first}: {name}", expected, found[first].tolist())
-    return found
+        raise InputError("objects", f"object {first}: {name}", expected, array[first].tolist())
+    return array
 
 
 def _indices(name: str, values: ArrayLike, count: int, below: int | None = None) -> Ints:
-    """Return (N,) whole numbers from 0, or complain."""
-    found = numbers(values)
+    """Return (N,) integers from 0, or raise `InputError`."""
+    array = numbers(values)
     limit = np.inf if below is None else below
-    if found is None or found.shape != (count,) or not _whole(found, limit):
-        most = "" if below is None else f" below {below}, the number of class_names"
-        expected = f"{count} whole numbers from 0{most}, one an object"
+    if array is None or array.shape != (count,) or not _whole(array, limit):
+        range_text = "" if below is None else f" below {below}, the number of class_names"
+        expected = f"{count} whole numbers from 0{range_text}, one an object"
         raise InputError("objects", name, expected, shown(values))
-    return found.astype(np.int64)
+    return array.astype(np.int64)
 
 
 def _whole(values: Floats, below: float) -> bool:

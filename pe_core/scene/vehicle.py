@@ -1,4 +1,4 @@
-"""The vehicle's own body: what it hides, and the room it takes."""
+"""The vehicle's body: first hits of rays, clearance of flush-mounted sensors, height map."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError, shown
-from ..text.values import A_NAME, Number, numbers
-from .frozen import frozen, frozen_copy
-from .geometry import FARTHEST_M, cross, dot
-from .heights import top_heights
-from .raycast import Hits, SeenTriangles
-from .space import PerceptionSpace
-from .triangle_tree import TriangleTree
+from ..base.errors import InputError, shown
+from ..base.read_only import read_only, read_only_copy
+from ..base.setting import Panel, check_settings, setting
+from ..base.values import A_NAME, Number, numbers
+from ..geometry.grids import PerceptionSpace, top_heights
+from ..geometry.poses import FARTHEST_M, cross, dot
+from ..geometry.raycast import Hits, SeenTriangles
+from ..geometry.triangle_tree import TriangleTree
 
 Floats = NDArray[np.float64]
 
 DEFAULT_CLEARANCE_M = 0.02
-"""How far a flush-mounted sensor is taken to stand proud of the skin."""
+"""Distance from the vehicle's surface at which a flush-mounted sensor is evaluated."""
 CLEARANCE = Number(0.0, 1.0, below=True, unit="m")
 
 
@@ -34,32 +34,38 @@ class Vehicle:
     triangles : (F, 3, 3) float
         Corners [m]. Open meshes, duplicates and zero-area triangles are allowed.
     parts : (F,) int, optional
-        Which of `part_names` each triangle belongs to.
+        Part of each triangle: an index into `part_names`.
     part_names : sequence of str
         Names of the parts.
     glass : sequence of str
-        Parts that cameras see through. They stop LiDAR beams all the same.
+        Parts that cameras see through. They occlude LiDAR beams.
     clearance : float
-        A sensor nearer to the skin than this, on either side, sees as if it stood proud of it by
-        this much: flush mounting does not blind it [m].
+        A sensor nearer to the surface than this, on either side, is evaluated at this distance
+        outside the surface [m]. So a flush-mounted sensor is not occluded by its own surface.
 
     Raises
     ------
     InputError
-        When the triangles are not (F, 3, 3), none are left, a coordinate is not finite, or a name
-        or the clearance is impossible.
+        When the triangles are not (F, 3, 3), there are none, a coordinate is not finite or beyond
+        10 km, or a name or the clearance is not valid.
     """
 
     triangles: Floats
     parts: NDArray[np.int32] = None  # type: ignore[assignment]  # all one part
     part_names: Sequence[str] = ("vehicle",)
     glass: Sequence[str] = ()
-    clearance: float = DEFAULT_CLEARANCE_M
+    clearance: float = setting(
+        DEFAULT_CLEARANCE_M,
+        CLEARANCE,
+        "How far a flush-mounted sensor is taken to stand out of the vehicle's skin",
+        Panel("clearance", "Clearance", max=0.99),
+        scored=True,
+    )
 
     def __post_init__(self) -> None:
         triangles = _checked_triangles(self.triangles)
         parts = (
-            frozen(np.zeros(len(triangles), np.int32))
+            read_only(np.zeros(len(triangles), np.int32))
             if self.parts is None
             else _checked_parts(self.parts, len(self.part_names))
         )
@@ -70,28 +76,27 @@ class Vehicle:
         for name in self.glass:
             if name not in names:
                 raise InputError("vehicle", "glass", f"one of {', '.join(names)}", shown(name))
-        clearance = CLEARANCE.checked("vehicle", "clearance", self.clearance)
-        object.__setattr__(self, "clearance", clearance)
+        check_settings(self, "vehicle")
         for key, value in (("triangles", triangles), ("parts", parts), ("part_names", names)):
             object.__setattr__(self, key, value)
         object.__setattr__(self, "glass", tuple(self.glass))
 
     def __reduce__(self) -> tuple[object, ...]:
-        """What can be worked out again is not sent to another process."""
-        own = self.triangles, self.parts, self.part_names, self.glass, self.clearance
-        return type(self), own
+        """Pickle without cached properties."""
+        fields = self.triangles, self.parts, self.part_names, self.glass, self.clearance
+        return type(self), fields
 
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner, each (3,) [m]."""
         corners = self.triangles.reshape(-1, 3)
-        return frozen(corners.min(axis=0)), frozen(corners.max(axis=0))
+        return read_only(corners.min(axis=0)), read_only(corners.max(axis=0))
 
     @cached_property
     def triangle_bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner of each triangle, each (3, F) [m]."""
         corners = self.triangles.transpose(2, 1, 0)
-        return frozen(corners.min(axis=1)), frozen(corners.max(axis=1))
+        return read_only(corners.min(axis=1)), read_only(corners.max(axis=1))
 
     @cached_property
     def _opaque(self) -> NDArray[np.int64]:
@@ -107,16 +112,16 @@ class Vehicle:
         return TriangleTree(self.triangles[self._opaque]) if self.glass else self._tree
 
     def seen_from(self, position: Sequence[float], through_glass: bool = False) -> SeenMesh:
-        """Return the vehicle as a sensor sees it from a position [m]; perhaps through its glass."""
+        """Return the vehicle for rays from a position (3,) [m]; `through_glass` removes glass."""
         tree = self._tree_without_glass if through_glass else self._tree
         triangles = self.triangles[self._opaque] if through_glass else self.triangles
-        origin = _proud_of_skin(np.asarray(position, dtype=float), triangles, tree, self.clearance)
+        origin = _with_clearance(np.asarray(position, dtype=float), triangles, tree, self.clearance)
         return SeenMesh(SeenTriangles(tree, origin), self._opaque if through_glass else None)
 
     def first_hit(
         self, position: Sequence[float], directions: ArrayLike, through_glass: bool = False
     ) -> Hits:
-        """Where rays from a position first meet the vehicle.
+        """Return the first intersections of rays from a position with the vehicle.
 
         Parameters
         ----------
@@ -125,7 +130,7 @@ class Vehicle:
         directions : (B, 3) float
             Unit directions, ground frame.
         through_glass : bool
-            Whether the rays pass `glass`, as cameras see through it.
+            Whether the rays pass through the parts in `glass`, as those of cameras do.
 
         Returns
         -------
@@ -137,27 +142,27 @@ class Vehicle:
         )
 
     def first_hit_from(self, point: Floats, directions: Floats) -> Hits:
-        """Return first hits as `first_hit` does, but from the point (3,) itself, skin or not."""
+        """Return first hits from exactly this point (3,) [m]; the clearance is not applied."""
         return SeenTriangles(self._tree, point).first_hit(directions)
 
     def faces_near(self, point: ArrayLike, distance: float) -> NDArray[np.int64]:
-        """(N,) the triangles, ascending, that may come as near as `distance` [m] to a point."""
+        """(N,) ascending indices of triangles that may be within `distance` [m] of a point (3,)."""
         return self._tree.near(np.asarray(point, dtype=float), distance)
 
     def top(self, space: PerceptionSpace) -> Floats:
-        """(nx, ny) height of the highest surface at each column's centre [m], -inf beside it."""
+        """(nx, ny) maximum height of the surface at each column's centre [m]; -inf for none."""
         return top_heights(self.triangles, space)
 
 
 @dataclass(frozen=True, slots=True)
 class SeenMesh:
-    """A vehicle as seen from one point; face indices are those of the whole vehicle."""
+    """A vehicle for rays from one point; face indices are those of the whole vehicle."""
 
     seen: SeenTriangles
     faces: NDArray[np.int64] | None
 
     def first_hit(self, directions: Floats) -> Hits:
-        """First hit along (B, 3) ground-frame unit directions."""
+        """Return the first hits along (B, 3) unit directions, ground frame."""
         hits = self.seen.first_hit(directions)
         if self.faces is None or not len(self.faces):
             return hits
@@ -166,26 +171,26 @@ class SeenMesh:
 
 def _checked_triangles(values: ArrayLike) -> Floats:
     expected = "(F, 3, 3) numbers, F > 0"
-    plain = isinstance(values, np.ndarray) and values.dtype.kind in "iuf"
-    if (found := values if plain else numbers(values)) is None:
+    is_numeric = isinstance(values, np.ndarray) and values.dtype.kind in "iuf"
+    if (array := values if is_numeric else numbers(values)) is None:
         raise InputError("vehicle", "triangles", expected, shown(values))
-    triangles: Floats = frozen_copy(found, np.float64)
+    triangles: Floats = read_only_copy(array, np.float64)
     if triangles.ndim != 3 or triangles.shape[1:] != (3, 3) or not len(triangles):
         raise InputError("vehicle", "triangles", expected, triangles.shape)
-    bad = ~np.isfinite(triangles).all(axis=(1, 2))
-    if bad.any():
-        which = f"triangle {int(np.flatnonzero(bad)[0])} with NaN or infinity"
-        raise InputError("vehicle", "triangles", "finite coordinates", which)
+    invalid = ~np.isfinite(triangles).all(axis=(1, 2))
+    if invalid.any():
+        found = f"triangle {int(np.flatnonzero(invalid)[0])} with NaN or infinity"
+        raise InputError("vehicle", "triangles", "finite coordinates", found)
     far = np.abs(triangles).max(axis=(1, 2)) > FARTHEST_M
     if far.any():
-        which = f"triangle {int(np.flatnonzero(far)[0])} beyond"
+        found = f"triangle {int(np.flatnonzero(far)[0])} beyond"
         expected = f"coordinates within +-{FARTHEST_M:g} m"
-        raise InputError("vehicle", "triangles", expected, which)
+        raise InputError("vehicle", "triangles", expected, found)
     return triangles
 
 
 def _checked_parts(values: ArrayLike, names: int) -> NDArray[np.int32]:
-    """Return indices into that many names, or raise `InputError`."""
+    """Return (F,) indices below the number of names, or raise `InputError`."""
     try:
         parts = np.asarray(values)
     except ValueError:  # rows of different lengths
@@ -194,17 +199,17 @@ def _checked_parts(values: ArrayLike, names: int) -> NDArray[np.int32]:
     if not whole or parts.min() < 0 or parts.max() >= names:
         found = f"{shown(values)} with {names} names"
         raise InputError("vehicle", "parts", "one index into part_names a triangle", found)
-    return frozen_copy(parts, np.int32)
+    return read_only_copy(parts, np.int32)
 
 
-def _proud_of_skin(
+def _with_clearance(
     position: Floats, triangles: Floats, tree: TriangleTree, clearance: float
 ) -> Floats:
-    """Lift a position nearer to the skin than `clearance` to that distance, on the open side."""
-    beside = triangles[tree.near(position, clearance * 1.001 + 1e-9)]
-    low, high = beside.min(axis=1), beside.max(axis=1)
+    """Return a position at least `clearance` from the surface; moved to the open side if nearer."""
+    candidates = triangles[tree.near(position, clearance * 1.001 + 1e-9)]
+    low, high = candidates.min(axis=1), candidates.max(axis=1)
     gap = np.maximum(np.maximum(low - position, position - high), 0.0)
-    near = beside[dot(gap, gap) < clearance**2]
+    near = candidates[dot(gap, gap) < clearance**2]
     if not len(near):
         return position
     points = closest_points(position, near)
@@ -221,20 +226,20 @@ def _proud_of_skin(
 
 
 def _open_side(point: Floats, lift: Floats, tree: TriangleTree) -> Floats:
-    """Of ``+lift`` and ``-lift``, the side where a ray along it runs farther (outside)."""
+    """Return ``+lift`` or ``-lift``: the side on which a ray runs farther, which is outside."""
     direction = lift / np.sqrt(dot(lift, lift))
-    free = [
+    hits = [
         SeenTriangles(tree, point + side * lift).first_hit(side * direction[None])
         for side in (1.0, -1.0)
     ]
-    return lift if free[0].distance[0] >= free[1].distance[0] else -lift
+    return lift if hits[0].distance[0] >= hits[1].distance[0] else -lift
 
 
 def closest_points(point: Floats, triangles: Floats) -> Floats:
-    """Closest point (F, 3) to a point on each triangle (F, 3, 3).
+    """Return the closest point (F, 3) on each triangle (F, 3, 3) to a point (3,) [m].
 
-    Voronoi regions as in Ericson, Real-Time Collision Detection (2005), section 5.1.5, put
-    together as: the foot on the plane where it lies inside, else the best of the three edges.
+    Regions as in Ericson, Real-Time Collision Detection (2005), section 5.1.5: the projection onto
+    the plane if it lies inside the triangle, else the closest point on an edge.
     """
     a, b, c = (triangles[:, i] for i in range(3))
     best = np.stack([_closest_on_edge(point, p, q) for p, q in ((a, b), (b, c), (c, a))])

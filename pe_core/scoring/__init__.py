@@ -1,12 +1,19 @@
 """Scores of a rig: on all voxels, or on a sample of them."""
 
 from .evaluator import Evaluator
-from .judge import RigJudge
-from .object_score import FoundClass, ObjectScore
-from .sampled import Judgement
+from .protocol import Judgement, Objective, RigJudge
 from .sampling import VoxelSample, draw
 from .scatter import Scatter
-from .score import Glance, GroundMap, PartScore, Score, ScoreStopped, SensorScore
+from .score import (
+    FoundClass,
+    Glance,
+    GroundMap,
+    ObjectScore,
+    PartScore,
+    Score,
+    ScoreStopped,
+    SensorScore,
+)
 
 __all__ = [
     "Evaluator",
@@ -15,6 +22,7 @@ __all__ = [
     "GroundMap",
     "Judgement",
     "ObjectScore",
+    "Objective",
     "PartScore",
     "RigJudge",
     "Scatter",

@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from ..errors import InputError
-from ..kinds import PerceptionModel
+from ..base.values import Number, Whole, vector
+from ..geometry.grids import PerceptionSpace
 from ..metric.fusion import Fusion
 from ..prior.prior import Prior
-from ..scene.sensors import Rig
-from ..scene.space import PerceptionSpace
+from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
-from ..text.values import Number, Whole, vector
-from .cases import Cases, together
-from .gridded import GridScorer
-from .needs import columns_bytes, require_room_for, require_room_for_samples
-from .sampled import Judgement, SampledScorer
-from .sampling import CENTERED, samples_or_grid
+from ..sensors import PerceptionModel
+from .density_cache import cached_densities
+from .grid_scorer import GridScorer
+from .memory_need import columns_bytes, require_room_for, require_room_for_samples
+from .protocol import Judgement, Scorer
+from .sampled_scorer import SampledScorer
+from .sampling import CENTERED, SAMPLES_OR_GRID
 from .score import Glance, Score, Watch
-from .shared import shared_densities
 
 WORKERS = Whole(0, 1024, "threads")
 SHIFT = Number(0.0, 1.0, below=True)
@@ -38,8 +37,8 @@ class Evaluator:
         Score on about this many voxels drawn from the prior; 0: all. The sample is
         fixed: two rigs are compared on the same voxels.
     shift : (3,) float
-        Three numbers in [0, 1) that scramble the sample's sequence: others give another sample as
-        good.
+        Three numbers in [0, 1) that scramble the sample's sequence: other numbers give another
+        sample of the same quality.
     model : PerceptionModel, optional
         AP curves and fusion rule; the paper's by default.
     workers : int, optional
@@ -62,7 +61,7 @@ class Evaluator:
         model: PerceptionModel | None = None,
         workers: int | None = None,
     ) -> None:
-        samples = samples_or_grid("evaluator", samples)
+        samples = SAMPLES_OR_GRID.checked("evaluator", "samples", samples)
         if workers is not None:
             workers = WORKERS.checked("evaluator", "workers", workers)
         in_range = vector("evaluator", "shift", shift, 3, SHIFT)
@@ -73,16 +72,16 @@ class Evaluator:
         require_room_for_samples(samples, columns_bytes(space, classes))
         require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
         fusion = Fusion(model or PerceptionModel())
-        self._scorer: GridScorer | SampledScorer
+        self._scorer: Scorer
         if samples == 0:
             densities = prior.densities(space)
             self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
         else:
-            densities = self._densities = shared_densities(prior, space)
+            densities = self._densities = cached_densities(prior, space)
             self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Another process makes its own from what this one was made from."""
+        """Pickle the arguments: another process makes an evaluator of its own from them."""
         what = self.space, self.prior, self.vehicle
         return _evaluator_again, (*what, self.samples, self._shift, self._model, self._workers)
 
@@ -93,28 +92,25 @@ class Evaluator:
         ----------
         rig : Rig
         draft : bool
-            While a sensor is being moved: which LiDAR beams the vehicle stops is read from a map of
-            its top surface, where the sensor stands above it, instead of cast. `Score.draft` says
-            so. The next score without it is exact again. Sampled scores only.
+            Return an approximate preview, for use while a sensor is being moved: which LiDAR beams
+            the vehicle occludes is read from a map of its top surface, if the sensor is above it,
+            and not ray cast. `Score.draft` is then set. The next score without it is exact.
+            Sampled scores only.
         watch : callable, optional
-            Called with the share that is done, 0 to 1, now and then while a grid is scored (a
-            sample is done too soon); when it returns False, the score is stopped.
+            Called repeatedly with the completed share, 0 to 1, while a grid is scored (a
+            sample is scored too quickly). When it returns False, the score is stopped.
 
         Raises
         ------
         InputError
-            When a draft is asked of a grid score.
+            For a preview of a grid score.
         ScoreStopped
-            When the one who watches said so.
+            When `watch` returned False.
         """
-        if isinstance(self._scorer, SampledScorer):
-            return self._scorer.score(rig, draft=draft)
-        if draft:
-            self._drafting()
-        return self._scorer.score(rig, watch)
+        return self._scorer.score(rig, draft, watch)
 
     def entropy(self, rig: Rig, *, draft: bool = False) -> float:
-        """Perception entropy of a rig [nats], and nothing else: what an optimizer asks for.
+        """Return the perception entropy of a rig [nats], without the other figures.
 
         Parameters
         ----------
@@ -122,12 +118,10 @@ class Evaluator:
         draft : bool
             As in `score`, with the same error.
         """
-        if draft:
-            return self._drafting().entropy(rig, draft=True)
-        return self._scorer.entropy(rig)
+        return self._scorer.entropy(rig, draft)
 
     def glance(self, rig: Rig, *, draft: bool = False) -> Glance:
-        """Score a rig as a whole, not sensor by sensor: what is shown while one is moved.
+        """Return the score of a rig without the part by sensor, for use while one is being moved.
 
         Parameters
         ----------
@@ -138,54 +132,50 @@ class Evaluator:
         Raises
         ------
         InputError
-            When the score is one of the grid.
+            For a grid score.
         """
-        if not isinstance(self._scorer, SampledScorer):
-            raise InputError("evaluator", "glance", "a sampled score", "a grid score")
-        return self._scorer.glance(rig, draft)
+        return self._scorer.summary(rig, draft)
 
     def judge(self, rig: Rig, below: float = inf) -> Judgement:
-        """Tell whether a rig's entropy is below a value: what a search asks of its candidates.
+        """Evaluate a rig with a cutoff, as a search does with its candidates.
 
-        A sampled score often need not ask what the vehicle hides to tell that it is not.
+        On a sample, occlusion by the vehicle often need not be computed to find that the entropy is
+        not below the cutoff.
 
         Parameters
         ----------
         rig : Rig
         below : float
-            As a rule the best entropy so far [nats]; inf: only an entropy will do.
+            The cutoff: usually the entropy of the incumbent [nats]; inf: none.
 
         Returns
         -------
         Judgement
             The entropy; or, where that is not below `below`, perhaps a lower bound of it that is
-            not below it either. `is_lower_bound` says so: such a number is none to rank by.
+            not below `below` either. `is_lower_bound` tells the two apart: a lower bound must not
+            be ranked.
         """
-        if isinstance(self._scorer, SampledScorer):
-            return self._scorer.judge(rig, below)
-        return Judgement(self._scorer.entropy(rig), False)
+        return self._scorer.evaluate(rig, below)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
-        """Perception entropy of each of several rigs [nats].
+        """Return the perception entropy of each of several rigs [nats].
 
         On a sample, a sensor that has the same name and pose in several of them is measured once.
 
         Parameters
         ----------
         rigs : sequence of Rig
-            Of the same sensors, at the same or other poses; some may lack some.
+            Rigs of the same sensors, in the same or other poses; sensors may be missing.
 
         Raises
         ------
         InputError
             When there is no rig.
         """
-        if isinstance(self._scorer, SampledScorer):
-            return self._scorer.entropies(rigs)
-        return [self._scorer.entropy(part) for part in Cases(rigs).parts]
+        return self._scorer.entropies(rigs)
 
     def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool = False) -> Judgement:
-        """As `judge`, of several rigs at once: of the mean of their entropies.
+        """Evaluate the mean of several rigs' entropies with a cutoff, as `judge` does one rig's.
 
         Parameters
         ----------
@@ -194,21 +184,14 @@ class Evaluator:
         below : float
             As in `judge`.
         worst : bool
-            The highest of the entropies instead of their mean.
+            Evaluate the highest of the entropies instead of their mean.
 
         Returns
         -------
         Judgement
             As in `judge`: the mean (or highest) of the rigs' entropies, or of lower bounds of them.
         """
-        if isinstance(self._scorer, SampledScorer):
-            return self._scorer.judge_together(rigs, below, worst)
-        return Judgement(together(self.entropies(rigs), worst), False)
-
-    def _drafting(self) -> SampledScorer:
-        if isinstance(self._scorer, SampledScorer):
-            return self._scorer
-        raise InputError("evaluator", "draft", "a sampled score", "a grid score")
+        return self._scorer.evaluate_together(rigs, below, worst)
 
 
 def _evaluator_again(
@@ -220,7 +203,7 @@ def _evaluator_again(
     model: PerceptionModel | None,
     workers: int | None,
 ) -> Evaluator:
-    """Make an evaluator that was pickled: for worker processes."""
+    """Make an evaluator from its pickled arguments, in a worker process."""
     return Evaluator(
         space, prior, vehicle, samples=samples, shift=shift, model=model, workers=workers
     )

@@ -1,7 +1,14 @@
-"""Voxels drawn from the prior by a low-discrepancy sequence."""
+"""Voxels sampled from the prior by a scrambled Sobol' sequence.
+
+The sequence is computed in integers only, so that its bits are the same on every system. It is
+scrambled as Owen proposes, by hashing (Laine and Karras 2011; the constants are Vegdahl's, as in
+Burley 2020, "Practical Hash-based Owen Scrambling"). Scrambling removes the regularity that a
+pattern of beams may be in step with; each run of 2^k points remains a low-discrepancy net.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -9,14 +16,93 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ..base.errors import InputError
+from ..base.read_only import read_only
+from ..base.values import Whole
+from ..geometry.grids import PerceptionSpace
 from ..prior.prior import ClassDensity
-from ..scene.frozen import frozen
-from ..scene.space import PerceptionSpace
-from ..text.values import Whole
-from .sobol import scrambled_sobol
 
 Floats = NDArray[np.float64]
+Words = NDArray[np.uint32]
+
+BITS = 32
+WORD = (1 << BITS) - 1
+PRIMITIVE = (
+    (0, (1,)),
+    (1, (1, 3)),
+    (1, (1, 3, 1)),
+    (2, (1, 1, 1)),
+    (1, (1, 1, 3, 3)),
+    (4, (1, 3, 5, 13)),
+)
+"""Of each dimension but the first, which is the van der Corput sequence: the inner coefficients of
+a primitive polynomial as a number, and first direction numbers m (Joe and Kuo 2008)."""
+DIMENSIONS = 1 + len(PRIMITIVE)
+MASKS = ((0x55555555, 1), (0x33333333, 2), (0x0F0F0F0F, 4), (0x00FF00FF, 8), (0x0000FFFF, 16))
+ODDS = (0x9E3779B9, 0x85EBCA6B, 0xC2B2AE35)
+"""Tell the dimensions' seeds apart; and mix them (the last two are MurmurHash3's)."""
+
+
+def scrambled_sobol(count: int, shift: Sequence[float]) -> Floats:
+    """Return points (count, D) in [0, 1), scrambled by D <= 7 numbers in [0, 1)."""
+    columns = [_sobol(count, dimension) for dimension in range(len(shift))]
+    scrambled = [
+        _scrambled(c, _seed(s, d)) for d, (c, s) in enumerate(zip(columns, shift, strict=True))
+    ]
+    return np.stack(scrambled, axis=1) / float(1 << BITS)
+
+
+def _sobol(count: int, dimension: int) -> Words:
+    """Return one coordinate of the points, in 32 bits."""
+    points = np.zeros(count, np.uint32)
+    number = np.arange(count, dtype=np.uint32)
+    for bit, word in enumerate(_directions(dimension)[: max(count - 1, 1).bit_length()]):
+        points ^= ((number >> np.uint32(bit)) & np.uint32(1)) * np.uint32(word)
+    return points
+
+
+def _directions(dimension: int) -> list[int]:
+    """Return a dimension's direction numbers: what each bit of a point's number adds."""
+    if dimension == 0:
+        return [1 << (BITS - 1 - bit) for bit in range(BITS)]
+    inner, odd = PRIMITIVE[dimension - 1]
+    degree = len(odd)
+    words = [m << (BITS - 1 - bit) for bit, m in enumerate(odd)]
+    for bit in range(degree, BITS):
+        word = words[bit - degree] ^ (words[bit - degree] >> degree)
+        for back in range(1, degree):
+            word ^= words[bit - back] * (inner >> (degree - 1 - back) & 1)
+        words.append(word)
+    return words
+
+
+def _seed(shift: float, dimension: int) -> int:
+    """Mix a number in [0, 1) and a dimension into 32 bits."""
+    seed = (int(shift * (1 << BITS)) + (dimension + 1) * ODDS[0]) & WORD
+    for odd, down in ((ODDS[1], 16), (ODDS[2], 13)):
+        seed = ((seed ^ (seed >> down)) * odd) & WORD
+    return seed ^ (seed >> 16)
+
+
+def _scrambled(points: Words, seed: int) -> Words:
+    """Flip each bit by a hash of the bits above it."""
+    x = _reversed(points)
+    x ^= x * np.uint32(0x3D20ADEA)
+    x += np.uint32(seed)
+    x *= np.uint32((seed >> 16) | 1)
+    x ^= x * np.uint32(0x05526C56)
+    x ^= x * np.uint32(0x53A22864)
+    return _reversed(x)
+
+
+def _reversed(words: Words) -> Words:
+    """Mirror the bits of each word."""
+    x = words.copy()
+    for mask, step in MASKS:
+        x = ((x >> np.uint32(step)) & np.uint32(mask)) | ((x & np.uint32(mask)) << np.uint32(step))
+    return x
+
+
 Ints = NDArray[np.int64]
 
 AZIMUTH, HEIGHT, RING = range(3)
@@ -30,25 +116,30 @@ SAMPLES = Whole(MIN_SAMPLES, MAX_SAMPLES, "voxels")
 CENTERED = (0.5, 0.5, 0.5)
 AT_ONCE = 1 << 16
 
-SAMPLES_OR_GRID = Whole(0, MAX_SAMPLES, "voxels")
+
+@dataclass(frozen=True, slots=True)
+class SamplesOrGrid(Whole):
+    """A number of sampled voxels; 0 stands for all voxels of the grid."""
+
+    def checked(self, source: object, field: str, value: Any) -> int:
+        """Return the value, or raise `InputError`."""
+        count = Whole.checked(self, source, field, value)
+        if 0 < count < MIN_SAMPLES:
+            expected = f"0 (all), or a whole number of voxels >= {MIN_SAMPLES}"
+            raise InputError(source, field, expected, count)
+        return count
 
 
-def samples_or_grid(source: str, value: Any) -> int:
-    """Return a number of samples (0: all); `InputError` for what is none."""
-    count = SAMPLES_OR_GRID.checked(source, "samples", value)
-    if 0 < count < MIN_SAMPLES:
-        expected = f"0 (all), or a whole number of voxels >= {MIN_SAMPLES}"
-        raise InputError(source, "samples", expected, count)
-    return count
+SAMPLES_OR_GRID = SamplesOrGrid(0, MAX_SAMPLES, "voxels")
 
 
 @dataclass(frozen=True, slots=True)
 class VoxelSample:
-    """Voxels drawn from p_S, nearest to the origin first: neighbours in memory are work alike.
+    """Voxels drawn from p_S, sorted by distance: neighbours in memory cost about the same.
 
     `index` (V, 3) voxel indices; `centers` (V, 3) [m]; `run` (V,) which of BLOCKS runs of the
-    sequence drew each; `names` of the C classes; `classes` (V, C) how likely each voxel's object is
-    of each class, rows summing to 1.
+    sequence drew each; `names` of the C classes; `classes` (V, C) probability of each class for
+    the voxel's object, rows summing to 1.
     """
 
     index: Ints
@@ -68,9 +159,9 @@ def draw(
     """Draw `count` voxels from the prior.
 
     A point of a scrambled Sobol' sequence is sent through the inverse cumulative distributions of
-    the distance from the origin, of the azimuth given that, and of z given both, all of the whole
-    prior: its classes are drawn together. Sensors see in rings and sectors, so what they see
-    changes along the sequence's own axes.
+    the distance from the origin, of the azimuth at that distance, and of z at both. All classes
+    are drawn together, from the whole prior. Sensors see in rings and sectors, so visibility
+    changes along the axes of the sequence.
 
     Parameters
     ----------
@@ -88,65 +179,65 @@ def draw(
     ground = np.sum([d.ground for d in densities], axis=0)
     i, j = _draw_column(ground, space, u[:, RING], u[:, AZIMUTH])
     k, classes = _draw_height(densities, i, j, u[:, HEIGHT])
-    kept = _nearest_first(space.centers(0)[i], space.centers(1)[j])
+    rows = _nearest_first(space.centers(0)[i], space.centers(1)[j])
     if excluded is not None:
-        kept = kept[(space.centers(2)[k] >= excluded[i, j])[kept]]
-    index = np.stack([i, j, k], axis=1)[kept]
+        rows = rows[(space.centers(2)[k] >= excluded[i, j])[rows]]
+    index = np.stack([i, j, k], axis=1)[rows]
     names = tuple(d.name for d in densities)
-    return VoxelSample(index, space.center_of(index), kept * BLOCKS // count, names, classes[kept])
+    return VoxelSample(index, space.center_of(index), rows * BLOCKS // count, names, classes[rows])
 
 
 def _nearest_first(x: Floats, y: Floats) -> Ints:
-    """Order of points by their distance from the origin."""
+    """Return the order of points by distance from the origin."""
     return np.argsort(x * x + y * y, kind="stable")
 
 
 def _draw_column(ground: Floats, space: PerceptionSpace, u: Floats, v: Floats) -> tuple[Ints, Ints]:
-    """Column indices (V,) of a density over the ground (nx, ny): a ring, then a place in it."""
+    """Draw column indices (V,) from a density over the ground (nx, ny): a ring, then a column."""
     ring, order = _rings(space)
     first = np.flatnonzero(np.diff(ring, prepend=-1))
     before = np.concatenate([[0.0], np.cumsum(ground.reshape(-1)[order])])
     starts = np.append(before[first], before[-1])
-    chosen = _inverse(starts[1:], u * starts[-1])
-    inside = starts[chosen] + v * (starts[chosen + 1] - starts[chosen])
+    rings = _inverse(starts[1:], u * starts[-1])
+    inside = starts[rings] + v * (starts[rings + 1] - starts[rings])
     last = np.append(first[1:], len(order)) - 1
-    place = np.clip(_inverse(before[1:], inside), first[chosen], last[chosen])
-    i, j = np.divmod(order[place], ground.shape[1])
+    position = np.clip(_inverse(before[1:], inside), first[rings], last[rings])
+    i, j = np.divmod(order[position], ground.shape[1])
     return i, j
 
 
 @lru_cache(maxsize=1)
 def _rings(space: PerceptionSpace) -> tuple[Ints, Ints]:
-    """Columns by ring, a voxel wide, round the origin, and by azimuth: rings and indices (N,).
+    """Sort columns by ring (one voxel wide) and azimuth; return rings and column indices (N,).
 
-    Kept, as a search draws samples of several sizes from one space.
+    It is cached, because a search draws samples of several sizes from one space.
     """
     x, y = np.meshgrid(space.centers(0), space.centers(1), indexing="ij")
     x, y = x.reshape(-1), y.reshape(-1)
     ring = np.floor(np.sqrt(x * x + y * y) / space.interval).astype(np.int64)
-    # As good as the azimuth for sorting, and the same bits everywhere: y on a square of corners 1.
+    # y on the unit square sorts like the azimuth, and has the same bits on every system.
     around = y / np.maximum(np.abs(x) + np.abs(y), np.finfo(float).tiny)
     around = np.where(x >= 0.0, around, np.where(y >= 0.0, 2.0, -2.0) - around)
     order = np.lexsort((around, ring))
-    return frozen(ring[order]), frozen(order)
+    return read_only(ring[order]), read_only(order)
 
 
 def _draw_height(densities: list[ClassDensity], i: Ints, j: Ints, w: Floats) -> tuple[Ints, Floats]:
-    """Height indices (V,) given the column, and the classes (V, C) of what is there."""
+    """Draw height indices (V,) in columns; return them and class probabilities (V, C)."""
     profiles = np.stack([d.profile for d in densities])  # (C, nz)
     shares = np.stack([d.ground[i, j] for d in densities], axis=1)  # (V, C)
     k = np.empty(len(i), np.int64)
     for start in range(0, len(i), AT_ONCE):
-        some = slice(start, start + AT_ONCE)
-        cumulative = np.cumsum(_mixed(shares[some], profiles), axis=1)
-        below = cumulative <= (w[some] * cumulative[:, -1])[:, None]
-        k[some] = np.minimum(below.sum(axis=1), profiles.shape[1] - 1)
+        block = slice(start, start + AT_ONCE)
+        cumulative = np.cumsum(_mixed(shares[block], profiles), axis=1)
+        below = cumulative <= (w[block] * cumulative[:, -1])[:, None]
+        k[block] = np.minimum(below.sum(axis=1), profiles.shape[1] - 1)
     likely = shares * profiles[:, k].T
     return k, likely / likely.sum(axis=1, keepdims=True)
 
 
 def _mixed(shares: Floats, profiles: Floats) -> Floats:
-    """(V, nz) sum over classes of share times profile; no BLAS, so the same bits everywhere."""
+    """Return (V, nz): the sum over classes of share times profile; without BLAS, for equal bits."""
     total = np.zeros((len(shares), profiles.shape[1]))
     for share, profile in zip(shares.T, profiles, strict=True):
         total += share[:, None] * profile
@@ -154,5 +245,5 @@ def _mixed(shares: Floats, profiles: Floats) -> Floats:
 
 
 def _inverse(cumulative: Floats, values: Floats) -> Ints:
-    found = np.searchsorted(cumulative, values, side="right")
-    return np.minimum(found, len(cumulative) - 1)
+    indices = np.searchsorted(cumulative, values, side="right")
+    return np.minimum(indices, len(cumulative) - 1)

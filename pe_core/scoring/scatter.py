@@ -1,9 +1,9 @@
 """How the figures of a sampled score scatter: what the error of a difference is made of.
 
-Scores of two rigs on one sample err together: where the sample has too many far voxels, both
-entropies are too high. Their difference is known far better than either of them. A score therefore
-keeps the residuals of its means in a few batches of the sample; those of two scores on the same
-sample are subtracted batch by batch (paired), those on different samples add up in square.
+The errors of two scores on one sample are correlated: if the sample has too many far voxels, both
+entropies are too high. Their difference is far more precise than either of them. A score therefore
+stores the residuals of its means in a few batches of the sample. Residuals of two scores on the
+same sample are subtracted by batch (paired); on different samples, their squares are added.
 """
 
 from __future__ import annotations
@@ -17,11 +17,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .score import rounded
+from .score import DECIMALS, rounded
 
 Floats = NDArray[np.float64]
 FigureKey = tuple[str, str, str]
 """Group ("rig", "zone", "class"), name (empty for the rig), and measure ("entropy", ...)."""
+
+
+ALIKE = 10.0**-DECIMALS
+"""Entropies no farther apart than this do not differ [nats]."""
+RULE_OF_THREE = 3.0
+"""Of n draws that are all alike, fewer than 3 / n of the rest are not, 95 times in 100."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +37,7 @@ class Scatter:
     Attributes
     ----------
     sample : str
-        Digest of what was drawn: scores of one sample have the same.
+        Digest of the sample; scores on the same sample have the same digest.
     residuals : mapping of FigureKey to tuple of float
         For each figure, a weighted mean over the sample: what each batch adds to it above the mean,
         sum_i w_i (v_i - mean) / sum w over the batch's members, (R,) in the figure's own unit. They
@@ -48,19 +54,19 @@ class Scatter:
 
     def error(self, figure: FigureKey) -> float | None:
         """Return the standard error of a figure; None where the score has no such figure."""
-        own = self.residuals.get(figure)
-        return None if own is None else _standard_error(own)
+        by_batch = self.residuals.get(figure)
+        return None if by_batch is None else _standard_error(by_batch)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return it as plain JSON data."""
-        rows = [[*figure, list(own)] for figure, own in self.residuals.items()]
+        """Return the residuals as plain JSON data."""
+        rows = [[*figure, list(by_batch)] for figure, by_batch in self.residuals.items()]
         return {"sample": self.sample, "residuals": rows}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Scatter:
-        """Return what `to_dict` has written down."""
+        """Return the `Scatter` from the data of `to_dict`."""
         rows = {
-            (group, name, measure): tuple(own) for group, name, measure, own in data["residuals"]
+            (group, name, measure): tuple(sums) for group, name, measure, sums in data["residuals"]
         }
         return cls(data["sample"], rows)
 
@@ -88,15 +94,15 @@ def residuals(
     ----------
     values : (N,) float or bool
     weights : (N,) float, optional
-        None: all alike.
+        None: equal weights.
     batch : (N,) int
-        Which batch each is of, 0 to `batches` - 1.
+        Batch of each value, 0 to `batches` - 1.
     batches : int
     """
-    own = np.ones(len(values)) if weights is None else weights
-    mass = float(own.sum())
-    off = own * (values - float((own * values).sum()) / mass)
-    return tuple(rounded(each / mass) for each in np.bincount(batch, off, batches).tolist())
+    shares = np.ones(len(values)) if weights is None else weights
+    mass = float(shares.sum())
+    off = shares * (values - float((shares * values).sum()) / mass)
+    return tuple(rounded(total / mass) for total in np.bincount(batch, off, batches).tolist())
 
 
 def sample_digest(parts: Iterable[NDArray[Any]]) -> str:
@@ -108,7 +114,7 @@ def sample_digest(parts: Iterable[NDArray[Any]]) -> str:
 
 
 def _standard_error(batches: Iterable[float]) -> float:
-    """Standard error of a mean from its residuals: of R batches that are drawn independently."""
-    own = list(batches)
-    square = math.fsum(each * each for each in own)
-    return rounded(math.sqrt(square * len(own) / max(len(own) - 1, 1)))
+    """Return the standard error of a mean from its residuals in independent batches."""
+    values = list(batches)
+    square = math.fsum(value * value for value in values)
+    return rounded(math.sqrt(square * len(values) / max(len(values) - 1, 1)))

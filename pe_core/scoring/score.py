@@ -1,20 +1,121 @@
-"""What a score tells."""
+"""The score of a rig: entropy, coverage, and the same by class, zone, sensor and object class."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinds import Stopped
-from ..scene.frozen import frozen
-from .object_score import ObjectScore
+from ..base.read_only import read_only
+from ..geometry.grids import PerceptionSpace
 
 if TYPE_CHECKING:
+    from ..sensors import Occlusion
     from .scatter import Scatter
+
+FARTHEST_M = 80.0
+"""How far away lone objects are looked for: a reach that equals it is "at least"."""
+POINTS = (1, 5, 20)
+"""Objects are counted that get at least so many points of all LiDARs together."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundClass:
+    """How well a rig finds a class of objects.
+
+    Attributes
+    ----------
+    objects : int
+        How many objects were evaluated.
+    share : float
+        Weight of the class in the score, 0 to 1.
+    entropy, stderr : float
+        Mean entropy of its objects [nats], and the standard error.
+    ap, ap_stderr : float
+        Expected AP, 0 to 1: the mean over its objects, and the standard error.
+    points : mapping of int to float
+        Share of its objects that get at least so many points, by number; empty without LiDARs.
+    reach : mapping of str to float
+        By direction, the distance up to which a lone object of the class is found with an AP of 0.5
+        [m]: 0 where it is nowhere found, `FARTHEST_M` where AP does not fall below 0.5 again.
+    """
+
+    objects: int
+    share: float
+    entropy: float
+    stderr: float
+    ap: float
+    ap_stderr: float
+    points: Mapping[int, float]
+    reach: Mapping[str, float]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data."""
+        return {**asdict(self), "points": {str(n): s for n, s in self.points.items()}}
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectScore:
+    """Score of a rig on objects, beside entropy and coverage.
+
+    Attributes
+    ----------
+    ap, ap_stderr : float
+        Expected AP of all classes, by their weights, and its standard error.
+    objects, scenes : int
+        How many there are; labelled boxes without traffic have a scene each.
+    traffic : bool
+        Whether the objects of a scene occlude each other. Reach is always that of a lone object.
+    per_class : dict of FoundClass
+    """
+
+    ap: float
+    ap_stderr: float
+    objects: int
+    scenes: int
+    traffic: bool
+    per_class: dict[str, FoundClass]
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> ObjectScore:
+        """Return what `to_dict` has written down."""
+        per_class = {name: _found(class_data) for name, class_data in data["per_class"].items()}
+        return cls(**{**data, "per_class": per_class})
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data."""
+        per_class = {name: class_score.to_dict() for name, class_score in self.per_class.items()}
+        return {**asdict(self), "per_class": per_class}
+
+
+def _found(data: Mapping[str, Any]) -> FoundClass:
+    points = {int(number): share for number, share in data["points"].items()}
+    return FoundClass(**{**data, "points": points})
+
+
+NEAR_M, FAR_M = 10.0, 40.0
+
+ZONES = ("front", "rear", "left", "right", "near", "mid", "far")
+"""Half planes before, behind, left and right of the vehicle's centre, and rings round it: nearer
+than NEAR_M, farther than FAR_M, and between."""
+
+
+def zone_masks(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, NDArray[np.bool_]]:
+    """Return, by zone, a mask of the points (x, y) [m], broadcast together, that lie in it."""
+    x, y = np.broadcast_arrays(x, y)
+    square = x * x + y * y
+    near, far = square < NEAR_M**2, square > FAR_M**2
+    masks = (x > 0.0, x < 0.0, y > 0.0, y < 0.0, near, ~near & ~far, far)
+    return dict(zip(ZONES, masks, strict=True))
+
+
+def column_zones(space: PerceptionSpace) -> dict[str, NDArray[np.bool_]]:
+    """Return, by zone, a mask (nx, ny) of the columns of a space."""
+    return zone_masks(space.centers(0)[:, None], space.centers(1)[None, :])
+
 
 DECIMALS = 9
 """Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
@@ -25,7 +126,7 @@ Watch = Callable[[float], bool]
 
 
 class ScoreStopped(Exception):
-    """A score was stopped by the one who watched it: there is none."""
+    """The `watch` callable stopped a score; there is no result."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +140,12 @@ class PartScore:
 
 @dataclass(frozen=True, slots=True)
 class SensorScore:
-    """One sensor: alone, missing, and how much of what it sees the vehicle stops.
+    """One sensor: its score alone, the loss without it, and its occlusion by the vehicle.
 
-    `entropy` and `coverage` are those of a rig of this sensor alone; `lost` is what the whole rig's
-    entropy rises by when the sensor fails. `beams` are a LiDAR's, or places spread evenly over a
-    camera's picture; `stopped` of them the vehicle stops, `stopped_by` part of it. 0 where a kind
-    does not tell.
+    `entropy` and `coverage` are those of a rig of this sensor alone; `lost` is the rise of the
+    whole rig's entropy when the sensor fails. `beams` counts a LiDAR's beams, or pixels spread
+    evenly over a camera's image; the vehicle occludes `stopped` of them, `stopped_by` counts them
+    by part. All are 0 for a kind without this information.
     """
 
     entropy: float
@@ -59,7 +160,7 @@ class SensorScore:
 class GroundMap:
     """Entropy and coverage of every column, averaged over height by the prior; (nx, ny) each.
 
-    `mass` is the prior in each column. Columns without any, as those inside the vehicle, hold NaN.
+    `mass` is the prior in each column. Columns without mass, also inside the vehicle, hold NaN.
     """
 
     entropy: NDArray[np.float64]
@@ -81,17 +182,17 @@ class GroundMap:
 
 
 def ground_map(columns: NDArray[np.float64]) -> GroundMap:
-    """Return the map of columns (3, nx, ny): entropy and coverage weighed by the prior, and it."""
+    """Return the map of columns (3, nx, ny): entropy and coverage times prior, and the prior."""
     entropy, coverage, mass = columns
     safe = np.where(mass > 0.0, mass, np.nan)
-    return GroundMap(*map(frozen, (entropy / safe, coverage / safe, mass.copy())))
+    return GroundMap(*map(read_only, (entropy / safe, coverage / safe, mass.copy())))
 
 
 @dataclass(frozen=True, slots=True)
 class Glance:
-    """What a sampled score tells of the whole rig: nothing of its sensors one by one.
+    """The summary of a sampled score: the whole rig, without the part by sensor.
 
-    Fields are those of `Score`, and the same numbers to the bit.
+    The fields are those of `Score`, with the same numbers to the bit.
     """
 
     entropy: float
@@ -114,22 +215,22 @@ class Score:
     coverage : float
         Prior mass with m > 0 for some sensor, 0 to 1.
     stderr : float
-        Standard error of `entropy`; 0 for a score of the whole grid, and for no other.
+        Standard error of `entropy`; 0 only for a score of the whole grid.
     per_class : dict of PartScore
     per_zone : dict of PartScore
         Zones overlap: see `zones.ZONES`. A zone without prior mass is left out.
     per_sensor : dict of SensorScore
     voxels : int
-        Voxels looked at.
+        Number of voxels evaluated.
     ground_map : GroundMap or None
         None for a sampled score.
     draft : bool
-        Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+        Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     objects : ObjectScore or None
-        Of a score on objects: entropy, coverage and the rest are then means over objects, by their
-        weights, and no voxel was looked at.
+        Only for a score on objects: entropy, coverage and the other figures are then weighted
+        means over objects, and no voxel was evaluated.
     scatter : Scatter or None
-        How the figures scatter over the sample, for the error of a difference; None on the grid.
+        Residuals of the figures by batch, for the error of a difference; None for a grid score.
     """
 
     entropy: float
@@ -160,9 +261,11 @@ class Score:
         }
 
 
-def sensor_score(entropy: float, coverage: float, lost: float, stopped: Stopped) -> SensorScore:
-    """Put together what is known of one sensor."""
-    return SensorScore(entropy, coverage, lost, stopped.beams, stopped.stopped, stopped.by_part)
+def sensor_score(entropy: float, coverage: float, lost: float, occlusion: Occlusion) -> SensorScore:
+    """Return the score of one sensor; `occlusion` counts its occluded beams."""
+    return SensorScore(
+        entropy, coverage, lost, occlusion.rays, occlusion.occluded, occlusion.by_part
+    )
 
 
 def rounded(value: float) -> float:

@@ -1,34 +1,29 @@
 """Searches for better placements."""
 
-from .areas import MountArea
-from .axes import AXES, POSITION_AXES, pose_from_values, pose_values
-from .batch import judge_all
-from .coding import Candidate, Coding
-from .designs import DesignSpace, Picks
-from .domains import seat_of
-from .feasible import first_allowed
-from .journal import Journal, JudgedRig
+from ..scoring.protocol import Judgement, Objective
+from .design_space import DesignSearch, DesignSpace, Picks, above_front, pareto_front
+from .design_variable import AXES, POSITION_AXES, pose_from_values, pose_values
+from .dispatch import evaluate_all
+from .domains import snap_to_mount, standoff_point
+from .journal import EvaluatedRig, Journal
+from .linkage import mirrored
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
-from .mounts import AnyMount, Constraints, Mounting, NoGo, Slot, SlotMount, SurfaceMount
-from .objective import Judgement, Objective
+from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, optimize
-from .pareto import DesignSearch, above_front, pareto_front
-from .processes import Processes, live_as_long_as_the_parent, started
-from .robust import RobustObjective, objective_of
-from .robustness import Robustness, Stands, robustness
-from .schedule import Schedule
+from .parametrization import Candidate, Parametrization, feasible_start
+from .processes import LazyProcesses, Processes, end_with_parent, start_processes
+from .robustness import RigRobustness, Robustness, RobustObjective, objective_of, robustness
 from .search_space import (
     PAPER_FREE,
+    Schedule,
     SearchSpace,
     checked_axes,
     checked_bounds,
     default_bounds,
 )
-from .seating import seated
-from .selection import Choice, Option, Selection
-from .sites import Site
-from .ties import mirrored
+from .selection import Choice, Option, Selection, Site
 from .tolerance import Tolerance, mounted_off
+from .worker_pool import Call, Reply, WorkerDied, run_tasks
 
 __all__ = [
     "AXES",
@@ -38,23 +33,27 @@ __all__ = [
     "POSITION_AXES",
     "SCHEDULED_METHOD",
     "AnyMount",
+    "Call",
     "Candidate",
     "Choice",
-    "Coding",
     "Constraints",
     "DesignSearch",
     "DesignSpace",
+    "EvaluatedRig",
     "Journal",
-    "JudgedRig",
     "Judgement",
+    "LazyProcesses",
     "Method",
     "MountArea",
     "Mounting",
     "NoGo",
     "Objective",
     "Option",
+    "Parametrization",
     "Picks",
     "Processes",
+    "Reply",
+    "RigRobustness",
     "RobustObjective",
     "Robustness",
     "Schedule",
@@ -63,18 +62,18 @@ __all__ = [
     "Site",
     "Slot",
     "SlotMount",
-    "Stands",
     "Step",
     "SurfaceMount",
     "Tolerance",
+    "WorkerDied",
     "above_front",
     "checked_axes",
     "checked_bounds",
     "checked_method",
     "default_bounds",
-    "first_allowed",
-    "judge_all",
-    "live_as_long_as_the_parent",
+    "end_with_parent",
+    "evaluate_all",
+    "feasible_start",
     "mirrored",
     "mounted_off",
     "objective_of",
@@ -83,7 +82,8 @@ __all__ = [
     "pose_from_values",
     "pose_values",
     "robustness",
-    "seat_of",
-    "seated",
-    "started",
+    "run_tasks",
+    "snap_to_mount",
+    "standoff_point",
+    "start_processes",
 ]

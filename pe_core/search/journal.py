@@ -1,7 +1,8 @@
-"""What a search was told, in order: from it a search goes on, to the bits of one that never ended.
+"""The journal of a search: all values that it was told, in order.
 
-Methods draw from their seed and follow what they are told, and from nothing else. So the state of a
-search is the list of the values it was told, and no more is ever stored of it.
+Methods draw from their seed and follow the answers they are told, and nothing else. So the state of
+a search is the list of these values, and no other state is ever stored: a search that resumes from
+a journal ends at the same bits as one that was never interrupted.
 """
 
 from __future__ import annotations
@@ -12,119 +13,120 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from typing import NamedTuple
 
-from ..errors import InputError
-from ..scene.sensors import Rig
-from ..scoring import Judgement
-from .batch import judge_all
-from .objective import Objective
+from ..base.errors import InputError
+from ..scene.rig import Rig
+from ..scoring.protocol import Judgement, Objective
+from .dispatch import evaluate_all
 
-MARK_BYTES = 4
-"""A placement is known again by so much of its hash."""
+DIGEST_BYTES = 4
+"""Length of the digest that identifies a placement."""
 
 
-class JudgedRig(NamedTuple):
-    """What was told of a placement, and a mark by which the placement is known again."""
+class EvaluatedRig(NamedTuple):
+    """The value of a placement, and a digest that identifies the placement."""
 
     entropy: float
     is_lower_bound: bool
-    mark: str
+    digest: str
 
 
 class Journal:
-    """Values that a search was told, in the order in which it asked.
+    """Values that a search was told, in the order of its questions.
 
     Parameters
     ----------
-    entries : iterable of JudgedRig
-        Of a search that was broken off: these are told again without being judged.
+    entries : iterable of EvaluatedRig
+        Of an interrupted search: these are replayed, their placements are not evaluated again.
     source : str
-        What messages call it.
+        Name of the journal in messages.
     """
 
-    def __init__(self, entries: Iterable[JudgedRig] = (), source: str = "journal") -> None:
-        self._entries, self._asked, self._source = list(entries), 0, source
+    def __init__(self, entries: Iterable[EvaluatedRig] = (), source: str = "journal") -> None:
+        self._entries, self._position, self._source = list(entries), 0, source
 
     @property
-    def entries(self) -> tuple[JudgedRig, ...]:
-        """All that was told so far; it may be asked for while another thread searches."""
+    def entries(self) -> tuple[EvaluatedRig, ...]:
+        """All entries so far; may be read while another thread searches."""
         return tuple(self._entries)
 
-    def over(self, objectives: Sequence[Objective]) -> list[Objective]:
-        """Return objectives (those of a method's levels) that tell what the journal knows.
+    def wrap(self, objectives: Sequence[Objective]) -> list[Objective]:
+        """Return objectives, one for each level of a method, that replay and extend the journal.
 
-        What it does not know yet is asked of the given ones, and noted.
+        Behind the end of the journal they evaluate with the given objectives.
         """
-        return [Recalled(self, objective, level) for level, objective in enumerate(objectives)]
+        return [JournaledObjective(self, inner, level) for level, inner in enumerate(objectives)]
 
-    def recall(self, rig: Rig, level: int) -> Judgement | None:
-        """Return what is known of the placement that is asked for next; None behind the end.
+    def replay(self, rig: Rig, level: int) -> Judgement | None:
+        """Return the journaled value of the next placement; None behind the end of the journal.
 
         Raises
         ------
         InputError
-            When another placement was asked for here.
+            When the journal has another placement here.
         """
-        if self._asked == len(self._entries):
+        if self._position == len(self._entries):
             return None
-        entry, mark = self._entries[self._asked], _mark(rig, level)
-        if entry.mark != mark:
+        entry, digest = self._entries[self._position], _digest(rig, level)
+        if entry.digest != digest:
             expected = "the placements this search asks for (of the same version, on such a system)"
-            raise InputError(self._source, f"judged[{self._asked}]", expected, "another")
-        self._asked += 1
+            field = f"judged[{self._position}]"
+            raise InputError(self._source, field, expected, "another")
+        self._position += 1
         return Judgement(entry.entropy, entry.is_lower_bound)
 
-    def note(self, rig: Rig, level: int, told: Judgement) -> None:
-        """Keep what was told of the placement that was asked for last."""
-        self._entries.append(JudgedRig(told.entropy, told.is_lower_bound, _mark(rig, level)))
-        self._asked += 1
+    def record(self, rig: Rig, level: int, value: Judgement) -> None:
+        """Append the value of a placement that is not in the journal yet."""
+        entry = EvaluatedRig(value.entropy, value.is_lower_bound, _digest(rig, level))
+        self._entries.append(entry)
+        self._position += 1
 
 
-class Recalled:
-    """An objective that tells again what a journal knows, and notes what else it is asked."""
+class JournaledObjective:
+    """An objective that replays a journal, and records what it evaluates behind the end."""
 
     def __init__(self, journal: Journal, objective: Objective, level: int = 0) -> None:
         self._journal, self._objective, self._level = journal, objective, level
 
     def entropy(self, rig: Rig) -> float:
-        """As the objective's, without asking it again."""
-        known = self._journal.recall(rig, self._level)
-        if known is None:
-            known = Judgement(self._objective.entropy(rig), False)
-            self._journal.note(rig, self._level, known)
-        return known.entropy
+        """Return the entropy of a rig, from the journal or from the objective [nats]."""
+        value = self._journal.replay(rig, self._level)
+        if value is None:
+            value = Judgement(self._objective.entropy(rig), False)
+            self._journal.record(rig, self._level, value)
+        return value.entropy
 
     def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
-        """As the objective's, without asking it again."""
-        known = self._journal.recall(rig, self._level)
-        if known is None:
-            known = self._objective.judge(rig, below)
-            self._journal.note(rig, self._level, known)
-        return known
+        """Return the value of a rig, from the journal or from the objective."""
+        value = self._journal.replay(rig, self._level)
+        if value is None:
+            value = self._objective.judge(rig, below)
+            self._journal.record(rig, self._level, value)
+        return value
 
-    def judge_all(
-        self, rigs: Sequence[Rig], below: float, executor: Executor | None
+    def evaluate_all(
+        self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
     ) -> list[Judgement]:
-        """Judge several rigs: the first ones the journal may know, the objective is asked the rest.
+        """Evaluate several rigs: the first ones may be in the journal, the others are evaluated.
 
-        What workers are sent is the objective alone.
+        Workers are sent the objective without the journal.
         """
-        told = list(self._known(rigs))
-        rest = rigs[len(told) :]
-        for rig, found in zip(rest, judge_all(self._objective, rest, below, executor), strict=True):
-            self._journal.note(rig, self._level, found)
-            told.append(found)
-        return told
+        values = list(self._replayed(rigs))
+        new_rigs = rigs[len(values) :]
+        new_values = evaluate_all(self._objective, new_rigs, cutoff, executor)
+        for rig, value in zip(new_rigs, new_values, strict=True):
+            self._journal.record(rig, self._level, value)
+        return values + new_values
 
-    def _known(self, rigs: Sequence[Rig]) -> Iterator[Judgement]:
+    def _replayed(self, rigs: Sequence[Rig]) -> Iterator[Judgement]:
         for rig in rigs:
-            known = self._journal.recall(rig, self._level)
-            if known is None:
+            value = self._journal.replay(rig, self._level)
+            if value is None:
                 return
-            yield known
+            yield value
 
 
-def _mark(rig: Rig, level: int) -> str:
-    """Return a mark of a placement: others have another, but for one in four billion."""
-    placed = ((s.name, s.model.name, s.pose.position, s.pose.rpy) for s in rig)
-    seen = repr((level, *placed)).encode()
-    return hashlib.blake2b(seen, digest_size=MARK_BYTES).hexdigest()
+def _digest(rig: Rig, level: int) -> str:
+    """Return a digest of a placement; two placements share one in four billion digests."""
+    poses = ((s.name, s.model.name, s.pose.position, s.pose.rpy) for s in rig)
+    identity = repr((level, *poses)).encode()
+    return hashlib.blake2b(identity, digest_size=DIGEST_BYTES).hexdigest()

@@ -1,4 +1,4 @@
-"""What a study says of where sensors may sit: mounts, pairs, groups, constraints."""
+"""Where sensors may be mounted, as a study declares it: mounts, pairs, groups, constraints."""
 
 from __future__ import annotations
 
@@ -7,11 +7,64 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..errors import InputError, shown
-from ..scene.geometry import Pose
-from ..text.fixed import FixedDict
-from ..text.values import A_NAME, ANY, LENGTH, Number, choice, listed, pair
-from .areas import MountArea
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import InputError, shown
+from ..base.read_only import ReadOnlyDict
+from ..base.setting import FLAG, Panel, check_settings, setting
+from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, choice, listed, pair
+from ..geometry.poses import Pose
+from ..scene.vehicle import Vehicle
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MountArea:
+    """Faces on which a sensor moves, independent of the parts of the body.
+
+    Parameters
+    ----------
+    triangles : (F, 3, 3) float
+        Corners in the ground frame [m].
+    file : str, optional
+        The mesh file of the faces, as a study names it.
+    parts : sequence of str
+        The parts of that file; none: all of it.
+
+    Raises
+    ------
+    InputError
+        When the triangles are not (F, 3, 3), none of them has an area, or a coordinate is not
+        finite.
+    """
+
+    triangles: Floats = field(repr=False)
+    file: str | None = None
+    parts: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        put, who = object.__setattr__, "mount"
+        try:
+            put(self, "triangles", Vehicle(self.triangles).triangles)  # checked as a body's are
+        except InputError as error:
+            raise InputError(who, "area", error.expected, error.found) from None
+        if self.file is not None:
+            put(self, "file", A_PATH.checked(who, "area", self.file))
+        if (names := listed(self.parts)) is None:
+            raise InputError(who, "parts", "names of the area's parts", shown(self.parts))
+        put(self, "parts", tuple(A_NAME.checked(who, "parts", name) for name in names))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, MountArea):
+            return NotImplemented
+        same = (self.file, self.parts) == (other.file, other.parts)
+        return same and np.array_equal(self.triangles, other.triangles)
+
+    def __hash__(self) -> int:
+        return hash((self.file, self.parts, len(self.triangles)))
+
 
 ORIENTATIONS = ("upright", "normal", "facing")
 STANDOFF = Number(0.0, 10.0, unit="m")
@@ -27,15 +80,16 @@ class SurfaceMount:
     Parameters
     ----------
     parts : sequence of str
-        Names of the parts; none where an area is given.
+        Names of the parts; empty if an area is given.
     standoff : float
-        From the surface, along its normal, to the middle of the base of the sensor's housing (of
-        one that is facing: of its back); to the sensor's origin where its housing is not known [m].
+        Distance along the normal from the surface to the middle of the base of the sensor's housing
+        (with orientation "facing": of its back), or to the sensor's origin if its housing is not
+        known [m].
     orientation : {"upright", "normal", "facing"}
-        Whether the sensor's angles are to the ground frame, to one whose z axis is the surface's
-        normal (a base plate), or to one whose x axis is (a camera in a bumper).
+        Whether the sensor's angles are relative to the ground frame, to a frame whose z axis is the
+        surface's normal (a base plate), or to one whose x axis is (a camera in a bumper).
     area : MountArea, optional
-        Faces of their own, in place of parts: what was painted in Blender, or has a material there.
+        Faces in place of parts: painted in Blender, or with a certain material.
     """
 
     parts: Sequence[str] = ()
@@ -72,7 +126,7 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class SlotMount:
-    """A mount: a list of named poses, of which a sensor takes one. No two share a slot."""
+    """A mount: a list of named poses, of which a sensor takes one. No two sensors share a slot."""
 
     slots: Sequence[Slot]
 
@@ -84,7 +138,7 @@ class SlotMount:
         object.__setattr__(self, "slots", tuple(slots))
 
     def nearest(self, position: Sequence[float]) -> Slot:
-        """Return the slot that is nearest to a place (3,) [m]."""
+        """Return the slot that is nearest to a position (3,) [m]."""
         return min(self.slots, key=lambda slot: math.dist(slot.pose.position, position))
 
 
@@ -93,7 +147,7 @@ AnyMount = SurfaceMount | SlotMount
 
 @dataclass(frozen=True, slots=True)
 class NoGo:
-    """A box where no part of a sensor may be; an axis that is not said has no ends [m]."""
+    """A box where no part of a sensor may be [m]; an axis without a range is unbounded."""
 
     name: str
     x: Range | None = None
@@ -112,7 +166,7 @@ class NoGo:
 
 @dataclass(frozen=True, slots=True)
 class Constraints:
-    """What every placement of a search keeps to.
+    """The constraints on every placement of a search.
 
     Parameters
     ----------
@@ -128,20 +182,36 @@ class Constraints:
     no_go : sequence of NoGo
     """
 
-    max_height: float | None = None
-    max_width: float | None = None
-    min_distance: float = 0.0
-    clear_housings: bool = False
+    max_height: float | None = setting(
+        None,
+        LENGTH,
+        "No housing's top is above this",
+        Panel("max_height", "Max Height", soft_max=5.0, zero="no limit", precision=3),
+    )
+    max_width: float | None = setting(
+        None,
+        LENGTH,
+        "Overall width: no housing is farther than half of this from the middle",
+        Panel("max_width", "Max Width", soft_max=4.0, zero="no limit", precision=3),
+    )
+    min_distance: float = setting(
+        0.0,
+        DISTANCE,
+        "Smallest distance between any two sensors' origins",
+        Panel("min_distance", "Min Distance", soft_max=2.0, precision=3),
+    )
+    clear_housings: bool = setting(
+        False,
+        FLAG,
+        "No housing reaches into the body or into another housing. For sensors on a surface "
+        "this always holds",
+        Panel("clear_housings", "Clear Housings"),
+    )
     no_go: Sequence[NoGo] = ()
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "optimize"
-        for name in ("max_height", "max_width"):
-            if (value := getattr(self, name)) is not None:
-                put(self, name, LENGTH.checked(who, name, value))
-        put(self, "min_distance", DISTANCE.checked(who, "min_distance", self.min_distance))
-        if not isinstance(self.clear_housings, bool):
-            raise InputError(who, "clear_housings", "true or false", shown(self.clear_housings))
+        check_settings(self, who)
         areas = listed(self.no_go)
         if areas is None or not all(isinstance(area, NoGo) for area in areas):
             raise InputError(who, "no_go", "a list of boxes", shown(self.no_go))
@@ -151,13 +221,13 @@ class Constraints:
 
 @dataclass(frozen=True, slots=True)
 class Mounting:
-    """Where a rig's sensors may sit, beside their bounds.
+    """Where the sensors of a rig may be mounted, besides their bounds.
 
     Parameters
     ----------
     mounts : mapping of name to SurfaceMount or SlotMount
     on : mapping of sensor name to name of its mount
-        A sensor that is not named moves in its box of coordinates.
+        A sensor that is not named moves within its bounds.
     pairs : sequence of (str, str)
         Two sensors each: the second is the first's mirror image across y = 0.
     groups : sequence of sequence of str
@@ -167,7 +237,7 @@ class Mounting:
     Raises
     ------
     InputError
-        When a name or a number is impossible, or a sensor is on no mount that there is.
+        When a name or a number is impossible, or a sensor is on a mount that does not exist.
     """
 
     mounts: Mapping[str, AnyMount] = field(default_factory=dict)
@@ -189,35 +259,35 @@ class Mounting:
             if name not in self.mounts:
                 known = f"one of {', '.join(self.mounts)}" if self.mounts else NO_MOUNT
                 raise InputError(f"sensor {sensor!r}", "mount", known, shown(name))
-        put(self, "mounts", FixedDict(self.mounts))
-        put(self, "on", FixedDict(self.on))
-        put(self, "pairs", _ties("pair", self.pairs, lambda count: count == 2, "two sensors"))
-        put(self, "groups", _ties("group", self.groups, lambda count: count > 1, "sensors"))
+        put(self, "mounts", ReadOnlyDict(self.mounts))
+        put(self, "on", ReadOnlyDict(self.on))
+        put(self, "pairs", _links("pair", self.pairs, lambda count: count == 2, "two sensors"))
+        put(self, "groups", _links("group", self.groups, lambda count: count > 1, "sensors"))
 
     def mount_of(self, sensor: str) -> AnyMount | None:
-        """Return a sensor's mount; None where it moves in a box of coordinates."""
+        """Return a sensor's mount; None if it moves within its bounds."""
         name = self.on.get(sensor)
         return None if name is None else self.mounts[name]
 
     def unbounded(self, sensor: str) -> str:
-        """Return why a sensor has no bounds of its own, in words; empty for one that may have."""
+        """Return why a sensor has no bounds of its own, as text; empty if it may have some."""
         if isinstance(self.mount_of(sensor), SlotMount):
             return "a sensor on a list of slots"
-        follows = any(sensor == pair[1] for pair in self.pairs)
-        follows |= any(sensor in group[1:] for group in self.groups)
-        return "a sensor that follows another" if follows else ""
+        is_following = any(sensor == pair[1] for pair in self.pairs)
+        is_following |= any(sensor in group[1:] for group in self.groups)
+        return "a sensor that follows another" if is_following else ""
 
 
-def _ties(
-    field: str, ties: Any, enough: Callable[[int], bool], expected: str
+def _links(
+    field: str, links: Any, is_count: Callable[[int], bool], expected: str
 ) -> tuple[tuple[str, ...], ...]:
-    checked, given = [], listed(ties)
+    checked, given = [], listed(links)
     if given is None:
-        raise InputError("optimize", field, "a list of names' lists", shown(ties))
-    for tie in given:
-        names = listed(tie)
-        if names is None or not enough(len(names)):
-            raise InputError("optimize", field, f"the names of {expected}", shown(tie))
+        raise InputError("optimize", field, "a list of names' lists", shown(links))
+    for link in given:
+        names = listed(link)
+        if names is None or not is_count(len(names)):
+            raise InputError("optimize", field, f"the names of {expected}", shown(link))
         names = [A_NAME.checked("optimize", field, name) for name in names]
         _once("optimize", field, names)
         checked.append(tuple(names))

@@ -1,4 +1,4 @@
-"""The search for a better placement, by any method, as one generator of steps."""
+"""The search for a better placement by any method, as a generator of steps."""
 
 from __future__ import annotations
 
@@ -8,43 +8,40 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
 
-from ..scene.sensors import Rig
-from .batch import judge_all
-from .coding import Candidate, Coding
-from .feasible import first_allowed
+from ..scene.rig import Rig
+from ..scoring.protocol import Judgement, Objective
+from .dispatch import evaluate_all
 from .methods import METHODS, Given, Question, checked_method
-from .methods.method import Answered, Asking
-from .objective import Judgement, Objective
-from .schedule import Schedule
-from .search_space import SearchSpace
+from .methods.method import JudgedVectors, QuestionStream
+from .parametrization import Candidate, Parametrization, feasible_start
+from .search_space import Schedule, SearchSpace
 
 BATCH = 16
-"""Candidates that a method may ask for at once where several are judged at a time."""
+"""Candidates that a method may ask for at once when several are evaluated in parallel."""
 
-
-Hands = Callable[[], Executor | None]
+ExecutorSource = Callable[[], Executor | None]
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One candidate tried.
+    """A step of a search: one candidate evaluated.
 
     Attributes
     ----------
     best : Rig
-        The best placement so far.
+        The incumbent: the best placement so far.
     entropy : float
         Its perception entropy, on the voxels of the level [nats].
     evaluations : int
-        Rigs scored so far, the start included.
+        Rigs evaluated so far, the start included.
     fraction : float
-        How much of the search is done, 0 to 1.
+        Progress of the search, 0 to 1.
     round : int
         Round, from 0.
     improved : bool
-        Whether this candidate became the best, or the best was judged anew on another level.
+        Whether this candidate became the incumbent, or the incumbent was evaluated on a new level.
     level : int
-        Which of the objectives judged it: methods that raise the number of voxels have several.
+        The objective that evaluated it: methods that raise the number of voxels have several.
     """
 
     best: Rig
@@ -65,18 +62,19 @@ def optimize(
     *,
     method: str | None = None,
     evaluations: int = 0,
-    executor: Executor | Hands | None = None,
+    executor: Executor | ExecutorSource | None = None,
 ) -> Iterator[Step]:
-    """Search for the placement of lowest perception entropy; yields a step a candidate.
+    """Search for the placement of lowest perception entropy; yields one step for each candidate.
 
-    What breaks a rule of the search space is neither scored nor returned; a start that does gives
-    way to a placement near it. Stop whenever you like: the last step holds the best so far.
+    A placement that breaks a rule of the search space is neither evaluated nor returned; if the
+    start breaks one, the search starts from a feasible placement near it. The search may be stopped
+    at any step: the last one holds the incumbent.
 
     Parameters
     ----------
     objective : Objective, or sequence of Objective
-        What judges placements: an `Evaluator`, say. Several: those of the method's levels, the
-        cheapest first.
+        What is minimised, for example an `Evaluator`. Several: one for each level of the method,
+        the cheapest first.
     rig : Rig
         Where the search starts.
     search_space : SearchSpace
@@ -85,12 +83,12 @@ def optimize(
     schedule : Schedule, optional
         Of the method "random"; the paper's by default: seven rounds of 1000 candidates.
     method : str, optional
-        A name of `METHODS`; "random" for who gives a schedule and no method.
+        A name of `METHODS`; "random" if a schedule is given and no method.
     evaluations : int
-        How many placements are judged at most; 0: as many as the method takes.
+        How many placements are evaluated at most; 0: as many as the method takes.
     executor : concurrent.futures.Executor, or callable, optional
-        Judges several candidates at once. The steps do not depend on it. A callable returns an
-        executor, or None as long as there is none; it is asked again and again.
+        Evaluates several candidates in parallel. The steps do not depend on it. A callable returns
+        an executor, or None as long as there is none; it is called before every batch.
 
     Raises
     ------
@@ -98,62 +96,67 @@ def optimize(
         When there is no such method, the search space does not fit the rig, or no placement keeps
         to all of its rules.
     """
-    chosen = METHODS[checked_method("optimize", method, schedule is not None)]
+    method_class = METHODS[checked_method("optimize", method, schedule is not None)]
     levels = list(objective) if isinstance(objective, Sequence) else [objective]
-    coding, schedule = Coding(rig, search_space), schedule or Schedule()
-    start = first_allowed(coding, seed)
+    parametrization, schedule = Parametrization(rig, search_space), schedule or Schedule()
+    start = feasible_start(parametrization, seed)
     first = Step(start.rig, levels[0].entropy(start.rig), 1, 0.0, 0, False)
     yield first
-    if coding.unknowns:
-        hands = executor if callable(executor) else lambda: executor
+    if parametrization.variables:
+        executor_source = executor if callable(executor) else lambda: executor
         batch = 1 if executor is None else BATCH
-        told = (seed, schedule, len(levels), batch, evaluations)
-        given = Given(coding, start, first.entropy, *told)
-        yield from _steps(first, chosen.ask(given), levels, evaluations or sys.maxsize, hands)
+        options = (seed, schedule, len(levels), batch, evaluations)
+        given = Given(parametrization, start, first.entropy, *options)
+        budget = evaluations or sys.maxsize
+        yield from _steps(first, method_class.ask(given), levels, budget, executor_source)
 
 
 def _steps(
-    step: Step, asking: Asking, levels: Sequence[Objective], most: int, hands: Hands
+    step: Step,
+    questions: QuestionStream,
+    levels: Sequence[Objective],
+    budget: int,
+    executor_source: ExecutorSource,
 ) -> Iterator[Step]:
-    """Answer a method's questions, one step a candidate, until it or the budget ends."""
-    question, done = next(asking, None), 0
-    while question is not None and step.evaluations < most:
+    """Answer a method's questions, one step for each candidate, until it or the budget ends."""
+    question, done = next(questions, None), 0
+    while question is not None and step.evaluations < budget:
         if question.level != step.level:
-            yield (step := _judged_anew(step, levels[question.level], question))
-        answers: Answered = []
-        judged = _judged(question, levels[question.level], hands())
-        for candidate, answer in zip(question.candidates, judged, strict=True):
+            yield (step := _reevaluated(step, levels[question.level], question))
+        answers: JudgedVectors = []
+        evaluated = _evaluated(question, levels[question.level], executor_source())
+        for candidate, answer in zip(question.candidates, evaluated, strict=True):
             answers.append(answer)
             done += 1
-            fraction = max(done / question.total, (step.evaluations + 1) / most)
-            yield (step := _after(step, candidate, answer, question.round, fraction))
-            if step.evaluations == most:
+            fraction = max(done / question.total, (step.evaluations + 1) / budget)
+            yield (step := _next_step(step, candidate, answer, question.round, fraction))
+            if step.evaluations == budget:
                 return
-        question = _next_question(asking, answers)
+        question = _next_question(questions, answers)
 
 
-def _judged(
+def _evaluated(
     question: Question, objective: Objective, executor: Executor | None
 ) -> Iterator[Judgement | None]:
-    """Yield the answers: all judged at once by an executor, or each when it is asked for."""
+    """Yield the answers: all evaluated at once by an executor, or one after the other here."""
     rigs = [c.rig for c in question.candidates if c is not None]
-    judge = partial(judge_all, objective, below=question.below, executor=executor)
-    told = iter(judge(rigs)) if executor else (judge([rig])[0] for rig in rigs)
+    evaluate = partial(evaluate_all, objective, cutoff=question.cutoff, executor=executor)
+    answers = iter(evaluate(rigs)) if executor else (evaluate([rig])[0] for rig in rigs)
     for candidate in question.candidates:
-        yield None if candidate is None else next(told)
+        yield None if candidate is None else next(answers)
 
 
-def _judged_anew(step: Step, objective: Objective, question: Question) -> Step:
-    """Return the step at which the best so far is looked at on another level."""
+def _reevaluated(step: Step, objective: Objective, question: Question) -> Step:
+    """Return the step in which the incumbent is evaluated on another level."""
     entropy, count = objective.entropy(step.best), step.evaluations + 1
     number, level = question.round, question.level
     return Step(step.best, entropy, count, step.fraction, number, True, level)
 
 
-def _after(
+def _next_step(
     step: Step, candidate: Candidate | None, answer: Judgement | None, number: int, fraction: float
 ) -> Step:
-    """Return the step after a candidate was judged, or none could be drawn."""
+    """Return the step after a candidate; None where no feasible candidate was sampled."""
     best, entropy, count, improved = step.best, step.entropy, step.evaluations, False
     if candidate is not None and answer is not None:
         count += 1
@@ -163,8 +166,8 @@ def _after(
     return Step(best, entropy, count, min(fraction, 1.0), number, improved, step.level)
 
 
-def _next_question(asking: Asking, answers: Answered) -> Question | None:
+def _next_question(questions: QuestionStream, answers: JudgedVectors) -> Question | None:
     try:
-        return asking.send(answers)
+        return questions.send(answers)
     except StopIteration:
         return None

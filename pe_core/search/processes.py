@@ -1,4 +1,4 @@
-"""Worker processes as an executor that can be started anywhere, inside Blender too."""
+"""Worker processes as an executor: they can be started anywhere, inside Blender too."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -19,34 +20,38 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 
 START_S = 60.0
-"""Processes that are not up by then never will be."""
-ENDING = ("SIGINT", "SIGHUP")
+"""Processes that are not up after this time never will be."""
+SHORT_S = 2.0
+"""A search that ends within this time needs no processes: starting them takes as long."""
+TERMINAL_SIGNALS = ("SIGINT", "SIGHUP")
 """Signals that a terminal sends to all processes at once; Windows has no SIGHUP.
 
-SIGTERM is not among them: by it a pool ends those that are left when one has died, and waits until
+SIGTERM is not among them: a pool in which one process died ends the others by it, and waits until
 they are gone."""
 
-BEGIN = """
+INITIALIZER = """
 import sys, types
 for name, folder in {packages!r}:
     if name not in sys.modules:
         sys.modules[name] = types.ModuleType(name)
         sys.modules[name].__path__ = [folder]
 from importlib import import_module
-import_module({here!r}).live_as_long_as_the_parent()
+import_module({here!r}).end_with_parent()
 """
-"""What a process does first. Packages that hold the engine, as the add-on does inside Blender, are
-not run in it: they get empty ones to stand for them. It is text, as nothing can be imported yet."""
+"""The first code that a worker process runs. Packages that contain the engine, as the add-on does
+inside Blender, are not run in it: empty packages stand for them. It is text, because nothing can be
+imported yet."""
 
 
 class Processes(Executor):
-    """Processes that judge candidates; one that died is replaced.
+    """Worker processes as an executor; processes that died are replaced.
 
     Functions and arguments must not come from the main script, which workers do not run.
 
     Parameters
     ----------
     count : int
+        How many processes.
     """
 
     def __init__(self, count: int) -> None:
@@ -55,12 +60,12 @@ class Processes(Executor):
 
     def _new_pool(self) -> ProcessPoolExecutor:
         context = multiprocessing.get_context("spawn")
-        begin = BEGIN.format(packages=_packages_around(), here=__name__)
+        initializer = INITIALIZER.format(packages=_packages_around(), here=__name__)
         with _signals_blocked():
-            return ProcessPoolExecutor(self._count, context, exec, (begin,))
+            return ProcessPoolExecutor(self._count, context, exec, (initializer,))
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
-        """Have a function called in a process; in a new one, if they broke down."""
+        """Call a function in a process; start new processes if the pool is broken."""
         with self._lock, _without_main(), _signals_blocked():
             try:
                 return self._pool.submit(fn, *args, **kwargs)
@@ -69,7 +74,7 @@ class Processes(Executor):
                 return self._pool.submit(fn, *args, **kwargs)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the processes; with `cancel_futures` in the middle of what they do."""
+        """End the processes; with `cancel_futures` in the middle of their tasks."""
         processes = list((getattr(self._pool, "_processes", None) or {}).values())
         if cancel_futures:
             for process in processes:
@@ -77,8 +82,8 @@ class Processes(Executor):
         self._pool.shutdown(wait, cancel_futures=cancel_futures)
 
 
-def started(count: int | None = None) -> Processes | None:
-    """Return processes that are up; None for one, and where none can be started.
+def start_processes(count: int | None = None) -> Processes | None:
+    """Start processes and wait until they are up; None for a count of 1, or if none can be started.
 
     Parameters
     ----------
@@ -92,15 +97,50 @@ def started(count: int | None = None) -> Processes | None:
     try:
         if all(f.result(START_S) for f in [processes.submit(os.getpid) for _ in range(count)]):
             return processes
-    except Exception:  # whatever a system has against processes: one will do
+    except Exception:  # whatever prevents processes on this system: this one suffices
         pass
     processes.shutdown(wait=False, cancel_futures=True)
     return None
 
 
-def live_as_long_as_the_parent() -> None:
-    """In a worker: leave signals to the parent, and end with it, however it ends."""
-    for name in ENDING:
+class LazyProcesses:
+    """Processes for a search that takes longer than `SHORT_S`; None until they are up.
+
+    Parameters
+    ----------
+    count : int, optional
+        How many processes; by default as many as there are processors, 1: none.
+    """
+
+    def __init__(self, count: int | None = None) -> None:
+        self._count, self._began = count, time.monotonic()
+        self._thread: threading.Thread | None = None
+        self._processes: Processes | None = None
+        self._ended = False
+
+    def __call__(self) -> Executor | None:
+        """Return the processes; the first call after `SHORT_S` begins to start them."""
+        late = time.monotonic() - self._began > SHORT_S
+        if late and self._thread is None and not self._ended:
+            self._thread = threading.Thread(target=self._start, daemon=True)
+            self._thread.start()
+        return self._processes
+
+    def end(self) -> None:
+        """Kill the processes, in the middle of their tasks."""
+        self._ended = True
+        if self._processes is not None:
+            self._processes.shutdown(wait=False, cancel_futures=True)
+
+    def _start(self) -> None:
+        self._processes = start_processes(self._count)
+        if self._ended:
+            self.end()
+
+
+def end_with_parent() -> None:
+    """In a worker: leave signals to the parent process, and end when it ends, however it ends."""
+    for name in TERMINAL_SIGNALS:
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
     parent = multiprocessing.parent_process()
@@ -114,18 +154,18 @@ def _end_after(sentinel: int) -> None:
 
 
 def _packages_around() -> list[tuple[str, str]]:
-    """Names of the packages that hold the engine, outermost first, and the folder in each."""
+    """Names of the packages that contain the engine, outermost first, and the folder of each."""
     names = __name__.split(".")[:-3]  # the engine, its room, and this module come last
-    found = []
+    packages = []
     for number in range(1, len(names) + 1):
         inner = import_module(".".join(__name__.split(".")[: number + 1]))
-        found.append((".".join(names[:number]), os.path.dirname(inner.__path__[0])))
-    return found
+        packages.append((".".join(names[:number]), os.path.dirname(inner.__path__[0])))
+    return packages
 
 
 @contextmanager
 def _without_main() -> Iterator[None]:
-    """Hide the main script from processes that start: they would run it, in no Blender."""
+    """Hide the main script from processes that start: they would run it, outside Blender."""
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
     try:
@@ -136,20 +176,20 @@ def _without_main() -> Iterator[None]:
 
 @contextmanager
 def _signals_blocked() -> Iterator[None]:
-    """Have processes that start meanwhile begin with the signals of `ENDING` blocked.
+    """Block `TERMINAL_SIGNALS` in the processes that are started meanwhile.
 
-    A terminal sends these to all processes at once, also to one that is not far enough to ignore
-    them: a worker would end in the middle of an import, with a traceback. The process that keeps
-    account of semaphores is started here, too: it ignores all of them but SIGHUP.
+    A terminal sends these signals to all processes at once, also to one that does not ignore them
+    yet: a worker would end in the middle of an import, with a traceback. The process that tracks
+    semaphores is started here, too: it ignores all of them but SIGHUP.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows has no such signals
         yield
         return
-    numbers = {getattr(signal, name) for name in ENDING}
+    numbers = {getattr(signal, name) for name in TERMINAL_SIGNALS}
     before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
     try:
         resource_tracker.ensure_running()
-        signal.pthread_sigmask(signal.SIG_BLOCK, numbers)  # that has unblocked SIGINT
+        signal.pthread_sigmask(signal.SIG_BLOCK, numbers)  # ensure_running has unblocked SIGINT
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,4 +1,8 @@
-"""How far the entropy of a search's start and end moves: mounted off, or with a sensor lost."""
+"""Robustness of a rig: its entropy with mounting errors, or with a failed sensor.
+
+`RobustObjective` is what a search minimises under a `Tolerance`; `robustness` reports how far the
+entropy of the start and of the result moves.
+"""
 
 from __future__ import annotations
 
@@ -9,32 +13,67 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.sensors import Rig
-from ..scoring import RigJudge
+from ..base.degrees import degrees_in_file
+from ..scene.rig import Rig
+from ..scoring.protocol import Judgement, Objective, RigJudge
+from ..scoring.scenarios import mean_or_worst
 from ..scoring.score import rounded
-from ..text.degrees import degrees_in_file
 from .tolerance import FRESH, Tolerance, mounted_off, without_each
 
+
+class RobustObjective:
+    """The entropy of a rig with all mounting errors and failures of a tolerance: mean or worst.
+
+    Parameters
+    ----------
+    evaluator : RigJudge
+    tolerance : Tolerance
+    seed : int
+        Seed of the mounting errors, which are the same for every rig.
+    """
+
+    def __init__(self, evaluator: RigJudge, tolerance: Tolerance, seed: int = 0) -> None:
+        self._evaluator, self._tolerance, self._seed = evaluator, tolerance, seed
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the mean of the entropies of a rig's cases, or the highest [nats]."""
+        entropies = self._evaluator.entropies(self._tolerance.cases(rig, self._seed))
+        return mean_or_worst(entropies, self._tolerance.worst)
+
+    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
+        """Return that mean (or highest); where it is not below `below`, perhaps a lower bound.
+
+        As `Evaluator.judge`. The bound is the mean (or highest) of entropies and of lower bounds.
+        """
+        cases = self._tolerance.cases(rig, self._seed)
+        return self._evaluator.judge_together(cases, below, self._tolerance.worst)
+
+
+def objective_of(evaluator: RigJudge, tolerance: Tolerance, seed: int = 0) -> Objective:
+    """Return what a search minimises: the evaluator, or `RobustObjective` if a tolerance is on."""
+    return RobustObjective(evaluator, tolerance, seed) if tolerance.is_on else evaluator
+
+
 WORKSHOP = Tolerance(0.01, math.radians(0.3), draws=6)
-"""The errors of a careful workshop: these are looked at where a study names none."""
+"""The errors of a careful workshop: these are evaluated where a study names none."""
 
 
 @dataclass(frozen=True, slots=True)
-class Stands:
-    """What becomes of one placement's entropy; all on one sample of voxels [nats].
+class RigRobustness:
+    """The entropies of one placement with errors and failures, all on one sample of voxels [nats].
 
     Attributes
     ----------
     entropy : float
-        As it stands.
+        Without errors and failures.
     mounted_off, mounted_worst : float
-        Mean over the mounting errors, and the worst of them.
+        Mean over the mounting errors, and the worst.
     stderr : float
-        Standard error of `mounted_off`, from the scatter of the draws; it errs high.
+        Standard error of `mounted_off`, from the scatter of the draws; an overestimate.
     failed, failed_worst : float or None
-        Mean over the loss of each one sensor, and the worst; None of a single sensor.
+        Mean over the failures of each single sensor, and the worst; None for a single sensor.
     missed : str or None
-        The sensor whose loss is the worst.
+        The sensor whose failure is the worst.
     """
 
     entropy: float
@@ -47,32 +86,32 @@ class Stands:
 
     @property
     def rise(self) -> float:
-        """What mounting errors cost on average [nats]."""
+        """How much mounting errors raise the entropy on average [nats]."""
         return rounded(self.mounted_off - self.entropy)
 
     @property
     def loss(self) -> float | None:
-        """What the loss of one sensor costs on average [nats]; None of a single sensor."""
+        """How much a failed sensor raises it on average [nats]; None for a single sensor."""
         return None if self.failed is None else rounded(self.failed - self.entropy)
 
 
 @dataclass(frozen=True, slots=True)
 class Robustness:
-    """Start and end of a search, mounted off and with a sensor lost.
+    """The robustness of the start and of the result of a search.
 
     Attributes
     ----------
     errors : Tolerance
-        The mounting errors: the study's, or `WORKSHOP`. The search has not seen these draws.
+        The mounting errors: the study's, or `WORKSHOP`. The search did not use these draws.
     samples : int
-        Voxels that it was told on.
-    before, after : Stands
+        How many voxels were evaluated.
+    before, after : RigRobustness
     """
 
     errors: Tolerance
     samples: int
-    before: Stands
-    after: Stands
+    before: RigRobustness
+    after: RigRobustness
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""
@@ -89,46 +128,49 @@ class Robustness:
 def robustness(
     evaluator: RigJudge, before: Rig, after: Rig, tolerance: Tolerance, seed: int = 0
 ) -> Robustness:
-    """Tell how far the entropy of two placements moves.
+    """Return how far errors and failures raise the entropy of two placements.
 
     Parameters
     ----------
     evaluator : RigJudge
-        On a sample: every sensor is measured once for each draw.
+        It should be sampled: every sensor is measured once for each draw.
     before, after : Rig
     tolerance : Tolerance
-        Its mounting errors are looked at where it has some.
+        Its mounting errors are used; without any, those of `WORKSHOP`.
     seed : int
-        Of the study; the errors are others than a search's of this seed.
+        Seed of the study; a search with this seed uses other errors.
     """
     errors = replace(tolerance if tolerance.mounts_off else WORKSHOP, failures=False, worst=False)
-    first = _stands(evaluator, before, errors, seed)
-    last = first if after is before else _stands(evaluator, after, errors, seed)
+    first = _robustness_of(evaluator, before, errors, seed)
+    last = first if after is before else _robustness_of(evaluator, after, errors, seed)
     return Robustness(errors, evaluator.samples, first, last)
 
 
-def _stands(evaluator: RigJudge, rig: Rig, errors: Tolerance, seed: int) -> Stands:
-    off = evaluator.entropies(mounted_off(rig, errors, seed, FRESH))
-    lost = without_each(rig) if len(rig) > 1 else []
-    entropy, *failed = evaluator.entropies([rig, *lost])
+def _robustness_of(evaluator: RigJudge, rig: Rig, errors: Tolerance, seed: int) -> RigRobustness:
+    with_errors = evaluator.entropies(mounted_off(rig, errors, seed, FRESH))
+    rigs_without = without_each(rig) if len(rig) > 1 else []
+    entropy, *failed = evaluator.entropies([rig, *rigs_without])
     about_errors = (
-        rounded(float(np.mean(off))),
-        max(off),
-        _standard_error(off, errors.draws, len(rig)),
+        rounded(float(np.mean(with_errors))),
+        max(with_errors),
+        _standard_error(with_errors, errors.draws, len(rig)),
     )
     if not failed:
-        return Stands(entropy, *about_errors)
+        return RigRobustness(entropy, *about_errors)
     missed = rig.sensors[int(np.argmax(failed))].name
-    return Stands(entropy, *about_errors, rounded(float(np.mean(failed))), max(failed), missed)
+    return RigRobustness(
+        entropy, *about_errors, rounded(float(np.mean(failed))), max(failed), missed
+    )
 
 
 def _standard_error(entropies: Sequence[float], draws: int, sensors: int) -> float:
-    """From the scatter of each sensor's draws, each with that of opposite signs."""
+    """Return the standard error from the scatter of each sensor's pairs of opposite draws."""
     half, variance = draws // 2, 0.0
     if half < 2:
         return 0.0
-    ways = np.array(entropies).reshape(-1, draws)
-    for place in range(sensors):
-        by_draw = np.mean([np.roll(own, way * place) for way, own in enumerate(ways)], axis=0)
+    combinations = np.array(entropies).reshape(-1, draws)
+    for number in range(sensors):
+        aligned = [np.roll(values, k * number) for k, values in enumerate(combinations)]
+        by_draw = np.mean(aligned, axis=0)
         variance += float(np.var(by_draw.reshape(2, half).mean(axis=0), ddof=1)) / half
     return rounded(math.sqrt(variance))

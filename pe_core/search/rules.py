@@ -1,4 +1,4 @@
-"""What a placement must not break, each rule with the words that tell of it."""
+"""The rules that no placement may break, each with its text for messages."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from itertools import combinations
 
 import numpy as np
 
-from ..scene.geometry import FARTHEST_M, dot
-from ..scene.housing import cuts_body
-from ..scene.hulls import Hull, hull_box, hull_of, meet
-from ..scene.outside import is_enclosed, is_open
-from ..scene.sensors import Rig
+from ..geometry.overlap import Hull, hull_box, overlaps
+from ..geometry.poses import FARTHEST_M, dot
+from ..scene.housing import cuts_body, hull_of
+from ..scene.inside_test import is_enclosed, is_open
+from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
-from .axes import HELD_M, POSITION_AXES
-from .domains import Domain, OnSurface
+from .design_variable import POSITION_AXES, ROUNDING_M
+from .domains import Domain, SurfaceDomain
 from .mounts import NoGo, SlotMount, SurfaceMount
 from .search_space import SearchSpace
 
-SETTLED_M = 1e-3
-"""What is nearer to a surface than its stand-off by less than this is no nearer [m]."""
+STANDOFF_TOLERANCE_M = 1e-3
+"""How much nearer to its surface than its stand-off a sensor may be [m]."""
 SPAN = (-FARTHEST_M, FARTHEST_M)
 
 
 @dataclass(frozen=True)
 class Trial:
-    """A placement that is looked at; the room of each sensor is worked out once."""
+    """A placement that is checked; the hull of each sensor is computed once."""
 
     rig: Rig
     space: SearchSpace
     _hulls: dict[str, Hull] = field(default_factory=dict)
 
     def hull(self, name: str) -> Hull:
-        """Return the room that a sensor takes."""
+        """Return the convex hull of a sensor's housing."""
         if name not in self._hulls:
             self._hulls[name] = hull_of(self.rig[name].pose, self.space.housings.get(name))
         return self._hulls[name]
@@ -41,9 +41,9 @@ class Trial:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """Something that holds for a placement, or is broken."""
+    """A rule that a placement keeps or breaks."""
 
-    words: str
+    text: str
     broken: Callable[[Trial], bool]
 
 
@@ -54,10 +54,10 @@ def rules_of(
     clear: Collection[str],
     domains: dict[str, Domain],
 ) -> tuple[Rule, ...]:
-    """Return the rules for a rig, those that are cheap to ask first.
+    """Return the rules for a rig, the cheap ones first.
 
-    Sensors that do not move are as they are: of them only what is between them and others counts.
-    Of those that are named `clear`, housings are kept clear.
+    A sensor that does not move has no rules of its own, only those between it and moving sensors.
+    Housings of the sensors named by `clear` must be clear of the body and of other housings.
     """
     names = [sensor.name for sensor in rig if sensor.name in moving]
     pairs = [
@@ -67,7 +67,7 @@ def rules_of(
     rules += [rule for a, b in pairs for rule in _of_two(a, b, space, clear)]
     for name in names:
         domain = domains.get(name)
-        if isinstance(domain, OnSurface) and domain.mount.standoff > SETTLED_M:
+        if isinstance(domain, SurfaceDomain) and domain.mount.standoff > STANDOFF_TOLERANCE_M:
             rules.append(_stand_off(name, domain))
         if space.vehicle is not None and name in clear:
             rules.append(_body(name, space.vehicle))
@@ -77,10 +77,10 @@ def rules_of(
 def _of_one(name: str, space: SearchSpace) -> Iterator[Rule]:
     limits = space.mounting.constraints
     if (height := limits.max_height) is not None:
-        top = height + HELD_M
+        top = height + ROUNDING_M
         yield Rule(f"max_height of {name!r}", lambda t: t.hull(name).corners[:, 2].max() > top)
     if (width := limits.max_width) is not None:
-        side = width / 2.0 + HELD_M
+        side = width / 2.0 + ROUNDING_M
         yield Rule(
             f"max_width of {name!r}", lambda t: np.abs(t.hull(name).corners[:, 1]).max() > side
         )
@@ -91,13 +91,13 @@ def _of_one(name: str, space: SearchSpace) -> Iterator[Rule]:
 
 
 def _bounds(name: str, space: SearchSpace) -> Iterator[Rule]:
-    """Bounds of a sensor's coordinates that it is moved out of by its surface."""
+    """Yield the bounds of a sensor's coordinates on a surface, which may lead out of them."""
     for number, axis in enumerate(POSITION_AXES):
         if axis in space.bounds.get(name, {}):
             low, high = space.bounds[name][axis]
 
             def outside(trial: Trial, k: int = number, lo: float = low, hi: float = high) -> bool:
-                return not lo - HELD_M <= trial.rig[name].pose.position[k] <= hi + HELD_M
+                return not lo - ROUNDING_M <= trial.rig[name].pose.position[k] <= hi + ROUNDING_M
 
             yield Rule(f"bounds of {axis} of {name!r}", outside)
 
@@ -105,39 +105,39 @@ def _bounds(name: str, space: SearchSpace) -> Iterator[Rule]:
 def _no_go(name: str, area: NoGo) -> Rule:
     sides = np.clip([getattr(area, axis) or SPAN for axis in "xyz"], *SPAN)
     box = hull_box(*sides.T)
-    return Rule(f"no_go {area.name!r} for {name!r}", lambda trial: meet(trial.hull(name), box))
+    return Rule(f"no_go {area.name!r} for {name!r}", lambda trial: overlaps(trial.hull(name), box))
 
 
 def _of_two(a: str, b: str, space: SearchSpace, clear: Collection[str]) -> Iterator[Rule]:
     mounting = space.mounting
-    if least := mounting.constraints.min_distance:
+    if min_distance := mounting.constraints.min_distance:
 
         def near(trial: Trial) -> bool:
             one, other = (np.array(trial.rig[name].pose.position) for name in (a, b))
-            return float(np.sqrt(dot(one - other, one - other))) < least - HELD_M
+            return float(np.sqrt(dot(one - other, one - other))) < min_distance - ROUNDING_M
 
         yield Rule(f"min_distance of {a!r} and {b!r}", near)
-    shared = mounting.on.get(a) == mounting.on.get(b)
-    if shared and isinstance(mounting.mount_of(a), SlotMount):
+    same_mount = mounting.on.get(a) == mounting.on.get(b)
+    if same_mount and isinstance(mounting.mount_of(a), SlotMount):
         yield Rule(f"one slot for {a!r} and {b!r}", lambda t: t.rig[a].pose == t.rig[b].pose)
-    known = a in space.housings or b in space.housings
-    if known and (a in clear or b in clear):
-        words = f"clear housings of {a!r} and {b!r}"
-        yield Rule(words, lambda trial: meet(trial.hull(a), trial.hull(b)))
+    has_housing = a in space.housings or b in space.housings
+    if has_housing and (a in clear or b in clear):
+        text = f"clear housings of {a!r} and {b!r}"
+        yield Rule(text, lambda trial: overlaps(trial.hull(a), trial.hull(b)))
 
 
-def _stand_off(name: str, domain: OnSurface) -> Rule:
-    """In a hollow, the surface may be nearer than where the sensor was put on it."""
+def _stand_off(name: str, domain: SurfaceDomain) -> Rule:
+    """Return the rule of the stand-off: in a hollow, the surface may be nearer elsewhere."""
 
     def near(trial: Trial) -> bool:
         base = domain.base(trial.rig[name].pose)
-        return domain.skin.is_nearer(base, domain.mount.standoff - SETTLED_M)
+        return domain.surface.is_nearer(base, domain.mount.standoff - STANDOFF_TOLERANCE_M)
 
     return Rule(f"standoff of {name!r}", near)
 
 
 def _body(name: str, vehicle: Vehicle) -> Rule:
-    """A housing that cuts into the body, or a sensor that is inside it."""
+    """Return the rule that a housing does not cut the body, and that a sensor is not inside it."""
 
     def inside(trial: Trial) -> bool:
         sensor = trial.rig[name]

@@ -1,4 +1,4 @@
-"""What a search may change: the free coordinates of each sensor, and their bounds."""
+"""The space of a search: free coordinates, their bounds, and the neighbourhoods of Algorithm 1."""
 
 from __future__ import annotations
 
@@ -7,42 +7,45 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..errors import InputError, shown
-from ..scene.geometry import FARTHEST_M, METRES, ROTATION
+from ..base.errors import InputError, shown
+from ..base.read_only import ReadOnlyDict
+from ..base.setting import Panel, check_settings, setting
+from ..base.values import Angle, Number, Whole, listed, pair
+from ..geometry.poses import FARTHEST_M, METRES, ROTATION
 from ..scene.housing import Housing
-from ..scene.sensors import Rig, Sensor
+from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
-from ..text.fixed import FixedDict
-from ..text.values import listed, pair
-from .axes import AXES, HELD_M, HELD_RAD, POSITION_AXES, pose_values
+from .design_variable import AXES, POSITION_AXES, ROUNDING_M, ROUNDING_RAD, pose_values
 from .mounts import Mounting
-from .schedule import Schedule
 
 PAPER_FREE = ("x", "y", "z", "pitch")
 """What the paper searches; roll and yaw are fixed "for symmetry of the placement"."""
 HEADROOM_M = 0.75
-"""How far above the vehicle's top a sensor may be put unless a study says otherwise."""
-LOWEST_M = 0.2
-"""No sensor is put lower than this unless a study says otherwise."""
+"""How far above the vehicle's top a sensor may be mounted by default."""
+MIN_HEIGHT_M = 0.2
+"""The least height of a sensor by default."""
 
+MAX_ROUNDS = 1000
+"""A schedule of more rounds (the paper's has seven) is taken for a typing error."""
 Bounds = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class SearchSpace:
-    """Which coordinates of which sensor are free, and how far they may go.
+    """The free coordinates of each sensor, and their bounds.
 
     Parameters
     ----------
     bounds : mapping of sensor name to mapping of axis to (low, high)
-        Axes are "x", "y", "z" [m] and "roll", "pitch", "yaw" [rad]; what is not named is fixed.
-        On a surface, angles are to the mount's frame, and x, y, z bound where it leads.
+        Axes are "x", "y", "z" [m] and "roll", "pitch", "yaw" [rad]; an axis that is not named
+        is fixed. On a surface, angles are relative to the mount's frame, and x, y, z bound the
+        sensor's position on it.
     mounting : Mounting
         Mounts, pairs, groups and constraints.
     vehicle : Vehicle, optional
-        The body that mounts are parts of, and that housings are kept clear of.
+        The body that has the mounts, and that housings must be clear of.
     housings : mapping of sensor name to Housing
-        Those that are known.
+        The housings that are known.
     """
 
     bounds: Mapping[str, Mapping[str, Bounds]] = field(default_factory=dict)
@@ -51,8 +54,8 @@ class SearchSpace:
     housings: Mapping[str, Housing] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "bounds", FixedDict(self.bounds))
-        object.__setattr__(self, "housings", FixedDict(self.housings))
+        object.__setattr__(self, "bounds", ReadOnlyDict(self.bounds))
+        object.__setattr__(self, "housings", ReadOnlyDict(self.housings))
 
     @classmethod
     def on_vehicle(
@@ -64,30 +67,30 @@ class SearchSpace:
         mounting: Mounting | None = None,
         housings: Mapping[str, Housing] | None = None,
     ) -> SearchSpace:
-        """Free axes of each sensor within the vehicle's outline and HEADROOM_M above it.
+        """Return a rig's free axes within the vehicle's outline and HEADROOM_M above it.
 
         Parameters
         ----------
         rig : Rig
         vehicle : Vehicle or None
-            Without one, sensors may go `Schedule.reach_m` from where they start.
+            Without a vehicle, sensors may move `Schedule.reach_m` from their start.
         free : tuple of str, or mapping of sensor name to it
         limits : mapping, optional
             Bounds that replace the default ones, by sensor and axis.
         mounting : Mounting, optional
-            A sensor on a surface moves in it, whatever is free of x, y, z; one in a slot, or that
-            follows another, has no bounds of its own.
+            A sensor on a surface moves on it, whichever of x, y, z are free; a sensor in a slot, or
+            one that follows another, has no bounds.
         housings : mapping of sensor name to Housing, optional
         """
         limits, mounting, bounds = limits or {}, mounting or Mounting(), {}
         for sensor in rig:
             axes = free if isinstance(free, tuple) else free.get(sensor.name, PAPER_FREE)
-            own = limits.get(sensor.name, {})
+            given = limits.get(sensor.name, {})
             default = default_bounds(sensor, vehicle)
-            if own and (words := mounting.unbounded(sensor.name)):
-                raise InputError(f"sensor {sensor.name!r}", "bounds", f"none of {words}", "some")
-            bounded = _bounded(sensor.name, axes, own, mounting)
-            bounds[sensor.name] = {a: own.get(a, default[a]) for a in bounded}
+            if given and (reason := mounting.unbounded(sensor.name)):
+                raise InputError(f"sensor {sensor.name!r}", "bounds", f"none for {reason}", "some")
+            bounded = _bounded_axes(sensor.name, axes, given, mounting)
+            bounds[sensor.name] = {a: given.get(a, default[a]) for a in bounded}
         return cls(bounds, mounting, vehicle, housings or {}).checked(rig)
 
     def checked(self, rig: Rig) -> SearchSpace:
@@ -96,12 +99,12 @@ class SearchSpace:
             if name not in [s.name for s in rig]:
                 raise InputError("search space", "sensor", "a sensor of the rig", shown(name))
             if self.mounting.mount_of(name) is not None:
-                continue  # its angles are to its mount, which looks at them itself
+                continue  # its angles are relative to its mount, whose domain checks them
             start = pose_values(rig[name].pose)
             for axis, bounds in axes.items():
                 low, high = checked_bounds(name, axis, bounds)
-                held = HELD_M if axis in POSITION_AXES else HELD_RAD
-                if not low - held <= start[axis] <= high + held:
+                rounding = ROUNDING_M if axis in POSITION_AXES else ROUNDING_RAD
+                if not low - rounding <= start[axis] <= high + rounding:
                     expected = f"bounds around the start, {_shown(axis, start[axis])}"
                     found = f"{_shown(axis, low)} to {_shown(axis, high)}"
                     raise InputError(name, f"bounds of {axis}", expected, found)
@@ -127,7 +130,7 @@ def checked_bounds(source: str, axis: str, bounds: Any) -> Bounds:
 
 
 def default_bounds(sensor: Sensor, vehicle: Vehicle | None) -> dict[str, Bounds]:
-    """How far a sensor may go when nobody says: always far enough to hold where it starts."""
+    """Return the bounds of each axis without given ones; they always contain the start."""
     start = pose_values(sensor.pose)
     if vehicle is None:
         reach = Schedule().reach_m
@@ -136,23 +139,104 @@ def default_bounds(sensor: Sensor, vehicle: Vehicle | None) -> dict[str, Bounds]
     else:
         low, high = vehicle.bounds
         bounds = {a: (float(low[k]), float(high[k])) for k, a in enumerate("xy")}
-        bounds["z"] = (LOWEST_M, min(float(high[2]) + HEADROOM_M, FARTHEST_M))
+        bounds["z"] = (MIN_HEIGHT_M, min(float(high[2]) + HEADROOM_M, FARTHEST_M))
     bounds |= {"roll": (-math.pi, math.pi), "yaw": (-math.pi, math.pi)}
     bounds["pitch"] = (-math.pi / 2, math.pi / 2)
     return {a: (min(lo, start[a]), max(hi, start[a])) for a, (lo, hi) in bounds.items()}
 
 
-def _bounded(
-    sensor: str, free: tuple[str, ...], own: Mapping[str, Bounds], mounting: Mounting
+def _bounded_axes(
+    sensor: str, free: tuple[str, ...], given: Mapping[str, Bounds], mounting: Mounting
 ) -> tuple[str, ...]:
-    """Return the coordinates of a sensor that have bounds: on a surface, places that are said."""
+    """Return the axes that have bounds; on a surface, x, y and z only with given bounds."""
     if mounting.unbounded(sensor):
         return ()
     if mounting.mount_of(sensor) is None:
         return free
-    said = (axis for axis in POSITION_AXES if axis in own)
-    return (*said, *(axis for axis in free if axis not in POSITION_AXES))
+    given_axes = (axis for axis in POSITION_AXES if axis in given)
+    return (*given_axes, *(axis for axis in free if axis not in POSITION_AXES))
 
 
 def _shown(axis: str, value: float) -> str:
     return f"{value:g} m" if axis in POSITION_AXES else f"{math.degrees(value):g} deg"
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """Neighbourhoods and candidates of Algorithm 1; the paper's by default.
+
+    Parameters
+    ----------
+    candidates : int
+        Placements tried in each round.
+    reach_m, reach_rad : float
+        Half width of the first neighbourhood.
+    floor_m, floor_rad : float
+        The search ends when a neighbourhood is at or below this.
+    decay : float
+        k: each neighbourhood is this times the one before.
+
+    Raises
+    ------
+    InputError
+        When a number is out of its range, or the rounds are more than 1000.
+    """
+
+    candidates: int = setting(
+        1000,
+        Whole(1, 10_000_000),
+        "Placements tried in each of the seven rounds of a search. The paper tries 1000",
+        Panel("candidates", "Candidates", default=150, soft_max=1000),
+    )
+    reach_m: float = setting(
+        1.0,
+        Number(0.0, cap=FARTHEST_M, unit="m", noun="length"),
+        "How far round the start the first round looks",
+    )
+    reach_rad: float = setting(
+        math.radians(30.0), Angle(0.0, cap=360.0), "The same for angles, in degrees"
+    )
+    floor_m: float = setting(
+        0.01,
+        Number(0.0, above=True, cap=FARTHEST_M, unit="m", noun="length"),
+        "The search ends when a round looks no farther than this round the best placement",
+    )
+    floor_rad: float = setting(
+        math.radians(0.3), Angle(0.0, above=True, cap=360.0), "The same for angles, in degrees"
+    )
+    decay: float = setting(
+        0.5,
+        Number(0.0, 1.0, above=True, below=True),
+        "Each round looks this times as far as the one before",
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self, "optimize")
+        if self._rounds_m > MAX_ROUNDS or self._rounds_rad > MAX_ROUNDS:
+            rounds = max(self._rounds_m, self._rounds_rad)
+            expected = f"at most {MAX_ROUNDS} rounds from reach to floor"
+            raise InputError("optimize", "decay", expected, f"{rounds:.4g}")
+
+    @property
+    def scales(self) -> list[float]:
+        """Factor on the first neighbourhood in each round: 1, k, k^2, ... (seven in the paper)."""
+        scales, scale = [], 1.0
+        while scale * self.reach_m > self.floor_m or scale * self.reach_rad > self.floor_rad:
+            scales.append(scale)
+            scale *= self.decay
+        return scales
+
+    @property
+    def _rounds_m(self) -> float:
+        return _rounds(self.reach_m, self.floor_m, self.decay)
+
+    @property
+    def _rounds_rad(self) -> float:
+        return _rounds(self.reach_rad, self.floor_rad, self.decay)
+
+
+def _rounds(reach: float, floor: float, decay: float) -> float:
+    """Return about how many rounds it takes from reach to floor."""
+    if reach <= floor:
+        return 0.0
+    return (math.log(reach) - math.log(floor)) / -math.log(decay)

@@ -1,14 +1,16 @@
-"""Which sensors a study may have: choices with prices, and limits on all of them."""
+"""Which sensors a study may choose: models with prices, limits, and the sites that take them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ..errors import InputError, shown
-from ..scene.sensors import SensorModel
-from ..text.fixed import FixedDict
-from ..text.values import A_NAME, Number, Whole, listed
+from ..base.errors import InputError, shown
+from ..base.read_only import ReadOnlyDict
+from ..base.setting import Panel, check_settings, setting
+from ..base.values import A_NAME, Number, Whole, listed
+from ..scene.rig import Rig, SensorModel
+from .mounts import NO_MOUNT, Mounting
 
 PRICE = Number(0.0, cap=1e12, noun="price")
 COUNT = Whole(0, 10_000)
@@ -16,13 +18,13 @@ COUNT = Whole(0, 10_000)
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """A model that may be chosen, and what one sensor of it costs.
+    """A model that may be chosen, and the price of one sensor.
 
     Parameters
     ----------
     model : SensorModel
     price : float
-        In the study's own unit: the catalogue knows no prices.
+        In the unit of the study: the catalogue has no prices.
     """
 
     model: SensorModel
@@ -36,25 +38,25 @@ class Option:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Models of which sensors take one.
+    """Models of which some sensors take one.
 
     Parameters
     ----------
     options : sequence of Option
     sensors : sequence of str
-        They take the same model, or are left out together. The second of a pair goes with its
-        first and is not named.
+        They take the same model, or are left out together. The second sensor of a pair is not
+        named: it has the model of the first.
     mount : str, optional
-        Instead of `sensors`: every sensor that starts on this mount takes a model of its own. Which
-        of them takes which is no other design.
+        Instead of `sensors`: every sensor that starts on this mount takes a model of its own.
+        Exchanging the models of two of them does not give another design.
     optional : bool
         Whether the sensors may be left out.
 
     Raises
     ------
     InputError
-        When there are no options, a model is offered twice, or not one of `sensors` and `mount`
-        is said.
+        When there are no options, a model is offered twice, or not exactly one of `sensors` and
+        `mount` is given.
     """
 
     options: Sequence[Option]
@@ -65,7 +67,7 @@ class Choice:
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "choice"
         options, sensors = listed(self.options), listed(self.sensors)
-        if not options or not all(isinstance(each, Option) for each in options):
+        if not options or not all(isinstance(item, Option) for item in options):
             raise InputError(who, "option", "at least one model with its price", "none")
         models = [option.model.name for option in options]
         if twice := sorted({name for name in models if models.count(name) > 1}):
@@ -83,43 +85,145 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """All choices of a study, and what every design keeps to.
+    """All choices of a study, and the limits of every design.
 
     Parameters
     ----------
     choices : sequence of Choice
     max_price : float, optional
-        Of a design: the sum over the sensors that are chosen.
+        Limit of a design's price: the sum over the chosen sensors.
     max_sensors : int, optional
-        Sensors of a design, those that nobody chooses included.
+        Limit of the number of sensors, including those that are not chosen.
     max_of_kind : mapping of kind to int
-        Likewise of a kind ("lidar", "camera"); one that is not named has no limit.
+        The same for a kind ("lidar", "camera"); a kind that is not named has no limit.
     currency : str
-        What prices are told in.
+        The currency of prices in texts.
     """
 
     choices: Sequence[Choice] = ()
-    max_price: float | None = None
-    max_sensors: int | None = None
+    max_price: float | None = setting(
+        None,
+        PRICE,
+        "Largest sum of the prices of all chosen sensors",
+        Panel("max_price", "Max Price", soft_max=1e6, zero="no limit", precision=2, step=1000),
+    )
+    max_sensors: int | None = setting(
+        None,
+        COUNT,
+        "Largest number of sensors in a design",
+        Panel("max_sensors", "Max Sensors", soft_max=20, zero="no limit"),
+    )
     max_of_kind: Mapping[str, int] = field(default_factory=dict)
     currency: str = ""
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "selection"
         choices = listed(self.choices)
-        if choices is None or not all(isinstance(each, Choice) for each in choices):
+        if choices is None or not all(isinstance(item, Choice) for item in choices):
             raise InputError(who, "choice", "a list of choices", shown(self.choices))
         put(self, "choices", tuple(choices))
-        if self.max_price is not None:
-            put(self, "max_price", PRICE.checked(who, "max_price", self.max_price))
-        if self.max_sensors is not None:
-            put(self, "max_sensors", COUNT.checked(who, "max_sensors", self.max_sensors))
+        check_settings(self, who)
         if not isinstance(self.max_of_kind, Mapping):
             raise InputError(who, "max_of_kind", "numbers by kind", shown(self.max_of_kind))
         counts = {
             A_NAME.checked(who, "max_of_kind", kind): COUNT.checked(who, f"max_of_kind.{kind}", n)
             for kind, n in self.max_of_kind.items()
         }
-        put(self, "max_of_kind", FixedDict(counts))
+        put(self, "max_of_kind", ReadOnlyDict(counts))
         if self.currency != "":
             put(self, "currency", A_NAME.checked(who, "currency", self.currency))
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """Sensors that take one model, or are left out together.
+
+    Attributes
+    ----------
+    sensors : tuple of str
+    options : tuple of Option or None
+        Sorted by price; None, the last, leaves the sensors out.
+    choice : int
+        Number of the choice. Sites of one choice may exchange their options: it is the same design.
+    """
+
+    sensors: tuple[str, ...]
+    options: tuple[Option | None, ...]
+    choice: int
+
+    def price(self, pick: int) -> float:
+        """Return the price of an option for all sensors of the site."""
+        option = self.options[pick]
+        return 0.0 if option is None else option.price * len(self.sensors)
+
+
+def sites_of(selection: Selection, rig: Rig, mounting: Mounting) -> tuple[Site, ...]:
+    """Return the sites of a study, in the order of its choices.
+
+    Raises
+    ------
+    InputError
+        When a choice has a sensor or a mount that does not exist, two choices have one sensor, a
+        model's kind is not allowed, or a sensor that others follow could be left out.
+    """
+    sites: list[Site] = []
+    for number, choice in enumerate(selection.choices):
+        _check_kinds(f"choice[{number}]", choice, selection)
+        options = sorted(choice.options, key=lambda option: option.price)
+        for sensors in _sites_of_choice(f"choice[{number}]", choice, rig, mounting):
+            for name in sensors:
+                _check_sensor(f"choice[{number}]", name, sites, choice.optional, mounting)
+            left_out = (None,) if choice.optional else ()
+            sites.append(Site(sensors, (*options, *left_out), number))
+    return tuple(sites)
+
+
+def _sites_of_choice(
+    who: str, choice: Choice, rig: Rig, mounting: Mounting
+) -> Iterator[tuple[str, ...]]:
+    """Yield the sensors of each site of a choice, with their mirror images."""
+    names = [sensor.name for sensor in rig]
+    for name in choice.sensors:
+        if name not in names:
+            raise InputError(who, "sensor", f"one of {', '.join(names)}", shown(name))
+    if choice.mount is None:
+        yield _with_images(choice.sensors, mounting)
+        return
+    if choice.mount not in mounting.mounts:
+        known = f"one of {', '.join(mounting.mounts)}" if mounting.mounts else NO_MOUNT
+        raise InputError(who, "mount", known, shown(choice.mount))
+    on_mount = [name for name in names if mounting.on.get(name) == choice.mount]
+    if not on_mount:
+        expected = "a mount with sensors on it"
+        raise InputError(who, "mount", expected, f"none on {choice.mount!r}")
+    yield from (_with_images((name,), mounting) for name in on_mount)
+
+
+def _with_images(names: Sequence[str], mounting: Mounting) -> tuple[str, ...]:
+    """Return sensors with their mirror images."""
+    taken = list(names)
+    for first, second in mounting.pairs:
+        if second in taken and first not in taken:
+            expected = f"the first of the pair, {first!r}, which it goes with"
+            raise InputError("choice", "sensor", expected, shown(second))
+        if first in taken and second not in taken:
+            taken.append(second)
+    return tuple(dict.fromkeys(taken))
+
+
+def _check_sensor(
+    who: str, name: str, before: list[Site], optional: bool, mounting: Mounting
+) -> None:
+    if any(name in site.sensors for site in before):
+        raise InputError(who, "sensor", "one choice for each sensor", f"two for {name!r}")
+    if optional and any(name == group[0] for group in mounting.groups):
+        expected = "false for the sensor that leads a group"
+        raise InputError(who, "optional", expected, f"true for {name!r}")
+
+
+def _check_kinds(who: str, choice: Choice, selection: Selection) -> None:
+    for option in choice.options:
+        kind = option.model.kind
+        if selection.max_of_kind.get(kind) == 0:
+            expected = f"models of kinds that are allowed (max_of_kind of {kind!r} is 0)"
+            raise InputError(who, "option", expected, f"{option.model.name}, a {kind}")

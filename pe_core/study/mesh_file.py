@@ -1,19 +1,19 @@
-"""The keys of [vehicle] that say how the axes of its mesh file are to be taken."""
+"""The keys of [vehicle] that define the axes of its mesh file."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..errors import InputError
-from ..formats.meshes import MeshAxes
-from ..text.tables import Table
-from ..text.values import ANY
+from ..base.errors import InputError
+from ..base.table_reader import Table
+from ..base.values import ANY
+from ..scene.mesh import MeshAxes
 
 AXES_KEYS = ("scale", "rotation", "up", "forward")
 
 
 class MeshFile(NamedTuple):
-    """A vehicle's file, how it is to be taken, and how its axes were taken, in words."""
+    """A vehicle's mesh file, its axes by the study, and the axes that were used, in words."""
 
     mesh: str | None = None
     axes: MeshAxes = MeshAxes()
@@ -21,7 +21,7 @@ class MeshFile(NamedTuple):
 
 
 def read_axes(table: Table) -> MeshAxes:
-    """Read what a study says of its mesh's axes."""
+    """Return the axes of the mesh file, from [vehicle]."""
     up, forward = table.text("up", None), table.text("forward", None)
     scale = table.number("scale", 1.0, rule=ANY)
     rotation = table.numbers("rotation", 3, None)
@@ -32,7 +32,7 @@ def read_axes(table: Table) -> MeshAxes:
 
 
 def axes_table(axes: MeshAxes) -> dict[str, Any]:
-    """Return the keys of a study that says something of its mesh's axes."""
+    """Return the keys of [vehicle] for the axes of the mesh file."""
     rotation = None if axes.rotation_deg is None else list(axes.rotation_deg)
     scale = None if axes.scale == 1.0 else axes.scale
     return {"scale": scale, "rotation": rotation, "up": axes.up, "forward": axes.forward}

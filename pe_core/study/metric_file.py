@@ -1,43 +1,39 @@
-"""What a score is made of: a study's [metric], [ap] and [fusion], to objects and back."""
+"""The tables [metric], [ap] and [fusion] of a study: read and written."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from ..errors import InputError
-from ..kinds import BLIND_RULES, KINDS, PerceptionModel
+from ..base.errors import InputError
+from ..base.setting_file import read_settings, settings_table
+from ..base.table_reader import Table
 from ..metric.entropy import ApCurve
-from ..targets import TARGETS, TargetRule
-from ..text.tables import Table
+from ..scoring.targets import TargetRule
+from ..sensors import BLIND_RULES, KINDS, PerceptionModel
 
 CLASSES = "objects"
 """The table of a kind's curves by class, in [ap.KIND]."""
 
 
 def read_targets(table: Table) -> TargetRule:
-    """Return what is judged."""
-    default = TargetRule()
-    values = (
-        table.text("targets", default.targets, TARGETS),
-        table.raw("traffic", default.traffic),
-        table.whole("scenes", default.scenes),
-    )
+    """Return whether voxels or objects are scored, from [metric]."""
+    values = read_settings(table, TargetRule)
     table.finish()
     try:
-        return TargetRule(*values)
+        return TargetRule(**values)
     except InputError as error:
         raise table.error(error.field, error.expected, error.found) from None
 
 
 def targets_table(targets: TargetRule) -> dict[str, Any] | None:
-    """Return the table of what is judged; none for the paper's voxels."""
+    """Return the table [metric]; None for the voxels of the paper."""
     if targets == TargetRule():
         return None
-    return {"targets": targets.targets, "traffic": targets.traffic, "scenes": targets.scenes}
+    return settings_table(targets)
 
 
 def read_model(curves: Table, fusion: Table) -> PerceptionModel:
-    """Return the perception model: curves of voxels and of objects, and the rule for the blind."""
+    """Return the perception model: AP curves of voxels and objects, the rule for blind sensors."""
     default = PerceptionModel()
     tables = {kind: curves.table(kind) for kind in KINDS}
     objects = {kind: _read_objects(table.table(CLASSES)) for kind, table in tables.items()}
@@ -50,7 +46,7 @@ def read_model(curves: Table, fusion: Table) -> PerceptionModel:
 
 
 def curves_table(model: PerceptionModel) -> dict[str, Any]:
-    """Return the table of all curves by kind, and of those by class that are no shipped ones."""
+    """Return the table [ap]: all curves by kind, and curves by class that are not the default."""
     return {
         kind: {"a": c.a, "b": c.b, CLASSES: _objects_table(model, kind)}
         for kind, c in model.curves.items()

@@ -12,9 +12,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from ..errors import InputError, shown
-from ..formats.meshes import AS_SAID, Mesh, read_mesh
-from ..scene.geometry import Pose
+from ..base.errors import InputError, shown
+from ..base.plugins import shipped
+from ..base.setting_file import read_settings, settings_table
+from ..base.table_reader import Table
+from ..base.values import A_NAME, A_PATH
+from ..geometry.poses import Pose
+from ..scene.mesh import AS_SAID, Mesh
 from ..search import (
     AnyMount,
     Constraints,
@@ -25,15 +29,12 @@ from ..search import (
     SlotMount,
     SurfaceMount,
 )
-from ..text.tables import Table
-from ..text.values import A_NAME, A_PATH
 
 T = TypeVar("T")
-LIMITS = ("max_height", "max_width")
 
 
 def read_mounting(table: Table, on: Mapping[str, str], folder: Path) -> Mounting:
-    """Return what `[optimize]` says of where sensors may sit.
+    """Return mounts, pairs, groups and constraints of `[optimize]`.
 
     Parameters
     ----------
@@ -56,10 +57,7 @@ def mounting_tables(mounting: Mounting) -> dict[str, Any]:
     """Return the tables of `[optimize]` that `read_mounting` reads."""
     limits = mounting.constraints
     return {
-        "max_height": limits.max_height,
-        "max_width": limits.max_width,
-        "min_distance": limits.min_distance,
-        "clear_housings": limits.clear_housings,
+        **settings_table(limits),
         "no_go": [_no_go_table(area) for area in limits.no_go] or None,
         "mount": [_mount_table(*mount) for mount in mounting.mounts.items()] or None,
         "pair": [{"sensors": list(names)} for names in mounting.pairs] or None,
@@ -68,7 +66,7 @@ def mounting_tables(mounting: Mounting) -> dict[str, Any]:
 
 
 def areas_mesh(mounting: Mounting) -> Mesh | None:
-    """Return the areas of all mounts as one mesh, a part a mount; None where there are none."""
+    """Return the areas of all mounts as one mesh with a part for each mount; None without areas."""
     areas = {name: area.triangles for name, area in areas_of(mounting).items()}
     if not areas:
         return None
@@ -83,7 +81,7 @@ def areas_of(mounting: Mounting) -> dict[str, MountArea]:
 
 
 def with_areas_in(mounting: Mounting, file: str) -> Mounting:
-    """Return the same, its areas being parts of one file that are named after their mounts."""
+    """Return a mounting whose areas are parts of one mesh file, named after their mounts."""
     mounts = dict(mounting.mounts)
     for name, mount in mounts.items():
         if isinstance(mount, SurfaceMount) and mount.area is not None:
@@ -116,7 +114,7 @@ def _read_surface(table: Table, folder: Path) -> SurfaceMount:
 
 def _read_area(table: Table, folder: Path, file: str, parts: tuple[str, ...]) -> MountArea:
     """Return the faces of a mesh file, of some of its parts or of all."""
-    mesh = read_mesh(folder / file, AS_SAID)  # a patch's shape tells nothing
+    mesh = shipped("reader.mesh")(folder / file, AS_SAID)  # a patch's shape tells nothing
     for part in parts:
         if part not in mesh.part_names:
             expected = f"one of {', '.join(mesh.part_names)}"
@@ -143,11 +141,9 @@ def _read_ties(table: Table, key: str) -> list[tuple[str, ...]]:
 
 
 def _read_constraints(table: Table) -> Constraints:
-    height, width = (table.number(key, None) for key in LIMITS)
-    distance = table.number("min_distance", 0.0)
-    clear = table.raw("clear_housings", False)
+    values = read_settings(table, Constraints)
     areas = [_read_no_go(each) for each in table.tables("no_go")]
-    return _made(table, lambda: Constraints(height, width, distance, clear, areas))
+    return _made(table, lambda: Constraints(**values, no_go=areas))
 
 
 def _read_no_go(table: Table) -> NoGo:
@@ -158,7 +154,7 @@ def _read_no_go(table: Table) -> NoGo:
 
 
 def _made(table: Table, make: Callable[[], T]) -> T:
-    """Make something of a table's values; what is wrong is said of the table."""
+    """Call `make`; its errors name the table."""
     try:
         return make()
     except InputError as error:

@@ -8,15 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError
-from ..formats.boxes import read_boxes
+from ..base.errors import InputError
+from ..base.plugins import shipped
+from ..base.table_reader import REQUIRED, Table
+from ..base.values import A_NAME, A_PATH, vector
 from ..prior.boxes import ORIGIN
 from ..prior.classes import FIELDS, SHIPPED, ObjectClass
-from ..prior.prior import FROM_BOXES, MODELS, Focus, Prior
-from ..prior.traffic import Densities, checked_densities
-from ..text.tables import REQUIRED, Table
-from ..text.values import A_NAME, A_PATH, vector
-from .names import BOXES
+from ..prior.prior import FROM_BOXES, MODELS, Densities, Focus, Prior, checked_densities
+from .file_names import BOXES
 
 DEFAULT_MODEL = "road"
 OF_OBJECTS = dict.fromkeys(("length_spread", "width_spread", "any_heading"), 0.0)
@@ -71,7 +70,7 @@ def _read_boxes(table: Table, folder: Path) -> Prior:
     if origin is not None:
         origin = vector(table.source, table.field("origin"), origin, 3, ORIGIN)
     at = None if origin is None else (origin[0], origin[1], origin[2])
-    return Prior.from_boxes(replace(read_boxes(folder / file, at), file=file))
+    return Prior.from_boxes(replace(shipped("reader.boxes")(folder / file, at), file=file))
 
 
 def _read_model(table: Table) -> Prior:

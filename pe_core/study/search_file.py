@@ -1,29 +1,33 @@
-"""What a search may do: its tables in the study file, and the bounds of its sensors."""
+"""The table [optimize] of a study, and the bounds of its sensors: read and written."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError, shown
+from ..base.degrees import degrees_in_file
+from ..base.errors import InputError, shown
+from ..base.setting import settings_of
+from ..base.setting_file import key_of, read_settings, settings_table
+from ..base.table_reader import Table
 from ..search import (
     AXES,
     METHODS,
     POSITION_AXES,
     Schedule,
+    Tolerance,
     checked_bounds,
     checked_method,
 )
-from ..text.degrees import degrees_in_file
-from ..text.tables import Table
+from ..search.tolerance import CASES, ERRORS
 from .mounting_file import mounting_tables, read_mounting
-from .study import DEFAULT_SEARCH_SAMPLES, EVALUATIONS, SEED, Search
-from .tolerance_file import read_tolerance, tolerance_keys
+from .study import Search
 
 Bounds = tuple[float, float]
+KEYS_FIRST = ("evaluations", "seed", "samples")
+"""The order of these keys is part of a study's fingerprint; keys that came later follow."""
 
 
 def read_limits(table: Table) -> dict[str, Bounds]:
@@ -51,60 +55,64 @@ def read_search(
     on: Mapping[str, str],
     folder: Path,
 ) -> Search:
-    """Return the search of `[optimize]`; what its sensors say of themselves is known already."""
+    """Return the search of `[optimize]`.
+
+    `free`, `limits` and `on` are free axes, bounds and mounts by sensor, from `[[sensor]]`.
+    """
     search = Search(
         free,
         limits,
-        table.whole("seed", 0, SEED),
-        table.whole("samples", DEFAULT_SEARCH_SAMPLES),
-        _read_schedule(table),
-        read_mounting(table, on, folder),
-        _read_method(table),
-        table.whole("evaluations", 0, EVALUATIONS),
-        tolerance=read_tolerance(table),
+        schedule=_read_schedule(table),
+        mounting=read_mounting(table, on, folder),
+        method=_read_method(table),
+        tolerance=_read_tolerance(table),
+        **read_settings(table, Search),
     )
     table.finish()
     return search
 
 
 def _read_method(table: Table) -> str:
-    """Return the method; a study with a schedule and none means the one that has schedules."""
-    scheduled = any(_key(field.name) in table for field in fields(Schedule))
+    """Return the method; by default "random" where the study has keys of a schedule."""
+    scheduled = any(key_of(name) in table for name in settings_of(Schedule))
     return table.text("method", checked_method(table.source, None, scheduled), tuple(METHODS))
 
 
-def _key(name: str) -> str:
-    return name.replace("_rad", "_deg")
-
-
 def _read_schedule(table: Table) -> Schedule:
-    """Return the schedule: each of its fields is a key, in degrees where it is in radians."""
-    values: dict[str, Any] = {}
-    for field in fields(Schedule):
-        key = _key(field.name)
-        if key in table:
-            value = table.raw(key) if key == "candidates" else table.number(key)
-            values[field.name] = value if key == field.name else math.radians(value)
-        table.raw(key, None)  # a known name, whether present or not
+    values = read_settings(table, Schedule)
     try:
         return Schedule(**values)
+    except InputError as error:  # too many rounds
+        raise table.error(key_of(error.field), error.expected, error.found) from None
+
+
+def _read_tolerance(table: Table) -> Tolerance:
+    """Return mounting errors and failures: the table `tolerance`, and two keys beside it."""
+    errors = table.table("tolerance")
+    values = read_settings(errors, Tolerance, ERRORS) | read_settings(table, Tolerance, CASES)
+    errors.finish()
+    try:
+        return Tolerance(**values)
     except InputError as error:
-        key = _key(error.field)
-        raise table.error(key, error.expected, error.found) from None
+        raise table.error(error.field, error.expected, error.found) from None
+
+
+def _tolerance_keys(tolerance: Tolerance) -> dict[str, Any]:
+    """Return the keys that `_read_tolerance` reads; None for a default value."""
+    default, errors = Tolerance(), settings_table(tolerance, ERRORS)
+    is_default = errors == settings_table(default, ERRORS)
+    cases = {key: value or None for key, value in settings_table(tolerance, CASES).items()}
+    return {"tolerance": None if is_default else errors, **cases}
 
 
 def search_table(search: Search) -> dict[str, Any]:
     """Return the table `[optimize]` of a search."""
     return {
         "method": search.method,
-        "evaluations": search.evaluations,
-        "seed": search.seed,
-        "samples": search.samples,
-        **{
-            _key(field.name): in_file(field.name, getattr(search.schedule, field.name))
-            for field in fields(Schedule)
-        },
-        **tolerance_keys(search.tolerance),
+        **settings_table(search, KEYS_FIRST),
+        **settings_table(search),
+        **settings_table(search.schedule),
+        **_tolerance_keys(search.tolerance),
         **mounting_tables(search.mounting),
     }
 

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from ..errors import InputError
-from ..kinds import KINDS
-from ..scene.sensors import SensorModel
+from ..base.errors import InputError
+from ..base.setting_file import read_settings, settings_table
+from ..base.table_reader import Table
+from ..scene.rig import SensorModel
 from ..search import Choice, Option, Selection
-from ..text.tables import Table
+from ..sensors import KINDS
 
 T = TypeVar("T")
 Read = Callable[[Table], SensorModel]
 
 
 def read_selection(table: Table, model: Read) -> Selection:
-    """Return what `[[choice]]` and `[selection]` of a study say.
+    """Return the choices and limits of `[[choice]]` and `[selection]`.
 
     Parameters
     ----------
@@ -27,28 +28,29 @@ def read_selection(table: Table, model: Read) -> Selection:
     """
     choices = [_read_choice(each, model) for each in table.tables("choice")]
     own = table.table("selection")
-    price, sensors = own.number("max_price", None), own.whole("max_sensors", None)
+    limits = read_settings(own, Selection)
     kinds, currency = own.table("max_of_kind"), own.text("currency", "")
     counts = {kind: kinds.whole(kind, None) for kind in KINDS}
     kinds.finish()
     own.finish()
-    said = {kind: count for kind, count in counts.items() if count is not None}
-    return _made(own, lambda: Selection(choices, price, sensors, said, currency))
+    max_of_kind = {kind: count for kind, count in counts.items() if count is not None}
+    return _made(
+        own, lambda: Selection(choices, max_of_kind=max_of_kind, currency=currency, **limits)
+    )
 
 
 def selection_tables(
     selection: Selection, model: Callable[[SensorModel], str | dict[str, Any]]
 ) -> dict[str, Any]:
-    """Return the tables that `read_selection` reads; none where there is nothing to choose."""
+    """Return the tables that `read_selection` reads; None where there is nothing to choose."""
     own = {
-        "max_price": selection.max_price,
-        "max_sensors": selection.max_sensors,
+        **settings_table(selection),
         "max_of_kind": dict(selection.max_of_kind) or None,
         "currency": selection.currency or None,
     }
     choices = [_choice_table(choice, model) for choice in selection.choices]
-    said = any(value is not None for value in own.values())
-    return {"choice": choices or None, "selection": own if said else None}
+    has_limits = any(value is not None for value in own.values())
+    return {"choice": choices or None, "selection": own if has_limits else None}
 
 
 def _read_choice(table: Table, model: Read) -> Choice:
@@ -72,7 +74,7 @@ def _read_option(table: Table, model: Read) -> Option:
 
 
 def _made(table: Table, make: Callable[[], T]) -> T:
-    """Make something of a table's values; what is wrong is said of the table."""
+    """Call `make`; its errors name the table."""
     try:
         return make()
     except InputError as error:

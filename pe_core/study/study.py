@@ -1,4 +1,4 @@
-"""A study: everything a run needs, and the one thing every front end hands on.
+"""A study: everything that a run needs, the same for every front end.
 
 Panel, headless Blender and the command line all build a `Study` and give it to the same jobs, which
 is why they agree to the bit.
@@ -12,26 +12,28 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ..advice import vehicle_line
-from ..errors import InputError, shown
-from ..exchange import Passthrough
-from ..formats.meshes import MeshAxes
-from ..kinds import PerceptionModel
+from ..base.errors import InputError, shown
+from ..base.read_only import ReadOnlyDict
+from ..base.setting import Panel, check_settings, setting
+from ..base.values import A_NAME, A_PATH, Whole
+from ..geometry.grids import PerceptionSpace
 from ..prior.prior import Prior
-from ..scene.reference import Reference
-from ..scene.sensors import Rig
-from ..scene.space import PerceptionSpace
+from ..scene.body_shape import require_vehicle_size
+from ..scene.mesh import MeshAxes
+from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
-from ..scene.vehicle_size import require_vehicle_size
+from ..scene.vehicle_description import Reference, vehicle_line
 from ..scoring import Evaluator, RigJudge
-from ..scoring.sampling import samples_or_grid
+from ..scoring.sampling import SAMPLES_OR_GRID
+from ..scoring.sight import Sight
+from ..scoring.targets import ObjectEvaluator, TargetRule
 from ..search import (
     AXES,
     METHODS,
     PAPER_FREE,
-    Coding,
     DesignSpace,
     Mounting,
+    Parametrization,
     Schedule,
     SearchSpace,
     Selection,
@@ -40,18 +42,15 @@ from ..search import (
     checked_bounds,
     checked_method,
 )
-from ..sight import Sight
-from ..targets import ObjectEvaluator, TargetRule
-from ..text.fixed import FixedDict
-from ..text.values import A_NAME, A_PATH, Whole
-from .mounted import check_pairs, housings_of
+from ..sensors import PerceptionModel
+from .catalog_lookup import check_pairs, housings_of
+from .passthrough import Passthrough
 
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
-"""What a TOML file can hold."""
+"""The range of whole numbers of a TOML file."""
 FEW_SCENES = 32
-"""A search's coarsest level still has so many, where there are."""
-EVALUATIONS = Whole(0, 1_000_000_000)
+"""A search's coarsest level has at least so many scenes, if the study has them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,20 +85,31 @@ class Search:
 
     free: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     limits: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
-    seed: int = 0
-    samples: int = DEFAULT_SEARCH_SAMPLES
+    seed: int = setting(0, SEED, "The same seed finds the same placement", Panel("seed", "Seed"))
+    samples: int = setting(
+        DEFAULT_SEARCH_SAMPLES,
+        SAMPLES_OR_GRID,
+        "Voxels on which a candidate is evaluated; 0: all, 64 million",
+        Panel("search_samples", "Search Voxels"),
+    )
     schedule: Schedule = field(default_factory=Schedule)
     mounting: Mounting = field(default_factory=Mounting)
     method: str = ""
-    evaluations: int = 0
+    evaluations: int = setting(
+        0,
+        Whole(0, 1_000_000_000),
+        "Largest number of placements to evaluate; 0: as many as the method takes",
+        Panel("evaluations", "Budget", soft_max=10_000),
+    )
     tolerance: Tolerance = field(default_factory=Tolerance)
 
     def __post_init__(self) -> None:
         who = "optimize"
-        object.__setattr__(self, "free", FixedDict(_each(self.free, "free", checked_axes)))
-        object.__setattr__(self, "limits", FixedDict(_each(self.limits, "bounds", _checked_limits)))
-        object.__setattr__(self, "seed", SEED.checked(who, "seed", self.seed))
-        object.__setattr__(self, "samples", samples_or_grid(who, self.samples))
+        object.__setattr__(self, "free", ReadOnlyDict(_each(self.free, "free", checked_axes)))
+        object.__setattr__(
+            self, "limits", ReadOnlyDict(_each(self.limits, "bounds", _checked_limits))
+        )
+        check_settings(self, who)
         if not isinstance(self.schedule, Schedule):
             raise InputError(who, "schedule", "a Schedule", type(self.schedule).__name__)
         if not isinstance(self.mounting, Mounting):
@@ -108,12 +118,10 @@ class Search:
             raise InputError(who, "tolerance", "a Tolerance", type(self.tolerance).__name__)
         known = checked_method(who, self.method or None, self.schedule != Schedule())
         object.__setattr__(self, "method", known)
-        budget = EVALUATIONS.checked(who, "evaluations", self.evaluations)
-        object.__setattr__(self, "evaluations", budget)
 
     @property
     def level_samples(self) -> tuple[int, ...]:
-        """Voxels that each level of the method judges on, the cheapest first."""
+        """Number of voxels of each level of the method, the coarsest first."""
         return METHODS[self.method].samples(self.samples)
 
 
@@ -141,7 +149,13 @@ class Study:
     prior: Prior = field(default_factory=Prior.road)
     model: PerceptionModel = field(default_factory=PerceptionModel)
     search: Search = field(default_factory=Search)
-    samples: int = 0
+    samples: int = setting(
+        0,
+        SAMPLES_OR_GRID,
+        "Voxels on which a score is evaluated; 0: all, 64 million",
+        Panel("score_samples", "Score Voxels"),
+        scored=True,
+    )
     mesh: str | None = None
     axes: MeshAxes = field(default_factory=MeshAxes)
     faces: str = ""
@@ -167,7 +181,7 @@ class Study:
             raise InputError("study", "passthrough", "a Passthrough", found)
         if self.mesh is not None:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
-        object.__setattr__(self, "samples", samples_or_grid("study", self.samples))
+        check_settings(self, "study")
         object.__setattr__(self, "search", _of_rig(self.search, self.rig))
 
     @property
@@ -191,7 +205,7 @@ class Study:
             return Evaluator(*problem, samples=samples, model=self.model, workers=workers)
 
     def looks_at(self, samples: int) -> int:
-        """Return at how many voxels (0: all), or scenes, so many samples are a look."""
+        """Return the number of voxels (0: all) or scenes that a score with so many samples uses."""
         if not self.targets.are_objects:
             return samples
         share = samples / self.search.samples if 0 < samples < self.search.samples else 1.0
@@ -203,7 +217,7 @@ class Study:
         )
 
     def sight(self) -> Sight:
-        """Return what tells the places that rigs of this study see."""
+        """Return the `Sight` of this study: what its rigs see of the ground."""
         with self._naming_vehicle():
             return Sight(
                 self.space, self.prior, self.vehicle, model=self.model, targets=self.targets
@@ -211,7 +225,7 @@ class Study:
 
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:
-        """Tell which vehicle it is that leaves no weight of the prior outside it."""
+        """Add the vehicle to an error about a prior without weight outside the vehicle."""
         try:
             yield
         except InputError as error:
@@ -221,19 +235,19 @@ class Study:
             raise InputError("prior", error.field, error.expected, found) from None
 
     def search_space(self) -> SearchSpace:
-        """Return free axes and bounds, in radians, with mounts and what is kept to."""
+        """Return free axes and bounds [m or rad], with mounts and constraints."""
         free, limits, mounting = self.search.free, self.search.limits, self.search.mounting
         check_pairs(self.rig, mounting)
         housings = housings_of(self.rig)
         return SearchSpace.on_vehicle(self.rig, self.vehicle, free, limits, mounting, housings)
 
-    def coding(self) -> Coding:
+    def coding(self) -> Parametrization:
         """Return the unknowns of the search; `InputError` when it cannot be made."""
         self.search.tolerance.checked(self.rig)
-        return Coding(self.rig, self.search_space())
+        return Parametrization(self.rig, self.search_space())
 
     def designs(self) -> DesignSpace:
-        """Return the designs among which to choose; `InputError` where there is none."""
+        """Return the designs to choose from; `InputError` where there is none."""
         return DesignSpace.of(self.selection, self.rig, self.search.mounting)
 
     def with_rig(self, rig: Rig) -> Study:
@@ -263,7 +277,7 @@ def vehicle_digest(vehicle: Vehicle | None) -> str | None:
 
 
 def _each(table: Any, field: str, check: Callable[[str, str, Any], Any]) -> dict[str, Any]:
-    """Check what a mapping holds for each sensor."""
+    """Return a mapping by sensor with each value checked."""
     if not isinstance(table, Mapping):
         raise InputError("optimize", field, "a mapping of sensors' names", shown(table))
     names = [A_NAME.checked("optimize", field, name) for name in table]

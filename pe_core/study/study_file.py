@@ -4,38 +4,37 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
 from .. import catalog
-from ..errors import InputError, shown
-from ..exchange import passthrough_table, read_passthrough
-from ..formats.meshes import read_mesh
+from ..base.errors import InputError, shown
+from ..base.files import decode_text, read_bytes, write_bytes
+from ..base.plugins import shipped
+from ..base.serialization import dumps, load_toml
+from ..base.setting_file import read_settings, settings_table
+from ..base.table_reader import Table
+from ..base.values import A_NAME, A_PATH
+from ..geometry.grids import PerceptionSpace
+from ..geometry.poses import Pose
 from ..metric.entropy import ApCurve
-from ..scene.geometry import Pose
-from ..scene.reference import Reference
-from ..scene.sensors import Rig, Sensor, SensorModel
-from ..scene.space import PerceptionSpace
-from ..scene.vehicle import DEFAULT_CLEARANCE_M, Vehicle
-from ..scene.vehicle_size import require_vehicle_size
+from ..scene.body_shape import require_vehicle_size
+from ..scene.rig import Rig, Sensor, SensorModel
+from ..scene.vehicle import Vehicle
+from ..scene.vehicle_description import Reference
 from ..search import PAPER_FREE, checked_axes
-from ..text.files import decode_text, read_bytes, write_bytes
-from ..text.tables import Table
-from ..text.toml_reader import load_toml
-from ..text.toml_writer import dumps
-from ..text.values import A_NAME, A_PATH
+from .catalog_lookup import same_model
 from .mesh_file import AXES_KEYS, MeshFile, axes_table, read_axes
 from .metric_file import curves_table, read_model, read_targets, targets_table
-from .mounted import alike
 from .mounting_file import areas_of
+from .passthrough import passthrough_table, read_passthrough
 from .prior_file import prior_table, read_prior
 from .search_file import in_file, read_limits, read_search, search_table
 from .selection_file import read_selection, selection_tables
 from .study import Search, Study
 
 OWN_MODEL = "own"
-"""What a model of a choice is called that is given no name."""
+"""Name of an own model in a choice that has no name."""
 
 
 def load_study(path: str | Path) -> Study:
@@ -76,7 +75,7 @@ def save_study(study: Study, path: str | Path) -> None:
 
 
 def study_bytes(study: Study) -> bytes:
-    """Return a study file's text; the files that it names are not looked for."""
+    """Return a study file's text; the files that it names need not exist."""
     return dumps(study_to_dict(study)).encode()
 
 
@@ -95,18 +94,13 @@ def study_to_dict(study: Study) -> dict[str, Any]:
     """Return a study as the plain data its file holds."""
     data = {
         "samples": study.samples or None,
-        "space": {
-            "x": list(study.space.x),
-            "y": list(study.space.y),
-            "z": list(study.space.z),
-            "interval": study.space.interval,
-        },
+        "space": settings_table(study.space),
         "prior": prior_table(study.prior),
         "metric": targets_table(study.targets),
         "ap": curves_table(study.model),
         "fusion": {"blind": study.model.blind},
         "vehicle": _vehicle_table(study),
-        "reference": None if study.reference is None else asdict(study.reference),
+        "reference": None if study.reference is None else settings_table(study.reference),
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
         "passthrough": passthrough_table(study.passthrough),
         "optimize": search_table(study.search),
@@ -117,14 +111,14 @@ def study_to_dict(study: Study) -> dict[str, Any]:
 
 
 def _check_beside(path: Path, field: str, needed: bool, file: str | None) -> None:
-    """Complain of a file that a study would name, but that is not there when it is read again."""
+    """Raise `InputError` for a file that the study names and that does not exist."""
     if needed and not (file and os.path.exists(path.parent / file)):
         expected = "a file beside the study (pe.export_study writes it)"
         raise InputError(path, field, expected, shown(file) if file else "none")
 
 
 def _named(error: InputError, source: str) -> InputError:
-    """Put the study's file in front of an error raised deeper down."""
+    """Return an error with the study's file as its source."""
     return InputError(source, f"{error.source}: {error.field}", error.expected, error.found)
 
 
@@ -149,7 +143,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_prior(table.table("prior"), folder),
         read_model(table.table("ap"), table.table("fusion")),
         read_search(search, free, limits, on, folder),
-        table.whole("samples", 0),
+        read_settings(table, Study)["samples"],
         *file,
         _read_reference(table),
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
@@ -162,11 +156,7 @@ def _read_study(table: Table, folder: Path) -> Study:
 
 
 def _read_space(table: Table) -> PerceptionSpace:
-    default = PerceptionSpace()
-    (x, y, z) = (
-        (low, high) for low, high in (table.numbers(a, 2, getattr(default, a)) for a in "xyz")
-    )
-    space = PerceptionSpace(x, y, z, table.number("interval", default.interval))
+    space = PerceptionSpace(**read_settings(table, PerceptionSpace))
     table.finish()
     return space
 
@@ -175,9 +165,7 @@ def _read_reference(table: Table) -> Reference | None:
     if "reference" not in table:
         return None
     own = table.table("reference")
-    keys = [each.name for each in fields(Reference)]
-    needed = {key: own.number(key) for key in keys[:2]}
-    reference = Reference(**needed, **{key: own.number(key, None) for key in keys[2:]})
+    reference = Reference(**read_settings(own, Reference))
     own.finish()
     return reference
 
@@ -188,14 +176,14 @@ def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, MeshFile]
     if mesh is None and any(key in table for key in keys):
         raise table.error("mesh", "the file of the vehicle's mesh", "nothing")
     glass = table.texts("glass", ())
-    clearance = table.number("clearance", DEFAULT_CLEARANCE_M)
+    settings = read_settings(table, Vehicle)
     axes = read_axes(table)
     table.finish()
     if mesh is None:
         return None, MeshFile()
-    read = read_mesh(folder / mesh, axes)
+    read = shipped("reader.mesh")(folder / mesh, axes)
     require_vehicle_size(mesh, read)
-    vehicle = Vehicle(read.triangles, read.parts, read.part_names, glass, clearance)
+    vehicle = Vehicle(read.triangles, read.parts, read.part_names, glass, **settings)
     return vehicle, MeshFile(mesh, axes, read.axes)
 
 
@@ -215,7 +203,7 @@ def _read_sensor(table: Table, folder: Path) -> Sensor:
 
 
 def _own_curve(table: Table) -> ApCurve | None:
-    """Return the AP curve that a sensor has of its own."""
+    """Return a sensor's own AP curve; None without."""
     if "ap" not in table:
         return None
     own = table.table("ap")
@@ -225,7 +213,7 @@ def _own_curve(table: Table) -> ApCurve | None:
 
 
 def _read_intrinsics(table: Table, sensor: str, folder: Path) -> SensorModel:
-    """Return the sensor of the catalogue, or one of the user's own, called as the table says."""
+    """Return a model of the catalogue, or an own model from the table's values."""
     model = table.raw("model")
     if isinstance(model, str):
         return catalog.load(model)
@@ -245,7 +233,7 @@ def _vehicle_table(study: Study) -> dict[str, Any] | None:
     return {
         "mesh": study.mesh,
         "glass": list(study.vehicle.glass),
-        "clearance": study.vehicle.clearance,
+        **settings_table(study.vehicle),
         **axes_table(study.axes),
     }
 
@@ -267,12 +255,16 @@ def _sensor_table(sensor: Sensor, search: Search) -> dict[str, Any]:
 
 
 def _model_value(model: SensorModel, unnamed: str = OWN_MODEL) -> str | dict[str, Any]:
-    """Return the catalogue's name, or the intrinsics of a sensor that not everybody has.
+    """Return the catalogue's name of a model, or the values of an own model.
 
-    `unnamed` is what a model is called that is given no name.
+    `unnamed` is the name of a model that has none in the file.
     """
     entry = catalog.entries().get(model.name)
-    if entry is not None and entry.file != catalog.OWN and alike(catalog.load(model.name), model):
+    if (
+        entry is not None
+        and entry.file != catalog.OWN
+        and same_model(catalog.load(model.name), model)
+    ):
         return model.name
     name = {} if model.name == unnamed else {"name": model.name}
     return name | catalog.to_table(model)

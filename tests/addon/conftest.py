@@ -53,9 +53,9 @@ def scene(addon):
 
 @pytest.fixture
 def car(scene):
-    """Return a scene with a car and a LiDAR on its roof."""
+    """Return a scene with a car and a LiDAR of few beams on its roof."""
     from tests.addon import scenes
 
     scenes.add_car(scene)
-    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     return scene

@@ -6,10 +6,10 @@ import bpy
 import numpy as np
 
 from blender_addon import bridge
-from blender_addon.overlay import updating
+from blender_addon.overlay import scheduler
+from blender_addon.overlay.layer_cache import shown
 from blender_addon.overlay.layers import LAYERS
-from blender_addon.overlay.store import shown
-from pe_core.graphics import LayerShape
+from pe_tools.graphics import LayerShape
 
 ASSETS = Path(__file__).resolve().parents[2] / "blend_assets"
 
@@ -101,7 +101,7 @@ def seen_rig(car) -> bpy.types.Scene:
 
 def drawn(scene) -> dict[str, dict[str, LayerShape]]:
     """Return what the 3D view shows of a scene: shapes by layer, then by sensor."""
-    updating.update()
+    scheduler.update()
     layers = shown.layers(scene.name)
     return {layer: {n: item.shape for n, item in items.items()} for layer, items in layers}
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
+from blender_addon import sensor_kinds
 from blender_addon.engine import catalog
-from blender_addon.operators import mounting
 from tests.addon import scenes
 
 
@@ -94,7 +94,7 @@ def test_stands_on_the_roof_of_the_example_vehicles(addon, vehicle, model):
     body = scenes.shipped_study(vehicle).vehicle
     bpy.ops.pe.add_sensor(model=model)
     place = bpy.context.object.location
-    mount = mounting.mount_of(catalog.load(model).kind)
+    mount = sensor_kinds.mount_of(catalog.load(model).kind)
     below = body.first_hit(place, [(0.0, 0.0, -1.0)]).distance[0]
     assert below == pytest.approx(mount.stand_off_m, abs=0.006)  # rounded to a centimetre
     assert not np.isfinite(body.first_hit(place, [(1.0, 0.0, 0.0)]).distance).any()

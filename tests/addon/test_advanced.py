@@ -6,9 +6,9 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, upkeep
+from blender_addon import bridge, consistency
 from blender_addon.engine import catalog
-from blender_addon.live import asking
+from blender_addon.live import evaluation
 from tests.addon import scenes
 
 
@@ -74,7 +74,7 @@ def test_an_exported_study_scores_and_searches_the_same(full, tmp_path):
     path = tmp_path / "study.toml"
     assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
     study = scenes.study()
-    bridge.forget_own_sensors()
+    bridge.remove_own_sensors()
     read = pe.load_study(path)
     assert "elevations_deg" in path.read_text() and "clearance = 0.05" in path.read_text()
     assert (read.space, read.model, read.search) == (study.space, study.model, study.search)
@@ -179,7 +179,7 @@ def test_undo_takes_them_back(car):
     bpy.ops.pe.add_own_sensor("EXEC_DEFAULT", True)
     assert "My LiDAR" in catalog.entries()
     bpy.ops.ed.undo()
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert "My LiDAR" not in catalog.entries()
 
 
@@ -191,11 +191,11 @@ def test_a_removed_one_is_refused_in_one_line(full):
 
 def test_the_live_score_is_of_the_same_study(full):
     """What follows the hand is of the scene's own space and curves, as the score is."""
-    study, wish = scenes.study(), asking.read(full, scenes.depsgraph(), draft=False)
+    study, wish = scenes.study(), evaluation.read_request(full, scenes.depsgraph(), draft=False)
     problem = wish.problem
     assert (problem.space, problem.model) == (study.space, study.model)
     assert problem.vehicle.clearance == 0.05
-    own = study.evaluator(samples=asking.SAMPLES)
-    assert asking.EvaluatorStore().glance("it", wish)[0].entropy == own.entropy(study.rig)
+    own = study.evaluator(samples=evaluation.SAMPLES)
+    assert evaluation.EvaluatorCache().summary("it", wish)[0].entropy == own.entropy(study.rig)
     full.perception_entropy.space_x = (-20.0, 30.0)
-    assert asking.read(full, scenes.depsgraph(), draft=False).problem.key != problem.key
+    assert evaluation.read_request(full, scenes.depsgraph(), draft=False).problem.key != problem.key

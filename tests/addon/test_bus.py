@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scene.geometry import rotation_matrix
+from pe_core.geometry.poses import rotation_matrix
 from tests.addon import scenes
 
 CORNERS_M = [(x, y) for x in (3.03, -3.03) for y in (1.01, -1.01)]

@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 import pytest
 
-from blender_addon.engine import studies
+from blender_addon.engine import jobs
 from tests.addon import scenes
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -137,8 +137,8 @@ def test_focus_and_prior_of_the_scene_agree_with_the_engine(car, tmp_path, prior
 
 def check_resumed(blend: Path, folder: Path) -> None:
     """The search goes on from a state that a kill would leave, to the same result."""
-    whole, begun = without_run(folder / "result.json"), studies.read_search(folder)
-    state = studies.SearchState(begun.study, begun.inputs)
+    whole, begun = without_run(folder / "result.json"), jobs.read_search(folder)
+    state = jobs.SearchState(begun.study, begun.inputs)
     state.save(folder, begun.study, begun.judged[:5])
     answer = run(
         "blender_addon", blend, "optimize", "--no-review", *FAST, "--resume", folder, "--no-render"

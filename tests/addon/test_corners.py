@@ -2,17 +2,17 @@
 
 import pytest
 
-from blender_addon import corners
+from blender_addon import viewport
 
 READOUT = (20.0, 40.0, 320.0, 240.0)
 
 
 @pytest.fixture
 def shown():
-    corners.reserve(7, "live", READOUT)
+    viewport.reserve_plate(7, "live", READOUT)
     yield
-    corners.forget("live")
-    corners.forget("search")
+    viewport.release_plate("live")
+    viewport.release_plate("search")
 
 
 @pytest.mark.parametrize(
@@ -25,11 +25,11 @@ def shown():
     ],
 )
 def test_a_plate_stands_above_what_it_would_cover(shown, region, sides, bottom):
-    assert corners.bottom_above(region, sides, 16.0, 6.0) == bottom
+    assert viewport.free_bottom(region, sides, 16.0, 6.0) == bottom
 
 
 def test_what_is_not_drawn_any_more_leaves_its_room(shown):
-    corners.reserve(7, "search", (20.0, 250.0, 320.0, 400.0))
-    assert corners.bottom_above(7, (0.0, 100.0), 16.0, 6.0) == 406.0
-    corners.reserve(7, "search", None)
-    assert corners.bottom_above(7, (0.0, 100.0), 16.0, 6.0) == 246.0
+    viewport.reserve_plate(7, "search", (20.0, 250.0, 320.0, 400.0))
+    assert viewport.free_bottom(7, (0.0, 100.0), 16.0, 6.0) == 406.0
+    viewport.reserve_plate(7, "search", None)
+    assert viewport.free_bottom(7, (0.0, 100.0), 16.0, 6.0) == 246.0

@@ -8,8 +8,8 @@ import pytest
 
 from blender_addon import bridge
 from blender_addon.engine import exchange, pe
-from blender_addon.overlay import axles
-from pe_core.app.cli import main
+from blender_addon.overlay import annotations
+from pe_tools.cli.verbs import main
 from tests.addon import scenes
 from tests.addon.test_commands import run
 from tests.engine.test_passthrough import CARLA
@@ -102,7 +102,7 @@ def test_a_bad_file_changes_nothing(car, tmp_path):
 
 
 def test_axles_are_drawn_across_the_body_and_axes_on_the_ground():
-    shape = axles.axles(AXLE, 0.9)
+    shape = annotations.axles(AXLE, 0.9)
     ends = shape.through.points.reshape(-1, 2, 3)
     across = [pair for pair in ends if pair[0][1] < 0.0]
     assert [round(float(pair[0][0]), 2) for pair in across] == [-1.31, 1.49]

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import asking, bridge, explaining, panels
+from blender_addon import bridge, diagnostics, location_query, panels
 from blender_addon.engine import advice, pe
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window
@@ -14,13 +14,13 @@ from tests.addon.layouts import Layout, Window
 
 def told(scene):
     """What is odd, by whose it is: (subject, code)."""
-    explaining.look()
+    diagnostics.run_checks()
     return [(row.subject, row.code) for row in scene.perception_entropy.result_warnings]
 
 
 def mend(scene, code):
     """Press the button of a warning."""
-    explaining.look()
+    diagnostics.run_checks()
     rows = scene.perception_entropy.result_warnings
     row = next(each for each in rows if each.code == code)
     done = bpy.ops.pe.mend(fix=row.fix, subject=row.subject, amount=row.amount)
@@ -46,7 +46,7 @@ def test_nothing_is_odd_about_a_car_with_a_lidar_on_its_roof(car):
 
 
 def test_the_vehicle_is_told_in_a_line_under_its_field(car):
-    explaining.look()
+    diagnostics.run_checks()
     line = "4.00 x 1.80 x 1.30 m, lies along x, 24 triangles, 2 parts"
     assert car.perception_entropy.vehicle_line == line
 
@@ -139,7 +139,7 @@ def test_the_table_has_every_sensor_of_the_score(car):
     for width in (240, 600):
         window, layout = Window(car, car.objects["roof"]), Layout()
         window.region.width = width
-        panels.sensor_table.draw_sensor_table(layout, window)
+        panels.sensor_lists.draw_sensor_table(layout, window)
         for name, loss, where, _ in (
             row.cells for row in advice.sensor_rows(score, study.rig, study.vehicle, seen)
         ):
@@ -170,26 +170,26 @@ def test_a_place_is_asked_as_the_engine_does(car):
     assert bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0)) == {"FINISHED"}
     study = scenes.study()
     expected = advice.ask_place(study.rig, study.space, study.prior, study.vehicle, (6.0, 3.0, 0.0))
-    found = asking.answer(car)
+    found = location_query.answer(car)
     assert found.lines == expected.text and found.place.sensors == expected.sensors
     car.objects["roof"].location.z = 2.4
     bpy.context.view_layer.update()
-    asking.ask_again()
-    assert asking.answer(car).lines != expected.text
+    location_query.query_again()
+    assert location_query.answer(car).lines != expected.text
     bpy.ops.pe.dismiss_place()
-    assert asking.answer(car) is None
+    assert location_query.answer(car) is None
 
 
 def test_a_place_outside_the_space_is_told_in_one_line(car):
     bpy.ops.pe.ask_place(point=(600.0, 3.0, 0.0))
-    (line,) = asking.answer(car).lines
+    (line,) = location_query.answer(car).lines
     assert "inside the space" in line
 
 
 def test_another_file_brings_no_answer_of_this_one(car):
     bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert asking.answer(bpy.context.scene) is None
+    assert location_query.answer(bpy.context.scene) is None
 
 
 def lost_roof(tmp_path):
@@ -247,16 +247,16 @@ def test_warnings_of_before_a_move_say_so_until_it_is_looked_over(car, monkeypat
     window = Window(car, car.objects["roof"])
 
     def line():
-        panels.sensors.draw_sensors(shown := Layout(), window)
+        panels.sensor_lists.draw_sensors(shown := Layout(), window)
         return " ".join(shown.texts("label"))
 
     assert "Before this move" not in line()
     app = type("App", (), {"background": False, "timers": Unregistered})
-    monkeypatch.setattr(explaining, "bpy", type("Bpy", (), {"app": app, "data": bpy.data}))
-    explaining.not_yet()
+    monkeypatch.setattr(diagnostics, "bpy", type("Bpy", (), {"app": app, "data": bpy.data}))
+    diagnostics.postpone_checks()
     assert "Before this move" in line()
-    monkeypatch.setattr(explaining.bpy, "context", bpy.context, raising=False)
-    explaining.look()
+    monkeypatch.setattr(diagnostics.bpy, "context", bpy.context, raising=False)
+    diagnostics.run_checks()
     assert "Before this move" not in line() and "clear of the vehicle" in line()
 
 
@@ -272,10 +272,10 @@ def test_panels_show_words_warnings_and_the_place(car):
     bpy.ops.pe.score()
     bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
     window, layout = Window(car, car.objects["roof"]), Layout()
-    panels.sensors.draw_sensors(layout, window)
+    panels.sensor_lists.draw_sensors(layout, window)
     assert "clear of the vehicle" in " ".join(layout.texts("label"))
     explain = type("Explain", (), {"layout": (shown := Layout())})
-    panels.explain.PE_PT_explain.draw(explain, window)
+    panels.score_details.PE_PT_explain.draw(explain, window)
     text = " ".join(shown.texts("label"))
     assert "of where objects are is seen" in text.replace("  ", " ")
     assert "The only sensor" in text and "roof" in text
@@ -294,7 +294,7 @@ def test_sensors_that_no_score_would_take_are_no_reason_to_tell_nothing(car):
 def test_a_place_is_asked_in_the_scene_s_own_space(car):
     car.perception_entropy.space_x = (-20.0, 20.0)
     bpy.ops.pe.ask_place(point=(30.0, 0.0, 0.0))
-    assert "-20 to 20 m" in asking.answer(car).lines[0]
+    assert "-20 to 20 m" in location_query.answer(car).lines[0]
 
 
 def hide_it(layer):

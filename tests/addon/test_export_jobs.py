@@ -7,8 +7,8 @@ import pytest
 
 from blender_addon import review
 from blender_addon.engine import pe
-from blender_addon.operators import export_scene, exporting, running
-from blender_addon.operators import review as exports
+from blender_addon.operators import export_files, export_job, running_job
+from blender_addon.operators import export_files as exports
 from tests.addon import scenes
 
 
@@ -24,14 +24,14 @@ def page_job(path):
     """Return the job of a page, as the operator makes it."""
     told = {"command": "", "versions": {}}
     steps, about = exports.PE_OT_export_review.steps, exports.page.About()
-    return exporting.ExportJob(scenes.study(), lambda job: steps(job, path, "Scene", told, about))
+    return export_job.ExportJob(scenes.study(), lambda job: steps(job, path, "Scene", told, about))
 
 
 def scene_job(path):
     """Return the job of an output of the scene."""
-    row = export_scene.outputs.scene_output("gltf")
-    steps = export_scene.PE_OT_export_scene.steps
-    return exporting.ExportJob(scenes.study(), lambda job: steps(job, row, path, 5.0, False))
+    row = export_files.outputs.scene_output("gltf")
+    steps = export_files.PE_OT_export_scene.steps
+    return export_job.ExportJob(scenes.study(), lambda job: steps(job, row, path, 5.0, False))
 
 
 JOBS = {"page.html": page_job, "scene.glb": scene_job}
@@ -74,30 +74,30 @@ def test_a_page_that_is_stopped_is_not_worked_on(small, tmp_path):
     watch = job.watch(0.4)
     watch(0.5)
     job.stop()
-    with pytest.raises(exporting.ExportStopped):
+    with pytest.raises(export_job.ExportStopped):
         watch(0.6)
 
 
 def test_what_was_written_is_kept_for_the_panel(small, tmp_path):
     path = tmp_path / "study.toml"
     assert bpy.ops.pe.export_study(filepath=str(path)) == {"FINISHED"}
-    assert (exporting.last.text, exporting.last.folder) == ("Wrote study.toml", tmp_path)
+    assert (export_job.last.text, export_job.last.folder) == ("Wrote study.toml", tmp_path)
     bpy.ops.pe.export_scene(filepath=str(tmp_path / "a.glb"), output="gltf")
-    assert exporting.last.paths == (tmp_path / "a.glb",)
+    assert export_job.last.paths == (tmp_path / "a.glb",)
     with pytest.raises(RuntimeError):
         bpy.ops.pe.export_study(filepath=str(path / "below" / "x.toml"))
-    assert exporting.last.text == "Wrote a.glb", "what failed wrote nothing"
+    assert export_job.last.text == "Wrote a.glb", "what failed wrote nothing"
     assert bpy.ops.pe.open_folder.poll()
     bpy.ops.pe.dismiss_written()
-    assert exporting.last is None and not bpy.ops.pe.open_folder.poll()
+    assert export_job.last is None and not bpy.ops.pe.open_folder.poll()
 
 
 def test_no_export_begins_while_another_job_runs(small, monkeypatch):
-    monkeypatch.setattr(running, "current", object())
+    monkeypatch.setattr(running_job, "current", object())
     names = ("export_review", "render_review", "export_scene")
     assert not any(getattr(bpy.ops.pe, name).poll() for name in names)
 
 
 def test_the_scene_that_is_gone_is_one_line(small):
-    with pytest.raises(pe.InputError, match="no 'Other' any more"):
-        exports.open_scene("Other")
+    with pytest.raises(pe.InputError, match="'Other' was removed"):
+        exports.scene_named("Other")

@@ -5,7 +5,7 @@ import math
 import bpy
 import pytest
 
-from blender_addon import bridge, choices, stale
+from blender_addon import bridge, choices, result_staleness
 from blender_addon.engine import pe
 from tests.addon import scenes
 
@@ -184,16 +184,16 @@ def test_result_goes_stale_and_comes_back(car):
         before = tuple(before) if name.endswith("range") else before
         for new, expected in ((value, True), (before, False)):
             setattr(row, name, new)
-            stale.check()
+            result_staleness.update_result()
             assert settings.result_stale == expected, (name, new)
     row.name = "another"
-    stale.check()
+    result_staleness.update_result()
     assert not settings.result_stale
     bpy.ops.pe.add_focus()
-    stale.check()
+    result_staleness.update_result()
     assert settings.result_stale
     bpy.ops.pe.remove_focus()
-    stale.check()
+    result_staleness.update_result()
     assert not settings.result_stale
 
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon.housing import KEY, housing_mesh, shapes
-from blender_addon.housing.meshes import MATERIALS, surface_for
+from blender_addon import housing as surfaces
+from blender_addon.housing import KEY, MATERIALS, housing_mesh, model_surface
 from tests.addon import scenes
 
 MODELS = ["Pandar64", "Velodyne HDL-32E", "Hesai QT128C2X", "Hesai AT128E2X", "Camera 60 deg"]
@@ -22,7 +22,7 @@ def triangles_of(surface):
 @pytest.mark.parametrize("name", [n for n in pe.catalog.names() if pe.catalog.housing(n)])
 def test_it_is_as_large_as_the_catalogue_says_about_the_optical_centre(name):
     housing = pe.catalog.housing(name)
-    points = surface_for(name).points
+    points = model_surface(name).points
     low, high = points.min(axis=0), points.max(axis=0)
     assert high - low == pytest.approx(housing.size, abs=1e-9)
     assert low[2] == pytest.approx(-housing.optical_center[2], abs=1e-9)
@@ -31,7 +31,7 @@ def test_it_is_as_large_as_the_catalogue_says_about_the_optical_centre(name):
 
 def test_a_box_has_its_size_and_place_too():
     for has_lens in (False, True):
-        points = shapes.surface_of(BOX, has_lens).points
+        points = surfaces.surface_of(BOX, has_lens).points
         assert np.ptp(points, axis=0) == pytest.approx(BOX.size, abs=1e-9)
         middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
         assert middle == pytest.approx(BOX.center, abs=1e-9)
@@ -39,7 +39,7 @@ def test_a_box_has_its_size_and_place_too():
 
 @pytest.mark.parametrize("name", MODELS)
 def test_its_surface_is_closed_and_looks_outwards(name):
-    surface = surface_for(name)
+    surface = model_surface(name)
     triangles = triangles_of(surface)
     assert scenes.open_edges(triangles) == 0
     assert scenes.volume(triangles) > 0.5 * np.prod(np.ptp(surface.points, axis=0)) / 2.0
@@ -50,14 +50,22 @@ def test_its_surface_is_closed_and_looks_outwards(name):
 def test_a_window_is_where_the_beams_come_out():
     """A level beam leaves the can through its glass, a camera looks out of its lens."""
     for name in ("Pandar64", "Velodyne VLP-16 Puck", "Velodyne HDL-32E"):
-        surface = surface_for(name)
+        surface = model_surface(name)
         glass = [
-            f for f, m in zip(surface.faces, surface.made_of, strict=True) if m == shapes.GLASS
+            f for f, m in zip(surface.faces, surface.made_of, strict=True) if m == surfaces.GLASS
         ]
         heights = surface.points[np.unique(np.concatenate(glass)), 2]
         assert heights.min() < 0.0 < heights.max(), name
-    ahead = surface_for("Camera 60 deg").points[:, 0]
+    ahead = model_surface("Camera 60 deg").points[:, 0]
     assert ahead.max() == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.fixture
+def car(car):
+    """Return the car with a Pandar64 on its roof: its size is known from a table of its maker."""
+    car.objects["roof"].perception_entropy.model = "Pandar64"
+    bpy.context.view_layer.update()
+    return car
 
 
 def test_adding_a_sensor_gives_it_its_body_where_a_size_is_known(car):

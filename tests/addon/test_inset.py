@@ -9,7 +9,7 @@ from mathutils import Vector
 
 from blender_addon import bridge
 from blender_addon.engine import catalog, pe
-from blender_addon.operators import inset, inset_drawing
+from blender_addon.operators import inset, sensor_pictures
 from tests.addon import scenes
 
 
@@ -31,8 +31,8 @@ def test_points_fall_where_the_camera_has_them(car, model):
 @pytest.mark.parametrize("scale", [1.0, 2.0])
 def test_a_picture_keeps_its_proportions_and_leaves_the_view_room(region, picture, scale):
     width, height = inset.size_of(region, picture, scale)
-    assert width <= max(inset.SHARE * region[0], 2) and width <= inset.WIDEST_PX * scale
-    assert height <= max(inset.HIGHEST_SHARE * region[1], 2)
+    assert width <= max(inset.WIDTH_SHARE * region[0], 2) and width <= inset.MAX_WIDTH_PX * scale
+    assert height <= max(inset.MAX_HEIGHT_SHARE * region[1], 2)
     assert height == pytest.approx(width * picture[1] / picture[0], abs=2)
 
 
@@ -63,10 +63,10 @@ def test_a_lidar_s_ranges_are_asked_for_beside_the_window(car, monkeypatch):
     car.perception_entropy.view.show_inset = True
     bpy.context.view_layer.objects.active = car.objects["roof"]
     monkeypatch.setattr(inset, "_ranges", None)
-    inset.ask_ranges()
+    inset.request_ranges()
     whose, image = inset._ranges
-    assert whose == ("roof", "Pandar64")
-    assert (image.width, image.height) == (round(359.8 * 3), 40 * 3)
+    assert whose == ("roof", "Velodyne VLP-16 Puck")
+    assert (image.width, image.height) == (round(359.8 * 3), 30 * 3)
 
 
 def test_a_bent_lens_is_told_in_the_title(car):
@@ -78,5 +78,5 @@ def test_a_bent_lens_is_told_in_the_title(car):
 
 def test_pixels_are_linear_light_again_where_a_view_encodes_them():
     pixels = np.array([[[0.0, 0.5, 1.0, 0.25]]], np.float32)
-    found = inset_drawing.linear(pixels)[0, 0]
+    found = sensor_pictures.linear(pixels)[0, 0]
     assert found == pytest.approx([0.0, 0.21404, 1.0, 0.25], abs=1e-4)

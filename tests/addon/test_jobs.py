@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from blender_addon import bridge, stale
+from blender_addon import bridge, result_staleness
 from blender_addon.engine import pe, text
-from blender_addon.live import latest
-from blender_addon.operators import job, running
+from blender_addon.live import state
+from blender_addon.operators import running_job, score_jobs
 from tests.addon import scenes
 
 
@@ -54,7 +54,7 @@ def test_result_is_shown(car):
     assert settings.has_result and not settings.result_stale
     assert settings.result_entropy == pytest.approx(data["entropy"], abs=1e-6)
     roof = car.objects["roof"].perception_entropy
-    assert roof.has_result and roof.beams == 64 * 1800
+    assert roof.has_result and roof.beams == 16 * 1800
     assert roof.stopped == data["after"]["per_sensor"]["roof"]["stopped"] > 0
     assert "cabin" in roof.stopped_text
     front, told = car.objects["front"].perception_entropy, data["after"]["per_sensor"]["front"]
@@ -149,8 +149,8 @@ def test_stopped_search_keeps_the_best(car):
 def test_stopped_before_a_score_is_complete_changes_nothing(car):
     told = []
     operator = SimpleNamespace(report=lambda *words: told.append(words))
-    idle = job.SceneJob(pe.OptimizeJob(scenes.study()), None)
-    assert job.PE_OT_optimize._apply(operator, car, idle) == {"CANCELLED"}
+    idle = score_jobs.SceneJob(pe.OptimizeJob(scenes.study()), None)
+    assert score_jobs.PE_OT_optimize._apply(operator, car, idle) == {"CANCELLED"}
     assert told == [({"INFO"}, "Stopped before a score was complete: nothing was changed")]
     assert not car.perception_entropy.has_result
 
@@ -171,7 +171,7 @@ def test_sensor_deleted_meanwhile(car):
 
 
 def test_one_job_at_a_time(car, monkeypatch):
-    monkeypatch.setattr(running, "current", object())
+    monkeypatch.setattr(running_job, "current", object())
     assert not bpy.ops.pe.score.poll()
     with pytest.raises(RuntimeError, match="Another score or search is running"):
         bpy.ops.pe.optimize()
@@ -185,7 +185,7 @@ def test_nothing_to_cancel(car):
 def test_result_goes_stale_and_comes_back(car):
     settings, sensor = car.perception_entropy, car.objects["roof"]
     bpy.ops.pe.score()
-    stale.check()
+    result_staleness.update_result()
     assert not settings.result_stale
     changes = ((sensor, "location", (0.0, 0.0, 2.0)), (settings, "prior", "uniform"))
     changes += ((sensor.perception_entropy, "model", "HDL-64E"),)
@@ -199,7 +199,7 @@ def test_result_goes_stale_and_comes_back(car):
             setattr(owner, name, new)
             car.objects["body"].data.update()
             bpy.context.view_layer.update()
-            stale.check()
+            result_staleness.update_result()
             assert settings.result_stale == expected, (name, new)
 
 
@@ -249,7 +249,7 @@ CHANGES = {
 }
 
 
-@pytest.mark.parametrize("operator", [job.PE_OT_score, job.PE_OT_optimize])
+@pytest.mark.parametrize("operator", [score_jobs.PE_OT_score, score_jobs.PE_OT_optimize])
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_change_while_a_job_runs_leaves_its_result_stale(car, operator, change):
     moving = scenes.add_sensor("other", model="Pandar40", location=(1.9, 0.0, 1.0))
@@ -261,11 +261,11 @@ def test_a_change_while_a_job_runs_leaves_its_result_stale(car, operator, change
     done = finished_after(car, acting(operator), lambda: CHANGES[change](car))
     assert done == {"FINISHED"}
     # What the search has placed stands where it put it, wherever it was meanwhile.
-    placed_over = operator is job.PE_OT_optimize and change == "sensor moved"
+    placed_over = operator is score_jobs.PE_OT_optimize and change == "sensor moved"
     assert car.perception_entropy.result_stale != placed_over
 
 
-@pytest.mark.parametrize("operator", [job.PE_OT_score, job.PE_OT_optimize])
+@pytest.mark.parametrize("operator", [score_jobs.PE_OT_score, score_jobs.PE_OT_optimize])
 def test_without_a_change_a_job_s_result_stands(car, operator):
     assert finished_after(car, acting(operator), lambda: None) == {"FINISHED"}
     assert not car.perception_entropy.result_stale
@@ -273,12 +273,12 @@ def test_without_a_change_a_job_s_result_stands(car, operator):
 
 def test_the_start_of_a_search_is_not_scored_again_when_it_is_known(car, monkeypatch):
     bpy.ops.pe.score()
-    known = latest.scored(car.name).score
+    known = state.live_state(car.name).finished.score
     made = []
     monkeypatch.setattr(
-        job.pe, "OptimizeJob", lambda study, before: made.append(before) or SimpleNamespace()
+        score_jobs.pe, "OptimizeJob", lambda study, before: made.append(before) or SimpleNamespace()
     )
-    act = acting(job.PE_OT_optimize)(SimpleNamespace())
+    act = acting(score_jobs.PE_OT_optimize)(SimpleNamespace())
     act._task(Window(car))
     assert made == [known]
     car.objects["roof"].location.z += 0.1
@@ -326,7 +326,7 @@ def constrain(sensor):
 def test_a_sensor_that_something_holds_is_told_before_the_work(car, hold, monkeypatch):
     sensor = car.objects["roof"]
     hold(sensor)
-    monkeypatch.setattr(job.pe, "OptimizeJob", lambda *_, **__: pytest.fail("begun"))
+    monkeypatch.setattr(score_jobs.pe, "OptimizeJob", lambda *_, **__: pytest.fail("begun"))
     with pytest.raises(RuntimeError, match="sensor 'roof': placement: expected an object that can"):
         bpy.ops.pe.optimize()
     sensor.perception_entropy.free = (False,) * 6
@@ -337,13 +337,13 @@ def test_a_sensor_that_something_holds_is_told_before_the_work(car, hold, monkey
 
 def test_a_second_stop_leaves_all_as_it_was(car):
     before = scenes.study().rig["roof"].pose
-    act = acting(job.PE_OT_optimize)(SimpleNamespace(report=lambda *_: None))
+    act = acting(score_jobs.PE_OT_optimize)(SimpleNamespace(report=lambda *_: None))
     task = act._task(Window(car))
     shown = SimpleNamespace(job=task.job)
     for progress in task.job:
         if progress.evaluations >= 8:
-            running.Running.stop(shown)
-            running.Running.stop(shown)
+            running_job.RunningJob.stop(shown)
+            running_job.RunningJob.stop(shown)
     assert act._apply(car, task) == {"CANCELLED"}
     assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result
 

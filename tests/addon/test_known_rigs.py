@@ -28,7 +28,7 @@ def test_a_rig_is_fitted_and_says_so_and_what_was_here_is_kept(car):
     assert [row.name for row in settings.variants] == ["Unsaved", "nuScenes"]
     active = bridge.active_variant(car)
     assert active.name == "nuScenes" and not settings.variant_changed
-    assert "stretched" in active.note and "Source: nuScenes" in active.note
+    assert "scaled" in active.note and "Source: nuScenes" in active.note
     top = scenes.study().vehicle.bounds[1][2]
     lidar = scenes.study().rig["LIDAR_TOP"].pose.position
     assert lidar[2] == pytest.approx(top + 1.8402 - 1.562, abs=1e-4)

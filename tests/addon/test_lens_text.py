@@ -3,8 +3,7 @@
 import bpy
 import pytest
 
-from blender_addon.bridge.lens_text import lens_text, read_lens
-from blender_addon.bridge.own_sensors import add_own_sensor, table_of
+from blender_addon.bridge.own_sensors import add_own_sensor, lens_text, read_line, table_of
 from blender_addon.engine import catalog
 
 
@@ -12,7 +11,7 @@ from blender_addon.engine import catalog
 def test_a_preset_s_lens_comes_back_from_its_line(name):
     table = catalog.to_table(catalog.load(name))
     kept = {k: v for k, v in table.items() if k not in ("kind", "width", "height", "hfov_deg")}
-    assert read_lens(lens_text(table)) == kept
+    assert read_line(lens_text(table), "distortion") == kept
 
 
 def test_an_own_camera_has_the_lens_that_is_typed(car):

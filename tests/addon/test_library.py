@@ -8,7 +8,7 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import bridge, library, roster
+from blender_addon import bridge, library, sensor_cache
 from blender_addon.housing import KEY
 from tests.addon import scenes
 
@@ -84,12 +84,12 @@ def test_the_file_is_small_and_nothing_else_is_in_it(assets):
 
 
 def test_an_appended_asset_is_a_sensor_at_once(car):
-    before = len(roster.sensors(car))
+    before = len(sensor_cache.sensors(car))
     (puck,) = appended("VLP-16 Puck")
     puck.location = (0.4, 0.0, 1.9)
     bpy.context.view_layer.update()
-    roster.forget()
-    assert len(roster.sensors(car)) == before + 1
+    sensor_cache.invalidate()
+    assert len(sensor_cache.sensors(car)) == before + 1
     study = scenes.study()
     assert study.rig[puck.name].model is pe.catalog.load("Velodyne VLP-16 Puck")
     assert study.rig[puck.name].pose.position == (0.4, 0.0, 1.9)

@@ -8,20 +8,26 @@ import numpy as np
 import pytest
 
 import blender_addon
-from blender_addon import bridge, changes, motion, simple_bodies, stale, worker
+from blender_addon import (
+    bridge,
+    change_events,
+    result_staleness,
+    signals,
+    simplified_vehicles,
+    worker,
+)
 from blender_addon.choices import BEFORE_MOVE, PINNED
 from blender_addon.engine import advice, catalog, pe
 from blender_addon.live import (
-    asking,
-    background,
-    figure_words,
-    latest,
+    background_figures,
+    baseline,
+    evaluation,
     readout,
-    reference,
+    readout_text,
     session,
-    shown,
+    state,
 )
-from blender_addon.live.background import ShownFigures
+from blender_addon.live.background_figures import ShownFigures
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -44,8 +50,8 @@ class Window:
 def live(monkeypatch, car):
     """The car with a second sensor, in a window, the live score switched on."""
     scenes.add_sensor("front", model="Camera 60 deg", location=(1.9, 0.0, 1.2))
-    monkeypatch.setattr(asking, "SAMPLES", SAMPLES)
-    for module in (motion, session):
+    monkeypatch.setattr(evaluation, "SAMPLES", SAMPLES)
+    for module in (change_events, session):
         monkeypatch.setattr(module, "bpy", Window)
     drag(car.objects["roof"])  # from here on it is known what there is
     car.perception_entropy.live.figures = False  # but where they are tested
@@ -59,15 +65,15 @@ def drag(obj, by=0.05):
 
 
 def rest():
-    session.rest()
+    session.on_idle()
 
 
 def reading(scene):
-    return latest.reading(scene.name)
+    return state.live_state(scene.name).score
 
 
 def is_exact(scene):
-    return latest.is_exact(scene.name, reading(scene))
+    return state.live_state(scene.name).is_current(reading(scene))
 
 
 def exact():
@@ -81,27 +87,27 @@ def told(glance):
 
 
 def test_it_begins_with_an_exact_score(live):
-    assert told(reading(live).glance) == told(exact())
-    assert reading(live).rested and not reading(live).glance.draft
+    assert told(reading(live).summary) == told(exact())
+    assert reading(live).exact and not reading(live).summary.draft
     assert reading(live).before is None
 
 
 def test_a_draft_follows_and_the_rest_is_exact_to_the_bit(live):
-    start = reading(live).glance
+    start = reading(live).summary
     for _ in range(3):
         drag(live.objects["roof"])
-        assert reading(live).glance.draft and not reading(live).rested
+        assert reading(live).summary.draft and not reading(live).exact
         assert reading(live).rig["roof"].pose == scenes.study().rig["roof"].pose
         assert reading(live).before == start
     rest()
-    assert told(reading(live).glance) == told(exact()) != told(start)
-    assert reading(live).rested and reading(live).before == start
+    assert told(reading(live).summary) == told(exact()) != told(start)
+    assert reading(live).exact and reading(live).before == start
 
 
 def test_the_next_drag_is_compared_with_where_it_began(live):
     drag(live.objects["roof"])
     rest()
-    second = reading(live).glance
+    second = reading(live).summary
     drag(live.objects["roof"])
     assert reading(live).before == second
     drag(live.objects["roof"])
@@ -109,7 +115,7 @@ def test_the_next_drag_is_compared_with_where_it_began(live):
 
 
 def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypatch):
-    start = reading(live).glance
+    start = reading(live).summary
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
     for _ in range(2):
         drag(live.objects["roof"])
@@ -117,7 +123,7 @@ def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypa
         assert reading(live).before == start
     monkeypatch.setattr(session, "_moving_operator", lambda: 0)
     rest()
-    second = reading(live).glance
+    second = reading(live).summary
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)  # an address may come again
     drag(live.objects["roof"])
     assert reading(live).before == second != start
@@ -125,7 +131,7 @@ def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypa
 
 @pytest.mark.parametrize("by", [0.05, 0.0], ids=["clicked", "escaped"])
 def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
-    start, roof = reading(live).glance, live.objects["roof"]
+    start, roof = reading(live).summary, live.objects["roof"]
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
     drag(roof)
     rest()  # held still until it was scored
@@ -133,7 +139,7 @@ def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
     drag(roof, by - 0.05)
     rest()
     assert reading(live).before == start and is_exact(live)
-    assert (reading(live).glance == start) == (by == 0.0)
+    assert (reading(live).summary == start) == (by == 0.0)
     roof.update_tag()  # an update that moves nothing begins no move
     bpy.context.view_layer.update()
     rest()
@@ -144,7 +150,7 @@ def test_an_update_that_moves_nothing_does_not_hide_where_the_next_move_begins(l
     """A variant is put there in several updates, and the first one moves nothing."""
     drag(live.objects["roof"])
     rest()
-    second = reading(live).glance
+    second = reading(live).summary
     live.objects["roof"].update_tag()
     bpy.context.view_layer.update()
     drag(live.objects["roof"])
@@ -157,36 +163,36 @@ def test_of_two_moves_in_a_row_the_first_one_s_end_is_scored_later(live, monkeyp
         drag(live.objects["roof"])
         if operator == 0:
             between = exact()
-    assert reading(live).before is None and reading(live).reference is not None
+    assert reading(live).before is None and reading(live).baseline is not None
     rest()
-    assert told(reading(live).before) == told(between) and told(reading(live).glance) != told(
+    assert told(reading(live).before) == told(between) and told(reading(live).summary) != told(
         between
     )
 
 
 def test_a_reading_of_before_is_a_preview(live, monkeypatch):
     assert is_exact(live)
-    monkeypatch.setattr(worker.hand, "ask", lambda *_: None)  # a machine that is busy
+    monkeypatch.setattr(worker.interactive_worker, "ask", lambda *_: None)  # a machine that is busy
     drag(live.objects["roof"])
-    assert reading(live).rested and not is_exact(live)
+    assert reading(live).exact and not is_exact(live)
     rest()
     assert not is_exact(live), "asked for, not there yet"
 
 
 def test_pinned_sensors_stay_what_it_is_compared_with(live):
-    start = reading(live).glance
+    start = reading(live).summary
     bpy.ops.pe.live_against(key=PINNED)
     for _ in range(2):
         drag(live.objects["roof"])
         assert reading(live).before == start or reading(live).before is None
         rest()
         assert told(reading(live).before) == told(start)
-        assert reading(live).reference.label == reference.PINNED_LABEL
+        assert reading(live).baseline.label == baseline.PINNED_LABEL
     live.perception_entropy.prior = "uniform"
     rest()
     moved = reading(live).rig
     assert told(reading(live).before) != told(start), "scored again under the new prior"
-    assert told(reading(live).glance) == told(exact()) and reading(live).rig == moved
+    assert told(reading(live).summary) == told(exact()) and reading(live).rig == moved
     bpy.ops.pe.live_against(key=BEFORE_MOVE)
     assert reading(live).before is None
 
@@ -198,30 +204,30 @@ def test_a_variant_is_what_it_is_compared_with(live):
     drag(live.objects["roof"], 0.3)
     bpy.ops.pe.live_against(key=row.key)
     assert told(reading(live).before) == told(start)
-    assert reading(live).reference.label == row.name
+    assert reading(live).baseline.label == row.name
     bpy.ops.pe.update_variant()
     rest()
     assert told(reading(live).before) == told(exact()) != told(start)
     bpy.ops.pe.delete_variant()
     rest()
-    assert reading(live).reference is None or reading(live).reference.label != "Variant"
+    assert reading(live).baseline is None or reading(live).baseline.label != "Variant"
 
 
 def test_one_score_is_shown_at_a_time(live, monkeypatch):
     """Panel and read-out take theirs from here: live, or stored where that is of the scene."""
     bpy.ops.pe.score()
     rest()
-    score, settings = shown.shown_score(live), live.perception_entropy
+    score, settings = state.shown_score(live), live.perception_entropy
     assert score.stored and score.exact and score.entropy == settings.result_entropy
     drag(live.objects["roof"])
-    now = reading(live).glance
-    assert shown.shown_score(live) == (now.entropy, now.coverage, now.stderr, False, False, False)
+    now = reading(live).summary
+    assert state.shown_score(live) == (now.entropy, now.coverage, now.stderr, False, False, False)
     rest()
-    stale.check()
-    now = reading(live).glance
-    assert shown.shown_score(live) == (now.entropy, now.coverage, now.stderr, True, False, False)
+    result_staleness.update_result()
+    now = reading(live).summary
+    assert state.shown_score(live) == (now.entropy, now.coverage, now.stderr, True, False, False)
     settings.live.on = False
-    assert shown.shown_score(live) is None, "the panel draws the stored result, which is marked"
+    assert state.shown_score(live) is None, "the panel draws the stored result, which is marked"
 
 
 def lines(scene):
@@ -233,19 +239,19 @@ def test_figures_below_the_score_are_the_engine_s_and_of_before_while_it_moves(l
     settings.live.figures = True
     looking, of = scenes.study().sight(), {"height": 0.5, "class_name": "pedestrian"}
     first = advice.key_figures(looking, reading(live).rig, **of)
-    assert lines(live) == list(figure_words.figure_lines(ShownFigures(first, None, True)))
+    assert lines(live) == list(readout_text.figure_lines(ShownFigures(first, None, True)))
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
     drag(live.objects["roof"], 0.6)
-    told = list(figure_words.figure_lines(ShownFigures(first)))
+    told = list(readout_text.figure_lines(ShownFigures(first)))
     assert lines(live) == told and all(line.startswith("Before this move: ") for line in told)
     rest()
     second = advice.key_figures(looking, reading(live).rig, **of)
     assert second != first
-    assert lines(live) == list(figure_words.figure_lines(ShownFigures(second, first, True)))
+    assert lines(live) == list(readout_text.figure_lines(ShownFigures(second, first, True)))
     settings.view.blind_height, settings.view.reach_class = "H100", "car"
     second = advice.key_figures(looking, reading(live).rig, 1.0, "car")
-    first = advice.key_figures(looking, reading(live).reference.rig, 1.0, "car")
-    assert lines(live) == list(figure_words.figure_lines(ShownFigures(second, first, True)))
+    first = advice.key_figures(looking, reading(live).baseline.rig, 1.0, "car")
+    assert lines(live) == list(readout_text.figure_lines(ShownFigures(second, first, True)))
     settings.targets = "objects"
     rest()
     assert [line for line in lines(live) if "ahead" in line] == [], "those are in the score"
@@ -257,10 +263,12 @@ def test_a_known_rig_is_scored_on_this_vehicle_once(live, monkeypatch):
     known = catalog.known_rig("kitti")
     rig = catalog.rig_on(known, study.vehicle)
     there = study.evaluator().score(rig).entropy
-    now = reading(live).glance.entropy
+    now = reading(live).summary.entropy
     by = f"{abs(now - there):.3f} {'worse' if now > there else 'better'}"
     assert lines(live) == [f"KITTI here: {there:.3f} nats; this is {by}"]
-    monkeypatch.setattr(background, "_score_anchor", lambda *_: pytest.fail("scored again"))
+    monkeypatch.setattr(
+        background_figures, "_score_known_rig", lambda *_: pytest.fail("scored again")
+    )
     drag(live.objects["roof"])
     rest()
     assert lines(live)[0].startswith(f"KITTI here: {there:.3f} nats")
@@ -285,7 +293,7 @@ def kernels(scene):
 
 
 def test_what_is_no_sensor_asks_for_nothing(live, monkeypatch):
-    monkeypatch.setattr(worker.hand, "ask", lambda *_: pytest.fail("asked"))
+    monkeypatch.setattr(worker.interactive_worker, "ask", lambda *_: pytest.fail("asked"))
     lamp = bpy.data.objects.new("lamp", None)
     live.collection.objects.link(lamp)
     drag(lamp)
@@ -299,33 +307,33 @@ def test_a_vehicle_that_moves_is_read_once_it_rests(live, monkeypatch):
         read = "vehicle_from_collection"
         while_it_moves.setattr(bridge, read, lambda *_: pytest.fail("read while it moves"))
         drag(live.objects["cabin"])
-        assert latest.note(live.name) == session.VEHICLE_MOVES
+        assert state.live_state(live.name).note == session.VEHICLE_MOVES
     rest()
-    assert latest.note(live.name) == "" and reading(live).glance != before.glance
-    assert told(reading(live).glance) == told(exact())
+    assert state.live_state(live.name).note == "" and reading(live).summary != before.summary
+    assert told(reading(live).summary) == told(exact())
 
 
 def test_points_that_move_count(live):
-    before = reading(live).glance
+    before = reading(live).summary
     live.objects["cabin"].data.vertices[6].co.z += 1.0
     live.objects["cabin"].data.update()
     bpy.context.view_layer.update()
-    assert latest.note(live.name) == session.VEHICLE_MOVES
+    assert state.live_state(live.name).note == session.VEHICLE_MOVES
     rest()
-    assert told(reading(live).glance) == told(exact()) != told(before)
+    assert told(reading(live).summary) == told(exact()) != told(before)
 
 
 def test_what_is_wrong_is_said_in_a_line_until_it_is_mended(live):
     roof = live.objects["roof"]
     roof.scale = (2.0, 2.0, 2.0)
     bpy.context.view_layer.update()
-    assert latest.note(live.name).startswith("scene: sensor 'roof': scale: expected 1")
+    assert state.live_state(live.name).note.startswith("scene: sensor 'roof': scale: expected 1")
     rest()
-    assert "\n" not in latest.note(live.name)
+    assert "\n" not in state.live_state(live.name).note
     roof.scale = (1.0, 1.0, 1.0)
     bpy.context.view_layer.update()
     rest()
-    assert latest.note(live.name) == "" and told(reading(live).glance) == told(exact())
+    assert state.live_state(live.name).note == "" and told(reading(live).summary) == told(exact())
 
 
 def test_another_prior_is_no_change_of_the_sensors(live):
@@ -333,7 +341,7 @@ def test_another_prior_is_no_change_of_the_sensors(live):
     rest()
     live.perception_entropy.prior = "uniform"
     rest()
-    assert reading(live).before is None and told(reading(live).glance) == told(exact())
+    assert reading(live).before is None and told(reading(live).summary) == told(exact())
 
 
 def test_a_sensor_deleted_in_the_middle_of_a_drag(live):
@@ -342,11 +350,11 @@ def test_a_sensor_deleted_in_the_middle_of_a_drag(live):
     bpy.context.view_layer.update()
     rest()
     assert next(iter(reading(live).rig.sensors)).name == "front"
-    assert told(reading(live).glance) == told(exact())
+    assert told(reading(live).summary) == told(exact())
     bpy.data.objects.remove(live.objects["front"])
     bpy.context.view_layer.update()
     rest()
-    assert "at least one visible sensor" in latest.note(live.name)
+    assert "at least one visible sensor" in state.live_state(live.name).note
 
 
 def test_the_vehicle_deleted_in_the_middle_of_a_drag(live):
@@ -355,7 +363,7 @@ def test_the_vehicle_deleted_in_the_middle_of_a_drag(live):
     bpy.context.view_layer.update()
     drag(live.objects["roof"])
     rest()
-    assert "vehicle collection: expected a collection" in latest.note(live.name)
+    assert "vehicle collection: expected a collection" in state.live_state(live.name).note
 
 
 def test_undo_in_the_middle_of_a_drag(live):
@@ -365,21 +373,21 @@ def test_undo_in_the_middle_of_a_drag(live):
     bpy.ops.ed.undo()
     rest()
     scene = bpy.context.scene
-    assert told(reading(scene).glance) == told(exact())
+    assert told(reading(scene).summary) == told(exact())
 
 
 def test_another_file_in_the_middle_of_a_drag(live):
     drag(live.objects["roof"])
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert reading(bpy.context.scene) is None and not session._seen and not session._last
+    assert not state.states and reading(bpy.context.scene) is None
     rest()
     assert reading(bpy.context.scene) is None
 
 
 def test_switched_off_it_forgets_and_follows_no_more(live, monkeypatch):
     live.perception_entropy.live.on = False
-    assert reading(live) is None and not session._seen
-    monkeypatch.setattr(worker.hand, "ask", lambda *_: pytest.fail("asked"))
+    assert state.live_state(live.name).last_read is None and reading(live) is None
+    monkeypatch.setattr(worker.interactive_worker, "ask", lambda *_: pytest.fail("asked"))
     drag(live.objects["roof"])
     rest()
     assert reading(live) is None
@@ -391,11 +399,14 @@ def test_of_two_scenes_each_has_its_own(live):
     assert reading(other) is None, "no window shows it"
     bpy.context.window.scene = other
     rest()
-    assert "vehicle collection" in latest.note("other") and latest.note(live.name) == ""
+    assert (
+        "vehicle collection" in state.live_state("other").note
+        and state.live_state(live.name).note == ""
+    )
     live.name = "renamed"
     bpy.context.window.scene = live
     rest()
-    assert told(reading(live).glance) == told(exact())
+    assert told(reading(live).summary) == told(exact())
 
 
 def test_the_extension_disabled_in_the_middle_of_a_drag(live):
@@ -403,23 +414,23 @@ def test_the_extension_disabled_in_the_middle_of_a_drag(live):
     drag(live.objects["roof"])
     blender_addon.unregister()
     try:
-        assert not latest._readings and not latest._notes and not latest._scored
-        assert not session._evaluators._kept and not session._seen and not readout._handles
-        assert session.follow not in bpy.app.handlers.depsgraph_update_post
-        assert session.rest not in changes.rested.listeners
+        assert not state.states
+        assert not session._evaluators._kept and not readout._handles
+        assert session.follow_update not in bpy.app.handlers.depsgraph_update_post
+        assert session.on_idle not in signals.idle.listeners
         assert threading.active_count() <= before
     finally:
         blender_addon.register()
 
 
 def test_what_is_dropped_while_it_is_worked_out_is_never_shown(live):
-    wish = asking.read(live, bpy.context.evaluated_depsgraph_get(), draft=False)
-    latest.forget_reading(live.name)
+    wish = evaluation.read_request(live, bpy.context.evaluated_depsgraph_get(), draft=False)
+    state.live_state(live.name).switch_off()
     asked_at = session._generation
-    session.drop(live.name)
-    session.work(live.name, wish, 1, None, asked_at)
+    session.cancel(live.name)
+    session.score_in_thread(live.name, wish, 1, None, asked_at)
     assert reading(live) is None
-    session.work(live.name, wish, 1, None, session._generation)
+    session.score_in_thread(live.name, wish, 1, None, session._generation)
     assert reading(live) is not None
 
 
@@ -427,10 +438,10 @@ def test_a_mistake_of_ours_is_shown_and_told(live, monkeypatch):
     def broken(*_):
         raise ValueError("odd")
 
-    monkeypatch.setattr(session, "work", broken)
+    monkeypatch.setattr(session, "score_in_thread", broken)
     with pytest.raises(ValueError, match="odd"):
         rest()
-    assert latest.note(live.name) == "Not scored: ValueError('odd')"
+    assert state.live_state(live.name).note == "Not scored: ValueError('odd')"
 
 
 def test_without_a_window_nothing_follows(car):
@@ -441,12 +452,12 @@ def test_without_a_window_nothing_follows(car):
 
 def test_the_score_s_ground_map_is_kept_in_memory_for_the_views(car):
     bpy.ops.pe.score()
-    found = latest.scored(car.name)
+    found = state.live_state(car.name).finished
     assert found.signature == car.perception_entropy.result_signature
     assert found.score.entropy == pytest.approx(car.perception_entropy.result_entropy, abs=1e-6)
     assert isinstance(found.study, pe.Study)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert latest.scored(bpy.context.scene.name) is None
+    assert state.live_state(bpy.context.scene.name).finished is None
 
 
 def test_a_heavy_body_is_made_simpler_once_and_told(live, monkeypatch):
@@ -456,9 +467,9 @@ def test_a_heavy_body_is_made_simpler_once_and_told(live, monkeypatch):
         made.append((len(vehicle.triangles), most))
         return vehicle, 0.02
 
-    monkeypatch.setattr(asking, "MOST_TRIANGLES", 3)
-    monkeypatch.setattr(simple_bodies.geometry, "simplified", simplified)
-    session.forget()
+    monkeypatch.setattr(evaluation, "MAX_TRIANGLES", 3)
+    monkeypatch.setattr(simplified_vehicles.graphics, "simplified", simplified)
+    session.clear()
     session._evaluators.clear()
     rest()
     drag(live.objects["roof"])
@@ -469,14 +480,14 @@ def test_a_heavy_body_is_made_simpler_once_and_told(live, monkeypatch):
 
 def test_a_simple_body_is_made_once_and_a_smaller_one_of_it(monkeypatch):
     whole = pe.Vehicle(np.random.default_rng(1).random((9000, 3, 3)))
-    made, simplified = [], simple_bodies.geometry.simplified
+    made, simplified = [], simplified_vehicles.graphics.simplified
 
     def watched(vehicle, most, *, quick):
         made.append(len(vehicle.triangles))
         return simplified(vehicle, most, quick=quick)
 
-    monkeypatch.setattr(simple_bodies.geometry, "simplified", watched)
-    bodies = simple_bodies.SimpleBodies()
+    monkeypatch.setattr(simplified_vehicles.graphics, "simplified", watched)
+    bodies = simplified_vehicles.SimplifiedVehicles()
     assert bodies.simplified(whole, 10_000) == (whole, 0.0) and not made
     first, moved = bodies.simplified(whole, 4000)
     second, more = bodies.simplified(whole, 1500)

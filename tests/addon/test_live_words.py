@@ -3,10 +3,9 @@
 import pytest
 
 from blender_addon.engine import advice, pe
-from blender_addon.live import figure_words, latest, readout, words
-from blender_addon.live.background import ShownFigures
-from blender_addon.live.reference import Baseline
-from blender_addon.live.shown import ShownScore
+from blender_addon.live import readout, readout_text, state
+from blender_addon.live.background_figures import ShownFigures
+from blender_addon.live.state import Baseline, ShownScore
 
 
 def glance(entropy=3.0, coverage=0.85, zones=()):
@@ -15,7 +14,7 @@ def glance(entropy=3.0, coverage=0.85, zones=()):
 
 
 def said(now, before=None, rested=True):
-    return words.words_of(reading_of(now, before), score_of(now, rested))
+    return readout_text.readout_of(reading_of(now, before), score_of(now, rested))
 
 
 def score_of(now, exact=True, stored=False):
@@ -24,14 +23,14 @@ def score_of(now, exact=True, stored=False):
 
 def reading_of(now, before=None, moved_m=0.0, label="before this move"):
     reference = None if before is None else Baseline(label, None, before)
-    return latest.Reading(now, reference, True, None, moved_m)
+    return state.LiveScore(now, reference, True, None, moved_m)
 
 
 def test_the_first_reading_has_nothing_to_compare_with():
     found = said(glance())
-    assert found.headline == "3.000 nats" and found.error == "± 0.022  at rest"
-    assert (found.change, found.sense, found.against) == ("", words.SAME, "")
-    assert found.lines == ("85.0% of where objects are is seen",)
+    assert found.headline == "3.000 nats" and found.error == "± 0.022  exact"
+    assert (found.change, found.sense, found.against) == ("", readout_text.SAME, "")
+    assert found.lines == ("Coverage 85.0%",)
 
 
 def test_a_draft_says_so():
@@ -43,21 +42,23 @@ def test_a_draft_says_so():
     [
         ({"stored": True}, "± 0.022  as scored"),
         ({"stored": True, "stderr": 0.0}, "on all voxels, as scored"),
-        ({"picture_follows": True}, "± 0.022  at rest, beams and maps follow"),
+        ({"view_outdated": True}, "± 0.022  exact, beams and maps follow"),
     ],
 )
 def test_what_a_score_is_of_is_said(told, line):
-    assert words.state_of(score_of(glance())._replace(**told), 0.0) == line
+    assert readout_text.state_of(score_of(glance())._replace(**told), 0.0) == line
 
 
 def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
     assert said(glance(), glance()).against == "compared with before this move"
     long = "A variant whose name is longer than a row of the read-out"
-    found = words.words_of(reading_of(glance(), glance(3.1), label=long), score_of(glance()))
+    found = readout_text.readout_of(
+        reading_of(glance(), glance(3.1), label=long), score_of(glance())
+    )
     assert found.against == "compared with A variant whose name is longe..."
-    rows = readout.lines_of(reading_of(glance(), glance(3.1)), "", score_of(glance()))
+    rows = readout.rows_of(reading_of(glance(), glance(3.1)), "", score_of(glance()))
     assert [text for text, _ in rows[1].words] == [
-        "± 0.022  at rest",
+        "± 0.022  exact",
         "compared with before this move",
     ]
 
@@ -65,9 +66,9 @@ def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
 @pytest.mark.parametrize(
     ("before", "change", "sense"),
     [
-        (3.1, "0.100 better", words.BETTER),
-        (2.95, "0.050 worse", words.WORSE),
-        (3.0004, "no change", words.SAME),
+        (3.1, "0.100 better", readout_text.BETTER),
+        (2.95, "0.050 worse", readout_text.WORSE),
+        (3.0004, "no change", readout_text.SAME),
     ],
 )
 def test_lower_is_better(before, change, sense):
@@ -76,9 +77,9 @@ def test_lower_is_better(before, change, sense):
 
 
 def test_coverage_changes_in_points():
-    assert said(glance(), glance(coverage=0.838)).lines[0].endswith("is seen (+1.2)")
-    assert said(glance(), glance(coverage=0.862)).lines[0].endswith("is seen (\N{MINUS SIGN}1.2)")
-    assert said(glance(), glance(coverage=0.8502)).lines[0].endswith("is seen")
+    assert said(glance(), glance(coverage=0.838)).lines[0] == "Coverage 85.0% (+1.2)"
+    assert said(glance(), glance(coverage=0.862)).lines[0] == "Coverage 85.0% (\N{MINUS SIGN}1.2)"
+    assert said(glance(), glance(coverage=0.8502)).lines[0] == "Coverage 85.0%"
 
 
 def test_the_zones_that_changed_most_are_named():
@@ -101,16 +102,16 @@ def test_a_zone_that_came_or_went_is_no_change():
 def test_the_read_out_says_what_is_in_the_way_below_what_was():
     reading = reading_of(glance())
     line = "scene: sensor 'roof': scale: expected 1 in each direction, found 2, 2, 2"
-    found = readout.lines_of(reading, line, score_of(glance()))
+    found = readout.rows_of(reading, line, score_of(glance()))
     rows = [text for each in found for text, color in each.words if color == readout.ALERT]
-    assert " ".join(rows) == line and all(len(row) <= readout.MOST_COLUMNS for row in rows)
+    assert " ".join(rows) == line and all(len(row) <= readout.MAX_COLUMNS for row in rows)
     assert found[0].words[0][0] == "3.000 nats"
-    assert readout.lines_of(None, "", None)[0].words[0][0] == "Live: scoring ..."
+    assert readout.rows_of(None, "", None)[0].words[0][0] == "Live: scoring ..."
 
 
 def test_better_and_worse_differ_by_arrow_and_colour():
     lines = [
-        readout.lines_of(reading_of(glance(), glance(h)), "", score_of(glance()))[0].words[1]
+        readout.rows_of(reading_of(glance(), glance(h)), "", score_of(glance()))[0].words[1]
         for h in (3.1, 2.9)
     ]
     (better, blue), (worse, orange) = lines
@@ -120,8 +121,8 @@ def test_better_and_worse_differ_by_arrow_and_colour():
 
 def test_a_body_that_was_made_simpler_is_told():
     assert (
-        words.words_of(reading_of(glance(), moved_m=0.0204), score_of(glance())).error
-        == "± 0.022  at rest, body simplified to 20 mm"
+        readout_text.readout_of(reading_of(glance(), moved_m=0.0204), score_of(glance())).error
+        == "± 0.022  exact, vehicle simplified to 20 mm"
     )
 
 
@@ -139,7 +140,7 @@ def figures(**changed):
             None,
             (
                 "81.2 m² blind to what is 0.5 m tall",
-                "Pedestrian found to 47 m ahead, AP 0.62",
+                "Pedestrian detected to 47 m ahead, AP 0.62",
             ),
         ),
         (
@@ -147,7 +148,7 @@ def figures(**changed):
             figures(blind_m2=84.3, reach_m=45.0, expected_ap=0.6),
             (
                 "81.2 m² blind to what is 0.5 m tall (\N{MINUS SIGN}3.1)",
-                "Pedestrian found to 47 m ahead (+2), AP 0.62 (+0.02)",
+                "Pedestrian detected to 47 m ahead (+2), AP 0.62 (+0.02)",
             ),
         ),
         (
@@ -155,13 +156,13 @@ def figures(**changed):
             figures(blind_m2=81.26, reach_m=80.0),
             (
                 "81.2 m² blind to what lies flat",
-                "Pedestrian found to \N{GREATER-THAN OR EQUAL TO} 80 m ahead",
+                "Pedestrian detected to \N{GREATER-THAN OR EQUAL TO} 80 m ahead",
             ),
         ),
         (
             figures(reach_m=0.0, class_name="cone"),
             None,
-            ("81.2 m² blind to what is 0.5 m tall", "Cone found nowhere ahead, AP 0.62"),
+            ("81.2 m² blind to what is 0.5 m tall", "Cone detected nowhere ahead, AP 0.62"),
         ),
         (
             figures(reach_m=None, class_name=None, expected_ap=None),
@@ -171,10 +172,10 @@ def figures(**changed):
     ],
 )
 def test_figures_in_words(now, before, lines):
-    assert figure_words.figure_lines(ShownFigures(now, before, True)) == lines
+    assert readout_text.figure_lines(ShownFigures(now, before, True)) == lines
     of_before = tuple(f"Before this move: {line}" if line else "" for line in lines)
-    assert before or figure_words.figure_lines(ShownFigures(now)) == of_before
+    assert before or readout_text.figure_lines(ShownFigures(now)) == of_before
 
 
 def test_figures_that_are_not_there_yet_say_so():
-    assert figure_words.figure_lines(ShownFigures())[0] == figure_words.WAITING
+    assert readout_text.figure_lines(ShownFigures())[0] == readout_text.PENDING

@@ -85,7 +85,7 @@ def test_coordinates_in_double_precision_come_back_to_the_bit(scene):
     rng = np.random.default_rng(0)
     triangles = rng.uniform(-1.0, 1.0, (50, 3, 3)) @ turn + [0.1, 0.2, 1.0]
     triangles = np.float32(triangles).astype(float) + np.float32(1e-9 * rng.normal(size=(50, 3, 3)))
-    scene.perception_entropy.vehicle = bridge.loading.make_body(scene, pe.Vehicle(triangles))
+    scene.perception_entropy.vehicle = bridge.vehicle.make_body(scene, pe.Vehicle(triangles))
     bpy.context.view_layer.update()
     found = scenes.vehicle(scene.perception_entropy.vehicle)
     assert np.array_equal(found.triangles, triangles)

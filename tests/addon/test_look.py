@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon import bridge, upkeep
+from blender_addon import bridge, consistency
 from blender_addon.engine import catalog, graphics, kinds, pe
-from blender_addon.operators import view_state
+from blender_addon.operators import look_through
 from tests.addon import scenes
 
 
@@ -111,13 +111,13 @@ def leave_by_undo(scene, _area):
     """As undo does it: the scene is as before, views are as they are."""
     bridge.look_back(scene)
     scene.perception_entropy.views_before_look = ""
-    view_state.settle()
+    look_through.restore_lost()
 
 
 def leave_by_losing_the_sensor(scene, _area):
     bpy.data.objects.remove(scene.camera.parent)
-    upkeep.go_round()
-    view_state.settle()
+    consistency.repair_scenes()
+    look_through.restore_lost()
 
 
 WAYS_BACK = (leave_by_operator, leave_by_undo, leave_by_losing_the_sensor)
@@ -164,7 +164,7 @@ def test_a_file_saved_while_looking_knows_the_way_back(car, eye, tmp_path):
     looking(area, eye)
     path = str(tmp_path / "looking.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
-    view_state._turned.clear()
+    look_through._states.clear()
     bpy.ops.wm.open_mainfile(filepath=path, load_ui=True)
     area = view_area()
     leave_by_operator(bpy.context.scene, area)
@@ -198,7 +198,7 @@ def test_it_is_no_part_of_the_vehicle_and_follows_the_sensor(car, eye):
 def test_it_goes_with_its_sensor(car, eye):
     look(eye)
     bpy.data.objects.remove(eye)
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert not [obj for obj in car.objects if obj.type == "CAMERA"]
     assert not bpy.data.cameras and car.camera is None
     assert car.perception_entropy.before_look == ""
@@ -207,7 +207,7 @@ def test_it_goes_with_its_sensor(car, eye):
 def test_it_has_the_lens_of_another_model_as_soon_as_that_is_chosen(car, eye):
     view = look(eye)
     eye.perception_entropy.model = "Camera 120 deg"
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert view.data.angle_x == pytest.approx(math.radians(120), abs=1e-5)
     assert (car.render.resolution_x, car.render.resolution_y) == (1920, 1080)
 
@@ -218,7 +218,7 @@ def test_a_duplicate_has_none_of_its_original_s(car, eye):
     eye.select_set(True)
     bpy.context.view_layer.objects.active = eye
     bpy.ops.object.duplicate()
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert bridge.view_camera(bpy.context.object) is None and bridge.view_camera(eye) is not None
 
 
@@ -232,7 +232,7 @@ def test_a_lidar_s_picture_is_in_its_image(car):
     assert bpy.ops.pe.look_through(name="roof") == {"FINISHED"}
     image = bpy.data.images["roof range"]
     width, height = image.size
-    assert (width, height) == (round(359.8 * 3), 40 * 3)
+    assert (width, height) == (round(359.8 * 3), 30 * 3)
     pixels = np.array(image.pixels[:]).reshape(height, width, 4)[::-1]
     study = scenes.study()
     picture = kinds.range_picture(study.rig["roof"], study.vehicle)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, upkeep
+from blender_addon import bridge, consistency
 from tests.addon import scenes
 
 PLACE = {"location": (1.2, 0.7, 0.9), "rotation_euler": (0.1, 0.2, 0.7)}
@@ -20,7 +20,7 @@ def left(car):
 def mirror(linked=False):
     assert bpy.ops.pe.mirror_sensor(name="front_left", linked=linked) == {"FINISHED"}
     bpy.context.view_layer.update()
-    upkeep.go_round()
+    consistency.repair_scenes()
     return bpy.context.object
 
 
@@ -36,7 +36,7 @@ def moved(obj, **settings):
     for name, value in settings.items():
         setattr(obj, name, value)
     bpy.context.view_layer.update()
-    upkeep.go_round()
+    consistency.repair_scenes()
     bpy.context.view_layer.update()
 
 
@@ -111,11 +111,11 @@ def test_redo_brings_both(left):
     moved(left, location=(1.5, 0.9, 1.0))
     bpy.ops.ed.undo_push(message="moved")
     bpy.ops.ed.undo()
-    upkeep.go_round()
+    consistency.repair_scenes()
     left, right = (bpy.data.objects[f"front_{side}"] for side in ("left", "right"))
     assert alike(left, right) and left.location.x == pytest.approx(1.2)
     bpy.ops.ed.redo()
-    upkeep.go_round()
+    consistency.repair_scenes()
     left, right = (bpy.data.objects[f"front_{side}"] for side in ("left", "right"))
     assert alike(left, right) and left.location.x == pytest.approx(1.5)
 
@@ -133,7 +133,7 @@ def test_the_link_is_kept_in_the_file(left, tmp_path):
 def test_a_duplicate_is_linked_to_nobody(left):
     right = mirror(linked=True)
     bpy.ops.object.duplicate()
-    upkeep.go_round()
+    consistency.repair_scenes()
     copy = bpy.context.object
     assert copy.perception_entropy.mirror_of == ""
     assert bridge.mirror_of(left, bpy.context.scene) == right
@@ -143,14 +143,14 @@ def test_a_duplicate_is_linked_to_nobody(left):
 def test_a_renamed_one_stays_linked(left, which):
     right = mirror(linked=True)
     bpy.data.objects[which].name = "another"
-    upkeep.go_round()
+    consistency.repair_scenes()
     moved(left, location=(1.5, 0.9, 1.0))
     assert alike(left, right)
 
 
 def test_a_deleted_one_leaves_the_other_free(left):
     bpy.data.objects.remove(mirror(linked=True))
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert left.perception_entropy.mirror_of == ""
 
 

@@ -4,7 +4,7 @@ import bpy
 import pytest
 
 import blender_addon
-from blender_addon import changes, motion
+from blender_addon import change_events, signals, wiring
 from tests.addon import scenes
 
 MOVED, RESTED = "moved", "rested"
@@ -48,8 +48,8 @@ def timers(monkeypatch, car):
     made = Timers()
     app = type("App", (), {"timers": made, "background": False, "handlers": bpy.app.handlers})
     seen = type("Bpy", (), {"app": app, "types": bpy.types})
-    monkeypatch.setattr(motion, "bpy", seen)
-    monkeypatch.setattr(motion, "time", made)
+    monkeypatch.setattr(change_events, "bpy", seen)
+    monkeypatch.setattr(change_events, "time", made)
     drag(car.objects["roof"])  # from here on it is known what there is
     made.pass_by(10.0)
     yield made
@@ -61,8 +61,8 @@ def timers(monkeypatch, car):
 def heard(timers):
     """What is told, as it comes, from now on."""
     told = []
-    listeners = {changes.moved: lambda: told.append(MOVED)}
-    listeners[changes.rested] = lambda: told.append(RESTED)
+    listeners = {signals.moving: lambda: told.append(MOVED)}
+    listeners[signals.idle] = lambda: told.append(RESTED)
     for signal, listener in listeners.items():
         signal.connect(listener)
     yield told
@@ -84,7 +84,7 @@ def test_a_drag_is_told_as_long_as_it_lasts_and_its_rest_once(car, timers, heard
     assert heard == [MOVED] * 5 + [RESTED] and not timers.waiting
 
 
-@pytest.mark.parametrize("signal", [changes.moved, changes.rested], ids=[MOVED, RESTED])
+@pytest.mark.parametrize("signal", [signals.moving, signals.idle], ids=[MOVED, RESTED])
 def test_a_move_that_comes_while_one_is_told_is_told_as_well(car, timers, heard, signal):
     """Timers run before Blender's update of a move; who listens may bring it about."""
     late = [car.objects["roof"]]
@@ -99,7 +99,7 @@ def test_a_move_that_comes_while_one_is_told_is_told_as_well(car, timers, heard,
         timers.pass_by(10.0)
     finally:
         signal.disconnect(listener)
-    told = [MOVED, MOVED, RESTED] if signal is changes.moved else [MOVED, RESTED, MOVED, RESTED]
+    told = [MOVED, MOVED, RESTED] if signal is signals.moving else [MOVED, RESTED, MOVED, RESTED]
     assert heard == told and not timers.waiting
 
 
@@ -173,7 +173,8 @@ def test_undo_is_told(car, timers, heard):
 @pytest.mark.parametrize("name", ["undo_post", "redo_post", "load_post", "frame_change_post"])
 def test_what_blender_calls_after_a_step_back_or_a_load_is_told(car, timers, heard, name):
     """Whether or not an update of the scene follows, in which objects seem to have changed."""
-    ours = [f for f in getattr(bpy.app.handlers, name) if f.__module__ == motion.__name__]
+    ours = [f for f in getattr(bpy.app.handlers, name) if f.__module__ == wiring.__name__]
+    assert len(ours) == 1
     car.objects["roof"].location.x += 0.1  # without an update
     for handler in ours:
         handler(car, bpy.context.evaluated_depsgraph_get())
@@ -183,7 +184,9 @@ def test_what_blender_calls_after_a_step_back_or_a_load_is_told(car, timers, hea
 
 def test_without_a_window_there_is_no_timer(car):
     drag(car.objects["roof"])
-    assert not any(map(bpy.app.timers.is_registered, (motion.tell_moved, motion.tell_rested)))
+    assert not any(
+        map(bpy.app.timers.is_registered, (change_events.emit_moving, change_events.emit_idle))
+    )
 
 
 def test_switched_off_in_the_middle_of_a_drag(car, timers, heard):
@@ -191,7 +194,7 @@ def test_switched_off_in_the_middle_of_a_drag(car, timers, heard):
     assert timers.waiting
     blender_addon.unregister()
     try:
-        assert not timers.waiting and not motion._known
+        assert not timers.waiting and not change_events._last_counted
         timers.pass_by(10.0)
         assert heard == []
     finally:

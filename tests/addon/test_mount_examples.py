@@ -12,7 +12,7 @@ import pytest
 import pe_core as pe
 from blender_addon import bridge
 from blender_addon.commands import main
-from pe_core.app.cli import main as pe_main
+from pe_tools.cli.verbs import main as pe_main
 from tests.addon import scenes
 
 BASE_M, MODEL = 0.04, "Pandar64"
@@ -86,6 +86,23 @@ def test_the_four_corners_of_the_file_and_of_the_study_are_one(addon, tmp_path):
     assert inside["mounts"] == outside["mounts"]
 
 
+def test_a_variant_of_the_four_corners_is_searched_with_its_mounts(addon, tmp_path):
+    """`blender --command pe sweep VARIANT --optimize` is the search of the scene, to the bit."""
+    bpy.ops.wm.open_mainfile(filepath=str(CORNERS / "four_corners.blend"))
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "corners.blend"))
+    swept, alone = tmp_path / "swept", tmp_path / "alone"
+    options = ["--optimize", "--set", "optimize.seed=0", "-o", str(swept), *FAST]
+    assert main(["sweep", "Variant", *options], "pe", io.StringIO()) == 0
+    search = ["optimize", "--no-review", "-o", str(alone), "--no-render", *FAST]
+    assert main(search, "pe", io.StringIO()) == 0
+    (run,) = (path.parent for path in swept.rglob("result.json"))
+    variant, scene = result(run), result(alone)
+    assert variant["mounts"] == scene["mounts"] and len(variant["mounts"]) == 2
+    assert variant["history"] == scene["history"] and len(scene["history"]) > 1
+    assert variant["after"] == scene["after"]
+
+
 def result(folder: Path) -> dict:
     return json.loads((folder / "result.json").read_text("utf-8"))
 
@@ -95,7 +112,7 @@ def test_the_four_corners_stay_on_their_areas_and_mirror_each_other(addon):
     coding, rng = study.coding(), np.random.default_rng(1)
     kept = 0
     for _ in range(40):
-        vector = [rng.uniform(u.low, u.high) for u in coding.unknowns]
+        vector = [rng.uniform(u.low, u.high) for u in coding.variables]
         rig = coding.candidate(vector).rig
         if not coding.allowed(rig):
             continue

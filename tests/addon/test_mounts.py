@@ -6,7 +6,7 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
-from blender_addon.overlay import mounts
+from blender_addon.overlay import regions
 from tests.addon import scenes
 
 CAN = "Velodyne VLP-16 Puck"
@@ -262,7 +262,7 @@ def test_variants_hold_links_mounts_and_racks(roof):
     bpy.ops.pe.save_variant()
     bpy.ops.pe.unlink_mirror(name="roof")
     sensor.perception_entropy.mount = sensor.perception_entropy.rack = ""
-    bridge.put_variant(roof, roof.perception_entropy.variants[0])
+    bridge.activate_variant(roof, roof.perception_entropy.variants[0])
     own = sensor.perception_entropy
     assert (own.mirror_of, own.mount, own.rack) == ("roof mirrored", "roof area", "arm")
     assert bpy.data.objects["roof mirrored"].perception_entropy.mirror_of == "roof"
@@ -277,9 +277,9 @@ def test_a_variant_of_an_older_version_leaves_links_and_mounts_alone(roof):
     for row in variant.sensors:  # as one that was saved before there were mounts
         row.mount = row.mirror_of = row.rack = ""
     variant.holds_ties = False
-    bridge.put_variant(roof, variant)
+    bridge.activate_variant(roof, variant)
     assert sensor.perception_entropy.mount == "roof area"
-    assert bridge.alike(bridge.records_of_scene(roof), bridge.records_of(variant))
+    assert bridge.same_sensors(bridge.records_of_scene(roof), bridge.records_of(variant))
 
 
 def test_the_view_tints_mounts_and_draws_boxes(roof):
@@ -289,7 +289,7 @@ def test_the_view_tints_mounts_and_draws_boxes(roof):
     (shape,) = scenes.drawn(roof)["mounts"].values()
     assert len(shape.faces.points) == 2 * len(faces()) * 3
     names = [name for _, name in shape.legend.classes]
-    assert names == ["a sensor may sit here", "no-go area"]
+    assert names == ["a sensor may be mounted here", "no-go area"]
     rim_and_box = len(shape.lines.points)
     assert rim_and_box == 2 * 4 + 24
     own = sensor.perception_entropy
@@ -323,7 +323,7 @@ def test_the_tint_has_no_gaps_and_a_rim_of_edges_alone():
     points = np.stack([x, y, 1.0 - x**2 - y**2], axis=-1)
     a, b, c, d = points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]
     dome = np.concatenate([np.stack(t, axis=2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
-    assert len(mounts.rim(dome)) == 2 * 4 * 4
-    assert len(np.unique(mounts.lifted(dome).reshape(-1, 3).round(9), axis=0)) == 2 * 25
-    assert mounts.lifted(dome[:0]).shape == (0, 3, 3)
-    assert mounts.rim(dome[:0]).shape == (0, 3)
+    assert len(regions.rim(dome)) == 2 * 4 * 4
+    assert len(np.unique(regions.offset_surface(dome).reshape(-1, 3).round(9), axis=0)) == 2 * 25
+    assert regions.offset_surface(dome[:0]).shape == (0, 3, 3)
+    assert regions.rim(dome[:0]).shape == (0, 3)

@@ -10,8 +10,8 @@ from pathlib import Path
 import bpy
 import pytest
 
-from blender_addon.commands import leaving
-from blender_addon.engine import pe
+from blender_addon.commands import open_file
+from blender_addon.engine import jobs, pe
 from tests.addon import scenes
 from tests.addon.test_commands import FAST, ROOT, TIMEOUT_S, command, complaints, run, wait_for
 
@@ -52,7 +52,7 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path):
         *("search.json", "study.toml", "vehicle.npz"),
     )
     assert sorted(named) == list(expected)
-    assert pe.study.files_of_other_runs(out) == []
+    assert jobs.files_of_other_runs(out) == []
 
 
 def test_being_told_to_end_keeps_the_best(blend, tmp_path):
@@ -72,7 +72,7 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
         finally:
             process.kill()
     assert json.loads((out / "result.json").read_text())["stopped"]
-    assert pe.study.files_of_other_runs(out) == []
+    assert jobs.files_of_other_runs(out) == []
     assert (out / "optimized.blend").exists()
 
 
@@ -123,7 +123,7 @@ def test_half_a_file_is_told(addon, tmp_path, name):
         {"cut.blend": b"\x28\xb5\x2f\xfdhalf", "cut.png": b"\x89PNGhalf"}.get(name, b"")
     )
     with pytest.raises(pe.InputError, match="expected room to write to"):
-        leaving.complain_unless_whole(path)
+        open_file.check_complete(path)
 
 
 def test_the_export_of_the_panel_replaces_the_chosen_file_and_no_other(car, tmp_path):

@@ -5,8 +5,8 @@ import pytest
 
 from blender_addon import operators
 from blender_addon.engine import catalog
-from blender_addon.operators import offered as offers
-from blender_addon.operators import search_sensor
+from blender_addon.operators import add_sensor
+from blender_addon.operators import add_sensor as offers
 
 SCREEN_OF_ROWS = 30
 """How many rows of a menu a small screen shows."""
@@ -32,9 +32,9 @@ def test_makers_are_called_by_their_names():
 def test_a_sensor_in_a_few_words():
     assert offers.brief("Hesai QT128C2X") == "128 channels, 360 x 105 deg, 50 m"
     assert offers.brief("Camera 90 deg") == "1920 x 1080 px, 90 x 59 deg"
-    told = offers.described("Hesai AT128E2X")
+    told = offers.tooltip_of("Hesai AT128E2X")
     assert "channels 128, -12.47 to 12.93 deg" in told and "range 210 m" in told
-    assert offers.described("nobody's") == ""
+    assert offers.tooltip_of("nobody's") == ""
 
 
 def test_tooltips_tell_the_figures(addon):
@@ -45,7 +45,7 @@ def test_tooltips_tell_the_figures(addon):
 
 
 def test_the_search_lists_a_kind_s_sensors_with_their_figures(addon):
-    items = search_sensor._items(type("Chosen", (), {"kind": "lidar"}), bpy.context)
+    items = add_sensor._menu_items(type("Chosen", (), {"kind": "lidar"}), bpy.context)
     assert [each[0] for each in items] == catalog.names("lidar")
     (found,) = [each for each in items if "QT128" in each[1]]
     assert found[0] == "Hesai QT128C2X" and "range 50 m" in found[2]

@@ -7,7 +7,7 @@ import pytest
 
 from blender_addon.bridge.view_camera import WIDEST, shown_fov
 from pe_core import Camera, FTheta, KannalaBrandt, Pinhole, Pose, Sensor
-from pe_core.graphics import bent, frustums
+from pe_tools.graphics import frustums
 
 FISHEYE = Camera("fisheye", 1280, 966, lens=FTheta(1, 1, 640, 483, None, 339.7, -32.0, 48.3, -7.2))
 OFF = Camera("off", 1000, 1000, lens=Pinhole(500.0, 500.0, 400.0, 500.0))
@@ -15,7 +15,7 @@ OFF = Camera("off", 1000, 1000, lens=Pinhole(500.0, 500.0, 400.0, 500.0))
 
 def test_a_fisheye_s_outline_reaches_behind_it():
     sensor = Sensor("eye", FISHEYE, Pose((2.0, 0.0, 1.0)))
-    points = bent.outline(sensor, 3.0) - (2.0, 0.0, 1.0)
+    points = frustums.outline(sensor, 3.0) - (2.0, 0.0, 1.0)
     np.testing.assert_allclose(np.linalg.norm(points, axis=1), 3.0)
     assert points[:, 0].min() < 0.0 < points[:, 1].max()
     assert len(frustums.frustum_lines(sensor, 3.0).points) > 100

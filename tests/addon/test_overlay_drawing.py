@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from blender_addon import body, bridge, worker
+from blender_addon import bridge, vehicle_cache, worker
 from blender_addon.engine import graphics, pe, sight
-from blender_addon.overlay import handler, updating
-from blender_addon.overlay.store import shown
+from blender_addon.overlay import draw_handler, scheduler
+from blender_addon.overlay.layer_cache import shown
 from tests.addon import scenes
 
 
@@ -37,10 +37,10 @@ class Gpu:
             draw_lines=lambda *_, **__: None,
         )
 
-    def write_labels(self, _context, labels):
+    def draw_labels(self, _context, labels):
         self.written += [label.text for label in labels]
 
-    def write_legends(self, _context, legends):
+    def draw_legends(self, _context, legends):
         self.written += [legend.title for legend in legends]
 
 
@@ -52,19 +52,19 @@ def window(rig, monkeypatch):
     space = SimpleNamespace(type="VIEW_3D", overlay=overlay, local_view=None, camera=None)
     look = SimpleNamespace(view_perspective="PERSP")
     context = SimpleNamespace(scene=rig, space_data=space, region_data=look, region=None)
-    monkeypatch.setattr(handler, "bpy", SimpleNamespace(context=context, app=bpy.app))
-    monkeypatch.setattr(handler, "gpu", card)
-    monkeypatch.setattr(handler, "Batches", card)
-    monkeypatch.setattr(handler, "writing", card)
-    monkeypatch.setattr(handler, "lifted", lambda *_: contextlib.nullcontext())
+    monkeypatch.setattr(draw_handler, "bpy", SimpleNamespace(context=context, app=bpy.app))
+    monkeypatch.setattr(draw_handler, "gpu", card)
+    monkeypatch.setattr(draw_handler, "Batches", card)
+    monkeypatch.setattr(draw_handler, "labels", card)
+    monkeypatch.setattr(draw_handler, "depth_offset", lambda *_: contextlib.nullcontext())
     visible = {"roof": True, "eye": True}
-    monkeypatch.setattr(handler, "_sensor_visible", lambda _context, name: visible[name])
+    monkeypatch.setattr(draw_handler, "_sensor_visible", lambda _context, name: visible[name])
     return SimpleNamespace(card=card, space=space, look=look, visible=visible)
 
 
 def redraw():
-    handler.draw()
-    handler.write()
+    draw_handler.draw()
+    draw_handler.draw_text()
 
 
 def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypatch):
@@ -75,10 +75,10 @@ def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypat
         *((bridge, each) for each in ("prior_from_scene", "sensor_objects")),
         *((pe.Vehicle, each) for each in ("first_hit", "seen_from")),
         *((sight.Sight, each) for each in ("ground", "blind", "reach")),
-        (body.shared, "read"),
+        (vehicle_cache.shared, "read"),
         (graphics, "cast"),
-        (worker.desk, "ask"),
-        (updating, "update"),
+        (worker.background_worker, "ask"),
+        (scheduler, "update"),
     ):
         monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail(forbidden))
     sheet = shown.items(rig.name, "ground")[""].shape.sheet
@@ -101,7 +101,7 @@ def test_shapes_are_uploaded_once(window, rig):
     rig.perception_entropy.view.show_ground = False
     scenes.drawn(rig)
     redraw()
-    assert len(handler._batches) == 10
+    assert len(draw_handler._batches) == 10
 
 
 def test_overlays_off_hides_all(window, rig):

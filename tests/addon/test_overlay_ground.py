@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon.overlay import blind, heat, reach
-from pe_core.graphics import casts, colors, ground
-from pe_core.sight import BlindGround, BlindSpot, GroundSight, Reach
+from blender_addon.overlay import ground_layers, heatmap
+from pe_core.scoring.sight import BlindGround, BlindSpot, GroundSight, Reach
+from pe_tools.graphics import beams, colors, ground
 from tests.engine.drawn import box, car, lidar, mounted
 
 
@@ -114,7 +114,7 @@ def square(low, high):
 
 def test_hatching_fills_a_square_and_leaves_its_hole_out():
     hole = square((-1, -1), (1, 1))[::-1]
-    lines = blind.hatch((square((-3, -3), (3, 3)), hole), 0.25).reshape(-1, 2, 2)
+    lines = ground_layers.hatch((square((-3, -3), (3, 3)), hole), 0.25).reshape(-1, 2, 2)
     middle = lines.mean(axis=1)
     assert (np.abs(middle).max(axis=1) <= 3.0).all()
     assert not (np.abs(middle).max(axis=1) < 1.0).any(), "the hole is hatched"
@@ -135,7 +135,7 @@ def test_blind_ground_is_measured_by_side():
     at_body, away = square((2.0, -1.0), (5.0, 1.0)), square((-1.0, 4.0), (1.0, 6.0))
     nearest = {"front": ((2.0, 0.0), 0.0), "left": ((0.0, 4.0), 3.0)}
     found = found_blind((at_body, away), nearest, {"front": 3.0})
-    shape = blind.blind_ground(found, car().bounds, 0.5)
+    shape = ground_layers.blind_ground(found, car().bounds, 0.5)
     assert {label.text for label in shape.labels} == {"blind to 3.0 m out", "blind from 3.0 m out"}
     places = {label.text: label.place for label in shape.labels}
     assert places["blind to 3.0 m out"] == pytest.approx((5.0, 0.0, 0.0), abs=1e-6)
@@ -148,14 +148,14 @@ def test_blind_ground_that_does_not_end_says_so_and_a_strip_is_not_measured():
     endless, strip = square((2.0, -1.0), (12.0, 1.0)), square((-2.0, 1.0), (2.0, 1.2))
     nearest = {"front": ((2.0, 0.0), 0.0), "left": ((0.0, 1.0), 0.0)}
     found = found_blind((endless, strip), nearest, {"front": None, "left": 0.2})
-    shape = blind.blind_ground(found, car().bounds, 0.0)
+    shape = ground_layers.blind_ground(found, car().bounds, 0.0)
     assert [label.text for label in shape.labels] == ["blind beyond 10 m out"]
 
 
 def test_nothing_blind_is_an_empty_shape():
-    shape = blind.blind_ground(found_blind(()), car().bounds, 0.0)
+    shape = ground_layers.blind_ground(found_blind(()), car().bounds, 0.0)
     assert not len(shape.lines.points) and not shape.labels
-    assert not blind.blind_ground(found_blind(()), None, 0.0).labels
+    assert not ground_layers.blind_ground(found_blind(()), None, 0.0).labels
 
 
 def found_reach(distance, limit=80.0):
@@ -166,30 +166,30 @@ def found_reach(distance, limit=80.0):
 
 
 def test_reach_is_a_closed_line_with_metres():
-    shape = reach.reach_of_rig(found_reach(30.0))
+    shape = ground_layers.reach_of_rig(found_reach(30.0))
     points = shape.lines.points.reshape(-1, 2, 3)
     assert len(points) == 72
     np.testing.assert_allclose(np.hypot(points[..., 0], points[..., 1]), 30.0, rtol=1e-6)
     np.testing.assert_array_equal(points[:, 1], np.roll(points[:, 0], -1, axis=0))
-    assert [label.text for label in shape.labels] == ["30 m"] * reach.FIGURES
+    assert [label.text for label in shape.labels] == ["30 m"] * ground_layers.LABEL_COUNT
     assert shape.labels[0].place == pytest.approx((30.0, 0.0, 0.0))
     assert "Pedestrian" in shape.legend.title and "AP" in shape.legend.title
 
 
 def test_reach_beyond_the_space_is_at_least_that_far_and_fainter():
     limit = np.where(np.arange(72) < 36, 30.0, 80.0)
-    shape = reach.reach_of_rig(found_reach(np.minimum(limit, 40.0), limit))
+    shape = ground_layers.reach_of_rig(found_reach(np.minimum(limit, 40.0), limit))
     assert {label.text for label in shape.labels} == {"≥ 30 m", "40 m"}, "as the page has"
     alpha = shape.lines.colors.reshape(-1, 2, 4)[..., 3]
     assert alpha[18].max() < 0.5 * alpha[50].min()
 
 
 def test_a_rig_that_finds_nothing_has_no_figures():
-    assert not reach.reach_of_rig(found_reach(0.0)).labels
+    assert not ground_layers.reach_of_rig(found_reach(0.0)).labels
 
 
 def test_sensors_have_their_own_line_and_colour():
-    shape = reach.reach_of_sensors(found_reach(30.0), {"roof": 2})
+    shape = ground_layers.reach_of_sensors(found_reach(30.0), {"roof": 2})
     np.testing.assert_allclose(np.linalg.norm(shape.lines.points, axis=1), 15.0, rtol=1e-6)
     assert shape.legend.classes[0][1] == "roof"
     assert shape.legend.classes[0][0][:3] == colors.SENSOR_COLORS[2]
@@ -202,7 +202,7 @@ def test_another_rig_has_its_line_in_another_palette():
             return found_reach(20.0)
 
     palette = SimpleNamespace(reach=(1.0, 0.0, 0.0, 1.0), words=(1.0, 1.0, 1.0, 1.0))
-    shape = reach.rig_reach(Look(), "rig", "car", palette, "variant B")
+    shape = ground_layers.rig_reach(Look(), "rig", "car", palette, "variant B")
     assert (shape.lines.colors[:, :3] == [1.0, 0.0, 0.0]).all()
     assert shape.legend.classes == ((palette.reach, "variant B"),)
 
@@ -212,18 +212,18 @@ def test_heat_is_hits_per_area_on_the_surface():
     plate = box((-3.0, -3.0, -0.5), (3.0, 3.0, 0.0))
     angles = np.radians(np.arange(-90.0, -70.0, 0.25))
     sensor = mounted(pe.Lidar("down", angles, 1440, 50.0), (0.0, 0.0, 2.0))
-    found = casts.cast(sensor, plate)
-    shape = heat.heat([found], plate.triangles)
+    found = beams.cast(sensor, plate)
+    shape = heatmap.hit_density([found], plate.triangles)
     assert shape.legend.scale[0][:3] == pytest.approx(colors.VIRIDIS[0])  # dark: many, bad
     assert shape.legend.ticks[0] == "100"
     points = shape.faces.points
-    np.testing.assert_allclose(points[:, 2], heat.LIFT_M, atol=1e-6)
+    np.testing.assert_allclose(points[:, 2], heatmap.LIFT_M, atol=1e-6)
     radius = np.hypot(points[:, 0], points[:, 1]).max()
     assert radius == pytest.approx(2.0 * math.tan(math.radians(20.0)), abs=0.1)
     hits = found.stopped.sum()
-    assert len(points) / 6 == pytest.approx(math.pi * 0.73**2 / heat.TILE_M**2, rel=0.15)
+    assert len(points) / 6 == pytest.approx(math.pi * 0.73**2 / heatmap.TILE_M**2, rel=0.15)
     upwards = np.tile([0.0, 0.0, 1.0], (hits, 1))
-    tiles = heat._Tiles.of(found.points[found.stopped], upwards, np.ones(hits))
+    tiles = heatmap._Tiles.of(found.points[found.stopped], upwards, np.ones(hits))
     ring = np.hypot(tiles.points[:, 0], tiles.points[:, 1])
     at = (ring > 0.35) & (ring < 0.45)
     # d beams / d area at radius r: beams a radian of elevation and azimuth, over the Jacobian.
@@ -235,9 +235,9 @@ def test_heat_is_hits_per_area_on_the_surface():
 
 def test_nothing_stopped_is_no_heat():
     far = box((50.0, 0.0, 0.0), (51.0, 1.0, 1.0))
-    shape = heat.heat([casts.cast(mounted(lidar(max_range=10.0)), far)], far.triangles)
+    shape = heatmap.hit_density([beams.cast(mounted(lidar(max_range=10.0)), far)], far.triangles)
     assert not len(shape.faces.points) and shape.legend is None
-    assert not len(heat.heat([], far.triangles).faces.points)
+    assert not len(heatmap.hit_density([], far.triangles).faces.points)
 
 
 def test_a_sheet_as_triangles_has_its_colours_in_the_middles_of_squares():

@@ -6,8 +6,7 @@ import pytest
 
 from blender_addon.engine import advice, catalog, pe
 from blender_addon.overlay import layers
-from blender_addon.overlay.asked import HIDDEN, SEES, asked_place
-from blender_addon.overlay.ghosts import ghosts
+from blender_addon.overlay.annotations import OCCLUDED, VISIBLE, ghost_sensors, location_mark
 from tests.addon import scenes
 
 
@@ -27,26 +26,26 @@ def joins(shape, start, end):
 
 
 def test_a_moved_sensor_has_a_line_to_where_it_stands_now():
-    shape = ghosts([sensor("roof", 0.0)], [sensor("roof", 1.5)], "Low")
+    shape = ghost_sensors([sensor("roof", 0.0)], [sensor("roof", 1.5)], "Low")
     assert joins(shape, (0.0, 0.0, 1.8), (1.5, 0.0, 1.8))
     assert [label.text for label in shape.labels] == ["roof"]
     assert shape.legend.classes[0][1] == "Low"
 
 
 def test_what_stands_in_the_same_place_has_neither_line_nor_name():
-    shape = ghosts([sensor("roof", 0.0)], [sensor("roof", 0.0)])
+    shape = ghost_sensors([sensor("roof", 0.0)], [sensor("roof", 0.0)])
     assert not shape.labels and not joins(shape, (0.0, 0.0, 1.8), (0.0, 0.0, 1.8))
     assert len(shape.through.points), "the ghost itself is drawn"
 
 
 def test_what_is_not_here_has_a_name_alone():
-    shape = ghosts([sensor("eye", 0.0, "Camera 60 deg")], [sensor("roof", 1.5)])
+    shape = ghost_sensors([sensor("eye", 0.0, "Camera 60 deg")], [sensor("roof", 1.5)])
     assert [label.text for label in shape.labels] == ["eye"]
     assert not joins(shape, (0.0, 0.0, 1.8), (1.5, 0.0, 1.8))
 
 
 def test_nothing_of_no_variant():
-    shape = ghosts([], [sensor("roof", 1.5)])
+    shape = ghost_sensors([], [sensor("roof", 1.5)])
     assert not len(shape.through.points) and shape.legend is None
 
 
@@ -56,8 +55,8 @@ def test_lines_tell_who_sees_the_place_and_from_whom_it_is_hidden():
 
     seen = (told("a", 3.0, "sees"), told("b", 0.0, "hidden"), told("c", 0.0, "out of view"))
     place = advice.AskedPlace((5.0, 1.0, 0.05), 1.0, 0.5, True, 1.0, False, seen)
-    shape = asked_place(place, [sensor(name, float(k)) for k, name in enumerate("abc")])
-    for k, color in ((0, SEES), (1, HIDDEN)):
+    shape = location_mark(place, [sensor(name, float(k)) for k, name in enumerate("abc")])
+    for k, color in ((0, VISIBLE), (1, OCCLUDED)):
         assert joins(shape, (float(k), 0.0, 1.8), place.center)
         own = np.float32(color)
         assert (np.abs(shape.through.colors - own).max(axis=1) < 1e-6).sum() == 2

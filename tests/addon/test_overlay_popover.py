@@ -6,14 +6,14 @@ import bpy
 import pytest
 
 from blender_addon.overlay import layers
-from blender_addon.panels import overlay
+from blender_addon.panels import overlay_popover
 from blender_addon.properties.view import classes_of
 from tests.addon.layouts import Layout, drawn
 
 
 def offered(scene) -> list[str]:
     """Names of the settings that the popover shows."""
-    layout = drawn(overlay.PE_PT_view, scene=scene)
+    layout = drawn(overlay_popover.PE_PT_view, scene=scene)
     return [name for kind, name in layout.notes if kind == "prop"]
 
 
@@ -49,10 +49,10 @@ def test_the_number_of_a_channel_is_asked_for_where_it_means_something(car, chan
 
 def test_the_header_has_a_switch_and_the_button_once(car):
     functions = bpy.types.VIEW3D_HT_header.draw._draw_funcs
-    assert functions.count(overlay.draw_in_header) == 1
+    assert functions.count(overlay_popover.draw_in_header) == 1
     layout = Layout()
     header = SimpleNamespace(layout=layout)
-    overlay.draw_in_header(header, SimpleNamespace(scene=car))
+    overlay_popover.draw_in_header(header, SimpleNamespace(scene=car))
     assert layout.notes == [("prop", "show_overlay"), ("popover", "PE_PT_view")]
 
 

@@ -4,12 +4,13 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import body, bridge, changes
+from blender_addon import bridge, signals, vehicle_cache
 from blender_addon.engine import graphics, sight
-from blender_addon.live import latest
-from blender_addon.overlay import ground, handler, layers, updating
-from blender_addon.overlay.store import shown
+from blender_addon.live import state
+from blender_addon.overlay import draw_handler, ground_layers, layers, scheduler
+from blender_addon.overlay.layer_cache import shown
 from tests.addon import scenes
+from tests.thorough import pairs
 
 ON_REQUEST = {"ghosts", "place"}
 """Layers that show what was asked for: another variant, a place; see test_overlay_ideas."""
@@ -28,15 +29,15 @@ def worked(monkeypatch):
     done = []
 
     def watched(layer):
-        def shape(wish, tools, name):
+        def shape(request, cache, name):
             done.append((layer.name, name))
-            return layer.shape(wish, tools, name)
+            return layer.shape(request, cache, name)
 
         return layer.__class__(
             layer.name, layer.label, layer.keys, shape, layer.line_px, layer.rough
         )
 
-    monkeypatch.setattr(updating, "LAYERS", tuple(map(watched, layers.LAYERS)))
+    monkeypatch.setattr(scheduler, "LAYERS", tuple(map(watched, layers.LAYERS)))
     return done
 
 
@@ -72,8 +73,8 @@ def test_nothing_is_worked_out_without_a_change(rig, worked):
     before = {layer: dict(shown.items(rig.name, layer)) for layer in ALL_LAYERS}
     worked.clear()
     scenes.drawn(rig)
-    updating.update(moving=True)
-    updating.update()
+    scheduler.update(moving=True)
+    scheduler.update()
     assert not worked
     for layer, items in before.items():
         assert all(shown.items(rig.name, layer)[name].shape is i.shape for name, i in items.items())
@@ -93,13 +94,15 @@ def test_a_moved_sensor_is_worked_out_alone_and_the_vehicle_is_not_read(rig, wor
 def test_what_is_shown_of_before_a_change_is_marked_until_it_is_worked_out(rig, monkeypatch):
     scenes.drawn(rig)
     item = shown.items(rig.name, "blind")[""]
-    assert not updating.is_preview(rig.name, "blind", "", item)
-    monkeypatch.setattr(updating.worker.desk, "ask", lambda *_: None)  # a machine that is busy
+    assert not scheduler.is_preview(rig.name, "blind", "", item)
+    monkeypatch.setattr(
+        scheduler.worker.background_worker, "ask", lambda *_: None
+    )  # a machine that is busy
     rig.objects["roof"].location.x += 0.1
     bpy.context.view_layer.update()
-    updating.on_rested()
+    scheduler.on_idle()
     assert shown.items(rig.name, "blind")[""] is item
-    assert handler._legend(rig.name, "blind", "").title.endswith(" (preview)")
+    assert draw_handler._legend(rig.name, "blind", "").title.endswith(" (preview)")
 
 
 def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
@@ -107,14 +110,14 @@ def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
     fine = shown.items(rig.name, "ground")[""].shape.sheet.image.shape
     rig.objects["roof"].location.x += 0.1
     bpy.context.view_layer.update()
-    updating.on_moved()
+    scheduler.on_moving()
     item = shown.items(rig.name, "ground")[""]
     assert item.rough and item.shape.sheet.image.shape < fine
     title = item.shape.legend.title
-    assert handler._legend(rig.name, "ground", "").title == f"{title} (preview)"
+    assert draw_handler._legend(rig.name, "ground", "").title == f"{title} (preview)"
     worked.clear()
-    updating.on_rested()
-    assert handler._legend(rig.name, "ground", "").title == title
+    scheduler.on_idle()
+    assert draw_handler._legend(rig.name, "ground", "").title == title
     assert not shown.items(rig.name, "ground")[""].rough
     assert shown.items(rig.name, "ground")[""].shape.sheet.image.shape == fine
     assert {name for name, _ in worked} == {layer.name for layer in layers.LAYERS if layer.rough}
@@ -125,18 +128,18 @@ def test_what_is_not_moved_stays_fine_while_another_moves(rig, worked):
     worked.clear()
     rig.objects["eye"].location.x += 0.1
     bpy.context.view_layer.update()
-    updating.on_moved()
+    scheduler.on_moving()
     assert ("beams", "roof") not in worked and ("heat", "") not in worked
     assert not shown.items(rig.name, "beams")["roof"].rough
 
 
 def test_a_heavy_vehicle_is_read_when_it_rests(rig, monkeypatch):
-    reader, depsgraph = updating.SceneReader(), scenes.depsgraph()
-    before = reader.wish(rig, depsgraph).body_key
+    reader, depsgraph = scheduler.SnapshotReader(), scenes.depsgraph()
+    before = reader.request(rig, depsgraph).body_key
     monkeypatch.setattr(reader, "_took_s", 10.0)
-    body.shared.changed()
-    assert reader.wish(rig, depsgraph, moving=True).body_key == before
-    assert reader.wish(rig, depsgraph).body_key != before
+    vehicle_cache.shared.invalidate()
+    assert reader.request(rig, depsgraph, moving=True).body_key == before
+    assert reader.request(rig, depsgraph).body_key != before
 
 
 def test_settings_count(rig):
@@ -151,16 +154,19 @@ def test_settings_count(rig):
     assert "frustums" not in scenes.drawn(rig)
 
 
-@pytest.mark.parametrize("quantity", ["ENTROPY", "COVERAGE", "SENSORS"])
-@pytest.mark.parametrize("height", ["AVERAGE", "H0", "H50", "H100", "H150"])
+@pytest.mark.parametrize(
+    ("height", "quantity"),
+    pairs(["AVERAGE", "H0", "H50", "H100", "H150"], ["ENTROPY", "COVERAGE", "SENSORS"]),
+)
 def test_the_map_is_that_of_the_engine(rig, quantity, height):
     view = rig.perception_entropy.view
+    show_alone(view, "ground")
     view.ground_quantity, view.ground_height, view.ground_opacity = quantity, height, 1.0
     sheet = scenes.drawn(rig)["ground"][""].sheet
     study = scenes.study()
     metres = None if height == "AVERAGE" else int(height[1:]) / 100.0
     look = sight.Sight(study.space, study.prior, study.vehicle)
-    found = look.ground(study.rig, metres, ground.FINE_M)
+    found = look.ground(study.rig, metres, ground_layers.FINE_M)
     bounds = None if quantity == "SENSORS" else graphics.fitted_bounds(found, quantity)
     expected = graphics.ground_map(found, quantity, 1.0, faded=True, bounds=bounds).sheet
     np.testing.assert_allclose(sheet.image, expected.image, atol=1e-6)
@@ -171,7 +177,7 @@ def test_after_a_score_its_own_map_is_shown_until_something_moves(rig):
     rig.perception_entropy.view.ground_range = "WHOLE"
     assert bpy.ops.pe.score() == {"FINISHED"}
     shape = scenes.drawn(rig)["ground"][""]
-    score = latest.scored(rig.name).score
+    score = state.live_state(rig.name).finished.score
     expected = score.ground_map.coarser(5).entropy
     np.testing.assert_array_equal(shape.sheet.image[..., 3] == 0.0, np.isnan(expected).T)
     lowest, highest = np.nanargmin(expected), np.nanargmax(expected)
@@ -196,9 +202,9 @@ def test_colours_are_fitted_at_rest_kept_while_moving_and_fixed_at_will(rig):
     assert fitted != (graphics.QUANTITIES["ENTROPY"].low, graphics.QUANTITIES["ENTROPY"].high)
     rig.objects["roof"].location = (0.0, 0.0, 0.7)  # in the car: it sees little
     bpy.context.view_layer.update()
-    updating.update(moving=True)
+    scheduler.update(moving=True)
     assert ends() == fitted
-    updating.update(moving=False)
+    scheduler.update(moving=False)
     other = ends()
     assert other != fitted
     assert bpy.ops.pe.fix_colors() == {"FINISHED"}
@@ -223,7 +229,7 @@ def test_the_difference_map_is_of_the_variant_that_live_is_compared_with(rig):
     rig.objects["eye"].rotation_euler.z = 3.0
     bpy.context.view_layer.update()
     look = sight.Sight(study.space, study.prior, study.vehicle)
-    maps = [look.ground(each.rig, None, ground.FINE_M) for each in (scenes.study(), study)]
+    maps = [look.ground(each.rig, None, ground_layers.FINE_M) for each in (scenes.study(), study)]
     expected = graphics.difference_map(*maps, "ENTROPY", settings.view.ground_opacity)
     found = scenes.drawn(rig)["ground"][""].sheet.image
     np.testing.assert_allclose(found, expected.sheet.image, atol=1e-6)
@@ -263,13 +269,23 @@ def test_a_prior_with_a_mistake_leaves_the_rest(rig):
     assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach"}
 
 
+def show_alone(view, layer):
+    """Switch all layers off but one."""
+    for name in ALL_LAYERS:
+        setattr(view, f"show_{name}", name == layer)
+
+
 def test_the_map_is_of_the_scene_s_own_space(rig):
+    view = rig.perception_entropy.view
+    show_alone(view, "ground")
     rig.perception_entropy.space_x = (-20.0, 30.0)
     sheet = scenes.drawn(rig)["ground"][""].sheet
     assert (sheet.low, sheet.high) == ((-20.0, -40.0), (30.0, 40.0))
-    rig.perception_entropy.space_x = (-2000.0, 2000.0)
-    assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * ground.MOST_PLACES
+    rig.perception_entropy.space_x, rig.perception_entropy.space_y = (-2000.0, 2000.0), (-8.0, 8.0)
+    assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * ground_layers.MAX_CELLS
     rig.perception_entropy.space_x = (30.0, -20.0)  # a mistake: a score says which
+    for name in ALL_LAYERS:
+        setattr(view, f"show_{name}", True)
     assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach", "focus"}
 
 
@@ -283,27 +299,27 @@ def test_older_names_still_work(rig):
     for name, value in (("show_overlay", True), ("beam_limit", 123), ("beam_length", 5.0)):
         setattr(settings, name, value)
         assert getattr(settings, name) == value
-    view = updating.SceneReader().wish(rig, scenes.depsgraph()).view
+    view = scheduler.SnapshotReader().request(rig, scenes.depsgraph()).view
     assert (view.beam_limit, view.beam_length) == (123, 5.0)
 
 
 def test_changes_are_heard_and_another_file_forgets(rig):
-    assert {updating.on_moved} <= set(changes.moved.listeners)
-    assert {updating.on_rested} <= set(changes.rested.listeners)
+    assert {scheduler.on_moving} <= set(signals.moving.listeners)
+    assert {scheduler.on_idle} <= set(signals.idle.listeners)
     scenes.drawn(rig)
     assert len(shown) > 5
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert len(shown) == 0 and not updating._asked and not handler._batches
+    assert len(shown) == 0 and not scheduler._requested and not draw_handler._batches
 
 
 def test_register_and_unregister_leave_nothing(rig):
     lists = [getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers)]
     lists = [each for each in lists if isinstance(each, list)]
-    handler.unregister()
+    draw_handler.unregister()
     counts = [len(each) for each in lists]
     for _ in range(2):
-        handler.register()
+        draw_handler.register()
     for _ in range(2):
-        handler.unregister()
+        draw_handler.unregister()
     assert [len(each) for each in lists] == counts and len(shown) == 0
-    handler.register()  # as the add-on's own unregister expects
+    draw_handler.register()  # as the add-on's own unregister expects

@@ -5,7 +5,7 @@ import itertools
 import bpy
 import pytest
 
-from blender_addon.panels import CLASSES, words
+from blender_addon.panels import CLASSES, layout
 
 SENTENCE = "the vehicle collection Sedan is excluded from the view layer: nothing of it is scored"
 
@@ -16,8 +16,8 @@ SENTENCE = "the vehicle collection Sedan is excluded from the view layer: nothin
     "text", [SENTENCE, "bl_ext_a_name_without_any_gap_that_is_long", "WWWW ii", ""]
 )
 def test_no_line_is_wider_than_its_room_and_no_word_is_lost(addon, text, room, size):
-    lines = words.lines_of(text, room, size)
-    blf = words.blf  # Blender has it once bpy is there
+    lines = layout.wrapped_lines(text, room, size)
+    blf = layout.blf  # Blender has it once bpy is there
     blf.size(0, size)
     assert all(blf.dimensions(0, line)[0] <= room for line in lines)
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")

@@ -8,9 +8,9 @@ import pytest
 from mathutils import Vector
 
 from blender_addon import bridge
-from blender_addon.operators import pointing, surface
-from blender_addon.operators.drafts import Drafts
-from blender_addon.operators.mounting import mount_of
+from blender_addon.operators import surface_pose
+from blender_addon.operators.placement_preview import GainPreview
+from blender_addon.sensor_kinds import mount_of
 from tests.addon import scenes
 
 
@@ -83,7 +83,7 @@ def test_the_stand_off_is_that_of_its_kind_unless_said(bare):
 
 
 def test_a_stance_keeps_within_reason():
-    stance = pointing.Stance(0.15)
+    stance = surface_pose.Stance(0.15)
     assert stance.changed(0.01).stand_off_m == 0.16
     assert stance.changed(-1.0).stand_off_m == 0.0
     assert stance.changed(9.0).stand_off_m == 2.0
@@ -107,9 +107,9 @@ def test_an_unknown_model_is_refused_and_changes_nothing(bare):
 def spot_below(scene, x, y):
     """Where a ray from high above meets the vehicle."""
     depsgraph = scenes.depsgraph()
-    parts = surface.parts_of(scene.perception_entropy.vehicle, depsgraph)
+    parts = surface_pose.parts_of(scene.perception_entropy.vehicle, depsgraph)
     start, down = Vector((x, y, 9.0)), Vector((0.0, 0.0, -1.0))
-    return surface.spot_on_ray(scene, depsgraph, parts, start, down)
+    return surface_pose.spot_on_ray(scene, depsgraph, parts, start, down)
 
 
 def test_the_mouse_finds_the_vehicle_through_all_else(bare):
@@ -134,7 +134,7 @@ def test_its_draft_is_the_score_with_it_beside_that_without(bare):
     scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
     scenes.add_sensor("front", model="Camera 60 deg", location=(0.65, 0.0, 1.55))
     study, told = scenes.study(), []
-    drafts = Drafts(study, "front", told.append)
+    drafts = GainPreview(study, "front", told.append)
     drafts.ask(study.rig["front"].pose)
     evaluator = study.evaluator(samples=16_384)
     before, after = (
@@ -151,5 +151,5 @@ def test_its_draft_is_the_score_with_it_beside_that_without(bare):
 def test_the_first_sensor_has_nothing_to_be_compared_with(bare):
     scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
     study = scenes.study()
-    gain = Drafts(study, "roof", print).gain(study.rig["roof"].pose)
+    gain = GainPreview(study, "roof", print).gain(study.rig["roof"].pose)
     assert gain.before is None and " to " not in str(gain)

@@ -11,8 +11,8 @@ from mathutils import Vector
 
 from blender_addon import bridge, operators
 from blender_addon.engine import catalog, graphics, pe
-from blender_addon.operators import place_sensor, placing, pointing, preview
-from blender_addon.operators.surface import Spot
+from blender_addon.operators import place_sensor, placement, placement_preview, surface_pose
+from blender_addon.operators.surface_pose import SurfaceSpot
 from tests.addon import scenes
 
 
@@ -32,21 +32,21 @@ class View3D:
         cls.handles.remove(handle)
 
 
-ROOF = Spot(Vector((-0.3, 0.0, 1.5)), Vector((0.0, 0.0, 1.0)), "cabin")
+ROOF = SurfaceSpot(Vector((-0.3, 0.0, 1.5)), Vector((0.0, 0.0, 1.0)), "cabin")
 
 
 @pytest.fixture
 def held(car, monkeypatch):
     """Return a camera that is held, as it is when the button was pressed."""
-    monkeypatch.setattr(preview, "VIEW", View3D)
+    monkeypatch.setattr(placement_preview, "VIEW", View3D)
     told = []
     workspace = SimpleNamespace(name="none", status_text_set=told.append)
     context = SimpleNamespace(
         scene=car, workspace=workspace, evaluated_depsgraph_get=scenes.depsgraph
     )
-    placing.begin(context, catalog.load("Camera 60 deg"), pointing.Stance(0.05))
-    yield placing.current
-    placing.end()
+    placement.begin(context, catalog.load("Camera 60 deg"), surface_pose.Stance(0.05))
+    yield placement.current
+    placement.end()
     assert not View3D.handles
 
 
@@ -68,7 +68,7 @@ def test_beside_the_vehicle_it_is_nowhere(held):
     held._stand(ROOF)
     held._stand(None)
     assert held.matrix is None
-    assert held._preview._text == ("Camera 60 deg", placing.POINT_AT)
+    assert held._preview._text == ("Camera 60 deg", placement.POINT_AT)
     assert not len(held._preview._lines.points)
 
 
@@ -113,34 +113,34 @@ def test_it_is_drawn_where_it_stands_and_as_it_is_turned(held):
     held._stand(ROOF)
     points = held._preview._lines.points
     place = np.array(held.matrix.translation)
-    assert np.abs(points - place).max() < placing.LENGTH_M + 0.2
+    assert np.abs(points - place).max() < placement.LENGTH_M + 0.2
     pinhole = np.abs(points - place).sum(axis=1) < 1e-5
     assert pinhole.sum() >= 4  # the frustum's edges begin there
-    held.stand(pointing.Stance(0.05, along_normal=True))
+    held.stand(surface_pose.Stance(0.05, along_normal=True))
     assert held._preview._lines.points[:, 2].max() > place[2] + 1.5  # it looks up now
 
 
 def test_a_scene_without_a_score_says_why(car, monkeypatch):
-    monkeypatch.setattr(preview, "VIEW", View3D)
+    monkeypatch.setattr(placement_preview, "VIEW", View3D)
     car.perception_entropy.vehicle = None
     workspace = SimpleNamespace(name="none", status_text_set=print)
     context = SimpleNamespace(
         scene=car, workspace=workspace, evaluated_depsgraph_get=scenes.depsgraph
     )
     try:
-        placing.begin(context, catalog.load("Pandar64"), pointing.Stance(0.15))
-        placing.current._stand(ROOF)
-        assert "vehicle collection" in placing.current._preview._text[2]
+        placement.begin(context, catalog.load("Pandar64"), surface_pose.Stance(0.15))
+        placement.current._stand(ROOF)
+        assert "vehicle collection" in placement.current._preview._text[2]
     finally:
-        placing.end()
+        placement.end()
 
 
 def test_it_lets_go_when_the_extension_is_disabled(held):
     held._stand(ROOF)
-    assert len(View3D.handles) == 2 and placing.busy()
+    assert len(View3D.handles) == 2 and placement.busy()
     operators.unregister()
     try:
-        assert placing.current is None and not View3D.handles and not placing.busy()
+        assert placement.current is None and not View3D.handles and not placement.busy()
     finally:
         operators.register()
 
@@ -149,15 +149,15 @@ def test_the_shape_is_worked_out_in_the_sensor_s_own_frame(car):
     """The same, placed, as what would be drawn of a sensor that is there."""
     pose = pe.Pose((0.5, 0.2, 50.0), (0.1, 0.2, 0.3))  # high: nothing ends on the ground
     model = catalog.load("Pandar64")
-    shape = placing.shape_of("it", model)[0]
-    placed = placing.placed_at(shape, pose)
+    shape = placement.sensor_shape("it", model)[0]
+    placed = placement.moved_to(shape, pose)
     sensor = pe.Sensor("it", model, pose)
-    sketch = graphics.drawing_of("lidar").sketch(sensor, None, placing.SHOWN)
-    expected = sketch.lines(placing.LENGTH_M, placing.IN_THE_AIR).points
+    sketch = graphics.drawing_of("lidar").sketch(sensor, None, placement.SHOWN_BEAMS)
+    expected = sketch.lines(placement.LENGTH_M, placement.HELD_PALETTE).points
     assert placed.points[: len(expected)] == pytest.approx(expected, abs=1e-3)
 
 
 def test_nobody_has_its_name(car):
     scenes.add_sensor("Camera", model="Camera 60 deg", location=(0.7, 0.0, 1.6))
-    assert placing.free_name("Camera", {"Camera"}) != "Camera"
+    assert placement.free_name("Camera", {"Camera"}) != "Camera"
     assert len(bridge.sensor_objects(bpy.context.scene)) == 2

@@ -205,19 +205,20 @@ def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys
     back, before = pe.load_study(tmp_path / "back.toml"), scenes.study()
     assert {s.name for s in back.rig} == {s.name for s in before.rig}
     assert back.vehicle.triangles.tobytes() == before.vehicle.triangles.tobytes()
-    assert [s.model.name for s in back.rig] == ["PandaSet wide", "KITTI cam2", "Pandar64"]
+    lidar = "Velodyne VLP-16 Puck"
+    assert [s.model.name for s in back.rig] == ["PandaSet wide", "KITTI cam2", lidar]
 
 
 def test_dialogs_offer_models_of_the_kind():
     from types import SimpleNamespace
 
-    from blender_addon.operators.exchange import models_for
-    from blender_addon.operators.plain_objects import lidar_models
+    from blender_addon.operators.replace_sensors import empty_models
+    from blender_addon.operators.rig_files import models_for
 
     row = SimpleNamespace(kind="camera")
     assert models_for(row, None, "kitti") == ["KITTI cam2"]
     assert models_for(row, None, "") == catalog.names("camera")
-    assert lidar_models(None, None, "QT128") == ["Hesai QT128C2X"]
+    assert empty_models(None, None, "QT128") == ["Hesai QT128C2X"]
 
 
 def test_the_usual_stand_in_is_the_engine_s():

@@ -7,25 +7,34 @@ import bpy
 import pytest
 
 import blender_addon
-from blender_addon import bridge, changes, commands, motion, roster, worker
+from blender_addon import (
+    bridge,
+    change_events,
+    commands,
+    sensor_cache,
+    signals,
+    viewport,
+    wiring,
+    worker,
+)
 from blender_addon.engine import pe
-from blender_addon.live import latest, readout
-from blender_addon.operators import running
-from blender_addon.overlay import batches, handler, updating
+from blender_addon.live import readout, state
+from blender_addon.operators import running_job
+from blender_addon.overlay import draw_handler, scheduler
 from tests.addon.scenes import depsgraph
 
 ROUNDS = 100
 
 
 SIGNALS = (
-    changes.study,
-    changes.picture,
-    changes.moved,
-    changes.rested,
-    changes.live,
-    changes.reading,
+    signals.study_changed,
+    signals.view_changed,
+    signals.moving,
+    signals.idle,
+    signals.live_toggled,
+    signals.live_score_changed,
 )
-TIMERS = (motion.tell_moved, motion.tell_rested, updating._turn)
+TIMERS = (change_events.emit_moving, change_events.emit_idle, scheduler._update_now)
 
 
 def traces() -> dict[str, list[str]]:
@@ -85,7 +94,7 @@ class View3D:
 @pytest.fixture
 def view3d(monkeypatch):
     """Return a stand-in for the 3D views: Blender does not tell what is drawn into its own."""
-    monkeypatch.setattr(handler, "VIEW", View3D)
+    monkeypatch.setattr(draw_handler, "VIEW", View3D)
     return View3D
 
 
@@ -94,7 +103,7 @@ def workers(monkeypatch):
     """Return the workers, which take Blender to have a window, with its own timers."""
     app = type("App", (), {"background": False, "timers": bpy.app.timers})
     monkeypatch.setattr(worker, "bpy", type("Bpy", (), {"app": app}))
-    return worker.desk, worker.hand
+    return worker.background_worker, worker.interactive_worker
 
 
 def test_a_hundred_rounds_leave_no_thread_timer_or_read_out_behind(monkeypatch, workers):
@@ -107,12 +116,12 @@ def test_a_hundred_rounds_leave_no_thread_timer_or_read_out_behind(monkeypatch, 
         for each in workers:  # asked a moment before it is switched off
             each.ask("work", lambda: None, lambda _: None, lambda _: None)
             assert bpy.app.timers.is_registered(each._timer)
-        latest.set_note("Scene", "a line")
+        state.live_state("Scene").note = "a line"
         assert threading.active_count() == threads + len(workers)
         blender_addon.unregister()
         assert threading.active_count() == threads and len(View3D.handles) == drawn
         assert not any(bpy.app.timers.is_registered(each._timer) for each in workers)
-        assert not any(each.busy() for each in workers) and not latest.note("Scene")
+        assert not any(each.busy() for each in workers) and not state.live_state("Scene").note
 
 
 def test_a_hundred_rounds_leave_nothing_behind(view3d):
@@ -131,9 +140,9 @@ def test_a_hundred_rounds_leave_nothing_behind(view3d):
         assert traces() == before
         assert not view3d.handles
     assert all(kept[each] for each in ("classes", "handlers", "properties", "listeners", "timers"))
-    assert running.current is None and not commands._registered and not roster._found
+    assert running_job.current is None and not commands._registered and not sensor_cache._cache
     assert not extended_menus()
-    assert not handler._handles and not handler._batches and not batches._shaders
+    assert not draw_handler._handles and not draw_handler._batches and not viewport._shaders
 
 
 @pytest.fixture
@@ -141,8 +150,8 @@ def heard():
     """Return what the signals tell, as it comes."""
     told = []
     listeners = {
-        changes.study: lambda: told.append("study"),
-        changes.picture: lambda: told.append("picture"),
+        signals.study_changed: lambda: told.append("study"),
+        signals.view_changed: lambda: told.append("picture"),
     }
     for signal, listener in listeners.items():
         signal.connect(listener)
@@ -165,14 +174,90 @@ def test_a_change_is_told_to_those_who_listen(car, heard):
     assert len(heard) > 3 and set(heard[2:]) == {"study"}
 
 
-def test_picture_and_check_follow_a_change(car):
-    assert {f.__name__ for f in changes.picture.listeners} == {"look_at_settings", "soon"}
-    assert {f.__name__ for f in changes.study.listeners} == {
-        *("soon", "fit_all", "forget", "note", "sync_own_sensors"),
+def names_of(functions) -> list[str]:
+    """Return the functions by module and name."""
+    return [f"{f.__module__.removeprefix('blender_addon.')}.{f.__name__}" for f in functions]
+
+
+def test_each_event_has_one_handler_and_a_written_order(car):
+    assert traces()["handlers"] == [f"on_{event}" for event in sorted(wiring.EVENTS)]
+    after_step = [
+        "sensor_cache.invalidate",
+        "vehicle_cache.invalidate",
+        "change_events.note_change",
+    ]
+    assert {event: names_of(functions) for event, functions in wiring.EVENTS.items()} == {
+        "depsgraph_update_post": [
+            "sensor_cache.invalidate",
+            "vehicle_cache.invalidate_if_updated",
+            "operators.inset.note_change",
+            "change_events.note_if_changed",
+            "live.session.follow_update",
+            "overlay.scheduler.note_selection",
+        ],
+        "frame_change_post": [
+            "vehicle_cache.invalidate_if_updated",
+            "change_events.note_if_changed",
+        ],
+        "undo_pre": ["sensor_cache.invalidate"],
+        "undo_post": after_step,
+        "redo_pre": ["sensor_cache.invalidate"],
+        "redo_post": after_step,
+        "load_pre": [
+            "sensor_cache.invalidate",
+            "vehicle_cache.clear",
+            "change_events.clear",
+            "live.session.clear",
+            "location_query.clear",
+            "overlay.scheduler.clear",
+        ],
+        "load_post": [
+            "sensor_cache.invalidate",
+            "vehicle_cache.clear",
+            "consistency.after_load",
+            "change_events.note_change",
+            "overlay.draw_handler.clear",
+            "overlay.scheduler.clear",
+            "overlay.scheduler.schedule",
+        ],
+        "save_pre": ["consistency.before_save"],
     }
-    assert {f.__name__ for f in changes.rested.listeners} == {
-        *("check", "rest", "look_soon", "ask_again", "on_rested", "settle"),
-    }
+
+
+def test_a_handler_calls_its_functions_in_order_whatever_one_of_them_does(monkeypatch, capsys):
+    called = []
+
+    def broken(*_):
+        called.append("broken")
+        raise ValueError("odd")
+
+    functions = (lambda *args: called.append(args), broken, lambda *_: called.append("last"))
+    monkeypatch.setitem(wiring.EVENTS, "undo_pre", functions)
+    wiring.HANDLERS["undo_pre"]("scene", "depsgraph")
+    assert called == [("scene", "depsgraph"), "broken", "last"]
+    assert "ValueError: odd" in capsys.readouterr().err
+
+
+def test_listeners_are_called_in_the_written_order(car):
+    for signal, listeners in wiring.LISTENERS:
+        assert signal.listeners == listeners
+    assert {signal for signal, _ in wiring.LISTENERS} == set(SIGNALS)
+    assert names_of(signals.moving.listeners) == [
+        "operators.look_through.restore_lost",
+        "operators.upright.on_moving",
+        "consistency.repair_scenes",
+        "diagnostics.postpone_checks",
+        "overlay.scheduler.on_moving",
+    ]
+    assert names_of(signals.idle.listeners) == [
+        "operators.look_through.restore_lost",
+        "result_staleness.update_result",
+        "result_staleness.update_variants",
+        "live.session.on_idle",
+        "diagnostics.schedule_checks",
+        "location_query.query_again",
+        "overlay.scheduler.on_idle",
+    ]
 
 
 def test_all_that_is_documented_is_there(addon):
@@ -202,7 +287,7 @@ def test_a_job_ends_with_the_extension(car, monkeypatch):
     """Nothing of it shows any more, and after enabling again a new one can begin."""
     shown, work = [], pe.OptimizeJob(bridge.study_from_scene(car, depsgraph()))
 
-    class Shown(running.Running):
+    class Shown(running_job.RunningJob):
         """A job without a window to show it in."""
 
         def __init__(self, job):
@@ -211,11 +296,11 @@ def test_a_job_ends_with_the_extension(car, monkeypatch):
         def end(self, context):
             shown.append(context)
 
-    monkeypatch.setattr(running, "current", Shown(work))
+    monkeypatch.setattr(running_job, "current", Shown(work))
     assert not bpy.ops.pe.score.poll()
     blender_addon.unregister()
     try:
-        assert running.current is None and work.dropped and len(shown) == 1
+        assert running_job.current is None and work.dropped and len(shown) == 1
     finally:
         blender_addon.register()
     assert bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()

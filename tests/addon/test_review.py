@@ -11,9 +11,9 @@ bpy = pytest.importorskip("bpy")
 import blender_addon  # noqa: E402
 import pe_core as pe  # noqa: E402
 from blender_addon import bridge  # noqa: E402
-from blender_addon.review import caption, render_review  # noqa: E402
-from blender_addon.review.camera import Frame, look_at  # noqa: E402
-from pe_core.graphics import PAPER  # noqa: E402
+from blender_addon.review import captions, render_review  # noqa: E402
+from blender_addon.review.picture_geometry import Frame, look_at  # noqa: E402
+from pe_tools.graphics import PAPER  # noqa: E402
 
 SIZE = (800, 450)
 
@@ -144,7 +144,7 @@ def test_a_picture_that_fails_leaves_nothing(scene, outcome, tmp_path):
 
 
 def test_words_of_a_score(outcome):
-    words = caption.caption_of(outcome.study, outcome)
+    words = captions.caption_of(outcome.study, outcome)
     assert words.headline == f"Perception entropy  {outcome.after.entropy:.3f}"
     assert f"{outcome.after.coverage:.1%}" in words.detail
     rows = {row[0]: row for row in words.table[1:]}
@@ -155,7 +155,7 @@ def test_words_of_a_score(outcome):
 
 def test_words_of_a_search(outcome):
     moved = optimized(outcome)
-    words = caption.caption_of(moved.study, moved)
+    words = captions.caption_of(moved.study, moved)
     entropies = f"{outcome.before.entropy:.3f} → {outcome.before.entropy - 0.5:.3f}"
     assert words.headline.endswith(entropies)
     rows = {row[0]: row for row in words.table[1:]}
@@ -164,9 +164,9 @@ def test_words_of_a_search(outcome):
 
 
 def test_numbers_as_people_write_them():
-    assert caption.position(pe.Pose((-0.43, -0.001, 1.8))) == "−0.43, 0.00, 1.80"
-    assert caption.angle(-2.46) == "−2.5°"
-    assert caption.angle(-180.0) == "180.0°"
+    assert captions.position(pe.Pose((-0.43, -0.001, 1.8))) == "−0.43, 0.00, 1.80"
+    assert captions.angle(-2.46) == "−2.5°"
+    assert captions.angle(-180.0) == "180.0°"
 
 
 def test_the_view_holds_its_points_and_touches_its_frame():

@@ -50,7 +50,7 @@ def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path):
     inside = (tmp_path / "inside" / page.PAGE).read_text("utf-8")
     assert said.getvalue() == f"{tmp_path / 'inside' / page.PAGE}\n"
     assert "<pre>blender -b study.blend --command pe review --grid-samples 1024 -o" in inside
-    from pe_core.app.cli import main
+    from pe_tools.cli.verbs import main
 
     outside = [str(tmp_path / "study.toml"), *arguments[:2], "-o", str(tmp_path / "outside")]
     assert main(["review", *outside]) == 0
@@ -61,6 +61,6 @@ def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path):
 
 def without_hosts(text):
     """A page without the programs it was made with, the command line, and the mesh's name."""
-    text = re.sub(r"<p>It is made again.*?</pre>", "", text)
+    text = re.sub(r"<p>Where its files are, run.*?</pre>", "", text)
     text = re.sub(r'<tr><th scope="row">blender</th>.*?</tr>', "", text)
     return text.replace("study.npz", "vehicle.npz")

@@ -5,10 +5,10 @@ import sys
 import bpy
 import pytest
 
-from blender_addon import roster, stale
+from blender_addon import result_staleness, sensor_cache
 from blender_addon.bridge.rig import sensor_objects
 from blender_addon.operators import listed_sensors
-from blender_addon.overlay.reading import SceneReader
+from blender_addon.overlay.snapshot import SnapshotReader
 from tests.addon import scenes
 
 OTHERS = 2000
@@ -47,7 +47,7 @@ def looks():
 def draw(scene, cache):
     """What a redraw of panel and 3D view asks for."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    shown = cache.wish(scene, depsgraph).sensors
+    shown = cache.request(scene, depsgraph).sensors
     return [obj.name for obj in listed_sensors(scene)], [each.sensor.name for each in shown]
 
 
@@ -56,21 +56,21 @@ def test_a_score_looks_once_before_the_work_and_once_after(crowd, looks):
 
 
 def test_redraws_without_a_change_look_once(crowd, looks):
-    cache = SceneReader()
+    cache = SnapshotReader()
 
     def work():
         for _ in range(10):
             assert draw(crowd, cache) == (["roof"], ["roof"])
         crowd.perception_entropy.has_result = True
-        stale.check()
+        result_staleness.update_result()
 
-    roster.forget()
+    sensor_cache.invalidate()
     assert looks(work) == 1  # twenty-one times before
     assert looks(work) == 0
 
 
 def test_a_change_is_seen_at_the_next_redraw(car):
-    cache = SceneReader()
+    cache = SnapshotReader()
     assert draw(car, cache)[0] == ["roof"]
     copy = car.objects["roof"].copy()
     copy.name = "copy"

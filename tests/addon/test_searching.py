@@ -3,15 +3,15 @@
 import bpy
 import pytest
 
-from blender_addon import searching
+from blender_addon import search_curve
 from blender_addon.engine import search
-from blender_addon.operators.running import Running
-from blender_addon.searching.latest import SearchView, view
+from blender_addon.operators.running_job import RunningJob
+from blender_addon.search_curve import SearchProgress, searches
 from tests.addon import scenes
 
 
 def test_the_curve_is_a_staircase_from_the_start_to_now():
-    curve = searching.curve_of(SearchView(((1, 4.0), (3, 3.0), (6, 2.0)), 11))
+    curve = search_curve.curve_of(SearchProgress(((1, 4.0), (3, 3.0), (6, 2.0)), 11))
     assert curve.points == ((0.0, 1.0), (0.2, 1.0), (0.2, 0.5), (0.5, 0.5), (0.5, 0.0), (1.0, 0.0))
     assert (curve.low, curve.high, curve.last) == ("2.00", "4.00", "11 placements")
     assert curve.title == "Best so far \N{ALMOST EQUAL TO} 2.000 nats"
@@ -20,7 +20,7 @@ def test_the_curve_is_a_staircase_from_the_start_to_now():
 
 @pytest.mark.parametrize("points", [((1, 2.0),), ((1, 2.0), (2, 1.9999))])
 def test_next_to_nothing_does_not_look_like_progress(points):
-    curve = searching.curve_of(SearchView(points, 0, sampled=False))
+    curve = search_curve.curve_of(SearchProgress(points, 0, sampled=False))
     assert all(up >= 0.98 for _, up in curve.points)
     assert "\N{ALMOST EQUAL TO}" not in curve.title
 
@@ -30,12 +30,12 @@ def test_the_best_so_far_is_shown_as_ghosts_until_the_search_ends(car):
     sensor = bpy.data.objects["roof"]
     found = scenes.study().rig
     moved = found.with_poses([search.pose_from_values({**values(found), "x": 0.5})])
-    searching.note(car.name, SearchView(((1, 3.0), (2, 2.0)), 5, tuple(moved)))
+    search_curve.note(car.name, SearchProgress(((1, 3.0), (2, 2.0)), 5, tuple(moved)))
     (shape,) = scenes.drawn(car)["ghosts"].values()
     assert shape.legend.title == "Search" and shape.legend.classes[0][1] == "best so far"
     assert [tag.place[0] for tag in shape.labels] == [0.5]
     assert sensor.location.x == pytest.approx(-0.43)  # nothing was moved
-    searching.drop(car.name)
+    search_curve.drop(car.name)
     assert "ghosts" not in scenes.drawn(car)
 
 
@@ -58,15 +58,15 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
 
     job = pe.OptimizeJob(scenes.study())
     context = type("Context", (), {"scene": car, "window_manager": Manager(), "window": None})
-    running = Running(context, job)
-    monkeypatch.setattr("blender_addon.operators.running.BEST_EVERY_S", 0.0)
+    running = RunningJob(context, job)
+    monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)
     for progress in job:
         running.progress = progress
         running._show_search()
-    shown = view[car.name]
+    shown = searches[car.name]
     assert shown.points == tuple((row.evaluation, row.entropy) for row in job.history)
     assert shown.sensors == tuple(job.best.rig) != tuple(job.study.rig)
-    searching.drop(car.name)
+    search_curve.drop(car.name)
 
 
 def test_the_method_and_the_budget_are_the_study_s(car):

@@ -25,6 +25,7 @@ def offered(car):
     """The car with two models for its roof, at prices that single precision does not hold."""
     settings = car.perception_entropy
     settings.candidates, settings.search_samples, settings.currency = 1, 1024, "EUR"
+    car.objects["roof"].perception_entropy.model = LARGE
     offer("roof", (LARGE, 99.1), (CAN, 7.3))
     car.objects["roof"].perception_entropy.free = (False,) * 6
     return car
@@ -109,10 +110,10 @@ def test_models_are_added_and_removed_in_the_panel(car):
     own = car.objects["roof"].perception_entropy
     assert bpy.ops.pe.add_option() == {"FINISHED"}
     assert bpy.ops.pe.add_option() == {"FINISHED"}
-    assert [row.model for row in own.options] == [LARGE, ""]
-    own.options[1].model = CAN
+    assert [row.model for row in own.options] == [CAN, ""]
+    own.options[1].model = LARGE
     assert bpy.ops.pe.remove_option(index=0) == {"FINISHED"}
-    assert [row.model for row in own.options] == [CAN]
+    assert [row.model for row in own.options] == [LARGE]
     assert bpy.ops.pe.remove_option(index=3) == {"CANCELLED"}
 
 

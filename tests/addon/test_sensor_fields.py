@@ -9,8 +9,8 @@ import pytest
 from blender_addon import bridge
 from blender_addon.engine import graphics
 from blender_addon.overlay import layers
-from blender_addon.panels import sensor as sensor_panel
-from blender_addon.panels import swatches
+from blender_addon.panels import layout as panel_layout
+from blender_addon.panels import selected_object as sensor_panel
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window
 
@@ -65,7 +65,7 @@ def test_a_sensor_has_one_colour_in_every_layer_and_in_the_list(car):
         wanted[name] = np.float32(graphics.sensor_color(number))
         (label,) = drawn["labels"][name].labels
         assert np.float32(label.color[:3]) == pytest.approx(wanted[name])
-        icon = swatches.pixels(graphics.SENSOR_COLORS[number]).reshape(-1, 4)
+        icon = panel_layout.pixels(graphics.SENSOR_COLORS[number]).reshape(-1, 4)
         assert icon[icon[:, 3] > 0.0, :3] == pytest.approx(np.broadcast_to(wanted[name], (484, 3)))
     for name, shape in drawn["frustums"].items():
         for part in (shape.lines, shape.faces):

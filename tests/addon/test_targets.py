@@ -6,10 +6,10 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, stale
-from blender_addon.live import asking
-from pe_core import advice
-from pe_core.study import ScoreJob
+from blender_addon import bridge, result_staleness
+from blender_addon.live import evaluation
+from pe_tools import advice
+from pe_tools.jobs import ScoreJob
 from tests.addon import scenes
 
 
@@ -40,7 +40,7 @@ def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path):
         pass
     assert bpy.ops.pe.score() == {"FINISHED"}
     stored = json.loads(settings.result_json)
-    assert stored["after"] == bridge.versions.figures_of(job.outcome.after)
+    assert stored["after"] == bridge.versions.score_to_dict(job.outcome.after)
     objects = job.outcome.after.objects
     assert settings.result_ap.startswith(f"{objects.ap:.3f}")
     shown = {row.name: (row.ap, row.reach) for row in settings.result_parts if row.is_class}
@@ -50,13 +50,13 @@ def test_the_panel_scores_objects_as_the_command_line_does(settings, tmp_path):
     score = bridge.versions.score_from_dict(stored["after"])
     assert score.objects == objects
     settings.scenes = 9
-    assert stale.fingerprint(bpy.context.scene).text != settings.result_signature
+    assert result_staleness.fingerprint(bpy.context.scene).text != settings.result_signature
 
 
 def test_the_live_score_follows_on_the_same_targets(settings):
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    wish = asking.read(bpy.context.scene, depsgraph, draft=True)
-    glance, _ = asking.EvaluatorStore().glance("scene", wish)
+    wish = evaluation.read_request(bpy.context.scene, depsgraph, draft=True)
+    glance, _ = evaluation.EvaluatorCache().summary("scene", wish)
     study = scenes.study()
     assert glance.entropy == study.evaluator().entropy(study.rig) and glance.voxels == 0
 

@@ -6,7 +6,8 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
-from pe_core import advice, search
+from pe_core import search
+from pe_tools import advice
 from tests.addon import scenes
 
 
@@ -45,8 +46,8 @@ def outcome(rise, loss, warnings=()):
     study = scenes.study()
     score = study.evaluator(1024).score(study.rig)
     failed = None if loss is None else 2.0 + loss
-    before = search.Stands(2.0, 2.0, 2.0, 0.0, None if loss is None else 2.0)
-    after = search.Stands(2.0, 2.0 + rise, 3.0, 0.01, failed)
+    before = search.RigRobustness(2.0, 2.0, 2.0, 0.0, None if loss is None else 2.0)
+    after = search.RigRobustness(2.0, 2.0 + rise, 3.0, 0.01, failed)
     found = search.Robustness(pe.Tolerance(0.01, 0.005), 1024, before, after)
     both = study, study, score, score
     return pe.Outcome("optimize", *both, warnings=warnings, robustness=found)

@@ -11,11 +11,12 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import bridge, panels, properties
+from blender_addon import bridge, housing, operators, panels, properties, sensor_kinds
 from blender_addon.operators import listed_sensors, models, offers
 from blender_addon.review import render_review
-from blender_addon.review.page import legend_of
-from pe_core import catalog, kinds
+from blender_addon.review.captions import legend_of
+from pe_core import catalog
+from pe_core import sensors as kinds
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window, drawn
 from tests.engine.toy_kind import Ring, RingKind
@@ -86,7 +87,7 @@ def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
 def test_the_panel_shows_what_was_stored(ring_kind, ring):
     bpy.ops.pe.score()
     layout, own = Layout(), ring.perception_entropy
-    panels.sensors.draw_sensors(layout, Window(ring_kind))
+    panels.sensor_lists.draw_sensors(layout, Window(ring_kind))
     assert list(filter(None, layout.texts("operator"))) == ["bumper", "roof"]
     shown = layout.texts("label")
     assert shown[shown.index(PRESET) + 1] == own.loss_text != ""
@@ -129,13 +130,61 @@ def test_the_review_shows_it(ring_kind, ring, tmp_path):
     for _ in job:
         pass
     names = [text for text, _, _ in legend_of(study.rig, stopped=True, moved=False)]
-    assert names == ["LiDAR beam", "stopped by the vehicle", "Ultrasonic Ring"]
+    assert names == ["LiDAR beam", "blocked by the vehicle", "Ultrasonic Ring"]
     path = tmp_path / "review.png"
     render_review(ring_kind, study, job.outcome, path, (800, 450))
     image = bpy.data.images.load(str(path))
     values = np.array(image.pixels[:]).reshape(-1, image.channels)[:, :3]
     red, green, blue = values.T
     assert ((green > red + 0.1) & (green > blue)).sum() > 100, "nothing of the ring's green"
+
+
+def test_an_own_sensor_of_it_is_defined_by_its_keys(ring_kind):
+    items = {name: number for name, _, _, number in sensor_kinds.own_kinds(None, None)}
+    assert (items["lidar"], items["camera"]) == (0, 1) and items["ultrasonic"] >= 1000
+    assert bpy.ops.pe.add_own_sensor(kind="ultrasonic") == {"FINISHED"}
+    row = ring_kind.perception_entropy.own_sensors[-1]
+    assert row.name == "My Ultrasonic Ring" and row.problem != "", "it has no keys yet"
+    row.keys = "range_m = 7.5"
+    assert row.problem == "" and catalog.load(row.name).range_m == 7.5
+    assert bridge.add_own_sensor(ring_kind, "Other Ring", {"kind": "ultrasonic", "range_m": 3.0})
+    assert ring_kind.perception_entropy.own_sensors[-1].keys == "range_m = 3.0"
+    assert operators.own_fields("ultrasonic") == ("keys",)
+    assert operators.kind_label("ultrasonic") == "Ultrasonic Ring"
+    row.keys = "range_m = "
+    assert "keys" in row.problem, "a line that cannot be read is refused by the engine"
+    bridge.remove_own_sensors()
+
+
+def test_it_has_a_typical_housing(ring_kind):
+    mesh = housing.housing_mesh(PRESET)
+    assert len(mesh.polygons) and mesh[housing.KEY] == PRESET
+    assert housing.measured_housing(PRESET) is None
+
+
+def test_without_a_picture_of_its_kind_looking_through_says_so(ring_kind, ring):
+    assert bpy.ops.pe.look_through(name="bumper") == {"CANCELLED"}
+    assert bpy.context.scene.camera is None
+
+
+def test_a_row_gives_it_a_picture_a_housing_and_fields(ring_kind, ring, monkeypatch):
+    pixels = np.full((4, 8, 4), 0.25, np.float32)
+    box = pe.Housing("box", (0.5, 0.4, 0.3), (0.0, 0.0, 0.15), "a test")
+    row = sensor_kinds.KindRow(
+        sensor_kinds.OTHER.mount,
+        lambda _model: box,
+        own_fields=("max_range",),
+        pixels=lambda _sensor, _vehicle: pixels,
+        legend="all grey",
+    )
+    monkeypatch.setitem(sensor_kinds.ROWS, "ultrasonic", row)
+    assert bpy.ops.pe.look_through(name="bumper") == {"FINISHED"}
+    image = bpy.data.images["bumper range"]
+    assert tuple(image.size) == (8, 4)
+    np.testing.assert_allclose(np.array(image.pixels[:]), 0.25, atol=0.01)
+    assert operators.own_fields("ultrasonic") == ("max_range",)
+    surface = housing.model_surface(PRESET)
+    np.testing.assert_allclose(np.ptp(surface.points, axis=0), (0.5, 0.4, 0.3), atol=0.01)
 
 
 def test_without_the_kind_nothing_of_it_is_left(car):

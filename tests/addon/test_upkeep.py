@@ -3,7 +3,7 @@
 import bpy
 import pytest
 
-from blender_addon import bridge, roster, upkeep
+from blender_addon import bridge, consistency, sensor_cache
 from tests.addon import scenes
 
 
@@ -24,26 +24,26 @@ def results(scene):
 def test_a_duplicate_is_a_new_sensor_without_a_result(scored, linked):
     before = results(scored)
     bpy.ops.object.duplicate(linked=linked)
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert results(scored) == {**before, "roof.001": None}
-    assert [each.name for each in roster.sensors(scored)] == ["roof", "roof.001"]
+    assert [each.name for each in sensor_cache.sensors(scored)] == ["roof", "roof.001"]
     assert before["roof"] is not None
 
 
 def test_a_duplicate_of_a_duplicate_is_no_owner_of_its_original_s_result(scored):
     for _ in range(2):
         bpy.ops.object.duplicate()
-        upkeep.go_round()
+        consistency.repair_scenes()
     assert [name for name, entropy in results(scored).items() if entropy is not None] == ["roof"]
 
 
 def test_a_renamed_sensor_keeps_its_result_and_its_duplicate_gets_none(scored):
     entropy = results(scored)["roof"]
     scored.objects["roof"].name = "top"
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert results(scored) == {"top": entropy}
     bpy.ops.object.duplicate()
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert results(scored) == {"top": entropy, "top.001": None}
 
 
@@ -52,21 +52,21 @@ def test_an_appended_sensor_is_a_new_one(scored, tmp_path):
     blend = str(tmp_path / "other.blend")
     bpy.ops.wm.save_as_mainfile(filepath=blend, copy=True)
     scored.objects["roof"].name = "left"
-    upkeep.go_round()
+    consistency.repair_scenes()
     scored.objects["left"].location.x = 0.3
     bpy.ops.pe.score()
     before = results(scored)
     bpy.ops.wm.append(filename="roof", directory=f"{blend}/Object/")
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert results(scored) == {**before, "roof": None}
-    assert len(roster.sensors(scored)) == 2
+    assert len(sensor_cache.sensors(scored)) == 2
 
 
 def test_a_score_gives_all_of_them_results(scored):
     bpy.ops.object.duplicate()
-    upkeep.go_round()
+    consistency.repair_scenes()
     bpy.ops.pe.score()
-    upkeep.go_round()
+    consistency.repair_scenes()
     assert None not in results(scored).values() and len(results(scored)) == 2
 
 

@@ -92,13 +92,13 @@ def reach_into(obj, point, normal):
 )
 def test_an_asset_dropped_on_a_surface_stands_on_it_once(car, model, point, normal, ahead):
     sensor = dropped("new", model, point, normal)
-    upright.stand_dropped()
+    upright.place_dropped()
     looks, up = axes(sensor)
     assert up == pytest.approx((0, 0, 1), abs=1e-6)
     assert looks == pytest.approx(ahead, abs=0.2) and looks[2] == pytest.approx(0.0, abs=1e-6)
     assert reach_into(sensor, point, normal) == pytest.approx(0.0, abs=1e-3), "not on the surface"
     sensor.rotation_euler = (0.5, 0.0, 0.0)  # whoever turns it now wants that
-    upright.stand_dropped()
+    upright.place_dropped()
     assert axes(sensor)[1][2] == pytest.approx(math.cos(0.5), abs=1e-6)
 
 
@@ -106,5 +106,5 @@ def test_what_is_still_an_asset_is_left_alone(car):
     sensor = dropped("new", "Camera 60 deg", TAIL, (-1.0, 0.0, 0.0))
     sensor.asset_mark()
     before = sensor.matrix_world.copy()
-    upright.stand_dropped()
+    upright.place_dropped()
     assert sensor.matrix_world == before and sensor.perception_entropy.stands_when_dropped

@@ -6,10 +6,10 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, unsaved
-from blender_addon.bridge import parking
+from blender_addon import bridge, result_staleness
+from blender_addon.bridge import apply_variant
 from blender_addon.engine import pe
-from blender_addon.operators import comparing
+from blender_addon.operators import compare_variants
 from tests.addon import scenes
 
 
@@ -59,7 +59,7 @@ def test_switching_brings_every_sensor_back_to_the_bit(ideas):
     for _ in range(3):
         assert switch(ideas, "Variant") == {"FINISHED"}
         assert poses() == before
-        assert bridge.alike(bridge.records_of_scene(ideas), start)
+        assert bridge.same_sensors(bridge.records_of_scene(ideas), start)
         assert switch(ideas, "Variant 2") == {"FINISHED"}
         assert poses() == moved
     assert variants(ideas) == ["Variant", "Variant 2"], "nothing was unsaved"
@@ -106,10 +106,10 @@ def test_what_hangs_on_a_sensor_goes_aside_and_comes_back_with_it(ideas):
     own = scenes.add_collection(ideas.collection, "Own")
     own.objects.link(housing)
     eye = ideas.objects["eye"]
-    parking.park(ideas, eye)
+    apply_variant.deactivate(ideas, eye)
     bpy.context.view_layer.update()
     assert not housing.visible_get()
-    parking.unpark(ideas, eye)
+    apply_variant.reactivate(ideas, eye)
     bpy.context.view_layer.update()
     assert housing.visible_get()
     assert {c.name for c in housing.users_collection} == {ideas.collection.name, "Own"}
@@ -124,10 +124,10 @@ def test_hidden_sensors_stay_hidden_and_where_they_were(ideas, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "hidden.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hidden.blend"))
     scene = bpy.context.scene
-    assert bridge.alike(bridge.records_of_scene(scene), before)
+    assert bridge.same_sensors(bridge.records_of_scene(scene), before)
     remove(scene, "eye")
     switch(scene, "Variant")
-    assert bridge.alike(bridge.records_of_scene(scene), before)
+    assert bridge.same_sensors(bridge.records_of_scene(scene), before)
     assert not scene.objects["eye"].visible_get()
 
 
@@ -181,19 +181,19 @@ def test_deleting_the_active_one_leaves_the_sensors(ideas):
 
 def test_the_mark_tells_that_the_scene_is_another(ideas):
     settings = ideas.perception_entropy
-    unsaved.check()
+    result_staleness.update_variants()
     assert not settings.variant_changed
     ideas.objects["roof"].location.x += 0.001
     bpy.context.view_layer.update()
-    unsaved.check()
+    result_staleness.update_variants()
     assert settings.variant_changed
     ideas.objects["roof"].location.x -= 0.001
     bpy.context.view_layer.update()
-    unsaved.check()
+    result_staleness.update_variants()
     assert not settings.variant_changed
     ideas.objects["roof"].scale = (2.0, 2.0, 2.0)  # no possible sensor
     bpy.context.view_layer.update()
-    unsaved.check()
+    result_staleness.update_variants()
     assert settings.variant_changed
 
 
@@ -209,10 +209,10 @@ def test_a_score_goes_to_the_variant_that_stands(ideas):
     bpy.ops.pe.score()
     first, second = rows(ideas)["Variant"], rows(ideas)["Variant 2"]
     assert first.has_result and second.entropy == first.entropy
-    unsaved.check()
+    result_staleness.update_variants()
     assert not first.stale
     ideas.perception_entropy.prior = "uniform"
-    unsaved.check()
+    result_staleness.update_variants()
     assert first.stale
 
 
@@ -294,7 +294,7 @@ def test_a_name_that_something_else_has(ideas):
     scenes.add_box(ideas.collection, "eye", (0.1, 0.1, 0.1))
     switch(ideas, "Variant")
     assert set(poses()) == {"eye.001", "roof"}
-    unsaved.check()
+    result_staleness.update_variants()
     assert not ideas.perception_entropy.variant_changed
     assert [s.name for s in rows(ideas)["Variant"].sensors] == ["eye.001", "roof"]
 
@@ -329,17 +329,17 @@ def test_comparing_scores_what_has_no_score_as_if_it_stood_there(ideas):
     switch(ideas, "Variant")
     bpy.ops.pe.score()
     assert ideas.perception_entropy.result_entropy == first.entropy
-    names, table = comparing.compared(ideas)
+    names, table = compare_variants.comparison_of(ideas)
     assert names == ["Variant", "Variant 2"]
     whole = next(row for row in table if row.group == "rig" and row.measure == "entropy")
     assert whole.values == (bridge.score_of(first).entropy, bridge.score_of(second).entropy)
-    columns = comparing.columns_of(names, table)
+    columns = compare_variants.columns_of(names, table)
     assert [column[0][0] for column in columns] == ["", *names]
     assert columns[1][2][0] == f"{whole.values[0]:.3f}"
     assert f"({whole.differences[1]:+.3f})" in columns[2][2][0]
     assert [columns[1][2][1], columns[2][2][1]] == list(whole.best)
     assert bridge.score_of(second).scatter == higher.evaluator().score(higher.rig).scatter
-    said = comparing.sentences(names, table, 40)
+    said = compare_variants.sentences(names, table, 40)
     scored = table[:-3]
     assert " ".join(said) == " ".join(
         (*pe.advice.ranking(names, scored), *pe.advice.win_words(names, scored))
@@ -356,26 +356,26 @@ def test_comparing_tells_blind_ground_reach_and_ap_for_the_height_and_class_show
     for height, of, name in ((0.5, "H50", "pedestrian"), (1.0, "H100", "car")):
         ideas.perception_entropy.view.blind_height = of
         ideas.perception_entropy.view.reach_class = name
-        assert comparing.lacking(ideas)
+        assert compare_variants.pending_variants(ideas)
         bpy.ops.pe.compare_variants()
-        assert not comparing.lacking(ideas) and first.score_json != kept
+        assert not compare_variants.pending_variants(ideas) and first.score_json != kept
         own = pe.advice.key_figures(study.sight(), study.rig, height, name)
-        names, table = comparing.compared(ideas)
+        names, table = compare_variants.comparison_of(ideas)
         assert table[-3:] == pe.advice.compare_figures({"Variant": own})
-    assert [column[-1][0] for column in comparing.columns_of(names, table)] == [
+    assert [column[-1][0] for column in compare_variants.columns_of(names, table)] == [
         "    1 m tall, within 10 m",
         f"{own.blind_m2:.1f}",
     ]
     ideas.objects["roof"].location.z += 0.3
     bpy.context.view_layer.update()
     bpy.ops.pe.update_variant()
-    assert comparing.lacking(ideas), "they were of the sensors as they stood"
+    assert compare_variants.pending_variants(ideas), "they were of the sensors as they stood"
 
 
 def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):
     bpy.ops.pe.duplicate_variant()
-    both = {k: comparing.ToCompare(str(k), scenes.study(), True) for k in (1, 2)}
-    job = comparing.CompareJob(both, bridge.FigureRule(0.5, "car"))
+    both = {k: compare_variants.PendingVariant(str(k), scenes.study(), True) for k in (1, 2)}
+    job = compare_variants.CompareJob(both, bridge.FigureRule(0.5, "car"))
     for step in job:
         if step.stage == "scoring 2":
             job.stop()
@@ -396,7 +396,7 @@ def test_a_variant_that_cannot_be_scored_is_told_and_the_others_are(ideas):
 def test_bounds_of_the_search_are_a_variant_s_own(ideas):
     own = ideas.objects["roof"].perception_entropy
     own.bounded[2], own.bounds_low[2], own.bounds_high[2] = True, 1.6, 2.1
-    unsaved.check()
+    result_staleness.update_variants()
     assert ideas.perception_entropy.variant_changed
     bpy.ops.pe.save_variant()
     expected = scenes.study().search.limits

@@ -64,7 +64,7 @@ def test_a_newer_file_is_told_in_one_line_and_keeps_its_version(car, tmp_path):
     bpy.ops.wm.open_mainfile(filepath=str(path))
     scene = bpy.context.scene
     assert scene.perception_entropy.version == choices.VERSION + 6
-    assert "newer version" in bridge.newer_version(scene)
+    assert "newer version" in bridge.newer_version_message(scene)
     answer = run("blender_addon", path, "score", "--grid-samples", "4096")
     assert answer.returncode == 0
     told = [line for line in answer.stderr.splitlines() if "newer version" in line]
@@ -96,7 +96,7 @@ def test_a_linked_vehicle_is_the_vehicle(car, tmp_path):
     expected, scene, linked = linked_car(tmp_path)
     scene.collection.children.link(linked)
     scene.perception_entropy.vehicle = linked
-    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert_same(scenes.study(), expected)
     bpy.ops.pe.score()
     assert "cabin [library.blend]" in {
@@ -108,7 +108,7 @@ def test_parts_of_a_linked_vehicle_are_selected_and_it_is_not_turned(car, tmp_pa
     _, scene, linked = linked_car(tmp_path)
     scene.collection.children.link(linked)
     scene.perception_entropy.vehicle = linked
-    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     name = scenes.study().vehicle.part_names[0]
     assert bpy.ops.pe.select_part(name=name) == {"FINISHED"}
     with pytest.raises(RuntimeError, match="expected an object of this file, found linked from"):
@@ -122,7 +122,7 @@ def test_an_instanced_vehicle_is_the_vehicle(car, tmp_path):
     empty.instance_type, empty.instance_collection = "COLLECTION", linked
     holder.objects.link(empty)
     scene.perception_entropy.vehicle = holder
-    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert_same(scenes.study(), expected)
 
 
@@ -131,7 +131,7 @@ def test_an_overridden_vehicle_is_the_vehicle_and_can_be_turned(car, tmp_path):
     scene.collection.children.link(linked)
     own = linked.override_hierarchy_create(scene, bpy.context.view_layer)
     scene.perception_entropy.vehicle = own
-    scenes.add_sensor("roof", location=(-0.43, 0.0, 1.8))
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert_same(scenes.study(), expected)
     assert bpy.ops.pe.mend(fix="turn_vehicle", amount=(180.0, 0.0, 0.0)) == {"FINISHED"}
     low, high = scenes.study().vehicle.bounds

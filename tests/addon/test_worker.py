@@ -124,5 +124,5 @@ def test_stopping_leaves_no_thread_and_no_timer_and_work_can_begin_again(desk, t
 
 def test_without_a_window_work_is_done_at_once():
     got = []
-    worker.desk.ask("t", lambda: 3, got.append, got.append)
-    assert got == [3] and not worker.desk.busy()
+    worker.background_worker.ask("t", lambda: 3, got.append, got.append)
+    assert got == [3] and not worker.background_worker.busy()

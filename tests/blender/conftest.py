@@ -10,7 +10,7 @@ import pytest
 
 from tests.blender.runner import Blender, Installed, output_of
 from tests.blender.stage import Stage
-from tests.blender.window import TOOLS, Window
+from tests.blender.window import TOOLS
 from tests.needed import unavailable
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -63,25 +63,67 @@ def screenshots() -> Path:
     return folder
 
 
-@pytest.fixture
-def window(installed, sedan, tmp_path):
-    """Return Blender in a real window on a screen of its own, showing the sedan."""
-    yield from opened(Window, installed, sedan, tmp_path)
+class SharedWindow:
+    """One window for all tests: each begins with the file loaded anew.
+
+    A window is closed, and the next test opens another, after a test that failed and after one that
+    sets `spent`: for a test that switches the extension off.
+    """
+
+    def __init__(self, installed, blend, new_folder):
+        self._installed, self._blend, self._new_folder = installed, blend, new_folder
+        self._stage = None
+
+    def begin(self) -> Stage:
+        """Return the window, showing the file as it was saved."""
+        if self._stage is None:
+            self._stage = Stage(self._new_folder())
+            self._stage.open(self._installed, self._blend)
+        else:
+            self._stage.load(self._blend)
+        return self._stage
+
+    def close(self) -> None:
+        """Close the window, if one is open."""
+        if self._stage is not None:
+            self._stage.close()
+            self._stage = None
 
 
-@pytest.fixture
-def stage(installed, sedan, tmp_path):
-    """Return such a window that can be told in Python what to show."""
-    yield from opened(Stage, installed, sedan, tmp_path)
-
-
-def opened(kind, installed, blend, folder):
-    """Open a window, hand it over, and close it whatever happened."""
+@pytest.fixture(scope="session")
+def shared_window(installed, sedan, tmp_path_factory):
+    """Return the window of all tests, and close it in the end."""
     if missing := [tool for tool in TOOLS if shutil.which(tool) is None]:
         unavailable(f"a window needs {', '.join(missing)}")
-    shown = kind(folder)
+    shared = SharedWindow(installed, sedan, lambda: tmp_path_factory.mktemp("window"))
+    yield shared
+    shared.close()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    """Remember of each test whether its body passed."""
+    report = yield
+    if call.when == "call":
+        item.stash[PASSED] = report.passed
+    return report
+
+
+PASSED = pytest.StashKey[bool]()
+
+
+@pytest.fixture
+def stage(shared_window, request):
+    """Return Blender in a real window, showing the sedan, that also runs Python from outside."""
     try:
-        shown.open(installed, blend)
+        shown = shared_window.begin()
         yield shown
     finally:
-        shown.close()
+        if not request.node.stash.get(PASSED, False) or shown.spent:
+            shared_window.close()
+
+
+@pytest.fixture
+def window(stage):
+    """Return the same window, for tests that work it with mouse and keyboard alone."""
+    return stage

@@ -13,7 +13,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from inside_window import FOLDER, view3d, write  # sets the window up
+from inside_window import FOLDER, start_again, view3d, write  # sets the window up
 
 POLL_S = 0.05
 KEPT = {}
@@ -33,6 +33,7 @@ def obey():
         region = next(each for each in area.regions if each.type == "WINDOW")
         with bpy.context.temp_override(window=window, area=area, region=region):
             names = {"bpy": bpy, "window": window, "area": area, "region": region, "kept": KEPT}
+            names["start_again"] = start_again
             exec(compile(code, "do.py", "exec"), names)
         for each in window.screen.areas:  # Blender does not draw what a script has changed
             each.tag_redraw()

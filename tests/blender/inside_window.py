@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 import bpy
-from bl_ext.user_default.perception_entropy import asking
-from bl_ext.user_default.perception_entropy.live import latest
-from bl_ext.user_default.perception_entropy.operators import placing, running
+from bl_ext.user_default.perception_entropy import location_query
+from bl_ext.user_default.perception_entropy.live import state
+from bl_ext.user_default.perception_entropy.operators import placement, running_job
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Euler, Vector
 
@@ -49,6 +49,17 @@ def fill_the_window():
     with bpy.context.temp_override(window=window, area=area):
         bpy.ops.screen.screen_full_area()
     bpy.app.timers.register(show_sidebar, first_interval=STEP_S)
+
+
+def start_again(blend):
+    """Load a file in place of what is shown, and lay the window out as at the start."""
+
+    def load():
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+            bpy.ops.wm.open_mainfile(filepath=blend)
+        bpy.app.timers.register(fill_the_window, first_interval=STEP_S, persistent=True)
+
+    bpy.app.timers.register(load, first_interval=REPORT_S)
 
 
 def show_sidebar():
@@ -93,9 +104,9 @@ def report_state():
     state = {
         "sensors": [each.name for each in sensors],
         "places": {each.name: list(each.matrix_world.translation) for each in sensors},
-        "running": running.current is not None,
-        "better_found": running.current is not None and better_found(running.current.job),
-        "notice": running.current.notice if running.current else "",
+        "running": running_job.current is not None,
+        "better_found": running_job.current is not None and better_found(running_job.current.job),
+        "notice": running_job.current.notice if running_job.current else "",
         "kind": found.result_kind,
         "has_result": found.has_result,
         "entropy": found.result_entropy,
@@ -106,7 +117,7 @@ def report_state():
         "variant_changed": found.variant_changed,
         "answer": answer_of(scene),
     }
-    held = placing.current
+    held = placement.current
     state |= {
         "placing": held is not None,
         "held": pose_of(held.matrix) if held and held.matrix else None,
@@ -125,18 +136,18 @@ def report_state():
 
 def live_reading(scene):
     """What the live score says of the scene."""
-    reading = latest.reading(scene.name)
-    said = {"on": scene.perception_entropy.live.on, "note": latest.note(scene.name)}
+    reading = state.live_state(scene.name).score
+    said = {"on": scene.perception_entropy.live.on, "note": state.live_state(scene.name).note}
     if reading is None:
         return said
-    glance = reading.glance
+    glance = reading.summary
     before = None if reading.before is None else reading.before.entropy
     return {
         **said,
         "entropy": glance.entropy,
         "coverage": glance.coverage,
         "draft": glance.draft,
-        "rested": latest.is_exact(scene.name, reading),
+        "rested": state.live_state(scene.name).is_current(reading),
         "number": reading.number,
         "before": before,
     }
@@ -180,7 +191,7 @@ def report_where():
 
 def answer_of(scene):
     """Lines that are told of the place that was asked about."""
-    answer = asking.answer(scene)
+    answer = location_query.answer(scene)
     return [] if answer is None else list(answer.lines)
 
 

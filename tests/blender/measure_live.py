@@ -24,7 +24,7 @@ from tests.blender.stage import Stage
 ROOT = Path(__file__).resolve().parents[2]
 MOVES, PAUSE_S = 60, 0.1
 SET_UP = """
-from bl_ext.user_default.perception_entropy import changes
+from bl_ext.user_default.perception_entropy import signals
 settings = window.scene.perception_entropy
 for model, name, place, turn in (
     ("Camera 60 deg", "cam_front", (0.5, 0.0, 1.45), 0.0),
@@ -42,9 +42,9 @@ settings.live.on = True
 """
 STAMPS = """
 import time
-from bl_ext.user_default.perception_entropy.live import latest, readout, session
+from bl_ext.user_default.perception_entropy.live import readout, session, state
 STAMPS = kept["stamps"] = []
-ask, work, lines = session.ask, session.work, readout.draw_lines
+ask, work, lines = session.request_score, session.score_in_thread, readout.draw_rows
 
 def asked(*given, **options):
     STAMPS.append(("asked", time.perf_counter()))
@@ -63,10 +63,10 @@ def drawn(*given):
     lines(*given)
     STAMPS.append(("lines", time.perf_counter() - begun))
 
-session.ask, session.work, readout.draw_lines = asked, worked, drawn
+session.request_score, session.score_in_thread, readout.draw_rows = asked, worked, drawn
 """
-RESTED = "(r := __import__('bl_ext.user_default.perception_entropy.live', fromlist=['latest'])"
-RESTED += ".latest.reading(window.scene.name)) and r.rested"
+RESTED = "(r := __import__('bl_ext.user_default.perception_entropy.live', fromlist=['state'])"
+RESTED += ".state.live_state(window.scene.name).score) and r.exact"
 
 
 def main() -> int:

@@ -22,6 +22,18 @@ class Stage(windowed.Window):
     """A window that does what Python says, beside what its mouse and keyboard do."""
 
     startup = INSIDE
+    spent = False
+    """Whether a test has left the window in a state in which no other test should begin."""
+
+    def load(self, blend: Path) -> None:
+        """Show a file as it was saved, laid out as at the start; nothing of before is left."""
+        self.point_at_view()
+        (self.folder / "ready.json").unlink()
+        for path in self.folder.glob("*"):
+            if path.name not in ("window.log", "screen.log"):
+                path.unlink(missing_ok=True)
+        self.do(f"kept.clear(); start_again({str(blend)!r})")
+        self.wait_for(lambda: (self.folder / "ready.json").exists(), DONE_TIMEOUT_S, "the file")
 
     def do(self, code: str) -> dict:
         """Run Python inside Blender; return what it keeps in `kept`."""

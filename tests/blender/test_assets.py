@@ -126,5 +126,6 @@ def test_an_asset_dropped_on_the_roof_is_a_sensor_that_stands_there(stage, scree
 def test_the_preferences_take_the_library_away(stage):
     names = "[each.name for each in bpy.context.preferences.filepaths.asset_libraries]"
     stage.wait_until(f"'Perception Entropy' in {names}")
+    stage.spent = True
     stage.do("bpy.ops.preferences.addon_disable(module='bl_ext.user_default.perception_entropy')")
     stage.wait_until(f"'Perception Entropy' not in {names}")

@@ -133,6 +133,7 @@ def test_vertices_moved_in_edit_mode_count_and_make_a_result_stale(live):
 
 
 def test_disabled_in_the_middle_of_a_drag_it_leaves_nothing_and_comes_back(live):
+    live.spent = True
     grab_and_move(live, moves=4)
     live.do(DISABLE)
     live.mouse("click", 1)
@@ -149,6 +150,7 @@ def test_disabled_during_a_search_it_leaves_nothing_and_works_again(stage, scree
     places = stage.state["places"]
     stage.press("pe.optimize")
     stage.wait_for(lambda: stage.state["running"], EFFECT_TIMEOUT_S, "the search to start")
+    stage.spent = True
     stage.do(DISABLE)
     stage.do(ENABLE)
     stage.wait_until("bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()")

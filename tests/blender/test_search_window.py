@@ -82,9 +82,9 @@ def ask_for(stage, page):
     stage.key("Return")
 
 
-VIEW = f"__import__('{ADDON}.searching.latest', fromlist=['view']).view"
-RUNNING = f"__import__('{ADDON}.operators.running', fromlist=['current']).current"
-EXPORTING = f"__import__('{ADDON}.operators.exporting', fromlist=['last'])"
+VIEW = f"__import__('{ADDON}.search_curve', fromlist=['searches']).searches"
+RUNNING = f"__import__('{ADDON}.operators.running_job', fromlist=['current']).current"
+EXPORTING = f"__import__('{ADDON}.operators.export_job', fromlist=['last'])"
 PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
 
 

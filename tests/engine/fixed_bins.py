@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from pe_core.scene.geometry import cross, dot
+from pe_core.geometry.poses import cross, dot
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -297,9 +297,9 @@ def angles() -> dict[str, Case]:
     default = f'<!DOCTYPE a [<!ATTLIST b x CDATA "{"x" * 100_000}">]><a>{"<b/>" * 100_000}</a>'
     flow = "lasers:\n- {laser_id: 0, rot_correction: %s, vert_correction: 0}\n"
     files = {
-        "a billion laughs": (laughs(), "XML without definitions of its own"),
+        "a billion laughs": (laughs(), "XML without definitions"),
         "laughs in UTF-16": (laughs().encode("utf-16"), "expected"),
-        "a long default": (default, "XML without definitions of its own"),
+        "a long default": (default, "XML without definitions"),
         "an outer file": ('<!DOCTYPE a [<!ENTITY x SYSTEM "/dev/zero">]><a>&x;</a>', "definitions"),
         "deep XML": ("<a>" * 100_000, "elements at most 100 deep"),
         "digits": ("elevation\n" + "9" * 1_000_000 + "x\n", "a finite number"),

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import pe_core as pe
-from pe_core.formats import read_ap_table
-from pe_core.kinds.lidar.angles import read_angles
+from pe_tools.formats import read_ap_table
+from pe_tools.formats.angles import read_angles
 
 ROOM_BYTES = 400 << 20
 READERS: dict[str, Callable[[Path], Any]] = {

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pe_core.errors import InputError
-from pe_core.formats.meshes import Mesh, MeshAxes, read_mesh
+from pe_core.base.errors import InputError
+from pe_tools.formats.meshes import Mesh, MeshAxes, read_mesh
 
 # A box with three different sides, so that no two axes can be mistaken for each other; its
 # coordinates are exact in single precision.

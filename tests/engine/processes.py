@@ -9,7 +9,10 @@ import pe_core as pe
 
 ROOT = Path(pe.__file__).parent.parent
 GUARD_S = 120
-TELL_ALL = "from pe_core.app import reporting; reporting.REPORT_EVERY_S = {True: 0.0, False: 0.0}\n"
+TELL_ALL = (
+    "from pe_tools.cli import progress_line\n"
+    "progress_line.REPORT_EVERY_S = {True: 0.0, False: 0.0}\n"
+)
 """Every step of a job is told, so that a test knows where it is."""
 HANG = """
 from pe_core.scoring.evaluator import Evaluator
@@ -23,7 +26,7 @@ def score(self, rig, **options):
 Evaluator.score = score
 """
 """The n-th full score never ends."""
-RUN = "from pe_core.__main__ import main; main()"
+RUN = "from pe_tools.__main__ import main; main()"
 
 
 class Command:

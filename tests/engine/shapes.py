@@ -5,11 +5,10 @@ import math
 import numpy as np
 
 import pe_core as pe
-from pe_core.kinds.lidar.beams import TurnedBeams
-from pe_core.kinds.lidar.ends import KnownEnds
-from pe_core.kinds.lidar.lattice import lattice_of
-from pe_core.kinds.lidar.points import PlacedLidar, VoxelPoints, count_through
-from pe_core.kinds.lidar.ties import position_in_voxels
+from pe_core.sensors.lidar.beams import FixedEnds, RotatedBeams
+from pe_core.sensors.lidar.lattice import lattice_of
+from pe_core.sensors.lidar.tie_rules import position_in_voxels
+from pe_core.sensors.lidar.voxel_beams import PlacedLidar, VoxelPoints, count_voxel_beams
 
 BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
@@ -64,15 +63,15 @@ def small_space(interval=0.5):
     return pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), interval)
 
 
-def counted(sensor, space, index, vehicle=None, enough=None):
+def counted(sensor, space, index, vehicle=None, saturation_count=None):
     """Beams through voxels of a space, as the sampled kernels count them."""
     field = pe.beam_field(sensor, vehicle)
     lidar = PlacedLidar(
         lattice_of(sensor.model),
         position_in_voxels(sensor.pose.position, space.origin, space.interval),
         sensor.pose.ground_from_sensor,
-        TurnedBeams(sensor),
-        KnownEnds(field.ends),
+        RotatedBeams(sensor),
+        FixedEnds(field.ends),
         space.interval,
     )
-    return count_through(VoxelPoints(index), lidar, enough)
+    return count_voxel_beams(VoxelPoints(index), lidar, saturation_count)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import advice
-from pe_core.advice.outlook import outlook_words
+from pe_tools import advice
+from pe_tools.advice.summary import outlook_words
 from tests.engine import shapes
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import advice
+from pe_tools import advice
 from tests.engine import shapes
 
 SPACE, PRIOR = pe.PerceptionSpace(), pe.Prior.uniform()

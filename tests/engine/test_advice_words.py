@@ -3,8 +3,8 @@
 import pytest
 
 import pe_core as pe
-from pe_core import advice
-from pe_core.advice.figures import metres, percent, plural, times
+from pe_tools import advice
+from pe_tools.advice.number_text import metres, percent, plural, times
 from tests.engine import shapes
 
 
@@ -97,7 +97,8 @@ def test_the_table_has_a_row_a_sensor():
 
 def test_a_loss_is_told_where_it_costs_most():
     """Two LiDARs see all round, a camera looks ahead: without it, ahead is what gets worse."""
-    roof, camera = shapes.lidar_on_roof(), shapes.camera(60.0, (1.9, 0.0, 0.9))
+    roof = shapes.lidar_on_roof(shapes.small_lidar(32, 360))
+    camera = shapes.camera(60.0, (1.9, 0.0, 0.9))
     rig, space = pe.Rig([roof, camera]), shapes.small_space()
     study = pe.Study(rig, shapes.box_car(), space)
     seen = advice.outlook(study.sight(), rig)
@@ -168,7 +169,7 @@ def test_nothing_compared_is_an_empty_table_of_the_right_shape():
 
 
 def test_warnings_are_in_the_result_and_below_the_summary():
-    from pe_core.app import summary
+    from pe_tools.cli import summary
 
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), samples=1024)
@@ -192,9 +193,9 @@ def test_warnings_are_in_the_result_and_below_the_summary():
 
 def test_a_search_warns_of_the_placement_it_found():
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
-    search = pe.Search({"roof": ("z",)}, {"roof": {"z": (0.5, 1.6)}}, 0, 1024, pe.Schedule(20))
+    search = pe.Search({"roof": ("z",)}, {"roof": {"z": (0.5, 1.6)}}, 0, 1024, pe.Schedule(8))
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
-    job = pe.OptimizeJob(study)
+    job = pe.OptimizeJob(study, 1)
     assert list(job) and job.outcome.study.rig["roof"].pose.position[2] > 0.95
     told = [each.code for each in job.outcome.warnings]
     assert told == [advice.FRAGILE], "it is in the body no more; a few beams are easily off"

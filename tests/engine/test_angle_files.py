@@ -12,8 +12,8 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
-from pe_core.kinds.lidar.angles import read_angles
 from pe_core.study.study_file import study_from_dict, study_to_dict
+from pe_tools.formats.angles import read_angles
 
 MODEL = {"kind": "lidar", "azimuth_step_deg": 90, "max_range_m": 100}
 

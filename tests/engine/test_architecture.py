@@ -1,55 +1,91 @@
-"""The engine's rooms: what each may import, and that nothing else is imported."""
+"""The rooms of `pe_core` and `pe_tools`: what each may import, and nothing else."""
 
 import ast
 import functools
+import importlib
+import re
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import pe_core
 
-ROOT = Path(pe_core.__file__).parent
-FILES = sorted(ROOT.rglob("*.py"))
-
-ALLOWED = {
-    "errors": set(),
-    "version": set(),
-    "text": {"errors"},
-    "metric": {"errors", "text"},
-    "scene": {"errors", "text", "metric"},
-    "prior": {"errors", "text", "scene"},
-    "kinds": {"errors", "text", "metric", "scene"},
-    "formats": {"errors", "text", "metric", "scene", "prior", "kinds"},
-    "scoring": {"errors", "text", "metric", "scene", "prior", "kinds"},
-    "targets": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring"},
-    "sight": {"errors", "text", "metric", "scene", "prior", "kinds", "scoring", "targets"},
-    "graphics": {"errors", "scene", "kinds", "scoring", "sight"},
-    "search": {"errors", "text", "scene", "scoring"},
-    "catalog": {"errors", "text", "scene", "kinds"},
-    "exchange": {"errors", "text", "scene", "kinds", "catalog"},
-    "advice": {
-        *("errors", "text", "metric", "scene", "prior", "kinds", "scoring", "sight", "catalog"),
+CHECKOUT = Path(pe_core.__file__).parent.parent
+ROOMS = {
+    "pe_core": {
+        "version": set(),
+        "base": set(),
+        "metric": {"base"},
+        "geometry": {"base"},
+        "scene": {"base", "metric", "geometry"},
+        "prior": {"base", "geometry"},
+        "sensors": {"base", "metric", "geometry", "scene"},
+        "catalog": {"base", "geometry", "scene", "sensors"},
+        "scoring": {"base", "metric", "geometry", "scene", "prior", "sensors"},
+        "search": {"base", "geometry", "scene", "scoring"},
+        "study": {
+            *("base", "metric", "geometry", "scene", "prior", "sensors", "catalog"),
+            *("scoring", "search"),
+        },
+        "public": {
+            *("version", "base", "metric", "scene", "prior", "sensors", "catalog", "scoring"),
+            *("search", "study"),
+        },
+        "__main__": set(),
     },
-    "study": {
-        *("errors", "version", "text", "metric", "scene", "prior", "kinds"),
-        *("formats", "scoring", "targets", "sight", "search", "catalog", "advice", "exchange"),
+    "pe_tools": {
+        "formats": set(),
+        "exchange": {"formats"},
+        "graphics": set(),
+        "advice": set(),
+        "jobs": {"formats", "advice"},
+        "outputs": {"exchange", "graphics"},
+        "sweep": {"jobs"},
+        "cli": {"formats", "exchange", "advice", "jobs", "outputs", "sweep"},
+        "page": {"graphics", "advice", "jobs", "cli"},
+        "reproduction": {"formats", "jobs", "cli"},
+        "validity": {"cli", "reproduction"},
+        "public": {"formats", "exchange", "advice", "jobs"},
+        "__main__": {"cli"},
     },
-    "outputs": {
-        *("errors", "version", "text", "scene", "kinds", "sight", "graphics"),
-        *("exchange", "study"),
-    },
-    "sweep": {"errors", "version", "text", "scene", "study"},
-    "public": {
-        *("errors", "version", "metric", "scene", "prior", "kinds", "formats", "scoring"),
-        *("targets", "sight", "search", "catalog", "exchange", "advice", "study"),
-    },
-    "app": {
-        *("errors", "version", "text", "scene", "kinds", "formats", "catalog", "exchange", "sight"),
-        *("advice", "search", "study", "outputs", "sweep"),
-    },
-    "__main__": {"app"},
 }
-"""Rooms of the engine, lowest first, and those they may look into: all of them further up here."""
+"""Rooms by package, lowest first, and those they may look into: all of them further up here.
+`pe_tools` may also look into all of `pe_core`, and `pe_core` into nothing of `pe_tools`."""
+STOREYS = 8
+LONGEST_CHAIN = 30
+"""Of pe_core: storeys of rooms, and files in a row of which each imports the next, at most."""
+MOST_LINES = 26_000
+LIBRARIES = {
+    "collada": {"pe_tools/formats"},
+    "pxr": {"pe_tools/formats"},
+    "pyarrow": {"pe_tools/exchange"},
+    "ezdxf": {"pe_tools/outputs"},
+    "rerun": {"pe_tools/outputs"},
+    "matplotlib": {"pe_tools/reproduction", "pe_tools/validity"},
+}
+"""Optional libraries, and the rooms in which they are imported."""
+FACES_ONLY = ("benchmarks", "blend_assets", "tools")
+"""Programs outside both packages: they take names from the faces of rooms."""
+BY_NAME = {
+    "pe_core/__init__.py": "names are loaded when one is asked for",
+    "pe_core/__main__.py": "the command `pe` is of the tools",
+    "pe_core/base/plugins.py": "the one door to what is found at run time",
+    "pe_core/search/processes.py": "a worker's process imports the engine under its own name",
+    "pe_tools/page/__init__.py": "names are loaded when one is asked for",
+}
+"""Files that import by a name made at run time, which the other tests do not see, and why."""
+
+
+def files(*packages):
+    """Every file of our own in the packages, by its path from the checkout."""
+    return {
+        path.relative_to(CHECKOUT).as_posix(): path
+        for package in packages
+        for path in sorted((CHECKOUT / package).rglob("*.py"))
+        if "_vendor" not in path.parts
+    }
 
 
 def nodes(path):
@@ -63,101 +99,239 @@ def nodes_of(source):
     return tuple(ast.walk(ast.parse(source)))
 
 
-def imports(path):
-    """(level, dotted module, name) of every import in a file, inside functions too."""
+def imported(path, root=CHECKOUT):
+    """Full dotted names of all that a file imports, inside functions too."""
+    package = path.relative_to(root).parts[:-1]
     for node in nodes(path):
         if isinstance(node, ast.Import):
-            yield from ((0, alias.name, "") for alias in node.names)
+            yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            yield from ((node.level, node.module or "", alias.name) for alias in node.names)
+            start = package[: len(package) - node.level + 1] if node.level else ()
+            module = [*start, *(node.module.split(".") if node.module else [])]
+            yield from (".".join([*module, alias.name]) for alias in node.names)
 
 
-def room_of(path):
+def room_of(path, root=CHECKOUT):
     """The room that a file is in, or the name of a file that is beside them."""
-    return path.relative_to(ROOT).with_suffix("").parts[0]
+    return path.relative_to(root).with_suffix("").parts[1]
 
 
-def rooms_imported(path):
-    """Rooms that a file imports from, whichever way it is written."""
-    package = path.relative_to(ROOT).parts[:-1]
-    for level, module, name in imports(path):
-        if level == 0:
-            continue
-        parts = [*package[: len(package) - (level - 1)], *filter(None, module.split(".")), name]
-        yield parts[0]
-
-
-def test_imports_are_numpy_the_standard_library_or_relative():
-    allowed = sys.stdlib_module_names | {"numpy"}
+@pytest.mark.parametrize("package", ROOMS)
+def test_rooms_look_only_into_rooms_below_them(package):
+    allowed = ROOMS[package]
     offenders = [
-        f"{path.relative_to(ROOT)}: {module}"
-        for path in FILES
-        for level, module, _ in imports(path)
-        if level == 0 and module.split(".")[0] not in allowed
-    ]
-    assert not offenders
-
-
-def test_rooms_look_only_into_rooms_below_them():
-    offenders = [
-        f"{path.relative_to(ROOT)}: {room}"
-        for path in FILES
+        f"{name}: {full}"
+        for name, path in files(package).items()
         if room_of(path) != "__init__"  # the public face of it all
-        for room in set(rooms_imported(path)) - {room_of(path)} - ALLOWED[room_of(path)]
+        for full in imported(path)
+        if full.startswith(f"{package}.")
+        and full.split(".")[1] not in {room_of(path), *allowed[room_of(path)]}
     ]
     assert not offenders
 
 
-def test_optional_packages_are_looked_for_in_one_place():
-    """What is imported by a name that is made while running, the test above does not see."""
+@pytest.mark.parametrize("package", ROOMS)
+def test_every_room_is_in_the_list_and_arrows_run_one_way(package):
+    rooms = {room_of(path) for path in files(package).values()} - {"__init__"}
+    assert rooms == set(ROOMS[package])
+    above = list(ROOMS[package])
+    for number, room in enumerate(above):
+        assert ROOMS[package][room] <= set(above[:number]), room
+
+
+@pytest.mark.parametrize("package", ROOMS)
+def test_the_page_of_the_architecture_has_a_row_for_each_room(package):
+    page = (CHECKOUT / "ARCHITECTURE.md").read_text("utf-8")
+    table = re.search(rf"^## {package}.*?\n\|(.*?)\n\n", page, re.S | re.M)[1]
+    named = re.findall(r"^\| `(\w+)/?`", table, re.M)
+    assert sorted(named) == sorted(ROOMS[package])
+
+
+def test_the_engine_imports_nothing_of_the_tools():
+    """But for its face, for a type checker alone: it shows the tools' public names, too."""
+    offenders = [
+        f"{name}: {full}"
+        for name, path in files("pe_core").items()
+        for full in imported(path)
+        if full.startswith("pe_tools") and name != "pe_core/__init__.py"
+    ]
+    assert not offenders
+
+
+def test_libraries_are_numpy_and_those_of_a_room():
+    ours = sys.stdlib_module_names | {"numpy", *ROOMS}
+    offenders = [
+        f"{name}: {full}"
+        for name, path in files(*ROOMS).items()
+        for full in imported(path)
+        if (top := full.split(".")[0]) not in ours
+        and name.rsplit("/", name.count("/") - 1)[0] not in LIBRARIES.get(top, ())
+    ]
+    assert not offenders
+
+
+def test_modules_are_imported_by_name_in_few_places():
     callers = {
-        str(path.relative_to(ROOT))
-        for path in FILES
+        name
+        for name, path in files(*ROOMS).items()
         for node in nodes(path)
         if isinstance(node, ast.Name) and node.id in ("import_module", "__import__")
     }
-    own_modules = {"__init__.py", "search/processes.py"}
-    assert callers == own_modules | {"app/extras.py"}
+    assert callers == set(BY_NAME)
 
 
-def test_every_room_is_in_the_list_and_arrows_run_one_way():
-    rooms = {room_of(path) for path in FILES} - {"__init__"}
-    assert rooms == set(ALLOWED)
-    above = list(ALLOWED)
-    for number, room in enumerate(above):
-        assert ALLOWED[room] <= set(above[:number]), room
+def top_imports(body):
+    """Import statements that run when a module is imported."""
+    for node in body:
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node
+        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            yield from top_imports(node.orelse)
+        elif isinstance(node, ast.If | ast.Try):
+            yield from top_imports([*node.body, *node.orelse])
 
 
-def test_the_check_sees_every_way_to_write_an_import(tmp_path, monkeypatch):
+def import_graph(package):
+    """The modules of a package that each of its modules imports when it is imported."""
+    modules = {}
+    for name, path in files(package).items():
+        modules[name.removesuffix(".py").removesuffix("/__init__").replace("/", ".")] = path
+    graph = {module: set() for module in modules}
+    for module, path in modules.items():
+        parts = module.split(".")
+        own = parts if path.name == "__init__.py" else parts[:-1]
+        for node in top_imports(ast.parse(path.read_text("utf-8")).body):
+            if isinstance(node, ast.Import):
+                graph[module] |= {a.name for a in node.names} & set(modules)
+                continue
+            start = own[: len(own) - node.level + 1] if node.level else []
+            base = ".".join([*start, *(node.module.split(".") if node.module else [])])
+            for alias in node.names:
+                full = f"{base}.{alias.name}"
+                graph[module] |= {full if full in modules else base} & set(modules)
+        graph[module].discard(module)
+    return graph
+
+
+def longest_path(graph):
+    """The longest chain of a graph without circles of which each imports the next."""
+
+    @functools.cache
+    def below(node):
+        return (node, *max((below(to) for to in graph[node]), key=len, default=()))
+
+    return max((below(node) for node in graph), key=len)
+
+
+def test_the_engine_is_low_and_its_chains_are_short():
+    """A newcomer who follows imports is at the bottom soon."""
+    graph = import_graph("pe_core")
+    rooms = {}
+    for module, to in graph.items():
+        room = module.split(".")[1] if "." in module else "__init__"
+        below = {name.split(".")[1] for name in to if "." in name} - {room}
+        rooms.setdefault(room, set()).update(below)
+    assert len(longest_path(rooms)) <= STOREYS, longest_path(rooms)
+    chain = longest_path(graph)
+    assert len(chain) <= LONGEST_CHAIN, "\n".join(chain)
+
+
+def test_the_engine_stays_small():
+    lines = sum(len(path.read_text("utf-8").splitlines()) for path in files("pe_core").values())
+    assert lines <= MOST_LINES
+
+
+def test_the_check_sees_every_way_to_write_an_import(tmp_path):
     """Modules from a package, packages from the root, imports inside functions."""
-    monkeypatch.setattr(sys.modules[__name__], "ROOT", tmp_path)
-    path = tmp_path / "kinds" / "lidar" / "odd.py"
+    path = tmp_path / "pe_core" / "sensors" / "lidar" / "odd.py"
     path.parent.mkdir(parents=True)
     path.write_text(
         "from ... import study\n"
         "from ...scoring.score import Score\n"
         "from ..kernels import Voxels\n"
-        "def late():\n    from ...app import cli\n"
+        "def late():\n    from pe_tools.cli import verbs\n    import numpy.linalg\n"
     )
-    assert set(rooms_imported(path)) == {"study", "scoring", "kinds", "app"}
+    assert set(imported(path, tmp_path)) == {
+        *("pe_core.study", "pe_core.scoring.score.Score", "pe_core.sensors.kernels.Voxels"),
+        *("pe_tools.cli.verbs", "numpy.linalg"),
+    }
+    assert longest_path({"a": {"b", "c"}, "b": {"c"}, "c": set(), "d": set()}) == ("a", "b", "c")
 
 
 def test_a_sensor_s_kind_is_asked_of_the_table_alone():
     """Outside a kind's own folder nobody tells LiDARs from cameras by class or by name."""
-    for path in FILES:
-        inside = path.relative_to(ROOT).parts
-        if inside[:2] in (("kinds", "lidar"), ("kinds", "camera")) or len(inside) == 1:
+    own = ("pe_core/sensors/lidar/", "pe_core/sensors/camera/", "pe_core/sensors/__init__.py")
+    tables = (
+        *("pe_tools/graphics/", "pe_tools/reproduction/", "pe_tools/validity/"),
+        "pe_tools/page/pictures/sensor_views.py",
+    )
+    offenders = []
+    for name, path in files(*ROOMS).items():
+        if name.startswith((*own, *tables)) or name.count("/") == 1 or name in TELLS_KINDS_APART:
             continue
-        if inside == ("exchange", "carried.py"):  # other programs' files know these two alone
-            continue
-        if inside[0] == "graphics":  # a table by kind's name, and what its rows call
-            continue
-        named = {name for _, _, name in imports(path)} & {"Lidar", "Camera"}
+        named = {full.rsplit(".")[-1] for full in imported(path)} & {"Lidar", "Camera"}
         texts = {node.value for node in nodes(path) if isinstance(node, ast.Constant)} & {
             "lidar",
             "camera",
         }
-        assert inside == ("kinds", "__init__.py") or not named | texts, path
+        if named | texts:
+            offenders.append(name)
+    assert not offenders
+
+
+TELLS_KINDS_APART = {
+    "pe_tools/exchange/portable.py",
+}
+"""Files of other programs know these two kinds alone; the paper of `reproduction`, too."""
+
+
+def taken(source):
+    """(module, name) of all that a source takes from the engine; "" for a bare import."""
+    for node in nodes_of(source):
+        if isinstance(node, ast.Import):
+            pairs = [(alias.name, "") for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            pairs = [(node.module, alias.name) for alias in node.names]
+        else:
+            continue
+        yield from ((module, name) for module, name in pairs if module.split(".")[0] == "pe_core")
+
+
+def is_public(module, name):
+    """Whether a module is the engine or a room, and the name on its face."""
+    package, _, room = module.partition(".")
+    is_room = not room or (CHECKOUT / package / room.replace(".", "/") / "__init__.py").exists()
+    if not is_room or (room and not name):
+        return False
+    return not name or name in getattr(importlib.import_module(module), "__all__", ())
+
+
+def test_programs_outside_import_public_faces_only():
+    offenders = [
+        f"{name}: {module} {wanted}"
+        for name, path in files(*FACES_ONLY).items()
+        for module, wanted in taken(path.read_text("utf-8"))
+        if not is_public(module, wanted)
+    ]
+    assert not offenders
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "import pe_core.metric.entropy",
+        "import pe_core.metric",
+        "from pe_core.metric.entropy import H_BLIND",
+        "from pe_core.metric import entropy",
+        "from pe_core import metric",
+        "from pe_core.base.errors import InputError",
+        "from pe_core.metric import *",
+        "def late():\n    from pe_core.scoring.sampling import draw",
+    ],
+)
+def test_the_rule_catches_what_goes_deeper(line):
+    found = list(taken(line))
+    assert found and not all(is_public(module, name) for module, name in found)
 
 
 def test_importing_the_engine_loads_no_numpy_until_a_name_is_asked_for():
@@ -167,11 +341,38 @@ def test_importing_the_engine_loads_no_numpy_until_a_name_is_asked_for():
         "assert all(hasattr(pe, n) for n in (*pe.__all__, 'scene', 'study')); "
         "assert not hasattr(pe, 'bogus')"
     )
-    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT.parent).returncode == 0
+    assert subprocess.run([sys.executable, "-c", code], cwd=CHECKOUT).returncode == 0
 
 
-def test_importing_the_engine_loads_no_blender():
+def test_importing_the_engine_loads_neither_blender_nor_the_tools():
     code = (
-        "import sys, pe_core; sys.exit(any(m in sys.modules for m in ('bpy', 'mathutils', 'gpu')))"
+        "import sys, pe_core; pe_core.Study; sys.exit(any("
+        "m.split('.')[0] in ('bpy', 'mathutils', 'gpu', 'pe_tools') for m in sys.modules))"
     )
-    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT.parent).returncode == 0
+    assert subprocess.run([sys.executable, "-c", code], cwd=CHECKOUT).returncode == 0
+
+
+def test_the_parser_loads_neither_sections_nor_experiments_nor_matplotlib():
+    """`pe sensors` does not wait for what it does not use."""
+    rooms = ("pe_tools.page", "pe_tools.reproduction", "pe_tools.validity", "matplotlib")
+    code = (
+        "import sys; from pe_tools.cli.verbs import parser; parser(); "
+        f"print(*sorted(m for m in sys.modules if m.startswith({rooms})))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], cwd=CHECKOUT, capture_output=True, text=True)
+    loaded = ("page", "page.cli", "reproduction", "reproduction.verbs", "validity")
+    assert run.stdout.split() == [f"pe_tools.{name}" for name in loaded], run.stderr
+
+
+def test_sections_of_the_page_are_found_by_their_table_alone():
+    """A section knows nothing of another, nor of the page."""
+    folder = CHECKOUT / "pe_tools" / "page"
+    above = {f"pe_tools.page.{name}" for name in ("page", "sections", "making", "build", "cli")}
+    offenders = [
+        f"{path.name}: {full}"
+        for path in (folder / "sections").glob("*.py")
+        if path.name != "__init__.py"
+        for full in imported(path)
+        if full in above or full.rpartition(".")[0] in above
+    ]
+    assert not offenders

@@ -1,4 +1,4 @@
-"""Candidates judged together: the same result whoever judges them, whatever becomes of workers."""
+"""Dispatched candidates: the same result for all executors, whatever happens to workers."""
 
 import math
 import os
@@ -12,7 +12,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring import Judgement
-from pe_core.search import Processes, judge_all, processes, started
+from pe_core.search import Processes, evaluate_all, processes, start_processes
+from pe_core.search.dispatch import payload_of
 from tests.engine import shapes
 
 CANDIDATES = 7
@@ -78,9 +79,9 @@ def test_results_do_not_depend_on_who_judges(evaluator, rigs, pool):
     assert len(set(alone)) == CANDIDATES
     with ThreadPoolExecutor(3) as threads, Processes(1) as one:
         for executor in (None, threads, one, pool):
-            judged = judge_all(evaluator, rigs, math.inf, executor)
+            judged = evaluate_all(evaluator, rigs, math.inf, executor)
             assert judged == [(entropy, False) for entropy in alone]
-        backward = judge_all(evaluator, rigs[::-1], math.inf, pool)
+        backward = evaluate_all(evaluator, rigs[::-1], math.inf, pool)
     assert [found.entropy for found in backward[::-1]] == alone
 
 
@@ -91,39 +92,37 @@ def test_what_is_not_below_is_told_alike_by_all(evaluator, rigs, pool):
     expected = [(e, False) if e < below else (below, True) for e in alone]
     assert sum(bound for _, bound in expected) == CANDIDATES - 2
     for executor in (None, pool):
-        assert judge_all(evaluator, rigs, below, executor) == expected
-        assert judge_all(evaluator, rigs[::-1], below, executor) == expected[::-1]
+        assert evaluate_all(evaluator, rigs, below, executor) == expected
+        assert evaluate_all(evaluator, rigs[::-1], below, executor) == expected[::-1]
 
 
 def test_an_objective_is_sent_to_a_process_once(tmp_path, rigs, pool):
     objective = Landscape(tmp_path)
     for _ in range(3):
-        judge_all(objective, rigs, math.inf, pool)
+        evaluate_all(objective, rigs, math.inf, pool)
     assert 1 <= len(objective.unpacked) <= 2
     assert len(set(objective.unpacked)) == len(objective.unpacked)
 
 
 def test_evaluators_of_one_vehicle_share_it_in_a_worker(evaluator, rigs, pool):
-    """What is large is named by its content: a second evaluator's parcel is small."""
-    from pe_core.search.parcels import packed
-
+    """A vehicle is a payload of its own, named by its content: a second evaluator's is small."""
     finer = pe.Evaluator(ROOM, pe.Prior.uniform(), evaluator.vehicle, samples=2048)
-    assert judge_all(finer, rigs[:1], math.inf, pool)[0].entropy == finer.entropy(rigs[0])
-    assert packed(finer).inner == packed(evaluator).inner != {}
+    assert evaluate_all(finer, rigs[:1], math.inf, pool)[0].entropy == finer.entropy(rigs[0])
+    assert payload_of(finer).inner == payload_of(evaluator).inner != {}
 
 
 def test_a_worker_that_dies_is_replaced_and_its_rig_judged_again(tmp_path, rigs, pool):
     objective = Landscape(tmp_path, deaths=1)
-    judged = judge_all(objective, rigs, math.inf, pool)
+    judged = evaluate_all(objective, rigs, math.inf, pool)
     assert [j.entropy for j in judged] == [rig.sensors[0].pose.position[0] for rig in rigs]
     assert (tmp_path / "death 0").exists()
 
 
 def test_a_rig_that_kills_two_workers_is_named(tmp_path, rigs):
     with Processes(2) as fresh, pytest.raises(pe.InputError) as raised:
-        judge_all(Landscape(tmp_path, deaths=9), rigs, math.inf, fresh)
+        evaluate_all(Landscape(tmp_path, deaths=9), rigs, math.inf, fresh)
     assert str(raised.value) == (
-        "workers: process: expected one that lives through its work, "
+        "workers: process: expected a worker that survives its task, "
         "found two that died with roof at [0.6, 0.0, 1.1], ahead at [0.9, 0.0, 1.1]"
     )
 
@@ -131,14 +130,14 @@ def test_a_rig_that_kills_two_workers_is_named(tmp_path, rigs):
 def test_what_an_objective_raises_in_a_worker_is_raised(tmp_path, rigs, pool):
     error = pe.InputError("mount", "part", "a surface", 3.5)
     with pytest.raises(pe.InputError) as raised:
-        judge_all(Landscape(tmp_path, error=error), rigs, math.inf, pool)
+        evaluate_all(Landscape(tmp_path, error=error), rigs, math.inf, pool)
     assert str(raised.value) == str(error)
 
 
 def test_an_objective_that_cannot_be_sent_judges_here(tmp_path, rigs, pool):
     objective = Landscape(tmp_path)
     objective.cannot_be_pickled = lambda: None
-    assert judge_all(objective, rigs, math.inf, pool) == judge_all(objective, rigs)
+    assert evaluate_all(objective, rigs, math.inf, pool) == evaluate_all(objective, rigs)
     assert not objective.unpacked
 
 
@@ -147,14 +146,14 @@ def test_an_executor_that_broke_down_is_named(evaluator, rigs):
         def submit(self, *_, **__):
             raise BrokenExecutor("gone")
 
-    with pytest.raises(pe.InputError, match="workers: process: expected one that lives"):
-        judge_all(evaluator, rigs, math.inf, Broken())
+    with pytest.raises(pe.InputError, match="workers: process: expected a worker that survives"):
+        evaluate_all(evaluator, rigs, math.inf, Broken())
 
 
 def test_where_no_process_can_be_started_there_are_none(monkeypatch):
-    assert started(1) is None
-    monkeypatch.setattr(processes, "BEGIN", "raise SystemExit(1)")
-    assert started(2) is None
+    assert start_processes(1) is None
+    monkeypatch.setattr(processes, "INITIALIZER", "raise SystemExit(1)")
+    assert start_processes(2) is None
 
 
 PACKED = """
@@ -166,8 +165,8 @@ shutil.copytree(sys.argv[2], here / "outer" / "addon" / "pe_core", copy_function
 (here / "outer" / "addon" / "__init__.py").write_text("import sys; sys.in_blender")
 sys.in_blender = True
 sys.path.insert(0, str(here))
-from outer.addon.pe_core.search import started
-with started(2) as pool:
+from outer.addon.pe_core.search import start_processes
+with start_processes(2) as pool:
     from outer.addon.pe_core import Pose
     assert pool.submit(Pose, (1.0, 2.0, 3.0)).result() == Pose((1.0, 2.0, 3.0))
 print("done")

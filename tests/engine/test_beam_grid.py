@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds.lidar.grid import MOST, BeamGrid
+from pe_core.sensors.lidar.grid_sweep import MAX_COUNT, BeamGrid
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-6, 6), (-4, 4), (0, 4), 0.2)
@@ -44,8 +44,8 @@ def counts_of(*sensors):
 def test_several_lidars_add_up_and_hold(positions):
     sensors = [pandar(p, (0.0, 5.0 * k, 10.0)) for k, p in enumerate(positions)]
     alone = [counts_of(s).astype(int) for s in sensors]
-    assert counts_of(*sensors).tolist() == np.minimum(sum(alone), MOST).tolist()
-    assert max(counts.max() for counts in alone) == MOST
+    assert counts_of(*sensors).tolist() == np.minimum(sum(alone), MAX_COUNT).tolist()
+    assert max(counts.max() for counts in alone) == MAX_COUNT
 
 
 def test_more_beams_one_way_than_a_count_holds():
@@ -58,7 +58,7 @@ def test_more_beams_one_way_than_a_count_holds():
         grid.add(sensor.pose.position, field.directions[some], field.ends[some])
         total += grid.counts
     assert total.max() == 288_000
-    assert counts_of(sensor).tolist() == np.minimum(total, MOST).tolist()
+    assert counts_of(sensor).tolist() == np.minimum(total, MAX_COUNT).tolist()
 
 
 def test_a_cleared_grid_is_as_new():

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sight import Sight, blind_squares
-from pe_core.sight.blind import body_rectangle
-from pe_core.sight.cells import GroundCells, round_a
-from pe_core.sight.regions import dilated, squares_touching
+from pe_core.scoring.sight import Sight, blind_squares
+from pe_core.scoring.sight.blind_ground import body_rectangle
+from pe_core.scoring.sight.grid_regions import dilated, squares_touching
+from pe_core.scoring.sight.ground_cells import GroundCells, widened
+from pe_tools.graphics import simplified
 from tests.engine import oracle, shapes
 
 ASSETS = Path(__file__).parents[2] / "blend_assets"
@@ -36,7 +37,7 @@ def van():
 def from_assets(name):
     """An example vehicle of few triangles: rays are tested against each of them."""
     with np.load(ASSETS / f"{name}.npz") as file:
-        few, _ = pe.scene.simplified(pe.Vehicle(file["triangles"]), 1000)
+        few, _ = simplified(pe.Vehicle(file["triangles"]), 1000)
     a, b, c = few.triangles.transpose(1, 0, 2)
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return pe.Vehicle(few.triangles[area > 1e-9], clearance=0.0)
@@ -153,11 +154,11 @@ class BlindMap:
         view = Sight(SPACE, pe.Prior.road(), vehicle)
         self.told = view.blind(rig, height, WITHIN_M)
         body = body_rectangle(vehicle)
-        cells = GroundCells.of(SPACE, blind_squares.STEP_M, round_a(body, WITHIN_M))
-        look = blind_squares.BlindLook.of(cells, height, vehicle, {})
+        cells = GroundCells.of(SPACE, blind_squares.STEP_M, widened(body, WITHIN_M))
+        look = blind_squares.BlindSearch.of(cells, height, vehicle, {})
         self.blind, _ = look.blind(rig, False)
         own = look.own[look.margin : -look.margin, look.margin : -look.margin]
-        self.near_own = dilated(own, squares_touching(blind_squares.PARTLY_SEEN))
+        self.near_own = dilated(own, squares_touching(blind_squares.PARTLY_VISIBLE))
         self.own, self.cells = own, cells
         assert self.told.area == pytest.approx(self.blind.sum() * blind_squares.STEP_M**2)
 
@@ -200,7 +201,7 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]} {case[1]:g} m")
 def test_no_unseen_body_stands_where_nothing_is_told_and_no_edge_is_far_out(case, monkeypatch):
-    monkeypatch.setattr(blind_squares, "LEAST_M2", 0.0)
+    monkeypatch.setattr(blind_squares, "MIN_AREA_M2", 0.0)
     vehicle, rig = CASES[case][0](), pe.Rig(CASES[case][1])
     height, rng = case[1], np.random.default_rng(7)
     told = BlindMap(vehicle, rig, height)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 import pe_core as pe
-from pe_core.search import Coding, pose_values
+from pe_core.search import Parametrization, pose_values
 from pe_core.search.methods import METHODS, block_descent
 from tests.engine import mounting
 from tests.engine.mounting import can
@@ -73,7 +73,7 @@ def test_sensors_on_a_rack_take_the_best_slots():
     recorder, steps = searched(apart, rig, space)
     assert steps[-1].entropy == pytest.approx(0.0)
     assert len(recorder.rigs) < 100  # there are 20 placements
-    coding = Coding(rig, space)
+    coding = Parametrization(rig, space)
     assert not any(coding.broken(rig) for rig in recorder.rigs)
 
 
@@ -88,7 +88,7 @@ def test_the_last_placements_are_judged_on_all_voxels_of_the_search():
     levels = [step.level for step in steps]
     assert levels == sorted(levels)
     coarse = 1.0 - sum(levels) / len(levels)
-    assert coarse == pytest.approx(block_descent.COARSE, abs=0.1)
+    assert coarse == pytest.approx(block_descent.FIRST_LEVEL, abs=0.1)
     assert pose_values(steps[-1].best["roof"].pose)["x"] == pytest.approx(0.6, abs=0.01)
     for before, after in pairwise(steps):
         assert after.entropy <= before.entropy or after.level > before.level

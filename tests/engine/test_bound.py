@@ -9,6 +9,7 @@ import pe_core as pe
 from pe_core.scoring import Judgement
 from pe_core.search import SearchSpace
 from tests.engine import shapes
+from tests.thorough import tries
 
 SPACE = shapes.small_space()
 VEHICLE = pe.Vehicle(shapes.box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.4)))
@@ -34,7 +35,7 @@ def test_a_bound_is_one_and_is_told_only_where_it_settles_the_matter(blind):
         pe.Evaluator(SPACE, pe.Prior.road(), VEHICLE, samples=4096, model=model) for _ in range(2)
     )
     bounds = 0
-    for _ in range(25):
+    for _ in range(tries(10, 25)):
         rig = sensors(rng)
         exact = plain.entropy(rig)
         for below in (exact - 1.0, exact - 0.01, exact, exact + 1e-6, exact + 1.0, math.inf):
@@ -66,7 +67,7 @@ def test_a_search_finds_the_same_with_bounds_and_without():
 
     rig = sensors(np.random.default_rng(7))
     space = SearchSpace.on_vehicle(rig, VEHICLE)
-    schedule = pe.Schedule(candidates=15)
+    schedule = pe.Schedule(candidates=5)
     found = []
     for kind in (pe.Evaluator, Plain):
         evaluator = kind(SPACE, pe.Prior.road(), VEHICLE, samples=4096)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.formats.boxes.kitti import CAMERA
-from pe_core.text import memory
+from pe_core.base import memory
+from pe_tools.formats.boxes.kitti import CAMERA
 from tests.engine import shapes
 
 CSV = """class,x,y,z,length,width,height,yaw

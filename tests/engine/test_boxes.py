@@ -181,7 +181,7 @@ GOOD = {
         ({"yaw": [math.inf, 0.0]}, "box 0: yaw: expected a finite number, found inf"),
         ({"width": [1.0, 0.0]}, "box 1: width: expected a length above 0 m, found 0.0"),
         ({"height": [1.0, -2.0]}, "box 1: height: expected a length above 0 m, found -2.0"),
-        ({"z": [1.0]}, "z: expected 2 numbers, one a box, found 1"),
+        ({"z": [1.0]}, "z: expected 2 numbers, one for each box, found 1"),
         ({"z": ["low", "high"]}, "z: expected numbers, found something else"),
         ({"names": ["car", ""]}, "class: expected a name in printable letters, found ''"),
         ({"names": ["car", "a\nb"]}, "class: expected a name in printable letters"),

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds import Voxels, kind_of
-from pe_core.kinds.camera.bent_area import bent_pixel_area
-from pe_core.kinds.camera.bent_points import bent_pixel_areas
-from pe_core.kinds.camera.lens import BrownConrady, FTheta, KannalaBrandt, Pinhole
-from pe_core.kinds.camera.ties import axes_of
+from pe_core.sensors import Voxels, kind_of
+from pe_core.sensors.camera.bent_area import bent_pixel_area
+from pe_core.sensors.camera.lens_models import BrownConrady, FTheta, KannalaBrandt, Pinhole
+from pe_core.sensors.camera.sample_areas import bent_pixel_areas
+from pe_core.sensors.camera.tie_rules import axes_of
 from tests.engine import shapes
 
 RAYS = 1
@@ -68,7 +68,7 @@ def test_areas_are_those_of_dense_rays(lens):
 
 def measured_on_grid(own, vehicle, run=16):
     kernel = kind_of(own).on_grid(SPACE, vehicle, 1000)
-    planes = kernel.planes([[kernel.ready(own)]], None)[0]
+    planes = kernel.planes([[kernel.prepare(own)]], None)[0]
     whole = np.zeros(SPACE.shape)
     for start in range(0, SPACE.shape[0], run):
         some = slice(start, min(start + run, SPACE.shape[0]))

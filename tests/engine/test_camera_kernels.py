@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds.camera.grid import CameraPlanes
-from pe_core.kinds.camera.points import pixel_areas
-from pe_core.metric.planes import SeenRows
+from pe_core.metric.fusion import VisibleRows
+from pe_core.sensors.camera.grid_areas import CameraPlanes
+from pe_core.sensors.camera.sample_areas import pixel_areas
 from tests.engine import shapes
 
 
@@ -73,10 +73,10 @@ def test_planes_do_not_depend_on_how_many_are_asked_for():
 
 def test_views_add_up():
     some, more = (
-        SeenRows(slice(1, 3), np.ones((2, 2, 4))),
-        SeenRows(slice(2, 5), np.ones((2, 3, 4))),
+        VisibleRows(slice(1, 3), np.ones((2, 2, 4))),
+        VisibleRows(slice(2, 5), np.ones((2, 3, 4))),
     )
-    none = SeenRows(slice(0, 0), np.ones((2, 0, 4)))
+    none = VisibleRows(slice(0, 0), np.ones((2, 0, 4)))
     total = some + more
     assert total.rows == slice(1, 5)
     assert total.m[1, :, 3].tolist() == [1.0, 2.0, 1.0, 1.0]

@@ -7,9 +7,9 @@ import pytest
 
 import pe_core as pe
 from benchmarks import problems
-from pe_core.kinds.camera import grid
-from pe_core.kinds.camera.cover_shadow import CoverShadow
-from pe_core.scene.geometry import dot, rotate
+from pe_core.geometry.poses import dot, rotate
+from pe_core.sensors.camera import grid_areas
+from pe_core.sensors.camera.voxel_occlusion import CoverShadow
 from tests.engine import fixed_bins, shapes
 from tests.engine.test_camera_kernels import whole_grid
 
@@ -72,15 +72,21 @@ ALWAYS, NEVER = -1, np.inf
 """Rays from which on the cover is asked."""
 
 
-@pytest.mark.parametrize("many", [ALWAYS, NEVER])
 @pytest.mark.parametrize("case", CASES)
-def test_hidden_voxels_are_those_whose_ray_is_stopped(case, many, monkeypatch):
-    monkeypatch.setattr(grid, "MANY_RAYS", many)
+def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
+    """Without the cover and with it, whose areas are the same to the bit."""
     mesh, position, rotation, hfov = CASES[case]
     vehicle = pe.Vehicle(mesh())
     sensor = shapes.camera(float(hfov), position, rotation)
     free = whole_grid(sensor, SPACE, None, 20).reshape(-1)
-    area = whole_grid(sensor, SPACE, vehicle, 20).reshape(-1)
+    count, areas = counted(monkeypatch), []
+    for many in (NEVER, ALWAYS):
+        monkeypatch.setattr(grid_areas, "MANY_RAYS", many)
+        count["judged"] = 0
+        areas.append(whole_grid(sensor, SPACE, vehicle, 20).reshape(-1))
+        assert (count["judged"] == 8) == (many == ALWAYS)
+    area = areas[0]
+    assert area.tobytes() == areas[1].tobytes()
     seen = np.flatnonzero(free)
     index = np.stack(np.unravel_index(seen, SPACE.shape), axis=1)
     aims = aimed(SPACE.center_of(index) - np.asarray(position))
@@ -94,7 +100,7 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, many, monkeypatch):
 def counted(monkeypatch):
     """Count how often the cover is asked, and how many rays are cast."""
     count = {"judged": 0, "cast": 0}
-    judge, hidden = CoverShadow.judge, grid.hidden
+    judge, hidden = CoverShadow.judge, grid_areas.hidden
 
     def count_judged(*args):
         count["judged"] += 1
@@ -105,21 +111,8 @@ def counted(monkeypatch):
         return hidden(seen, offsets)
 
     monkeypatch.setattr(CoverShadow, "judge", count_judged)
-    monkeypatch.setattr(grid, "hidden", count_cast)
+    monkeypatch.setattr(grid_areas, "hidden", count_cast)
     return count
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_areas_are_the_same_to_the_bit_with_the_cover_and_without(case, monkeypatch):
-    mesh, position, rotation, hfov = CASES[case]
-    vehicle, sensor = pe.Vehicle(mesh()), shapes.camera(float(hfov), position, rotation)
-    count, areas = counted(monkeypatch), []
-    for many in (NEVER, ALWAYS):
-        monkeypatch.setattr(grid, "MANY_RAYS", many)
-        count["judged"] = 0
-        areas.append(whole_grid(sensor, SPACE, vehicle, 20).tobytes())
-        assert (count["judged"] == 8) == (many == ALWAYS)
-    assert areas[0] == areas[1]
 
 
 def test_the_cover_is_asked_where_very_many_rays_would_be_cast(monkeypatch):
@@ -131,7 +124,7 @@ def test_the_cover_is_asked_where_very_many_rays_would_be_cast(monkeypatch):
 
 
 def _cast_without_cover(space, monkeypatch):
-    monkeypatch.setattr(grid, "MANY_RAYS", NEVER)
+    monkeypatch.setattr(grid_areas, "MANY_RAYS", NEVER)
     count = counted(monkeypatch)
     whole_grid(shapes.camera(60.0, (0.0, 0.0, 3.05), (0, 0, 0)), space, pe.Vehicle(roof()), 32)
     assert count["judged"] == 0
@@ -142,7 +135,7 @@ def test_the_benchmark_s_rig_scores_the_same_both_ways(monkeypatch):
     study = problems.two_lidars_two_cameras(problems.plain_study(problems.car()))
     entropies = []
     for many in (ALWAYS, NEVER):
-        monkeypatch.setattr(grid, "MANY_RAYS", many)
+        monkeypatch.setattr(grid_areas, "MANY_RAYS", many)
         entropies.append(pe.Evaluator(SPACE, study.prior, study.vehicle).entropy(study.rig))
     assert entropies[0] == entropies[1]
 

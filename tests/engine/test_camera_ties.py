@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds.camera.points import pixel_areas
+from pe_core.sensors.camera.sample_areas import pixel_areas
 from tests.engine import oracle, shapes
 from tests.engine.test_camera_kernels import whole_grid
+from tests.thorough import pairs
 
 SPACE = pe.PerceptionSpace((-3, 3), (-2, 2), (0, 2), 0.2)
 INDEX = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
@@ -86,8 +87,10 @@ def test_a_centre_on_a_surface_is_seen_and_one_behind_it_is_not(height, move):
 BOX = pe.Vehicle(shapes.box((-0.8, -0.6, 0.0), (0.6, 0.6, 0.7)), clearance=0.0)
 
 
-@pytest.mark.parametrize("yaw", [0, 90, 180, 45])
-@pytest.mark.parametrize("position", [(-1.3, -0.6, 0.7), (1.1, 0.5, 0.7), (0.6, -1.2, 1.1)])
+@pytest.mark.parametrize(
+    ("position", "yaw"),
+    pairs([(-1.3, -0.6, 0.7), (1.1, 0.5, 0.7), (0.6, -1.2, 1.1)], [0, 90, 180, 45]),
+)
 def test_rays_along_a_box_s_edges_and_sides(position, yaw):
     """Camera, edges and centres in one plane: definition, grid and sample as the oracle has it."""
     sensor = shapes.camera(110.0, position, (0.0, 0.0, yaw))

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.app import front_table
-from pe_core.search import pareto
-from pe_core.study import choice_job, design_study, front_dict, write_front
+from pe_core.search import design_space
+from pe_tools.cli.choose_verb import front_summary
+from pe_tools.jobs import choice_job, design_study, front_dict, write_front
 from tests.engine import mounting
 
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 3), 0.5)
@@ -85,7 +85,7 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
 
 def test_of_many_designs_a_local_search_looks_at_some(monkeypatch):
     monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 3)
-    monkeypatch.setattr(pareto, "ALL_UP_TO", 5)
+    monkeypatch.setattr(design_space, "ALL_UP_TO", 5)
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")
     eyes = options(["Camera 30 deg", "Camera 60 deg"])
     choices = [pe.Choice(options(), ["roof"], optional=True), pe.Choice(eyes, ["eye"])]
@@ -93,7 +93,7 @@ def test_of_many_designs_a_local_search_looks_at_some(monkeypatch):
     assert 5 < len(found.designs) <= 8
     assert not found.is_complete
     assert all(design.score is not None for design in found.front)
-    assert "looked at (of more, by local search)" in front_table.front_summary(found)
+    assert "looked at (of more, by local search)" in front_summary(found)
 
 
 def test_a_further_sensor_never_raises_the_entropy():
@@ -126,7 +126,7 @@ def test_a_stop_keeps_the_front_so_far(after):
     assert len(found.designs) < 3
     assert found.front
     assert not found.is_complete
-    told = front_table.front_summary(found)
+    told = front_summary(found)
     assert "stopped early" in told
     assert f"{after} searched of {after} looked at (of more)" in told
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
+from pe_tools.cli.verbs import main
 from tests.engine import shapes
 
 ROOT = Path(pe.__file__).parent.parent

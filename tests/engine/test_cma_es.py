@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Coding, Judgement
+from pe_core.search import Judgement, Parametrization
 from pe_core.search.methods import Given
-from pe_core.search.methods.evolution import Evolution, SymmetricCma
-from pe_core.search.methods.phase import Phase
+from pe_core.search.methods.cma_es import Evolution, SymmetricCma
+from pe_core.search.methods.method import Phase
 from tests.engine import mounting
 from tests.engine.mounting import can, roof
 
@@ -45,20 +45,20 @@ def test_samples_do_not_depend_on_which_eigenvectors_are_found(monkeypatch):
 
 def given_on_the_car(**options):
     rig, space = mounting.space(can(), **options)
-    coding = Coding(rig, space)
+    coding = Parametrization(rig, space)
     return Given(coding, coding.start, 1.0, seed=3)
 
 
 def test_no_lower_bound_is_ranked_before_an_entropy():
     """Of the later half only what is below the worst of the first half is told as it is."""
     given = given_on_the_car()
-    evolution = Evolution(given, given.coding.blocks[0], given.start, [1])
-    asking, told = evolution.asks(given.start, Phase(0, 8)), []
+    evolution = Evolution(given, given.parametrization.blocks[0], given.start, [1])
+    asking, told = evolution.evaluate(given.start, Phase(0, 8)), []
     evolution._cma.tell = told.extend
     question = next(asking)
-    assert question.below == math.inf and len(question.candidates) == 4
+    assert question.cutoff == math.inf and len(question.candidates) == 4
     question = asking.send([Judgement(v, False) for v in (4.0, 2.0, 3.0, 1.0)])
-    assert question.below == 4.0 and len(question.candidates) == 4
+    assert question.cutoff == 4.0 and len(question.candidates) == 4
     answers = [Judgement(4.0, True), Judgement(0.5, False), Judgement(9.0, True), None]
     with pytest.raises(StopIteration):
         asking.send(answers)
@@ -69,13 +69,13 @@ def test_every_candidate_is_in_its_range_and_keeps_to_the_rules():
     """Two metres of steps on a roof of 2.3 m with a hatch in it."""
     limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.2, 3.0))])
     given = given_on_the_car(mount={"roof": roof()}, constraints=limits)
-    evolution = Evolution(given, given.coding.blocks[0], given.start, [1])
+    evolution = Evolution(given, given.parametrization.blocks[0], given.start, [1])
     evolution._cma._sigma = 2.0
-    asking = evolution.asks(given.start, Phase(0, 8))
+    asking = evolution.evaluate(given.start, Phase(0, 8))
     question = next(asking)
     found = [c for c in question.candidates if c is not None]
     assert len({c.vector for c in found}) == len(found) >= 3
     for candidate in found:
-        assert not given.coding.broken(candidate.rig)
-        for unknown, value in zip(given.coding.unknowns, candidate.vector, strict=True):
+        assert not given.parametrization.broken(candidate.rig)
+        for unknown, value in zip(given.parametrization.variables, candidate.vector, strict=True):
             assert unknown.low - 1e-9 <= value <= unknown.high + 1e-9

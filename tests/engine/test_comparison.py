@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import advice
-from pe_core.advice.certainty import difference_errors, sure_factor
 from pe_core.scoring.scatter import Scatter
+from pe_tools import advice
+from pe_tools.advice.score_comparison import difference_errors, sure_factor
 from tests.engine import shapes
 
 ENTROPY, COVERAGE = ("rig", "", "entropy"), ("rig", "", "coverage")

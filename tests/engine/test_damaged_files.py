@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.formats import read_ap_table
-from pe_core.kinds.lidar.angles import read_angles
+from pe_tools.formats import read_ap_table
+from pe_tools.formats.angles import read_angles
 from tests.engine.mesh_files import (
     BOX,
     ZEROS,

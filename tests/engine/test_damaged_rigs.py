@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import RIG_FORMATS
-from pe_core.text.yaml_blocks import parse_yaml_blocks
+from pe_tools.exchange import RIG_FORMATS
+from pe_tools.exchange.yaml_text import parse_yaml_blocks
 from tests.engine.test_damaged_files import damaged
 
 AXLE = pe.Reference(-1.31, 0.33)

@@ -12,15 +12,33 @@ import pe_core as pe
 ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
 ENGINE = (ROOT / "docs" / "engine.md").read_text("utf-8")
-PAGES = [
+WITH_PATHS = [
     "README.md",
-    "docs/engine.md",
-    "docs/metric.md",
-    "docs/seeing.md",
-    "docs/study.md",
-    "docs/blender.md",
-    "docs/long_runs.md",
-    "docs/review.md",
+    *(
+        f"docs/{name}.md"
+        for name in (
+            "blender",
+            "engine",
+            "exchange",
+            "glossary",
+            "labels_and_lenses",
+            "long_runs",
+            "metric",
+            "mounts_and_search",
+            "objects",
+            "optimize",
+            "results",
+            "review",
+            "seeing",
+            "study",
+        )
+    ),
+]
+"""Pages in which names of files and folders of the code stand between backticks."""
+PAGES = [
+    *(ROOT / name for name in ("README.md", "ARCHITECTURE.md", "CHANGELOG.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
+    *(ROOT / room / "README.md" for room in ("benchmarks", "blend_assets")),
 ]
 
 
@@ -56,7 +74,7 @@ def test_the_bracket_worked_by_hand_is_the_kernel_s(worked):
     assert outer.rows == list(range(int(kernel.row[0]), int(kernel.row[0] + kernel.rows[0])))
     first = int(kernel.column[0])
     assert outer.columns == list(range(first, first + int(kernel.columns[0])))
-    assert (inner.beams, outer.beams) == (kernel.least[0], kernel.most[0]) == (12, 20)
+    assert (inner.beams, outer.beams) == (kernel.lower[0], kernel.upper[0]) == (12, 20)
     assert inner.beams < worked.defined(worked.TILTED, worked.TILTED_CENTER) < outer.beams
 
 
@@ -80,21 +98,50 @@ def paths_named(text):
     return re.findall(r"`([\w./]+(?:\.py|/))(?::[^`]*)?`", text)
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", WITH_PATHS)
 def test_paths_that_a_page_names_are_there(page):
     """From the checkout's root, from the engine's, or from that of a room of LiDARs or cameras."""
     for path in paths_named((ROOT / page).read_text("utf-8")):
-        places = [ROOT, *(ROOT / "pe_core" / room for room in ("", "kinds", "scoring"))]
-        places += [ROOT / "pe_core" / "kinds" / kind for kind in ("lidar", "camera")]
+        places = [ROOT, *(ROOT / "pe_core" / room for room in ("", "sensors", "scoring"))]
+        places.append(ROOT / "pe_tools")
+        places += [ROOT / "pe_core" / "sensors" / kind for kind in ("lidar", "camera")]
         assert any((place / path).exists() for place in places), path
 
 
 def test_the_check_of_paths_finds_them():
-    assert paths_named("in `lidar/ties.py`, `a/b.py: f`, `kinds/`, `x / y`") == [
-        "lidar/ties.py",
+    assert paths_named("in `lidar/tie_rules.py`, `a/b.py: f`, `sensors/`, `x / y`") == [
+        "lidar/tie_rules.py",
         "a/b.py",
-        "kinds/",
+        "sensors/",
     ]
+
+
+def anchor(heading):
+    """The anchor that GitHub gives a heading: lower case, no punctuation, hyphens for spaces."""
+    text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
+    return re.sub(r"[^\w -]", "", text.strip().lower()).replace(" ", "-")
+
+
+def anchors(page):
+    text = re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.S | re.M)
+    return {anchor(heading) for heading in re.findall(r"^#+ (.*)$", text, re.M)}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_links_of_a_page_lead_to_a_file_and_a_heading(page):
+    text = re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.S | re.M)
+    for link in re.findall(r"\]\(([^)\s]+)\)", text):
+        if re.match(r"\w+:", link):
+            continue
+        path, _, name = link.partition("#")
+        target = page.parent / path if path else page
+        assert target.exists(), link
+        assert not name or name in anchors(target), link
+
+
+def test_the_anchor_of_a_heading_is_github_s():
+    assert anchor("Ground map: `sight/a.py`, `b.py`") == "ground-map-sightapy-bpy"
+    assert anchor("Blender's own cameras") == "blenders-own-cameras"
 
 
 def test_functions_that_the_table_of_equations_names_are_there():
@@ -102,7 +149,7 @@ def test_functions_that_the_table_of_equations_names_are_there():
     named = re.findall(r"`([\w/]+\.py): (\w+)`", table)
     assert len(named) == 8
     for path, function in named:
-        room = ROOT / "pe_core" / ("" if path.startswith("metric") else "kinds")
+        room = ROOT / "pe_core" / ("" if path.startswith("metric") else "sensors")
         assert f"\ndef {function}(" in (room / path).read_text("utf-8"), function
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds.lidar.beams import BeamEnds, TurnedBeams
-from pe_core.kinds.lidar.horizon import Slants, TopMap
+from pe_core.sensors.lidar.beams import RotatedBeams
+from pe_core.sensors.lidar.occlusion import ApproximateOcclusion, BeamSlopes, TopMap
 from tests.engine import shapes
 
 SPACE = shapes.small_space(0.25)
@@ -28,7 +28,7 @@ def rig_at(*places):
 def test_a_draft_stops_nearly_the_same_beams(place, rotation):
     sensor = shapes.lidar_on_roof(position=place, rotation=rotation)
     cast = pe.beam_field(sensor, CAR).ends
-    draft = BeamEnds(CAR).draft(sensor, TurnedBeams(sensor))
+    draft = ApproximateOcclusion(CAR).ends(sensor, RotatedBeams(sensor).slopes)
     stopped = cast < 200.0
     assert np.mean(stopped != (draft < 200.0)) < 0.01
     both = stopped & (draft < 200.0)
@@ -96,7 +96,7 @@ def test_a_roof_hides_what_is_below_its_edge():
     plate = shapes.box((-1, -1, 1.0), (1, 1, 1.1))
     angles = np.radians(np.arange(-60.0, 30.0, 0.5))
     beams = np.stack([np.cos(angles), 0 * angles, np.sin(angles)], axis=1)
-    ends = TopMap(plate).ends(np.array([0.0, 0.0, 1.6]), Slants.of(beams), 100.0)
+    ends = TopMap(plate).ends(np.array([0.0, 0.0, 1.6]), BeamSlopes.of(beams), 100.0)
     edge = np.degrees(np.arctan2(-0.5, 1.0))
     clear = np.degrees(angles) > edge
     assert np.count_nonzero((ends == 100.0) != clear) <= 3

@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
-from pe_core.graphics import beams, casts, rays
+from pe_tools.graphics import beams, rays
 from tests.engine.drawn import box, car, lidar, mounted
 
 ChannelMode, BeamChoice = beams.ChannelMode, beams.BeamChoice
@@ -21,7 +21,7 @@ def vehicle():
 
 
 def shown(sensor, vehicle, budget, channels=ChannelMode.ALL, number=1):
-    return beams.shown_beams(casts.cast(sensor, vehicle), BeamChoice(budget, channels, number))
+    return beams.shown_beams(beams.cast(sensor, vehicle), BeamChoice(budget, channels, number))
 
 
 def elevations_of(found):
@@ -43,7 +43,7 @@ def test_budget_above_all_beams_shows_each_once(vehicle):
 
 def test_agrees_with_the_engine_beam_by_beam(vehicle):
     sensor = mounted(position=(-0.3, 0.2, 1.8), rotation=(0, 5, 30))
-    found, field = casts.cast(sensor, vehicle), pe.beam_field(sensor, vehicle)
+    found, field = beams.cast(sensor, vehicle), pe.beam_field(sensor, vehicle)
     np.testing.assert_array_equal(found.stopped, field.stopped_by >= 0)
     np.testing.assert_array_equal(found.ends, field.ends)
     assert found.stopped.any()
@@ -111,20 +111,20 @@ def test_a_rosette_shows_all_over_its_picture():
 
 
 def test_azimuths_are_thinned_evenly():
-    np.testing.assert_array_equal(casts.around(lidar(), 8), np.arange(8) * 90)
+    np.testing.assert_array_equal(beams.around(lidar(), 8), np.arange(8) * 90)
 
 
 def test_edges_of_a_limited_field_of_view_show():
     model = lidar(fov_deg=(-45, 45))
-    found = casts.around(model, 4)
+    found = beams.around(model, 4)
     assert found[0] == 0 and found[-1] == len(model.azimuth_steps) - 1
 
 
 def test_a_draft_casts_few_beams_of_every_channel(vehicle):
     sensor = mounted(catalog.load("Pandar64"))
-    found = casts.cast(sensor, vehicle, casts.A_DRAFT)
-    assert len(found.rows) == 64 and 10_000 < len(found.ends) <= casts.A_DRAFT
-    fine = casts.cast(sensor, vehicle)
+    found = beams.cast(sensor, vehicle, beams.A_DRAFT)
+    assert len(found.rows) == 64 and 10_000 < len(found.ends) <= beams.A_DRAFT
+    fine = beams.cast(sensor, vehicle)
     assert abs(found.stopped.mean() - fine.stopped.mean()) < 0.01
 
 
@@ -206,7 +206,7 @@ def test_beams_that_are_stopped_at_once_still_show(vehicle):
 
 def rings(sensor, vehicle, rows):
     rows = np.array(rows)
-    lines = rays.ground_rings(casts.cast(sensor, vehicle), rows, np.tile(COLOR, (len(rows), 1)))
+    lines = rays.ground_rings(beams.cast(sensor, vehicle), rows, np.tile(COLOR, (len(rows), 1)))
     return lines.points.reshape(-1, 2, 3), lines.colors.reshape(-1, 2, 4)
 
 

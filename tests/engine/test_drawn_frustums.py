@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.graphics import colors, frustums, kinds
+from pe_tools.graphics import colors, frustums, kinds
 from tests.engine.drawn import mounted
 
 # A square picture with 90 degrees: its corners stand at one along each axis, sqrt(3) away.

@@ -1,11 +1,14 @@
 """Each sensor alone and failing, found in one pass, is what rigs of their own score."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds.lidar.on_grid import HALF_BYTE, HalfBytes, compact
+from pe_core.sensors.lidar.kernel_voxels import MAX_NIBBLE, NibbleCounts, compact
 from tests.engine import shapes
+from tests.thorough import pairs
 
 SPACE = pe.PerceptionSpace((-12.0, 12.0), (-7.0, 7.5), (0.0, 2.5), 0.5)
 
@@ -32,13 +35,12 @@ RIGS = {
 }
 
 
-@pytest.mark.parametrize("groups", RIGS.values(), ids=RIGS)
-@pytest.mark.parametrize("blind", ["floor", "literal"])
-@pytest.mark.parametrize("count", [5, 2])
-def test_alone_and_failing_are_scores_of_other_rigs(groups, blind, count):
+@pytest.mark.parametrize(("name", "how"), pairs(RIGS, product(["floor", "literal"], [5, 2])))
+def test_alone_and_failing_are_scores_of_other_rigs(name, how):
     """To the last digit that is kept: sums of the same values in another order are rounded away."""
+    blind, count = how
     model = pe.PerceptionModel(blind)
-    mounted = sensors(groups)[:count]
+    mounted = sensors(RIGS[name])[:count]
     study = pe.Study(pe.Rig(mounted), shapes.box_car(), SPACE, model=model)
     evaluator = study.evaluator(workers=2)
     score = evaluator.score(study.rig)
@@ -57,9 +59,9 @@ def test_alone_and_failing_are_scores_of_other_rigs(groups, blind, count):
 def test_counts_in_half_bytes_are_those_in_bytes(rows):
     rng = np.random.default_rng(rows)
     counts = rng.integers(0, 40, (70, rows, 5)).astype(np.uint16)
-    packed = HalfBytes.of(counts, 11)
+    packed = NibbleCounts.of(counts, 11)
     assert packed.packed.nbytes == 70 * ((rows + 1) // 2) * 5
-    assert HALF_BYTE == 15
+    assert MAX_NIBBLE == 15
     for planes in (slice(0, 32), slice(32, 64), slice(64, 70)):
         np.testing.assert_array_equal(packed[planes], compact(counts, 11)[planes])
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds.lidar.on_grid import compact
 from pe_core.metric import (
     BLIND_PRECISION,
     H_BLIND,
@@ -21,6 +20,7 @@ from pe_core.metric import (
     sigma_of,
 )
 from pe_core.metric.fusion import Fusion
+from pe_core.sensors.lidar.kernel_voxels import compact
 
 
 def test_average_precision_is_the_paper_s_line_clipped():
@@ -88,7 +88,7 @@ def test_look_up_tables_equal_the_equations(curve):
 def test_compact_counts_give_the_same_entropies(curve, kind):
     fusion = Fusion(pe.PerceptionModel(lidar=curve))
     m = np.array([[0, 1, 9, 10, 255, 256, 40_000, 65_535]], np.uint16)
-    small = compact(m, fusion.enough("lidar"))
+    small = compact(m, fusion.saturation_count("lidar"))
     assert small.dtype == kind and not np.shares_memory(small, m)
     plain, compacted = (fusion.entropies([("lidar", counts)])[0] for counts in (m, small))
     assert plain.tolist() == compacted.tolist()

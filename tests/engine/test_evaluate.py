@@ -2,6 +2,7 @@
 
 import gc
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -25,17 +26,28 @@ def rig_of_all_kinds():
     )
 
 
-def score_by_definition(space, prior, vehicle, rig, model):
-    """Entropy and coverage from `measure`, the equations, and nothing of the evaluator."""
+@pytest.fixture(scope="module", params=[False, True], ids=["free", "on car"])
+def defined(request):
+    """A vehicle or none, a space, its voxels, and m of the rig of all kinds by the definition."""
+    vehicle = shapes.box_car() if request.param else None
+    space = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 4), 0.5)
     index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
-    centers = space.center_of(index)
+    centers, rig = space.center_of(index), rig_of_all_kinds()
+    measured = {s.name: pe.measure(s, centers, space.interval, vehicle) for s in rig}
+    return SimpleNamespace(
+        vehicle=vehicle, space=space, index=index, centers=centers, rig=rig, measured=measured
+    )
+
+
+def score_by_definition(defined, prior, model):
+    """Entropy and coverage from `measure`, the equations, and nothing of the evaluator."""
+    space, vehicle, index, centers = defined.space, defined.vehicle, defined.index, defined.centers
     weights = sum((d.ground[:, :, None] * d.profile).reshape(-1) for d in prior.densities(space))
     if vehicle is not None:
         top = vehicle.top(space)[index[:, 0], index[:, 1]]
         weights = np.where(centers[:, 2] < top, 0.0, weights)
-    measured = {s.name: pe.measure(s, centers, space.interval, vehicle) for s in rig}
-    precisions = []
-    for members in rig.groups.values():
+    measured, precisions = defined.measured, []
+    for members in defined.rig.groups.values():
         m = sum(measured[s.name] for s in members)
         ap = average_precision(m, model.curve(members[0].kind))
         precisions.append(sigma_of(ap) ** -2)
@@ -45,14 +57,10 @@ def score_by_definition(space, prior, vehicle, rig, model):
 
 
 @pytest.mark.parametrize("blind", ["floor", "literal"])
-@pytest.mark.parametrize("with_vehicle", [False, True], ids=["free", "on car"])
-def test_the_grid_score_is_the_definition_s(with_vehicle, blind):
-    vehicle = shapes.box_car() if with_vehicle else None
+def test_the_grid_score_is_the_definition_s(defined, blind):
     model = pe.PerceptionModel(blind=blind)
-    space = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 4), 0.5)
-    rig = rig_of_all_kinds()
-    score = pe.Evaluator(space, ROAD, vehicle, model=model).score(rig)
-    entropy, coverage = score_by_definition(space, ROAD, vehicle, rig, model)
+    score = pe.Evaluator(defined.space, ROAD, defined.vehicle, model=model).score(defined.rig)
+    entropy, coverage = score_by_definition(defined, ROAD, model)
     assert score.entropy == pytest.approx(entropy, abs=1e-3)
     assert score.coverage == pytest.approx(coverage, abs=1e-9)
     assert score.stderr == 0.0

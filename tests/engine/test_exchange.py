@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import RIG_FORMATS, rig_files
-from pe_core.exchange.frames import from_quaternion, quaternion
-from pe_core.scene.geometry import rotation_matrix
+from pe_core.geometry.poses import rotation_matrix
+from pe_tools.exchange import RIG_FORMATS, rig_files
+from pe_tools.exchange.frames import from_quaternion, quaternion
 
 AXLE = pe.Reference(-1.31, 0.33)
 WITHIN = 1e-6
@@ -372,7 +372,7 @@ def test_kitti_has_no_room_for_cameras_that_look_about():
 
 
 def test_the_command_writes_and_reads(tmp_path, capsys, monkeypatch):
-    from pe_core.app.cli import main
+    from pe_tools.cli.verbs import main
 
     monkeypatch.chdir(tmp_path)
     pe.save_study(pe.Study(MIXED, reference=AXLE), Path("study.toml"))

@@ -3,7 +3,7 @@
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import read_vehicle_info
+from pe_tools.exchange import read_vehicle_info
 
 yaml = pytest.importorskip("yaml")
 

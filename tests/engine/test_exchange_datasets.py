@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import import_rig
+from pe_tools.exchange import import_rig
 
 P0 = "718.856 0 607.1928 0 0 718.856 185.2157 0 0 0 1 0"
 P2 = "718.856 0 607.1928 45.38225 0 718.856 185.2157 -0.1130887 0 0 1 0.003779761"

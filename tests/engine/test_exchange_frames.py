@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import import_rig, rig_files
+from pe_tools.exchange import import_rig, rig_files
 
 PUCK = "Velodyne VLP-16 Puck"
 IMU = (

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import RIG_FORMATS
-from pe_core.kinds.camera import BrownConrady, Camera, FTheta, KannalaBrandt, Pinhole
+from pe_core.sensors.camera import BrownConrady, Camera, FTheta, KannalaBrandt, Pinhole
+from pe_tools.exchange import RIG_FORMATS
 
 AXLE = pe.Reference(-1.31, 0.33)
 PLACE = (929.8429, 930.0592, 972.1794, 508.0057)

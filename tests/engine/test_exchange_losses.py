@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import RIG_FORMATS, rig_files
+from pe_tools.exchange import RIG_FORMATS, rig_files
 
 AXLE = pe.Reference(-1.31, 0.33)
 CURVE = pe.ApCurve(0.2, 0.1)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import rig_files
+from pe_tools.exchange import rig_files
 
 AXLE = pe.Reference(-1.31, 0.33)
 BEAMS = pe.Lidar("few beams", np.radians([-20, -7, 3]), 36, 80.0, np.radians([0, 2, 0]))
@@ -104,7 +104,7 @@ def test_what_is_none_of_osi_s_is_refused_in_one_line(change, words, tmp_path):
 
 
 def test_a_rig_of_too_many_beams_is_refused_before_they_are_written(monkeypatch):
-    from pe_core.exchange import osi
+    from pe_tools.exchange import osi
 
     monkeypatch.setattr(osi, "MAX_BEAMS", 115)
     with pytest.raises(

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-from pe_core import advice, catalog
-from pe_core.app.cli import main
+from pe_core import catalog
+from pe_tools import advice
+from pe_tools.cli.verbs import main
 from tests.engine import shapes
 
 
@@ -105,16 +106,26 @@ def test_compare_puts_studies_side_by_side(study, tmp_path, capsys):
     assert data["rows"][0]["values"] == values
 
 
-def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(study, capsys):
+def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path, capsys):
     """The table and the JSON have the engine's key figures; of a wrong height nothing is scored."""
-    call = ["compare", study, "--grid-samples", "1024", "--beside", "kitti", "--height", "1"]
+    study = saved(tmp_path, "car.toml")
+    call = [
+        "compare",
+        study,
+        "--grid-samples",
+        "1024",
+        "--beside",
+        "paper_car_camera60",
+        "--height",
+        "1",
+    ]
     assert main([*call, "--class", "car"]) == 0
     lines = capsys.readouterr().out.splitlines()
     first = pe.load_study(study)
-    rig = catalog.rig_on(catalog.known_rig("kitti"), first.vehicle)
+    rig = catalog.rig_on(catalog.known_rig("paper_car_camera60"), first.vehicle)
     look = first.sight()
     figures = [advice.key_figures(look, each, 1.0, "car") for each in (first.rig, rig)]
-    assert lines[0].split() == ["car", "kitti"]
+    assert lines[0].split() == ["car", "paper_car_camera60"]
     (ground,) = (line for line in lines if line.startswith("  1 m tall, within 10 m"))
     assert f"{figures[0].blind_m2:.1f}" in ground and f"{figures[1].blind_m2:.1f}" in ground
     assert ground.count("*") == 1, "less blind ground is better"
@@ -122,7 +133,10 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(study, c
     assert lines[title + 1].split()[:2] == ["car", f"{figures[0].reach_m:.1f}".rstrip("*")]
     assert main([*call, "--class", "car", "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
-    assert data["figures"] == {"car": figures[0].to_dict(), "kitti": figures[1].to_dict()}
+    assert data["figures"] == {
+        "car": figures[0].to_dict(),
+        "paper_car_camera60": figures[1].to_dict(),
+    }
     blind, reach, ap = data["rows"][-3:]
     assert (blind["measure"], reach["measure"], ap["measure"]) == ("blind", "reach", "ap")
     assert ap["values"] == [each.expected_ap for each in figures] and not any(ap["best"])
@@ -188,6 +202,6 @@ def test_the_page_s_examples_are_what_is_told(asked, monkeypatch, capsys):
 def test_the_page_names_every_warning():
     rows = set(re.findall(r"`(\w+)`", "\n".join(re.findall(r"^\| (`.*?) \|", PAGE, re.M))))
     room = Path(advice.__file__).parent
-    text = "".join((room / name).read_text() for name in ("mounting.py", "vehicle_shape.py"))
+    text = "".join((room / name).read_text() for name in ("mount_checks.py", "vehicle_checks.py"))
     told = set(re.findall(r"Advice\(\s*[\w.]+, \"(\w+)\"", text))
     assert told | {advice.FRAGILE} == rows and len(rows) == 18

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from pe_core.errors import InputError
-from pe_core.text import files, memory
-from pe_core.text.files import read_bytes, write_all_bytes, write_bytes
-from pe_core.text.memory import available_bytes, require_memory, size_text, told_if_too_much
+from pe_core.base import files, memory
+from pe_core.base.errors import InputError
+from pe_core.base.files import read_bytes, write_all_bytes, write_bytes
+from pe_core.base.memory import available_bytes, report_memory_errors, require_memory, size_text
 
 resource = pytest.importorskip("resource")
 
@@ -129,7 +129,7 @@ def test_work_that_fits_is_let_through_and_other_work_refused(monkeypatch):
 
 @pytest.mark.parametrize("error", [MemoryError, RecursionError])
 def test_what_nobody_foresaw_is_one_line_too(error):
-    with pytest.raises(InputError, match=r"^car: file: expected data"), told_if_too_much("car"):
+    with pytest.raises(InputError, match=r"^car: file: expected data"), report_memory_errors("car"):
         raise error
 
 

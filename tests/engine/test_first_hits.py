@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scene import following, raycast
-from pe_core.scene.geometry import cross, dot
-from pe_core.scene.raycast import SeenTriangles
-from pe_core.scene.triangle_tree import TriangleTree
+from pe_core.geometry import ray_traversal, raycast
+from pe_core.geometry.poses import cross, dot
+from pe_core.geometry.raycast import SeenTriangles
+from pe_core.geometry.triangle_tree import TriangleTree
 from tests.engine import fixed_bins, shapes
+from tests.thorough import pairs, tries
 
 ASSETS = Path(pe.__file__).parents[1] / "blend_assets"
 
@@ -100,7 +101,7 @@ def assert_same(triangles, directions):
 
 
 @pytest.mark.parametrize("mesh", MESHES)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(tries(1, 3)))
 def test_hits_are_those_of_every_triangle_tested(mesh, seed):
     rng = np.random.default_rng(seed)
     triangles = MESHES[mesh](rng)
@@ -127,7 +128,7 @@ def test_rays_followed_by_themselves_hit_the_same(mesh, few, monkeypatch):
     monkeypatch.setattr(raycast, "FINE", 0)
     monkeypatch.setattr(raycast, "FEW_RAYS", few)
     monkeypatch.setattr(raycast, "ENOUGH_BOXES", 2)
-    monkeypatch.setattr(following, "PAIRS_AT_ONCE", 100 if few == 3 else 1 << 11)
+    monkeypatch.setattr(ray_traversal, "PAIRS_AT_ONCE", 100 if few == 3 else 1 << 11)
     rng = np.random.default_rng(4)
     triangles = MESHES[mesh](rng)[:283]  # no multiple of what a box holds
     hits = assert_same(triangles, rays_at(triangles, rng, 300))
@@ -158,8 +159,10 @@ def test_triangles_whose_area_is_rounding_stop_what_they_did():
     assert hits.distance.tobytes() == before.distance.tobytes()
 
 
-@pytest.mark.parametrize("distance", [0.03, 1.0, 5.0, 20.0, 80.0])
-@pytest.mark.parametrize("way", [(0.0, 0.0, 1.0), (0.6, -0.8, 0.0), (-0.48, 0.6, 0.64)])
+@pytest.mark.parametrize(
+    ("distance", "way"),
+    pairs([0.03, 1.0, 5.0, 20.0, 80.0], [(0.0, 0.0, 1.0), (0.6, -0.8, 0.0), (-0.48, 0.6, 0.64)]),
+)
 def test_from_near_and_from_afar(distance, way):
     """Over the face of a lattice box, beside it, and off its corner."""
     rng = np.random.default_rng(5)

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.formats import read_ap_table
-from pe_core.metric import ApTable, fit_ap_curve, study_snippet
+from pe_tools.formats import ApTable, fit_ap_curve, read_ap_table, study_snippet
 
 
 def table(m, ap, n=None):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.outputs import OutputRequest, scene_files
-from pe_core.outputs.footprints import ground_plan, outline_from_above
+from pe_tools.outputs import OutputRequest, scene_files
+from pe_tools.outputs.footprints import ground_plan, outline_from_above
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
 

@@ -7,9 +7,16 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.metric import H_BLIND, POINTPILLARS, RTM3D, ApTable, average_precision, fit_ap_curve
-from pe_core.metric.fusion import Fusion, early_fusion, group_sum, late_fusion
-from pe_core.metric.planes import PlaneFusion, SeenRows
+from pe_core.metric import H_BLIND, POINTPILLARS, RTM3D, average_precision
+from pe_core.metric.fusion import (
+    Fusion,
+    PlaneFusion,
+    VisibleRows,
+    early_fusion,
+    group_sum,
+    late_fusion,
+)
+from pe_tools.formats import ApTable, fit_ap_curve
 
 # Entropies as test_by_hand.py derives them: no, one, two, three beams; 100 pixels; fused late.
 H0, H1, H2, H3, HC = 16.651386624, 1.520194952, 0.484427819, -0.277049759, 3.580001643
@@ -65,7 +72,7 @@ def test_entropies_of_a_plane(kind):
     """
     beams = np.array([[[9, 9], [9, 9], [9, 9]], [[0, 1], [2, 0], [1, 3]]], np.uint16)
     area = np.array([[[7.0, 7.0]], [[100.0, 0.0]]], kind)
-    groups = [("lidar", beams), ("camera", SeenRows(slice(1, 2), area))]
+    groups = [("lidar", beams), ("camera", VisibleRows(slice(1, 2), area))]
     fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (3, 2))
     expected = [[H0, H1], [H2_C, H0], [H1, H3]]
     np.testing.assert_allclose(fusion.entropies(groups, 1), expected, atol=2e-4)
@@ -79,7 +86,7 @@ def test_entropies_of_a_plane(kind):
 def test_two_groups_of_beams_in_a_plane():
     beams = np.array([[[0, 1], [1, 2]]], np.uint16)
     more = np.array([[[0, 1], [0, 0]]], np.uint8)
-    area = SeenRows(slice(0, 1), np.array([[[0.0, 100.0]]]))
+    area = VisibleRows(slice(0, 1), np.array([[[0.0, 100.0]]]))
     groups = [("lidar", beams), ("lidar", more), ("camera", area)]
     fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (2, 2))
     np.testing.assert_allclose(
@@ -99,7 +106,7 @@ def test_no_pixels_are_none_even_where_the_least_is_enough(kind):
     model = pe.PerceptionModel(camera=pe.ApCurve(1e-9, 5.0))
     area = np.array([[[0.0, 1e-9, 1e9]]], kind)
     fusion = PlaneFusion(Fusion(model), (1, 3))
-    found = fusion.entropies([("camera", SeenRows(slice(0, 1), area))], 0)
+    found = fusion.entropies([("camera", VisibleRows(slice(0, 1), area))], 0)
     expected = [[H0, SATURATED, SATURATED]]
     np.testing.assert_allclose(found, expected, atol=1e-5)
 
@@ -108,19 +115,19 @@ def test_areas_far_beyond_a_picture_and_far_below_a_pixel_are_told_apart():
     """1e-6 px, where AP is clipped, and 4e9, beyond 4,617,918 px, where it is too."""
     area = np.array([[[1e-6, 4e9, 1.0]]], np.float32)
     fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (1, 3))
-    found = fusion.entropies([("camera", SeenRows(slice(0, 1), area))], 0)
+    found = fusion.entropies([("camera", VisibleRows(slice(0, 1), area))], 0)
     np.testing.assert_allclose(found, [[H0, SATURATED, 6.229700087]], atol=1e-3)
 
 
 def test_rows_seen_add_up_where_they_overlap():
-    left = SeenRows(slice(2, 4), np.full((1, 2, 1), 1.0, np.float32))
-    right = SeenRows(slice(3, 6), np.full((1, 3, 1), 10.0, np.float32))
-    none = SeenRows(slice(0, 0), np.zeros((1, 0, 1), np.float32))
+    left = VisibleRows(slice(2, 4), np.full((1, 2, 1), 1.0, np.float32))
+    right = VisibleRows(slice(3, 6), np.full((1, 3, 1), 10.0, np.float32))
+    none = VisibleRows(slice(0, 0), np.zeros((1, 0, 1), np.float32))
     for both in (left + right, right + left):
         assert both.rows == slice(2, 6) and both.m.dtype == np.float32
         assert both.m[0, :, 0].tolist() == [1.0, 11.0, 10.0, 10.0]
     assert left + none is left and none + left is left
-    assert (left + SeenRows(slice(2, 4), np.ones((1, 2, 1)))).m.dtype == np.float64
+    assert (left + VisibleRows(slice(2, 4), np.ones((1, 2, 1)))).m.dtype == np.float64
 
 
 def test_counts_of_few_bits_add_up_beyond_them():
@@ -140,13 +147,13 @@ def test_late_fusion_by_hand():
 def test_whole_numbers_are_looked_up_as_far_as_they_matter():
     """AP is clipped from 9.36 beams on: 10 are enough; a flat curve needs all that 16 bits hold."""
     fusion = Fusion(pe.PerceptionModel())
-    assert fusion.enough("lidar") == 10
+    assert fusion.saturation_count("lidar") == 10
     assert fusion.precision(np.array([0, 10, 65_535]), "lidar").tolist() == pytest.approx(
         [F, 998_001.0, 998_001.0]
     )
     assert fusion.precision(np.array([100.0]), "camera")[0] == pytest.approx(0.4761013265)
     flat = Fusion(pe.PerceptionModel(lidar=pe.ApCurve(1e-4, 0.5)))
-    assert flat.enough("lidar") == 65_535
+    assert flat.saturation_count("lidar") == 65_535
 
 
 def test_a_model_tells_its_curves():

@@ -8,7 +8,7 @@ import pytest
 import pe_core as pe
 from pe_core import metric
 from pe_core.prior import HIGHWAY_CLASSES, ROAD_CLASSES
-from pe_core.scoring.zones import ZONES
+from pe_core.scoring.score import ZONES
 from pe_core.search import PAPER_FREE
 
 # Ma, Liu and Li, Perception Entropy, ICRA 2021. Table I has the channels, steps and vertical fields

@@ -5,8 +5,8 @@ import dataclasses
 import pytest
 
 import pe_core as pe
-from pe_core import advice
-from pe_core.app.summary import summary
+from pe_tools import advice
+from pe_tools.cli.summary import summary
 from tests.engine import shapes
 
 INSIDE, SIDE = "camera in the boot", "side"

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.base.serialization import dumps
 from pe_core.study.study_file import study_from_dict
-from pe_core.text.toml_writer import dumps
 from tests.engine import shapes
+from tests.thorough import pairs
 
 LONGEST_LINE = 300
 
@@ -307,8 +308,11 @@ EXTREMES = [
 ]
 
 
-@pytest.mark.parametrize("samples", [0, 1024])
-@pytest.mark.parametrize("change", EXTREMES, ids=lambda c: "-".join(map(str, c)))
+@pytest.mark.parametrize(
+    ("change", "samples"),
+    pairs(EXTREMES, [0, 1024]),
+    ids=lambda c: str(c) if isinstance(c, int) else "-".join(map(str, c)),
+)
 def test_the_extremes_that_are_taken_score_to_finite_numbers(folder, change, samples):
     data = changed(change[:-1], change[-1]) | {"samples": samples}
     if change[0] in ("sensor", "space"):

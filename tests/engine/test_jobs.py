@@ -9,8 +9,8 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.study import HistoryRow
-from pe_core.text import dump_json
+from pe_core.base import dump_json
+from pe_tools.jobs import HistoryRow
 from tests.engine import shapes
 
 

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import advice
-from pe_core.advice.key_figures import ahead
+from pe_tools import advice
+from pe_tools.advice.key_figures import ahead
 from tests.engine import shapes
 
 
 @pytest.fixture(scope="module")
 def study():
     """A small LiDAR on a box of a car."""
-    rig = pe.Rig([shapes.lidar_on_roof()])
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(32, 360))])
     return pe.Study(rig, shapes.box_car(), space=shapes.small_space())
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
-from pe_core.app.cli import main
+from pe_tools.cli.verbs import main
 
 ROOT = Path(__file__).parents[2]
 FEW = 16_384

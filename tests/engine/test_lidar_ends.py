@@ -7,13 +7,17 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds.lidar import bracket, points
-from pe_core.kinds.lidar.beams import TurnedBeams
-from pe_core.kinds.lidar.ends import KnownEnds, LazyEnds
-from pe_core.kinds.lidar.lattice import lattice_of
-from pe_core.kinds.lidar.maybe import may_be_stopped
-from pe_core.kinds.lidar.points import PlacedLidar, VoxelPoints, count_through, count_unhidden
-from pe_core.kinds.lidar.ties import position_in_voxels
+from pe_core.sensors.lidar import bracket, voxel_beams
+from pe_core.sensors.lidar.beams import FixedEnds, LazyEnds, RotatedBeams
+from pe_core.sensors.lidar.lattice import lattice_of
+from pe_core.sensors.lidar.occlusion import occlusion_candidates
+from pe_core.sensors.lidar.tie_rules import position_in_voxels
+from pe_core.sensors.lidar.voxel_beams import (
+    PlacedLidar,
+    VoxelPoints,
+    count_unoccluded,
+    count_voxel_beams,
+)
 from tests.engine import shapes
 
 CAR = shapes.box_car(3)
@@ -45,7 +49,7 @@ def lidar(pose, model=None):
 
 
 def lazy(sensor, vehicle):
-    return LazyEnds(sensor, TurnedBeams(sensor), vehicle)
+    return LazyEnds(sensor, RotatedBeams(sensor), vehicle)
 
 
 def placed(sensor, ends):
@@ -53,7 +57,7 @@ def placed(sensor, ends):
         lattice_of(sensor.model),
         position_in_voxels(sensor.pose.position, SPACE.origin, SPACE.interval),
         sensor.pose.ground_from_sensor,
-        TurnedBeams(sensor),
+        RotatedBeams(sensor),
         ends,
         SPACE.interval,
     )
@@ -70,7 +74,7 @@ def test_every_beam_that_is_stopped_may_be(pose, vehicle):
     sensor = lidar(POSES[pose], shapes.small_lidar(40, 720))
     ends = lazy(sensor, vehicle)
     stopped = pe.beam_field(sensor, vehicle).stopped_by >= 0
-    assert stopped.any() and not (stopped & ~ends.stopped).any()
+    assert stopped.any() and not (stopped & ~ends.occludable).any()
 
 
 def test_few_beams_may_be_stopped_that_are_not():
@@ -78,7 +82,7 @@ def test_few_beams_may_be_stopped_that_are_not():
     for pose in ("roof", "tilted", "corner", "afar"):
         sensor = lidar(POSES[pose], shapes.small_lidar(40, 720))
         stopped = int((pe.beam_field(sensor, CAR).stopped_by >= 0).sum())
-        assert stopped <= lazy(sensor, CAR).stopped.sum() <= 1.3 * stopped + 300, pose
+        assert stopped <= lazy(sensor, CAR).occludable.sum() <= 1.3 * stopped + 300, pose
 
 
 def test_a_vehicle_of_no_triangle_that_is_left_stops_nothing():
@@ -87,7 +91,7 @@ def test_a_vehicle_of_no_triangle_that_is_left_stops_nothing():
     sensor = lidar(POSES["tilted"])
     seen = clear.seen_from(sensor.pose.position, through_glass=True).seen
     lattice = lattice_of(sensor.model)
-    assert not may_be_stopped(seen, sensor.pose.ground_from_sensor, lattice).any()
+    assert not occlusion_candidates(seen, sensor.pose.ground_from_sensor, lattice).any()
 
 
 @pytest.mark.parametrize("kind", ["full circle", "part of a circle"])
@@ -97,10 +101,10 @@ def test_counts_are_those_of_all_beams_cast(pose, kind):
     part = {"horizontal_fov": (-2.6, 2.6)} if kind == "part of a circle" else {}
     sensor = lidar(POSES[pose], shapes.small_lidar(24, 360, **part))
     field, voxels = pe.beam_field(sensor, CAR), some_voxels()
-    plain = count_through(voxels, placed(sensor, KnownEnds(field.ends)))
-    free = count_unhidden(voxels, placed(sensor, KnownEnds(np.full_like(field.ends, 60.0))))
+    plain = count_voxel_beams(voxels, placed(sensor, FixedEnds(field.ends)))
+    free = count_unoccluded(voxels, placed(sensor, FixedEnds(np.full_like(field.ends, 60.0))))
     for unhidden in (None, free):
-        found = count_through(voxels, placed(sensor, lazy(sensor, CAR)), None, unhidden)
+        found = count_voxel_beams(voxels, placed(sensor, lazy(sensor, CAR)), None, unhidden)
         assert np.array_equal(found, plain)
     assert (free.counts >= plain).all()
     assert kind != "full circle" or (free.counts > plain).any()
@@ -111,9 +115,9 @@ def test_fewer_beams_are_cast_than_there_are_and_each_once(monkeypatch):
     monkeypatch.setattr(LazyEnds, "_cast", lambda s, new: cast.append(new) or plain(s, new))
     sensor = lidar(POSES["corner"])
     ends = lazy(sensor, CAR)
-    count_through(some_voxels(), placed(sensor, ends))
+    count_voxel_beams(some_voxels(), placed(sensor, ends))
     assert 0 < len(cast[0]) < 0.5 * sensor.model.beam_count
-    field, expected = ends.field(), pe.beam_field(sensor, CAR)
+    field, expected = ends.beam_field(), pe.beam_field(sensor, CAR)
     assert len(np.unique(np.concatenate(cast))) == len(np.concatenate(cast))
     assert np.array_equal(field.ends, expected.ends)
     assert np.array_equal(field.stopped_by, expected.stopped_by)
@@ -122,7 +126,7 @@ def test_fewer_beams_are_cast_than_there_are_and_each_once(monkeypatch):
 def test_what_a_bound_took_is_not_counted_again(monkeypatch):
     """A candidate whose bound is good is counted without the vehicle once."""
     calls, plain = [], bracket.bracket
-    monkeypatch.setattr(points, "bracket", lambda *a: calls.append(a) or plain(*a))
+    monkeypatch.setattr(voxel_beams, "bracket", lambda *a: calls.append(a) or plain(*a))
     evaluator = pe.Evaluator(SPACE, pe.Prior.uniform(), CAR, samples=2048)
     rig = pe.Rig([lidar(POSES["tilted"])])
     assert evaluator.judge(rig, math.nextafter(28.0, 30.0)) == (evaluator.entropy(rig), False)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds.lidar.grid import BeamGrid
+from pe_core.sensors.lidar.grid_sweep import BeamGrid
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-6, 6), (-4, 4), (0, 4), 0.2)

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
 from pe_core.catalog import load
-from pe_core.kinds import BrownConrady, Camera, FTheta, KannalaBrandt, Lidar, kind_of
-from pe_core.kinds.camera import ego
-from pe_core.kinds.ego_mask import FREE, OUTSIDE
-from pe_core.outputs import scene_files
+from pe_core.sensors import BrownConrady, Camera, FTheta, KannalaBrandt, Lidar, kind_of
+from pe_core.sensors.camera import picture
+from pe_core.sensors.field_of_view import FREE, OUTSIDE
 from pe_core.study import save_study
+from pe_tools.cli.verbs import main
+from pe_tools.outputs import scene_files
 from tests.engine.test_png import decoded
 
 TRIANGLES = np.array(
@@ -52,7 +52,7 @@ def mounted(model, rpy=(0.1, 0.05, 0.2)):
 @pytest.mark.parametrize("lens", LENSES)
 def test_each_pixel_is_the_ray_through_its_middle(lens, monkeypatch):
     """One ray at a time, from first hits; rows are also cast some at a time."""
-    monkeypatch.setattr(ego, "RAYS_AT_ONCE", 64 * 7)
+    monkeypatch.setattr(picture, "RAYS_AT_ONCE", 64 * 7)
     sensor = mounted(camera(lens))
     parts = ego_mask(sensor, BODY).parts
     axes, lens = sensor.pose.ground_from_sensor, sensor.model.projection

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import kinds
-from pe_core.kinds.camera.area import frustum_distance
-from pe_core.kinds.camera.points import pixel_areas
-from pe_core.kinds.lidar import table as lidar_table
+from pe_core import sensors as kinds
+from pe_core.sensors.camera.pixel_area import frustum_distance
+from pe_core.sensors.camera.sample_areas import pixel_areas
+from pe_core.sensors.lidar import sensor_table as lidar_table
 from tests.engine import shapes
 
 
@@ -70,7 +70,7 @@ def test_arbitrary_beams_of_any_length():
         ([], r"rosette: directions: expected \(B, 3\) numbers, B > 0"),
         ([1.0, 2.0, 3.0], r"found \(3,\)"),
         ([[1.0, 2.0]], r"found \(1, 2\)"),
-        ([[1, 0, 0], [0, 0, 0]], r"vectors that point somewhere, found beam 1: \[0.0, 0.0, 0.0\]"),
+        ([[1, 0, 0], [0, 0, 0]], r"vectors of a length above 0, found beam 1: \[0.0, 0.0, 0.0\]"),
         ([[math.inf, 0, 0], [0, 0, 0]], "found beam 0"),
         ([[1, 0, 0], [0, math.nan, 1]], "found beam 1"),
     ],
@@ -98,7 +98,10 @@ def test_beams_that_point_nowhere_are_refused(beams, message):
         ({"max_range": 0.0}, "mine: max_range: expected a .*, found 0.0"),
         ({"max_range": -5.0}, "max_range"),
         ({"max_range": math.nan}, "max_range"),
-        ({"horizontal_fov": (0.1, 0.2)}, "horizontal_fov: expected room for a beam"),
+        (
+            {"horizontal_fov": (0.1, 0.2)},
+            "horizontal_fov: expected a range with at least one azimuth",
+        ),
     ],
 )
 def test_impossible_lidars_are_one_line(options, message):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.formats.meshes.axes import AXIS_NAMES
+from pe_core.scene.mesh import AXIS_NAMES
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, ply_binary, read, stl_binary
 

@@ -1,20 +1,17 @@
 """Formats that other packages read: found by entry points, turned as all are; told when missing."""
 
-import ast
 import sys
 from importlib.metadata import EntryPoint
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.app import cli
-from pe_core.formats import FoundMesh
-from pe_core.formats.meshes import elsewhere
+from pe_core.base import plugins
+from pe_tools.cli import verbs
+from pe_tools.formats import FoundMesh
 from tests.engine.mesh_files import BOX
 
-PACKAGE = Path(pe.__file__).parent.parent / "pe_meshes"
 DAE = """<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><created>2026-01-01T00:00:00</created><modified>2026-01-01T00:00:00</modified>
@@ -34,10 +31,13 @@ DAE = """<?xml version="1.0"?>
 
 
 def install(monkeypatch, value):
-    """Let an entry point for .dae lead there."""
-    points = [EntryPoint("dae", value, elsewhere.READERS)]
+    """Let the plugin for .dae lead there: one of another package."""
+    points = [EntryPoint("mesh.dae", value, plugins.GROUP)]
+    monkeypatch.delitem(plugins.SHIPPED, "mesh.dae")
     monkeypatch.setattr(
-        elsewhere, "entry_points", lambda group, name: points if name == "dae" else []
+        plugins,
+        "entry_points",
+        lambda group, name: points if (group, name) == (plugins.GROUP, "mesh.dae") else [],
     )
 
 
@@ -57,19 +57,13 @@ def test_a_reader_is_found_and_its_mesh_is_checked_and_turned(monkeypatch, tmp_p
     assert mesh.axes == "faces +z (shape), up is +y (file)"
 
 
-@pytest.mark.parametrize(
-    ("value", "found"),
-    [(None, "none installed"), ("no_such_library_at_all:read", "no no_such_library_at_all")],
-)
-def test_without_its_reader_one_line_says_what_to_install(monkeypatch, tmp_path, value, found):
-    if value:
-        install(monkeypatch, value)
-    else:
-        monkeypatch.setattr(elsewhere, "entry_points", lambda group, name: [])
+def test_without_its_library_one_line_says_what_to_install(monkeypatch, tmp_path):
+    install(monkeypatch, "no_such_library_at_all:read")
     (tmp_path / "car.dae").write_bytes(b"<COLLADA/>")
-    with pytest.raises(
-        pe.InputError, match=r"pip install 'perception-entropy\[meshes\]'.*" + found
-    ):
+    expected = (
+        r"pip install 'perception-entropy\[meshes\]'.*No module named 'no_such_library_at_all'"
+    )
+    with pytest.raises(pe.InputError, match=expected):
         pe.read_mesh(tmp_path / "car.dae")
 
 
@@ -107,9 +101,9 @@ def test_a_plugin_that_fails_is_named(monkeypatch, tmp_path, function, words):
 def test_a_plugin_s_verbs_that_fail_leave_the_others(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, __name__, sys.modules[box.__module__])
     values = ("no_such_library_at_all:add", f"{__name__}:finds_nothing", "os:no_such_name")
-    points = [EntryPoint("odd", value, cli.VERBS) for value in values]
-    monkeypatch.setattr(cli, "entry_points", lambda group: points)
-    assert cli.main(["sensors", "Pandar64"]) == 0
+    points = [EntryPoint("verb.odd", value, plugins.GROUP) for value in values]
+    monkeypatch.setattr(plugins, "entry_points", lambda group: points)
+    assert verbs.main(["sensors", "Pandar64"]) == 0
     out, err = capsys.readouterr()
     assert out.startswith("Pandar64")
     lines = err.splitlines()
@@ -119,7 +113,7 @@ def test_a_plugin_s_verbs_that_fail_leave_the_others(monkeypatch, capsys):
 
 def read_dae(monkeypatch, folder, text):
     pytest.importorskip("collada", reason="of the extra meshes")
-    install(monkeypatch, "pe_meshes.collada:read_dae")
+    install(monkeypatch, "pe_tools.formats.meshes.collada:read_dae")
     (folder / "car.dae").write_text(text)
     return pe.read_mesh(folder / "car.dae", pe.MeshAxes(forward="+x"))
 
@@ -164,11 +158,3 @@ def test_bad_collada_is_one_line(monkeypatch, tmp_path, text, words):
     with pytest.raises(pe.InputError, match=words) as caught:
         read_dae(monkeypatch, tmp_path, text)
     assert "\n" not in str(caught.value)
-
-
-def test_the_readers_take_from_the_engine_its_faces_alone():
-    """And what they need to install is imported by nobody else."""
-    faces = {"pe_core.errors", "pe_core.formats"}
-    for path in PACKAGE.glob("*.py"):
-        nodes = [n for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.ImportFrom)]
-        assert {n.module for n in nodes if n.level == 0 and n.module.startswith("pe_core")} <= faces

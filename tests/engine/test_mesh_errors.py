@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from pe_core.errors import InputError
-from pe_core.formats.meshes import read_mesh
+from pe_core.base.errors import InputError
+from pe_tools.formats.meshes import read_mesh
 from tests.engine.mesh_files import (
     BOX,
     glb_file,

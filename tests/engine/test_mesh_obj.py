@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pe_core.formats.meshes import Mesh, obj, write_mesh
+from pe_tools.formats.meshes import Mesh, obj, write_mesh
 from tests.engine.mesh_files import BOX, HUGE, SQUARE, one_line_test, read
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pe_core.errors import InputError
-from pe_core.formats.meshes import Mesh, read_mesh, write_mesh
+from pe_core.base.errors import InputError
+from pe_tools.formats.meshes import Mesh, read_mesh, write_mesh
 from tests.engine.mesh_files import BOX, ZEROS
 
 

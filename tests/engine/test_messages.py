@@ -5,7 +5,7 @@ import math
 import pytest
 
 import pe_core as pe
-from pe_core.text.values import FINITE, Name, Number, Whole, listed, vector
+from pe_core.base.values import FINITE, Name, Number, Whole, listed, vector
 from tests.engine import shapes
 
 

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import pe_core as pe
-from pe_core.search import METHODS, Coding
+from pe_core.search import METHODS, Parametrization
 from pe_core.search.methods import Given, Question
 from tests.engine import mounting, shapes
 from tests.engine.mounting import can, roof
@@ -71,7 +71,7 @@ def test_an_unknown_method_is_refused_in_one_line():
 def test_on_another_level_the_best_so_far_is_judged_anew(monkeypatch):
     """A method that asks twice for one better placement: on few voxels, then on many."""
     rig, space = mounting.space(can())
-    better = Coding(rig, space).candidate([0.5, 0.0, 1.5, 0.0])
+    better = Parametrization(rig, space).candidate([0.5, 0.0, 1.5, 0.0])
 
     def ask(given):
         yield Question((better,), level=0, total=2)
@@ -95,7 +95,7 @@ def test_on_another_level_the_best_so_far_is_judged_anew(monkeypatch):
 def test_what_a_method_asks_follows_from_its_answers_alone():
     """Sent the same answers, it asks the same again: what a journal of answers rests on."""
     rig, space = mounting.space(can())
-    coding = Coding(rig, space)
+    coding = Parametrization(rig, space)
     for method in METHODS.values():
         asked = []
         for _ in range(2):

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds import Voxels, kind_of
+from pe_core.sensors import Voxels, kind_of
 from tests.engine import shapes
+from tests.thorough import pairs
 
 SPACE = pe.PerceptionSpace((-3, 4), (-3, 3), (0, 2.5), 0.25)
 INDEX = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
@@ -23,8 +24,7 @@ def models(nearest):
     }
 
 
-@pytest.mark.parametrize("at", [(0.0, 0.0, 1.75), (-3.5, 0.3, 1.6)])
-@pytest.mark.parametrize("which", models(0.0))
+@pytest.mark.parametrize(("which", "at"), pairs(models(0.0), [(0.0, 0.0, 1.75), (-3.5, 0.3, 1.6)]))
 def test_grid_and_sample_equal_the_definition(which, at):
     rotation = (3, 8, 20) if which == "tilted" else (0, 0, 20)
     vehicle = shapes.box_car()
@@ -35,12 +35,12 @@ def test_grid_and_sample_equal_the_definition(which, at):
     assert 0 < exact.sum() < pe.measure(free, SPACE.center_of(INDEX), SPACE.interval, vehicle).sum()
     kind = kind_of(sensor)
     grid = kind.on_grid(SPACE, vehicle, 60000)
-    planes = grid.planes([[grid.ready(sensor)]], None)[0]
+    planes = grid.planes([[grid.prepare(sensor)]], None)[0]
     assert (planes(slice(0, SPACE.shape[0])).reshape(-1) == exact).all()
     sample = kind.on_sample(Voxels(SPACE, INDEX, SPACE.center_of(INDEX)), vehicle, 60000)
     assert (sample.measure(sensor, False).m == exact).all()
     unhidden = pe.measure(sensor, SPACE.center_of(INDEX), SPACE.interval)
-    assert (sample.unhidden(sensor) == unhidden).all()
+    assert (sample.unoccluded(sensor) == unhidden).all()
 
 
 def test_a_beam_counts_where_it_leaves_a_voxel_no_nearer():

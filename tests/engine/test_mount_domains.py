@@ -1,4 +1,4 @@
-"""Where a vector of unknowns puts a sensor: in its box, on a surface, in a slot."""
+"""Where a vector of variables puts a sensor: in its box, on a surface, in a slot."""
 
 import math
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Coding
-from pe_core.search.domains import frame_of, seat_of
+from pe_core.search import Parametrization
+from pe_core.search.domains import frame_of, standoff_point
 from tests.engine import mounting, shapes
 from tests.engine.mounting import BASE, CAN, CENTER, ON_ROOF, RADIUS, TOP, can, roof
 
@@ -16,19 +16,19 @@ LEVEL = ("x", "y", "z")
 
 
 def coded(*sensors, **options):
-    return Coding(*mounting.space(*sensors, **options))
+    return Parametrization(*mounting.space(*sensors, **options))
 
 
 def drawn(coding, count=200):
-    """Placements drawn over all that the unknowns may be."""
+    """Placements drawn over all that the variables may be."""
     rng = np.random.default_rng(RNG_SEED)
-    vectors = [[rng.uniform(u.low, u.high) for u in coding.unknowns] for _ in range(count)]
+    vectors = [[rng.uniform(u.low, u.high) for u in coding.variables] for _ in range(count)]
     return [coding.candidate(vector).rig for vector in vectors]
 
 
 def test_a_box_s_unknowns_are_its_free_coordinates_in_the_order_of_axes():
     coding = coded(can(), free=("pitch", "z"), limits={"roof": {"z": (1.0, 2.0)}})
-    assert [(u.low, u.high, u.unit) for u in coding.unknowns] == [
+    assert [(u.low, u.high, u.unit) for u in coding.variables] == [
         (1.0, 2.0, "m"),
         (-math.pi / 2, math.pi / 2, "rad"),
     ]
@@ -117,7 +117,7 @@ def test_facing_the_back_of_the_housing_is_at_the_stand_off():
     """A can in the car's front, its axis 8 mm before its middle: origin, radius, 2 cm."""
     housing = pe.Housing("cylinder", (0.1, 0.1, 0.06), (0.008, 0.0, 0.03))
     mount = pe.SurfaceMount(["front"], 0.02, "facing")
-    assert seat_of(mount, housing) == pytest.approx([-0.008 - 0.05, 0.0, 0.0])
+    assert standoff_point(mount, housing) == pytest.approx([-0.008 - 0.05, 0.0, 0.0])
     ahead = can((2.3 + 0.02 + RADIUS, 0.0, 0.6), "ahead")
     (rig, *_) = drawn(coded(ahead, mount={"ahead": mount}, free=("x", "y", "z")), 3)
     assert rig["ahead"].pose.position[0] == pytest.approx(2.32 + RADIUS, abs=1e-5)
@@ -158,7 +158,7 @@ def test_a_pair_is_its_own_mirror_image():
     left = can((0.2, 0.5, ON_ROOF[2]), "left", (3.0, 10.0, 40.0))
     right = can((0.2, -0.5, ON_ROOF[2]), "right", (-3.0, 10.0, -40.0))
     coding = coded(left, right, pairs=[("left", "right")], free=("x", "y", "roll", "yaw"))
-    assert len(coding.unknowns) == 4
+    assert len(coding.variables) == 4
     for rig in drawn(coding, 20):
         (x, y, z), (roll, pitch, yaw) = rig["left"].pose.position, rig["left"].pose.rotation_deg
         assert rig["right"].pose.position == (x, -y, z)
@@ -176,7 +176,7 @@ def test_a_group_keeps_its_relative_pose():
         return np.concatenate([back @ away, (back @ other.ground_from_sensor).ravel()])
 
     coding = coded(lead, other, groups=[("lead", "other")], free=("x", "z", "pitch", "yaw"))
-    assert len(coding.unknowns) == 4
+    assert len(coding.variables) == 4
     places = set()
     for rig in drawn(coding, 20):
         assert between(rig) == pytest.approx(between(coding.start.rig), abs=1e-5)
@@ -193,7 +193,7 @@ def test_a_pair_of_racks():
     ]
     pairs = [("front_left", "front_right"), ("rear_left", "rear_right")]
     coding = coded(*sensors, pairs=pairs, groups=[("front_left", "rear_left")], free=("x", "yaw"))
-    assert len(coding.unknowns) == 2
+    assert len(coding.variables) == 2
     (rig,) = drawn(coding, 1)
     x, y, z = rig["rear_left"].pose.position
     assert rig["rear_right"].pose.position == (x, -y, z)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Coding
+from pe_core.search import Parametrization
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import mounting
 from tests.engine.mounting import CAN, ON_ROOF, TOP
@@ -82,9 +82,9 @@ def test_a_study_that_says_nothing_of_mounts_has_none(folder):
 
 
 def test_the_example_of_the_page_is_a_study(folder):
-    """What docs/study.md shows under its heading is read as it stands there."""
-    page = (ROOT / "docs" / "study.md").read_text("utf-8")
-    text = page.split("## Where a sensor may sit")[1].split("```toml\n")[1].split("```")[0]
+    """What docs/mounts_and_search.md shows under its heading is read as it stands there."""
+    page = (ROOT / "docs" / "mounts_and_search.md").read_text("utf-8")
+    text = page.split("## Mounts and constraints")[1].split("```toml\n")[1].split("```")[0]
     (folder / "sedan.npz").write_bytes((ROOT / "blend_assets" / "sedan.npz").read_bytes())
     (folder / "page.toml").write_text(text, "utf-8")
     study = pe.load_study(folder / "page.toml")
@@ -255,17 +255,17 @@ BAD = {
     "a follower with bounds": (
         [LEFT, RIGHT | {"bounds": {"x": [-1, 1]}}],
         PAIR,
-        "sensor 'right': bounds: expected none of a sensor that follows another, found some",
+        "sensor 'right': bounds: expected none for a sensor that follows another, found some",
     ),
     "a follower on a mount": (
         [LEFT, sensor("right", SLOT["position"], mount="rack")],
         GROUP | {"mount": [RACK]},
-        "sensor 'right': mount: expected none of a sensor that follows another, found 'rack'",
+        "sensor 'right': mount: expected no mount for a sensor that follows another, found 'rack'",
     ),
     "bounds in a slot": (
         [sensor("a", SLOT["position"], mount="rack", bounds={"x": [-1, 1]})],
         {"mount": [RACK]},
-        "sensor 'a': bounds: expected none of a sensor on a list of slots, found some",
+        "sensor 'a': bounds: expected none for a sensor on a list of slots, found some",
     ),
 }
 
@@ -287,7 +287,7 @@ def test_a_part_without_faces_is_no_surface():
     vehicle = pe.Vehicle(car.triangles, car.parts, (*car.part_names, "gone"))
     mount = {"roof": pe.SurfaceMount(["gone"])}
     with pytest.raises(pe.InputError, match="parts: expected parts with faces, found none in gone"):
-        Coding(*mounting.space(mounting.can(), mount=mount, vehicle=vehicle))
+        Parametrization(*mounting.space(mounting.can(), mount=mount, vehicle=vehicle))
 
 
 def test_a_vehicle_with_no_symmetry_plane_has_no_pairs():

@@ -1,13 +1,15 @@
 """Each rule of a search: a placement that breaks it, one that just does not, and nothing else."""
 
+import sys
+
 import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scene.housing import Housing
-from pe_core.scene.hulls import hull_box, hull_of, meet
-from pe_core.scene.outside import is_enclosed, is_open
-from pe_core.search import Coding, first_allowed
+from pe_core.geometry.overlap import hull_box, overlaps
+from pe_core.scene.housing import Housing, hull_of
+from pe_core.scene.inside_test import is_enclosed, is_open
+from pe_core.search import Parametrization, feasible_start
 from pe_core.search.rules import Trial
 from tests.engine import mounting, shapes
 from tests.engine.mounting import BASE, CENTER, HEIGHT, ON_ROOF, RADIUS, TOP, can, roof
@@ -19,7 +21,7 @@ FLYING = 2.5
 
 def broken(*sensors, **options):
     """The rules that sensors break where they are."""
-    coding = Coding(*mounting.space(*sensors, **options))
+    coding = Parametrization(*mounting.space(*sensors, **options))
     return sorted(coding.broken(coding.start.rig))
 
 
@@ -116,7 +118,9 @@ def test_a_surface_that_is_hollow_keeps_its_stand_off_all_round():
     vehicle = pe.Vehicle(np.concatenate([floor, wall]))
     eye = shapes.camera(position=(0.0, 0.0, 0.4), name="eye")
     mount = {"eye": pe.SurfaceMount(["vehicle"], 0.3)}
-    coding = Coding(*mounting.space(eye, mount=mount, free=("x", "y", "z"), vehicle=vehicle))
+    coding = Parametrization(
+        *mounting.space(eye, mount=mount, free=("x", "y", "z"), vehicle=vehicle)
+    )
     near, far = (coding.candidate([x, 0.0, 0.1]).rig for x in (0.8, 0.5))
     assert coding.broken(near) == {"standoff of 'eye'"}
     assert coding.broken(far) == set()
@@ -136,7 +140,7 @@ def test_no_two_sensors_share_a_slot():
 
 
 def test_bounds_of_a_sensor_on_a_surface_hold_where_the_surface_leads():
-    coding = Coding(
+    coding = Parametrization(
         *mounting.space(can(), mount={"roof": roof()}, limits={"roof": {"x": (-0.5, 0.0)}})
     )
     for x in (-0.6, -0.4, -0.1, 0.1):
@@ -187,7 +191,7 @@ def test_solids_meet_when_points_of_one_are_in_the_other(shape):
         within = (np.abs(local) < half).all(axis=1)
         if shape == "cylinder":
             within &= np.hypot(local[:, 0], local[:, 1]) < half[0]
-        found = meet(hull_of(a, housing), hull_of(b, housing))
+        found = overlaps(hull_of(a, housing), hull_of(b, housing))
         assert found or not within.any()
         met += within.any()
         apart += not found
@@ -197,9 +201,9 @@ def test_solids_meet_when_points_of_one_are_in_the_other(shape):
 def test_solids_that_touch_do_not_meet():
     one = hull_box(np.zeros(3), np.ones(3))
     for gap, told in ((0.0, False), (-1e-4, True), (1e-4, False)):
-        assert meet(one, hull_box(np.array([1.0 + gap, 0.0, 0.0]), np.full(3, 2.0))) is told
+        assert overlaps(one, hull_box(np.array([1.0 + gap, 0.0, 0.0]), np.full(3, 2.0))) is told
     point = hull_of(pe.Pose((0.5, 0.5, 0.5)), None)
-    assert meet(one, point) and not meet(hull_box(np.ones(3), np.full(3, 2.0)), point)
+    assert overlaps(one, point) and not overlaps(hull_box(np.ones(3), np.full(3, 2.0)), point)
 
 
 @pytest.mark.parametrize(
@@ -234,37 +238,45 @@ def test_a_place_under_an_overhang_is_open_by_its_side():
 
 def test_a_start_that_breaks_a_rule_gives_way_to_a_placement_near_it():
     limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.6, -0.2))])
-    coding = Coding(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
+    coding = Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
     assert not coding.allowed(coding.start.rig)
-    found = first_allowed(coding)
+    found = feasible_start(coding)
     assert coding.allowed(found.rig)
     assert abs(found.rig["roof"].pose.position[0] - ON_ROOF[0]) < 0.5
-    assert first_allowed(coding).vector == found.vector
+    assert feasible_start(coding).vector == found.vector
 
 
-def test_rules_that_exclude_each_other_are_named_and_no_others():
+@pytest.fixture
+def few_tries(monkeypatch):
+    """A start is looked for at 200 placements."""
+    monkeypatch.setattr(sys.modules[feasible_start.__module__], "MAX_TRIES", 200)
+
+
+def test_rules_that_exclude_each_other_are_named_and_no_others(few_tries):
     """A high mount under a low ceiling; least distance and width are innocent."""
     other = can((0.0, 0.0, FLYING), "other")
     limits = pe.Constraints(max_height=TOP + BASE + HEIGHT - 0.01, max_width=3.0, min_distance=0.1)
     options = {"mount": {"roof": roof()}, "constraints": limits, "free": ()}
     with pytest.raises(pe.InputError) as error:
-        first_allowed(Coding(*mounting.space(can(), other, **options)))
+        feasible_start(Parametrization(*mounting.space(can(), other, **options)))
     assert str(error.value) == (
-        "optimize: max_height of 'roof' leaves no place: expected a placement that keeps to all "
-        "of them, found none in 2001 tried"
+        "optimize: max_height of 'roof' leaves no feasible placement: expected a placement that "
+        "breaks no rule, found none in 201 tried"
     )
 
 
-def test_two_rules_that_leave_no_place_together():
+def test_two_rules_that_leave_no_place_together(few_tries):
     areas = [pe.NoGo("front", x=(-0.5, 3.0)), pe.NoGo("rear", x=(-3.0, -0.4))]
     limits = pe.Constraints(max_height=3.0, no_go=areas)
-    coding = Coding(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
+    coding = Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
     told = "no_go 'front' for 'roof' and no_go 'rear' for 'roof' exclude each other"
     with pytest.raises(pe.InputError, match=told):
-        first_allowed(coding)
+        feasible_start(coding)
     for area in areas:  # either alone leaves some
         alone = pe.Constraints(max_height=3.0, no_go=[area])
-        first_allowed(Coding(*mounting.space(can(), mount={"roof": roof()}, constraints=alone)))
+        feasible_start(
+            Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=alone))
+        )
 
 
 def test_a_room_is_worked_out_once():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
-from pe_core.search import Coding, pose_values
+from pe_core.search import Parametrization, pose_values
+from pe_tools.cli.verbs import main
 from tests.engine import mounting, shapes
 from tests.engine.mounting import ON_ROOF, can, roof
 from tests.engine.recording import Recorder, flat
@@ -40,11 +40,11 @@ def forward(rig):
 
 
 def searched(landscape, *sensors, candidates=30, seed=0, **options):
-    """Coding, recorder and steps of a search on the box car."""
+    """Parametrization, recorder and steps of a search on the box car."""
     rig, space = mounting.space(*sensors, **options)
     recorder = Recorder(landscape)
     steps = list(pe.optimize(recorder, rig, space, seed, pe.Schedule(candidates=candidates)))
-    return Coding(rig, space), recorder, steps
+    return Parametrization(rig, space), recorder, steps
 
 
 def test_what_breaks_a_rule_is_never_scored_and_never_the_best():
@@ -114,7 +114,7 @@ def test_a_start_that_breaks_a_rule_is_not_returned_though_it_is_the_best():
 
 
 def test_a_search_that_cannot_be_ends_before_it_begins():
-    with pytest.raises(pe.InputError, match="max_height of 'roof' leaves no place"):
+    with pytest.raises(pe.InputError, match="max_height of 'roof' leaves no feasible placement"):
         outcome_of(study(max_height=0.1))
 
 

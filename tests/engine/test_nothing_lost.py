@@ -11,8 +11,10 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+from pe_tools import jobs
 from tests.engine import shapes
 from tests.engine.processes import GUARD_S, ROOT, Command
+from tests.thorough import pairs
 
 if sys.platform == "win32":
     pytest.skip("POSIX signals and files", allow_module_level=True)
@@ -49,9 +51,9 @@ def environment(elsewhere):
 def result(folder):
     """Return result.json, after checking that the set is whole and of one run."""
     data = json.loads((folder / "result.json").read_text("utf-8"))
-    assert pe.study.files_of_other_runs(folder) == []
+    assert jobs.files_of_other_runs(folder) == []
     best = pe.load_study(folder / "study.toml")
-    assert pe.study.placements(best.rig) == data["placements"]["after"]
+    assert jobs.placements(best.rig) == data["placements"]["after"]
     assert best.evaluator().score(best.rig).to_dict() == data["after"]
     assert (folder / "history.csv").read_text().count("\n") == len(data["history"]) + 1
     return data
@@ -88,8 +90,7 @@ def test_the_second_signal_ends_at_once_with_the_best_kept(study, out, signum):
     assert f"the best placement so far is in {out / 'study.toml'}" in "".join(command.complaints)
 
 
-@pytest.mark.parametrize("signum", SIGNALS)
-@pytest.mark.parametrize("verb", ["score", "optimize"])
+@pytest.mark.parametrize(("signum", "verb"), pairs(SIGNALS, ["score", "optimize"]))
 def test_a_signal_during_the_first_score_ends_it_with_nothing_written(study, out, verb, signum):
     with Command(verb, study, "-o", out, hang_in_score=1) as command:
         command.wait_for_stage("scoring")
@@ -118,7 +119,7 @@ def heed_ctrl_c():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-@pytest.mark.parametrize("module", ["numpy", "pe_core.app.status"])
+@pytest.mark.parametrize("module", ["numpy", "pe_tools.cli.terminal"])
 def test_ctrl_c_while_loading_is_one_line(module):
     """Python tells of each module that it has loaded; many more follow these."""
     process = subprocess.Popen(
@@ -291,7 +292,7 @@ def test_a_signal_between_two_scores_is_a_line(study):
     """Where no verb looks for signals itself: they interrupt as Ctrl-C does."""
     code = (
         "import os, signal\n"
-        "from pe_core.app import command\n"
+        "from pe_tools.cli import command\n"
         "def work():\n    os.kill(os.getpid(), signal.SIGTERM)\n    raise AssertionError\n"
         "before = signal.getsignal(signal.SIGTERM)\n"
         "print(command.run(work), signal.getsignal(signal.SIGTERM) == before)\n"
@@ -334,15 +335,15 @@ def test_a_file_that_fails_after_the_result_sets_that_of_an_older_run_aside(
     study, tmp_path, elsewhere
 ):
     """Blender's scene and picture are written behind result.json: a full disk may end that."""
-    from pe_core.app import More
-    from pe_core.app.work import keep
+    from pe_tools.cli import More
+    from pe_tools.cli.run_job import keep
 
     names, fails = ["optimized.blend"], []
 
     def write(outcome, data, folder):
         if fails and folder == tmp_path / "out":
             raise pe.InputError(folder / names[0], "file", "room to write to", "none")
-        pe.study.add_to_result(data, folder, {names[0]: b"scene"})
+        jobs.add_to_result(data, folder, {names[0]: b"scene"})
 
     job = pe.ScoreJob(pe.load_study(study))
     list(job)
@@ -353,4 +354,4 @@ def test_a_file_that_fails_after_the_result_sets_that_of_an_older_run_aside(
     assert keep(job.outcome, tmp_path / "out", None, More(names, write))[0] == 1
     assert not (tmp_path / "out" / names[0]).exists(), "it would be of another run"
     assert (tmp_path / "out" / "optimized.earlier.blend").read_bytes() == b"scene"
-    assert pe.study.files_of_other_runs(tmp_path / "out") == []
+    assert jobs.files_of_other_runs(tmp_path / "out") == []

@@ -7,9 +7,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.prior.classes import class_shape
-from pe_core.scoring.sobol import DIMENSIONS, scrambled_sobol
-from pe_core.targets import TargetRule, drawn_objects
-from pe_core.targets.footprints import overlap, rectangles
+from pe_core.scoring.sampling import DIMENSIONS, scrambled_sobol
+from pe_core.scoring.targets import TargetRule, sample_objects
+from pe_core.scoring.targets.scene_layout import ground_rectangles, overlap
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace()
@@ -18,7 +18,7 @@ FEW = TargetRule("objects", True, 64)
 
 
 def drawn(prior=ROAD, vehicle=None, targets=FEW, space=SPACE, **more):
-    return drawn_objects(prior, space, vehicle, targets, **more)
+    return sample_objects(prior, space, vehicle, targets, **more)
 
 
 def own(found, name):
@@ -58,10 +58,10 @@ def test_no_two_of_a_scene_overlap_and_none_the_vehicle():
     car = shapes.box_car()
     dense = pe.Prior("road", ROAD.classes, density={"car": 60, "truck": 30})
     found = drawn(dense, car, TargetRule("objects", True, 8)).objects
-    body = rectangles(np.zeros((1, 2)), np.array([[4.6, 1.8, 1.0]]), np.zeros(1))
+    body = ground_rectangles(np.zeros((1, 2)), np.array([[4.6, 1.8, 1.0]]), np.zeros(1))
     for scene in range(8):
         there = np.flatnonzero(found.scenes == scene)
-        ground = rectangles(found.centers[there, :2], found.sizes[there], found.yaws[there])
+        ground = ground_rectangles(found.centers[there, :2], found.sizes[there], found.yaws[there])
         both = overlap(ground.among(), ground)
         np.fill_diagonal(both, False)
         assert len(there) > 90 and not both.any() and not overlap(ground, body).any()
@@ -71,7 +71,7 @@ def test_rectangles_overlap_where_they_have_ground_in_common():
     places = np.array([[0, 0], [3, 0], [0, 2], [2.5, 1.4], [0, 1.5]], dtype=float)
     sizes = np.array([[4, 2, 1], [2, 2, 1], [4, 2, 1], [1, 1, 1], [3, 0.1, 1]], dtype=float)
     yaws = np.array([0, 0, 0, math.pi / 4, math.pi / 2])
-    ground = rectangles(places, sizes, yaws)
+    ground = ground_rectangles(places, sizes, yaws)
     first = overlap(ground.at(0), ground).tolist()
     assert first == [True, False, False, False, True]  # itself; touching twice; near; crossing
 
@@ -163,7 +163,7 @@ def test_scenes_of_labelled_boxes_are_drawn_from_them():
     ],
 )
 def test_what_cannot_stand_is_told_in_one_line(prior, told, monkeypatch):
-    monkeypatch.setattr("pe_core.text.memory.available_bytes", lambda: 10**9)
+    monkeypatch.setattr("pe_core.base.memory.available_bytes", lambda: 10**9)
     if isinstance(prior, dict):
         prior = pe.Prior("road", ROAD.classes, density=prior)
     with pytest.raises(pe.InputError, match=told) as error:
@@ -184,7 +184,7 @@ def test_a_prior_without_weight_on_the_objects_is_told():
     with pytest.raises(pe.InputError, match="some weight left on the objects, found none"):
         drawn(nothing)
     boxes = pe.Prior.from_boxes([("ufo", 9.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0)])
-    with pytest.raises(pe.InputError, match="how many of 'ufo' stand round at once"):
+    with pytest.raises(pe.InputError, match="a number of 'ufo' in the space at once"):
         drawn(boxes)
     with pytest.raises(pe.InputError, match="size: expected three finite lengths above 0"):
         pe.ObjectClass("flat", (4.0, 0.0, 1.5), 0.2, 30.0, 1.0, 0.5, 0.0)

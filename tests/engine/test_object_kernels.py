@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import kinds
+from pe_core import sensors as kinds
 from tests.engine import shapes
 from tests.engine.test_object_oracle import CAMERAS, VIEWS, random_objects
 

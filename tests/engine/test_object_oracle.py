@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import kinds
+from pe_core import sensors as kinds
 from tests.engine import object_oracle, shapes
 from tests.engine.test_oracle import LIDARS, azimuths_of, random_pose
 

@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import sight
-from pe_core.formats import read_ap_table
-from pe_core.kinds import KINDS, measure_objects
-from pe_core.kinds.object_curves import SIZES, carried_over
-from pe_core.metric import fit_ap_curve
+from pe_core.scoring import sight
+from pe_core.scoring.targets.lone_objects import SECTORS
+from pe_core.scoring.targets.lone_objects import _reach as reach_of
+from pe_core.scoring.targets.object_metric import ObjectSums
+from pe_core.scoring.targets.object_sampling import SampledObjects
+from pe_core.sensors import KINDS, measure_objects
+from pe_core.sensors.kind import SIZES, derived_object_curve
 from pe_core.study import study_from_dict
-from pe_core.targets.drawing import DrawnObjects
-from pe_core.targets.rings import SECTORS
-from pe_core.targets.rings import _reach as reach_of
-from pe_core.targets.sums import ObjectSums
+from pe_tools.formats import fit_ap_curve, read_ap_table
 from tests.engine import shapes
 
 TABLES = Path(__file__).parents[2] / "docs" / "objects"
@@ -175,7 +174,7 @@ def test_the_standard_error_by_hand():
     """
     ones = np.ones((3, 3))
     objects = pe.Objects(ones, ones, np.zeros(3), [0, 0, 0], ["car"], [0, 0, 1])
-    sums = ObjectSums(DrawnObjects(objects, np.array([0.25, 0.25, 0.5]), 2))
+    sums = ObjectSums(SampledObjects(objects, np.array([0.25, 0.25, 0.5]), 2))
     assert sums.standard_error(np.array([1.0, 3.0, 8.0]), 1) == pytest.approx(3.0)
 
 
@@ -227,7 +226,7 @@ def test_a_curve_carried_over_is_the_voxel_s_where_the_object_has_its_share():
     for k in (2.0, 30.0):
         ap = car.a * math.log(552.5 * k) + car.b
         assert ap == pytest.approx(voxel.a * math.log(k) + voxel.b)
-    assert carried_over(voxel, (0.1, 0.1, 0.1)) == voxel
+    assert derived_object_curve(voxel, (0.1, 0.1, 0.1)) == voxel
     assert {c.name: c.size for c in ROAD.classes} == SIZES
 
 

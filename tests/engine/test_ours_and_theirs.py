@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
-from pe_core.study import FileSet, files_of_other_runs
-from pe_core.study.names import SEARCH
+from pe_tools import jobs
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import FileSet, files_of_other_runs
 from tests.engine import shapes
 from tests.engine.processes import ROOT
 
@@ -125,42 +125,6 @@ def test_an_edited_study_in_a_result_folder_is_the_users(study, out, capsys):
     assert (out / "study.toml").read_text() == edited
 
 
-def make_it_0_1(folder):
-    """Leave a folder as 0.1.0 did: no list, no digests in result.json, no state of a search."""
-    (folder / SEARCH).unlink()
-    (folder / LISTING).unlink()
-    data = json.loads((folder / "result.json").read_text())
-    del data["run"]["files"]
-    (folder / "result.json").write_text(json.dumps(data, indent=2))
-
-
-def test_a_folder_of_0_1_is_known_by_its_result(study, out):
-    assert optimize(study, out) == 0
-    make_it_0_1(out)
-    assert optimize(study, out, "--seed", "8") == 0
-    assert json.loads((out / "result.json").read_text())["seed"] == 8
-
-
-@pytest.mark.parametrize("name", ["study.toml", "vehicle.npz", "boxes.csv", "history.csv"])
-def test_in_a_folder_of_0_1_what_does_not_fit_the_result_is_the_users(study, out, name, tmp_path):
-    assert optimize(study, out) == 0
-    make_it_0_1(out)
-    others = {
-        "study.toml": (out / "study.toml").read_text().replace("position = [", "position = [0.01"),
-        "vehicle.npz": "mine",
-        "boxes.csv": None,
-        "history.csv": "evaluation,round,entropy,x\n",
-    }
-    if others[name] is None:  # boxes are known by the study that names them
-        text = (out / "study.toml").read_text().replace('"boxes.csv"', '"others.csv"')
-        (out / "study.toml").write_text(text)
-    else:
-        (out / name).write_text(others[name])
-    before = contents(out)
-    assert optimize(study, out) == 1
-    assert contents(out) == before
-
-
 def test_someone_elses_result_json_makes_nothing_ours(study, out):
     (out / "result.json").write_text('{"schema": 1, "kind": "other"}')
     before = contents(out)
@@ -229,7 +193,7 @@ def test_killed_between_two_files_all_of_them_are_still_ours(tmp_path, stops_at,
     with FileSet(tmp_path) as files:
         files.add("a", b"1")
         files.add("b", b"1")
-    replace, done = pe.study.folder.os.replace, []
+    replace, done = jobs.folder.os.replace, []
 
     def replace_some(source, target):
         if not str(target).endswith(LISTING):
@@ -254,7 +218,7 @@ def test_killed_between_two_files_all_of_them_are_still_ours(tmp_path, stops_at,
 
 def test_runs_into_one_folder_at_once_know_each_others_files(tmp_path):
     code = (
-        "import sys; from pathlib import Path; from pe_core.study import FileSet\n"
+        "import sys; from pathlib import Path; from pe_tools.jobs import FileSet\n"
         "for i in range(40):\n"
         "    with FileSet(Path(sys.argv[1])) as files:\n"
         "        for name in 'ab': files.add(name, f'{sys.argv[2]} {i}'.encode())\n"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds import Voxels, kind_of
+from pe_core.sensors import Voxels, kind_of
 from tests.engine import shapes
 
 

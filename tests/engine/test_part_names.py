@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.formats.meshes.part_names import fit_names
-from pe_core.text.values import LONGEST_NAME
+from pe_core.base.values import MAX_NAME
+from pe_tools.formats.meshes.part_names import fit_names
 from tests.engine.mesh_files import BOX, glb_file, gltf, npz_bytes, read, stl_ascii
 
 LONG = "x" * 300
@@ -32,7 +32,7 @@ LONG = "x" * 300
 def test_names_are_made_fit_and_stay_different(names: list[str], fit: list[str]) -> None:
     """Names that are fit stay, even where another name becomes like one of them."""
     assert list(fit_names(names)) == fit
-    assert all(name.isprintable() and len(name) <= LONGEST_NAME for name in fit)
+    assert all(name.isprintable() and len(name) <= MAX_NAME for name in fit)
 
 
 def test_a_hundred_thousand_alike_are_told_apart() -> None:

@@ -6,8 +6,9 @@ import math
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
-from pe_core.exchange import RIG_FORMATS, import_rig, passthrough_of_text, passthrough_text
+from pe_core.study import passthrough_of_text, passthrough_text
+from pe_tools.cli.verbs import main
+from pe_tools.exchange import RIG_FORMATS, import_rig
 
 AXLE = pe.Reference(-1.38, 0.3)
 OPTION = ["--rear-axle", "-1.38", "0.3"]

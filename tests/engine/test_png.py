@@ -6,7 +6,8 @@ import zlib
 import numpy as np
 import pytest
 
-from pe_core import InputError, graphics
+from pe_core import InputError
+from pe_tools import graphics
 
 
 def chunks(png):

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scoring.sampling import draw
-from pe_core.scoring.sobol import scrambled_sobol
-from pe_core.scoring.weights import outside_masses
+from pe_core.scoring.density_cache import outside_masses
+from pe_core.scoring.sampling import draw, scrambled_sobol
 from tests.engine import shapes
 
 SPACE = shapes.small_space()

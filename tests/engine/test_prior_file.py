@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
+from pe_core.base.serialization import dumps
 from pe_core.study.study_file import study_from_dict, study_to_dict
-from pe_core.text.toml_writer import dumps
 
 SENSOR = '[[sensor]]\nname = "roof"\nmodel = "Pandar64"\nposition = [0, 0, 1.8]\n'
 FAR_CAR = '[[prior.class]]\nname = "car"\ndecay_x = 60\n'

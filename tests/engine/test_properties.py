@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds import kind_of
-from pe_core.kinds.camera.ties import NUDGE as CAMERA_NUDGE
-from pe_core.kinds.kernels import Voxels
-from pe_core.kinds.lidar.ties import NUDGE as LIDAR_NUDGE
+from pe_core.sensors import kind_of
+from pe_core.sensors.camera.tie_rules import NUDGE as CAMERA_NUDGE
+from pe_core.sensors.kernels import Voxels
+from pe_core.sensors.lidar.tie_rules import NUDGE as LIDAR_NUDGE
 from tests.engine.random_rigs import RIGS, free_scene, round_scene
 
 ALL = 1 << 16
@@ -33,7 +33,7 @@ def on_grid(scene):
 
 def _on_grid(scene, sensor, pool):
     kernel = kind_of(sensor).on_grid(scene.space, scene.vehicle, ALL)
-    (planes,) = kernel.planes([[kernel.ready(sensor)]], pool)
+    (planes,) = kernel.planes([[kernel.prepare(sensor)]], pool)
     found = planes(slice(0, scene.space.shape[0]))
     if sensor.kind == "lidar":
         return found.astype(float)

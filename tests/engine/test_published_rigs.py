@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import pose_from_quaternion
-from pe_core.kinds.camera import BrownConrady
+from pe_core.sensors.camera import BrownConrady
+from pe_tools.exchange import pose_from_quaternion
 
 SIZE = (1920, 1080)
 CALIBRATION = {

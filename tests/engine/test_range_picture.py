@@ -7,8 +7,8 @@ import pytest
 
 import pe_core as pe
 from pe_core import catalog
-from pe_core.graphics import range_colors
-from pe_core.kinds import range_picture
+from pe_core.sensors import range_picture
+from pe_tools.graphics import range_colors
 
 WALL = pe.Vehicle(
     np.array(

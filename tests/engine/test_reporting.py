@@ -6,9 +6,10 @@ import sys
 
 import pytest
 
-from pe_core.app import extras, reporting
-from pe_core.app.reporting import Reporter
-from pe_core.study import Progress
+from pe_core.base import plugins
+from pe_tools.cli import progress_line
+from pe_tools.cli.progress_line import Reporter
+from pe_tools.jobs import Progress
 
 
 class Screen(io.StringIO):
@@ -26,7 +27,7 @@ SEARCHING = [Progress("optimizing", k / 4, 1.5 - 0.1 * k, k) for k in range(5)]
 
 @pytest.fixture(autouse=True)
 def at_once(monkeypatch):
-    monkeypatch.setattr(reporting, "REPORT_EVERY_S", {True: 0.0, False: 0.0})
+    monkeypatch.setattr(progress_line, "REPORT_EVERY_S", {True: 0.0, False: 0.0})
 
 
 def told(stream):
@@ -69,8 +70,9 @@ def test_extras_are_those_that_the_project_offers():
     import tomllib
     from pathlib import Path
 
-    project = Path(extras.__file__).parents[2] / "pyproject.toml"
+    project = Path(plugins.__file__).parents[2] / "pyproject.toml"
     offered = tomllib.loads(project.read_text("utf-8"))["project"]["optional-dependencies"]
-    for package, name in extras.EXTRAS.items():
+    for package in ("tqdm", "distributed"):
+        name = plugins.EXTRAS[package]
         assert any(need.startswith(package) for need in offered[name]), package
         assert any(need.startswith(package) for need in offered["test"]), "tests are not skipped"

@@ -11,9 +11,11 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
-from pe_core.search import METHODS, Journal, judge_all
-from pe_core.study import SEARCH, SearchState, fingerprint, read_search
+from pe_core.search import METHODS, Journal, evaluate_all
+from pe_core.study import SEARCH
+from pe_tools import jobs
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import SearchState, fingerprint, read_search
 from tests.engine import shapes
 from tests.engine.processes import GUARD_S, ROOT
 from tests.engine.recording import Recorder, distance_to
@@ -45,7 +47,7 @@ def out(tmp_path):
 def result(folder):
     """What result.json says but for times; the files beside it have to be those it tells of."""
     data = json.loads((folder / "result.json").read_text("utf-8"))
-    assert pe.study.files_of_other_runs(folder) == []
+    assert jobs.files_of_other_runs(folder) == []
     del data["run"]["seconds"]
     return data
 
@@ -61,14 +63,14 @@ def outcome_of(job, steps=None):
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
     study = a_study(method)
-    whole = outcome_of(pe.OptimizeJob(study))
+    whole = outcome_of(pe.OptimizeJob(study, 1))
     known = ()
     for steps in MOMENTS:  # broken off again and again
-        job = pe.OptimizeJob(study, journal=Journal(known))
+        job = pe.OptimizeJob(study, 1, journal=Journal(known))
         outcome_of(job, steps)
         known = job.journal.entries
         assert len(known) >= steps
-    end = outcome_of(pe.OptimizeJob(study, journal=Journal(known)))
+    end = outcome_of(pe.OptimizeJob(study, 1, journal=Journal(known)))
     data, expected = pe.result_dict(end), pe.result_dict(whole)
     del data["run"], expected["run"]
     assert data == expected
@@ -79,10 +81,10 @@ def test_what_the_journal_knows_is_not_judged_again():
     study = a_study()
     plain = Recorder(distance_to({"x": 0.1, "z": 1.9}))
     journal = Journal()
-    list(search(study, journal.over([plain])))
+    list(search(study, journal.wrap([plain])))
     assert len(journal.entries) == len(plain.rigs) > 50
     again = Recorder(distance_to({"x": 0.1, "z": 1.9}))
-    list(search(study, Journal(journal.entries[:50]).over([again])))
+    list(search(study, Journal(journal.entries[:50]).wrap([again])))
     assert [placed(rig) for rig in again.rigs] == [placed(rig) for rig in plain.rigs[50:]]
 
 
@@ -90,13 +92,13 @@ def test_candidates_judged_together_are_known_as_well():
     study, journal = a_study(), Journal()
     rigs = [shapes.lidar_on_roof(shapes.small_lidar(16, 90), (0.1 * k, 0.0, 1.8)) for k in range(6)]
     rigs = [pe.Rig([sensor]) for sensor in rigs]
-    [whole] = journal.over([study.evaluator()])
+    [whole] = journal.wrap([study.evaluator()])
     with ThreadPoolExecutor(2) as executor:
-        told = judge_all(whole, rigs, executor=executor)
+        told = evaluate_all(whole, rigs, executor=executor)
         plain = Recorder(distance_to({"x": 0.1}))
-        [again] = Journal(journal.entries[:4]).over([plain])
-        both = judge_all(again, rigs[:2]) + judge_all(again, rigs[2:], executor=executor)
-    assert told == judge_all(study.evaluator(), rigs)
+        [again] = Journal(journal.entries[:4]).wrap([plain])
+        both = evaluate_all(again, rigs[:2]) + evaluate_all(again, rigs[2:], executor=executor)
+    assert told == evaluate_all(study.evaluator(), rigs)
     assert both[:4] == told[:4]
     assert [placed(rig) for rig in plain.rigs] == [placed(rig) for rig in rigs[4:]]
 
@@ -113,11 +115,11 @@ def search(study, objectives):
 def test_a_journal_of_other_placements_is_refused():
     study = a_study()
     journal = Journal()
-    list(search(study, journal.over([Recorder(distance_to({"x": 0.1}))])))
+    list(search(study, journal.wrap([Recorder(distance_to({"x": 0.1}))])))
     other = replace(study, search=replace(study.search, seed=4))
     again = Journal(journal.entries, "out/search.json")
     with pytest.raises(pe.InputError, match=r"judged\[1\]: expected the placements"):
-        list(search(other, again.over([Recorder(distance_to({"x": 0.1}))])))
+        list(search(other, again.wrap([Recorder(distance_to({"x": 0.1}))])))
 
 
 def test_a_resumed_search_leaves_the_same_files(path, tmp_path, capsys):
@@ -136,10 +138,10 @@ def test_a_resumed_search_leaves_the_same_files(path, tmp_path, capsys):
 
 ENDING_ITSELF = """
 import os, signal, sys
-from pe_core.app import work
+from pe_tools.cli import run_job
 told, replaced, replace = [], [], os.replace
 
-class Told(work.Reporter):
+class Told(run_job.Reporter):
     def report(self, progress):
         print(progress.evaluations, file=sys.stderr, flush=True)
         if {moment} == ("told", progress.evaluations) and not told:
@@ -152,8 +154,8 @@ def replace_and_end(*paths):
         os.kill(os.getpid(), signal.{signal})
     replace(*paths)
 
-os.replace, work.Reporter = replace_and_end, Told
-from pe_core.__main__ import main
+os.replace, run_job.Reporter = replace_and_end, Told
+from pe_tools.__main__ import main
 main()
 """
 """A search that is sent a real signal after so many placements, or in the middle of writing."""

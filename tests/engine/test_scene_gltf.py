@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.outputs import scene_files
+from pe_tools.outputs import scene_files
 
 from .shapes import box_car, camera, lidar_on_roof, small_lidar
 

@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from pe_core.graphics import PAPER, VIEWPORT, colors
+from pe_tools.graphics import PAPER, VIEWPORT, colors
 
 EYES = {
     "all cones": np.eye(3),

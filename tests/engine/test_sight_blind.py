@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.kinds import CAMERA, GroundView
-from pe_core.kinds.ground_kernel import DefinedGround
-from pe_core.scene.ground_grid import GroundGrid
-from pe_core.sight import Sight
-from pe_core.sight.blind import NARROW_M, SIDES, blind_ground
-from pe_core.sight.blind_squares import BODY_M, TOO_FAR_M
-from pe_core.sight.cells import GroundCells
+from pe_core.geometry.grids import GroundGrid
+from pe_core.scoring.sight import Sight
+from pe_core.scoring.sight.blind_ground import NARROW_M, SIDES, blind_ground
+from pe_core.scoring.sight.blind_squares import BODY_M, TOO_FAR_M
+from pe_core.scoring.sight.ground_cells import GroundCells
+from pe_core.sensors import CAMERA, GroundView
+from pe_core.sensors.ground_kernel import DefinedGround
 from tests.engine import shapes
 from tests.engine.test_sight_outline import signed_area
 
@@ -186,10 +186,10 @@ def test_a_lens_that_bends_and_a_definition_alone_see_the_same_ground():
     round_ = pe.Camera("round", 1920, 1080, lens=lens)
     view = GroundView(GroundGrid((1.0, -2.0), (60, 80), 0.05), 0.5, BOX)
     one, other = (
-        CAMERA.on_ground(view).see(pe.Sensor("eye", model, pose), False).marked
+        CAMERA.on_ground(view).mark(pe.Sensor("eye", model, pose), False).marked
         for model in (wide, round_)
     )
     assert 500 < one.sum() < 4000 and np.array_equal(one, other)
-    defined = DefinedGround(CAMERA.measure, view).see(pe.Sensor("eye", wide, pose), False).marked
+    defined = DefinedGround(CAMERA.measure, view).mark(pe.Sensor("eye", wide, pose), False).marked
     first = one[1::2, 1::2]  # where nothing is at an edge, every other square is asked about
     assert np.mean(first != defined[1::2, 1::2]) < 0.03

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import kinds
-from pe_core.kinds.lidar.ends import LazyEnds
-from pe_core.kinds.lidar.on_sample import LidarSample
+from pe_core import sensors as kinds
 from pe_core.metric.entropy import H_BLIND, entropy_of, precision_of
 from pe_core.metric.fusion import late_fusion
-from pe_core.sight import Sight, look
-from pe_core.sight.places import SPREAD_M
-from pe_core.sight.regions import gauss
+from pe_core.scoring.sight import Sight, voxel_sets
+from pe_core.scoring.sight.grid_regions import gauss
+from pe_core.scoring.sight.voxel_sets import SPREAD_M
+from pe_core.sensors.lidar.beams import LazyEnds
+from pe_core.sensors.lidar.kernel_voxels import LidarSample
 from tests.engine import shapes, toy_kind
 
 SPACE = shapes.small_space(0.5)
@@ -225,14 +225,14 @@ def test_a_study_has_one():
 
 def test_what_is_kept_has_a_bound(measured, monkeypatch):
     """Of maps asked for in turn the last are kept, as many as there is room for."""
-    monkeypatch.setattr(look, "VOXELS_KEPT", 2 * 80 * 40)
+    monkeypatch.setattr(voxel_sets, "MAX_VOXELS", 2 * 80 * 40)
     own, rig = sight(), pe.Rig([lidar()])
     for height in (0.0, 1.0, 2.0, 1.0, 2.0):
         own.ground(rig, height, step=0.5)
     assert measured == ["roof"] * 3
     own.ground(rig, 0.0, step=0.5)
     assert measured == ["roof"] * 4
-    monkeypatch.setattr(look, "VOXELS_KEPT", 1)
+    monkeypatch.setattr(voxel_sets, "MAX_VOXELS", 1)
     own.ground(rig, 0.0, step=0.5)  # larger than all the room: kept while it is the last
     assert measured == ["roof"] * 4
 
@@ -263,7 +263,7 @@ def test_a_kind_of_one_s_own_is_seen(ring_kind):
         ({"height": "low"}, r"sight: height: expected a finite number"),
         ({"step": 0.0}, r"sight: step: expected a length above 0 m, found 0"),
         ({"step": -1.0}, r"sight: step: expected a length above 0 m, found -1"),
-        ({"step": 1e-3}, r"sight: step: expected a step with at most 2,097,152 places"),
+        ({"step": 1e-3}, r"sight: step: expected a step with at most 2,097,152 cells"),
         ({"within": 0.0}, r"sight: within: expected a length above 0 m"),
         ({"within": 0.1}, r"sight: within: expected a part of the space"),
     ],

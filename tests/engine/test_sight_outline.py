@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pe_core.sight.outline import outlines
+from pe_core.scoring.sight.grid_regions import outlines
 
 X = Y = np.linspace(-5.0, 5.0, 101)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pe_core.sight.regions import closed, gauss, opened, without_specks
+from pe_core.scoring.sight.grid_regions import closed, gauss, opened, without_specks
 
 
 def flooded(flags):

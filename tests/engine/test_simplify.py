@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scene import simplify
-from pe_core.scene.simplify import simplified
 from pe_core.scene.vehicle import closest_points
+from pe_tools.graphics import simplify
+from pe_tools.graphics.simplify import simplified
 from tests.engine import shapes
 
 

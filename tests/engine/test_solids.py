@@ -7,13 +7,17 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
-from pe_core.outputs import export_scene, scene_files
-from pe_core.outputs.blind_volume import _round, _squares, blind_volume
-from pe_core.outputs.slicing import level_outlines
-from pe_core.outputs.solid import free_solid, hidden_solid, whole_solid
-from pe_core.outputs.views import MountedView, mounted_view
-from pe_core.outputs.voxel_surface import joined, voxel_solid
+from pe_tools.cli.verbs import main
+from pe_tools.outputs import export_scene, scene_files
+from pe_tools.outputs.blind_volume import (
+    _round,
+    _squares,
+    blind_volume,
+    joined,
+    level_outlines,
+    voxel_solid,
+)
+from pe_tools.outputs.solid import MountedView, free_solid, hidden_solid, mounted_view, whole_solid
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
 from .surfaces import is_watertight, read_stl, volume

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.base.serialization import dumps
 from pe_core.study.study_file import study_from_dict, study_to_dict
-from pe_core.text.toml_writer import dumps
 from tests.engine import shapes
 
 MINIMAL = """

@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import pe_core as pe
+from pe_core.base.serialization import dumps
 from pe_core.search import AXES
 from pe_core.study.study_file import study_from_dict, study_to_dict
-from pe_core.text.toml_writer import dumps
 from tests.engine import shapes
 
 BOX_TABLE = "class,x,y,z,length,width,height,yaw\ncar,9,1,0.7,4,2,1.4,30\ntram,-20,3,2,15,2.5,4,0\n"

@@ -13,19 +13,21 @@ from dataclasses import replace
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
-from pe_core.app.workplaces import workplace
 from pe_core.search import Journal
-from pe_core.study import SEARCH, Checkpoint, Outcome, read_search
-from pe_core.sweep import (
+from pe_core.study import SEARCH
+from pe_tools import jobs
+from pe_tools.cli.executors import workplace
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import Checkpoint, Outcome, read_search
+from pe_tools.sweep import (
     FolderCheckpoints,
     RunTask,
-    carried_out,
     read_settings,
     run_all,
+    run_task,
     sweep_runs,
 )
-from pe_core.sweep.names import LONGEST, folder_names
+from pe_tools.sweep.parameter_grid import LONGEST, folder_names
 from tests.engine import shapes
 from tests.engine.processes import GUARD_S, Command
 
@@ -122,7 +124,7 @@ def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, com
     ],
 )
 def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys, monkeypatch):
-    monkeypatch.setattr("pe_core.app.workplaces.CONNECT_S", 0.2)
+    monkeypatch.setattr("pe_tools.cli.executors.CONNECT_S", 0.2)
     assert main(["sweep", str(study), "-o", str(out), *more]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pe: {complaint}"), line
@@ -166,7 +168,7 @@ def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
     data = json.loads((out / "sweep.json").read_text())
     for row, told in zip(table(out), data["runs"], strict=True):
         result = json.loads((out / row["run"] / "result.json").read_text())
-        assert pe.study.files_of_other_runs(out / row["run"]) == []
+        assert jobs.files_of_other_runs(out / row["run"]) == []
         assert float(row["entropy"]) == told["entropy"] == result["entropy"]
         assert float(row["entropy_before"]) == result["before"]["entropy"]
         assert row["sensor.roof.position.2"] == told["changes"]["sensor.roof.position.2"]
@@ -209,13 +211,13 @@ def test_a_run_that_fails_is_named_and_the_others_are_kept(study, out, capsys):
 @pytest.fixture
 def noted(monkeypatch):
     """Placements that a search evaluated, rather than took from its journal."""
-    noted, note = [], Journal.note
+    noted, record = [], Journal.record
 
     def watched(self, rig, level, judged):
         noted.append(rig)
-        note(self, rig, level, judged)
+        record(self, rig, level, judged)
 
-    monkeypatch.setattr(Journal, "note", watched)
+    monkeypatch.setattr(Journal, "record", watched)
     return noted
 
 
@@ -237,13 +239,13 @@ def test_a_run_continues_the_search_in_its_folder(study, out, noted):
     begun = len(read_search(out).judged)
     noted.clear()
     task = RunTask(pe.load_study(study), True, 1, FolderCheckpoints(out))
-    found = carried_out(task)
+    found = run_task(task)
     assert (found.after.entropy, found.judged) == (whole.after.entropy, whole.judged)
     assert len(noted) == evaluated - begun < evaluated
     assert begun < len(read_search(out).judged) <= evaluated, "checkpoints go on as well"
     noted.clear()
     other = replace(task, study=replace(task.study, search=replace(task.study.search, seed=9)))
-    assert carried_out(other).after.entropy and len(noted) > 5, "another study's are not taken"
+    assert run_task(other).after.entropy and len(noted) > 5, "another study's are not taken"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
@@ -300,7 +302,7 @@ def test_results_that_cannot_be_written_go_to_one_other_folder(study, out, tmp_p
         monkeypatch.setattr(os, "replace", full)
         return workplace(workers, scheduler)
 
-    monkeypatch.setattr("pe_core.app.sweeping.workplace", work_until_full)
+    monkeypatch.setattr("pe_tools.cli.sweep_verb.workplace", work_until_full)
     assert main([*argv, "--seed", "9"]) == 1
     (folder,) = other.iterdir()
     assert [row["status"] for row in table(folder)] == ["done", "done"]
@@ -373,7 +375,7 @@ def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, 
     failed = {name: str(what) for name, what in found.items() if isinstance(what, pe.InputError)}
     assert list(failed) == named
     for line in failed.values():
-        expected = "a worker that lives to its end, found two that died (BrokenExecutor)"
+        expected = "a worker that survives its task, found two that died (BrokenExecutor)"
         assert line == f"run2: worker: expected {expected}"
     assert executor.given == [1, 2, 3, 1, 2], "what may be guilty is tried again, alone"
 
@@ -399,5 +401,5 @@ def test_real_processes_that_are_killed_are_replaced(study):
 
 
 def test_another_version_in_a_worker_is_told(study):
-    found = carried_out(replace(RunTask(pe.load_study(study), False, 1), version="0.0.9"))
+    found = run_task(replace(RunTask(pe.load_study(study), False, 1), version="0.0.9"))
     assert str(found).startswith("worker: version: expected 0.0.9, the version of the program")

@@ -11,9 +11,9 @@ import time
 import pytest
 
 import pe_core as pe
-from pe_core.app import sweeping
-from pe_core.app.cli import main
-from pe_core.study import SearchState, read_search
+from pe_tools.cli import sweep_verb
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import SearchState, read_search
 from tests.engine import shapes
 from tests.engine.processes import ROOT
 
@@ -97,7 +97,7 @@ def cluster(tmp_path_factory):
 
 def at_first_result(monkeypatch, do):
     """Have something done when the first result has come; return the names of all that come."""
-    came, take = [], sweeping._Sweep._take
+    came, take = [], sweep_verb._SweepVerb._take
 
     def watched(self, name, found):
         if not came:
@@ -105,7 +105,7 @@ def at_first_result(monkeypatch, do):
         came.append(name)
         take(self, name, found)
 
-    monkeypatch.setattr(sweeping._Sweep, "_take", watched)
+    monkeypatch.setattr(sweep_verb._SweepVerb, "_take", watched)
     return came
 
 
@@ -165,7 +165,7 @@ def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeyp
 
 def test_a_scheduler_that_goes_away_is_one_line(study, cluster, tmp_path, monkeypatch, capsys):
     """What is done by then is kept, and the same command goes on."""
-    monkeypatch.setattr("pe_core.app.workplaces.CONNECT_S", 1.0)
+    monkeypatch.setattr("pe_tools.cli.executors.CONNECT_S", 1.0)
     came = at_first_result(monkeypatch, lambda: cluster.scheduler.send_signal(signal.SIGKILL))
     values, out = f"sensor.roof.position.2={','.join(HEIGHTS)}", tmp_path / "out"
     argv = ["sweep", str(study), "--set", values, "-o", str(out)]

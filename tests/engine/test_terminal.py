@@ -6,10 +6,10 @@ import json
 import pytest
 
 import pe_core as pe
-from pe_core.app import command, printable, show
-from pe_core.app.cli import main
-from pe_core.app.terminal import LONGEST_LINE, one_line
-from pe_core.text import dump_json
+from pe_core.base import dump_json
+from pe_tools.cli import command, printable, show
+from pe_tools.cli.terminal import LONGEST_LINE, one_line
+from pe_tools.cli.verbs import main
 
 STEERING = {
     "\x1b[31m": r"\u001b[31m",

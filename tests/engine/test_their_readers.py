@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import rig_files
-from pe_core.outputs import scene_files
+from pe_tools.exchange import rig_files
+from pe_tools.outputs import scene_files
 
 from .shapes import box_car, camera, lidar_on_roof, small_lidar
 

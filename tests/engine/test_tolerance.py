@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scene.geometry import rotate
-from pe_core.search import RobustObjective, judge_all
-from pe_core.search.tolerance import COMBINATIONS, FRESH, mounted_off, off, without_each
+from pe_core.geometry.poses import rotate
+from pe_core.search import RobustObjective, evaluate_all
+from pe_core.search.tolerance import COMBINATIONS, FRESH, mounted_off, with_error, without_each
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import shapes
 
@@ -107,7 +107,7 @@ def test_errors_are_the_same_numbers_everywhere():
 def test_a_turn_is_in_the_sensor_s_own_frame():
     """An error of yaw turns a sensor about its own upward axis, wherever that points."""
     pose = rig()["nose"].pose
-    turned = off(pose, np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.1]))
+    turned = with_error(pose, np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.1]))
     ahead, up = (np.stack([p.ground_from_sensor[:, k] for p in (pose, turned)]) for k in (0, 2))
     assert np.abs(up[0] - up[1]).max() <= 2 * ROUNDING_RAD
     assert ahead[0] @ ahead[1] == pytest.approx(math.cos(0.1), abs=1e-6)
@@ -189,7 +189,7 @@ def test_a_grid_judges_as_a_sample_does():
 def test_an_objective_can_be_sent_to_a_worker(evaluator):
     objective = RobustObjective(evaluator, BOTH, 2)
     again = pickle.loads(pickle.dumps(objective))
-    (found,) = judge_all(again, [rig()])
+    (found,) = evaluate_all(again, [rig()])
     assert found.entropy == objective.entropy(rig())
 
 
@@ -231,7 +231,7 @@ BAD = {
     "optimize.tolerance.angle: expected an angle from 0 to 45 degrees, found -0.3 degrees": {
         "tolerance": {"angle": -0.3}
     },
-    "optimize.tolerance.position: expected a number, found nan": {
+    "optimize.tolerance.position: expected a length from 0 to 1 m, found nan": {
         "tolerance": {"position": math.nan}
     },
     "optimize.tolerance.draws: expected an even number, found 7": {

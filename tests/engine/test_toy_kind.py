@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import catalog, kinds
-from pe_core.app.cli import main
+from pe_core import catalog
+from pe_core import sensors as kinds
 from pe_core.metric import entropy_of, late_fusion, precision_of
+from pe_tools.cli.verbs import main
 from tests.engine import shapes
 from tests.engine.toy_kind import CURVE, Ring, RingKind
 
@@ -169,7 +170,7 @@ def test_kernels_of_ones_own_are_asked(ring_kind, monkeypatch):
     """A kind with a grid kernel of its own is measured by it: here one that sees everything."""
 
     class Everything(kinds.GridKernel):
-        def ready(self, sensor):
+        def prepare(self, sensor):
             return sensor
 
         def planes(self, groups, pool):

@@ -8,8 +8,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from pe_core.errors import InputError, shown
-from pe_core.text import degrees, values
+from pe_core.base import degrees, values
+from pe_core.base.errors import InputError, shown
 
 HUGE = 10**400
 ENDLESS = 10**5000

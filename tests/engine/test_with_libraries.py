@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.exchange import elsewhere, rig_files
-from pe_core.outputs import scene_files
+from pe_core.base import plugins
+from pe_tools.exchange import rig_files
+from pe_tools.outputs import scene_files
 
 from .shapes import box_car, camera, lidar_on_roof, small_lidar
 
@@ -174,7 +175,7 @@ def test_argoverse_s_own_projection_sees_a_point_where_ours_does():
 def test_distortion_in_an_argoverse_table_is_told(tmp_path):
     pytest.importorskip("pyarrow", reason="of the extra argoverse")
     pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
-    from pe_outputs import feather
+    from pe_tools.exchange import feather
 
     path = tmp_path / "intrinsics.feather"
     (row,) = feather.rows_of(path.read_bytes())
@@ -222,17 +223,14 @@ ASKING = {
 }
 
 
-class LacksItsLibrary:
-    """An entry point that cannot import what it needs."""
-
-    def load(self):
-        raise ImportError("No module\nnamed 'lib'")
-
-
 @pytest.mark.parametrize("name", ASKING)
-@pytest.mark.parametrize("points", [[], [LacksItsLibrary()]], ids=["none", "no library"])
-def test_without_its_library_it_says_in_one_line_what_to_install(monkeypatch, name, points):
-    monkeypatch.setattr(elsewhere, "entry_points", lambda **_: points)
+@pytest.mark.parametrize("lacks", ["plugin", "library"])
+def test_without_its_library_it_says_in_one_line_what_to_install(monkeypatch, name, lacks):
+    for plugin in [name for name in plugins.SHIPPED if name.startswith("library.")]:
+        if lacks == "plugin":
+            monkeypatch.delitem(plugins.SHIPPED, plugin)
+        else:
+            monkeypatch.setitem(plugins.SHIPPED, plugin, "no_such_library:write")
     ask, extra = ASKING[name]
     with pytest.raises(
         pe.InputError, match=rf"pip install 'perception-entropy\[{extra}\]'"

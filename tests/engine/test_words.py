@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("pe_core", "pe_report", "pe_review", "blender_addon", "benchmarks")
+PACKAGES = ("pe_core", "pe_tools", "blender_addon", "benchmarks")
 
 
 def is_name_of_type(target):

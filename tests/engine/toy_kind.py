@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 import pe_core as pe
-from pe_core import kinds
-from pe_core.scene.sensors import SensorModel
+from pe_core import sensors as kinds
+from pe_core.scene.rig import SensorModel
 
 CURVE = pe.ApCurve(0.1, 0.4)
 
@@ -39,10 +39,12 @@ class RingKind(kinds.Kind):
         return np.where(times >= 1.0, times, 0.0)
 
     def read(self, name, table, folder):
+        if "range_m" not in table:
+            raise pe.InputError(name, "range_m", "a range in metres", "none")
         return Ring(name, float(table["range_m"]))
 
     def write(self, model):
         return {"range_m": model.range_m}
 
-    def words(self, model):
+    def data_sheet(self, model):
         return [f"range           {model.range_m:g} m"]

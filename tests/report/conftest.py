@@ -20,7 +20,7 @@ def pe(*arguments, cwd=ROOT):
 def pe_without_matplotlib(*arguments):
     """Run the command where matplotlib cannot be imported."""
     code = (
-        "import sys; sys.modules['matplotlib'] = None; from pe_core.app.cli import main; "
+        "import sys; sys.modules['matplotlib'] = None; from pe_tools.cli.verbs import main; "
         f"sys.exit(main({[str(a) for a in arguments]!r}))"
     )
     return subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)

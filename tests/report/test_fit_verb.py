@@ -7,7 +7,7 @@ import pytest
 
 from tests.report.conftest import ROOT, pe, pe_without_matplotlib
 
-TABLE = ROOT / "pe_report" / "data" / "paper_lidar.csv"
+TABLE = ROOT / "pe_tools" / "reproduction" / "data" / "paper_lidar.csv"
 LINE = """m,ap
 0.01,0.001
 1,0.2

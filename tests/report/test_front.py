@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from pe_report import front as drawing
+from pe_tools.reproduction import plotting
 from tests.report.conftest import pe
 
 ROWS = [
@@ -30,8 +30,8 @@ def test_the_verb_draws_the_plot(folder):
 
 def test_designs_of_the_front_are_numbered_and_named(monkeypatch, tmp_path):
     figures = []
-    monkeypatch.setattr(drawing, "save", lambda figure, _path: figures.append(figure))
-    drawing.draw_front(tmp_path / "front.png", {"currency": "EUR", "designs": ROWS})
+    monkeypatch.setattr(plotting, "save_plot", lambda figure, _path: figures.append(figure))
+    plotting.draw_front(tmp_path / "front.png", {"currency": "EUR", "designs": ROWS})
     plot, key = figures[0].axes
     places = {text.get_text(): text.get_position() for text in plot.texts}
     assert places == {"1": (1.0, 9.0), "2": (2.0, 8.0)}

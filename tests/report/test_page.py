@@ -1,4 +1,4 @@
-"""The page's verdicts follow from the figures: whoever turns the figures over turns the words."""
+"""The page's verdicts follow from the results: changed results change the verdicts."""
 
 import ast
 import copy
@@ -8,11 +8,10 @@ import re
 
 import pytest
 
-from pe_report.claims import TEXTS, claims
-from pe_report.facts import Facts
-from pe_report.page import page
-from pe_report.paper import ROW
-from pe_report.places import printed
+from pe_tools.reproduction.claims import TEXTS, claims
+from pe_tools.reproduction.page import page
+from pe_tools.reproduction.paper import ROW
+from pe_tools.reproduction.result_view import ReproductionResults, printed_positions
 from tests.report.conftest import ROOT
 
 DOCS = ROOT / "docs" / "reproduction"
@@ -21,63 +20,66 @@ PRIORS = ("road", "uniform", "highway")
 BUS = ("3_default", "3_front")
 
 
-def told(data):
+def verdicts_and_page(data):
     """The verdicts by name, and the page in one line."""
-    facts = Facts(data)
-    text = page(facts)
-    return facts.said, " ".join(text.split())
+    results = ReproductionResults(data)
+    text = page(results)
+    return results.verdicts, " ".join(text.split())
 
 
-def turned(change):
-    """The committed results with their values changed, judged anew."""
+def results_with(change):
+    """The committed results with their values changed, and the claims that follow from them."""
     data = copy.deepcopy(COMMITTED)
     values = {name: entry["value"] for name, entry in data["results"].items()}
     change(values)
     data["results"] = {name: {"value": v, "seconds": 60.0} for name, v in values.items()}
-    data["claims"] = [claim.to_dict() for claim in claims(values, Facts(data).effort)]
+    data["claims"] = [claim.to_dict() for claim in claims(values, ReproductionResults(data).effort)]
     return data
 
 
-def words(text):
-    """A verdict without its figures: what has to change is the word."""
+def without_numbers(text):
+    """A verdict without its numbers: the words have to change."""
     return re.sub(r"-?[\d.]+", "#", text)
 
 
 def test_the_committed_page_is_the_one_of_the_committed_results():
-    assert page(Facts(COMMITTED)) == (DOCS / "README.md").read_text("utf-8")
+    assert page(ReproductionResults(COMMITTED)) == (DOCS / "README.md").read_text("utf-8")
 
 
 def test_the_committed_verdicts():
     """Read off results.json by hand, for the sentences that matter most."""
-    said, _ = told(COMMITTED)
+    verdicts, _ = verdicts_and_page(COMMITTED)
     for key in ("1", "3 default", "3 front", "4"):
-        assert said[f"ordering {key}"] == "the same under every prior, and in our own search."
-    assert said["ordering 2"].startswith(
+        assert verdicts[f"ordering {key}"] == "the same under every prior, and in our own search."
+    assert verdicts["ordering 2"].startswith(
         "the same under highway, the reverse under road and uniform"
     )
-    assert said["3: corners"] == "the same corners" and said["3: height"] == "about the same height"
-    assert said["pitch"].startswith("**The same as in the paper:**")
+    assert (
+        verdicts["3: corners"] == "the same corners"
+        and verdicts["3: height"] == "about the same height"
+    )
+    assert verdicts["pitch"].startswith("**The same as in the paper:**")
 
 
 def test_claims_turned_over_turn_every_ordering():
     data = copy.deepcopy(COMMITTED)
     for claim in data["claims"]:
         claim["holds"] = not claim["holds"]
-    before, (after, text) = told(COMMITTED)[0], told(data)
+    before, (after, text) = verdicts_and_page(COMMITTED)[0], verdicts_and_page(data)
     for key in TEXTS:
         names = [
             n for n in before if n in (f"ordering {key}", key) or n.startswith(f"table: {key},")
         ]
         assert names
         for name in names:
-            assert words(after[name]) != words(before[name]), name
+            assert without_numbers(after[name]) != without_numbers(before[name]), name
     for old in ("same under every prior", "The same as in the paper", "Hold under every prior",
                 "The pitch figure holds"):  # fmt: skip
-        assert old in told(COMMITTED)[1]
+        assert old in verdicts_and_page(COMMITTED)[1]
         assert old not in text
 
 
-# Ways to turn figures over.
+# Changes of the results.
 
 
 def swap(values, one, other):
@@ -147,7 +149,7 @@ def moved(values):
             if row[0] == "1":
                 at["position"] = [0.1, 0.1, 1.0 + 0.1 * int(name[-1])]
             elif row[0] == "2":
-                at["position"] = list(printed(row)[sensor])
+                at["position"] = list(printed_positions(row)[sensor])
                 value["coverage"] = 0.01
             elif row in BUS:
                 at["position"], at["rotation"] = [at["position"][0], 0.0, 3.3], [0.0, 0.0, 0.0]
@@ -161,7 +163,7 @@ def lower_on_the_bus(values):
                 at["position"][2] = 0.3
 
 
-def bounds_turned(values):
+def bounds_changed(values):
     for name, value in values.items():
         if name.startswith("bound/"):
             value["least_all_round"], value["most_unseen"] = 0.5, 0.9
@@ -169,7 +171,7 @@ def bounds_turned(values):
             value["entropy"] = [v - 10.0 for v in value["entropy"]]
 
 
-def pitch_turned(values):
+def pitch_changed(values):
     """Equal pitch the lowest, peaks a degree apart, and each LiDAR alone changing more."""
     for name, value in values.items():
         if name.startswith("pitch/"):
@@ -178,21 +180,21 @@ def pitch_turned(values):
             value["alone"]["lidar_b"] = 50.0 * degrees
 
 
-def varied_turned(values):
+def varied_changed(values):
     swap(values, "vary/as shipped/1_pandar64", "vary/as shipped/1_hdl64e")
     for name, value in values.items():
         if name.startswith(("vary/voxels", "vary/positions", "vary/expected")):
             value["entropy"] = 30.0 if "positions" in name else 20.0
 
 
-def fits_turned(values):
+def fits_changed(values):
     values["fit/paper_lidar"]["a"] += 0.01
     for name in ("car", "pedestrian", "cyclist"):
         fit = values[f"fit/kitti_{name}"]
         fit["a"], fit["left_out"] = 0.05, ["" for _ in fit["m"]]
 
 
-WAYS = (
+CHANGES = (
     swapped_at_the_printed_placements,
     swapped_in_searches,
     everything_lower,
@@ -200,64 +202,72 @@ WAYS = (
     unseen_costs_less,
     moved,
     lower_on_the_bus,
-    bounds_turned,
-    pitch_turned,
-    varied_turned,
-    fits_turned,
+    bounds_changed,
+    pitch_changed,
+    varied_changed,
+    fits_changed,
 )
 
 
 @pytest.fixture(scope="module")
-def verdicts():
-    """What the page says of the committed figures, and of each way to turn them over."""
-    return told(COMMITTED)[0], {way.__name__: told(turned(way)) for way in WAYS}
+def pages():
+    """Verdicts of the committed results; and verdicts and page of each change of the results."""
+    return verdicts_and_page(COMMITTED)[0], {
+        change.__name__: verdicts_and_page(results_with(change)) for change in CHANGES
+    }
 
 
-def test_every_verdict_of_the_page_turns_with_its_figures(verdicts):
-    before, ways = verdicts
+def test_every_verdict_of_the_page_changes_with_its_results(pages):
+    before, changed = pages
     assert len(before) > 60
     stuck = [
         name
         for name, old in before.items()
-        if not any(words(said.get(name, "")) != words(old) for said, _ in ways.values())
+        if not any(
+            without_numbers(verdicts.get(name, "")) != without_numbers(old)
+            for verdicts, _ in changed.values()
+        )
     ]
     assert stuck == []
 
 
-@pytest.mark.parametrize("way", [way.__name__ for way in WAYS])
-def test_nothing_of_an_old_verdict_is_left(verdicts, way):
-    """A sentence that the changed figures no longer say is nowhere on the page."""
-    before, ways = verdicts
-    said, text = ways[way]
-    gone = {old for name, old in before.items() if said.get(name) != old}
-    gone = {" ".join(old.split()) for old in gone - set(said.values()) if len(old.split()) > 3}
+@pytest.mark.parametrize("change", [change.__name__ for change in CHANGES])
+def test_nothing_of_an_old_verdict_is_left(pages, change):
+    """A sentence that does not follow from the changed results is nowhere on the page."""
+    before, changed = pages
+    verdicts, text = changed[change]
+    gone = {old for name, old in before.items() if verdicts.get(name) != old}
+    gone = {" ".join(old.split()) for old in gone - set(verdicts.values()) if len(old.split()) > 3}
     assert gone
     assert [old for old in gone if re.search(rf"(?<![\d.]){re.escape(old)}", text)] == []
 
 
-def test_the_orderings_of_swapped_rows_are_reversed(verdicts):
-    said, text = verdicts[1]["swapped_at_the_printed_placements"]
+def test_the_orderings_of_swapped_rows_are_reversed(pages):
+    verdicts, text = pages[1]["swapped_at_the_printed_placements"]
     for key in ("1", "3 default", "3 front"):
-        assert said[f"ordering {key}"].startswith("the reverse under every prior")
-    assert said["ordering 2"].startswith(
+        assert verdicts[f"ordering {key}"].startswith("the reverse under every prior")
+    assert verdicts["ordering 2"].startswith(
         "the same under road and uniform, the reverse under highway"
     )
     assert "same under every prior" not in text
 
 
-def test_moved_searches_are_neither_above_the_roof_nor_at_the_corners(verdicts):
-    said, text = verdicts[1]["moved"]
-    assert said["1: above the roof"].endswith("not as") and said["3: corners"] == "other corners"
+def test_moved_searches_are_neither_above_the_roof_nor_at_the_corners(pages):
+    verdicts, text = pages[1]["moved"]
+    assert (
+        verdicts["1: above the roof"].endswith("not as")
+        and verdicts["3: corners"] == "other corners"
+    )
     mean = 3.3 - (1.16 + 0.85 + 1.05 + 1.03) / 4.0
-    assert said["3: height"] == f"{mean:.2f} m higher on average"
+    assert verdicts["3: height"] == f"{mean:.2f} m higher on average"
     assert "the same corners" not in text and "about the same height" not in text
 
 
 def test_searches_that_took_no_time_have_a_page():
-    data = turned(lambda values: None)
+    data = results_with(lambda values: None)
     for entry in data["results"].values():
         entry["seconds"] = 0.0
-    assert "one search" in told(data)[1]
+    assert "one search" in verdicts_and_page(data)[1]
 
 
 @pytest.mark.parametrize(
@@ -268,9 +278,9 @@ def test_about_the_same_height_has_a_number_behind_it(off_m, verdict):
         for name, value in values.items():
             if name.startswith(("search/3_default", "search/3_front")):
                 for sensor, at in value["placements"].items():
-                    at["position"][2] = printed(name.split("/")[1])[sensor][2] + off_m
+                    at["position"][2] = printed_positions(name.split("/")[1])[sensor][2] + off_m
 
-    assert told(turned(raised))[0]["3: height"] == verdict
+    assert verdicts_and_page(results_with(raised))[0]["3: height"] == verdict
 
 
 VERDICT = re.compile(
@@ -279,10 +289,9 @@ VERDICT = re.compile(
     re.IGNORECASE,
 )
 NO_VERDICTS = (
-    "the same, or different and why.",
     "Lower is better.",
     "The first figure of each pair is of the rig that the paper finds better.",
-    "A prior with nothing nearer has a higher PE whatever else it looks like.",  # by definition
+    "A prior with nothing within them has a higher PE in any case.",  # by definition
     "m on average is about the same.",  # states the tolerance
     ", at the same LiDAR placement:",
 )
@@ -296,14 +305,20 @@ def unconditional(node, chosen=False):
         return
     if isinstance(node, ast.Constant) and isinstance(node.value, str) and not chosen:
         yield node.value
-    said = isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "say"
+    is_verdict = isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "verdict"
     for child in ast.iter_child_nodes(node):
-        yield from unconditional(child, chosen or said or isinstance(node, (ast.If, ast.IfExp)))
+        yield from unconditional(
+            child, chosen or is_verdict or isinstance(node, (ast.If, ast.IfExp))
+        )
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "pe_report/sections").glob("*.py")), ids=str)
-def test_no_verdict_stands_in_a_template(path):
-    """Comparative words are chosen by a condition or noted as verdicts, but for plain facts."""
+SECTIONS = ("page", "tables", "experiment_1", "experiment_2", "experiments_3_and_4")
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_no_verdict_is_part_of_a_template(name):
+    """Comparative words are chosen by a condition or noted as verdicts, but for plain results."""
+    path = ROOT / "pe_tools" / "reproduction" / f"{name}.py"
     texts = unconditional(ast.parse(path.read_text("utf-8")))
     sentences = [" ".join(s.split()) for text in texts for s in re.split(r"(?<=[.:])\s", text)]
     assert [s for s in sentences if VERDICT.search(s) and s not in NO_VERDICTS] == []

@@ -1,4 +1,4 @@
-"""Rank correlation with every order looked at: against figures by hand and against brute force."""
+"""Rank correlation with all permutations: against figures by hand and against brute force."""
 
 import itertools
 import math
@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from pe_report.validity.facts import least_told_apart
-from pe_report.validity.ranks import (
+from pe_tools.validity.correlations import min_significant_rho
+from pe_tools.validity.ranks import (
     agreement,
     exact_p,
     exact_p_of_mean,
@@ -42,11 +42,11 @@ def test_a_score_that_ranks_nothing_has_no_rho():
 @pytest.mark.parametrize(("count", "least"), [(5, 1.0), (6, 0.886), (7, 0.786), (8, 0.738)])
 def test_critical_values_are_the_tables(count, least):
     """Two-sided 5 %, as in tables of Spearman's rho (Zar 1972)."""
-    assert least_told_apart(count) == pytest.approx(least, abs=5e-4)
+    assert min_significant_rho(count) == pytest.approx(least, abs=5e-4)
 
 
 def test_four_placements_tell_nothing():
-    assert least_told_apart(4) is None
+    assert min_significant_rho(4) is None
 
 
 def test_chance_is_the_mean_over_detectors_of_shuffled_placements():

@@ -8,8 +8,7 @@ import sys
 
 import pytest
 
-from pe_report.effort import QUICK
-from pe_report.plan import plan
+from pe_tools.reproduction.plan import QUICK, plan
 from tests.report.conftest import ROOT, numbers, pe
 
 KEYS = ("1", "2", "3 default", "3 front", "4")
@@ -50,7 +49,7 @@ def test_the_camera_row_is_out_of_reach(quick):
             assert printed < value["least_all_round"] < value["least"] < ours
 
 
-def test_nothing_is_left_to_do_and_all_is_said(quick):
+def test_the_run_is_complete(quick):
     values = {name: entry["value"] for name, entry in quick.data["results"].items()}
     assert plan(QUICK, values) == []
     assert quick.data["made"]["commit"] and quick.data["made"]["machine"]
@@ -61,10 +60,10 @@ def test_every_figure_of_the_page_is_in_the_results(quick):
     """Numbers of four decimals are entropies: each is one of the results' or of the paper's."""
     page = (quick.folder / "README.md").read_text("utf-8")
     paper = {"1.6429", "2.1212", "2.0055", "2.0237", "1.7119", "1.6864", "0.8965"}
-    told = {f"{v:.4f}" for v in numbers(quick.data)}
+    ours = {f"{v:.4f}" for v in numbers(quick.data)}
     found = set(re.findall(r"(?<![\d.])-?\d+\.\d{4}(?!\d)", page))
     assert len(found) > 30
-    assert found <= told | paper
+    assert found <= ours | paper
 
 
 def test_every_picture_of_the_page_is_there(quick):

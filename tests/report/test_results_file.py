@@ -7,11 +7,11 @@ import random
 import pytest
 
 from pe_core import InputError
-from pe_report.effort import FULL, QUICK
-from pe_report.facts import Facts
-from pe_report.ledger import Ledger
-from pe_report.page import page
-from pe_report.read import read_results
+from pe_tools.reproduction.page import page
+from pe_tools.reproduction.plan import FULL, QUICK
+from pe_tools.reproduction.reproduce import check_value, read_results
+from pe_tools.reproduction.result_view import ReproductionResults
+from pe_tools.reproduction.results_file import ResultsFile
 from tests.report.conftest import ROOT, pe, pe_without_matplotlib
 
 DOCS = ROOT / "docs" / "reproduction"
@@ -130,9 +130,9 @@ def places(at, path=()):
         yield from places(value, (*path, key))
 
 
-def spoiled(rng, every):
+def spoiled(rng, all_places):
     """The committed results with one value lost, or something else in its place."""
-    *folders, last = rng.choice(every)
+    *folders, last = rng.choice(all_places)
     data = at = copy.copy(COMMITTED)
     for key in folders:
         at[key] = copy.copy(at[key])
@@ -150,16 +150,17 @@ STRANGE = (*NUMBERS, *WORDS, None, True, [], {}, [[]], {"a": 1})
 
 
 def test_whatever_one_value_is_there_is_a_page_or_one_line(tmp_path):
-    rng, every, path = random.Random(8), list(places(COMMITTED)), tmp_path / "results.json"
+    rng, all_places = random.Random(8), list(places(COMMITTED))
+    path = tmp_path / "results.json"
     pages = 0
     for _ in range(120):
-        path.write_text(json.dumps(spoiled(rng, every)), "utf-8")
+        path.write_text(json.dumps(spoiled(rng, all_places)), "utf-8")
         try:
             data = read_results(path)
         except InputError as error:
             assert str(error).isprintable() and len(str(error)) < 400
         else:
-            pages += page(Facts(data)).startswith("# ")
+            pages += page(ReproductionResults(data)).startswith("# ")
     assert 0 < pages < 120
 
 
@@ -168,39 +169,42 @@ def test_the_committed_file_is_right():
 
 
 def test_results_of_this_run_that_are_damaged_are_not_gone_on_with(tmp_path):
-    ledger = Ledger(tmp_path, QUICK)
-    ledger.note("pitch/0", ONE, 0.1)
-    text = ledger.path.read_text("utf-8")
-    ledger.path.write_text(text.replace('"seconds": 0.1', '"seconds": "long"'), "utf-8")
+    results = ResultsFile(tmp_path, QUICK, check_value)
+    results.add("pitch/0", ONE, 0.1)
+    text = results.path.read_text("utf-8")
+    results.path.write_text(text.replace('"seconds": 0.1', '"seconds": "long"'), "utf-8")
     with pytest.raises(InputError, match=r"results.pitch/0.seconds: expected a number"):
-        Ledger(tmp_path, QUICK)
+        ResultsFile(tmp_path, QUICK, check_value)
 
 
 def test_results_of_another_commit_are_kept_under_their_own_name(tmp_path):
     value = ONE
-    ledger = Ledger(tmp_path, QUICK)
-    ledger.note("pitch/0", value, 0.1)
-    assert Ledger(tmp_path, QUICK).found == 1 and Ledger(tmp_path, QUICK).aside is None
-    old = ledger.path.read_text("utf-8").replace(
-        ledger.made["commit"], "0123456789ab, changed since"
+    results = ResultsFile(tmp_path, QUICK, check_value)
+    results.add("pitch/0", value, 0.1)
+    assert (
+        ResultsFile(tmp_path, QUICK, check_value).loaded == 1
+        and ResultsFile(tmp_path, QUICK, check_value).old_results is None
+    )
+    old = results.path.read_text("utf-8").replace(
+        results.made["commit"], "0123456789ab, changed since"
     )
     for kept in (
         "results-0123456789ab-changed-since.json",
         "results-0123456789ab-changed-since-2.json",
     ):
-        ledger.path.write_text(old, "utf-8")
-        new = Ledger(tmp_path, QUICK)
-        assert (new.found, new.aside) == (0, tmp_path / kept)
-        assert ledger.path.read_text("utf-8") == old  # until there is a result of this run
-        new.note("pitch/1", value, 0.1)
+        results.path.write_text(old, "utf-8")
+        new = ResultsFile(tmp_path, QUICK, check_value)
+        assert (new.loaded, new.old_results) == (0, tmp_path / kept)
+        assert results.path.read_text("utf-8") == old  # until there is a result of this run
+        new.add("pitch/1", value, 0.1)
         assert (tmp_path / kept).read_text("utf-8") == old
-        assert list(json.loads(ledger.path.read_text("utf-8"))["results"]) == ["pitch/1"]
+        assert list(json.loads(results.path.read_text("utf-8"))["results"]) == ["pitch/1"]
 
 
 def test_results_of_another_effort_are_kept(tmp_path):
-    Ledger(tmp_path, QUICK).note("pitch/0", ONE, 0.1)
-    full = Ledger(tmp_path, FULL)
-    assert full.found == 0 and full.aside.name.startswith("results-")
+    ResultsFile(tmp_path, QUICK, check_value).add("pitch/0", ONE, 0.1)
+    full = ResultsFile(tmp_path, FULL, check_value)
+    assert full.loaded == 0 and full.old_results.name.startswith("results-")
 
 
 @pytest.mark.parametrize("name", ["README.md", "priors.png", "rows.png"])
@@ -228,7 +232,7 @@ def test_the_page_alone_needs_no_matplotlib_and_is_the_committed_one(tmp_path):
     assert (tmp_path / "README.md").read_bytes() == (DOCS / "README.md").read_bytes()
 
 
-def test_where_plots_are_asked_for_the_missing_extra_is_told_before_any_work(tmp_path):
+def test_missing_matplotlib_is_reported_before_any_work(tmp_path):
     run = pe_without_matplotlib("reproduce", "--quick", "--output", tmp_path)
     assert run.returncode == 1 and not run.stdout and not list(tmp_path.iterdir())
     assert run.stderr.startswith("pe: plots: ") and run.stderr.count("pe: ") == 1
@@ -236,13 +240,13 @@ def test_where_plots_are_asked_for_the_missing_extra_is_told_before_any_work(tmp
 
 
 @pytest.mark.parametrize("count", ["-1", "2.5", "two", "9" * 5000, ""])
-def test_a_wrong_number_of_workers_is_told_in_short(tmp_path, count):
+def test_a_wrong_number_of_workers_is_reported_in_one_short_message(tmp_path, count):
     run = pe("reproduce", "--quick", f"--workers={count}", "--output", tmp_path)
     assert run.returncode == 2 and not list(tmp_path.iterdir())
     assert "--workers" in run.stderr and len(run.stderr) < 1000
 
 
-def test_check_says_what_came_out_otherwise(quick, tmp_path):
+def test_check_reports_what_is_not_equal(quick, tmp_path):
     """Of results with one figure changed, that one alone is not equal."""
     data = copy.deepcopy(quick.data)
     data["results"]["bound/2_60deg/road"]["value"]["in_view"] += 1e-15
@@ -251,5 +255,5 @@ def test_check_says_what_came_out_otherwise(quick, tmp_path):
     assert run.returncode == 1
     first, last = run.stdout.splitlines()
     assert first == "not equal: bound/2_60deg/road"
-    every = sum(name.split("/")[0] not in ("search", "pilot") for name in data["results"])
-    assert last == f"{every - 1} of {every} scores and figures are equal"
+    total = sum(name.split("/")[0] not in ("search", "pilot") for name in data["results"])
+    assert last == f"{total - 1} of {total} scores and figures are equal"

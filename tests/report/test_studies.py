@@ -5,8 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from pe_report.paper import PRIORS, ROW, ROWS
-from pe_report.problems import pitched, placed, study_of, with_prior, without_cameras
+from pe_tools.reproduction.paper import (
+    PRIORS,
+    ROW,
+    ROWS,
+    study_of,
+    with_pitch_difference,
+    with_positions,
+    with_prior,
+    without_cameras,
+)
 
 TABLE_2 = {
     "1_pandar64": [("Pandar64", -0.43, 0.0, 1.80, 0.0)],
@@ -62,7 +70,7 @@ def test_every_row_has_neutral_starts_for_all_its_sensors():
     assert [row.name for row in ROWS] == list(TABLE_2)
     for row in ROWS:
         for places in row.starts.values():
-            started = placed(study_of(row.name), places)
+            started = with_positions(study_of(row.name), places)
             assert [s.pose.position for s in started.rig] == list(places.values())
             assert all(s.pose.rotation_deg[1] == 0.0 for s in started.rig)
             started.search_space()  # the start lies within the bounds
@@ -77,7 +85,7 @@ def test_priors_keep_the_focus():
 
 def test_variations_of_a_study():
     assert [s.name for s in without_cameras(study_of("4_cameras")).rig] == ["lidar_a", "lidar_b"]
-    first, second = pitched(study_of("3_front"), 1.2, 0.35).rig
+    first, second = with_pitch_difference(study_of("3_front"), 1.2, 0.35).rig
     assert (first.pose.position[2], second.pose.position[2]) == (1.2, 1.2)
     assert (first.pose.rpy[1], second.pose.rpy[1]) == (0.0, math.radians(0.35))
     assert ROW["4_cameras"].experiment == 4

@@ -1,4 +1,4 @@
-"""``pe validate``: the published placements, what is fixed beforehand, the page and its figures."""
+"""``pe validate``: the published placements, the fixed choices, the page and its numbers."""
 
 import json
 import math
@@ -9,17 +9,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pe_report.page import put_together
-from pe_report.validity import correlated, scores
-from pe_report.validity.choices import BASE, BODY_M, body_of, box_triangles, variants
-from pe_report.validity.correlated import LAYOUTS, LEVEL, RankQuestion, questions
-from pe_report.validity.effort import FULL, QUICK
-from pe_report.validity.facts import ValidityFacts
-from pe_report.validity.plan import names, plan
-from pe_report.validity.published import CLEAN, DEGREES, RADIANS, paper_of, papers
-from pe_report.validity.results import read_results
-from pe_report.validity.sections import SECTIONS
-from pe_report.validity.sections.settle import placements_for
+from pe_tools.validity import correlations, scores
+from pe_tools.validity.correlations import (
+    LAYOUTS,
+    LEVEL,
+    RankComparison,
+    ValidityResults,
+    comparisons,
+)
+from pe_tools.validity.page import page, placements_for
+from pe_tools.validity.published import CLEAN, DEGREES, RADIANS, paper_of, papers
+from pe_tools.validity.scores import BASE, BODY_M, body_of, box_triangles, variants
+from pe_tools.validity.tasks import FULL, QUICK, names, plan
+from pe_tools.validity.validate import read_results
 from tests.report.conftest import ROOT, numbers, pe
 
 
@@ -59,13 +61,13 @@ def test_lidars_have_their_channels_and_beams():
     assert lidar.beam_count == 16 * 250  # 80,000 points a second at 20 Hz
 
 
-def test_every_question_has_all_its_placements():
+def test_every_comparison_has_all_its_placements():
     place3d, icra = papers()
-    asked = questions(place3d)
-    assert {q.cls for q in asked if q.condition == CLEAN} == {"car", "pedestrian", "cyclist"}
-    assert {len(q.placements) for q in asked} == {8, 5}
-    assert len({q.condition for q in asked}) == 7
-    assert {len(q.placements) for q in questions(icra)} == {8, 4}
+    found = comparisons(place3d)
+    assert {c.cls for c in found if c.condition == CLEAN} == {"car", "pedestrian", "cyclist"}
+    assert {len(c.placements) for c in found} == {8, 5}
+    assert len({c.condition for c in found}) == 7
+    assert {len(c.placements) for c in comparisons(icra)} == {8, 4}
 
 
 def test_the_box_is_closed_and_stands_on_the_ground():
@@ -82,10 +84,10 @@ def test_a_box_is_turned_counter_clockwise():
 
 
 def test_each_choice_is_varied_alone():
-    for way in variants(True):
+    for choice in variants(True):
         fields = ("body", "density", "curves", "part")
-        assert sum(getattr(way, f) != getattr(BASE, f) for f in fields) <= 1
-    assert len({way.name for way in variants(True)}) == len(list(variants(True)))
+        assert sum(getattr(choice, f) != getattr(BASE, f) for f in fields) <= 1
+    assert len({choice.name for choice in variants(True)}) == len(list(variants(True)))
 
 
 def test_what_variants_share_is_computed_once():
@@ -102,42 +104,44 @@ def test_the_quick_run_is_complete(quick):
 
 def test_height_is_what_the_papers_disagree_on(quick):
     """Independent of any score: 0.88 and -0.69, as a table of both papers' cars gives by hand."""
-    reading, placed = correlated.WAYS[0]
+    reading, selection = correlations.TREATMENTS[0]
     rows = [row for row in quick.data["over_papers"] if row["score"] == "mean height"]
     found = {(row["reading"], row["placements"]): row["rho"] for row in rows}
-    assert found[reading, placed] == pytest.approx([0.877, -0.694], abs=1e-3)
+    assert found[reading, selection] == pytest.approx([0.877, -0.694], abs=1e-3)
 
 
 def test_scores_are_turned_so_that_higher_is_better(quick):
     values = {name: entry["value"] for name, entry in quick.data["results"].items()}
     paper = paper_of("place3d")
     by_name = {c.name: c for c in scores.CANDIDATES}
-    asked = paper, "center", DEGREES, "car", BASE, values
+    rating = scores.Rating(paper, "center", DEGREES, "car")
     entropy = values["voxels/alone/place3d/center/degrees/box"]["road"]["per_class"]["car"][
         "entropy"
     ]
-    assert by_name["perception entropy, road prior"].ranked(*asked) == -entropy
+    assert by_name["perception entropy, road prior"].value(rating, values) == -entropy
     ap = values["objects/alone/place3d/center/degrees/box/1/fitted"]["per_class"]["car"]["ap"]
-    assert by_name["expected AP"].ranked(*asked) == ap
+    assert by_name["expected AP"].value(rating, values) == ap
 
 
 def test_without_the_rolled_placements_there_are_five():
     paper = paper_of("place3d")
-    question = RankQuestion(paper, CLEAN, "car", DEGREES, LEVEL)
+    comparison = RankComparison(paper, CLEAN, "car", DEGREES, LEVEL)
     level = ["center", "line", "pyramid", "square", "trapezoid"]
-    assert [name for (name,) in question.placements] == level
-    assert all(len(aim) == 5 for aim in question.aims.values())
+    assert [name for (name,) in comparison.placements] == level
+    assert all(len(ap) == 5 for ap in comparison.ap.values())
 
 
 def test_layouts_average_what_differs_in_cameras_alone():
-    question = RankQuestion(paper_of("icra2024"), CLEAN, "car", DEGREES, LAYOUTS)
-    assert question.placements[0] == ("wide+center", "narrow+center")
-    assert question.aims["BEVFusion/VoxelNet"][0] == pytest.approx((88.65 + 87.49) / 2)
+    comparison = RankComparison(paper_of("icra2024"), CLEAN, "car", DEGREES, LAYOUTS)
+    assert comparison.placements[0] == ("wide+center", "narrow+center")
+    assert comparison.ap["BEVFusion/VoxelNet"][0] == pytest.approx((88.65 + 87.49) / 2)
 
 
 def test_holm_is_over_all_scores_compared(quick):
-    for way in correlated.WAYS:
-        rows = [r for r in quick.data["over_papers"] if (r["reading"], r["placements"]) == way]
+    for treatment in correlations.TREATMENTS:
+        rows = [
+            r for r in quick.data["over_papers"] if (r["reading"], r["placements"]) == treatment
+        ]
         assert [row["score"] for row in rows] == [c.name for c in scores.CANDIDATES]
         least = min(row["p"] for row in rows)
         assert min(row["holm"] for row in rows) == pytest.approx(min(1.0, least * len(rows)))
@@ -145,9 +149,9 @@ def test_holm_is_over_all_scores_compared(quick):
 
 def test_every_rho_of_the_page_is_in_the_results(quick):
     page = (quick.folder / "README.md").read_text("utf-8")
-    told = {f"{v + 0.0:+.2f}" for v in numbers(quick.data)}
+    allowed = {f"{v + 0.0:+.2f}" for v in numbers(quick.data)}
     found = set(re.findall(r"(?<![\d.])[+-]\d\.\d\d(?!\d)", page))
-    assert len(found) > 30 and found <= told
+    assert len(found) > 30 and found <= allowed
 
 
 def test_every_picture_of_the_page_is_there(quick):
@@ -170,9 +174,8 @@ def test_a_changed_score_is_noticed(quick, tmp_path):
 def test_the_page_of_the_docs_is_that_of_its_results():
     """Whole: correlations are worked out again from the scores, and every word from them."""
     data = read_results(ROOT / "docs" / "validity" / "results.json")
-    facts = ValidityFacts(data)
-    page = put_together(section(facts) for section in SECTIONS)
-    assert (ROOT / "docs" / "validity" / "README.md").read_text("utf-8") == page
+    results = ValidityResults(data)
+    assert (ROOT / "docs" / "validity" / "README.md").read_text("utf-8") == page(results)
 
 
 def test_placements_needed_are_those_of_fishers_z():

@@ -1,4 +1,4 @@
-"""A headless Chromium, and pages of ours opened in it; Debian's package, driven by Playwright."""
+"""Opens pages in a headless Chromium: Debian's package, driven by Playwright."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PACKAGE = "chromium"
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 """WebGL in software: the same picture on every machine."""
 PATIENCE_MS = 10_000
-"""For a browser that hangs."""
+"""Timeout for a browser that hangs."""
 DESKTOP, PHONE = (1280, 900), (390, 844)
 WITHOUT_WEBGL = """
   const real = HTMLCanvasElement.prototype.getContext;
@@ -47,7 +47,7 @@ def launched(playwright: Playwright) -> Browser:
 
 
 class Heard:
-    """What a page complained of, and whom it asked."""
+    """Records the warnings and errors of a page, and the addresses that it requests."""
 
     def __init__(self, page: Page) -> None:
         self.complaints: list[str] = []
@@ -63,7 +63,7 @@ class Heard:
 
 @contextmanager
 def opened(browser: Browser, path, size=DESKTOP, script: str | None = None):
-    """Open a file as a reader would; yield the page and what was heard of it."""
+    """Open a file in the browser; yield the page and the record of its messages and requests."""
     phone = size == PHONE
     width, height = size
     context = browser.new_context(
@@ -83,5 +83,5 @@ def opened(browser: Browser, path, size=DESKTOP, script: str | None = None):
 
 
 def settle(page: Page) -> None:
-    """Wait until what was asked for has been drawn."""
+    """Wait until pending changes are rendered."""
     page.evaluate(SETTLED)

@@ -7,8 +7,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.catalog import load
-from pe_review import Reviewed, page_bytes
-from pe_review.pictures import named_still, through_lens
+from pe_tools.page import ReportContext, page_bytes
+from pe_tools.page.pictures import sensor_views, vehicle_picture
 from tests.review.browser import started
 
 NAMES = ("</script><b>roof", "front & left / 60°")
@@ -19,8 +19,8 @@ NAMES = ("</script><b>roof", "front & left / 60°")
 def small_pictures():
     """Pictures of few pixels: what is in them does not depend on their size."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(named_still, "SIZE", (192, 108))
-        patch.setattr(through_lens, "MOST_WIDE", 128)
+        patch.setattr(vehicle_picture, "SIZE", (192, 108))
+        patch.setattr(sensor_views, "MAX_WIDTH", 128)
         yield
 
 
@@ -59,26 +59,26 @@ def outcome_of(job):
 @pytest.fixture(scope="session")
 def scored():
     """The study scored as it stands."""
-    return Reviewed("a/b <i>c</i>", outcome_of(pe.ScoreJob(small_study())))
+    return ReportContext("a/b <i>c</i>", outcome_of(pe.ScoreJob(small_study())))
 
 
 @pytest.fixture(scope="session")
 def other():
     """Another study, with the LiDAR farther back."""
-    return Reviewed("B & co", outcome_of(pe.ScoreJob(small_study(-1.5))))
+    return ReportContext("B & co", outcome_of(pe.ScoreJob(small_study(-1.5))))
 
 
 @pytest.fixture(scope="session")
 def searched():
     """The study after a search."""
-    return Reviewed("searched", outcome_of(pe.OptimizeJob(small_study())))
+    return ReportContext("searched", outcome_of(pe.OptimizeJob(small_study())))
 
 
 @pytest.fixture(scope="session")
 def bare():
     """A study without a vehicle."""
     study = dataclasses.replace(small_study(), vehicle=None)
-    return Reviewed("bare", outcome_of(pe.ScoreJob(study)))
+    return ReportContext("bare", outcome_of(pe.ScoreJob(study)))
 
 
 @pytest.fixture(scope="session")

@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-from pe_core.app.cli import main
-from pe_review import PAGE
-from pe_review.sections.again import again
-from pe_review.sections.search import searching
+from pe_tools import jobs
+from pe_tools.cli.verbs import main
+from pe_tools.page import PAGE
+from pe_tools.page.sections.search_history import search_history
+from pe_tools.page.sections.traceability import rerun
 from tests.review.conftest import small_study
 
 NAMED = "a <b> & c"
@@ -22,9 +23,9 @@ NAMED = "a <b> & c"
 @pytest.fixture(autouse=True)
 def few_sections(monkeypatch):
     """What the page says is tested elsewhere."""
-    monkeypatch.setattr("pe_review.page.TOGETHER", ())
-    monkeypatch.setattr("pe_review.page.LAST", ())
-    monkeypatch.setattr("pe_review.page.SECTIONS", (searching, again))
+    monkeypatch.setattr("pe_tools.page.document.TOP_SECTIONS", ())
+    monkeypatch.setattr("pe_tools.page.document.BOTTOM_SECTIONS", ())
+    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", (search_history, rerun))
 
 
 @pytest.fixture
@@ -67,7 +68,7 @@ def test_ctrl_c_while_the_page_is_written_leaves_all_as_it_was(
 
     (tmp_path / PAGE).write_text("mine")
     before = sorted(path.name for path in tmp_path.iterdir())
-    monkeypatch.setattr("pe_review.page.SECTIONS", (searching, interrupted))
+    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", (search_history, interrupted))
     assert main(["review", str(study), "-o", str(tmp_path), "--replace"]) == 130
     assert sorted(path.name for path in tmp_path.iterdir()) == before
     assert (tmp_path / PAGE).read_text() == "mine"
@@ -111,12 +112,12 @@ def test_a_search_leaves_its_page_unless_it_is_not_wanted(study, tmp_path, capsy
         assert main(["optimize", str(study), "-o", str(out), *options]) == 0
         assert (out / PAGE).exists() == left
     text = (out / PAGE).read_text("utf-8")
-    assert "What was moved" in text
+    assert "Moves of the sensors" in text
     told = shlex.join(["pe", "optimize", str(study), "-o", str(out)])
     assert f"<pre>{html.escape(told)}</pre>" in text
     given = html.unescape(re.search(r'<pre id="study-a"[^>]*>(.*?)</pre>', text, re.S)[1])
     assert tomllib.loads(given)["sensor"] == tomllib.loads(study.read_text("utf-8"))["sensor"]
-    assert pe.study.files_of_other_runs(out) == []
+    assert jobs.files_of_other_runs(out) == []
     assert main(["score", str(study), "-o", str(out)]) == 0
     assert not (out / PAGE).exists(), "it told of the search"
 
@@ -129,4 +130,4 @@ def test_a_folder_of_results_is_reviewed_as_the_search_it_was(study, tmp_path, c
     assert (tmp_path / "again" / PAGE).read_text("utf-8") == left
     (out / "result.json").write_text("{}")
     assert main(["review", str(out), "-o", str(tmp_path / "again")]) == 1
-    assert "result.json: file: expected what a search" in capsys.readouterr().err
+    assert "result.json: file: expected the result of a search" in capsys.readouterr().err

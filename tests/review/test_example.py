@@ -1,4 +1,4 @@
-"""The shuttle's page that the README links: whole, of today's make, and it asks nobody."""
+"""The example page that the README links: self-contained, and written by this version."""
 
 import json
 import re
@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "reviews" / "four_corners.html"
 MOST_BYTES = 2_500_000
 ELSEWHERE = r'(?:src|href|action)="(?!#|data:)[^"]*"|url\((?!["\']?data:)|@import'
-"""What a browser would ask somebody for."""
+"""Addresses that a browser would request."""
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_it_holds_all_it_needs(shown):
 
 
 def test_it_is_of_today_s_make(shown, searched_page):
-    """Else `tools/example_review.py` has to be run again."""
+    """If this fails, run `tools/example_review.py` again."""
     assert chapters(shown) == chapters(searched_page)
     assert shape(view(shown)) == shape(view(searched_page))
 

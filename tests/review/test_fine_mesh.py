@@ -1,4 +1,4 @@
-"""A vehicle of more triangles than a page has room for: drawn with fewer, and said."""
+"""A vehicle with too many triangles for a page is drawn simplified, and the page says so."""
 
 import dataclasses
 import re
@@ -6,8 +6,8 @@ import re
 import numpy as np
 
 import pe_core as pe
-from pe_review import Reviewed, reviewed
-from pe_review.sections.told import told
+from pe_tools.page import ReportContext, report_context
+from pe_tools.page.sections.overview import warnings_and_text
 from tests.review.conftest import outcome_of, small_study
 
 ACROSS, FEW = 120, 4_000
@@ -25,13 +25,13 @@ def hood():
 
 
 def test_it_is_drawn_with_fewer_and_the_page_says_so(monkeypatch):
-    monkeypatch.setattr(reviewed, "MOST_TRIANGLES", FEW)
+    monkeypatch.setattr(report_context, "MAX_TRIANGLES", FEW)
     study = dataclasses.replace(small_study(), vehicle=pe.Vehicle(hood()), samples=1024)
-    one = Reviewed("fine", outcome_of(pe.ScoreJob(study)))
-    shown, moved = one.shown_vehicle
+    one = ReportContext("fine", outcome_of(pe.ScoreJob(study)))
+    shown, moved = one.display_vehicle
     assert len(shown.triangles) <= FEW and moved > 0.0
     assert len(one.vehicle.triangles) == 2 * ACROSS**2, "beams are cast at all"
-    words = re.sub(r"<[^>]+>", "", told(one).html)
+    words = re.sub(r"<[^>]+>", "", warnings_and_text(one).html)
     assert f"all {2 * ACROSS**2:,} triangles" in words
     assert f"draws {len(shown.triangles):,} of them" in words
     assert np.abs(np.subtract(shown.bounds, one.vehicle.bounds)).max() <= moved

@@ -1,4 +1,4 @@
-"""Plans and maps: what is ahead is right, what is left is up, colours mean what the key says."""
+"""Plans and maps: ahead is to the right and left is up; colours have the meaning in the key."""
 
 import base64
 import re
@@ -8,22 +8,22 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import graphics
-from pe_core.sight import GroundSight
-from pe_review.pictures.blind_plan import side_words
-from pe_review.pictures.ground_maps import (
+from pe_core.scoring.sight import GroundSight
+from pe_tools import graphics
+from pe_tools.page.pictures.ground_plan import (
     BETTER,
     COVERAGE,
     ENTROPY,
     SENSORS,
     WORSE,
+    PlanDrawing,
     difference_map,
     ground_map,
+    outline_of,
 )
-from pe_review.pictures.plan import PlanDrawing, outline_of
-from pe_review.pictures.reach_plan import reach_to
-from pe_review.pictures.svg import Canvas, hexadecimal, path_of
-from pe_review.sections.maps import maps
+from pe_tools.page.pictures.sight_plans import reach_text, side_text
+from pe_tools.page.pictures.svg import Canvas, hexadecimal, path_of
+from pe_tools.page.sections.visibility import visibility
 from tests.engine.test_png import decoded
 from tests.review.conftest import box
 
@@ -82,7 +82,7 @@ def test_a_difference_is_blue_where_the_second_is_better():
 
 def test_a_plan_has_metres_where_they_are():
     plan = PlanDrawing(((-80.0, 80.0), (-40.0, 40.0)), "alt")
-    corners = plan.at(np.array([[-80.0, 40.0], [80.0, -40.0], [0.0, 0.0]]))
+    corners = plan.points(np.array([[-80.0, 40.0], [80.0, -40.0], [0.0, 0.0]]))
     assert corners[0, 0] < corners[1, 0] and corners[0, 1] < corners[1, 1]
     np.testing.assert_allclose(corners[2], corners[:2].mean(axis=0))
     plan.frame()
@@ -114,16 +114,16 @@ def test_what_stands_in_a_drawing_is_escaped():
 
 
 def test_the_section_tells_what_the_engine_found(scored):
-    section = maps(scored)
+    section = visibility(scored)
     assert section.html.count("<svg") == 9  # four maps, three heights, two classes
     ET.fromstring(f"<div>{section.html}</div>")
     blind = scored.sight.blind(scored.rig, 0.5)
     for side in ("front", "left"):
-        assert f"<td>{side_words(blind, side)}</td>" in section.html
+        assert f"<td>{side_text(blind, side)}</td>" in section.html
     reach = scored.sight.reach(scored.rig, "pedestrian")
-    assert f"<td>{reach_to(reach, 0.0)}</td>" in section.html
+    assert f"<td>{reach_text(reach, 0.0)}</td>" in section.html
 
 
 def test_a_search_shows_before_and_what_changed(searched, bare):
-    assert maps(searched).html.count("<svg") == 12
-    assert maps(bare).html.count("<svg") == 9  # also without a vehicle
+    assert visibility(searched).html.count("<svg") == 12
+    assert visibility(bare).html.count("<svg") == 9  # also without a vehicle

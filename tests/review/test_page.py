@@ -1,4 +1,4 @@
-"""The page as a file: whole, by itself, and safe whatever names are on it."""
+"""The page as a file: well formed, self-contained, and safe with any names."""
 
 import base64
 import hashlib
@@ -10,8 +10,8 @@ from html.parser import HTMLParser
 import pytest
 
 import pe_core as pe
-from pe_review import PAGE, About, Section, page_bytes, write_page
-from pe_review.markup import escaped, script_json, table
+from pe_tools.page import PAGE, About, Section, page_bytes, write_page
+from pe_tools.page.markup import escaped, script_json, table
 from tests.review.conftest import NAMES
 
 VOID = {"meta", "img", "br", "link", "input", "hr", "wbr", "path", "rect", "circle", "line"}
@@ -85,7 +85,7 @@ def test_the_policy_names_every_script_and_style_by_its_hash(which, request):
 
 
 def test_a_page_says_what_it_is(scored, monkeypatch):
-    monkeypatch.setattr("pe_review.page.SECTIONS", ())
+    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", ())
     about = About('<b>Roof & "rails"\\</b>', "A. Author", "2026-05-04", "B")
     text = page_bytes([scored], about=about).decode()
     assert "<h1>&lt;b&gt;Roof &amp; &quot;rails&quot;\\&lt;/b&gt;</h1>" in text
@@ -121,7 +121,7 @@ def test_scripts_and_styles_stand_once_and_data_by_study(scored, other, monkeypa
         data, script = {"key": one.key}, "const a = '</script>';"
         return Section("try", "Try", "<p>x</p>", data, (script,), ("p {}",))
 
-    monkeypatch.setattr("pe_review.page.SECTIONS", (section,))
+    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", (section,))
     text = page_bytes([scored, other]).decode()
     assert text.count("const a = '<\\/script>';") == text.count("p {}\n</style>") == 1
     found = dict(re.findall(r'id="data-try-(\w)">(.*?)</script>', text))
@@ -129,7 +129,7 @@ def test_scripts_and_styles_stand_once_and_data_by_study(scored, other, monkeypa
 
 
 def test_a_page_of_ours_is_replaced_another_is_not(scored, tmp_path, monkeypatch):
-    monkeypatch.setattr("pe_review.page.SECTIONS", ())
+    monkeypatch.setattr("pe_tools.page.document.STUDY_SECTIONS", ())
     path = write_page([scored], tmp_path)
     assert path == tmp_path / PAGE and write_page([scored], tmp_path) == path
     path.write_text("mine")

@@ -1,18 +1,20 @@
-"""Pictures cast by the engine: what is where in them, and the same bytes each time."""
+"""Rendered pictures: positions of objects in them, shadows, and reproducible bytes."""
 
 import numpy as np
 import pytest
 
 import pe_core as pe
 from pe_core.catalog import load
-from pe_review.pictures import named_still
-from pe_review.pictures.drawing import drawn
-from pe_review.pictures.named_still import RADIUS, spread
-from pe_review.pictures.normals import corner_normals
-from pe_review.pictures.painted import Paint, PaintedBody, painted_vehicle
-from pe_review.pictures.still import still, usual_view
-from pe_review.pictures.tableau import GROUND, SKY, Tableau
-from pe_review.pictures.viewpoint import Viewpoint
+from pe_tools.page.pictures import vehicle_picture as picture_module
+from pe_tools.page.pictures.painted_mesh import Paint, PaintedMesh, corner_normals, painted_vehicle
+from pe_tools.page.pictures.ray_scene import GROUND, SKY, RayScene, Viewpoint
+from pe_tools.page.pictures.rendering import render
+from pe_tools.page.pictures.vehicle_picture import (
+    RADIUS,
+    default_view,
+    spread_apart,
+    vehicle_picture,
+)
 from tests.engine.test_png import decoded
 from tests.review.conftest import box
 
@@ -36,9 +38,9 @@ def car():
 def test_a_view_projects_where_it_looks():
     """Its rays and its projection are each other's inverse; left of the eye is left."""
     view = Viewpoint((-10.0, 0.0, 2.0), (0.0, 0.0, 1.0), 40.0)
-    shot = view.shot(*SIZE)
+    camera = view.camera(*SIZE)
     right, down = np.array([3.5, 48.0, 90.0]), np.array([5.0, 27.0, 50.5])
-    points = np.array(view.eye) + 7.0 * shot.look(right, down)
+    points = np.array(view.eye) + 7.0 * camera.rays_through(right, down)
     found = view.project(points, *SIZE)
     np.testing.assert_allclose(found, (right, down), atol=1e-9)
     (x,), (y,) = view.project(np.array([[5.0, 2.0, 3.0]]), *SIZE)
@@ -47,21 +49,21 @@ def test_a_view_projects_where_it_looks():
 
 def test_what_stands_left_is_drawn_left():
     boxes = [box((4.0, y - 0.5, 0.0), (5.0, y + 0.5, 1.5)) for y in (2.0, -2.0)]
-    pair = [PaintedBody(pe.Vehicle(b), (p,)) for b, p in zip(boxes, (RED, BLUE), strict=True)]
-    stage = Tableau(pair, has_vehicle=False)
-    shot = Viewpoint((-8.0, 0.0, 2.0), (4.0, 0.0, 0.8), 40.0).shot(*SIZE)
-    seen = stage.seen(shot.eye, shot.directions())
-    what = seen.what.reshape(SIZE[1], SIZE[0])
-    columns = [np.nonzero(what == number)[1] for number in (1, 2)]
+    pair = [PaintedMesh(pe.Vehicle(b), (p,)) for b, p in zip(boxes, (RED, BLUE), strict=True)]
+    solids = RayScene(pair, has_vehicle=False)
+    camera = Viewpoint((-8.0, 0.0, 2.0), (4.0, 0.0, 0.8), 40.0).camera(*SIZE)
+    hits = solids.first_hits(camera.eye, camera.directions())
+    surface = hits.surface.reshape(SIZE[1], SIZE[0])
+    columns = [np.nonzero(surface == number)[1] for number in (1, 2)]
     assert columns[0].max() < SIZE[0] / 2 < columns[1].min()
-    assert (what[0] == SKY).all() and (what[-1] == GROUND).all()
+    assert (surface[0] == SKY).all() and (surface[-1] == GROUND).all()
 
 
 def test_a_shadow_lies_away_from_the_sun():
     """Straight above, with a sun from the left, the ground right of the box is dark."""
-    stage = Tableau([PaintedBody(pe.Vehicle(box((-1, -1, 0), (1, 1, 1))), (RED,))])
+    solids = RayScene([PaintedMesh(pe.Vehicle(box((-1, -1, 0), (1, 1, 1))), (RED,))])
     floor = np.array([[0.0, -1.3, 0.0], [0.0, 1.3, 0.0], [0.0, -9.0, 0.0]])
-    lit = stage.lit(np.array([0.0, 50.0, 50.0]), floor)
+    lit = solids.lit(np.array([0.0, 50.0, 50.0]), floor)
     assert lit.tolist() == [False, True, True]
 
 
@@ -77,18 +79,18 @@ def test_corners_of_a_box_are_sharp_and_of_a_sheet_smooth():
 
 
 def test_a_still_shows_the_vehicle_and_is_the_same_each_time(car):
-    png = still(*car, SIZE)
-    assert png == still(*car, SIZE)
+    png = vehicle_picture(*car, SIZE)
+    assert png == vehicle_picture(*car, SIZE)
     pixels = decoded(png).astype(int)
     assert pixels.shape == (54, 96, 3)
     assert abs(pixels[0, 0] - pixels[0, -1]).max() <= 1  # paper in the corners
     middle = pixels[20:34, 40:56].reshape(-1, 3)
     assert (pixels[0, 0] - middle).max(axis=1).mean() > 15  # the body is darker
-    assert decoded(still(None, car[1], SIZE)).shape == (54, 96, 3)
+    assert decoded(vehicle_picture(None, car[1], SIZE)).shape == (54, 96, 3)
 
 
 def test_all_of_a_vehicle_is_in_the_usual_view(car):
-    view = usual_view(*car)
+    view = default_view(*car)
     low, high = car[0].bounds
     corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, 8).T
     right, down = view.project(corners, 960, 540)
@@ -101,33 +103,33 @@ def test_glass_is_looked_through_by_a_camera_alone():
     pane, wall = (box((x, -2, 0), (x + 0.1, 2, 3)) for x in (1.0, 4.0))
     parts = np.repeat([0, 1], [len(pane), len(wall)])
     vehicle = pe.Vehicle(np.concatenate([pane, wall]), parts, ["window", "wall"], ["window"])
-    stage = Tableau([painted_vehicle(vehicle)])
+    solids = RayScene([painted_vehicle(vehicle)])
     ahead, eye = np.array([[1.0, 0.0, 0.0]]), np.array([0.0, 0.0, 1.0])
-    assert stage.seen(eye, ahead).part.tolist() == [0]
-    assert stage.seen(eye, ahead, from_sensor=True).part.tolist() == [1]
+    assert solids.first_hits(eye, ahead).part.tolist() == [0]
+    assert solids.first_hits(eye, ahead, from_sensor=True).part.tolist() == [1]
 
 
 def test_every_pixel_has_a_colour(car):
-    stage = Tableau([painted_vehicle(car[0])])
-    from pe_review.pictures.still import _studio
+    solids = RayScene([painted_vehicle(car[0])])
+    from pe_tools.page.pictures.vehicle_picture import _studio
 
-    picture = drawn(usual_view(*car).shot(33, 21), stage, _studio(car[0].bounds))
+    picture = render(default_view(*car).camera(33, 21), solids, _studio(car[0].bounds))
     assert picture.shape == (21, 33, 3) and np.isfinite(picture).all()
     assert picture.min() >= 0.0 and picture.max() <= 1.0
 
 
 def test_numbers_stand_apart_and_in_the_picture():
     places = np.array([[96.0, 54.0]] * 4 + [[-50.0, 160.0], [99.0, 58.0]])
-    found = spread(places)
+    found = spread_apart(places)
     apart = np.sqrt(((found[:, None] - found[None]) ** 2).sum(axis=2))[np.triu_indices(6, 1)]
     assert apart.min() > 2 * RADIUS
-    assert found.min() > 0 and (found < named_still.SIZE).all()
+    assert found.min() > 0 and (found < picture_module.SIZE).all()
 
 
 def test_a_sensor_behind_the_body_is_told_apart(car):
     """From ahead on the right: the one behind the box is dashed; names are escaped."""
     vehicle, rig = car
     behind = pe.Sensor("a <b>", rig["right"].model, pe.Pose((-2.3, 0.5, 0.6)))
-    text = named_still.named_still(vehicle, pe.Rig([rig["right"], behind]), "alt")
+    text = picture_module.labelled_picture(vehicle, pe.Rig([rig["right"], behind]), "alt")
     assert text.count('stroke-dasharray="4 4"') == 1 and text.count("<circle") == 3
     assert "a &lt;b&gt;" in text and "2 a" in text

@@ -1,4 +1,4 @@
-"""Dimensions, bill of materials, and what the figures rest on."""
+"""Dimensions, bill of materials, assumptions, and the plan of blind ground."""
 
 import dataclasses
 import xml.etree.ElementTree as ET
@@ -8,16 +8,16 @@ import pytest
 
 import pe_core as pe
 from pe_core.catalog import load
-from pe_core.sight import BlindGround
-from pe_core.sight.blind import BlindSpot
-from pe_review import Reviewed, reviewed_together
-from pe_review.pictures.blind_plan import blind_plan
-from pe_review.pictures.dimensions import side_view, spread, top_view
-from pe_review.sections.basis import VALIDITY, VALIDITY_PAGE, basis
-from pe_review.sections.bill import bill
-from pe_review.sections.plan import plan
+from pe_core.scoring.sight import BlindGround
+from pe_core.scoring.sight.blind_ground import BlindSpot
+from pe_tools.page import ReportContext, keyed_contexts
+from pe_tools.page.pictures.dimension_drawing import side_view, spread_labels, top_view
+from pe_tools.page.pictures.sight_plans import blind_plan
+from pe_tools.page.sections.bill_of_materials import bill_of_materials
+from pe_tools.page.sections.sensor_details import dimensions
+from pe_tools.page.sections.traceability import VALIDITY, VALIDITY_PAGE, assumptions
 from tests.review.conftest import NAMES, small_study
-from tests.review.test_versus import beside, cells, rig
+from tests.review.test_comparison import beside, cells, rig
 
 ROOT = Path(__file__).resolve().parents[2]
 CAR = small_study().vehicle  # 4.4 x 1.8 x 1.5 m, its floor 0.2 m over the ground
@@ -37,7 +37,7 @@ CAR = small_study().vehicle  # 4.4 x 1.8 x 1.5 m, its floor 0.2 m over the groun
     ],
 )
 def test_labels_are_moved_apart_and_no_farther(places, moved):
-    assert spread(places, 10.0, 0.0, 100.0) == pytest.approx(moved, abs=1e-3)
+    assert spread_labels(places, 10.0, 0.0, 100.0) == pytest.approx(moved, abs=1e-3)
 
 
 def texts(svg):
@@ -65,11 +65,11 @@ def test_both_views_have_the_vehicle_s_size_and_the_sensors_ordinates():
 def test_the_section_measures_from_ground_front_axle_and_middle():
     axle = pe.Reference(-1.5, 0.35, 2.8)
     (one,) = beside(rig(), reference=axle)
-    html = plan(one).html
+    html = dimensions(one).html
     assert cells(html)[1] == ["2 front &amp; left / 60°", "1.200", "−0.100", "3.800", "0.200 left"]
-    assert "Rear axle 0.350 m over the ground, wheelbase 2.800 m" in html
+    assert "The rear axle is 0.350 m above the ground, wheelbase 2.800 m" in html
     (bare,) = beside(rig(), vehicle=None)
-    assert plan(bare).html == ""
+    assert dimensions(bare).html == ""
 
 
 CHOICE = pe.Choice([pe.Option(load("Camera 60 deg"), 1200.0)], sensors=[NAMES[1]])
@@ -78,15 +78,15 @@ CHOICE = pe.Choice([pe.Option(load("Camera 60 deg"), 1200.0)], sensors=[NAMES[1]
 def test_the_bill_counts_and_says_what_has_no_price():
     priced = pe.Selection([CHOICE], currency="EUR")
     (one,) = beside(rig(), selection=priced)
-    html = bill((one,)).html
+    html = bill_of_materials((one,)).html
     assert cells(html) == [
         ["small LiDAR", "LiDAR", "&lt;/script&gt;&lt;b&gt;roof", "1", "no price", "no price"],
         ["Camera 60 deg", "Camera", "front &amp; left / 60°", "1", "1,200 EUR", "1,200 EUR"],
         ["All sensors", "", "", "2", "", "at least 1,200 EUR"],
     ]
-    assert "No price is known of 1 model: <b>small LiDAR</b>" in html
+    assert "No price is known for 1 model: <b>small LiDAR</b>" in html
     each = beside(rig(), rig(without=[NAMES[0]]), selection=priced)
-    assert cells(bill(each).html) == [
+    assert cells(bill_of_materials(each).html) == [
         ["small LiDAR", "no price", "1", "–"],
         ["Camera 60 deg", "1,200 EUR", "1", "1"],
         ["Count", "", "2", "1"],
@@ -95,16 +95,18 @@ def test_the_bill_counts_and_says_what_has_no_price():
 
 
 def test_the_page_says_what_it_rests_on_and_what_it_does_not_say(scored):
-    html = basis((scored,)).html
+    html = assumptions((scored,)).html
     assert "PointPillars on KITTI" in html and "RTM3D on KITTI" in html
-    assert "validation scenes of nuScenes" in html and "only the vehicle itself does" in html
-    assert "evaluated 14 m ahead, 14 m behind, 12 m to the left" in html
+    assert "validation scenes of nuScenes" in html and "Only the vehicle itself occludes" in html
+    assert "space extends 14 m ahead, 14 m behind, 12 m to the left" in html
     own = pe.PerceptionModel(lidar=pe.ApCurve(0.2, 0.5))
     study = dataclasses.replace(small_study(), model=own, vehicle=None)
     score = scored.after
-    (other,) = reviewed_together([Reviewed("own", pe.Outcome("score", study, study, score, score))])
-    html = basis((other,)).html
-    assert "given by the study" in html and "the figures are too good" in html
+    (other,) = keyed_contexts(
+        [ReportContext("own", pe.Outcome("score", study, study, score, score))]
+    )
+    html = assumptions((other,)).html
+    assert "given by the study" in html and "the values are too good" in html
 
 
 def test_the_verdict_on_validity_is_that_of_its_page():

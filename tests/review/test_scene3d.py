@@ -1,4 +1,4 @@
-"""The 3-D view's data: places as they are, triangles of every part, colours, and not too much."""
+"""The 3-D view's data: exact positions, triangles by part, colours, and a limited size."""
 
 import base64
 import hashlib
@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import graphics
-from pe_review.scene3d import SCRIPTS, THREE, scene_data, view3d
-from pe_review.scene3d.body import housing_data, vehicle_data
-from pe_review.scene3d.packing import places, primitives
+from pe_tools import graphics
+from pe_tools.page.scene3d import SCRIPTS, THREE, scene_data, view3d
+from pe_tools.page.scene3d.packed_data import (
+    housing_data,
+    packed_points,
+    packed_primitives,
+    vehicle_data,
+)
 
 THREE_SHA256 = "3e322f986588f7ebb331c039f732ec0f5284e86a643f09eade7be1cd4eba5fd8"
 """Of what tools/vendor_three.sh makes of the versions that it names."""
@@ -33,18 +37,20 @@ def data(scored):
 
 def test_places_come_back_within_half_a_step():
     some = np.random.default_rng(1).uniform((-3, 2, 0), (5, 3, 1), (500, 3))
-    packed = places(some)
+    packed = packed_points(some)
     assert packed["step"] == pytest.approx(np.ptp(some[:, 0]) / 65535)
     np.testing.assert_allclose(points(packed), some, atol=0.51 * packed["step"], rtol=0.0)
 
 
 @pytest.mark.parametrize("some", [np.empty((0, 3)), np.full((1, 3), 7.0)])
 def test_no_point_and_a_single_one(some):
-    np.testing.assert_allclose(points(places(some)), some)
+    np.testing.assert_allclose(points(packed_points(some)), some)
 
 
 def test_colors_are_bytes():
-    packed = primitives(graphics.Primitives.of([(0, 0, 0), (1, 0, 0)], (1.0, 0.5, 0.0, 0.25)))
+    packed = packed_primitives(
+        graphics.Primitives.of([(0, 0, 0), (1, 0, 0)], (1.0, 0.5, 0.0, 0.25))
+    )
     np.testing.assert_array_equal(numbers(packed["colors"], "u1"), [255, 128, 0, 64] * 2)
 
 
@@ -67,7 +73,7 @@ def test_the_vehicle_has_all_triangles_by_part(scored):
 
 
 def test_a_large_vehicle_is_simplified_and_that_is_said(scored, monkeypatch):
-    monkeypatch.setattr("pe_review.scene3d.body.MOST_TRIANGLES", 1000)
+    monkeypatch.setattr("pe_tools.page.scene3d.packed_data.MAX_TRIANGLES", 1000)
     around = np.linspace(0.0, 2.0 * np.pi, 1001)
     rim = np.stack([np.cos(around), np.sin(around), np.ones(1001)], axis=1)
     cone = np.stack([rim[:-1], rim[1:], np.zeros((1000, 3))], axis=1)
@@ -82,9 +88,9 @@ def test_sensors_stand_where_they_do_with_their_layers(data, scored):
         np.testing.assert_array_equal(found["axes"], sensor.pose.ground_from_sensor)
     lidar, camera = data["sensors"]
     assert lidar["field"] is None and camera["field"][0] == pytest.approx(60.0)
-    assert lidar["sees"] == "beams" and camera["sees"] == "view"
+    assert lidar["drawn_as"] == "beams" and camera["drawn_as"] == "view"
     assert lidar["housing"] is None, "a model that nobody has measured"
-    start = points(lidar["layers"]["sees"]["lines"])[::4]
+    start = points(lidar["layers"]["fov"]["lines"])[::4]
     np.testing.assert_allclose(start, np.tile(lidar["at"], (len(start), 1)), atol=1e-3)
     ground = points(lidar["layers"]["ground"]["lines"])
     np.testing.assert_allclose(ground[:, 2], 0.0, atol=1e-3)
@@ -119,7 +125,7 @@ def test_a_camera_s_own_vehicle_is_drawn_where_it_sees_it(scored):
 def test_without_a_vehicle_sensors_are_drawn_alone(bare):
     found = scene_data(bare)
     assert found["vehicle"] is None and "See through" not in view3d(bare).html
-    assert "lines" not in found["sensors"][0]["layers"]["stopped"]
+    assert "lines" not in found["sensors"][0]["layers"]["occluded"]
 
 
 def test_it_is_small_and_a_whole_program(scored):

@@ -1,4 +1,4 @@
-"""What sensors see: left is left, through the camera's own lens, sizes as they are."""
+"""Sensor views: left is left, the camera's own lens, and figures of the true size."""
 
 import dataclasses
 import math
@@ -8,17 +8,22 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import graphics
 from pe_core.catalog import load
-from pe_core.kinds import Camera, KannalaBrandt, range_picture
-from pe_review.figures import percent
-from pe_review.pictures import through_lens
-from pe_review.pictures.all_round import lidar_picture
-from pe_review.pictures.company import company, looks_to
-from pe_review.pictures.marked import MarkedPicture, lifted
-from pe_review.pictures.props import CAR_M, PERSON_M, car, person
-from pe_review.pictures.through_lens import camera_picture, camera_shot
-from pe_review.sections.sensors import places_of, sensors
+from pe_core.sensors import Camera, KannalaBrandt, range_picture
+from pe_tools import graphics
+from pe_tools.advice.number_text import percent
+from pe_tools.page.pictures import sensor_views
+from pe_tools.page.pictures.reference_figures import (
+    CAR_M,
+    PERSON_M,
+    car,
+    heading_of,
+    person,
+    reference_figures,
+)
+from pe_tools.page.pictures.sensor_views import camera_picture, lidar_picture, ray_camera
+from pe_tools.page.pictures.svg import LabelledPicture, stacked
+from pe_tools.page.sections.sensor_details import position_tables, sensor_details
 from tests.engine.test_png import decoded
 from tests.review.conftest import box
 
@@ -32,7 +37,7 @@ def mounted(model, yaw_deg=0.0, at=(0.0, 0.0, 1.4), pitch_deg=0.0):
 
 @pytest.mark.parametrize(("make", "size"), [(person, PERSON_M), (car, CAR_M)])
 def test_people_and_cars_are_as_large_as_told(make, size):
-    low, high = make(0.0, 0.0, 0.0).body.bounds
+    low, high = make(0.0, 0.0, 0.0).mesh.bounds
     assert high[2] == pytest.approx(size[2], abs=0.01) and low[2] == pytest.approx(0.0, abs=0.01)
     assert (high - low)[1] <= size[1] + 0.1 and (high - low)[0] <= size[0] + 0.1
 
@@ -40,29 +45,29 @@ def test_people_and_cars_are_as_large_as_told(make, size):
 @pytest.mark.parametrize("yaw", [0.0, 90.0, 200.0])
 def test_they_stand_where_it_looks_people_left_cars_right(yaw):
     sensor = mounted(SMALL, yaw)
-    found = company(sensor, math.radians(60.0), None)
+    found = reference_figures(sensor, math.radians(60.0), None)
     assert [(c.name, c.distance) for c in found if c.name == "person"] == [
         ("person", d) for d in (40.0, 20.0, 10.0, 5.0)
     ]
     for each in found:
         way = sensor.pose.ground_from_sensor.T @ (np.array(each.top) - sensor.pose.position)
         assert way[0] > 0 and (way[1] > 0) == (each.name == "person")
-        corners = each.body.body.triangles.reshape(-1, 3)[:, :2]
+        corners = each.painted.mesh.triangles.reshape(-1, 3)[:, :2]
         nearest = np.hypot(*corners.T).min()
         assert nearest == pytest.approx(each.distance, abs=0.3)
 
 
 def test_nobody_stands_in_the_vehicle_or_outside_the_view():
     lorry = pe.Vehicle(box((-6.0, -3.0, 0.4), (8.0, 3.0, 3.5)))
-    found = {c.distance for c in company(mounted(SMALL), math.radians(25.0), lorry)}
+    found = {c.distance for c in reference_figures(mounted(SMALL), math.radians(25.0), lorry)}
     assert found == {10.0, 20.0, 40.0}
-    narrow = company(mounted(SMALL), math.radians(10.0), None)
+    narrow = reference_figures(mounted(SMALL), math.radians(10.0), None)
     assert not [c for c in narrow if c.name == "car" and c.distance == 5.0]
 
 
 def test_one_that_looks_down_has_its_view_where_its_picture_s_top_is():
     down = mounted(SMALL, 90.0, pitch_deg=90.0)
-    assert looks_to(down) == pytest.approx(math.radians(90.0))
+    assert heading_of(down) == pytest.approx(math.radians(90.0))
 
 
 @pytest.mark.parametrize("model", [SMALL, FISHEYE])
@@ -81,12 +86,12 @@ def test_a_camera_s_picture_has_people_left_and_cars_right(model):
 
 def test_each_pixel_looks_where_the_lens_says(monkeypatch):
     """A picture that is made smaller has the lens of the large one."""
-    monkeypatch.setattr(through_lens, "MOST_WIDE", 640)
+    monkeypatch.setattr(sensor_views, "MAX_WIDTH", 640)
     large = dataclasses.replace(SMALL, width=1920, height=1080)
     sensor = mounted(large, 30.0, pitch_deg=5.0)
-    shot, scale = camera_shot(sensor)
+    shot, scale = ray_camera(sensor)
     assert (shot.width, shot.height) == (640, 360) and scale == pytest.approx(1 / 3)
-    found = shot.look(np.array([100.0, 320.0]), np.array([50.0, 180.0]))
+    found = shot.rays_through(np.array([100.0, 320.0]), np.array([50.0, 180.0]))
     turned = sensor.pose.ground_from_sensor
     rays = large.projection.unproject(np.array([300.0, 960.0]), np.array([150.0, 540.0]))
     np.testing.assert_allclose(found, rays @ turned.T, atol=1e-12)
@@ -115,12 +120,12 @@ def test_a_lidar_s_picture_has_left_on_the_left():
     assert pixels.shape == (found.height, found.width, 3) and found.width == 720
     orange = (pixels[..., 0] > 170) & (pixels[..., 2] < 80) & (pixels[..., 1] < 170)
     assert orange[:, 150:210].all() and not orange[:, 300:].any()
-    places = {words: x for x, words in found.below}
+    places = {words: x for x, words in found.bottom_labels}
     assert places["left"] == pytest.approx(180, abs=2) and places["ahead"] == pytest.approx(
         360, abs=2
     )
     for distance in ("5 m", "10 m"):
-        x = sorted(x for x, _, words in found.marks if words == distance)
+        x = sorted(x for x, _, words in found.labels if words == distance)
         assert len(x) == 2 and x[0] < 360 < x[1]
 
 
@@ -137,32 +142,32 @@ def test_a_lidar_s_picture_has_the_colours_of_its_ranges():
 
 
 def test_words_that_would_lie_on_each_other_are_lifted():
-    ups = lifted(((100.0, 50.0, "5 m"), (110.0, 50.0, "10 m"), (300.0, 50.0, "20 m")))
+    ups = stacked(((100.0, 50.0, "5 m"), (110.0, 50.0, "10 m"), (300.0, 50.0, "20 m")))
     assert ups[0] == ups[2] and ups[1] <= ups[0] - 17.0
-    drawing = MarkedPicture(b"", 640, 100, ((5.0, 3.0, "<5> m"),), ((0.0, "behind"),)).svg("alt")
+    drawing = LabelledPicture(b"", 640, 100, ((5.0, 3.0, "<5> m"),), ((0.0, "behind"),)).svg("alt")
     texts = {e.text for e in ET.fromstring(drawing).iter("text")}
     assert texts == {"<5> m", "behind"}
 
 
 def test_the_section_tells_where_and_how_much(scored):
-    section = sensors(scored)
+    section = sensor_details(scored)
     ET.fromstring(f"<div>{section.html}</div>")
     assert section.html.count("<svg") == 3  # a LiDAR with its key, and a camera
     for name, score in scored.after.per_sensor.items():
-        assert f"<td>{percent(score.coverage)}</td>" in section.html, name
+        assert f"<td>{percent(score.coverage, 1)}</td>" in section.html, name
     assert "no [reference]" in section.html
 
 
 def test_places_are_told_from_the_rear_axle_where_it_is_known(scored):
-    study = dataclasses.replace(scored.found, reference=pe.Reference(-1.4, 0.33))
+    study = dataclasses.replace(scored.study, reference=pe.Reference(-1.4, 0.33))
     outcome = dataclasses.replace(scored.outcome, study=study)
-    html = places_of(dataclasses.replace(scored, outcome=outcome))
+    html = position_tables(dataclasses.replace(scored, outcome=outcome))
     assert "<td>3.700</td>" in html and "<td>0.870</td>" in html  # 2.3 + 1.4, and 1.2 - 0.33
 
 
 def test_words_above_a_low_picture_have_room_however_many():
     marks = tuple((300.0 + k, 10.0, "40 m") for k in range(6))
-    drawing = MarkedPicture(b"", 720, 150, marks, ((0.0, "behind"),)).svg("alt")
+    drawing = LabelledPicture(b"", 720, 150, marks, ((0.0, "behind"),)).svg("alt")
     ups = [float(e.get("y")) for e in ET.fromstring(drawing).iter("text") if e.text == "40 m"]
     assert min(ups) >= 12.0 and len(set(ups)) == 6
 
@@ -170,5 +175,5 @@ def test_words_above_a_low_picture_have_room_however_many():
 def test_a_pixel_is_as_wide_as_its_lens_makes_it():
     """Also where the focal length is in the coefficients."""
     for name in ("WoodScape surround view", "Camera 60 deg"):
-        shot, _ = camera_shot(mounted(load(name)))
+        shot, _ = ray_camera(mounted(load(name)))
         assert shot.pixel_rad * shot.width == pytest.approx(load(name).hfov, rel=0.35)

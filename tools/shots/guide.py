@@ -17,13 +17,13 @@ WIDE = LOOK.format(center=(2.0, -2.0, 0.0), distance=34.0, rotation=(0.95, 0.0, 
 SIDEBAR = (1240, 32, 1600, 874)
 HAS_RESULT = "window.scene.perception_entropy.has_result"
 OURS = "__import__('bl_ext.user_default.perception_entropy.{}', fromlist=['*'])"
-RUNNING = OURS.format("operators.running")
-LIVE_READING = OURS.format("live.latest") + ".reading(window.scene.name)"
+RUNNING = OURS.format("operators.running_job")
+LIVE_READING = OURS.format("live.state") + ".live_state(window.scene.name).score"
 MODAL = "[each.bl_idname.lower().replace('_ot_', '.') for each in window.modal_operators]"
-IDLE = f"not {OURS.format('worker')}.hand.busy()"
-PLACING = OURS.format("operators.placing")
+IDLE = f"not {OURS.format('worker')}.interactive_worker.busy()"
+PLACING = OURS.format("operators.placement")
 SENSORS = "any(each.perception_entropy.is_sensor for each in window.scene.objects)"
-ANSWER = OURS.format("asking") + ".answer(window.scene)"
+ANSWER = OURS.format("location_query") + ".answer(window.scene)"
 SETTINGS = "settings = window.scene.perception_entropy\n"
 
 

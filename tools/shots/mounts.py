@@ -6,7 +6,7 @@ from .guide import LOOK
 from .reel import Camera, Reel
 
 ADDON = "bl_ext.user_default.perception_entropy"
-CURVE = f"__import__('{ADDON}.searching.latest', fromlist=['view']).view"
+CURVE = f"__import__('{ADDON}.search_curve', fromlist=['searches']).searches"
 TRIED, PATIENCE_S = 120, 240
 """Placements that the picture's curve shows, and how long they may take."""
 

@@ -1,8 +1,8 @@
-"""Rigs of well-known vehicles, a TOML file each, with the source of their figures.
+"""Rigs of well-known vehicles: a TOML file for each, with the source of its figures.
 
-Files hold positions as they were published, in the frame of whoever published them; with
-`base_frames` those of LiDARs are where their housings stand. Here they are put into the ground
-frame, and stretched onto another vehicle where that is asked for.
+Files have the published positions, in the publisher's frame; with `base_frames` those of LiDARs
+are of the base of the housing. This module converts them to the ground frame, and can scale a rig
+to another vehicle.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from importlib import resources
 from types import MappingProxyType
 from typing import Any
 
-from ...errors import InputError, shown
-from ...scene.geometry import Pose
+from ...base.errors import InputError, shown
+from ...geometry.poses import Pose
 from ..scan_offsets import scan_above_base
 
 Sides = tuple[float, float, float]
 PAPER = "paper_"
-"""What the names of the paper's rigs begin with."""
+"""Prefix of the names of the paper's rigs."""
 
 
 @dataclass(frozen=True, slots=True)
 class KnownSensor:
-    """A sensor of a known rig: its name there, its model in the catalogue, and where it is."""
+    """A sensor of a known rig: its name, its model in the catalogue, and its pose."""
 
     name: str
     model: str
@@ -40,12 +40,12 @@ class KnownRig:
     Attributes
     ----------
     key, title : str
-        Its file's name, and what people call it.
+        Name of its file, and its usual name.
     vehicle, origin, source, note : str
-        The vehicle it is on, where its publisher's origin is, where the figures come from, and what
-        has to be known of them.
+        The vehicle, the origin of the publisher's frame, the source of the figures, and remarks
+        on them.
     size : (3,) float or None
-        Length, width and height of that vehicle [m], where they are known.
+        Length, width and height of that vehicle [m]; None if not known.
     sensors : tuple of KnownSensor
         Ground frame: the origin is under that vehicle's centre.
     """
@@ -60,21 +60,21 @@ class KnownRig:
     sensors: tuple[KnownSensor, ...]
 
     def on_vehicle(self, low: Sequence[float], high: Sequence[float]) -> tuple[KnownSensor, ...]:
-        """Return the sensors stretched onto another vehicle, which reaches from `low` to `high`.
+        """Return the sensors scaled to another vehicle with bounds `low` and `high`, (3,) [m].
 
-        What lies within the box of the rig's own vehicle keeps its share of the box; what stands
-        out of it stands out as far. Without a known size nothing is stretched.
+        A coordinate within the bounds of the rig's vehicle keeps its share of the side; one outside
+        keeps its distance from the bounds. Without a known size nothing is scaled.
         """
         if self.size is None:
             return self.sensors
         length, width, height = self.size
-        own = ((-length / 2.0, length / 2.0), (-width / 2.0, width / 2.0), (0.0, height))
-        other = tuple(zip(low, high, strict=True))
-        return tuple(replace(each, pose=_stretched(each.pose, own, other)) for each in self.sensors)
+        old = ((-length / 2.0, length / 2.0), (-width / 2.0, width / 2.0), (0.0, height))
+        new = tuple(zip(low, high, strict=True))
+        return tuple(replace(s, pose=_scaled_pose(s.pose, old, new)) for s in self.sensors)
 
 
 def known_rigs() -> Mapping[str, KnownRig]:
-    """All rigs by their keys."""
+    """Return all rigs by key."""
     return _shipped()
 
 
@@ -84,7 +84,7 @@ def known_rig(key: str) -> KnownRig:
     Raises
     ------
     InputError
-        When there is none.
+        When there is no rig of that key.
     """
     if key not in _shipped():
         raise InputError("catalogue", "rig", f"one of {', '.join(_shipped())}", shown(key))
@@ -102,14 +102,14 @@ def _shipped() -> Mapping[str, KnownRig]:
 
 
 def _order(rig: KnownRig) -> tuple[bool, str]:
-    """Rigs of vehicles that drive come first, then the paper's; by their titles."""
+    """Sort key: rigs of real vehicles come first, then the paper's; each by title."""
     return rig.key.startswith(PAPER), rig.title.lower()
 
 
 def _from_table(key: str, table: Mapping[str, Any]) -> KnownRig:
     length, width, height = table.get("size", (None, None, None))
-    lifted = table.get("base_frames", False)
-    sensors = tuple(_sensor(row, table["center_x"], lifted) for row in table["sensor"])
+    is_base = table.get("base_frames", False)
+    sensors = tuple(_sensor(row, table["center_x"], is_base) for row in table["sensor"])
     return KnownRig(
         key,
         table["title"],
@@ -123,7 +123,7 @@ def _from_table(key: str, table: Mapping[str, Any]) -> KnownRig:
 
 
 def _sensor(row: Mapping[str, Any], center_x: float, is_base: bool) -> KnownSensor:
-    """Return a sensor; a LiDAR whose base is published is put where the centre of its scan is."""
+    """Return a sensor; a LiDAR with the pose of its base is moved to the centre of its scan."""
     x, y, z = row["position"]
     pose = Pose.from_degrees((round(x - center_x, 5), y, z), row["rotation"])
     if is_base and (height := scan_above_base(row["model"])):
@@ -133,16 +133,16 @@ def _sensor(row: Mapping[str, Any], center_x: float, is_base: bool) -> KnownSens
     return KnownSensor(row["name"], row["model"], pose)
 
 
-def _stretched(
-    pose: Pose, own: Sequence[tuple[float, float]], other: Sequence[tuple[float, float]]
+def _scaled_pose(
+    pose: Pose, old: Sequence[tuple[float, float]], new: Sequence[tuple[float, float]]
 ) -> Pose:
-    """Return a pose carried from one box to another."""
-    ends = zip(pose.position, own, other, strict=True)
-    x, y, z = (round(_carried(v, of, to), 5) for v, of, to in ends)
+    """Return a pose with its position scaled from old to new bounds."""
+    bounds = zip(pose.position, old, new, strict=True)
+    x, y, z = (round(_scaled(v, before, after), 5) for v, before, after in bounds)
     return Pose((x, y, z), pose.rpy)
 
 
-def _carried(value: float, of: tuple[float, float], to: tuple[float, float]) -> float:
-    inside = min(max(value, of[0]), of[1])
-    share = (inside - of[0]) / (of[1] - of[0])
-    return to[0] + share * (to[1] - to[0]) + (value - inside)
+def _scaled(value: float, old: tuple[float, float], new: tuple[float, float]) -> float:
+    inside = min(max(value, old[0]), old[1])
+    share = (inside - old[0]) / (old[1] - old[0])
+    return new[0] + share * (new[1] - new[0]) + (value - inside)

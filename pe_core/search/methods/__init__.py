@@ -1,8 +1,8 @@
-"""Methods of search by name. What one is: `method`; to add one, write its module and its row."""
+"""Methods of search by name: a module and a row of `METHODS` each; `method` has the interface."""
 
 from __future__ import annotations
 
-from ...text.values import choice
+from ...base.values import choice
 from . import block_descent, cma_es, random_search
 from .method import Given, Method, Question
 
@@ -21,7 +21,7 @@ METHODS: dict[str, Method] = {
     ),
 }
 DEFAULT_METHOD, SCHEDULED_METHOD = "block-descent", "random"
-"""Of a search that says nothing, and of one that says no more than a schedule."""
+"""The method of a search that names none, without and with a schedule."""
 
 
 def checked_method(source: str, name: object, scheduled: bool = False) -> str:

@@ -1,18 +1,20 @@
-"""Ask and tell: how a method of search and the one who judges its placements talk.
+"""Ask and tell: the interface between a search method and the optimizer that evaluates candidates.
 
-A method is a generator over vectors of unknowns. It yields a `Question`, placements that it wants
-judged, and is sent a list with an answer to each of them; when it returns, the search is over. It
-knows neither who judges nor how long that takes, and draws from its seed alone: what it asks next
-follows from what it is given and the answers so far. So a search goes on from a journal of answers,
-and nothing of a method is ever stored. A minimal one::
+A method is a generator over vectors of design variables. It yields a `Question`, a batch of
+candidates to evaluate, and is sent a list with one answer for each of them; when it returns, the
+search is over. It knows neither where candidates are evaluated nor how long that takes, and it
+draws random numbers from its seed alone: its next question follows from its input and the answers
+so far. So a search resumes from a journal of answers, and no state of a method is ever stored.
+A minimal method::
 
     def ask(given):
         for number in range(100):
-            candidate = drawn(given.coding, sample)
+            candidate = sampled_candidate(given.parametrization, sample)
             [answer] = yield Question((candidate,), given.entropy, number, 100)
 
-Vectors are those of `Coding`: `Coding.candidate` makes a placement of one, `Unknown.brought` keeps
-its numbers in their ranges, and `drawing.drawn` draws until no rule is broken.
+Vectors are those of `Parametrization`: its method `candidate` makes a placement of a vector,
+`DesignVariable.clipped` keeps a value in its range, and `sampled_candidate` samples vectors until
+one breaks no rule.
 """
 
 from __future__ import annotations
@@ -20,36 +22,37 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
+from typing import TypeVar
 
-from ..coding import Candidate, Coding
-from ..objective import Judgement
-from ..schedule import Schedule
+from ...scoring.protocol import Judgement
+from ..parametrization import Candidate, Parametrization
+from ..search_space import Schedule
 
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """What a method has to solve.
+    """The problem that a method is given.
 
     Attributes
     ----------
-    coding : Coding
-        The unknowns and what they mean. There is at least one.
+    parametrization : Parametrization
+        The design variables and what they mean. There is at least one variable.
     start : Candidate
-        Keeps to all rules.
+        It breaks no rule.
     entropy : float
         Of the start, on level 0 [nats].
     seed : int
     schedule : Schedule
     levels : int
-        How many objectives there are: 0 is the cheapest, `levels - 1` the one that counts.
+        How many objectives there are: 0 is the cheapest, `levels - 1` is what the search minimises.
     batch : int
-        How many placements are judged at once. What a method asks may depend on it, what it finds
-        must not.
+        How many placements are evaluated in parallel. The questions of a method may depend on it,
+        its result must not.
     evaluations : int
-        How many placements it may have judged; 0: as many as it takes.
+        How many placements the method may have evaluated; 0: as many as it takes.
     """
 
-    coding: Coding
+    parametrization: Parametrization
     start: Candidate
     entropy: float
     seed: int = 0
@@ -61,31 +64,32 @@ class Given:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Placements to be judged, all on one level and independently of each other.
+    """A batch of placements to evaluate, all on one level and independently of each other.
 
     Attributes
     ----------
     candidates : sequence of Candidate or None
-        None where none could be drawn that keeps to the rules; its answer is None.
-    below : float
-        What is not below this may be answered by a lower bound [nats]. inf: only entropies will do.
+        None where no feasible candidate was sampled; its answer is None.
+    cutoff : float
+        A value that is not below the cutoff may be answered by a lower bound [nats]; inf: every
+        answer is an entropy.
     round : int
-        From 0: for those who watch.
+        From 0, for progress reports.
     total : int
-        Candidates that the whole search asks for, as far as is known: for the bar of progress.
+        Candidates of the whole search, as far as is known, for the progress bar.
     level : int
-        The objective to judge on. It never goes down in a search.
+        The objective that evaluates. It never decreases in a search.
     """
 
     candidates: Sequence[Candidate | None]
-    below: float = math.inf
+    cutoff: float = math.inf
     round: int = 0
     total: int = 1
     level: int = 0
 
 
-Answered = list[Judgement | None]
-Asking = Generator[Question, Answered, None]
+JudgedVectors = list[Judgement | None]
+QuestionStream = Generator[Question, JudgedVectors, None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,14 +99,69 @@ class Method:
     Attributes
     ----------
     label, about : str
-        For a menu: its name, and what it is in a line.
+        For a menu: its name, and a description of one line.
     ask : callable
         Makes the generator of questions.
     samples : callable
-        How many voxels each level looks at, the last being the given number: those of the search.
+        From the number of voxels that the search is set to: how many voxels each level evaluates;
+        the last level evaluates that number.
     """
 
     label: str
     about: str
-    ask: Callable[[Given], Asking]
+    ask: Callable[[Given], QuestionStream]
     samples: Callable[[int], tuple[int, ...]] = lambda samples: (samples,)
+
+
+T = TypeVar("T")
+Evaluated = list[tuple[Candidate, float]]
+"""Placements, and their entropies or lower bounds [nats]."""
+MethodPart = Generator[Question, JudgedVectors, T]
+"""A part of a method: it yields questions, and returns its result."""
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """What all questions of one phase of a search share.
+
+    Attributes
+    ----------
+    round : int
+    total : int
+        Candidates of the whole search.
+    level : int
+    """
+
+    round: int
+    total: int
+    level: int = 0
+
+    def evaluate(
+        self, candidates: Sequence[Candidate | None], cutoff: float = math.inf
+    ) -> MethodPart[list[float]]:
+        """Evaluate the candidates; return one value for each.
+
+        A candidate that is not below the cutoff returns the cutoff; one that is missing returns
+        inf.
+        """
+        answers = yield Question(candidates, cutoff, self.round, self.total, self.level)
+        return [math.inf if answer is None else min(answer.entropy, cutoff) for answer in answers]
+
+
+MAX_SAMPLED = 100
+"""Placements sampled for one candidate; where all of them break a rule, none is evaluated."""
+
+
+def sampled_candidate(
+    parametrization: Parametrization, sample: Callable[[], Sequence[float]]
+) -> Candidate | None:
+    """Return the first feasible placement among samples; None if `MAX_SAMPLED` are infeasible.
+
+    Samples are vectors of design variables; their values are clipped to the variables' ranges.
+    """
+    for _ in range(MAX_SAMPLED):
+        values = zip(parametrization.variables, sample(), strict=True)
+        candidate = parametrization.candidate([variable.clipped(v) for variable, v in values])
+        if parametrization.allowed(candidate.rig):
+            return candidate
+    return None

@@ -6,20 +6,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..coding import Candidate
-from ..unknown import METRE, RADIAN, SHARE
-from .drawing import drawn
-from .method import Answered, Asking, Given, Question
+from ..design_variable import METRE, RADIAN, SHARE
+from ..parametrization import Candidate
+from .method import Given, JudgedVectors, Question, QuestionStream, sampled_candidate
 
 SHARE_REACH = 0.5
-"""Half width of the first neighbourhood in a list: all of it, which is taken as a ring."""
+"""Half width of the first neighbourhood in a list: all of it, because a list is cyclic."""
 
 
-def ask(given: Given) -> Asking:
-    """Ask round by round, in the neighbourhood of the best placement found before the round.
+def ask(given: Given) -> QuestionStream:
+    """Sample round by round, in the neighbourhood of the incumbent at the start of the round.
 
-    Candidates are drawn uniformly in it, each coordinate clipped to its bounds; the neighbourhood
-    then shrinks.
+    Candidates are sampled uniformly in it, each coordinate clipped to its bounds; then the
+    neighbourhood shrinks.
     """
     schedule, rng = given.schedule, np.random.default_rng(given.seed)
     best, entropy = given.start, given.entropy
@@ -27,36 +26,36 @@ def ask(given: Given) -> Asking:
     for number, scale in enumerate(schedule.scales):
         center = best
         for count in _batches(schedule.candidates, given.batch):
-            some = [_neighbour(center, given, scale, rng) for _ in range(count)]
-            answers = yield Question(some, entropy, number, total)
-            best, entropy = _better(best, entropy, some, answers)
+            candidates = [_neighbour(center, given, scale, rng) for _ in range(count)]
+            answers = yield Question(candidates, entropy, number, total)
+            best, entropy = _incumbent(best, entropy, candidates, answers)
 
 
 def _neighbour(
     center: Candidate, given: Given, scale: float, rng: np.random.Generator
 ) -> Candidate | None:
-    """Return a candidate that all rules allow; None when none is drawn."""
+    """Return a feasible candidate in the neighbourhood; None when none was sampled."""
     schedule = given.schedule
     reach = {METRE: schedule.reach_m, RADIAN: schedule.reach_rad, SHARE: SHARE_REACH}
 
     def sample() -> list[float]:
-        known = zip(given.coding.unknowns, center.vector, strict=True)
-        return [v + scale * reach[u.unit] * rng.uniform(-1.0, 1.0) for u, v in known]
+        values = zip(given.parametrization.variables, center.vector, strict=True)
+        return [v + scale * reach[u.unit] * rng.uniform(-1.0, 1.0) for u, v in values]
 
-    return drawn(given.coding, sample)
+    return sampled_candidate(given.parametrization, sample)
 
 
-def _better(
-    best: Candidate, entropy: float, some: list[Candidate | None], answers: Answered
+def _incumbent(
+    best: Candidate, entropy: float, candidates: list[Candidate | None], answers: JudgedVectors
 ) -> tuple[Candidate, float]:
-    """Return the first of the lowest, and its entropy."""
-    for candidate, answer in zip(some, answers, strict=True):
+    """Return the candidate of lowest entropy, the first of equal ones, and its entropy."""
+    for candidate, answer in zip(candidates, answers, strict=True):
         if candidate is not None and answer is not None and answer.entropy < entropy:
             best, entropy = candidate, answer.entropy
     return best, entropy
 
 
-def _batches(count: int, most: int) -> Iterator[int]:
-    """Yield a number in parts that are at most as large."""
-    for done in range(0, count, most):
-        yield min(most, count - done)
+def _batches(count: int, largest: int) -> Iterator[int]:
+    """Yield the sizes of batches of `largest` at most that add up to a count."""
+    for done in range(0, count, largest):
+        yield min(largest, count - done)

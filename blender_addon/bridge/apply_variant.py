@@ -1,0 +1,182 @@
+"""Apply a variant to the scene: exactly the variant's sensors, at the variant's poses.
+
+Sensors that only other variants have become inactive: they are moved to a collection that is
+excluded from the view layers, so Blender neither draws nor evaluates them, and no score includes
+them. Their settings, housings and animations stay unchanged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import bpy
+
+from .duplicates import SENSORS
+from .rig import place_poses, put_curve, sensor_objects, view_layer_of
+from .sensor_records import SensorRecord
+
+PARKED = "Sensors of Other Variants"
+BETWEEN = "\n"
+"""Separates names of collections in a stored text: no name contains it."""
+
+
+def apply_records(scene: bpy.types.Scene, records: Sequence[SensorRecord]) -> dict[str, str]:
+    """Make the scene hold exactly the sensors of the records.
+
+    Missing sensors are created; the scene's other sensors become inactive.
+
+    Returns
+    -------
+    dict
+        Name of each sensor's object, by the name of its record. The names differ where another
+        object in the file already has the record's name.
+
+    Raises
+    ------
+    InputError
+        When a constraint, a driver or an animation holds a sensor where it is.
+    """
+    wanted = {record.name: record for record in records}
+    present = {obj.name: obj for obj in sensor_objects(scene)}
+    for name in present.keys() - wanted.keys():
+        deactivate(scene, present[name])
+    aside = inactive_sensors(scene)
+    objects = {}
+    for name, record in wanted.items():
+        if name in aside:
+            reactivate(scene, aside[name])
+        obj = present.get(name) or aside.get(name) or _new_sensor(scene, record)
+        _write_settings(obj, record)
+        objects[name] = obj
+    for name, record in wanted.items():
+        other = objects.get(record.mirror_of)
+        objects[name].perception_entropy.mirror_of = "" if other is None else other.name
+    _place(scene, records, objects)
+    return {name: obj.name for name, obj in objects.items()}
+
+
+def sensors_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
+    """Return the scene's collection of sensors; create it if it does not exist."""
+    for child in scene.collection.children_recursive:
+        if child.name.partition(".")[0] == SENSORS:  # of a second scene: "Sensors.001"
+            return child
+    made = bpy.data.collections.new(SENSORS)
+    scene.collection.children.link(made)
+    return made
+
+
+def shown_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
+    """Return the collection of sensors, or the scene's root collection if it is excluded."""
+    wanted = sensors_collection(scene)
+    waiting = [view_layer_of(scene).layer_collection]
+    while waiting:
+        layer = waiting.pop()
+        if layer.collection == wanted and not layer.exclude:
+            return wanted
+        waiting += layer.children
+    return scene.collection
+
+
+def _new_sensor(scene: bpy.types.Scene, record: SensorRecord) -> bpy.types.Object:
+    obj = bpy.data.objects.new(record.name, None)
+    shown_collection(scene).objects.link(obj)
+    obj.empty_display_type, obj.empty_display_size = record.display, record.size_m
+    return obj
+
+
+def _write_settings(obj: bpy.types.Object, record: SensorRecord) -> None:
+    """Write a record to a sensor's object, without the pose."""
+    settings = obj.perception_entropy
+    if settings.model != record.model:
+        settings.model = record.model
+    if settings.fusion != record.fusion:
+        settings.fusion = record.fusion
+    put_curve(settings, record.curve)
+    settings.free, settings.bounded = record.free, record.bounded
+    settings.bounds_low, settings.bounds_high = record.low, record.high
+    settings.rack = record.rack
+    if settings.mount != record.mount:
+        settings.mount = record.mount
+    if not settings.is_sensor:
+        settings.is_sensor = True
+
+
+def _place(
+    scene: bpy.types.Scene, records: Sequence[SensorRecord], objects: dict[str, bpy.types.Object]
+) -> None:
+    """Place all sensors, then hide the hidden ones: Blender does not evaluate hidden objects."""
+    layer = view_layer_of(scene)
+    for record in records:
+        _show(layer, objects[record.name])
+    place_poses(scene, {objects[record.name].name: record.pose for record in records})
+    for record in records:
+        if not record.visible:
+            objects[record.name].hide_set(True, view_layer=layer)
+
+
+def _show(layer: bpy.types.ViewLayer, obj: bpy.types.Object) -> None:
+    """Make an object visible: clear all of its visibility switches."""
+    obj.hide_viewport = False
+    if obj.name in layer.objects:
+        obj.hide_set(False, view_layer=layer)
+
+
+def deactivate(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    """Make a sensor and its child objects inactive; child sensors stay active."""
+    aside = _aside(scene)
+    for member in (obj, *_children(obj)):
+        collections = [c for c in _collections(scene) if member.name in c.objects and c != aside]
+        member.perception_entropy.parked_from = BETWEEN.join(c.name for c in collections)
+        aside.objects.link(member)
+        for collection in collections:
+            collection.objects.unlink(member)
+    obj.perception_entropy.is_sensor, obj.perception_entropy.is_parked = False, True
+
+
+def reactivate(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+    """Make an inactive sensor and its child objects active again."""
+    aside = _aside(scene)
+    for member in (obj, *_children(obj)):
+        names = member.perception_entropy.parked_from.split(BETWEEN)
+        collections = [c for c in _collections(scene) if c.name in names] or [scene.collection]
+        for collection in collections:
+            collection.objects.link(member)
+        aside.objects.unlink(member)
+        member.perception_entropy.parked_from = ""
+    obj.perception_entropy.is_sensor, obj.perception_entropy.is_parked = True, False
+
+
+def inactive_sensors(scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:
+    """Return the inactive sensors of a scene, by name."""
+    aside = _find(scene)
+    objects = () if aside is None else aside.objects
+    return {obj.name: obj for obj in objects if obj.perception_entropy.is_parked}
+
+
+def _children(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """Yield all descendants of an object, without sensors and their descendants."""
+    for child in obj.children:
+        if not child.perception_entropy.is_sensor:
+            yield child
+            yield from _children(child)
+
+
+def _collections(scene: bpy.types.Scene) -> list[bpy.types.Collection]:
+    return [scene.collection, *scene.collection.children_recursive]
+
+
+def _find(scene: bpy.types.Scene) -> bpy.types.Collection | None:
+    """Return the scene's collection of inactive sensors; numbered in a second scene."""
+    children = scene.collection.children
+    return next((c for c in children if c.name.partition(".")[0] == PARKED), None)
+
+
+def _aside(scene: bpy.types.Scene) -> bpy.types.Collection:
+    """Return (or create) the collection of inactive sensors, excluded from every view layer."""
+    collection = _find(scene)
+    if collection is None:
+        collection = bpy.data.collections.new(PARKED)
+        scene.collection.children.link(collection)
+    for layer in scene.view_layers:
+        layer.layer_collection.children[collection.name].exclude = True
+    return collection

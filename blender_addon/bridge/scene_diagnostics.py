@@ -1,0 +1,184 @@
+"""Diagnostics of a scene: missing data, units, hidden collections, sensors that cannot be scored.
+
+`scene_advice` returns them as warnings; `check_placeable` refuses a search that could not place
+its sensors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+
+import bpy
+
+from ..engine import pe
+from .mounting import followers_of
+from .rig import sensor_from_object, sensor_objects, view_layer_of
+from .transform_constraints import AXIS_LABELS, free_axes, holders, locked_axes
+from .vehicle import hidden_how, layers_of
+
+MISSING, DRIVER, UNITS, REFUSED = "missing", "driver", "units", "refused"
+HIDDEN = "hidden_vehicle"
+"""Codes of warnings, beside those of the engine."""
+
+
+def scene_advice(scene: bpy.types.Scene) -> tuple[pe.Advice, ...]:
+    """Return warnings about a scene: missing data, units, and sensors that cannot be scored."""
+    sensors = sensor_objects(scene)
+    warnings = (*missing_data(scene, sensors), *_units(scene), *_hidden_vehicle(scene))
+    return (*warnings, *_refused(scene, sensors))
+
+
+def missing_data(
+    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object] | None = None
+) -> tuple[pe.Advice, ...]:
+    """Return warnings about data of lost libraries and about drivers that did not run.
+
+    `sensors` are the scene's sensors, if the caller has already read them.
+    """
+    mounted = sensor_objects(scene) if sensors is None else sensors
+    blocks = list(_scored_data(scene, mounted))
+    return (*_lost_data(blocks), *_failed_drivers(blocks, set(mounted)))
+
+
+def _lost_data(blocks: Iterable[bpy.types.ID]) -> Iterator[pe.Advice]:
+    """Yield a warning for each lost library: its path, and the data that is missing."""
+    lost: dict[str, list[str]] = {}
+    for block in blocks:
+        if block.is_missing:
+            lost.setdefault(block.library.filepath, []).append(block.name)
+    for path, names in lost.items():
+        what = ", ".join(sorted(set(names)))
+        yield pe.Advice(None, MISSING, f"{what} is missing: there is no {path}")
+
+
+def _scored_data(
+    scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]
+) -> Iterator[bpy.types.ID]:
+    """Yield the collections, objects and data blocks of the vehicle and of the sensors."""
+    vehicle = scene.perception_entropy.vehicle
+    waiting = [] if vehicle is None else [vehicle]
+    objects = dict.fromkeys(sensors)
+    visited = set(waiting)
+    while waiting:
+        collection = waiting.pop()
+        yield collection
+        for obj in collection.objects:
+            objects[obj] = None
+            inner = obj.instance_collection
+            if inner is not None and inner not in visited:
+                visited.add(inner)
+                waiting.append(inner)
+        waiting += [child for child in collection.children if child not in visited]
+        visited.update(collection.children)
+    for obj in objects:
+        yield obj
+        if obj.data is not None:
+            yield obj.data
+
+
+def _failed_drivers(
+    blocks: Iterable[bpy.types.ID], sensors: Collection[bpy.types.Object]
+) -> Iterator[pe.Advice]:
+    """Yield a warning for each object with a driver that did not run."""
+    for block in blocks:
+        drivers = getattr(block.animation_data, "drivers", ()) if _animatable(block) else ()
+        failed = sorted({d.data_path for d in drivers if not d.driver.is_valid})
+        if failed:
+            why = "Python in drivers is not allowed in this file" if bpy.app.autoexec_fail else ""
+            text = f"the driver of its {', '.join(failed)} did not run{': ' * bool(why)}{why}"
+            if block in sensors:
+                yield pe.Advice(block.name, DRIVER, text)
+            else:
+                yield pe.Advice(None, DRIVER, f"{block.name}: {text}", part=block.name)
+
+
+def _animatable(block: bpy.types.ID) -> bool:
+    return getattr(block, "animation_data", None) is not None
+
+
+def _units(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
+    units = scene.unit_settings
+    if units.system == "IMPERIAL" or abs(units.scale_length - 1.0) > 1e-6:
+        text = "one unit is not one metre in this scene: nothing can be scored"
+        yield pe.Advice(None, UNITS, text, fix="metric_units")
+
+
+def _hidden_vehicle(scene: bpy.types.Scene) -> Iterator[pe.Advice]:
+    """Yield warnings about collections of the vehicle that are excluded or hidden."""
+    vehicle, layer = scene.perception_entropy.vehicle, view_layer_of(scene)
+    if vehicle is None:
+        return
+    layers = layers_of(layer.layer_collection, vehicle)
+    if not layers:
+        text = (
+            f"the vehicle collection {vehicle.name} is not in this scene: nothing of it is scored"
+        )
+        yield pe.Advice(None, HIDDEN, text)
+    elif how := hidden_how(layers[0]):
+        text = f"the vehicle collection {vehicle.name} is {how}: nothing of it is scored"
+        yield pe.Advice(None, HIDDEN, text, fix="show_vehicle")
+    else:
+        for child in _hidden_children(layers[0]):
+            text = f"the vehicle's collection {child.name} is {hidden_how(child)}: it is not scored"
+            yield pe.Advice(None, HIDDEN, text)
+
+
+def _hidden_children(layer: bpy.types.LayerCollection) -> Iterator[bpy.types.LayerCollection]:
+    """Yield the outermost hidden collections inside a collection that hold a mesh."""
+    for child in layer.children:
+        if not hidden_how(child):
+            yield from _hidden_children(child)
+        elif any(obj.type == "MESH" for obj in child.collection.all_objects):
+            yield child
+
+
+def _refused(scene: bpy.types.Scene, sensors: Sequence[bpy.types.Object]) -> Iterator[pe.Advice]:
+    """Yield a warning for each sensor that cannot be scored."""
+    layer = view_layer_of(scene)
+    for obj in sensors:
+        if layer.depsgraph is None or not obj.visible_get(view_layer=layer):
+            continue
+        try:
+            sensor_from_object(obj, layer.depsgraph)
+        except pe.InputError as error:
+            field = error.field.rpartition(": ")[2]
+            text = f"its {field} is {error.found}; expected {error.expected}"
+            fix = "apply_scale" if field == "scale" else None
+            yield pe.Advice(obj.name, REFUSED, text, fix=fix)
+
+
+def check_placeable(scene: bpy.types.Scene, study: pe.Study) -> None:
+    """Check that a search can place the sensors.
+
+    Raises
+    ------
+    InputError
+        When no axis of the study's sensors is free, or an animation, a driver or a constraint holds
+        one that is moved: the placement would be lost at the next frame. When one that is to move
+        on a mount is locked.
+    """
+    mounting = study.search.mounting
+    sensors = [scene.objects[sensor.name] for sensor in study.rig]
+    followers = followers_of(mounting.pairs, mounting.groups)
+    leading = [obj for obj in sensors if obj.name not in followers]
+    free = [obj for obj in leading if free_axes(obj) or obj.name in mounting.on]
+    if not free:
+        expected = "X, Y, Z, Roll, Pitch or Yaw ticked of at least one sensor (panel Sensor)"
+        raise pe.InputError("scene", "what the search may change", expected, "nothing")
+    for obj in leading:
+        _check_locks(obj, mounting)
+    for obj in (*free, *(scene.objects[name] for name in sorted(followers))):
+        for holder in holders(obj):
+            expected = "an object that can be placed"
+            raise pe.InputError("scene", f"sensor {obj.name!r}: placement", expected, holder)
+
+
+def _check_locks(obj: bpy.types.Object, mounting: pe.Mounting) -> None:
+    """Raise `InputError` for a lock that a mount would ignore; angles on a surface are exempt."""
+    mount, locked = mounting.mount_of(obj.name), locked_axes(obj)
+    if isinstance(mount, pe.SurfaceMount):
+        locked = tuple(axis for axis in locked if axis in "xyz")
+    if mount is not None and locked:
+        expected = "no lock of what its mount moves (bounds are kept to)"
+        found = f"a lock of {', '.join(AXIS_LABELS[axis] for axis in locked)}"
+        raise pe.InputError("scene", f"sensor {obj.name!r}", expected, found)

@@ -1,0 +1,235 @@
+"""The one way from a scene to a study: scene -> record -> study.
+
+A `SceneRecord` holds everything that a study is made of, as plain values of the engine: sensors,
+vehicle, mounts and settings. It is read of a scene with its own sensors (`study_from_scene`), with
+those of a variant (`variants.study_of_variant`), or with any rig (`study_of_rig`), and of an
+imported study (`loading.record_of_study`). `study_of` converts each of them to a `Study`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import bpy
+
+from ..engine import pe, search, studies
+from .model_options import selection_limits, selection_of
+from .mounting import constraints_of, mounting_of, mounts_of
+from .prior import prior_from_scene
+from .rig import sensor_objects
+from .scene_settings import (
+    clearance_of,
+    passthrough_of,
+    perception_of,
+    reference_of,
+    samples_of,
+    search_of,
+    space_of,
+    targets_of,
+)
+from .sensor_records import (
+    SensorRecord,
+    bounds_of,
+    record_of_object,
+    record_of_sensor,
+    rig_of,
+)
+from .transform_constraints import Limits, search_bounds, unlocked_axes
+from .vehicle import vehicle_from_collection
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SceneRecord:
+    """Everything that a study is made of.
+
+    `search` and `selection` hold settings for all sensors together. The record of each sensor
+    holds its free axes, bounds, mount and model options. `source` ("scene" or "variant") is the
+    source that errors about sensors name.
+    """
+
+    source: str
+    sensors: tuple[SensorRecord, ...]
+    vehicle: pe.Vehicle
+    space: pe.PerceptionSpace
+    prior: pe.Prior
+    model: pe.PerceptionModel
+    targets: pe.TargetRule
+    samples: int
+    search: pe.Search
+    mounts: Mapping[str, search.AnyMount]
+    constraints: pe.Constraints
+    selection: pe.Selection
+    reference: pe.Reference | None
+    passthrough: object | None
+
+
+def study_from_scene(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+    vehicle: pe.Vehicle | None = None,
+    sensors: Sequence[bpy.types.Object] | None = None,
+) -> pe.Study:
+    """Return the study that a scene describes.
+
+    `vehicle` and `sensors` (all, by name) are given by callers that have already read them.
+
+    Raises
+    ------
+    InputError
+        One line that says what in the scene is wrong, what was expected and what was found.
+    """
+    objects = sensor_objects(scene) if sensors is None else sensors
+    check_scene(scene)  # its errors come before those of a sensor
+    layer = depsgraph.view_layer
+    visible = [obj for obj in objects if obj.visible_get(view_layer=layer)]
+    if not visible:
+        found = f"{len(objects)} hidden" if objects else "none"
+        raise pe.InputError("scene", "sensors", "at least one visible sensor", found)
+    records = [record_of_object(obj, depsgraph, layer) for obj in visible]
+    return study_of(record_of_scene(scene, depsgraph, records, vehicle=vehicle))
+
+
+def study_of_rig(
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, rig: Iterable[pe.Sensor]
+) -> pe.Study:
+    """Return the study of a scene's vehicle and settings with any rig in place of its sensors.
+
+    The rig's sensors have the free axes of the paper, and no bounds of their own.
+
+    Raises
+    ------
+    InputError
+        One line that says what in the scene is wrong, what was expected and what was found.
+    """
+    records = [record_of_sensor(sensor) for sensor in rig]
+    return study_of(record_of_scene(scene, depsgraph, records))
+
+
+def record_of_scene(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+    records: Sequence[SensorRecord],
+    *,
+    source: str = "scene",
+    vehicle: pe.Vehicle | None = None,
+) -> SceneRecord:
+    """Return a scene's vehicle, mounts and settings with these sensors.
+
+    Raises
+    ------
+    InputError
+        When no study can be read from the scene, or a mount that a sensor is on is incomplete.
+    """
+    check_scene(scene)
+    settings = scene.perception_entropy
+    rig_of(records, source)  # errors of a sensor come before those of the vehicle
+    return SceneRecord(
+        source=source,
+        sensors=tuple(records),
+        vehicle=vehicle or vehicle_of_scene(scene, depsgraph),
+        mounts=mounts_of(scene, depsgraph, records),
+        constraints=constraints_of(scene),
+        space=space_of(settings),
+        prior=prior_from_scene(scene),
+        model=perception_of(settings),
+        targets=targets_of(settings),
+        samples=samples_of(settings),
+        search=search_of(settings),
+        selection=selection_limits(settings) if _has_options(records) else pe.Selection(),
+        reference=reference_of(settings),
+        passthrough=passthrough_of(settings),
+    )
+
+
+def _has_options(records: Sequence[SensorRecord]) -> bool:
+    return any(record.options for record in records if record.visible)
+
+
+def study_of(record: SceneRecord) -> pe.Study:
+    """Return the study that a record describes: of a scene, a variant or an imported file alike.
+
+    Raises
+    ------
+    InputError
+        One line that says what is wrong with the scene or the variant.
+    """
+    rig = rig_of(record.sensors, record.source)
+    counted = [sensor for sensor in record.sensors if sensor.visible]
+    mounting = mounting_of(counted, record.mounts, record.constraints)
+    search_of_rig = replace(
+        record.search,
+        free={sensor.name: unlocked_axes(sensor.free, sensor.locked) for sensor in counted},
+        limits=_limits(counted, rig, record.vehicle, mounting),
+        mounting=mounting,
+    )
+    return pe.Study(
+        rig,
+        record.vehicle,
+        record.space,
+        prior=record.prior,
+        model=record.model,
+        search=search_of_rig,
+        samples=record.samples,
+        mesh=studies.MESH,  # the name the mesh gets beside a study: part of what is reported
+        reference=record.reference,
+        selection=selection_of(counted, record.selection),
+        passthrough=record.passthrough,
+        targets=record.targets,
+    )
+
+
+def _limits(
+    records: Sequence[SensorRecord], rig: pe.Rig, vehicle: pe.Vehicle, mounting: pe.Mounting
+) -> dict[str, Limits]:
+    """Return bounds by sensor; a sensor in a slot, or one that follows another, has none."""
+    limits = {}
+    for record in records:
+        if mounting.unbounded(record.name):
+            continue
+        sensor = rig[record.name]
+        if bounds := search_bounds(sensor, vehicle, bounds_of(record), record.constraints):
+            limits[record.name] = bounds
+    return limits
+
+
+def check_scene(scene: bpy.types.Scene) -> None:
+    """Check that a study can be read from a scene.
+
+    Raises
+    ------
+    InputError
+        When a unit is not a metre, or no vehicle is chosen.
+    """
+    _check_metres(scene)
+    _vehicle_chosen(scene)
+
+
+def vehicle_of_scene(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> pe.Vehicle:
+    """Read the chosen vehicle from the scene and return it; no cache is used.
+
+    Raises
+    ------
+    InputError
+        When none is chosen, or it cannot be scored.
+    """
+    return vehicle_from_collection(_vehicle_chosen(scene), depsgraph, clearance_of(scene))
+
+
+def _vehicle_chosen(scene: bpy.types.Scene) -> bpy.types.Collection:
+    """Return the vehicle's collection; raise `InputError` where none is chosen."""
+    vehicle = scene.perception_entropy.vehicle
+    if vehicle is None:
+        expected = "a collection with the vehicle's meshes"
+        raise pe.InputError("scene", "vehicle collection", expected, "none chosen")
+    return vehicle
+
+
+def _check_metres(scene: bpy.types.Scene) -> None:
+    """Raise `InputError` unless one unit is one metre and the scene displays metres."""
+    units = scene.unit_settings
+    if units.system == "IMPERIAL":
+        raise pe.InputError("scene", "unit system", "metres (Metric)", "Imperial")
+    if abs(units.scale_length - 1.0) > 1e-6:
+        expected = "1, so that a unit is a metre"
+        raise pe.InputError("scene", "unit scale", expected, f"{units.scale_length:g}")

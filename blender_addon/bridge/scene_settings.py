@@ -1,0 +1,204 @@
+"""A scene's settings as values of the engine: read for a study, written by an import.
+
+Numbers and switches follow the engine's declarations (`Setting.panel` names the property). Values
+that a scene stores in a different form than a study file have separate functions here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ..choices import OBJECTS
+from ..engine import exchange, kinds, pe, studies
+from .float32 import as_typed, pair_as_typed
+
+if TYPE_CHECKING:
+    from .scene_record import SceneRecord
+
+LARGEST_INT = 2**31 - 1
+"""A property holds no larger whole number."""
+PLACED = frozenset({"score_samples", "targets", "traffic", "scenes"})
+"""Settings with a place of their own in the signature of a scene."""
+
+
+def values_of(
+    settings: bpy.types.PropertyGroup, cls: Any, names: Iterable[str] = ()
+) -> dict[str, Any]:
+    """Return the settings of a dataclass that a scene holds, by the names of its fields.
+
+    An optional setting is None if its property is 0; angles are converted to radians.
+    """
+    return {
+        setting.name: _value(setting, getattr(settings, setting.panel.property))
+        for setting in _in_panel(cls, names)
+    }
+
+
+def write_values(
+    settings: bpy.types.PropertyGroup, instance: Any, names: Iterable[str] = ()
+) -> None:
+    """Write the settings of a dataclass to a scene."""
+    for setting in _in_panel(type(instance), names):
+        value = getattr(instance, setting.name)
+        if isinstance(setting.rule, studies.Angle):
+            value = math.degrees(value)
+        elif isinstance(setting.rule, studies.Whole):
+            value = min(value or 0, LARGEST_INT)
+        setattr(settings, setting.panel.property, 0 if value is None else value)
+
+
+def _in_panel(cls: Any, names: Iterable[str] = ()) -> Iterator[studies.Setting]:
+    declared = studies.settings_of(cls)
+    return (declared[name] for name in names or declared if declared[name].panel is not None)
+
+
+def _value(setting: studies.Setting, value: Any) -> Any:
+    """Return a property's value in the unit and type of the engine."""
+    if isinstance(setting.rule, studies.Pair):
+        return pair_as_typed(value)
+    if isinstance(setting.rule, studies.Number):
+        value = as_typed(value)
+    if setting.is_optional and not value:
+        return None
+    return math.radians(value) if isinstance(setting.rule, studies.Angle) else value
+
+
+def space_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionSpace:
+    """Return the space that a scene's settings describe.
+
+    Raises
+    ------
+    InputError
+        When a bound is not below the other, or the voxels do not fit.
+    """
+    try:
+        return pe.PerceptionSpace(**values_of(settings, pe.PerceptionSpace))
+    except pe.InputError as error:
+        raise pe.InputError("scene", f"space: {error.field}", error.expected, error.found) from None
+
+
+def perception_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionModel:
+    """Return the AP curves of a scene; a kind without a curve has its default curve."""
+    curves = {
+        row.name: pe.ApCurve(as_typed(row.a), as_typed(row.b))
+        for row in settings.curves
+        if row.own and row.name in kinds.KINDS
+    }
+    return pe.PerceptionModel(**curves)
+
+
+def clearance_of(scene: bpy.types.Scene) -> float:
+    """Return how far a flush-mounted sensor counts as protruding from the surface [m]."""
+    return values_of(scene.perception_entropy, pe.Vehicle)["clearance"]
+
+
+def targets_of(settings: bpy.types.PropertyGroup) -> pe.TargetRule:
+    """Return whether voxels or objects are scored; traffic and scenes concern objects alone."""
+    if settings.targets != OBJECTS:
+        return pe.TargetRule()
+    return pe.TargetRule(**values_of(settings, pe.TargetRule))
+
+
+def tolerance_of(settings: bpy.types.PropertyGroup) -> pe.Tolerance:
+    """Return mounting errors and failures; the worst case counts only where there are several."""
+    values = values_of(settings, pe.Tolerance)
+    if not settings.mounting_errors:
+        values |= {"position": 0.0, "angle": 0.0}
+    several = values["position"] > 0.0 or values["angle"] > 0.0 or values["failures"]
+    return pe.Tolerance(**values | {"worst": values["worst"] and several})
+
+
+def search_of(settings: bpy.types.PropertyGroup) -> pe.Search:
+    """Return the settings of a scene's search, without its sensors and mounts."""
+    return pe.Search(
+        schedule=pe.Schedule(**values_of(settings, pe.Schedule)),
+        method=settings.method,
+        tolerance=tolerance_of(settings),
+        **values_of(settings, pe.Search),
+    )
+
+
+def samples_of(settings: bpy.types.PropertyGroup) -> int:
+    """Return how many voxels a score evaluates; 0: all."""
+    return values_of(settings, pe.Study)["samples"]
+
+
+def reference_of(settings: bpy.types.PropertyGroup) -> pe.Reference | None:
+    """Return the positions of the axles; None if the scene does not have them."""
+    return pe.Reference(**values_of(settings, pe.Reference)) if settings.axles_known else None
+
+
+def write_reference(settings: bpy.types.PropertyGroup, reference: pe.Reference | None) -> None:
+    """Write the positions of the axles; None removes them."""
+    settings.axles_known = reference is not None
+    if reference is not None:
+        write_values(settings, reference)
+
+
+def passthrough_of(settings: bpy.types.PropertyGroup) -> exchange.Passthrough | None:
+    """Return the contents of an imported file besides the rig; None if there are none.
+
+    Raises
+    ------
+    InputError
+        When the scene's text is none that an import has written.
+    """
+    return studies.passthrough_of_text(settings.passthrough, "scene")
+
+
+def write_passthrough(settings: bpy.types.PropertyGroup, kept: exchange.Passthrough | None) -> None:
+    """Write the contents of an imported file besides the rig, as JSON text."""
+    settings.passthrough = studies.passthrough_text(kept)
+
+
+def write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> None:
+    """Write the settings of a record to a scene: space, AP curves, score, search and limits.
+
+    Vehicle, sensors, prior, mounts and constraints are written by others.
+    """
+    search, tolerance = record.search, record.search.tolerance
+    for instance in (record.space, record.targets, search, search.schedule, record.selection):
+        write_values(settings, instance)
+    settings.score_samples, settings.method = record.samples, search.method
+    settings.currency = record.selection.currency
+    settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
+    names = () if settings.mounting_errors else ("failures", "worst")
+    write_values(settings, tolerance, names)  # without errors their fields keep their values
+    settings.curves.clear()
+    default = pe.PerceptionModel()
+    for kind in kinds.KINDS:
+        if (curve := record.model.curve(kind)) != default.curve(kind):
+            row = settings.curves.add()
+            row.name, row.own, row.a, row.b = kind, True, curve.a, curve.b
+    write_reference(settings, record.reference)
+    write_passthrough(settings, record.passthrough)
+
+
+def settings_signature(settings: bpy.types.PropertyGroup) -> list[object]:
+    """Return the settings of a score that were set, including invalid ones."""
+    scored = (
+        setting.panel.property
+        for _, setting in studies.setting_keys()
+        if setting.scored and setting.panel is not None
+    )
+    names = [each for each in scored if each not in PLACED and settings.is_property_set(each)]
+    values = [_plain(getattr(settings, name)) for name in names]
+    curves = [(row.name, as_typed(row.a), as_typed(row.b)) for row in settings.curves if row.own]
+    return [*zip(names, values, strict=True), *curves]
+
+
+def targets_signature(settings: bpy.types.PropertyGroup) -> list[object]:
+    """Return the settings of targets if they differ from the paper's voxels."""
+    rule = targets_of(settings)
+    return [] if rule == pe.TargetRule() else [rule.targets, rule.traffic, rule.scenes]
+
+
+def _plain(value: Any) -> object:
+    """Return a property's value as the decimal number that was typed."""
+    if isinstance(value, float):
+        return as_typed(value)
+    return value if isinstance(value, int | str) else pair_as_typed(value)

@@ -1,0 +1,314 @@
+"""Sensor records: one sensor as plain values, read from the scene, a variant or an imported study.
+
+A scene is read into records, a variant stores records, and an imported study is converted to
+records. `scene_record.study_of` makes a study from records only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ..engine import catalog, pe, search
+from .float32 import as_typed, pair_as_typed
+from .rig import (
+    curve_of,
+    last_written_pose,
+    pose_from_numbers,
+    pose_of,
+    pose_of_matrix,
+    put_curve,
+    sensor_objects,
+    view_layer_of,
+)
+from .transform_constraints import AxisLimit, limit_constraints, locked_axes
+
+NO_BOUNDS, ZEROS = (False,) * len(search.AXES), (0.0,) * len(search.AXES)
+PAPER_FREE = tuple(axis in search.PAPER_FREE for axis in search.AXES)
+
+
+class ModelOption(NamedTuple):
+    """A model that may replace a sensor's model, and its price; 0: no price was given."""
+
+    model: str
+    price: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorRecord:
+    """One sensor: everything that a score and a search depend on, and its display settings.
+
+    `bounded` marks the axes with own bounds, `low` and `high` are these bounds [m or deg].
+    `mirror_of` is the linked mirror image, `mount` the sensor's mount, `rack` the group that moves
+    as one. `curve` is an own AP curve; `intrinsics` is the model if the catalogue does not have it.
+
+    The last fields belong to the sensor's object and are not stored with a variant: a variant's
+    record takes them from the object that the variant would use if it were applied. `locked` axes
+    and `constraints` restrict the search, `parent_rack` is a parent that is a rack, `options` are
+    the models to choose from, `may_be_left_out` allows designs without the sensor.
+    """
+
+    name: str
+    model: str
+    pose: pe.Pose
+    fusion: str = ""
+    free: tuple[bool, ...] = PAPER_FREE
+    visible: bool = True
+    display: str = "ARROWS"
+    size_m: float = 0.25
+    bounded: tuple[bool, ...] = NO_BOUNDS
+    low: tuple[float, ...] = ZEROS
+    high: tuple[float, ...] = ZEROS
+    mirror_of: str = ""
+    mount: str = ""
+    rack: str = ""
+    curve: pe.ApCurve | None = None
+    intrinsics: object | None = None
+
+    locked: tuple[str, ...] = ()
+    constraints: tuple[AxisLimit, ...] = ()
+    parent_rack: str = ""
+    options: tuple[ModelOption, ...] = ()
+    may_be_left_out: bool = False
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Position [m] and roll, pitch, yaw [deg]."""
+        return (*self.pose.position, *self.pose.rotation_deg)
+
+    @property
+    def scored(self) -> tuple[object, ...]:
+        """The values that a score depends on."""
+        return self.name, self.model, self.fusion, self.numbers, self.visible, self.curve
+
+    @property
+    def identity(self) -> tuple[object, ...]:
+        """Values by which two variants differ; display settings are left out."""
+        bounds = zip(self.bounded, self.low, self.high, strict=True)
+        links = self.mirror_of, self.mount, self.rack
+        return (
+            *self.scored,
+            self.free,
+            *((a, b) if is_bounded else None for is_bounded, a, b in bounds),
+            *links,
+        )
+
+
+def same_sensors(records: Iterable[SensorRecord], others: Iterable[SensorRecord]) -> bool:
+    """Return whether two lists of sensors are the same variant."""
+    return [record.identity for record in records] == [record.identity for record in others]
+
+
+def records_of_scene(scene: bpy.types.Scene) -> tuple[SensorRecord, ...]:
+    """Return all sensors of a scene by name, hidden ones included.
+
+    Raises
+    ------
+    InputError
+        When one of them is scaled or sheared, or has no finite place.
+    """
+    layer = view_layer_of(scene)
+    layer.update()
+    return tuple(record_of_object(obj, layer.depsgraph, layer) for obj in sensor_objects(scene))
+
+
+def record_of_object(
+    obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, layer: bpy.types.ViewLayer
+) -> SensorRecord:
+    """Return the record of one sensor of a scene.
+
+    Raises
+    ------
+    InputError
+        When it is scaled or sheared, has no finite place, or its AP curve is impossible.
+    """
+    settings, visible = obj.perception_entropy, obj.visible_get(view_layer=layer)
+    try:
+        pose = pose_of(obj, depsgraph) if visible else _hidden_pose(obj)
+        curve = curve_of(settings)
+    except pe.InputError as error:
+        raise _of_sensor("scene", obj.name, error) from None
+    return SensorRecord(
+        name=obj.name,
+        model=settings.model,
+        pose=pose,
+        fusion=settings.fusion,
+        free=tuple(settings.free),
+        visible=visible,
+        display=obj.empty_display_type,
+        size_m=obj.empty_display_size,
+        bounded=tuple(settings.bounded),
+        low=tuple(settings.bounds_low),
+        high=tuple(settings.bounds_high),
+        mirror_of=settings.mirror_of,
+        mount=settings.mount,
+        rack=settings.rack,
+        curve=curve,
+        **_object_fields(obj),
+    )
+
+
+def _object_fields(obj: bpy.types.Object | None) -> dict[str, object]:
+    """Return the fields of a record that belong to the object; empty without an object."""
+    if obj is None:
+        return {}
+    settings, parent = obj.perception_entropy, obj.parent
+    on_rack = parent is not None and parent.perception_entropy.is_rack
+    return {
+        "locked": locked_axes(obj),
+        "constraints": limit_constraints(obj),
+        "parent_rack": parent.name if on_rack else "",
+        "options": tuple(ModelOption(o.model, as_typed(o.price)) for o in settings.options),
+        "may_be_left_out": settings.may_be_left_out,
+    }
+
+
+def _hidden_pose(obj: bpy.types.Object) -> pe.Pose:
+    """Return the pose of a hidden sensor, which Blender does not evaluate and no file stores."""
+    ground_from_sensor = _ground_from_object(obj)
+    held = last_written_pose(obj, ground_from_sensor)
+    return pose_of_matrix(ground_from_sensor) if held is None else held
+
+
+def _ground_from_object(obj: bpy.types.Object) -> np.ndarray:
+    """Return an object's (4, 4) pose from its own and its parents' transforms, in double."""
+    ground_from_basis = np.array(obj.matrix_basis, dtype=float)
+    if obj.parent is None:
+        return ground_from_basis
+    return (
+        _ground_from_object(obj.parent)
+        @ np.array(obj.matrix_parent_inverse, dtype=float)
+        @ ground_from_basis
+    )
+
+
+def records_of(variant: bpy.types.PropertyGroup) -> tuple[SensorRecord, ...]:
+    """Return a variant's sensors, by name."""
+    records = (_record_of_row(variant, row) for row in variant.sensors)
+    return tuple(sorted(records, key=lambda record: record.name))
+
+
+def _record_of_row(variant: bpy.types.PropertyGroup, row: bpy.types.PropertyGroup) -> SensorRecord:
+    obj = _object_of_row(variant.id_data, row.name)
+    # A variant of an older version stores no links: the present links of its sensors are used.
+    links = row if variant.holds_ties or obj is None else obj.perception_entropy
+    return SensorRecord(
+        name=row.name,
+        model=row.model,
+        pose=pose_from_numbers(row.pose),
+        fusion=row.fusion,
+        free=tuple(row.free),
+        visible=row.visible,
+        display=row.display,
+        size_m=row.size,
+        bounded=tuple(row.bounded),
+        low=tuple(row.bounds_low),
+        high=tuple(row.bounds_high),
+        mirror_of=links.mirror_of,
+        mount=links.mount,
+        rack=links.rack,
+        curve=curve_of(row),
+        **_object_fields(obj),
+    )
+
+
+def _object_of_row(scene: bpy.types.Scene, name: str) -> bpy.types.Object | None:
+    """Return the sensor, active or inactive, that a variant's row applies to, or None."""
+    obj = scene.objects.get(name)
+    if obj is None:
+        return None
+    settings = obj.perception_entropy
+    return obj if settings.is_sensor or settings.is_parked else None
+
+
+def write_records(variant: bpy.types.PropertyGroup, records: Sequence[SensorRecord]) -> None:
+    """Store the records of sensors in a variant."""
+    variant.sensors.clear()
+    variant.holds_ties = True
+    for record in records:
+        row = variant.sensors.add()
+        row.name, row.model, row.fusion = record.name, record.model, record.fusion
+        put_curve(row, record.curve)
+        row.pose, row.free, row.visible = record.numbers, record.free, record.visible
+        row.display, row.size = record.display, record.size_m
+        row.bounded, row.bounds_low, row.bounds_high = record.bounded, record.low, record.high
+        row.mirror_of, row.mount, row.rack = record.mirror_of, record.mount, record.rack
+
+
+def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
+    """Return the record of an engine's sensor, with the free axes of the paper and no bounds.
+
+    `sensor_of` returns an equal sensor from the record, also if its model is not in the catalogue.
+    """
+    return SensorRecord(
+        name=sensor.name,
+        model=sensor.model.name,
+        pose=sensor.pose,
+        fusion=sensor.fusion or "",
+        curve=sensor.curve,
+        intrinsics=sensor.model,
+    )
+
+
+def rig_of(records: Sequence[SensorRecord], source: str = "variant") -> pe.Rig:
+    """Return the visible sensors of some records as a rig.
+
+    `source` is named by errors: "scene" or "variant".
+
+    Raises
+    ------
+    InputError
+        When there is none, or one of them cannot be scored.
+    """
+    visible = [record for record in records if record.visible]
+    if not visible:
+        found = f"{len(records)} hidden" if records else "none"
+        raise pe.InputError(source, "sensors", "at least one visible sensor", found)
+    sensors = [sensor_of(record, source) for record in visible]
+    try:
+        return pe.Rig(sensors)
+    except pe.InputError as error:
+        raise error.at(source) from None
+
+
+def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
+    """Return a record as the engine's sensor.
+
+    Raises
+    ------
+    InputError
+        When the catalogue does not have its model, or the name or the fusion group is impossible.
+    """
+    try:
+        model = record.intrinsics or catalog.load(record.model)
+        return pe.Sensor(record.name, model, record.pose, record.fusion or None, record.curve)
+    except pe.InputError as error:
+        raise _of_sensor(source, record.name, error) from None
+
+
+def bounds_of(record: SensorRecord) -> dict[str, tuple[float, float]]:
+    """Return a record's own bounds by axis [m or rad]."""
+    return bounds_by_axis(record.bounded, record.low, record.high)
+
+
+def bounds_by_axis(
+    bounded: Sequence[bool], low: Sequence[float], high: Sequence[float]
+) -> dict[str, tuple[float, float]]:
+    """Return the bounds of the bounded axes [m or rad]; the given angles are in degrees."""
+    limits = {}
+    for n, axis in enumerate(search.AXES):
+        if bounded[n]:
+            bounds = pair_as_typed((low[n], high[n]))
+            angle = axis not in search.POSITION_AXES
+            limits[axis] = tuple(map(math.radians, bounds)) if angle else bounds
+    return limits
+
+
+def _of_sensor(source: str, name: str, error: pe.InputError) -> pe.InputError:
+    """Return an error that names the sensor of the scene or the variant."""
+    return pe.InputError(source, f"sensor {name!r}: {error.field}", error.expected, error.found)

@@ -1,0 +1,231 @@
+"""Results of variants: their stored scores and key figures, and the designs of a search."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import bpy
+
+from ..engine import advice, pe
+from .fingerprint import Fingerprint
+from .outcome import store_outcome
+from .scene_diagnostics import check_placeable, scene_advice
+from .sensor_records import SensorRecord, records_of, records_of_scene, rig_of
+from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
+from .versions import score_from_dict, score_to_dict
+
+BEFORE = "Before choosing"
+LONGEST_NAME = 60
+
+
+def same_score(records: Sequence[SensorRecord], others: Sequence[SensorRecord]) -> bool:
+    """Whether two lists of sensors have the same score; free axes have no influence."""
+    return [record.scored for record in records] == [record.scored for record in others]
+
+
+def store_variant_scores(
+    scene: bpy.types.Scene, rig: pe.Rig, score: pe.Score, surroundings: str
+) -> None:
+    """Store a score with every variant of exactly these sensors.
+
+    `surroundings` is the fingerprint of the scene without its sensors when it was scored.
+    """
+    for row in scene.perception_entropy.variants:
+        if _is_rig(row, rig):
+            store_variant_score(row, score, surroundings)
+
+
+def _is_rig(variant: Variant, rig: pe.Rig) -> bool:
+    """Return whether the visible sensors of a variant are this rig."""
+    try:
+        variant_rig = rig_of(records_of(variant))
+    except pe.InputError:  # a sensor that the catalogue does not know, or none
+        return False
+    return [_scored_values(sensor) for sensor in variant_rig] == [
+        _scored_values(sensor) for sensor in rig
+    ]
+
+
+def _scored_values(sensor: pe.Sensor) -> tuple[object, ...]:
+    """Return what a score depends on; the catalogue has one object for each of its models."""
+    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
+
+
+def store_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str) -> int:
+    """Store the start and the result of a search as variants; return the key of the result.
+
+    The start becomes the active variant, as the sensors have not been moved yet.
+    """
+    records = records_of_scene(scene)
+    start, result = _moved(records, outcome.start.rig), _moved(records, outcome.study.rig)
+    before = find_or_add_variant(scene, "Before optimize", start).key
+    name = f"Optimized, seed {outcome.start.search.seed}"
+    after = find_or_add_variant(scene, name, result).key
+    store_variant_scores(scene, outcome.start.rig, outcome.before, surroundings)
+    store_variant_scores(scene, outcome.study.rig, outcome.after, surroundings)
+    mark_active(scene, before)
+    return after
+
+
+def _moved(records: Sequence[SensorRecord], rig: pe.Rig) -> tuple[SensorRecord, ...]:
+    """Return records with the poses of a rig."""
+    poses = {sensor.name: sensor.pose for sensor in rig}
+    return tuple(replace(r, pose=poses.get(r.name, r.pose)) for r in records)
+
+
+def store_variant_score(variant: Variant, score: pe.Score, surroundings: str) -> None:
+    """Store a score with a variant."""
+    _write_figures(variant, score_to_dict(score))
+    variant.signature = surroundings
+
+
+def copy_scene_score(scene: bpy.types.Scene, variant: Variant, now: Fingerprint) -> None:
+    """Copy the scene's result to a variant if the result is still valid."""
+    settings = scene.perception_entropy
+    if settings.has_result and now.text == settings.result_signature:
+        _write_figures(variant, json.loads(settings.result_json)["after"])
+        variant.signature = now.surroundings
+
+
+def copy_score(source: Variant, to: Variant) -> None:
+    """Copy the score of one variant to another."""
+    to.figures_json, to.figures_of = source.figures_json, source.figures_of
+    if source.has_result:
+        _write_figures(to, json.loads(source.score_json))
+        to.signature, to.stale = source.signature, source.stale
+
+
+def _write_figures(variant: Variant, figures: dict) -> None:
+    variant.entropy, variant.coverage = figures["entropy"], figures["coverage"]
+    variant.stderr, variant.voxels = figures["stderr"], figures["voxels"]
+    variant.score_json = json.dumps(figures)
+    variant.stale, variant.has_result = False, True
+
+
+def score_of(variant: Variant) -> pe.Score:
+    """Return a variant's stored score without the scores of its sensors."""
+    return score_from_dict(json.loads(variant.score_json))
+
+
+def check_choosable(scene: bpy.types.Scene, study: pe.Study) -> None:
+    """Check that a scene has sensors to choose, and that they can be placed.
+
+    Raises
+    ------
+    InputError
+        When no sensor has models to choose from, no design keeps to the limits, or something
+        else holds a sensor that is to be moved.
+    """
+    if not study.selection.choices:
+        expected = "a sensor with models to choose from (panel Sensor Choices)"
+        raise pe.InputError("scene", "choices", expected, "none")
+    try:
+        study.designs()
+    except pe.InputError as error:
+        field = f"{error.source}: {error.field}"
+        raise pe.InputError("scene", field, error.expected, error.found) from None
+    if any(study.search.free.values()) or study.search.mounting.on:
+        check_placeable(scene, study)
+
+
+def store_front(scene: bpy.types.Scene, trade_off: pe.TradeOff, surroundings: str) -> None:
+    """Store each design of a Pareto front as a variant, and the scene's sensors as another one."""
+    records, settings = records_of_scene(scene), scene.perception_entropy
+    before = find_or_add_variant(scene, BEFORE, records).key
+    settings.front.clear()
+    for design in trade_off.front:
+        variant = find_or_add_variant(scene, design.name[:LONGEST_NAME], _designed(records, design))
+        if design.score is not None:
+            store_variant_score(variant, design.score, surroundings)
+        variant.note = variant.note or _note(design, settings.currency)
+        row = settings.front.add()
+        row.name, row.key = design.name, variant.key
+        row.price, row.entropy = design.price, design.entropy
+    count = len(trade_off.designs) + len(trade_off.refused)
+    more = "all there are" if trade_off.is_complete else "of more"
+    settings.front_told = f"{trade_off.searched} searched of {count} looked at, {more}"
+    mark_active(scene, before)
+
+
+def _designed(now: Sequence[SensorRecord], design: pe.Design) -> tuple[SensorRecord, ...]:
+    """Return the scene's sensors with the models of a design, without those it leaves out."""
+    taken: Mapping[str, pe.Sensor] = {sensor.name: sensor for sensor in design.study.rig}
+    gone = {name for name, model in design.models.items() if model is None}
+    return tuple(
+        _with_choice(record, taken[record.name]) if record.name in taken else record
+        for record in now
+        if record.name not in gone
+    )
+
+
+def _with_choice(record: SensorRecord, sensor: pe.Sensor) -> SensorRecord:
+    model, fusion = sensor.model.name, sensor.fusion or ""
+    return replace(record, model=model, fusion=fusion, pose=sensor.pose, curve=sensor.curve)
+
+
+def _note(design: pe.Design, currency: str) -> str:
+    return f"{design.price:,.10g} {currency}".strip()
+
+
+class FigureRule(NamedTuple):
+    """The height for which blind ground is computed [m], and the class of reach and AP."""
+
+    height: float
+    class_name: str
+
+
+def figure_rule(scene: bpy.types.Scene, prior: pe.Prior) -> FigureRule:
+    """Return the height and the class that the 3D view's blind ground and reach are set to."""
+    view, classes = scene.perception_entropy.view, prior.class_names
+    class_name = view.reach_class if view.reach_class in classes else classes[0]
+    return FigureRule(int(view.blind_height.removeprefix("H")) / 100.0, class_name)
+
+
+def figures_signature(scene: bpy.types.Scene, now: Fingerprint) -> str:
+    """Return the settings of the scene that key figures depend on, besides the sensors."""
+    view = scene.perception_entropy.view
+    return f"{now.surroundings} {view.blind_height} {view.reach_class}"
+
+
+def write_figures(variant: Variant, figures: advice.KeyFigures, signature: str) -> None:
+    """Store key figures with a variant."""
+    variant.figures_json, variant.figures_of = json.dumps(figures.to_dict()), signature
+
+
+def figures_of(variant: Variant, signature: str) -> advice.KeyFigures | None:
+    """Return a variant's key figures; None if none with this signature are stored."""
+    if not variant.figures_json or variant.figures_of != signature:
+        return None
+    return advice.KeyFigures(**json.loads(variant.figures_json))
+
+
+def restore_result(
+    scene: bpy.types.Scene, variant: Variant, now: Fingerprint, depsgraph: object
+) -> pe.Outcome | None:
+    """Show the stored score of the variant that was applied to the scene.
+
+    Returns
+    -------
+    Outcome or None
+        None where no score is stored, or the scene has changed since.
+    """
+    if not variant.has_result or variant.signature != now.surroundings:
+        return None
+    study = study_of_variant(scene, variant, depsgraph)
+    score = whole_score_of(variant)
+    if set(score.per_sensor) != {sensor.name for sensor in study.rig}:
+        return None  # an object has another name than the sensor that was scored
+    warnings = scene_advice(scene)
+    outcome = pe.Outcome("score", study, study, score, score, warnings=warnings)
+    store_outcome(scene, outcome, now.text)
+    return outcome
+
+
+def whole_score_of(variant: Variant) -> pe.Score:
+    """Return a variant's stored score with the scores of its sensors."""
+    figures = json.loads(variant.score_json)
+    per_sensor = {name: pe.SensorScore(**row) for name, row in figures["per_sensor"].items()}
+    return replace(score_from_dict(figures), per_sensor=per_sensor)

@@ -1,0 +1,110 @@
+"""The open .blend file on the command line: its study, and artifacts that only Blender writes."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+from .. import bridge, result_staleness
+from ..engine import jobs, pe, studies
+
+
+def opened_study(variant: str | None = None) -> pe.Study:
+    """Return the study of the open file, with a variant's sensors if one is named.
+
+    Errors name the file.
+    """
+    scene = opened_scene()
+    with from_file():
+        if variant is not None:
+            bridge.activate_variant(scene, bridge.variant_named(scene, variant))
+        return bridge.study_from_scene(scene, bpy.context.evaluated_depsgraph_get())
+
+
+@contextlib.contextmanager
+def from_file() -> Iterator[None]:
+    """Have errors of the scene name the open file, within."""
+    try:
+        yield
+    except pe.InputError as error:
+        raise error.at(bpy.data.filepath) if error.source == "scene" else error from None
+
+
+def opened_scene() -> bpy.types.Scene:
+    """Return the scene of the open file.
+
+    Raises
+    ------
+    InputError
+        When no file is open, or the scene has neither a vehicle nor sensors.
+    """
+    path, scene = bpy.data.filepath, bpy.context.scene
+    if not path:
+        expected = "an existing .blend file before --command"
+        raise pe.InputError("blender", "file", expected, "none opened")
+    if scene.perception_entropy.vehicle is None and not bridge.sensor_objects(scene):
+        expected = "a vehicle collection and sensors, set in the tab Perception"
+        raise pe.InputError(path, f"scene {scene.name!r}", expected, "neither")
+    return scene
+
+
+OPTIMIZED, REVIEW = studies.OPTIMIZED, studies.REVIEW
+FILE_ENDINGS = {
+    b"\x89PNG": b"IEND\xaeB`\x82",
+    b"\x28\xb5\x2f\xfd": b"\xb1\xea\x92\x8f",
+}
+"""The end of a complete file by its beginning: PNG, and a compressed .blend (zstd seek table)."""
+
+
+def write_artifacts(outcome: pe.Outcome, data: dict, folder: Path, *, render: bool) -> None:
+    """Write the artifacts that only Blender makes: the optimized scene, and the picture."""
+    scene = bpy.context.scene
+    if outcome.kind == "optimize":
+        bridge.place_rig(scene, outcome.study.rig)
+        taken = result_staleness.fingerprint(scene)
+        bridge.store_outcome(scene, outcome, taken.text)
+        bridge.mark_active(scene, bridge.store_search(scene, outcome, taken.surroundings))
+        jobs.add_to_result(data, folder, {OPTIMIZED: save_copy})
+    if render:
+        from .. import review  # imported only for a picture
+
+        def picture(path: Path) -> None:
+            try:
+                review.render_review(scene, outcome.study, outcome, path)
+            except RuntimeError as error:
+                raise pe.InputError(path, "file", "a picture", error) from None
+            check_complete(path)
+
+        jobs.add_to_result(data, folder, {REVIEW: picture})
+
+
+def write_front(found: pe.TradeOff, folder: Path) -> None:
+    """Write the scene with the designs of a front as variants."""
+    scene = bpy.context.scene
+    bridge.store_front(scene, found, result_staleness.fingerprint(scene).surroundings)
+    with jobs.FileSet(folder) as files:
+        files.add(OPTIMIZED, save_copy)
+
+
+def save_copy(path: Path) -> None:
+    """Save the open scene to another file; the open file stays as it is."""
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
+    except RuntimeError as error:
+        raise pe.InputError(path, "file", "a place to write to", error) from None
+    check_complete(path)
+
+
+def check_complete(path: Path) -> None:
+    """Raise `InputError` where a file is incomplete.
+
+    On a full disk Blender leaves half a file, or none, without an error.
+    """
+    data = path.read_bytes() if path.is_file() else b""
+    end = next((end for begin, end in FILE_ENDINGS.items() if data.startswith(begin)), b"")
+    if not data or not data.endswith(end):
+        found = f"that {len(data)} bytes of it could be written"
+        raise pe.InputError(path, "file", "room to write to", found)

@@ -1,0 +1,57 @@
+"""Keeps the sensors of scenes consistent, whatever was done outside the add-on's operators.
+
+A duplicated, copied or appended sensor is a new one: the result it brought is dropped. Sensors that
+are linked to mirror images move with them, and a view camera goes with its sensor. Sensors of older
+files may be linked twice. All this happens on the moving signal, after a file was opened and before
+one is saved: at these times data may be written.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import bpy
+
+from . import bridge, sensor_cache
+
+
+def after_load(*_: object) -> None:
+    """After a file was opened: bring it up to this version, and repair it."""
+    for scene in bpy.data.scenes:
+        bridge.unlink_duplicates(scene)
+        bridge.migrate_scene(scene)
+        if newer := bridge.newer_version_message(scene):
+            print(f"perception_entropy: {newer}", file=sys.stderr)
+    bridge.sync_own_sensors()
+    bridge.clear_mirrors()
+    repair_scenes()
+
+
+def before_save(*_: object) -> None:
+    """Before a file is saved: new and appended scenes are of this version.
+
+    Mirror images of sensors that have just moved follow before they are written.
+    """
+    for scene in bpy.data.scenes:
+        bridge.migrate_scene(scene)
+    repair_scenes()
+
+
+def repair_scenes() -> None:
+    """Repair the sensors of all scenes."""
+    bridge.sync_own_sensors()  # undo may have brought others back
+    for scene in bpy.data.scenes:
+        sensors = sensor_cache.sensors(scene)
+        bridge.drop_foreign_results(scene, sensors)
+        bridge.update_view_cameras(scene, sensors)
+    if bpy.context.view_layer is not None:  # other scenes are not evaluated
+        scene = bpy.context.scene
+        bridge.follow_mirrors(
+            scene, bpy.context.evaluated_depsgraph_get(), sensor_cache.sensors(scene)
+        )
+
+
+def unregister() -> None:
+    """Take own sensors out of the catalogue, and drop what is known of mirror images."""
+    bridge.remove_own_sensors()
+    bridge.clear_mirrors()

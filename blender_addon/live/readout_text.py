@@ -1,0 +1,144 @@
+"""The live score as text for the read-out and the panel: plain data in, text out, no Blender."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..engine import advice, pe
+from .background_figures import ShownFigures
+from .state import KnownRigScore, LiveScore, ShownScore
+
+MIN_CHANGE = 0.0005
+"""Entropies nearer to each other than this are the same in the text [nats]."""
+MIN_ZONE_CHANGE = 0.005
+"""A zone is named from this change on [nats]."""
+BETTER, SAME, WORSE = -1, 0, 1
+MAX_LABEL_LETTERS = 32
+"""Letters of a variant's name that the read-out has room for."""
+MINUS = "\N{MINUS SIGN}"
+PENDING = "Blind ground, reach, AP: being computed"
+BEFORE = "Before this move: "
+
+
+class ReadoutText(NamedTuple):
+    """The text of a score: headline, its error, how it changed compared with what, and lines."""
+
+    headline: str
+    error: str
+    change: str
+    sense: int
+    against: str
+    lines: tuple[str, ...]
+
+
+def readout_of(score: LiveScore, shown: ShownScore) -> ReadoutText:
+    """Return the text of the score that is shown: a preview, an exact or a stored one.
+
+    Changes are those of the live score, from sample to sample.
+    """
+    now, before = score.summary, score.before
+    change, sense = entropy_change(now.entropy, before.entropy) if before else ("", SAME)
+    what = "Coverage" if now.voxels else "Objects visible:"
+    coverage = f"{what} {shown.coverage:.1%}{coverage_change(now, before)}"
+    return ReadoutText(
+        f"{shown.entropy:.3f} nats",
+        state_of(shown, score.moved_m),
+        change,
+        sense,
+        f"compared with {shortened(score.baseline.label)}" if before else "",
+        (coverage, *zone_lines(now, before)),
+    )
+
+
+def state_of(shown: ShownScore, moved_m: float) -> str:
+    """Return a score's error, and what it is of: the idle scene, a preview, a stored result."""
+    state = "as scored" if shown.stored else "exact" if shown.exact else "preview"
+    if moved_m and not shown.stored:
+        state += f", vehicle simplified to {1000.0 * moved_m:.0f} mm"
+    if shown.view_outdated:
+        state += ", beams and maps follow"
+    whole = shown.stored and not shown.stderr
+    return f"on all voxels, {state}" if whole else f"± {max(shown.stderr, 1e-3):.3f}  {state}"
+
+
+def shortened(name: str) -> str:
+    """Return a name that fits into a row: its end is left out where it is too long."""
+    return (
+        name if len(name) <= MAX_LABEL_LETTERS else f"{name[: MAX_LABEL_LETTERS - 3].rstrip()}..."
+    )
+
+
+def entropy_change(now: float, before: float) -> tuple[str, int]:
+    """Return how an entropy changed, and whether for the better; lower is better."""
+    by = now - before
+    if abs(by) < MIN_CHANGE:
+        return "no change", SAME
+    return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
+
+
+def coverage_change(now: pe.Glance, before: pe.Glance | None) -> str:
+    """Return how the coverage changed, in percentage points; nothing where it did not."""
+    by = 0.0 if before is None else round(100.0 * (now.coverage - before.coverage), 1)
+    return f" ({by:+.1f})".replace("-", MINUS) if by else ""
+
+
+def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:
+    """Return the zone that improved most, and the one that worsened most: at most a line each."""
+    if before is None:
+        return []
+    common = [name for name in now.per_zone if name in before.per_zone]
+    by = {name: now.per_zone[name].entropy - before.per_zone[name].entropy for name in common}
+    lines = []
+    for word, sign in (("Better", -1.0), ("Worse", 1.0)):
+        name = max(common, key=lambda zone: sign * by[zone], default=None)
+        if name is not None and sign * by[name] >= MIN_ZONE_CHANGE:
+            lines.append(f"{word} {advice.WHERE.get(name, name)} by {abs(by[name]):.2f} nats")
+    return lines
+
+
+def figure_lines(figures: ShownFigures) -> tuple[str, str]:
+    """Return two lines: blind ground; reach and AP. Earlier figures are marked as such."""
+    now, before = figures.now, figures.before
+    if now is None:
+        return PENDING, ""
+    lines = blind_line(now, before), reach_line(now, before)
+    if figures.current:
+        return lines
+    blind, reach = (f"{BEFORE}{line}" if line else "" for line in lines)
+    return blind, reach
+
+
+def blind_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> str:
+    """Return "81.2 m² blind to what is 0.5 m tall (−3.1)"."""
+    what = f"blind to what is {now.height:g} m tall" if now.height else "blind to what lies flat"
+    by = None if before is None else now.blind_m2 - before.blind_m2
+    return f"{now.blind_m2:.1f} m² {what}{change_text(by, 1)}"
+
+
+def reach_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> str:
+    """Return "Pedestrian detected to 47 m ahead (+2), AP 0.62"; empty without a class."""
+    if now.class_name is None or now.reach_m is None:
+        return ""
+    by = None if before is None or before.reach_m is None else now.reach_m - before.reach_m
+    sign = "\N{GREATER-THAN OR EQUAL TO} " if now.at_least else ""
+    to = f"to {sign}{now.reach_m:.0f} m ahead" if now.reach_m else "nowhere ahead"
+    line = f"{now.class_name.capitalize()} detected {to}{change_text(by, 0)}"
+    if now.expected_ap is None:
+        return line
+    known = before is not None and before.expected_ap is not None
+    by = now.expected_ap - before.expected_ap if known else None
+    return f"{line}, AP {now.expected_ap:.2f}{change_text(by, 2)}"
+
+
+def change_text(by: float | None, digits: int) -> str:
+    """Return " (+1.2)"; nothing where the change is 0 in these digits."""
+    text = "" if by is None else f"{by:+.{digits}f}"
+    return f" ({text.replace('-', MINUS)})" if text.strip("+-0.") else ""
+
+
+def known_rig_line(known_rig: KnownRigScore, now: pe.Glance) -> str:
+    """Return "nuScenes here: 2.867 nats; this is 0.229 worse"."""
+    by = now.entropy - known_rig.summary.entropy
+    same = abs(by) < MIN_CHANGE
+    word = "alike" if same else f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}"
+    return f"{known_rig.title} here: {known_rig.summary.entropy:.3f} nats; this is {word}"

@@ -1,0 +1,240 @@
+"""What is known of the live score, one state a scene: plain data, dropped with the file.
+
+A state is made when its scene is first asked for. It holds no object of Blender's. The interactive
+worker's thread writes `LiveState.score` by `put`; everything else is written on the main thread.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import bpy
+
+from ..engine import pe
+
+if TYPE_CHECKING:
+    from ..engine import advice
+    from .background_figures import FigureRequest
+
+
+def rig_key(rig: pe.Rig) -> Hashable:
+    """Return plain values that identify a rig; the catalogue has one object a model."""
+    return tuple((s.name, id(s.model), s.pose, s.group, s.curve) for s in rig)
+
+
+@dataclass(slots=True, eq=False)
+class Baseline:
+    """What a live score is compared with.
+
+    Attributes
+    ----------
+    label : str
+        What it is, in words: "before this move".
+    rig : Rig or None
+        Its sensors. None where only its score is known: the vehicle was another one.
+    summary : Glance or None
+        Its score, on the sample of the live score; None until it has been computed.
+    """
+
+    label: str
+    rig: pe.Rig | None
+    summary: pe.Glance | None = None
+
+
+class ChosenBaseline(NamedTuple):
+    """A baseline that the user chose, and what it was made from."""
+
+    key: Hashable
+    baseline: Baseline
+
+
+@dataclass(frozen=True)
+class FinishedScore:
+    """A study, its score in full, and the signature of the scene that it was read from."""
+
+    signature: str
+    study: pe.Study
+    score: pe.Score
+
+
+@dataclass(frozen=True)
+class LiveScore:
+    """A live score.
+
+    Attributes
+    ----------
+    summary : Glance
+        The whole rig's entropy and coverage, by class and by zone; approximate while it moves.
+    baseline : Baseline or None
+        What it is compared with; None where there is nothing to compare with yet.
+    exact : bool
+        Whether the scene was idle when it was read: the score then is that of every front end, to
+        the last bit.
+    rig : Rig
+        What was scored.
+    moved_m : float
+        How far the surface of a vehicle of very many triangles moved when it was simplified, at
+        most [m]; 0 as a rule.
+    number : int
+        The number of the scene's request that it answers.
+    problem : Hashable
+        Identifies vehicle, prior, space and settings that it was scored with.
+    """
+
+    summary: pe.Glance
+    baseline: Baseline | None
+    exact: bool
+    rig: pe.Rig
+    moved_m: float = 0.0
+    number: int = 0
+    problem: Hashable = None
+
+    @property
+    def before(self) -> pe.Glance | None:
+        """The score of the baseline, once it is known."""
+        return None if self.baseline is None else self.baseline.summary
+
+
+class LastRead(NamedTuple):
+    """What a scene was when it was read last.
+
+    `changes` and `vehicle_version` count changes; `prior` and `problem` identify prior and problem.
+    """
+
+    changes: int
+    vehicle_version: int
+    prior: Hashable
+    rig: pe.Rig
+    problem: Hashable
+
+
+@dataclass(frozen=True, slots=True)
+class KnownRigScore:
+    """A known rig on this vehicle, scored as the live score is; `summary` is None until then."""
+
+    key: Hashable
+    title: str
+    summary: pe.Glance | None = None
+
+
+@dataclass(slots=True)
+class LiveState:
+    """What is known of the live score of one scene.
+
+    Attributes
+    ----------
+    finished : FinishedScore or None
+        The last score that was finished in this session, its ground map included.
+    score, exact : LiveScore or None
+        The latest live score, and the latest exact one: previews may have come since.
+    note : str
+        Why there is no newer score, in one line; empty when there is one, or soon will be.
+    requests : int
+        How many scores were requested.
+    last_read : LastRead or None
+        None while *Live* is off.
+    operator : int
+        Number of the operator that moves sensors with the mouse; 0 when there is none.
+    before_move : Baseline or None
+        The sensors before the last move.
+    pinned : Rig or None
+        Sensors to compare with, kept for this session.
+    chosen : ChosenBaseline or None
+        The pinned sensors or the variant that the settings choose.
+    figures : FigureRequest or None
+        The last request of key figures.
+    shown_figures : KeyFigures or None
+        The key figures that were shown last.
+    known_rig : KnownRigScore or None
+        The known rig beside the live score.
+    prior : (Hashable, Prior) or None
+        The prior that was read last, and what identifies it: a file of boxes takes long to read.
+    """
+
+    finished: FinishedScore | None = None
+    score: LiveScore | None = None
+    exact: LiveScore | None = None
+    note: str = ""
+    requests: int = 0
+    last_read: LastRead | None = None
+    operator: int = 0
+    before_move: Baseline | None = None
+    pinned: pe.Rig | None = None
+    chosen: ChosenBaseline | None = None
+    figures: FigureRequest | None = None
+    shown_figures: advice.KeyFigures | None = None
+    known_rig: KnownRigScore | None = None
+    prior: tuple[Hashable, pe.Prior] | None = None
+
+    def next_request(self) -> int:
+        """Return the number of a new request: the scene no longer is as it was read before."""
+        self.requests += 1
+        return self.requests
+
+    def put(self, score: LiveScore) -> None:
+        """Store a new score; the note of why there was none goes."""
+        self.score = score
+        if score.exact:
+            self.exact = score
+        self.note = ""
+
+    def is_current(self, score: LiveScore) -> bool:
+        """Whether a score is the exact one of the scene as it is now; otherwise it is a preview."""
+        return score.exact and score.number == self.requests
+
+    def switch_off(self) -> None:
+        """Drop what the live score found; finished scores and pinned sensors stay."""
+        self.score = self.exact = self.last_read = self.before_move = None
+        self.figures = self.shown_figures = self.known_rig = None
+        self.note = ""
+
+
+states: dict[str, LiveState] = {}
+"""By the scene's name."""
+
+
+def live_state(scene_name: str) -> LiveState:
+    """Return the state of a scene; a new one where there is none."""
+    return states.setdefault(scene_name, LiveState())
+
+
+class ShownScore(NamedTuple):
+    """The one score that panel and read-out show.
+
+    Attributes
+    ----------
+    entropy, coverage, stderr : float
+        Entropy and its standard error [nats], visible share of the prior, 0 to 1.
+    exact : bool
+        Whether it is of the scene as it is now; otherwise it is a preview.
+    stored : bool
+        Whether it is the stored result.
+    view_outdated : bool
+        Whether beams and maps in the 3D view are still those of before the last move.
+    """
+
+    entropy: float
+    coverage: float
+    stderr: float
+    exact: bool
+    stored: bool
+    view_outdated: bool = False
+
+
+def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
+    """Return the score that is shown of a scene with *Live* on; None while there is none yet.
+
+    That is the live score; or the stored result, where the scene is idle and the result is that of
+    the scene as it is now: it is of more voxels. With *Live* off the panel shows the stored result.
+    """
+    settings, state = scene.perception_entropy, live_state(scene.name)
+    if state.score is None or not settings.live.on:
+        return None
+    exact = state.is_current(state.score)
+    if exact and settings.has_result and not settings.result_stale:
+        stored = settings.result_entropy, settings.result_coverage, settings.result_stderr
+        return ShownScore(*stored, exact=True, stored=True)
+    summary = state.score.summary
+    return ShownScore(summary.entropy, summary.coverage, summary.stderr, exact, stored=False)

@@ -1,0 +1,299 @@
+"""Compare variants: score those without a valid score in one job, then show a table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from textwrap import wrap
+from typing import NamedTuple
+
+import bpy
+
+from .. import bridge, result_staleness
+from ..engine import advice, pe
+from .reports import report
+from .score_jobs import JobOperator, SceneJob
+
+FIGURES_SHARE = 0.1
+"""About which share of a score's time its key figures take."""
+LABEL_PX, COLUMN_PX = 190, 140
+MIN_WIDTH_PX, LETTER_PX = 560, 7
+"""Smallest width of the table, and width of a letter of the sentences above it."""
+MAX_VARIANTS = 8
+TITLES = {
+    "entropy": "Entropy [nats], lower is better",
+    "coverage": "Coverage",
+    "ap": "Expected AP",
+    "reach": "Reach ahead [m], AP 0.5 or more",
+    "blind": "Blind ground [m²], lower is better",
+}
+FORMATS = {"entropy": ".3f", "coverage": ".1%", "ap": ".3f", "reach": ".1f", "blind": ".1f"}
+"""Formats of the figures by measure."""
+WHOLE_RIG = "Everywhere"
+
+
+class PendingVariant(NamedTuple):
+    """A variant without a valid score, or without figures of the present height and class."""
+
+    name: str
+    study: pe.Study
+    unscored: bool
+
+
+class ComparedVariant(NamedTuple):
+    """The results of a variant; `score` is None where it has a valid one already."""
+
+    score: pe.Score | None
+    figures: advice.KeyFigures
+
+
+class CompareJob:
+    """A job of several studies, one after the other: their scores and key figures, by key."""
+
+    def __init__(self, lacking: dict[int, PendingVariant], rule: bridge.FigureRule) -> None:
+        self.lacking, self.rule = lacking, rule
+        self.stopped = self.dropped = False
+        self.outcome: dict[int, ComparedVariant] | None = None
+
+    def stop(self) -> None:
+        """Stop the job; completed results are kept."""
+        self.stopped = True
+
+    def drop(self) -> None:
+        """Stop the job and discard all results."""
+        self.stopped = self.dropped = True
+
+    def __iter__(self) -> Iterator[pe.Progress]:
+        compared: dict[int, ComparedVariant] = {}
+        for key, (name, study, unscored) in self.lacking.items():
+            score = None
+            if unscored:
+                job = pe.ScoreJob(study)
+                for step in job:
+                    if self.stopped:
+                        job.stop()
+                    yield self._progress(name, len(compared), step)
+                if job.outcome is None:
+                    break
+                score = job.outcome.after
+            if self.stopped and score is None:
+                break
+            looking = pe.Progress("seeing", 1.0 - FIGURES_SHARE)
+            yield self._progress(name, len(compared), looking)
+            compared[key] = ComparedVariant(score, self._figures(study))
+        self.outcome = None if self.dropped else compared or None
+
+    def _progress(self, name: str, done: int, step: pe.Progress) -> pe.Progress:
+        share = (done + step.fraction) / len(self.lacking)
+        return replace(step, stage=f"scoring {name}", fraction=min(share, 1.0))
+
+    def _figures(self, study: pe.Study) -> advice.KeyFigures:
+        voxels = not study.targets.are_objects
+        return advice.key_figures(study.sight(), study.rig, *self.rule, of_voxels=voxels)
+
+
+class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
+    """Compare all variants: entropy and coverage by zone and class, blind ground, reach.
+
+    Variants without a valid score are scored first"""
+
+    bl_idname = "pe.compare_variants"
+    bl_label = "Compare"
+    bl_options = {"REGISTER", "UNDO"}
+    asked_in_window = False
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not context.scene.perception_entropy.variants:
+            cls.poll_message_set("There is no variant yet")
+            return False
+        return super().poll(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if not pending_variants(context.scene):
+            return {"FINISHED"}
+        return super().execute(context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the table at once where all scores are valid."""
+        self.asked_in_window = not bpy.app.background
+        if self.asked_in_window and not pending_variants(context.scene):
+            return open_table()
+        return super().invoke(context, event)
+
+    def _task(self, context: bpy.types.Context) -> SceneJob:
+        scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+        pending, refused = {}, []
+        for row in pending_variants(scene):
+            try:
+                study = bridge.study_of_variant(scene, row, depsgraph)
+                pending[row.key] = PendingVariant(row.name, study, not row.has_result or row.stale)
+            except pe.InputError as error:
+                refused.append(error)
+        if not pending:
+            raise refused[0]
+        for error in refused:
+            report(self, "WARNING", str(error))
+        taken = result_staleness.fingerprint(scene, depsgraph)
+        rule = bridge.figure_rule(scene, next(iter(pending.values())).study.prior)
+        self.figures_of = bridge.figures_signature(scene, taken)
+        return SceneJob(CompareJob(pending, rule), taken)
+
+    def write(
+        self, scene: bpy.types.Scene, outcome: dict[int, ComparedVariant], taken: bridge.Fingerprint
+    ) -> list[str]:
+        """Store the scores and figures of the variants that still exist."""
+        for row in scene.perception_entropy.variants:
+            if row.key in outcome:
+                score, figures = outcome[row.key]
+                if score is not None:
+                    bridge.store_variant_score(row, score, taken.surroundings)
+                bridge.write_figures(row, figures, self.figures_of)
+        if self.asked_in_window:
+            open_table()
+        return []
+
+    def message(self, outcome: dict[int, ComparedVariant]) -> str:
+        """Return the result in a line."""
+        scored = sum(variant.score is not None for variant in outcome.values())
+        return f"{scored} scored, {len(outcome)} compared"
+
+
+class PE_OT_show_comparison(bpy.types.Operator):
+    """Show the scores of all variants side by side"""
+
+    bl_idname = "pe.show_comparison"
+    bl_label = "Variants Compared"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, _context: bpy.types.Context) -> set[str]:
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Compute the table, and open it under the mouse."""
+        self.names, self.rows = comparison_of(context.scene)
+        width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
+        self.said = sentences(self.names, self.rows, width // LETTER_PX)
+        return context.window_manager.invoke_popup(self, width=width)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the table of stored scores, with one column for each variant."""
+        self.layout.label(text=self.bl_label, icon="MOD_ARRAY")
+        said = self.layout.column(align=True)  # first: the table may be taller than the window
+        for line in self.said:
+            said.label(text=line, translate=False)
+        split = self.layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(self.names)))
+        names, *columns = columns_of(self.names, self.rows)
+        draw_column(split.column(align=True), names, "LEFT")
+        figures = split.row()
+        for column in columns:
+            draw_column(figures.column(align=True), column, "RIGHT")
+        text = f"A star marks the best; in brackets: the difference to {self.names[0]}"
+        self.layout.label(text=text, translate=False)
+
+
+TableCell = tuple[str, bool] | None
+"""Text of a cell and whether it is the best; None for a gap."""
+
+
+def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: str) -> None:
+    """Draw a column of the table; every cell reserves the width of a star."""
+    other = "BLANK1" if alignment == "RIGHT" else "NONE"
+    for cell in cells:
+        if cell is None:
+            column.separator(factor=0.6)
+            continue
+        text, best = cell
+        row = column.row()
+        row.alignment = alignment
+        row.label(text=text, icon="SOLO_ON" if best else other, translate=False)
+
+
+def open_table() -> set[str]:
+    """Open the table."""
+    bpy.ops.pe.show_comparison("INVOKE_DEFAULT")
+    return {"FINISHED"}
+
+
+def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
+    """Return variants without a valid score, or without figures of the present settings."""
+    fingerprint = result_staleness.fingerprint(scene)
+    bridge.check_variants(scene, fingerprint)
+    signature, rows = (
+        bridge.figures_signature(scene, fingerprint),
+        scene.perception_entropy.variants,
+    )
+    return [
+        row
+        for row in rows
+        if not row.has_result or row.stale or bridge.figures_of(row, signature) is None
+    ]
+
+
+def comparison_of(
+    scene: bpy.types.Scene,
+) -> tuple[list[str], tuple[advice.ComparedRow, ...]]:
+    """Return the names of the scored variants, the active one first, and the table's rows."""
+    active = scene.perception_entropy.variant_key
+    rows = [row for row in scene.perception_entropy.variants if row.has_result]
+    rows = sorted(rows, key=lambda row: row.key != active)[:MAX_VARIANTS]
+    scores = {row.name: bridge.score_of(row) for row in rows}
+    return list(scores), (*advice.compare(scores), *figure_rows(scene, rows))
+
+
+def figure_rows(
+    scene: bpy.types.Scene, rows: list[bpy.types.PropertyGroup]
+) -> tuple[advice.ComparedRow, ...]:
+    """Return rows of key figures, if every variant has these figures."""
+    of = bridge.figures_signature(scene, result_staleness.fingerprint(scene))
+    figures = {row.name: bridge.figures_of(row, of) for row in rows}
+    return () if None in figures.values() else advice.compare_figures(figures)
+
+
+def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: int) -> list[str]:
+    """Return sentences on the best variant by row, wrapped into lines of `letters` letters."""
+    scored = [row for row in rows if row.factor]  # key figures have no standard error
+    lines = (*advice.ranking(names, scored), *advice.win_words(names, scored))
+    return [line for sentence in lines for line in wrap(sentence, letters)]
+
+
+def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[list[TableCell]]:
+    """Return the table by columns; the first column holds the names of the rows."""
+    columns: list[list[TableCell]] = [[("", False)], *[[(name, False)] for name in names]]
+    for measure, title in TITLES.items():
+        if not any(row.measure == measure for row in rows):
+            continue
+        _add(columns, [(title, False)])
+        group = "rig"
+        for row in rows:
+            if row.measure != measure:
+                continue
+            if row.group != group:
+                _add(columns, [None] * len(columns))
+                group = row.group
+            label = f"    {row.name.capitalize() or WHOLE_RIG}"
+            _add(columns, [(label, False), *(_cell(row, k) for k in range(len(names)))])
+    return columns
+
+
+def _add(columns: list[list[TableCell]], cells: list[TableCell]) -> None:
+    """Append a row to the table; missing cells at its end are empty."""
+    for k, column in enumerate(columns):
+        column.append(cells[k] if k < len(cells) else ("", False))
+
+
+def _cell(row: advice.ComparedRow, k: int) -> TableCell:
+    """Return a figure, with its difference to the first variant's if that is not 0."""
+    value, less = row.values[k], row.differences[k]
+    if value is None:
+        return "–", False
+    way = FORMATS[row.measure]
+    change = "" if less is None else f"{less:+{way}}".removesuffix("%")
+    is_visible = bool(change.strip("+-0."))
+    return f"({change})  {value:{way}}" if is_visible else f"{value:{way}}", row.best[k]
+
+
+CLASSES = (
+    PE_OT_compare_variants,
+    PE_OT_show_comparison,
+)

@@ -1,0 +1,261 @@
+"""Export and import: the study, the scene for other programs, the review picture and page."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from .. import bridge, signals
+from ..engine import app, exchange, jobs, outputs, page, pe
+from .export_job import ExportJob, ExportOperator, ExportSteps, WrittenFiles, report_files
+from .reports import USER_ERRORS, chosen_file, report, report_error
+
+
+class PE_OT_export_study(ExportHelper, bpy.types.Operator):
+    """Write a study (.toml) and the vehicle's mesh (.npz) beside it"""
+
+    bl_idname = "pe.export_study"
+    bl_label = "Export Study"
+
+    filename_ext = ".toml"
+    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            path = chosen_file(self.filepath)
+            study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+            pe.export_study(study, path, replace_study=True)  # the file dialog has confirmed it
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        return report_files(self, path)
+
+
+class PE_OT_import_study(ImportHelper, bpy.types.Operator):
+    """Load a study into the scene: its vehicle, sensors, mounts, and search settings.
+
+    A vehicle that is already the same stays"""
+
+    bl_idname = "pe.import_study"
+    bl_label = "Import Study"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filename_ext = ".toml"
+    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Studies are imported in Object Mode")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            study = pe.load_study(chosen_file(self.filepath))
+            lost = bridge.load_into(context.scene, study)
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        signals.study_changed.emit()
+        if lost:
+            report(self, "WARNING", f"The scene differs from the file in: {', '.join(lost)}")
+        else:
+            report(self, "INFO", f"Imported {self.filepath} without any loss")
+        return {"FINISHED"}
+
+
+_OUTPUT_ITEMS = tuple(
+    (row.name, row.title, "", k) for k, row in enumerate(outputs.SCENE_OUTPUTS.values())
+)
+
+
+class PE_OT_export_scene(ExportOperator, bpy.types.Operator):
+    """Write vehicle, sensors and what they see for CAD, viewers and other programs"""
+
+    bl_idname = "pe.export_scene"
+    bl_label = "Export Scene"
+
+    filename_ext = ""
+    check_extension = None
+    output: EnumProperty(items=_OUTPUT_ITEMS, name="Output", description="What is to be written")
+    range_m: FloatProperty(
+        name="Range",
+        description="How far fields of view are drawn; 0: the default of the output",
+        default=0.0,
+        min=0.0,
+        subtype="DISTANCE",
+    )
+    replace: BoolProperty(
+        name="Replace", description="Replace existing files of a folder", default=False
+    )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self.filepath = outputs.scene_output(self.output).file
+        return super().invoke(context, event)
+
+    def job(self, context: bpy.types.Context) -> ExportJob:
+        """Read the scene; its files are made on a thread."""
+        row = outputs.scene_output(self.output)
+        path = _with_ending(chosen_file(self.filepath), row)
+        study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+        replace = self.replace or not row.has_several  # of one file the dialog has confirmed it
+        reach = self.range_m or None
+        steps = PE_OT_export_scene.steps  # the operator ends with its dialog
+        return ExportJob(study, lambda job: steps(job, row, path, reach, replace))
+
+    @staticmethod
+    def steps(
+        job: ExportJob, row: outputs.SceneOutput, path: Path, reach: float | None, replace: bool
+    ) -> ExportSteps:
+        """Make the files on a thread, then write them."""
+
+        def work() -> tuple[dict[str, bytes], list[str]]:
+            return outputs.scene_files(job.study, row.name, reach)
+
+        made = yield from job.made(f"exporting {row.title}", 0.0, work)
+        if made is None:
+            return None
+        files, lines = made
+        paths = exchange.write_files(files, path, inside=row.has_several, replace=replace)
+        return WrittenFiles(tuple(paths), tuple(lines))
+
+
+def _with_ending(path: Path, row: outputs.SceneOutput) -> Path:
+    """Return the path with the file extension of the output, if it has none."""
+    return path if row.has_several or path.suffix else path.with_suffix(Path(row.file).suffix)
+
+
+SCORED_SHARE, RENDERED_SHARE = 0.25, 0.4
+"""About which share of an export is done after the score, and after the picture."""
+RENDERING = "rendering"
+
+
+def headless_command(path: Path, render: bool, about: page.About) -> str:
+    """Return the command that makes the page from the saved file; empty if it is unsaved."""
+    if not bpy.data.filepath or bpy.data.is_dirty:
+        return ""
+    options = ["review", "-o", path.parent.name or ".", *([] if render else ["--no-render"])]
+    texts = {field.name: getattr(about, field.name) for field in fields(about)}
+    options += [f"--{name}={text}" for name, text in texts.items() if text]
+    file = shlex.quote(Path(bpy.data.filepath).name)
+    return app.as_typed(f"blender -b {file} --command pe", options)
+
+
+class PE_OT_render_review(ExportOperator, bpy.types.Operator):
+    """Score the sensors as they are now and render a picture of what they see (.png)"""
+
+    bl_idname = "pe.render_review"
+    bl_label = "Render Review"
+
+    filename_ext = ".png"
+    filter_glob: StringProperty(default="*.png", options={"HIDDEN"})
+
+    def job(self, context: bpy.types.Context) -> ExportJob:
+        """Read the scene; score and render it step by step."""
+        path, scene = chosen_file(self.filepath), context.scene.name
+        study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+        return ExportJob(study, lambda job: PE_OT_render_review.steps(job, path, scene))
+
+    @staticmethod
+    def steps(job: ExportJob, path: Path, scene: str) -> ExportSteps:
+        """Score, then render on the main thread."""
+        from .. import review  # imported only for a picture
+
+        outcome = yield from job.scored(SCORED_SHARE)
+        if outcome is None:
+            return None
+        yield pe.Progress(RENDERING, SCORED_SHARE)
+        if job.stopped:
+            return None
+        review.render_review(scene_named(scene), outcome.study, outcome, path)
+        return WrittenFiles((path,))
+
+
+class PE_OT_export_review(ExportOperator, bpy.types.Operator):
+    """Score the sensors as they are now and write a page of the results (.html)"""
+
+    bl_idname = "pe.export_review"
+    bl_label = "Export Review"
+
+    filename_ext = ".html"
+    filter_glob: StringProperty(default="*.html", options={"HIDDEN"})
+    render: BoolProperty(
+        name="Rendered Picture",
+        description="Have Blender render the picture at the top of the page",
+        default=True,
+    )
+    title: StringProperty(name="Title", description="Of the page, in place of the file's name")
+    author: StringProperty(name="Author", description="Who made it")
+    date: StringProperty(
+        name="Date", description='Any text; "today" is the day of the export. Empty: none'
+    )
+    revision: StringProperty(name="Revision", description="Of the page")
+
+    def job(self, context: bpy.types.Context) -> ExportJob:
+        """Read the scene; score, render and write the page step by step."""
+        path, scene = chosen_file(self.filepath), context.scene.name
+        about = page.About(self.title, self.author, self.date, self.revision)
+        study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+        facts = {
+            "command": headless_command(path, self.render, about),
+            "versions": bridge.blender_version(),
+        }
+        shown = scene if self.render else ""
+        steps = PE_OT_export_review.steps  # the operator ends with its dialog
+        pe.prepare_folder(path.parent)  # fail before the work, not after
+        return ExportJob(study, lambda job: steps(job, path, shown, facts, about))
+
+    @staticmethod
+    def steps(
+        job: ExportJob, path: Path, scene: str, facts: dict[str, Any], about: page.About
+    ) -> ExportSteps:
+        """Score, optionally render the picture of a scene, and make the page in a thread."""
+        from .. import review  # imported only for a page
+
+        outcome = yield from job.scored(SCORED_SHARE)
+        if outcome is None:
+            return None
+        picture = None
+        if scene:
+            yield pe.Progress(RENDERING, SCORED_SHARE)
+            if job.stopped:
+                return None
+            picture = review.picture_of(scene_named(scene), outcome)
+        one = page.ReportContext(path.stem, outcome, picture=picture, **facts)
+        watch = job.watch(RENDERED_SHARE)
+        made = yield from job.made(
+            "page", RENDERED_SHARE, lambda: page.page_bytes([one], watch, about)
+        )
+        if made is None:
+            return None
+        with jobs.FileSet(path.parent, (path.name,)) as files:  # the dialog has confirmed it
+            files.add(path.name, made)
+        return WrittenFiles((path,))
+
+
+def scene_named(name: str) -> bpy.types.Scene:
+    """Return a scene by its name.
+
+    Raises
+    ------
+    InputError
+        When it was removed.
+    """
+    scene = bpy.data.scenes.get(name)
+    if scene is None:
+        raise pe.InputError("export", "scene", "the scene that was scored", f"{name!r} was removed")
+    return scene
+
+
+CLASSES = (
+    PE_OT_export_study,
+    PE_OT_import_study,
+    PE_OT_export_scene,
+    PE_OT_render_review,
+    PE_OT_export_review,
+)

@@ -1,0 +1,177 @@
+"""Fix the cause of a warning, if there is a known fix: turn, move or scale the vehicle, ..."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import bpy
+from bpy.props import EnumProperty, FloatVectorProperty, StringProperty
+from mathutils import Matrix, Vector
+
+from .. import bridge, signals
+from ..engine import pe
+from .reports import USER_ERRORS, report, report_error
+
+AdviceAmount = tuple[float, float, float]
+ON_VEHICLE_M = 0.5
+"""A sensor this near to the vehicle's box goes with it when that is turned or moved."""
+
+FIX_LABELS = {
+    "turn_vehicle": "Turn the Vehicle",
+    "scale_vehicle": "Scale the Vehicle",
+    "move_vehicle": "Move the Vehicle",
+    "roll_sensor": "Turn It Upright",
+    "apply_scale": "Apply Its Scale",
+    "metric_units": "Set Units to Metres",
+    "show_vehicle": "Show the Vehicle",
+}
+"""What the button of a fix says."""
+
+
+class PE_OT_mend(bpy.types.Operator):
+    """Mend what this warning tells of. Sensors on the vehicle go with it"""
+
+    bl_idname = "pe.mend"
+    bl_label = "Mend"
+    bl_options = {"REGISTER", "UNDO"}
+
+    fix: EnumProperty(
+        items=[(key, label, label) for key, label in FIX_LABELS.items()],
+        name="Fix",
+        description="What is done",
+    )
+    subject: StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle")
+    amount: FloatVectorProperty(name="Amount", description="How much of it", size=3)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("This is mended in Object Mode")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            FIXES[self.fix](context, self.subject, tuple(self.amount))
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        context.view_layer.update()
+        context.scene.perception_entropy.result_warnings.clear()  # the checks run again
+        signals.study_changed.emit()
+        report(self, "INFO", f"{FIX_LABELS[self.fix]}: done")
+        return {"FINISHED"}
+
+
+def turn_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
+    """Turn the vehicle about the vertical through the origin, counter-clockwise [deg]."""
+    _transform_vehicle(context, Matrix.Rotation(math.radians(amount[0]), 4, "Z"))
+
+
+def move_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
+    """Move the vehicle [m]."""
+    _transform_vehicle(context, Matrix.Translation(amount))
+
+
+def scale_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
+    """Scale the vehicle about the origin; the sensors keep their size."""
+    _transform_vehicle(context, Matrix.Scale(amount[0], 4))
+
+
+def roll_sensor(context: bpy.types.Context, subject: str, amount: AdviceAmount) -> None:
+    """Turn a sensor about its viewing direction [deg]."""
+    obj = _sensor_named(context, subject)
+    obj.matrix_world = obj.matrix_world @ Matrix.Rotation(math.radians(amount[0]), 4, "X")
+
+
+def apply_scale(context: bpy.types.Context, subject: str, _amount: AdviceAmount) -> None:
+    """Set a sensor's scale to 1, also if its parents cause the scale."""
+    obj = _sensor_named(context, subject)
+    location, rotation, _ = obj.matrix_world.decompose()
+    obj.matrix_world = Matrix.LocRotScale(location, rotation, Vector((1.0, 1.0, 1.0)))
+    context.view_layer.update()
+
+
+def metric_units(context: bpy.types.Context, _subject: str, _amount: AdviceAmount) -> None:
+    """Set the scene's unit to one metre; no object is moved or scaled."""
+    units = context.scene.unit_settings
+    units.system, units.scale_length, units.length_unit = "METRIC", 1.0, "METERS"
+
+
+def show_vehicle(context: bpy.types.Context, _subject: str, _amount: AdviceAmount) -> None:
+    """Make the vehicle's collection and its parent collections visible again."""
+    vehicle, root = context.scene.perception_entropy.vehicle, context.view_layer.layer_collection
+    for layer in reversed(bridge.layers_of(root, vehicle)[:-1] if vehicle else []):
+        layer.exclude = layer.hide_viewport = False
+        layer.collection.hide_viewport = layer.collection.hide_render = False
+
+
+FIXES: dict[str, Callable[[bpy.types.Context, str, AdviceAmount], None]] = {
+    "turn_vehicle": turn_vehicle,
+    "scale_vehicle": scale_vehicle,
+    "move_vehicle": move_vehicle,
+    "roll_sensor": roll_sensor,
+    "apply_scale": apply_scale,
+    "metric_units": metric_units,
+    "show_vehicle": show_vehicle,
+}
+
+
+def _transform_vehicle(context: bpy.types.Context, change: Matrix) -> None:
+    """Apply a transform to the vehicle's outermost objects and the sensors on the vehicle."""
+    vehicle = context.scene.perception_entropy.vehicle
+    if vehicle is None:
+        raise pe.InputError("scene", "vehicle collection", "a collection", "none chosen")
+    members = list(vehicle.all_objects)
+    outermost = [obj for obj in members if obj.parent not in members]
+    for obj in outermost:
+        if obj.library is not None:
+            expected, found = "an object of this file", f"linked from {obj.library.filepath}"
+            raise pe.InputError("scene", f"vehicle object {obj.name!r}", expected, found)
+    carried = [obj for obj in _sensors_on(context, members) if not _follows(obj, outermost)]
+    for obj in outermost:
+        obj.matrix_world = change @ obj.matrix_world
+    for obj in carried:
+        location, rotation, _ = (change @ obj.matrix_world).decompose()
+        obj.matrix_world = Matrix.LocRotScale(location, rotation, obj.matrix_world.to_scale())
+
+
+def _sensors_on(
+    context: bpy.types.Context, members: list[bpy.types.Object]
+) -> list[bpy.types.Object]:
+    """Return the sensors within a metre of the vehicle's bounding box."""
+    corners = [
+        obj.matrix_world @ Vector(corner)
+        for obj in members
+        if obj.type == "MESH"
+        for corner in obj.bound_box
+    ]
+    if not corners:
+        return []
+    low = [min(c[k] for c in corners) - ON_VEHICLE_M for k in range(3)]
+    high = [max(c[k] for c in corners) + ON_VEHICLE_M for k in range(3)]
+
+    def near(point: Vector) -> bool:
+        return all(low[k] <= point[k] <= high[k] for k in range(3))
+
+    sensors = bridge.sensor_objects(context.scene)
+    return [obj for obj in sensors if near(obj.matrix_world.translation)]
+
+
+def _follows(obj: bpy.types.Object, carried: list[bpy.types.Object]) -> bool:
+    """Whether an object or one of its parents is among the moved objects."""
+    while obj is not None:
+        if obj in carried:
+            return True
+        obj = obj.parent
+    return False
+
+
+def _sensor_named(context: bpy.types.Context, name: str) -> bpy.types.Object:
+    for obj in bridge.sensor_objects(context.scene):
+        if obj.name == name:
+            return obj
+    raise pe.InputError("scene", "sensor", "one of the scene", repr(name))
+
+
+CLASSES = (PE_OT_mend,)

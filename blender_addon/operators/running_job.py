@@ -1,0 +1,175 @@
+"""The one job that may be running: its state, for the panel and the status bar.
+
+It is kept here and not in a property: undo would restore an old value of a property.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import bpy
+
+from .. import search_curve, signals, viewport
+from ..engine import pe
+
+TICK_S = 0.05
+"""How often the window gives the job a turn."""
+STATUS_BAR_WIDTH = 14.0
+"""Room for the text in the status bar, in Blender's units of a button's height."""
+TURN_S = 0.015
+"""How long a turn takes; the last wait for the working thread takes twice as long: together less
+than 50 ms."""
+SHOW_EVERY_S = 0.2
+"""How often the progress is drawn: drawing takes time from the work."""
+CURVE_EVERY_S, BEST_EVERY_S = 2.0, 0.5
+"""How often the 3D view is redrawn: for the curve, and after a better placement was found."""
+NO_UNDO = "Undo is not possible while a job runs; Esc stops it"
+"""Shown when the keys of undo are pressed."""
+NOTICE_S = 6.0
+"""How long that is shown."""
+
+
+class RunningJob:
+    """A job that is stepped by a timer."""
+
+    def __init__(self, context: bpy.types.Context, job: pe.Job) -> None:
+        self.job = job
+        self.scene_name = context.scene.name
+        self.progress = pe.Progress("starting", 0.0)
+        self._steps: Iterator[pe.Progress] = iter(job)
+        self._shown = self._seen = 0.0
+        self._better = 0
+        self._notice_until = 0.0
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(TICK_S, window=context.window)
+        manager.progress_begin(0.0, 1.0)
+
+    def step(self) -> bool:
+        """Run the job for one turn; return whether there is more to do."""
+        deadline = time.monotonic() + TURN_S
+        for progress in self._steps:
+            self.progress = progress
+            if time.monotonic() >= deadline:
+                return True
+        return False
+
+    def stop(self) -> None:
+        """Stop the job and keep the best so far; called again, keep nothing."""
+        if self.job.stopped:
+            self.job.drop()
+        self.job.stop()
+
+    @property
+    def text(self) -> str:
+        """The stage, the progress, and the best entropy so far: approximate, if on a sample."""
+        if self.job.dropped:
+            return "Stopping"
+        stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
+        entropy = self.progress.entropy
+        if entropy is None:
+            return stage
+        sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
+        return f"{stage}, best {'≈ ' if sampled else ''}{entropy:.3f}"
+
+    def refuse_undo(self, context: bpy.types.Context) -> None:
+        """Show beside the progress, for some time, that there is no undo now."""
+        self._notice_until = time.monotonic() + NOTICE_S
+        self.show(context)
+
+    @property
+    def notice(self) -> str:
+        """A notice beside the progress; empty as a rule."""
+        return NO_UNDO if time.monotonic() < self._notice_until else ""
+
+    @property
+    def on_escape(self) -> str:
+        """What Esc does now."""
+        return "Discard All Changes" if self.job.stopped else "Stop"
+
+    def show_soon(self, context: bpy.types.Context) -> None:
+        """Draw the progress again, if some time has passed since the last time."""
+        if time.monotonic() - self._shown >= SHOW_EVERY_S:
+            self.show(context)
+
+    def show(self, context: bpy.types.Context) -> None:
+        """Draw the progress again, but not the scene: that would take longer than the work."""
+        self._shown = time.monotonic()
+        self._show_search()
+        context.window_manager.progress_update(self.progress.fraction)
+        context.workspace.status_text_set(draw_status)
+        for region in _regions(context.window_manager):
+            if region.type == "UI":
+                region.tag_redraw()
+
+    def _show_search(self) -> None:
+        """Show the curve of a search and the best placement in the 3D view, not too often."""
+        history = getattr(self.job, "history", ())
+        better = len(history) > self._better
+        wait = BEST_EVERY_S if better else CURVE_EVERY_S
+        if not history or time.monotonic() - self._seen < wait:
+            return
+        self._seen, self._better = time.monotonic(), len(history)
+        points = tuple((row.evaluation, row.entropy) for row in history)
+        sensors = tuple(history[-1].rig) if len(history) > 1 else ()
+        sampled = bool(self.job.study.search.samples)
+        seen = search_curve.SearchProgress(points, self.job.evaluations, sensors, sampled)
+        search_curve.note(self.scene_name, seen)
+        if better:
+            signals.view_changed.emit()  # the best placement is drawn as ghosts
+        viewport.redraw_editors()
+
+    def end(self, context: bpy.types.Context) -> None:
+        """Remove everything that shows the job, however it ended."""
+        search_curve.drop(self.scene_name)
+        signals.view_changed.emit()
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        # Any workspace will do: the text is drawn by one function for all of them.
+        for workspace in bpy.data.workspaces[:1]:
+            workspace.status_text_set(None)
+        for region in _regions(context.window_manager):
+            region.tag_redraw()
+
+
+current: RunningJob | None = None
+
+
+def begin(context: bpy.types.Context, job: pe.Job) -> None:
+    """Have a timer step the job from now on."""
+    global current
+    current = RunningJob(context, job)
+
+
+def end(context: bpy.types.Context) -> None:
+    """Drop the job; do nothing if there is none."""
+    global current
+    if current is not None:
+        ended, current = current, None
+        ended.end(context)
+
+
+def unregister() -> None:
+    """End a running job and remove what shows it: its operator is about to be removed."""
+    if current is not None:
+        current.job.drop()
+    end(bpy.context)
+
+
+def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
+    """Draw the progress in the status bar, in place of Blender's own hints."""
+    if current is not None:
+        row = header.layout.row()
+        row.label(text=current.on_escape, icon="EVENT_ESC")
+        bar = row.row()
+        bar.ui_units_x = STATUS_BAR_WIDTH
+        bar.progress(text=current.text, factor=current.progress.fraction)
+        if current.notice:
+            row.label(text=current.notice, icon="INFO")
+        row.separator_spacer()
+
+
+def _regions(manager: bpy.types.WindowManager) -> Iterator[bpy.types.Region]:
+    for window in manager.windows:
+        for area in window.screen.areas:
+            yield from area.regions

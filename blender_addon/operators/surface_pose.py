@@ -1,0 +1,201 @@
+"""A spot on the vehicle's surface under the mouse, and the pose of a sensor on it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import bpy
+from bpy_extras import view3d_utils
+from mathutils import Matrix, Vector
+
+from .. import bridge
+from ..sensor_kinds import Mount
+
+PASS_STEP_M = 1e-3
+"""How far behind a surface that is not the vehicle's a ray goes on."""
+MAX_STEPS = 64
+
+
+class SurfaceSpot(NamedTuple):
+    """A point of the surface [m], its unit normal towards the viewer, and the object's name."""
+
+    point: Vector
+    normal: Vector
+    part: str
+
+
+def parts_of(
+    collection: bpy.types.Collection | None, depsgraph: bpy.types.Depsgraph
+) -> set[str] | None:
+    """Return the names of objects that a sensor may be put on; None (all) without a vehicle."""
+    if collection is None:
+        return None
+    members = bridge.visible_members(collection, depsgraph.view_layer)
+    return {obj.name_full for obj in members if not bridge.mounted_on_sensor(obj)}
+
+
+def spot_on_ray(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+    parts: set[str] | None,
+    origin: Vector,
+    direction: Vector,
+) -> SurfaceSpot | None:
+    """Return the spot where a ray first meets one of the parts; other objects are ignored."""
+    start = origin.copy()
+    for _ in range(MAX_STEPS):
+        hit, point, normal, _, obj, _ = scene.ray_cast(depsgraph, start, direction)
+        if not hit:
+            return None
+        if parts is None or obj.original.name_full in parts:
+            facing = normal.normalized()
+            return SurfaceSpot(point, facing if facing.dot(direction) <= 0.0 else -facing, obj.name)
+        start = point + direction * PASS_STEP_M
+    return None
+
+
+def nearest_spot(
+    depsgraph: bpy.types.Depsgraph, parts: set[str], point: Vector, within_m: float
+) -> SurfaceSpot | None:
+    """Return the nearest spot on the parts' surface within a distance; None without one."""
+    best, min_distance = None, within_m
+    for name in sorted(parts):
+        obj = bpy.data.objects[name].evaluated_get(depsgraph)
+        if obj.type != "MESH" or not len(obj.data.polygons):
+            continue
+        ground_from_local = obj.matrix_world
+        local = ground_from_local.inverted_safe() @ point
+        is_found, at, normal, _ = obj.closest_point_on_mesh(local)
+        distance = (ground_from_local @ at - point).length if is_found else min_distance
+        if distance < min_distance:
+            turned = ground_from_local.to_3x3().inverted_safe().transposed() @ normal
+            best, min_distance = (
+                SurfaceSpot(ground_from_local @ at, turned.normalized(), name),
+                distance,
+            )
+    return best
+
+
+NO_HEADING_M = 0.05
+"""A place nearer to the vehicle's middle than this has no outward direction: it looks ahead."""
+POSITION_DECIMALS, YAW_STEP_DEG = 3, 1.0
+"""A sensor that is put down by hand stands at whole millimetres and looks along whole degrees."""
+PARALLEL_COS = 0.999
+"""Of two unit vectors: they are parallel."""
+STAND_OFF_STEP_M, MIN_STAND_OFF_M, MAX_STAND_OFF_M = 0.01, 0.0, 2.0
+MAX_PITCH_DEG = 90.0
+"""A sensor pitches no further than straight down or up."""
+
+
+class ViewUnderMouse(NamedTuple):
+    """The 3D view under the mouse, and the mouse position in it [px]."""
+
+    area: bpy.types.Area
+    region: bpy.types.Region
+    mouse: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Stance:
+    """How a sensor is put on a surface: its distance from it [m], and its direction.
+
+    `yaw_deg` (positive is left) and `pitch_deg` (positive is nose down) turn it from there.
+    """
+
+    stand_off_m: float
+    along_normal: bool = False
+    yaw_deg: float = 0.0
+    pitch_deg: float = 0.0
+
+    def changed(self, by_m: float) -> Stance:
+        """Return the stance with a changed distance, clipped to the allowed range."""
+        nearer = min(max(self.stand_off_m + by_m, MIN_STAND_OFF_M), MAX_STAND_OFF_M)
+        return replace(self, stand_off_m=round(nearer, POSITION_DECIMALS))
+
+    def turned(self, yaw_deg: float, pitch_deg: float) -> Stance:
+        """Return the stance, turned further by these angles."""
+        yaw = (self.yaw_deg + yaw_deg + 180.0) % 360.0 - 180.0
+        pitch = min(max(self.pitch_deg + pitch_deg, -MAX_PITCH_DEG), MAX_PITCH_DEG)
+        return replace(self, yaw_deg=yaw, pitch_deg=pitch)
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether a sensor is turned from the default direction at its spot."""
+        return bool(self.yaw_deg or self.pitch_deg)
+
+    def placed(self, spot: SurfaceSpot, mount: Mount, middle: Vector) -> Matrix:
+        """Return the pose (4, 4) on a spot of a vehicle with the given middle.
+
+        Upright: z is up, and a sensor that has a front looks away from the middle. Along the
+        normal: the front looks along it, or, of sensors that look all around, their z stands so.
+        """
+        origin = spot.point + spot.normal * self.stand_off_m
+        at = Matrix.Translation([round(value, POSITION_DECIMALS) for value in origin])
+        if not self.along_normal:
+            yaw = outward_yaw(spot.point, middle) if mount.outward else 0.0
+            return at @ Matrix.Rotation(yaw, 4, "Z") @ self._turn()
+        turned = (
+            _axes_looking_along(spot.normal) if mount.outward else _axes_standing_on(spot.normal)
+        )
+        return at @ turned.to_4x4() @ self._turn()
+
+    def _turn(self) -> Matrix:
+        """(4, 4) yaw, then pitch, in the sensor's own frame."""
+        yaw, pitch = math.radians(self.yaw_deg), math.radians(self.pitch_deg)
+        return Matrix.Rotation(yaw, 4, "Z") @ Matrix.Rotation(pitch, 4, "Y")
+
+
+def view_under(context: bpy.types.Context, event: bpy.types.Event) -> ViewUnderMouse | None:
+    """Return the 3D view under the mouse; None over its sidebar, its header or anything else."""
+    x, y = event.mouse_x, event.mouse_y
+    for area in context.window.screen.areas:
+        if area.type != "VIEW_3D" or not _holds(area, x, y):
+            continue
+        over = [region for region in area.regions if _holds(region, x, y)]
+        if any(region.type != "WINDOW" for region in over):
+            return None
+        for region in over:
+            if isinstance(region.data, bpy.types.RegionView3D):
+                return ViewUnderMouse(area, region, (x - region.x, y - region.y))
+    return None
+
+
+def ray_of(view: ViewUnderMouse) -> tuple[Vector, Vector]:
+    """Return where the ray under the mouse begins, and its direction."""
+    look = view.region.data
+    origin = view3d_utils.region_2d_to_origin_3d(view.region, look, view.mouse)
+    return origin, view3d_utils.region_2d_to_vector_3d(view.region, look, view.mouse)
+
+
+def _holds(rectangle: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool:
+    inside_x = rectangle.x <= x < rectangle.x + rectangle.width
+    return inside_x and rectangle.y <= y < rectangle.y + rectangle.height
+
+
+def outward_yaw(point: Vector, middle: Vector) -> float:
+    """Yaw from the vehicle's middle to a point of it [rad], in whole degrees."""
+    away = (point - middle).to_2d()
+    if away.length < NO_HEADING_M:
+        return 0.0
+    degrees = math.degrees(math.atan2(away.y, away.x))
+    return math.radians(round(degrees / YAW_STEP_DEG) * YAW_STEP_DEG)
+
+
+def _axes_looking_along(normal: Vector) -> Matrix:
+    """Axes of a sensor that looks along a normal, as upright as that allows."""
+    up = Vector((0.0, 0.0, 1.0))
+    if abs(normal.dot(up)) > PARALLEL_COS:
+        up = Vector((-math.copysign(1.0, normal.z), 0.0, 0.0))
+    left = up.cross(normal).normalized()
+    return Matrix((normal, left, normal.cross(left))).transposed()
+
+
+def _axes_standing_on(normal: Vector) -> Matrix:
+    """Axes of a sensor that stands on a surface, as much ahead as that allows."""
+    ahead = Vector((1.0, 0.0, 0.0))
+    if abs(normal.dot(ahead)) > PARALLEL_COS:
+        ahead = Vector((0.0, 0.0, -math.copysign(1.0, normal.x)))
+    left = normal.cross(ahead).normalized()
+    return Matrix((left.cross(normal), left, normal)).transposed()

@@ -1,0 +1,161 @@
+"""Annotations: axles, the queried location, and another variant's sensors; no scene, no GPU."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..engine import graphics
+
+if TYPE_CHECKING:
+    from ..engine import advice, pe
+
+
+DEFAULT_HALF_WIDTH_M, BEYOND_M = 0.9, 0.15
+"""Half an axle where there is no vehicle, and how far it extends beyond the body."""
+AXIS_M = 0.6
+AXES: tuple[graphics.Rgba, ...] = (
+    (0.93, 0.3, 0.35, 1.0),
+    (0.5, 0.8, 0.15, 1.0),
+    (0.25, 0.55, 0.98, 1.0),
+)
+"""Blender's colours of x, y and z."""
+AXLE_ALPHA = 0.55
+
+
+def axles(reference: pe.Reference, half_width: float | None) -> graphics.LayerShape:
+    """Return both axles as lines across, and axes on the ground under the middle of the rear one.
+
+    `half_width` is the vehicle's [m]; lines go a little beyond it, and are drawn through the body.
+    """
+    half = BEYOND_M + (DEFAULT_HALF_WIDTH_M if half_width is None else half_width)
+    x, z = reference.rear_axle_x, reference.rear_axle_z
+    lines = [_axle_line(x, z, half)]
+    if reference.wheelbase is not None:
+        lines.append(_axle_line(x + reference.wheelbase, z, half))
+    origin = np.array([x, 0.0, 0.0])
+    for color, axis in zip(AXES, np.eye(3), strict=True):
+        lines.append(graphics.Primitives.of([origin, origin + AXIS_M * axis], color))
+    label = graphics.Tag("rear axle", (x, -half, z), graphics.VIEWPORT.words)
+    return graphics.LayerShape(through=graphics.Primitives.joined(lines), labels=(label,))
+
+
+def _axle_line(x: float, z: float, half: float) -> graphics.Primitives:
+    return graphics.Primitives.of(
+        [(x, -half, z), (x, half, z)], graphics.with_alpha(graphics.VIEWPORT.words, AXLE_ALPHA)
+    )
+
+
+SIDE_M = 0.1
+POST_M = 0.6
+"""A voxel alone would be too small to see: a post marks it."""
+VISIBLE, OCCLUDED = (
+    graphics.with_alpha(graphics.VIEWPORT.free, 0.9),
+    graphics.with_alpha(graphics.VIEWPORT.stopped, 0.9),
+)
+MARK = (1.0, 1.0, 1.0, 0.95)
+
+
+def location_mark(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> graphics.LayerShape:
+    """Return a mark at a location, and a line to each sensor that sees it or is occluded."""
+    center = np.array(place.center)
+    answers = {each.name: each for each in place.sensors}
+    lines = [_voxel_mark(center)]
+    for sensor in sensors:
+        answer = answers.get(sensor.name)
+        if answer is not None and answer.reason in REASON_COLORS:
+            ends = np.array([sensor.pose.position, place.center])
+            lines.append(graphics.Primitives.of(ends, REASON_COLORS[answer.reason]))
+    seeing = sum(each.m > 0.0 for each in place.sensors)
+    text = "in the vehicle" if place.in_vehicle else f"seen by {seeing}, AP {place.ap:.2f}"
+    top = (float(center[0]), float(center[1]), float(center[2]) + POST_M)
+    return graphics.LayerShape(
+        through=graphics.Primitives.joined(lines),
+        labels=(graphics.Tag(text, top, MARK, strong=True),),
+    )
+
+
+def _voxel_mark(center: np.ndarray) -> graphics.Primitives:
+    """Return the edges of the voxel, and a post on it."""
+    corners = center + SIDE_M * (np.array([*np.ndindex(2, 2, 2)]) - 0.5)
+    edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)]
+    post = np.array([center, center + np.array([0.0, 0.0, POST_M])])
+    return graphics.Primitives.of(np.vstack([*(corners[list(edge)] for edge in edges), post]), MARK)
+
+
+REASON_COLORS = {"sees": VISIBLE, "hidden": OCCLUDED}
+"""By the reason that `advice.ask_place` gives."""
+
+
+RING_M, VIEW_M = 0.18, 0.6
+"""Radius of a ring, and length of a camera's view."""
+GHOST_ALPHA, LINK_ALPHA = 0.5, 0.8
+SAME_M = 1e-4
+"""Sensors nearer to each other than this are at one place: there is no line between them."""
+PALE = (0.85, 0.85, 0.9)
+GHOST_PALETTE = replace(
+    graphics.VIEWPORT, reach=graphics.with_alpha(PALE, 0.55), words=graphics.with_alpha(PALE, 0.75)
+)
+"""Colours of another variant's reach."""
+GHOST_TITLE = "Other variant"
+
+
+def ghost_sensors(
+    others: Sequence[pe.Sensor],
+    present: Sequence[pe.Sensor],
+    name: str = "",
+    title: str = GHOST_TITLE,
+) -> graphics.LayerShape:
+    """Return another variant's sensors, and lines to the scene's sensors of the same names.
+
+    Parameters
+    ----------
+    others, present : sequence of Sensor
+        The other variant's, and the scene's.
+    name : str
+        Of the other variant, for the legend.
+    title : str
+        What the legend calls them.
+    """
+    here = {sensor.name: sensor for sensor in present}
+    lines = [_ghost_outline(sensor) for sensor in others]
+    lines += [_link(sensor, here[sensor.name]) for sensor in others if sensor.name in here]
+    color = graphics.with_alpha(PALE, LINK_ALPHA)
+    labels = tuple(
+        graphics.Tag(s.name, s.pose.position, color) for s in others if _needs_label(s, here)
+    )
+    legend = graphics.ColorKey(title, classes=((color, name or "another one"),)) if others else None
+    return graphics.LayerShape(
+        through=graphics.Primitives.joined(lines), labels=labels, legend=legend
+    )
+
+
+def _ghost_outline(
+    sensor: pe.Sensor, palette: graphics.Palette = graphics.VIEWPORT
+) -> graphics.Primitives:
+    """Return a camera's view, for others a ring, in one pale colour."""
+    drawing = graphics.drawing_of(sensor.kind)
+    if drawing.beams:
+        drawn = graphics.ring_lines(sensor, RING_M, palette)
+    else:
+        drawn = drawing.sketch(sensor, None, graphics.BeamChoice(1)).lines(VIEW_M, palette)
+    return graphics.Primitives.of(drawn.points, graphics.with_alpha(PALE, GHOST_ALPHA))
+
+
+def _link(other: pe.Sensor, here: pe.Sensor) -> graphics.Primitives:
+    """Return a line from a sensor of the variant to that of the scene; none at the same place."""
+    ends = np.array([other.pose.position, here.pose.position])
+    if np.abs(ends[0] - ends[1]).max() < SAME_M:
+        return graphics.Primitives.empty()
+    return graphics.Primitives.of(ends, graphics.with_alpha(PALE, LINK_ALPHA))
+
+
+def _needs_label(sensor: pe.Sensor, here: dict[str, pe.Sensor]) -> bool:
+    """Whether a sensor is elsewhere in the scene, or missing there: it needs a label of its own."""
+    if sensor.name not in here:
+        return True
+    own, present = np.array(sensor.pose.position), np.array(here[sensor.name].pose.position)
+    return bool(np.abs(own - present).max() >= SAME_M)

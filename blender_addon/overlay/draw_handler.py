@@ -1,0 +1,164 @@
+"""Draws the shown layers in the 3D view: the one owner of the overlay's draw handles and batches.
+
+Nothing is read, cast or computed here: a redraw takes what is ready.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import bpy
+import gpu
+
+from .. import viewport
+from ..engine import graphics
+from . import labels, scheduler
+from .batches import Batches, depth_offset
+from .layer_cache import shown
+from .layers import LAYERS, WHOLE_RIG, Layer
+
+VIEW = bpy.types.SpaceView3D
+
+_batches: dict[tuple[str, str, str], Batches] = {}
+"""By scene, layer and sensor."""
+_handles: list[object] = []
+
+
+def register() -> None:
+    """Start drawing; Blender draws every view once an add-on has been registered."""
+    if not _handles:
+        _handles.append(VIEW.draw_handler_add(draw, (), "WINDOW", "POST_VIEW"))
+        _handles.append(VIEW.draw_handler_add(draw_text, (), "WINDOW", "POST_PIXEL"))
+        scheduler.register()
+
+
+def unregister() -> None:
+    """Stop drawing, and release everything."""
+    if _handles:
+        scheduler.unregister()
+    while _handles:
+        VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
+    clear()
+    viewport.release_gpu()
+
+
+def clear(*_: object) -> None:
+    """Drop everything that belongs to the file that was open."""
+    _batches.clear()
+
+
+def draw() -> None:
+    """Draw areas and lines into the current 3D view; Blender calls this at each redraw."""
+    context = bpy.context
+    if not _overlays_shown(context):
+        return
+    scene = context.scene.name
+    wanted = [(layer, uploaded(scene, layer, names)) for layer, names in _visible(context)]
+    _drop_removed(scene)
+    before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
+    gpu.state.blend_set("ALPHA")
+    gpu.state.depth_test_set("LESS_EQUAL")
+    gpu.state.depth_mask_set(False)
+    try:
+        for layer, several in wanted:
+            with depth_offset(context.region_data, layer.on_ground):
+                _draw_layer(layer, several, context.region)
+    finally:
+        gpu.state.depth_mask_set(before[2])
+        gpu.state.depth_test_set(before[1])
+        gpu.state.blend_set(before[0])
+
+
+def draw_text() -> None:
+    """Draw labels and legends over the current 3D view; Blender calls this at each redraw."""
+    context = bpy.context
+    if not _overlays_shown(context):
+        return
+    scene = context.scene.name
+    visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
+    shapes = [shown.items(scene, layer)[name].shape for layer, name in visible]
+    labels.draw_labels(context, [label for shape in shapes for label in shape.labels])
+    if context.scene.perception_entropy.view.show_legend:
+        legends = (_legend(scene, layer, name) for layer, name in visible)
+        labels.draw_legends(context, list(dict.fromkeys(k for k in legends if k is not None)))
+
+
+def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
+    """Return the legend of a shape, marked where it is a preview."""
+    item = shown.items(scene, layer)[name]
+    found = item.shape.legend
+    if found is None or not scheduler.is_preview(scene, layer, name, item):
+        return found
+    return replace(found, title=f"{found.title} (preview)")
+
+
+def uploaded(scene: str, layer: Layer, names: list[str]) -> list[Batches]:
+    """Return the batches of a layer; upload new shapes."""
+    found = []
+    for name in names:
+        shape = shown.items(scene, layer.name)[name].shape
+        known = _batches.get((scene, layer.name, name))
+        if known is None or known.shape is not shape:
+            known = _batches[scene, layer.name, name] = Batches.of(shape)
+        found.append(known)
+    return found
+
+
+def _draw_layer(layer: Layer, several: list[Batches], region: bpy.types.Region) -> None:
+    for each in several:
+        each.draw_areas()
+    for each in several:
+        each.draw_lines(region, layer.line_px, edged=layer.edged)
+
+
+def _drop_removed(scene: str) -> None:
+    gone = [key for key in _batches if key[0] == scene and key[2] not in shown.items(*key[:2])]
+    for key in gone:
+        del _batches[key]
+
+
+def _overlays_shown(context: bpy.types.Context) -> bool:
+    """Whether the view shows overlays at all."""
+    if not context.scene.perception_entropy.show_overlay:
+        return False
+    space = context.space_data
+    return space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
+
+
+def _visible(context: bpy.types.Context) -> Iterator[tuple[Layer, list[str]]]:
+    """Yield the layers, each with the names of the sensors that the view shows."""
+    scene, through = context.scene.name, _sensor_looked_through(context)
+    known = {WHOLE_RIG: _rig_visible(context)}
+    for layer in LAYERS:
+        names = list(shown.items(scene, layer.name))
+        for name in names:
+            if name not in known:
+                known[name] = name != through and _sensor_visible(context, name)
+        yield layer, [name for name in names if known[name]]
+
+
+def _rig_visible(context: bpy.types.Context) -> bool:
+    """Whether the view shows layers of the whole rig: not in a local view."""
+    space = context.space_data
+    return not (space and space.type == "VIEW_3D" and space.local_view)
+
+
+def _sensor_visible(context: bpy.types.Context, name: str) -> bool:
+    """Whether the view shows that sensor: not hidden, and in local view when there is one."""
+    sensor = context.scene.objects.get(name)
+    if sensor is None:
+        return False
+    space = context.space_data
+    return sensor.visible_in_viewport_get(space) if space else sensor.visible_get()
+
+
+def _sensor_looked_through(context: bpy.types.Context) -> str | None:
+    """Return the sensor that the view looks through: its own layers would be in the way."""
+    look, space = context.region_data, context.space_data
+    if look is None or space is None or look.view_perspective != "CAMERA":
+        return None
+    eye = space.camera
+    while eye is not None and not eye.perception_entropy.is_sensor:
+        eye = eye.parent
+    return None if eye is None else eye.name

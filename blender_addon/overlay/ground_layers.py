@@ -1,0 +1,306 @@
+"""What is drawn on the ground: the ground map, blind ground and reach; no scene, no GPU."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..engine import graphics, pe, sight
+from .request import FIXED, WHOLE
+
+if TYPE_CHECKING:
+    from ..engine import pe, sight
+    from .layer_cache import LayerCache
+    from .request import ViewRequest
+
+
+COARSE_M, FINE_M = 1.5, 0.5
+"""Side of the ground map's cells while something moves, and when idle."""
+MAX_CELLS = 60_000
+NOTHING_TO_COMPARE = "Difference: nothing to compare with yet"
+
+
+def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
+    """Return the ground map that is wished for, with its legend."""
+    view = request.view
+    if shows_difference(request):
+        return _difference(request, cache)
+    scored = scored_map(request)
+    if scored is not None:
+        seen = graphics.as_scored(scored, request.space, FINE_M)
+        where = graphics.AS_SCORED
+    else:
+        seen, where = (
+            _ground_sight(request, cache, pe.Rig([e.sensor for e in request.counted])),
+            None,
+        )
+    bounds = _bounds(request, cache, seen)
+    return graphics.ground_map(
+        seen, view.ground_quantity, view.ground_opacity, where=where, bounds=bounds
+    )
+
+
+def shows_difference(request: ViewRequest) -> bool:
+    """Whether differences are to be shown: there are none of the number of sensors."""
+    return request.view.ground_difference and request.view.ground_quantity != graphics.SENSORS
+
+
+def scored_map(request: ViewRequest) -> pe.GroundMap | None:
+    """Return the score's own map, where that is to be shown."""
+    view = request.view
+    averaged = view.ground_height is None and view.ground_quantity != graphics.SENSORS
+    return request.scored if averaged and not shows_difference(request) else None
+
+
+def compared_key(request: ViewRequest) -> Hashable:
+    """Return what a difference map depends on besides the scene's own sensors; None without it."""
+    if not shows_difference(request):
+        return None
+    return request.compared_name, *(
+        (s.name, id(s.model), s.pose, s.group) for s in request.compared
+    )
+
+
+def step_of(space: pe.PerceptionSpace, *, moving: bool) -> float:
+    """Return the side of the ground map's cells [m]: larger in a very large space."""
+    (x0, x1), (y0, y1) = space.x, space.y
+    least, most = (COARSE_M, MAX_CELLS // 4) if moving else (FINE_M, MAX_CELLS)
+    return max(least, math.sqrt((x1 - x0) * (y1 - y0) / most))
+
+
+def _ground_sight(request: ViewRequest, cache: LayerCache, rig: pe.Rig) -> sight.GroundSight:
+    step = step_of(request.space, moving=request.moving)
+    return cache.sight(request).ground(rig, request.view.ground_height, step, draft=request.moving)
+
+
+def _difference(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
+    """Return the difference of both rigs, on the same voxels and by the same rules."""
+    if not request.compared:
+        return graphics.LayerShape(legend=graphics.ColorKey(NOTHING_TO_COMPARE))
+    view = request.view
+    of = (
+        compared_key(request),
+        view.ground_height,
+        request.moving,
+        request.body_key,
+        request.prior_key,
+    )
+    before = cache.compared(of, lambda: _ground_sight(request, cache, pe.Rig(request.compared)))
+    seen = _ground_sight(request, cache, pe.Rig([each.sensor for each in request.counted]))
+    return graphics.difference_map(
+        seen, before, view.ground_quantity, view.ground_opacity, name=request.compared_name
+    )
+
+
+def _bounds(
+    request: ViewRequest, cache: LayerCache, seen: sight.GroundSight
+) -> tuple[float, float] | None:
+    """Return the values at the ends of the colours; they stay while something moves."""
+    view = request.view
+    if view.ground_quantity == graphics.SENSORS or view.ground_range == WHOLE:
+        return None
+    if view.ground_range == FIXED:
+        fixed = (
+            view.entropy_range
+            if view.ground_quantity == graphics.ENTROPY
+            else (view.coverage_range[0], view.coverage_range[1])
+        )
+        return fixed if fixed[0] != fixed[1] else None
+    of = view.ground_quantity, view.ground_height, request.prior_key
+    return cache.fitted(
+        of, lambda: graphics.fitted_bounds(seen, view.ground_quantity), anew=not request.moving
+    )
+
+
+Floats = NDArray[np.float64]
+Box = tuple[Floats, Floats]
+
+HATCH_M, HATCH_ALPHA = 0.35, 0.45
+MIN_ZONE_M = 0.3
+"""A shorter zone is no more than a strip along the vehicle: it has no measure."""
+SMOOTHED_POINTS = 9
+"""Points of the running mean that is drawn of an outline: it follows cells of 5 cm."""
+SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
+"""By side: the axis that leads there, and its sign."""
+TICK_M = 0.35
+"""Half the length of the bar across the end of a measure."""
+
+
+def blind_ground(
+    found: sight.BlindGround,
+    body: Box | None,
+    height: float,
+    palette: graphics.Palette = graphics.VIEWPORT,
+) -> graphics.LayerShape:
+    """Return outline, hatching and measures, on the ground.
+
+    `body` are the vehicle's bounds; without one there is nothing to measure from.
+    """
+    color = palette.blind
+    hatching = hatch(found.outlines, HATCH_M)
+    thin = graphics.Primitives.of(
+        _flat(hatching), graphics.with_alpha(color, color[3] * HATCH_ALPHA)
+    )
+    lines = [
+        graphics.Primitives.of(graphics.polyline(_flat(smoothed(line))), color)
+        for line in found.outlines
+    ]
+    labels: list[graphics.Tag] = []
+    for side in SIDES if body is not None else ():
+        measure = _measure(found, body, side, palette)
+        if measure is not None:
+            lines.append(measure[0])
+            labels.append(measure[1])
+    title = f"Blind to what is {height:g} m tall" if height else "Blind to what lies flat"
+    text = f"{found.area:.0f} m² within {found.within:g} m"
+    legend = graphics.ColorKey(title, classes=((color, text),))
+    return graphics.LayerShape(
+        lines=graphics.Primitives.joined(lines), thin=thin, labels=tuple(labels), legend=legend
+    )
+
+
+def smoothed(line: Floats) -> Floats:
+    """Return running means (N, 2) along a closed line (N, 2); a line of few points is unchanged."""
+    if len(line) < 4 * SMOOTHED_POINTS:
+        return line
+    reach = SMOOTHED_POINTS // 2
+    row = np.arange(len(line) - 1)[:, None] + np.arange(-reach, reach + 1)
+    mean = line[:-1][row % (len(line) - 1)].mean(axis=1)
+    return np.vstack([mean, mean[:1]])
+
+
+def hatch(outlines: Sequence[Floats], spacing_m: float) -> Floats:
+    """Return the ends (2 H, 2) of slanted lines inside closed outlines (N, 2), without holes."""
+    closed = [line for line in outlines if len(line) > 2]
+    if not closed:
+        return np.empty((0, 2))
+    start = np.concatenate([line[:-1] for line in closed])
+    end = np.concatenate([line[1:] for line in closed])
+    # Along a hatching line x - y stays the same: count where edges pass each of its values.
+    first, last = ((p[:, 0] - p[:, 1]) / spacing_m for p in (start, end))
+    low, high = np.ceil(np.minimum(first, last)), np.ceil(np.maximum(first, last))
+    count = (high - low).astype(np.int64)  # of the whole numbers in [low, high)
+    edge = np.repeat(np.arange(len(start)), count)
+    value = low[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
+    part = ((value - first[edge]) / (last - first)[edge])[:, None]
+    points = start[edge] + part * (end - start)[edge]
+    order = np.lexsort((points[:, 0], value))  # an even number on each line: in, out, in, out
+    return points[order]
+
+
+def _measure(
+    found: sight.BlindGround, body: Box, side: str, palette: graphics.Palette
+) -> tuple[graphics.Primitives, graphics.Tag] | None:
+    """Return a line from the vehicle to where blind ground begins or ends, with its length."""
+    spot, zone = found.nearest[side], found.zone[side]
+    if spot is None or (zone is not None and 0.0 < zone < MIN_ZONE_M):
+        return None
+    if zone is None:
+        distance, text = found.within, f"blind beyond {found.within:g} m out"
+    elif zone:
+        distance, text = zone, f"blind to {sight.shown_end(zone):.1f} m out"
+    else:
+        distance, text = spot.distance, f"blind from {sight.shown_start(spot.distance):.1f} m out"
+    axis, sign = SIDES[side]
+    end = np.zeros(3)
+    end[axis] = body[1 if sign > 0 else 0][axis] + sign * distance
+    end[1 - axis] = spot.point[1 - axis]
+    return _measured(end, axis, sign, distance, palette.words), _label(end, text, palette.words)
+
+
+def _measured(
+    end: Floats, axis: int, sign: int, distance: float, color: graphics.Rgba
+) -> graphics.Primitives:
+    """Return a line of the measured length, with a bar across its end."""
+    start, across = end.copy(), np.zeros(3)
+    start[axis] -= sign * distance
+    across[1 - axis] = TICK_M
+    return graphics.Primitives.of(
+        [start, end, end - across, end + across], graphics.with_alpha(color, 0.7)
+    )
+
+
+def _label(place: Floats, text: str, color: graphics.Rgba) -> graphics.Tag:
+    x, y, z = place.tolist()
+    return graphics.Tag(text, (x, y, z), color)
+
+
+def _flat(points: Floats) -> Floats:
+    """(N, 3) points on the ground."""
+    return np.column_stack([points, np.zeros(len(points))])
+
+
+REACH_AP = 0.5
+"""The average precision from which an object counts as detected."""
+BEARINGS = 72
+LABEL_COUNT = 8
+"""At how many bearings the distance is written."""
+MIN_LABEL_M = 1.0
+CUT_ALPHA = 0.25
+
+
+def reach_of_rig(
+    found: sight.Reach, palette: graphics.Palette = graphics.VIEWPORT, name: str = ""
+) -> graphics.LayerShape:
+    """Return the rig's reach with metres at some bearings; `name` says which rig, of several."""
+    color = palette.reach
+    legend = graphics.ColorKey(_reach_title(found), classes=((color, name or "rig"),))
+    return graphics.LayerShape(
+        lines=reach_lines(found, found.distance, color),
+        labels=tuple(_distance_labels(found, palette.words)),
+        legend=legend,
+    )
+
+
+def reach_of_sensors(found: sight.Reach, numbers: dict[str, int]) -> graphics.LayerShape:
+    """Return the reach of sensors one by one, in their colours; `numbers` are their places."""
+    lines, classes = [], []
+    for name, number in numbers.items():
+        color = (*graphics.sensor_color(number), 0.75)
+        lines.append(reach_lines(found, found.per_sensor[name], color))
+        classes.append((color, name))
+    legend = graphics.ColorKey(_reach_title(found), classes=tuple(classes))
+    return graphics.LayerShape(lines=graphics.Primitives.joined(lines), legend=legend)
+
+
+def _reach_title(found: sight.Reach) -> str:
+    """Return the legend's title: of single objects, or of the voxels of a class."""
+    what = f"single {found.class_name}" if found.sector else found.class_name
+    return f"{what[:1].upper()}{what[1:]} detected, AP ≥ {REACH_AP:g}"
+
+
+def reach_lines(found: sight.Reach, distance: Floats, color: graphics.Rgba) -> graphics.Primitives:
+    """Return a closed line on the ground; faint where the space ends before the reach."""
+    line = sight.reach_line(found, distance)
+    closed = np.append(np.arange(len(line.points)), 0)
+    points = np.column_stack([line.points, np.zeros(len(line.points))])[closed]
+    cut = line.at_least[closed]
+    colors = np.tile(np.float32(color), (len(closed) - 1, 2, 1))
+    colors[cut[:-1] & cut[1:], :, 3] *= CUT_ALPHA
+    return graphics.Primitives.of(graphics.polyline(points), colors)
+
+
+def rig_reach(
+    look: sight.Sight,
+    rig: pe.Rig,
+    class_name: str,
+    palette: graphics.Palette = graphics.VIEWPORT,
+    name: str = "",
+) -> graphics.LayerShape:
+    """Return the reach of another variant's rig for a class."""
+    return reach_of_rig(look.reach(rig, class_name, ap=REACH_AP, bearings=BEARINGS), palette, name)
+
+
+def _distance_labels(found: sight.Reach, color: graphics.Rgba) -> Iterable[graphics.Tag]:
+    step = max(1, len(found.bearings) // LABEL_COUNT)
+    cut = sight.ends_with_space(found, found.distance)
+    for at in range(0, len(found.bearings), step):
+        metres, angle = float(found.distance[at]), float(found.bearings[at])
+        if metres >= MIN_LABEL_M:
+            text = f"{'≥ ' if cut[at] else ''}{metres:.0f} m"
+            place = (metres * float(np.cos(angle)), metres * float(np.sin(angle)), 0.0)
+            yield graphics.Tag(text, place, graphics.with_alpha(color, 1.0))

@@ -1,0 +1,117 @@
+"""Results that layers keep: shapes that are shown, and what is expensive to make again.
+
+Plain data, no scene and no GPU. `shown` belongs to the main thread, a `LayerCache` to one thread.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from .. import simplified_vehicles
+from ..engine import graphics, pe, sight
+from .request import SceneSensor, ViewRequest
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShownLayer:
+    """A shape, and the key of what it was made from; `rough`: an approximate one."""
+
+    key: Hashable
+    shape: graphics.LayerShape
+    rough: bool
+
+
+class LayerStore:
+    """Shapes that are ready to be drawn, by scene, layer and sensor."""
+
+    def __init__(self) -> None:
+        self._items: dict[tuple[str, str], dict[str, ShownLayer]] = {}
+
+    def items(self, scene: str, layer: str) -> Mapping[str, ShownLayer]:
+        """Return the shapes of a layer in a scene, by the sensor's name."""
+        return self._items.get((scene, layer), {})
+
+    def put(self, scene: str, layer: str, items: Mapping[str, ShownLayer]) -> None:
+        """Show these shapes in a layer, and no others."""
+        self._items[scene, layer] = dict(items)
+
+    def drop(self, scene: str, layer: str) -> None:
+        """Show nothing in a layer."""
+        self._items.pop((scene, layer), None)
+
+    def clear(self) -> None:
+        """Show nothing at all."""
+        self._items = {}
+
+    def layers(self, scene: str) -> Iterator[tuple[str, Mapping[str, ShownLayer]]]:
+        """Yield the layers of a scene with their shapes."""
+        yield from ((layer, items) for (of, layer), items in self._items.items() if of == scene)
+
+    def __len__(self) -> int:
+        return sum(map(len, self._items.values()))
+
+
+shown = LayerStore()
+"""The shapes that the 3D views draw."""
+
+
+T = TypeVar("T")
+
+MAX_KEPT = {"casts": 24, "compared": 2}
+"""How many results of a sort are kept, those used last; otherwise one."""
+MAX_TRIANGLES = 50_000
+"""A vehicle of more is simplified for drawing: a picture shows no more detail."""
+
+
+class LayerCache:
+    """Keeps what is expensive to make, by plain keys; never used by two threads at once."""
+
+    def __init__(self) -> None:
+        self._kept: dict[str, dict[Hashable, Any]] = {}
+
+    def cast(self, request: ViewRequest, of: SceneSensor) -> graphics.Cast:
+        """Return where the beams of a LiDAR end; of a few beams while something moves."""
+        most = graphics.A_DRAFT if request.moving else graphics.MOST
+        key = of.key, request.body_key, most
+        return self._keep("casts", key, lambda: graphics.cast(of.sensor, self.body(request), most))
+
+    def body(self, request: ViewRequest) -> pe.Vehicle | None:
+        """Return the vehicle, simplified where it has very many triangles."""
+        vehicle = request.vehicle
+        return (
+            None
+            if vehicle is None
+            else simplified_vehicles.shared.simplified(vehicle, MAX_TRIANGLES)[0]
+        )
+
+    def sight(self, request: ViewRequest) -> sight.Sight:
+        """Return what computes the visibility of rigs."""
+        key = request.body_key, request.prior_key
+        return self._keep("sight", key, lambda: self._sight(request))
+
+    def compared(self, key: Hashable, make: Callable[[], sight.GroundSight]) -> sight.GroundSight:
+        """Return the ground map that a difference map compares with."""
+        return self._keep("compared", key, make)
+
+    def fitted(
+        self, key: Hashable, fit: Callable[[], tuple[float, float]], *, anew: bool
+    ) -> tuple[float, float]:
+        """Return the range of colours that was fitted last; a new one where `anew`."""
+        if anew:
+            self._kept.get("fitted", {}).pop(key, None)
+        return self._keep("fitted", key, fit)
+
+    def _sight(self, request: ViewRequest) -> sight.Sight:
+        body, targets = self.body(request), request.targets
+        return sight.Sight(request.space, request.prior, body, model=request.model, targets=targets)
+
+    def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:
+        """Return what is kept under a key, or make it; what was used last is dropped last."""
+        kept = self._kept.setdefault(sort, {})
+        found = kept.pop(key, None)
+        kept[key] = make() if found is None else found
+        while len(kept) > MAX_KEPT.get(sort, 1):
+            del kept[next(iter(kept))]
+        return kept[key]

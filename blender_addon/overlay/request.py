@@ -1,0 +1,151 @@
+"""A request: what is to be shown of a scene, as plain values that a thread may work from."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..engine import graphics
+
+if TYPE_CHECKING:
+    from ..engine import advice, pe
+
+
+AVERAGE = "AVERAGE"
+SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
+BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
+
+
+FITTED, WHOLE, FIXED = "FITTED", "WHOLE", "FIXED"
+"""The range of values that the colours of the ground map cover."""
+
+
+@dataclass(frozen=True, slots=True)
+class ViewSettings:
+    """Settings of what is shown, under the names that they have in the scene."""
+
+    layers: frozenset[str] = frozenset()
+    ground_quantity: str = graphics.SENSORS
+    ground_height: float | None = None
+    ground_opacity: float = 0.5
+    ground_range: str = FITTED
+    entropy_range: tuple[float, float] = (0.0, 0.0)
+    coverage_range: tuple[float, float] = (0.0, 1.0)
+    ground_difference: bool = False
+    blind_height: float = 0.0
+    reach_class: str = "pedestrian"
+    reach_of: str = RIG
+    beams_of: str = ALL
+    channels: str = graphics.ChannelMode.FEW
+    channel: int = 1
+    beam_colors: str = BY_SENSOR
+    rings: bool = True
+    footprints: bool = True
+    view_range: float = 12.0
+    beam_limit: int = 2000
+    beam_length: float = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class SceneSensor:
+    """A sensor of the scene, and its state there.
+
+    `number` is its position in the list of all sensors; `drawn` whether its own layers are shown,
+    `counted` whether it is scored.
+    """
+
+    sensor: pe.Sensor
+    number: int = 0
+    selected: bool = False
+    drawn: bool = True
+    counted: bool = True
+
+    @property
+    def key(self) -> Hashable:
+        """Identifies the sensor with its pose and model."""
+        sensor = self.sensor
+        of = sensor.name, id(sensor.model), sensor.pose
+        return *of, sensor.group, sensor.curve, self.number
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MountFaces:
+    """The surface (F, 3, 3) [m] of a mount; `key` identifies it, `strong` is how it is drawn."""
+
+    name: str
+    key: Hashable
+    triangles: NDArray[np.float64]
+    strong: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SearchBox:
+    """A box of bounds or a no-go area (`forbidden`): its lowest and highest corner [m]."""
+
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    forbidden: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class FocusRegion:
+    """A focus weight: its areas ((x low, x high), (y low, y high)) [m]; classes None: all."""
+
+    name: str
+    factor: float
+    areas: tuple[tuple[tuple[float, float], tuple[float, float]], ...]
+    classes: tuple[str, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ViewRequest:
+    """A snapshot of a scene: everything that the layers depend on.
+
+    `body_key` identifies the vehicle, `prior_key` prior, space, AP curves and targets; `moving`: an
+    approximate picture now is better than a fine one later. `scored` is the ground map of the last
+    score, of all voxels, where the scene has not changed since. `ghosts` are the sensors of another
+    variant, or of the best placement of a running search (`searching`). `compared` are the sensors
+    that the difference map compares with.
+    """
+
+    sensors: tuple[SceneSensor, ...]
+    vehicle: pe.Vehicle | None
+    body_key: Hashable
+    prior: pe.Prior | None
+    prior_key: Hashable
+    view: ViewSettings
+    moving: bool = False
+    scored: pe.GroundMap | None = None
+    space: pe.PerceptionSpace | None = None
+    model: pe.PerceptionModel | None = None
+    targets: pe.TargetRule | None = None
+    ghosts: tuple[pe.Sensor, ...] = ()
+    ghosts_name: str = ""
+    searching: bool = False
+    place: advice.AskedPlace | None = None
+    mounts: tuple[MountFaces, ...] = ()
+    boxes: tuple[SearchBox, ...] = ()
+    focus: tuple[FocusRegion, ...] = ()
+    compared: tuple[pe.Sensor, ...] = ()
+    compared_name: str = ""
+    reference: pe.Reference | None = None
+
+    @property
+    def counted(self) -> tuple[SceneSensor, ...]:
+        """The sensors that are scored."""
+        return tuple(each for each in self.sensors if each.counted)
+
+    def of_beams(self) -> tuple[SceneSensor, ...]:
+        """Return the sensors whose beams are to be drawn."""
+        everyone = self.view.beams_of == ALL
+        return tuple(
+            each
+            for each in self.sensors
+            if each.drawn
+            and graphics.drawing_of(each.sensor.kind).beams
+            and (everyone or each.selected)
+        )

@@ -1,0 +1,209 @@
+"""Schedules layers that are out of date: the background worker makes them again.
+
+Handlers and signals note changes; a timer then reads the scene and requests the layers whose keys
+have changed. Results are stored in `layer_cache.shown`, and the views are redrawn. Without a window
+there is no timer, and `update` does everything at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from dataclasses import replace
+
+import bpy
+
+from .. import sensor_cache, viewport, worker
+from ..engine import pe
+from .layer_cache import LayerCache, ShownLayer, shown
+from .layers import LAYERS, Layer
+from .request import ViewRequest
+from .snapshot import SnapshotReader
+
+DELAY_S = 0.01
+BATCH_S = 0.12
+"""How long a finished layer waits for others that were requested with it."""
+
+_reader = SnapshotReader()
+_layer_cache = LayerCache()
+_requested: dict[tuple[str, str], tuple[Mapping[str, Hashable], bool]] = {}
+"""The keys of the last request of each scene and layer: nothing is requested twice."""
+_selection: dict[str, tuple[str, ...]] = {}
+"""Selected sensors by the scene's name, at the last update."""
+_moving = False
+
+
+def update(moving: bool = False) -> None:
+    """Request the layers that are out of date, in every scene that a window shows."""
+    for scene, depsgraph in _scenes():
+        request = _reader.request(scene, depsgraph, moving)
+        for layer in LAYERS:
+            _request(scene.name, layer, request)
+
+
+def is_preview(scene: str, layer: str, name: str, item: ShownLayer) -> bool:
+    """Whether a shown shape is approximate, or of before the last change."""
+    keys, _ = _requested.get((scene, layer), ({name: item.key}, False))
+    return item.rough or keys.get(name) != item.key
+
+
+def schedule(*_: object) -> None:
+    """Update in a moment; several calls become one update."""
+    # Not without a window: a timer left behind makes Blender crash at its exit.
+    if not bpy.app.background and not bpy.app.timers.is_registered(_update_now):
+        bpy.app.timers.register(_update_now, first_interval=DELAY_S)
+
+
+def on_moving() -> None:
+    """Something moves: an approximate picture now."""
+    global _moving
+    _moving = True
+    update(moving=True)
+
+
+def on_live_score() -> None:
+    """The baseline of the live score may have changed: difference maps have the same one."""
+    if any(scene.perception_entropy.view.ground_difference for scene in bpy.data.scenes):
+        schedule()
+
+
+def on_idle() -> None:
+    """The scene is idle: the fine picture."""
+    global _moving
+    _moving = False
+    update()
+
+
+def note_selection(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """After an update: schedule one where other sensors are selected than before."""
+    if bpy.app.background:
+        return
+    layer = depsgraph.view_layer
+    active = layer.objects.active
+    picked = tuple(
+        each.name
+        for each in sensor_cache.sensors(scene)
+        if each == active or each.select_get(view_layer=layer)
+    )
+    if _selection.get(scene.name) != picked:
+        _selection[scene.name] = picked
+        schedule()
+
+
+def clear(*_: object) -> None:
+    """Drop everything that belongs to the file that was open."""
+    for scene, layer in tuple(_requested):
+        worker.background_worker.drop(_topic(scene, layer))
+    for each in (_requested, _selection, shown, _reader):
+        each.clear()
+    global _layer_cache
+    _layer_cache = LayerCache()  # work in progress keeps the old one
+
+
+def _update_now() -> None:
+    update(_moving)
+
+
+def _scenes() -> Iterator[tuple[bpy.types.Scene, bpy.types.Depsgraph]]:
+    """Yield the scenes that a window shows, evaluated as it shows them; each once."""
+    shown_scenes = set()
+    for window in bpy.context.window_manager.windows:
+        if window.scene.name not in shown_scenes:
+            shown_scenes.add(window.scene.name)
+            with bpy.context.temp_override(window=window):
+                yield window.scene, bpy.context.evaluated_depsgraph_get()
+    if not shown_scenes:
+        yield bpy.context.scene, bpy.context.evaluated_depsgraph_get()
+
+
+def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
+    """Request one layer, if it is out of date."""
+    keys = layer.keys(request) if layer.name in request.view.layers else {}
+    if not keys:
+        worker.background_worker.drop(_topic(scene, layer.name))
+        if _requested.pop((scene, layer.name), None) is not None:
+            shown.drop(scene, layer.name)
+            viewport.redraw_editors()
+        return
+    rough = request.moving and layer.rough
+    have = shown.items(scene, layer.name)
+    wanted = {name: _reusable(have.get(name), key, rough) for name, key in keys.items()}
+    if _requested.get((scene, layer.name)) == (keys, rough):
+        return
+    _requested[scene, layer.name] = keys, rough
+    worker.background_worker.ask(
+        _topic(scene, layer.name),
+        lambda: _compute(layer, replace(request, moving=rough), keys, wanted, _layer_cache),
+        _delivery(scene, layer.name),
+        _failure(scene, layer.name),
+    )
+
+
+def _reusable(item: ShownLayer | None, key: Hashable, rough: bool) -> ShownLayer | None:
+    """Return the shape that is shown already, if it is still right."""
+    return item if item is not None and item.key == key and (rough or not item.rough) else None
+
+
+def _compute(
+    layer: Layer,
+    request: ViewRequest,
+    keys: Mapping[str, Hashable],
+    have: Mapping[str, ShownLayer | None],
+    cache: LayerCache,
+) -> dict[str, ShownLayer]:
+    """On the worker's thread: return shapes by name; reusable ones stay the same objects."""
+    rough = request.moving
+    return {
+        name: have[name] or ShownLayer(key, layer.shape(request, cache, name), rough)
+        for name, key in keys.items()
+    }
+
+
+def _delivery(scene: str, layer: str) -> Callable[[dict[str, ShownLayer]], None]:
+    def deliver(items: dict[str, ShownLayer]) -> None:
+        shown.put(scene, layer, items)
+        _redraw_together()
+
+    return deliver
+
+
+def _redraw_together() -> None:
+    """Redraw once for layers that finish one after the other: a frame may take longer than all of
+    them. Late layers are not waited for."""
+    if not any(worker.background_worker.busy(_topic(*layer)) for layer in _requested):
+        _redraw_now()
+    elif not bpy.app.timers.is_registered(_redraw_now):
+        bpy.app.timers.register(_redraw_now, first_interval=BATCH_S)
+
+
+def _redraw_now() -> None:
+    if bpy.app.timers.is_registered(_redraw_now):
+        bpy.app.timers.unregister(_redraw_now)
+    viewport.redraw_editors()
+
+
+def _failure(scene: str, layer: str) -> Callable[[Exception], None]:
+    def fail(problem: Exception) -> None:
+        shown.drop(scene, layer)
+        viewport.redraw_editors()
+        if not isinstance(problem, pe.InputError):  # a score reports what is wrong with the scene
+            raise problem
+
+    return fail
+
+
+def _topic(scene: str, layer: str) -> str:
+    return f"overlay {layer} of {scene}"
+
+
+def register() -> None:
+    """Show what there is."""
+    schedule()
+
+
+def unregister() -> None:
+    """Cancel what is due, and drop everything."""
+    for timer in (_update_now, _redraw_now):
+        if bpy.app.timers.is_registered(timer):
+            bpy.app.timers.unregister(timer)
+    clear()
+    viewport.redraw_editors()

@@ -1,0 +1,238 @@
+"""Reads a scene into a request: the only part of the overlay that reads Blender's data."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Hashable
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from .. import bridge, location_query, search_curve, sensor_cache, vehicle_cache
+from ..engine import pe
+from ..live import live_state
+from .layers import LAYERS
+from .request import (
+    AVERAGE,
+    FocusRegion,
+    MountFaces,
+    SceneSensor,
+    SearchBox,
+    ViewRequest,
+    ViewSettings,
+)
+
+MIN_LENGTH_M = 0.1
+BEST_SO_FAR = "best so far"
+SLOW_S = 0.05
+"""A vehicle that took longer to read is not read again while it is moving."""
+
+
+class ScoringInputs(NamedTuple):
+    """What a scene's rigs are scored with; `key` identifies it."""
+
+    prior: pe.Prior | None
+    space: pe.PerceptionSpace | None
+    model: pe.PerceptionModel | None
+    key: Hashable
+
+
+class SnapshotReader:
+    """Keeps what is expensive to read, by plain keys; it never holds a Blender object."""
+
+    def __init__(self) -> None:
+        self._inputs: dict[str, ScoringInputs] = {}
+        self._bodies: dict[str, vehicle_cache.CachedVehicle] = {}
+        self._faces: dict[str, dict[Hashable, np.ndarray]] = {}
+        self._took_s = 0.0
+
+    def clear(self) -> None:
+        """Drop everything: another file is opened."""
+        self.__init__()
+
+    def request(
+        self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool = False
+    ) -> ViewRequest:
+        """Return the request of what is to be shown of a scene."""
+        sensors = _sensors(scene, depsgraph)
+        vehicle, body_key = (
+            self._vehicle(scene, depsgraph, moving) if sensors else vehicle_cache.NO_VEHICLE
+        )
+        inputs = self._inputs_by(scene)
+        others, name = _ghosts(scene)
+        compared, compared_name = _compared(scene)
+        answer = location_query.answer(scene)
+        mounts = self._mounts(scene, depsgraph, sensors, vehicle, body_key)
+        return ViewRequest(
+            *(sensors, vehicle, body_key, inputs.prior, inputs.key, view_of(scene), moving),
+            scored=_scored(scene, sensors, inputs.space),
+            space=inputs.space,
+            model=inputs.model,
+            targets=bridge.targets_of(scene.perception_entropy),
+            ghosts=others,
+            ghosts_name=name,
+            searching=bool(search_curve.best(scene.name)),
+            place=None if answer is None else answer.place,
+            mounts=mounts,
+            boxes=_boxes(scene, sensors, vehicle, mounts),
+            compared=compared,
+            compared_name=compared_name,
+            focus=tuple(FocusRegion(*row) for row in bridge.focus_rows(scene)),
+            reference=bridge.reference_of(scene.perception_entropy),
+        )
+
+    def _mounts(
+        self,
+        scene: bpy.types.Scene,
+        depsgraph: bpy.types.Depsgraph,
+        sensors: tuple[SceneSensor, ...],
+        vehicle: pe.Vehicle | None,
+        body_key: Hashable,
+    ) -> tuple[MountFaces, ...]:
+        """Return the surfaces of the mounts; read again when they or the vehicle changed."""
+        if vehicle is None:
+            return ()
+        objects = (scene.objects.get(each.sensor.name) for each in sensors if each.selected)
+        chosen = {obj.perception_entropy.mount for obj in objects if obj is not None}
+        known, found, shown = self._faces.get(scene.name, {}), {}, []
+        for row in scene.perception_entropy.mounts:
+            if (said := bridge.mount_key(row)) is None:
+                continue
+            key = said, body_key
+            faces = known.get(key)
+            if faces is None:
+                faces = bridge.mount_faces(scene, depsgraph, row, vehicle)
+            found[key] = faces
+            if len(faces):
+                shown.append(MountFaces(row.name, key, faces, row.name in chosen))
+        self._faces[scene.name] = found
+        return tuple(shown)
+
+    def _inputs_by(self, scene: bpy.types.Scene) -> ScoringInputs:
+        """Return prior, space and AP curves; no prior where a setting is wrong: a score says so."""
+        settings, space = scene.perception_entropy, None
+        try:
+            space, model = bridge.space_of(settings), bridge.perception_of(settings)
+            key = bridge.prior_key(scene), space, model, bridge.targets_of(settings)
+            known = self._inputs.get(scene.name)
+            if known is None or known.key != key:
+                known = ScoringInputs(bridge.prior_from_scene(scene), space, model, key)
+        except pe.InputError as error:
+            known = ScoringInputs(None, space, None, str(error))
+        self._inputs[scene.name] = known
+        return known
+
+    def _vehicle(
+        self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool
+    ) -> vehicle_cache.CachedVehicle:
+        known = self._bodies.get(scene.name)
+        if known is not None and moving and self._took_s > SLOW_S:
+            return known
+        start = time.perf_counter()
+        found = self._bodies[scene.name] = vehicle_cache.shared.read(scene, depsgraph)
+        if known is None or found.key != known.key:
+            self._took_s = time.perf_counter() - start
+        return found
+
+
+def view_of(scene: bpy.types.Scene) -> ViewSettings:
+    """Return the view settings as plain values."""
+    settings = scene.perception_entropy
+    view = settings.view
+    on = settings.show_overlay
+    layers = (each.name for each in LAYERS if on and getattr(view, f"show_{each.name}"))
+    same = ("ground_quantity", "ground_opacity", "reach_class", "reach_of", "beams_of", "channels")
+    same += ("beam_colors", "rings", "footprints", "view_range")
+    same += ("ground_range", "ground_difference")
+    return ViewSettings(
+        layers=frozenset(layers),
+        ground_height=_height(view.ground_height),
+        entropy_range=tuple(view.entropy_range),
+        coverage_range=tuple(view.coverage_range),
+        blind_height=_height(view.blind_height) or 0.0,
+        channel=view.every if view.channels == "EVERY" else view.channel,
+        beam_limit=settings.beam_limit,
+        beam_length=max(MIN_LENGTH_M, settings.beam_length),  # also where it is not a number
+        **{name: getattr(view, name) for name in same},
+    )
+
+
+def _sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[SceneSensor, ...]:
+    """Return the possible sensors; a score reports what is wrong with others."""
+    layer, found = depsgraph.view_layer, []
+    active = layer.objects.active
+    for number, obj in enumerate(sensor_cache.sensors(scene)):
+        with contextlib.suppress(pe.InputError):
+            sensor = bridge.sensor_from_object(obj, depsgraph)
+            selected = obj == active or obj.select_get(view_layer=layer)
+            drawn, counted = obj.perception_entropy.show, obj.visible_get(view_layer=layer)
+            found.append(SceneSensor(sensor, number, selected, drawn, counted))
+    return tuple(found)
+
+
+def _boxes(
+    scene: bpy.types.Scene,
+    sensors: tuple[SceneSensor, ...],
+    vehicle: pe.Vehicle | None,
+    mounts: tuple[MountFaces, ...],
+) -> tuple[SearchBox, ...]:
+    """Return no-go areas, and bounds of selected sensors; a search reports what is wrong there."""
+    found: list[bridge.LimitBox] = []
+    faces = {each.name: each.triangles for each in mounts}
+    with contextlib.suppress(pe.InputError):
+        found += bridge.no_go_boxes(scene)
+    for each in sensors:
+        if each.selected and (obj := scene.objects.get(each.sensor.name)) is not None:
+            with contextlib.suppress(pe.InputError):
+                around = faces.get(obj.perception_entropy.mount)
+                box = bridge.bounds_box(obj, each.sensor, vehicle, around)
+                found += [] if box is None else [box]
+    return tuple(SearchBox(*box) for box in found)
+
+
+def _scored(
+    scene: bpy.types.Scene, sensors: tuple[SceneSensor, ...], space: pe.PerceptionSpace | None
+) -> pe.GroundMap | None:
+    """Return the last score's ground map; None where the scene has changed since."""
+    finished = live_state(scene.name).finished
+    if finished is None or scene.perception_entropy.result_stale or finished.study.space != space:
+        return None
+    now = {(e.sensor.name, e.sensor.model, e.sensor.pose) for e in sensors if e.counted}
+    then = {(each.name, each.model, each.pose) for each in finished.study.rig}
+    return finished.score.ground_map if now == then else None
+
+
+def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
+    """Return sensors that are shown beside the scene's own, and their name: the best placement of a
+    running search so far, otherwise another variant."""
+    if best := search_curve.best(scene.name):
+        return best, BEST_SO_FAR
+    key = scene.perception_entropy.view.ghost_key
+    for row in scene.perception_entropy.variants if key else ():
+        if row.key == key:
+            with contextlib.suppress(pe.InputError):
+                return tuple(bridge.rig_of(bridge.records_of(row))), row.name
+    return (), ""
+
+
+def _compared(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
+    """Return the sensors that the difference map compares with, and their name: the baseline of the
+    live score; without it, the variant that it is set to."""
+    settings = scene.perception_entropy
+    if not settings.view.ground_difference:
+        return (), ""
+    score = live_state(scene.name).score if settings.live.on else None
+    baseline = None if score is None else score.baseline
+    if baseline is not None and baseline.rig is not None:
+        return tuple(baseline.rig), baseline.label
+    for row in settings.variants if settings.live.against else ():
+        if row.key == settings.live.against:
+            with contextlib.suppress(pe.InputError):
+                return tuple(bridge.rig_of(bridge.records_of(row))), row.name
+    return (), ""
+
+
+def _height(choice: str) -> float | None:
+    return None if choice == AVERAGE else int(choice.removeprefix("H")) / 100.0

@@ -1,0 +1,153 @@
+"""Details of a score: the live score's settings, explanations, and figures by zone and class."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..choices import BEFORE_MOVE, PINNED
+from ..operators import answer, live_lines, reference_label
+from .layout import BUTTON_PX, Tab, columns, draw_sentence, draw_stale_mark
+from .sensor_lists import draw_sensor_table
+
+
+class PE_MT_live_against(bpy.types.Menu):
+    """What the live score is compared with"""
+
+    bl_idname = "PE_MT_live_against"
+    bl_label = "Compare Live With"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator("pe.live_against", text="Before the Last Move").key = BEFORE_MOVE
+        layout.operator("pe.live_against", text="Pin These Sensors", icon="PINNED").key = PINNED
+        variants = context.scene.perception_entropy.variants
+        if variants:
+            layout.separator()
+        for row in variants:
+            layout.operator("pe.live_against", text=row.name, translate=False).key = row.key
+
+
+class PE_PT_live(Tab, bpy.types.Panel):
+    """What the live score is compared with, and its key figures"""
+
+    bl_idname = "PE_PT_live"
+    bl_label = "Live"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.scene.perception_entropy.live.on
+
+    def draw(self, context: bpy.types.Context) -> None:
+        name, menu = columns(self.layout, 0.4)
+        name.label(text="Compared With")
+        label = reference_label(context.scene)
+        menu.menu(PE_MT_live_against.bl_idname, text=label, translate=False)
+        live = context.scene.perception_entropy.live
+        name, field = columns(self.layout, 0.4)
+        name.label(text="Beside")
+        field.prop(live, "anchor", text="")
+        self.layout.prop(live, "figures")
+        for line in live_lines(context.scene):
+            draw_sentence(self.layout, context, line)
+
+
+class PE_PT_explain(Tab, bpy.types.Panel):
+    """The score in words, and the answer of a location query"""
+
+    bl_idname = "PE_PT_explain"
+    bl_label = "Explain"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, obj = context.scene.perception_entropy, context.active_object
+        layout = self.layout
+        layout.operator("pe.ask_place", icon="EYEDROPPER")
+        draw_answer(layout, context)
+        if settings.has_result and settings.result_words:
+            lines = layout.column(align=True)
+            lines.active = not settings.result_stale
+            for line in settings.result_words.splitlines():
+                draw_sentence(lines, context, line[:1].upper() + line[1:], icon="DOT")
+        if settings.has_result:
+            draw_sensor_table(layout, context)
+        if obj is not None and obj.perception_entropy.is_sensor:
+            draw_sensor_words(layout, context, obj)
+
+
+def draw_sensor_words(
+    layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object
+) -> None:
+    """Draw sentences on one sensor of the last result."""
+    settings = obj.perception_entropy
+    if not settings.has_result:
+        return
+    box = layout.box().column(align=True)
+    box.label(text=obj.name, icon="EMPTY_DATA", translate=False)
+    alone = f"sees {settings.coverage:.1%} of where objects are"
+    for line in (alone, *settings.words.splitlines()):
+        draw_sentence(box, context, line[:1].upper() + line[1:], icon="DOT")
+
+
+def draw_answer(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the answer of the last location query."""
+    found = answer(context.scene)
+    if found is None:
+        return
+    box = layout.box()
+    row = box.row()
+    lines = row.column(align=True)
+    for line in found:
+        draw_sentence(lines, context, line, beside_px=BUTTON_PX)
+    row.operator("pe.dismiss_place", text="", icon="X", emboss=False)
+
+
+PART_SHARE, NARROW_PART_SHARE = 0.5, 0.3
+
+
+class PE_PT_breakdown(Tab, bpy.types.Panel):
+    """Entropy and coverage by zone of the ground, and by class of object"""
+
+    bl_idname = "PE_PT_breakdown"
+    bl_label = "By Zone and Class"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        settings = context.scene.perception_entropy
+        return settings.has_result and len(settings.result_parts) > 0
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
+        draw_stale_mark(self.layout, settings)
+        column = self.layout.box().column(align=True)
+        column.active = not settings.result_stale
+        for is_class, title in ((False, "Zone"), (True, "Class")):
+            has_ap = is_class and bool(settings.result_ap)
+            more = ("AP", "ahead") if has_ap else ()
+            draw_part_row(column, title, "nats", "seen", *more, header=True)
+            for part in settings.result_parts:
+                if part.is_class == is_class:
+                    more = (part.ap, part.reach) if has_ap else ()
+                    digits = 0 if has_ap else 1  # four figures have to fit
+                    nats = f"{part.entropy:.{digits + 1}f}"
+                    draw_part_row(column, part.name, nats, f"{part.coverage:.{digits}%}", *more)
+            if not is_class:
+                column.separator()
+
+
+def draw_part_row(
+    layout: bpy.types.UILayout, name: str, *figures: str, header: bool = False
+) -> None:
+    """Draw a row of the table; figures are aligned to the right."""
+    split = layout.split(factor=PART_SHARE if len(figures) == 2 else NARROW_PART_SHARE)
+    split.active = not header
+    split.label(text=name, translate=False)
+    row = split.row()
+    for text in figures:
+        cell = row.row()
+        cell.alignment = "RIGHT"
+        cell.label(text=text, translate=False)
+
+
+LIVE_CLASSES = (PE_MT_live_against, PE_PT_live)
+CLASSES = (PE_PT_explain, PE_PT_breakdown)

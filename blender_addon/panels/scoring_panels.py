@@ -1,0 +1,183 @@
+"""What is scored: prior, targets, focus; and advanced settings: own sensors, AP curves, space."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..choices import CUSTOM, FROM_BOXES, OBJECTS, REGIONS
+from ..operators import kind_label, own_fields
+from .layout import Tab, columns, draw_properties, draw_sentence, draw_with_zero
+
+
+class PE_PT_prior(Tab, bpy.types.Panel):
+    """Where objects are expected"""
+
+    bl_idname = "PE_PT_prior"
+    bl_label = "Prior"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_chosen(self.layout, context.scene.perception_entropy, "prior")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
+        boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
+        draw_properties(self.layout, settings, ("prior", *boxes))
+
+
+class PE_PT_targets(Tab, bpy.types.Panel):
+    """What is scored: voxels, or objects of the prior"""
+
+    bl_idname = "PE_PT_targets"
+    bl_label = "Targets"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        draw_chosen(self.layout, context.scene.perception_entropy, "targets")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
+        draw_properties(self.layout, settings, ("targets",))
+        if settings.targets == OBJECTS:
+            draw_properties(self.layout, settings, ("traffic", "scenes"))
+        else:
+            draw_with_zero(self.layout, settings, "score_samples", "All")
+
+
+def draw_chosen(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str) -> None:
+    """Draw the chosen entry of a menu: it is visible also when the panel is closed."""
+    layout.label(text=layout.enum_item_name(settings, name, getattr(settings, name)))
+
+
+class PE_UL_focus(bpy.types.UIList):
+    """The focus weights: name, region, factor"""
+
+    def draw_item(
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _settings: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        _icon: int,
+        _active_data: bpy.types.PropertyGroup,
+        _active_property: str,
+    ) -> None:
+        name, figures = columns(layout, 0.4)
+        name.prop(item, "name", text="", emboss=False)
+        region, factor = columns(figures, 0.61)
+        region.label(text=REGIONS[item.region].short, translate=False)
+        factor.alignment = "RIGHT"
+        factor.label(text=f"× {item.factor:g}", translate=False)
+
+
+class PE_PT_focus(Tab, bpy.types.Panel):
+    """Regions and classes with a weight of their own"""
+
+    bl_idname = "PE_PT_focus"
+    bl_label = "Focus"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        count = len(context.scene.perception_entropy.focus)
+        self.layout.label(text=str(count or ""), translate=False)  # visible also when closed
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, layout = context.scene.perception_entropy, self.layout
+        row = layout.row()
+        row.template_list(
+            PE_UL_focus.__name__, "", settings, "focus", settings, "focus_index", rows=3
+        )
+        buttons = row.column(align=True)
+        buttons.operator("pe.add_focus", text="", icon="ADD")
+        buttons.operator("pe.remove_focus", text="", icon="REMOVE")
+        if settings.focus_index < len(settings.focus):
+            draw_focus(layout, settings.focus[settings.focus_index])
+
+
+def draw_focus(layout: bpy.types.UILayout, focus: bpy.types.PropertyGroup) -> None:
+    """Draw the settings of one focus."""
+    draw_properties(layout, focus, ("factor", "region"))
+    if focus.region == CUSTOM:
+        for name in ("x_range", "y_range"):
+            low, high = getattr(focus, name)
+            pair = layout.column(align=True)
+            pair.alert = low >= high
+            label = focus.bl_rna.properties[name].name
+            pair.prop(focus, name, index=0, text=f"{label} From")
+            pair.prop(focus, name, index=1, text="To")
+    layout.column().prop(focus, "classes")
+
+
+class PE_UL_own_sensors(bpy.types.UIList):
+    """This file's own sensors: name, kind"""
+
+    def draw_item(
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _settings: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        _icon: int,
+        _active_data: bpy.types.PropertyGroup,
+        _active_property: str,
+    ) -> None:
+        layout.prop(item, "name", text="", emboss=False, icon="ERROR" if item.problem else "NONE")
+        layout.label(text=kind_label(item.kind))
+
+
+class PE_PT_advanced(Tab, bpy.types.Panel):
+    """Settings that are rarely changed: own sensors, AP curves, space, clearance"""
+
+    bl_idname = "PE_PT_advanced"
+    bl_label = "Advanced"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
+        draw_own_sensors(self.layout, context)
+        draw_curves(self.layout, settings)
+        column = self.layout.column()
+        column.label(text="Space and Voxels")
+        for name in ("space_x", "space_y", "space_z"):
+            row = column.row(align=True)
+            row.alert = getattr(settings, name)[0] >= getattr(settings, name)[1]
+            row.label(text=name[-1].upper())
+            row.prop(settings, name, index=0, text="")
+            row.prop(settings, name, index=1, text="")
+        draw_properties(column, settings, ("space_interval", "clearance"))
+
+
+def draw_own_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the file's own sensors, and the figures of the one that is selected."""
+    settings = context.scene.perception_entropy
+    layout.label(text="Own Sensors")
+    row = layout.row()
+    name = PE_UL_own_sensors.__name__
+    row.template_list(name, "", settings, "own_sensors", settings, "own_index", rows=2)
+    buttons = row.column(align=True)
+    buttons.operator_menu_enum("pe.add_own_sensor", "kind", text="", icon="ADD")
+    buttons.operator("pe.remove_own_sensor", text="", icon="REMOVE")
+    if settings.own_index < len(settings.own_sensors):
+        sensor = settings.own_sensors[settings.own_index]
+        draw_properties(layout.column(), sensor, ("kind", *own_fields(sensor.kind)))
+        if sensor.problem:
+            draw_sentence(layout, context, sensor.problem, icon="ERROR")
+
+
+def draw_curves(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw the AP curve of each kind."""
+    layout.label(text="AP = a ln m + b")
+    if not settings.curves:
+        layout.operator("pe.own_curves")
+    for curve in settings.curves:
+        row = layout.row(align=True)
+        row.prop(curve, "own", text=kind_label(curve.name))
+        pair = row.row(align=True)
+        pair.active = curve.own
+        pair.prop(curve, "a")
+        pair.prop(curve, "b")
+
+
+CLASSES = (PE_PT_prior, PE_PT_targets, PE_UL_focus, PE_PT_focus)
+ADVANCED_CLASSES = (PE_UL_own_sensors, PE_PT_advanced)
+"""These come last in the tab."""

@@ -1,0 +1,151 @@
+"""How to search: the method, mounts, constraints and tolerance."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, OBJECTS, ON_SLOTS
+from .layout import Tab, columns, draw_properties, draw_with_zero
+
+ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
+SLOTS_ICON = "OUTLINER_COLLECTION"
+
+
+class PE_PT_search(Tab, bpy.types.Panel):
+    """How to search"""
+
+    bl_idname = "PE_PT_search"
+    bl_label = "Search"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
+        draw_properties(self.layout, settings, ("method", "candidates"))
+        draw_with_zero(self.layout, settings, "evaluations", "All")
+        self.layout.prop(settings, "seed")
+        if settings.targets != OBJECTS:
+            draw_with_zero(self.layout, settings, "search_samples", "All")
+
+
+class PE_UL_mounts(bpy.types.UIList):
+    """The mounts: name, faces or slots"""
+
+    def draw_item(
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _settings: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        _icon: int,
+        _active_data: bpy.types.PropertyGroup,
+        _active_property: str,
+    ) -> None:
+        name, what = columns(layout, 0.6)
+        icon = SLOTS_ICON if item.kind == ON_SLOTS else ICONS[item.faces]
+        name.prop(item, "name", text="", emboss=False, icon=icon)
+        what.alignment = "RIGHT"
+        made = made_of(item)
+        what.label(text="" if made == item.name else made, translate=False)
+
+
+def made_of(mount: bpy.types.PropertyGroup) -> str:
+    """Return in a word or two which faces or slots a mount has."""
+    if mount.kind == ON_SLOTS:
+        return mount.slots.name if mount.slots else "no collection"
+    if mount.faces == BY_MATERIAL:
+        return mount.material.name if mount.material else "no material"
+    if mount.faces == BY_GROUP:
+        return mount.group or "no group"
+    names = [row.part.name for row in mount.parts if row.part]
+    return names[0] if len(names) == 1 else f"{len(names)} parts"
+
+
+class PE_PT_mounts(Tab, bpy.types.Panel):
+    """Where sensors may be mounted: surfaces of the vehicle, or slots of a rack"""
+
+    bl_idname = "PE_PT_mounts"
+    bl_label = "Mounts"
+    bl_parent_id = "PE_PT_search"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        count = len(context.scene.perception_entropy.mounts)
+        self.layout.label(text=str(count or ""), translate=False)  # visible also when closed
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, layout = context.scene.perception_entropy, self.layout
+        row = layout.row()
+        row.template_list(
+            PE_UL_mounts.__name__, "", settings, "mounts", settings, "mount_index", rows=3
+        )
+        buttons = row.column(align=True)
+        buttons.operator("pe.add_mount", text="", icon="ADD")
+        buttons.operator("pe.remove_mount", text="", icon="REMOVE")
+        if settings.mount_index < len(settings.mounts):
+            draw_mount(layout, settings.mounts[settings.mount_index])
+
+
+def draw_mount(layout: bpy.types.UILayout, mount: bpy.types.PropertyGroup) -> None:
+    """Draw the settings of one mount."""
+    layout.row(align=True).prop(mount, "kind", expand=True)
+    if mount.kind == ON_SLOTS:
+        draw_properties(layout, mount, ("slots",))
+        return
+    layout.row(align=True).prop(mount, "faces", expand=True)
+    if mount.faces == BY_PARTS:
+        draw_parts(layout, mount)
+    named = {BY_PARTS: (), BY_MATERIAL: ("material",), BY_GROUP: ("group",)}[mount.faces]
+    draw_properties(layout, mount, (*named, "standoff", "orientation"))
+
+
+def draw_parts(layout: bpy.types.UILayout, mount: bpy.types.PropertyGroup) -> None:
+    """Draw the parts of a mount, and the button that replaces them."""
+    column = layout.column(align=True)
+    for row in mount.parts:
+        column.prop(row, "part", text="")
+    column.operator("pe.mount_parts", icon="RESTRICT_SELECT_OFF")
+
+
+class PE_PT_constraints(Tab, bpy.types.Panel):
+    """Constraints of every placement of a search"""
+
+    bl_idname = "PE_PT_constraints"
+    bl_label = "Constraints"
+    bl_parent_id = "PE_PT_search"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.perception_entropy
+        layout = self.layout
+        draw_properties(layout, settings, ())
+        for name in ("max_height", "max_width"):
+            draw_with_zero(layout, settings, name, "Any")
+        draw_properties(layout, settings, ("min_distance", "clear_housings"))
+        layout.operator("pe.add_no_go", icon="CUBE")
+        obj = context.active_object
+        if obj is not None and not obj.perception_entropy.is_sensor:
+            layout.label(text=f"{obj.name}:", translate=False)
+            draw_properties(layout, obj.perception_entropy, ("is_no_go", "is_rack"))
+
+
+class PE_PT_tolerance(Tab, bpy.types.Panel):
+    """What placements have to tolerate: mounting errors, or the loss of a sensor"""
+
+    bl_idname = "PE_PT_tolerance"
+    bl_label = "Tolerance"
+    bl_parent_id = "PE_PT_search"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, layout = context.scene.perception_entropy, self.layout
+        draw_properties(layout, settings, ("mounting_errors",))
+        column = layout.column()
+        column.active = settings.mounting_errors
+        draw_properties(column, settings, ("tolerance_position", "tolerance_angle"))
+        draw_properties(layout, settings, ("failures",))
+        row = layout.row()
+        row.active = settings.mounting_errors or settings.failures
+        row.prop(settings, "worst")
+
+
+CLASSES = (PE_PT_search, PE_UL_mounts, PE_PT_mounts, PE_PT_constraints, PE_PT_tolerance)

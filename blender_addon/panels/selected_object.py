@@ -1,0 +1,169 @@
+"""Settings of the selected object: a sensor, or a part of the vehicle."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..operators import holder_of
+from ..properties import AXIS_LABELS
+from .layout import Tab, draw_sentence
+
+POSITION_LABELS = ("X", "Y", "Height")
+"""Height is z of the optical centre over the ground."""
+
+
+class PE_PT_sensor(Tab, bpy.types.Panel):
+    """Settings of the sensor that is selected"""
+
+    bl_idname = "PE_PT_sensor"
+    bl_label = "Sensor"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        obj = context.active_object
+        return obj is not None and obj.perception_entropy.is_sensor
+
+    def draw(self, context: bpy.types.Context) -> None:
+        obj = context.active_object
+        settings = obj.perception_entropy
+        layout = self.layout
+        layout.prop(settings, "model")
+        layout.prop(settings, "fusion")
+        draw_pose(layout, context, obj)
+        row = layout.row(align=True)
+        row.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
+        view = context.scene.perception_entropy.view
+        row.prop(view, "show_inset", toggle=True, icon="IMAGE_PLANE")
+        layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
+        draw_mirror(layout, obj)
+        draw_mounted(layout, settings)
+        layout.label(text=f"The search may change, for {obj.name}:")
+        draw_free(layout, settings)
+
+
+def draw_pose(
+    layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object
+) -> None:
+    """Draw the pose in the ground frame; fixed poses and locked axes are disabled."""
+    settings, holder = obj.perception_entropy, holder_of(obj)
+    pair = layout.split()
+    for name, texts, locks in (
+        ("ground_position", POSITION_LABELS, obj.lock_location),
+        ("ground_rotation", AXIS_LABELS[3:], obj.lock_rotation),
+    ):
+        column = pair.column(align=True)
+        for index, text in enumerate(texts):
+            cell = column.row(align=True)
+            locked = (
+                any(locks) if obj.parent else locks[index]
+            )  # its own frame is not the ground frame
+            cell.enabled = not (holder or locked)
+            cell.prop(settings, name, index=index, text=text)
+    if holder:
+        draw_sentence(layout, context, f"Pose is fixed by {holder}", icon="LOCKED")
+
+
+def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
+    """Draw the buttons that mirror a sensor; of a linked sensor, its partner."""
+    row = layout.row(align=True)
+    other = obj.perception_entropy.mirror_of
+    if other:
+        row.label(text=f"Linked to {other}", icon="MOD_MIRROR", translate=False)
+        row.operator("pe.unlink_mirror", text="", icon="UNLINKED").name = obj.name
+        return
+    row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
+    linked = row.operator("pe.mirror_sensor", text="Mirror Linked", icon="LINKED")
+    linked.name, linked.linked = obj.name, True
+
+
+def draw_free(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw a switch for each axis; x, y and z are dimmed where a mount gives the position."""
+    row = layout.row(align=True)
+    for index, label in enumerate(AXIS_LABELS):
+        part = row.row(align=True)
+        part.active = index >= len("xyz") or not settings.mount
+        part.prop(settings, "free", index=index, text=label, toggle=True)
+
+
+def draw_mounted(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw the mount of a sensor, and its rack."""
+    split = layout.split(factor=0.4)
+    split.label(text="Mounted on")
+    mount_name = settings.mount or "Box of Coordinates"
+    split.operator_menu_enum("pe.mount_sensor", "mount", text=mount_name, translate=False)
+    layout.prop(settings, "rack")
+
+
+def draw_bounds(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw the bounds of each axis that the search may change."""
+    column = layout.column(align=True)
+    for index, label in enumerate(AXIS_LABELS):
+        if not settings.free[index]:
+            continue
+        row = column.row(align=True)
+        bounded = settings.bounded[index]
+        text = label if bounded else f"Bound {label}"
+        row.operator("pe.bound_axis", text=text, depress=bounded).axis = index
+        if bounded:
+            pair = row.row(align=True)
+            pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]
+            pair.prop(settings, "bounds_low", index=index, text="")
+            pair.prop(settings, "bounds_high", index=index, text="")
+
+
+class PE_PT_bounds(Tab, bpy.types.Panel):
+    """Bounds of the search for this sensor; by default the vehicle's outline and 0.75 m above it"""
+
+    bl_idname = "PE_PT_bounds"
+    bl_label = "Bounds"
+    bl_parent_id = "PE_PT_sensor"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        draw_bounds(self.layout, context.active_object.perception_entropy)
+
+
+class PE_PT_own_curve(Tab, bpy.types.Panel):
+    """Score this sensor with an AP curve of its own: another perception algorithm"""
+
+    bl_idname = "PE_PT_own_curve"
+    bl_label = "Own AP Curve"
+    bl_parent_id = "PE_PT_sensor"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        self.layout.prop(context.active_object.perception_entropy, "own_curve", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.active_object.perception_entropy
+        column = self.layout.column()
+        column.active = settings.own_curve
+        column.label(text="AP = a ln m + b")
+        row = column.row(align=True)
+        row.prop(settings, "curve_a")
+        row.prop(settings, "curve_b")
+
+
+class PE_PT_part(Tab, bpy.types.Panel):
+    """Settings of the part of the vehicle that is selected"""
+
+    bl_idname = "PE_PT_part"
+    bl_label = "Vehicle Part"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        obj = context.active_object
+        return obj is not None and obj.type != "EMPTY" and not obj.perception_entropy.is_sensor
+
+    def draw(self, context: bpy.types.Context) -> None:
+        obj = context.active_object
+        self.layout.label(text=obj.name, icon="OBJECT_DATA")
+        self.layout.prop(obj.perception_entropy, "see_through")
+
+
+CLASSES = (
+    PE_PT_sensor,
+    PE_PT_own_curve,
+    PE_PT_bounds,
+    PE_PT_part,
+)

@@ -1,0 +1,165 @@
+"""Sensors as lists: one with switches and models, one with what each sensor contributes."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..operators import listed_sensors
+from .layout import draw_warning, letters_per_line, swatch
+
+MIN_NAME_SHARE = 0.34
+"""Smallest share of a row for the name."""
+BESIDE_LETTERS = 9
+"""Width of switches and the figure in a row, in letters."""
+FIGURE_SHARE = 0.2
+
+
+def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw a row for each sensor under a header, and its warnings below it."""
+    objects = listed_sensors(context.scene)
+    box = layout.box().column(align=True)
+    if not objects:
+        box.label(text="No sensors yet", icon="INFO")
+        return
+    share = name_share(objects, letters_per_line(context) - BESIDE_LETTERS)
+    draw_header(box, share)
+    warnings = list(context.scene.perception_entropy.result_warnings)
+    for number, obj in enumerate(objects):
+        draw_sensor(box, context, obj, share, number)
+        for warning in warnings:
+            if warning.subject == obj.name:
+                draw_warning(box, context, warning)
+
+
+def name_share(objects: list[bpy.types.Object], room: int) -> float:
+    """Return the share of a row for names; 1 where models would leave too little room for them.
+
+    The selected sensor's model is also in its own panel, and a wider sidebar shows all models.
+    """
+    names = max(len(obj.name) for obj in objects) + 2
+    models = max(len(obj.perception_entropy.model) for obj in objects) + 1
+    return 1.0 if names + models > room else max(MIN_NAME_SHARE, names / (names + models))
+
+
+def draw_header(layout: bpy.types.UILayout, share: float) -> None:
+    """Draw the header of the columns."""
+    row = layout.row(align=True)
+    row.active = False
+    row.scale_y = 0.8
+    for _ in range(3):
+        row.label(text="", icon="BLANK1")
+    name, model, figure = row_cells(row, share)
+    name.label(text="Sensor")
+    if model is not None:
+        model.label(text="Model")
+    figure.label(text="Loss")
+
+
+def draw_sensor(
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    obj: bpy.types.Object,
+    share: float,
+    number: int,
+) -> None:
+    """Draw a sensor's row: the Outliner's eye, the switch of its beams, and their colour."""
+    settings, counts = obj.perception_entropy, obj.visible_get()
+    row = layout.row(align=True)
+    eye = "HIDE_OFF" if counts else "HIDE_ON"
+    row.operator("pe.toggle_sensor", text="", icon=eye, emboss=False).name = obj.name
+    rays = "LIGHT_SUN" if settings.show else "DOT"
+    row.prop(settings, "show", text="", icon=rays, emboss=False)
+    row.label(text="", icon_value=swatch(number))
+    name, model, figure = row_cells(row, share)
+    row.active = counts  # a hidden sensor is not scored
+    active = obj == context.active_object
+    name.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
+    if model is not None:
+        model.label(text=settings.model, translate=False)
+    figure.label(text=loss_text(settings), translate=False)
+
+
+def loss_text(settings: bpy.types.PropertyGroup) -> str:
+    """Return how much the rig's entropy rises without a sensor, from the last result."""
+    return settings.loss_text if settings.has_result and settings.loss_text else "–"
+
+
+def row_cells(
+    layout: bpy.types.UILayout, share: float
+) -> tuple[bpy.types.UILayout, bpy.types.UILayout | None, bpy.types.UILayout]:
+    """Return the cells of a row: name, model (None where there is no room), figure at the right."""
+    left = layout.split(factor=1.0 - FIGURE_SHARE, align=True)
+    if share < 1.0:
+        both = left.split(factor=share, align=True)
+        name, model = both.row(align=True), both.row(align=True)
+    else:
+        name, model = left.row(align=True), None
+    figure = left.row(align=True)
+    figure.alignment = "RIGHT"
+    return name, model, figure
+
+
+WIDE_LETTERS = 56
+"""From this width on, the parts that occlude a sensor are in its own row."""
+NAME_SHARE, LOSS_SHARE = 0.46, 0.3
+NO_FIGURE = "–"
+HEADER = ("Sensor", "Loss", "Most in", "Occluded by")
+
+
+def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw loss, where it is largest, and what occludes each sensor of the last result."""
+    layout.label(text="Loss: entropy without the sensor, nats worse")
+    table = layout.box().column(align=True)
+    table.active = not context.scene.perception_entropy.result_stale
+    wide = letters_per_line(context) >= WIDE_LETTERS
+    header = _cells(table, wide)
+    for cell, text in zip(header, HEADER, strict=False):
+        cell.active = False
+        cell.label(text=text)
+    for number, obj in enumerate(listed_sensors(context.scene)):
+        _draw_row(table, obj, wide, number, active=obj == context.active_object)
+
+
+def _draw_row(
+    layout: bpy.types.UILayout, obj: bpy.types.Object, wide: bool, number: int, *, active: bool
+) -> None:
+    settings = obj.perception_entropy
+    name, loss, where, *rest = _cells(layout, wide)
+    name.label(text="", icon_value=swatch(number))
+    name.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
+    if not settings.has_result:
+        loss.label(text="not scored")
+        return
+    loss.label(text=settings.loss_text or NO_FIGURE, translate=False)
+    where.label(text=settings.loss_where or NO_FIGURE, translate=False)
+    if wide:
+        _draw_parts(rest[0], settings)
+    elif settings.stopped_parts:
+        below = layout.row(align=True)
+        below.label(text="", icon="BLANK1")
+        below.label(text="Occluded by")
+        _draw_parts(below, settings, 1)
+
+
+def _draw_parts(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, most: int = 3
+) -> None:
+    """Draw the parts that occlude a sensor most, as buttons that select them."""
+    row = layout.row(align=True)
+    for part in settings.stopped_parts[:most]:
+        text = f"{part.name} {part.share:.1%}"
+        row.operator("pe.select_part", text=text, translate=False).name = part.name
+    if not settings.stopped_parts:
+        row.label(text=NO_FIGURE, translate=False)
+
+
+def _cells(layout: bpy.types.UILayout, wide: bool) -> list[bpy.types.UILayout]:
+    """Return the cells of a row: name, loss, where; and the parts where there is room."""
+    half = layout.split(factor=0.6, align=True) if wide else None
+    left = layout if half is None else half
+    named = left.split(factor=NAME_SHARE, align=True)
+    name = named.row(align=True)
+    figures = named.split(factor=LOSS_SHARE, align=True)
+    loss, where = figures.row(align=True), figures.row(align=True)
+    loss.alignment = "RIGHT"
+    return [name, loss, where] if half is None else [name, loss, where, half.row(align=True)]

@@ -1,0 +1,192 @@
+"""Designs side by side: the variants of this vehicle, and the choice of sensors by price."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..operators import known_rigs
+from .layout import Tab, columns, draw_properties, draw_with_zero
+
+
+class PE_UL_variants(bpy.types.UIList):
+    """Variants: which one is in the scene, name, entropy"""
+
+    def draw_item(
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        settings: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        _icon: int,
+        _active_data: bpy.types.PropertyGroup,
+        _active_property: str,
+    ) -> None:
+        active = item.key == settings.variant_key
+        row = layout.row(align=True)
+        tick = "RADIOBUT_ON" if active else "RADIOBUT_OFF"
+        row.operator("pe.switch_variant", text="", icon=tick, emboss=False).key = item.key
+        name, figures = columns(row, 0.74)
+        name.prop(item, "name", text="", emboss=False)
+        if active and settings.variant_changed:
+            name.label(text="", icon="GREASEPENCIL")
+        figures.alignment = "RIGHT"
+        figures.active = not item.stale
+        if not active:
+            ghost = "GHOST_ENABLED" if item.key == settings.view.ghost_key else "GHOST_DISABLED"
+            row.operator("pe.ghost_variant", text="", icon=ghost, emboss=False).key = item.key
+        else:
+            row.label(text="", icon="BLANK1")
+        figures.label(text=f"{item.entropy:.3f}" if item.has_result else "–", translate=False)
+
+
+class PE_PT_variants(Tab, bpy.types.Panel):
+    """Designs for this vehicle: save, switch, compare"""
+
+    bl_idname = "PE_PT_variants"
+    bl_label = "Variants"
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        count = len(context.scene.perception_entropy.variants)
+        self.layout.label(text=str(count or ""), translate=False)  # visible also when closed
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, layout = context.scene.perception_entropy, self.layout
+        if not settings.variants:
+            layout.operator("pe.save_variant", icon="ADD")
+            layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
+            return
+        draw_list(layout, settings)
+        draw_state(layout, settings)
+        draw_note(layout, context)
+
+
+class PE_MT_known_rigs(bpy.types.Menu):
+    """Rigs of well-known vehicles"""
+
+    bl_idname = "PE_MT_known_rigs"
+    bl_label = "Add Known Rig"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        for key, title in known_rigs():
+            self.layout.operator("pe.add_rig", text=title, translate=False).key = key
+
+
+def selected(settings: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
+    """Return the selected row; the last one where the list has become shorter."""
+    return settings.variants[min(settings.variant_index, len(settings.variants) - 1)]
+
+
+def draw_note(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the note of the selected variant, in a field."""
+    row = selected(context.scene.perception_entropy)
+    layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
+
+
+def draw_list(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw the list with its buttons beside it."""
+    row = layout.row()
+    row.template_list(
+        PE_UL_variants.__name__, "", settings, "variants", settings, "variant_index", rows=4
+    )
+    buttons = row.column(align=True)
+    buttons.operator("pe.save_variant", text="", icon="ADD")
+    buttons.operator("pe.delete_variant", text="", icon="REMOVE")
+    buttons.separator()
+    buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
+
+
+def draw_state(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw the buttons of the scene's variant, always in the same place."""
+    active = (
+        settings.variants[min(settings.variant_index, len(settings.variants) - 1)].key
+        == settings.variant_key
+    )
+    row = layout.row(align=True)
+    there = row.row(align=True)
+    there.enabled = settings.variant_changed or not active
+    there.operator("pe.switch_variant", text="Revert" if active else "Switch")
+    update = row.row(align=True)
+    update.enabled = settings.variant_changed
+    update.operator("pe.update_variant", text="Update")
+    row = layout.row(align=True)
+    row.operator("pe.compare_variants", icon="MOD_ARRAY")
+    row.menu(PE_MT_known_rigs.bl_idname, icon="AUTO", text="Add Rig")
+
+
+class PE_PT_selection(Tab, bpy.types.Panel):
+    """Choices of models for each sensor, with prices"""
+
+    bl_idname = "PE_PT_selection"
+    bl_label = "Sensor Choices"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, layout = context.scene.perception_entropy, self.layout
+        obj = context.active_object
+        if obj is not None and obj.perception_entropy.is_sensor:
+            draw_options(layout, obj)
+        else:
+            layout.label(text="Select a sensor to choose models for it", icon="INFO")
+        draw_limits(layout.column(), settings)
+        layout.operator("pe.choose_sensors", icon="VIEWZOOM")
+        if settings.front:
+            draw_front(layout, settings)
+
+
+def draw_options(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
+    """Draw the models that may be chosen for a sensor, with their prices."""
+    settings = obj.perception_entropy
+    layout.label(text=obj.name, icon="EMPTY_AXIS", translate=False)
+    column = layout.column(align=True)
+    for number, option in enumerate(settings.options):
+        model, price = columns(column, 0.66)
+        model.prop(option, "model", text="")
+        price.prop(option, "price", text="")
+        price.operator("pe.remove_option", text="", icon="REMOVE", emboss=False).index = number
+    column.operator("pe.add_option", icon="ADD")
+    if settings.options:
+        layout.prop(settings, "may_be_left_out")
+
+
+def draw_limits(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw the limits of every design; 0 means no limit."""
+    draw_properties(layout, settings, ("currency",))
+    for name in ("max_price", "max_sensors"):
+        draw_with_zero(layout, settings, name, "No Limit")
+
+
+def draw_front(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw the Pareto front: price, entropy and name, with a button for each design's variant."""
+    column = layout.box().column(align=True)
+    _draw_design(column.row(), "BLANK1", (settings.currency or "Price", "Entropy", "Design"))
+    for row in settings.front:
+        icon = "RADIOBUT_ON" if row.key == settings.variant_key else "RADIOBUT_OFF"
+        line = column.row()
+        figures = (f"{row.price:,.7g}", f"{row.entropy:.2f}", row.name)
+        _draw_design(line, icon, figures, row.key)
+    column.label(text=settings.front_told, translate=False)
+
+
+def _draw_design(
+    line: bpy.types.UILayout, icon: str, texts: tuple[str, str, str], key: int | None = None
+) -> None:
+    """Draw a line of the table: a button that switches to the variant, if there is one."""
+    if key is None:
+        line.label(text="", icon=icon)
+        line.active = False
+    else:
+        line.operator("pe.switch_variant", text="", icon=icon, emboss=False).key = key
+    figures, name = columns(line, 0.5)
+    for text in texts[:2]:
+        cell = figures.row()
+        cell.alignment = "RIGHT"
+        cell.label(text=text, translate=False)
+    name.label(text=texts[2], translate=False)
+
+
+CLASSES = (
+    PE_MT_known_rigs,
+    PE_UL_variants,
+    PE_PT_variants,
+    PE_PT_selection,
+)

@@ -1,0 +1,299 @@
+"""Rows of lists that a user edits: focus weights, AP curves, own sensors, offered models, mounts.
+
+Lists belong to the scene, those of offered models to a sensor.
+"""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
+from ..engine import pe
+from ..sensor_kinds import own_kinds
+from .callbacks import changed, model_suggestions, redraw
+
+DEFAULT_FOCUS = 2.0
+
+DEFAULT_REGION = "front"
+
+RANGE_DECIMALS = 3
+
+OBJECT_CLASSES = tuple(
+    (name, name.capitalize(), f"Weigh {name}s") for name in pe.Prior.road().class_names
+)
+
+
+class PE_FocusSettings(bpy.types.PropertyGroup):
+    """A focus weight: a region and classes that count more or less than the prior says."""
+
+    factor: FloatProperty(
+        name="Factor",
+        description="How many times as much it counts: 2 doubles it, 0 leaves it out. Where "
+        "several regions overlap, their factors multiply",
+        default=DEFAULT_FOCUS,
+        min=0.0,
+        soft_max=10.0,
+        update=changed,
+    )
+    region: EnumProperty(
+        items=REGION_ITEMS,
+        name="Region",
+        description="Which part of the ground",
+        default=DEFAULT_REGION,
+        update=changed,
+    )
+    x_range: FloatVectorProperty(
+        name="X",
+        description="From and to, ahead of the origin; negative is behind it",
+        size=2,
+        default=pe.PerceptionSpace().x,
+        unit="LENGTH",
+        precision=RANGE_DECIMALS,
+        update=changed,
+    )
+    y_range: FloatVectorProperty(
+        name="Y",
+        description="From and to, on the left of the origin; negative is on its right",
+        size=2,
+        default=pe.PerceptionSpace().y,
+        unit="LENGTH",
+        precision=RANGE_DECIMALS,
+        update=changed,
+    )
+    classes: EnumProperty(
+        items=OBJECT_CLASSES,
+        name="Classes",
+        description="Which kinds of objects. Shift-click for several",
+        options={"ENUM_FLAG"},
+        default={name for name, *_ in OBJECT_CLASSES},
+        update=changed,
+    )
+
+
+class PE_CurveSettings(bpy.types.PropertyGroup):
+    """The AP curve of a kind of sensor: AP = a ln m + b. The row has the name of the kind."""
+
+    own: BoolProperty(
+        name="Own", description="Use these numbers, as pe fit finds them", update=changed
+    )
+    a: FloatProperty(
+        name="a", description="AP = a ln m + b: slope", precision=4, min=1e-12, update=changed
+    )
+    b: FloatProperty(
+        name="b", description="AP = a ln m + b: value at one point", precision=4, update=changed
+    )
+
+
+class PE_OwnSensorSettings(bpy.types.PropertyGroup):
+    """A sensor of the user's own; the row has the name of its model."""
+
+    kind: EnumProperty(items=own_kinds, name="Kind", description="What it is", update=changed)
+    channels: IntProperty(
+        name="Channels",
+        description="Number of channels, evenly spread over the field of view",
+        default=32,
+        min=1,
+        max=2048,
+        update=changed,
+    )
+    elevations: FloatVectorProperty(
+        name="Elevation °",
+        description="Lowest and highest channel in degrees above the horizon",
+        size=2,
+        default=(-25.0, 15.0),
+        min=-90.0,
+        max=90.0,
+        update=changed,
+    )
+    azimuths: FloatVectorProperty(
+        name="Azimuth °",
+        description="From and to in degrees, positive is left",
+        size=2,
+        default=(-180.0, 180.0),
+        min=-360.0,
+        max=360.0,
+        update=changed,
+    )
+    azimuth_step: FloatProperty(
+        name="Azimuth Step °",
+        description="Degrees from beam to beam of a channel",
+        default=0.2,
+        min=0.001,
+        max=360.0,
+        precision=3,
+        update=changed,
+    )
+    max_range: FloatProperty(
+        name="Range",
+        description="Farthest distance at which a beam counts",
+        default=200.0,
+        min=0.01,
+        unit="LENGTH",
+        update=changed,
+    )
+    min_range: FloatProperty(
+        name="From",
+        description="Nearest distance at which a beam counts",
+        default=0.0,
+        min=0.0,
+        unit="LENGTH",
+        update=changed,
+    )
+    width: IntProperty(
+        name="Width", description="Pixels across", default=1920, min=1, update=changed
+    )
+    height: IntProperty(
+        name="Height", description="Pixels down", default=1080, min=1, update=changed
+    )
+    hfov: FloatProperty(
+        name="Field of View °",
+        description="Horizontal field of view in degrees",
+        default=90.0,
+        min=0.001,
+        max=179.9,
+        update=changed,
+    )
+    lens: StringProperty(
+        name="Lens",
+        description="In place of the field of view, as in a study: fx = 930, cx = 965, cy = 530, "
+        'distortion = { model = "brown-conrady", k1 = -0.16 }. Also min_range_m and max_range_m',
+        update=changed,
+    )
+    keys: StringProperty(
+        name="Keys",
+        description="Of a kind without fields of its own: its table's keys, as in a study",
+        update=changed,
+    )
+    problem: StringProperty(name="Problem", description="Why it cannot be used, if so")
+    known_as: StringProperty(name="Known As", description="Its name when last looked at")
+
+
+class PE_SensorOption(bpy.types.PropertyGroup):
+    """A model that may be chosen, and its price."""
+
+    model: StringProperty(
+        name="Model",
+        description="Name of the sensor in the catalogue",
+        search=model_suggestions,
+        search_options={"SUGGESTION"},
+    )
+    price: FloatProperty(
+        name="Price",
+        description="What one of it costs, as you know it: the catalogue has no prices",
+        min=0.0,
+        soft_max=100_000.0,
+        precision=2,
+        step=1000,
+    )
+
+
+LONGEST_NAME = 60
+
+KINDS = (
+    (ON_SURFACE, "Surface", "The sensor moves on faces of the vehicle"),
+    (ON_SLOTS, "Slots", "The sensor takes the place of one of a collection's empties"),
+)
+
+FACES = (
+    (BY_PARTS, "Parts", "Objects of the vehicle, all of their faces"),
+    (BY_MATERIAL, "Material", "All faces of the vehicle that have a material"),
+    (BY_GROUP, "Painted", "Faces of the vehicle's meshes whose corners all weigh more than a half "
+     "in a vertex group"),
+)  # fmt: skip
+
+ORIENTATIONS = (
+    ("upright", "Upright", "Angles are to the ground, however the surface slants"),
+    ("normal", "Follows Normal", "Angles are to a base plate that lies on the surface"),
+    ("facing", "Looks Out", "Angles are to the surface's normal, as of a camera in a bumper"),
+)
+
+
+def _keep_apart(mount: PE_MountSettings, _context: bpy.types.Context) -> None:
+    """Update callback of a mount's name: names are unique, and sensors follow a new name."""
+    scene = mount.id_data
+    rows = scene.perception_entropy.mounts
+    taken = {row.name for row in rows if row != mount}
+    name = free_name(mount.name.strip() or "Mount", taken)
+    if name != mount.name:
+        mount.name = name  # which calls this again
+        return
+    for obj in scene.objects:
+        if mount.known_as and obj.perception_entropy.mount == mount.known_as:
+            obj.perception_entropy.mount = name
+    mount.known_as = name
+
+
+def groups_of_vehicle(
+    mount: PE_MountSettings, _context: bpy.types.Context, _typed: str
+) -> list[str]:
+    """Return the names of all vertex groups of the vehicle's meshes."""
+    vehicle = mount.id_data.perception_entropy.vehicle
+    objects = () if vehicle is None else vehicle.all_objects
+    return sorted({group.name for obj in objects for group in obj.vertex_groups})
+
+
+class PE_MountPart(bpy.types.PropertyGroup):
+    """An object of the vehicle whose faces belong to a mount."""
+
+    part: PointerProperty(
+        type=bpy.types.Object, name="Part", description="Object of the vehicle", update=redraw
+    )
+
+
+class PE_MountSettings(bpy.types.PropertyGroup):
+    """A mount: where sensors may sit."""
+
+    name: StringProperty(
+        name="Name",
+        description="Name of the mount. Double-click to change it",
+        maxlen=LONGEST_NAME,
+        update=_keep_apart,
+    )
+    known_as: StringProperty(name="Known As", description="Its name when last looked at")
+    kind: EnumProperty(items=KINDS, name="Kind", description="What it is", update=redraw)
+    faces: EnumProperty(
+        items=FACES, name="Faces", description="Which faces of the vehicle", update=redraw
+    )
+    parts: CollectionProperty(type=PE_MountPart, name="Parts", description="Whose faces it is")
+    material: PointerProperty(
+        type=bpy.types.Material,
+        name="Material",
+        description="Faces of the vehicle that have it",
+        update=redraw,
+    )
+    group: StringProperty(
+        name="Vertex Group",
+        description="Painted in Weight Paint: faces whose corners all weigh more than a half",
+        search=groups_of_vehicle,
+        search_options={"SUGGESTION"},
+        update=redraw,
+    )
+    standoff: FloatProperty(
+        name="Stand-off",
+        description="From the surface to the middle of the housing's base; a base plate of 40 mm "
+        "is 0.04",
+        default=0.0,
+        min=0.0,
+        max=10.0,
+        precision=3,
+        unit="LENGTH",
+    )
+    orientation: EnumProperty(
+        items=ORIENTATIONS, name="Orientation", description="What the sensor's angles are to"
+    )
+    slots: PointerProperty(
+        type=bpy.types.Collection,
+        name="Slots",
+        description="Each empty of the collection is a slot, with its place and angles",
+        update=redraw,
+    )

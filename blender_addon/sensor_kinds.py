@@ -1,0 +1,185 @@
+"""How the add-on treats each kind of sensor: one table, a row a kind.
+
+A kind that the engine has and this table has not takes the row `OTHER`: without a line of its own
+here its sensors are added, placed, defined by a file of their own, searched and shown.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .engine import graphics, kinds, pe
+
+Pixels = NDArray[np.float32]
+"""(H, W, 4) sRGB, the top row first."""
+
+DEFAULT_MODEL = "Pandar64"
+GAP_DEG = 30.0
+"""A LiDAR whose horizontal field of view leaves out no more than this measures all around."""
+PIXELS_PER_DEG = 3
+"""Of a picture of ranges: a full circle then fits into the editor that is made of the 3D view."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """How sensors of one kind are added.
+
+    `usual` is the model of the kind's button, None for the first of the catalogue. Its origin is
+    `stand_off_m` from the surface that it is on: clear of the body. On a roof it is at the front
+    edge or over the middle; without a vehicle at `height_m`. `outward` says whether it looks away
+    from the vehicle's centre. `display` and `size_m` are its empty's.
+    """
+
+    usual: str | None
+    stand_off_m: float
+    at_front: bool
+    height_m: float
+    outward: bool
+    display: str
+    size_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class KindRow:
+    """How the add-on treats sensors of one kind.
+
+    Attributes
+    ----------
+    mount : Mount
+        How a sensor is added.
+    typical_housing : callable
+        From a model to a housing for the asset library, where no size of the model is known.
+    mount_for : callable
+        From a model and `mount` to how a sensor of the model is added.
+    own_about : str
+        What an own sensor of the kind is, for a menu.
+    own_fields : tuple of str
+        Properties of an own sensor that the panel shows.
+    has_lens : bool
+        Whether a housing is drawn with a lens, not with a window.
+    camera : callable or None
+        From a model to the camera that Blender's view shows it by; None where it shows none.
+    pixels : callable or None
+        From a sensor and its vehicle to a picture; None where there is none. It runs on a thread.
+    legend : str
+        What the colours of that picture are.
+    """
+
+    mount: Mount
+    typical_housing: Callable[[Any], pe.Housing]
+    mount_for: Callable[[Any, Mount], Mount] = field(default=lambda _model, mount: mount)
+    own_about: str = "Its table's keys as a study has them"
+    own_fields: tuple[str, ...] = ("keys",)
+    has_lens: bool = False
+    camera: Callable[[Any], pe.Camera] | None = None
+    pixels: Callable[[pe.Sensor, pe.Vehicle | None], Pixels] | None = None
+    legend: str = ""
+
+
+def sees_all_around(lidar: pe.Lidar) -> bool:
+    """Whether a LiDAR's field of view has no horizontal gap wider than GAP_DEG."""
+    low, high = lidar.horizontal_fov
+    return bool(high - low >= math.radians(360.0 - GAP_DEG))
+
+
+def _lidar_mount(model: pe.Lidar, mount: Mount) -> Mount:
+    """A LiDAR that does not measure all around looks away from the vehicle, as a camera does."""
+    return mount if sees_all_around(model) else replace(mount, outward=True)
+
+
+CAN = pe.Housing("cylinder", (0.1, 0.1, 0.09), (0.0, 0.0, 0.045), "typical size")
+VISOR = pe.Housing("box", (0.1, 0.13, 0.05), (0.05, 0.0, 0.025), "typical size")
+SMALL_BOX = pe.Housing("box", (0.045, 0.03, 0.03), (0.0225, 0.0, 0.0145), "typical size")
+CAN_FOV = math.radians(200.0)
+"""A LiDAR that looks around less than this has its back to something: no window all round."""
+
+
+def _lidar_housing(model: pe.Lidar) -> pe.Housing:
+    low, high = model.horizontal_fov
+    return CAN if high - low > CAN_FOV else VISOR
+
+
+def range_pixels(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Pixels:
+    """Return a LiDAR's ranges as a picture: a degree is as wide as it is high."""
+    picture = kinds.range_picture(sensor, vehicle)
+    angles = picture.elevations, picture.azimuths
+    rows, columns = (graphics.even_angles(axis, PIXELS_PER_DEG) for axis in angles)
+    colors = graphics.range_colors(picture, sensor.model.max_range)[np.ix_(rows, columns)]
+    return np.concatenate([colors, np.ones((*colors.shape[:2], 1))], axis=2).astype(np.float32)
+
+
+ROWS = {
+    "lidar": KindRow(
+        Mount(DEFAULT_MODEL, 0.15, False, 1.8, False, "SPHERE", 0.12),
+        _lidar_housing,
+        _lidar_mount,
+        own_about="Beams of channels that are evenly spread",
+        own_fields=(
+            *("channels", "elevations", "azimuths", "azimuth_step", "min_range", "max_range"),
+        ),
+        pixels=range_pixels,
+        legend="near is bright, far is dark by metres; orange: blocked by the vehicle; "
+        "grey: nothing in range",
+    ),
+    "camera": KindRow(
+        Mount("Camera 90 deg", 0.05, True, 1.5, True, "ARROWS", 0.25),
+        lambda _model: SMALL_BOX,
+        own_about="A pinhole camera with square pixels, or one with a lens of its own",
+        own_fields=("width", "height", "hfov", "lens"),
+        has_lens=True,
+        camera=lambda model: model,
+    ),
+}
+OTHER = KindRow(Mount(None, 0.05, True, 1.5, True, "ARROWS", 0.25), lambda _model: SMALL_BOX)
+"""Of a kind that has no row."""
+
+
+def row_of(kind: str) -> KindRow:
+    """Return how sensors of a kind are treated."""
+    return ROWS.get(kind, OTHER)
+
+
+def mount_of(kind: str) -> Mount:
+    """Return how sensors of a kind are added."""
+    return row_of(kind).mount
+
+
+def mount_for(model: Any) -> Mount:
+    """Return how sensors of a model are added."""
+    row = row_of(model.kind)
+    return row.mount_for(model, row.mount)
+
+
+def kind_label(kind: str) -> str:
+    """Return what people call a sensor of a kind; the kind's name where the engine has none."""
+    return kinds.KINDS[kind].label if kind in kinds.KINDS else kind
+
+
+_items: list[tuple[str, str, str, int]] = []
+"""What menus list: Blender reads the texts after the function that made them has returned."""
+
+
+def own_kinds(_settings: object, _context: object) -> list[tuple[str, str, str, int]]:
+    """Return the kinds that an own sensor may be of, as Blender wants a menu.
+
+    A .blend file holds the numbers: those of the kinds with a row are their places in the table,
+    others follow from the name.
+    """
+    numbers = {name: number for number, name in enumerate(ROWS)}
+    _items[:] = [
+        (name, kind.label, row_of(name).own_about, numbers.get(name, _number_of(name)))
+        for name, kind in kinds.KINDS.items()
+    ]
+    return _items
+
+
+def _number_of(name: str) -> int:
+    """Return a number of a kind's name, the same in every session, clear of the table's places."""
+    return 1000 + zlib.crc32(name.encode()) % 2**24

@@ -1,0 +1,149 @@
+"""The vehicle as the engine has it: read again only after a change.
+
+Reading takes a tenth of a second for half a million triangles: too long for each move of the mouse.
+Changes are found in Blender's own updates, moved vertices included.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+from collections.abc import Hashable
+from typing import NamedTuple
+
+import bpy
+
+from . import bridge, simplified_vehicles
+from .engine import pe
+
+
+class CachedVehicle(NamedTuple):
+    """A vehicle, or None where there is none that can be scored; `key` identifies it."""
+
+    vehicle: pe.Vehicle | None
+    key: Hashable
+
+
+NO_VEHICLE = CachedVehicle(None, None)
+
+
+class VehicleCache:
+    """Vehicles by plain values; it never holds a Blender object."""
+
+    def __init__(self) -> None:
+        self._version = 0
+        self._vehicles: dict[str, CachedVehicle] = {}
+        self._digests: dict[Hashable, str] = {}
+
+    @property
+    def version(self) -> int:
+        """A count that rises whenever a vehicle may have changed."""
+        return self._version
+
+    def invalidate(self) -> None:
+        """Invalidate the vehicles: their objects may have changed."""
+        self._version += 1
+
+    def clear(self) -> None:
+        """Drop everything: another file is opened."""
+        self._vehicles.clear()
+        self._digests.clear()
+        self._version += 1
+
+    def read(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> CachedVehicle:
+        """Return the scene's vehicle; read it again only where it may have changed."""
+        collection = scene.perception_entropy.vehicle
+        members = () if collection is None else counted_members(collection, depsgraph)
+        of = "" if collection is None else collection.name_full
+        clearance = bridge.clearance_of(scene)
+        key = (scene.name, of, self._version, members, clearance)
+        cached = self._vehicles.get(scene.name, NO_VEHICLE)
+        if key != cached.key:
+            vehicle = None
+            if members:
+                # A score reports what is wrong with a vehicle; here it is as if there were none.
+                with contextlib.suppress(pe.InputError):
+                    vehicle = bridge.vehicle_from_collection(collection, depsgraph, clearance)
+            self._vehicles = {
+                name: b for name, b in self._vehicles.items() if name in bpy.data.scenes
+            }
+            cached = self._vehicles[scene.name] = CachedVehicle(vehicle, key)
+        return cached
+
+    def digest(self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> str:
+        """Return a digest of the scene's vehicle: another text where any bit of it differs."""
+        cached = self.read(scene, depsgraph)
+        if cached.vehicle is None:
+            return ""
+        if cached.key not in self._digests:
+            current = {each.key for each in self._vehicles.values()}
+            self._digests = {key: text for key, text in self._digests.items() if key in current}
+            self._digests[cached.key] = vehicle_digest(cached.vehicle)
+        return self._digests[cached.key]
+
+
+def vehicle_digest(vehicle: pe.Vehicle) -> str:
+    """Return a digest of a vehicle: its triangles, its parts and their names."""
+    digest = hashlib.blake2b(digest_size=16)
+    digest.update(vehicle.triangles)
+    digest.update(vehicle.parts)
+    digest.update(repr((vehicle.part_names, vehicle.glass)).encode())
+    return digest.hexdigest()
+
+
+shared = VehicleCache()
+"""The one cache of the add-on."""
+
+
+def counted_members(
+    collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
+) -> tuple[tuple[str, bool], ...]:
+    """Return the names of the vehicle's counted objects, and whether cameras see through them."""
+    members = bridge.visible_members(collection, depsgraph.view_layer)
+    counted = (each for each in members if not bridge.mounted_on_sensor(each))
+    return tuple(sorted((each.name_full, each.perception_entropy.see_through) for each in counted))
+
+
+def vehicle_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Whether an update moved or reshaped an object of the vehicle."""
+    changed = {
+        update.id.original
+        for update in depsgraph.updates
+        if isinstance(update.id, bpy.types.Object)
+        and (update.is_updated_geometry or update.is_updated_transform)
+    }
+    collection = scene.perception_entropy.vehicle
+    if collection is None or not changed:
+        return False
+    parts = {each for each in changed if not bridge.mounted_on_sensor(each)}
+    return not parts.isdisjoint(_objects_with_instances(collection))
+
+
+def _objects_with_instances(collection: bpy.types.Collection) -> set[bpy.types.Object]:
+    """Objects of a collection, and of those that it holds instances of."""
+    objects: set[bpy.types.Object] = set()
+    waiting, seen = [collection], {collection}
+    while waiting:
+        members = set(waiting.pop().all_objects)
+        objects |= members
+        inner = {each.instance_collection for each in members} - seen - {None}
+        waiting += inner
+        seen |= inner
+    return objects
+
+
+def invalidate_if_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """After an update: invalidate the vehicles where it was one of theirs."""
+    if vehicle_updated(scene, depsgraph):
+        shared.invalidate()
+
+
+def invalidate(*_: object) -> None:
+    """After undo or redo: any object may be another one."""
+    shared.invalidate()
+
+
+def clear(*_: object) -> None:
+    """Before another file is opened: drop all vehicles."""
+    shared.clear()
+    simplified_vehicles.shared.clear()

@@ -1,0 +1,218 @@
+"""What all drawers in 3D views share: text and plates, their places in the corners, and redraw.
+
+The live score, the search curve, the inset picture, legends and labels are written by the functions
+of this module, in pixels of a region. A drawer reserves the box of its plate at each redraw, or
+releases it; a plate that is drawn later in the same redraw is put above it. Boxes are plain numbers
+by region; no object of Blender's is held.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+
+import blf
+import bpy
+import gpu
+from gpu_extras.batch import batch_for_shader
+
+Color = tuple[float, float, float, float]
+PlateBox = tuple[float, float, float, float]
+"""Left, bottom, right, top in the region [px]."""
+
+FONT = 0
+SMALL = 11.0
+"""Size of most text, in pixels of an interface at scale 1; so are all lengths of drawers."""
+MARGIN, HUD_ROW = 14.0, 30.0
+"""From the toolbar to a plate, and the height of the panel of the last operation."""
+INK: Color = (0.95, 0.95, 0.95, 1.0)
+FAINT: Color = (0.74, 0.74, 0.74, 1.0)
+PLATE: Color = (0.08, 0.08, 0.08, 0.72)
+
+_shaders: dict[str, gpu.types.GPUShader] = {}
+_square: list[gpu.types.GPUBatch] = []
+_gradients: dict[tuple[Color, ...], gpu.types.GPUBatch] = {}
+"""Uploaded once, in the unit square, and drawn at any place and size."""
+_plates: dict[int, dict[str, PlateBox]] = {}
+
+
+def redraw_editors(kind: str = "VIEW_3D") -> None:
+    """Have every editor of a kind redrawn, in every window; all 3D views by default."""
+    for manager in bpy.data.window_managers:
+        for window in manager.windows:
+            for area in window.screen.areas:
+                if area.type == kind:
+                    area.tag_redraw()
+
+
+def shader(name: str) -> gpu.types.GPUShader:
+    """Return a built-in shader; made when first drawn, as there is no GPU in background."""
+    if name not in _shaders:
+        _shaders[name] = gpu.shader.from_builtin(name)
+    return _shaders[name]
+
+
+def release_gpu() -> None:
+    """Keep nothing on the graphics card."""
+    _shaders.clear()
+    _square.clear()
+    _gradients.clear()
+
+
+def text_size(text: str, size_px: float) -> tuple[float, float]:
+    """Return the width and height of a line of text [px]."""
+    blf.size(FONT, size_px)
+    width, height = blf.dimensions(FONT, text)
+    return width, height
+
+
+def draw_text(
+    text: str, x: float, y: float, size_px: float, color: Color, *, left_of_x: float = 0.0
+) -> float:
+    """Draw a line of text on a baseline, and return its width [px].
+
+    `left_of_x` is the share of the text that lies left of `x`: 0 begins there, 1 ends there.
+    """
+    width, _ = text_size(text, size_px)
+    blf.color(FONT, *color)
+    blf.position(FONT, round(x - left_of_x * width), round(y), 0.0)
+    blf.draw(FONT, text)
+    return width
+
+
+def fill_box(box: PlateBox, color: Color) -> None:
+    """Fill a box, mixed with what is below it."""
+    plain = shader("UNIFORM_COLOR")
+    if not _square:
+        corners = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0))
+        _square.append(batch_for_shader(plain, "TRI_FAN", {"pos": corners}))
+    plain.uniform_float("color", color)
+    with blended(), _in_box(box):
+        _square[0].draw(plain)
+
+
+def fill_gradient(box: PlateBox, colors: Sequence[Color]) -> None:
+    """Fill a box with a row of colours that run into each other, from left to right."""
+    smooth, row = shader("SMOOTH_COLOR"), tuple(colors)
+    if row not in _gradients:
+        corners = [(i / (len(row) - 1), y, 0.0) for i in range(len(row)) for y in (0.0, 1.0)]
+        shades = [color for color in row for _ in range(2)]
+        _gradients[row] = batch_for_shader(smooth, "TRI_STRIP", {"pos": corners, "color": shades})
+    with blended(), _in_box(box):
+        _gradients[row].draw(smooth)
+
+
+def draw_line(points: Sequence[tuple[float, float]], color: Color, width_px: float) -> None:
+    """Draw a line through points [px]."""
+    wide, region = shader("POLYLINE_UNIFORM_COLOR"), bpy.context.region
+    batch = batch_for_shader(wide, "LINE_STRIP", {"pos": [(x, y, 0.0) for x, y in points]})
+    with blended():
+        wide.bind()
+        wide.uniform_float("viewportSize", (region.width, region.height))
+        wide.uniform_float("lineWidth", width_px)
+        wide.uniform_float("color", color)
+        batch.draw(wide)
+
+
+def draw_outline(box: PlateBox, color: Color) -> None:
+    """Draw the edges of a box, a pixel wide."""
+    left, bottom, right, top = box
+    edges = ((left, bottom), (right, bottom), (right, top), (left, top), (left, bottom))
+    plain = shader("UNIFORM_COLOR")
+    plain.uniform_float("color", color)
+    batch = batch_for_shader(plain, "LINE_STRIP", {"pos": [(x, y, 0.0) for x, y in edges]})
+    with blended():
+        batch.draw(plain)
+
+
+@contextlib.contextmanager
+def blended() -> Iterator[None]:
+    """Mix colours with what is there, within; the blend mode of before comes back."""
+    before = gpu.state.blend_get()
+    gpu.state.blend_set("ALPHA")
+    try:
+        yield
+    finally:
+        gpu.state.blend_set(before)
+
+
+@contextlib.contextmanager
+def _in_box(box: PlateBox) -> Iterator[None]:
+    """Have what is drawn in the unit square fill a box [px], within."""
+    left, bottom, right, top = box
+    with gpu.matrix.push_pop():
+        gpu.matrix.translate((left, bottom, 0.0))
+        gpu.matrix.scale((right - left, top - bottom, 1.0))
+        yield
+
+
+def ui_scale() -> float:
+    """Return the scale of Blender's interface."""
+    return bpy.context.preferences.system.ui_scale
+
+
+def is_lower_left(context: bpy.types.Context) -> bool:
+    """Whether the region is the lower left one of its area: of four in a quad view, one."""
+    windows = [region for region in context.area.regions if region.type == "WINDOW"]
+    return context.region == min(windows, key=lambda region: (region.y, region.x))
+
+
+def beside_toolbar(context: bpy.types.Context) -> float:
+    """Return where a plate in the lower left corner begins, from the left: clear of the toolbar."""
+    region, left = context.region, 0.0
+    for other in context.area.regions:
+        if other.type == "TOOLS" and other.x < region.x + region.width / 2:
+            left = max(left, other.x + other.width - region.x)
+    return left + MARGIN * ui_scale()
+
+
+def above_hud(context: bpy.types.Context) -> float:
+    """Return where a plate begins, from below: clear of the panel of the last operation.
+
+    A row is always left for that panel, so that the plate does not jump with every move.
+    """
+    bottom = HUD_ROW * ui_scale()
+    for other in context.area.regions:
+        if other.type == "HUD" and other.height > 1:
+            bottom = max(bottom, other.y + other.height - context.region.y)
+    return bottom + MARGIN * ui_scale() / 2.0
+
+
+def reserve_plate(region: int, plate: str, box: PlateBox | None) -> None:
+    """Note the box of a plate in a region, by the region's pointer; None: it is not drawn."""
+    boxes = _plates.setdefault(region, {})
+    if box is None:
+        boxes.pop(plate, None)
+    else:
+        boxes[plate] = box
+
+
+def release_plate(plate: str) -> None:
+    """Drop a plate's boxes in all regions."""
+    for boxes in _plates.values():
+        boxes.pop(plate, None)
+
+
+def plate_boxes(region: int) -> tuple[PlateBox, ...]:
+    """Return the boxes of the plates in a region."""
+    return tuple(_plates.get(region, {}).values())
+
+
+def free_bottom(region: int, sides: tuple[float, float], bottom: float, gap: float) -> float:
+    """Return where a plate between two sides may begin so that it covers no other one.
+
+    Parameters
+    ----------
+    region : int
+        The region's pointer.
+    sides : (left, right)
+        [px].
+    bottom : float
+        Where it would begin without other plates [px].
+    gap : float
+        Left free between plates [px].
+    """
+    left, right = sides
+    boxes = plate_boxes(region)
+    tops = [box[3] + gap for box in boxes if box[0] - gap < right and left < box[2] + gap]
+    return max([bottom, *tops])

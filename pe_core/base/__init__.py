@@ -1,0 +1,21 @@
+"""Values and files: checks of input values, files read and written whole, TOML, JSON, XML, YAML."""
+
+from .files import decode_text, read_bytes, write_bytes
+from .memory import available_bytes, require_memory
+from .serialization import dump_json, dumps, load_toml
+from .table_reader import Table
+from .values import Name, Number
+
+__all__ = [
+    "Name",
+    "Number",
+    "Table",
+    "available_bytes",
+    "decode_text",
+    "dump_json",
+    "dumps",
+    "load_toml",
+    "read_bytes",
+    "require_memory",
+    "write_bytes",
+]

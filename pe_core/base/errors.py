@@ -1,0 +1,122 @@
+"""`InputError`: the one exception for wrong input, with a message of one line.
+
+A message may quote any input, so a quote is cut short and kept on one line, with control characters
+escaped.
+"""
+
+from __future__ import annotations
+
+import reprlib
+from typing import Any
+
+LONGEST_FOUND = 80
+"""Maximum characters of a found value in a message."""
+LONGEST_TEXT = 160
+"""Maximum characters of the field and of what was expected: a list of all keys of a table fits."""
+CUT = "..."
+MANY_DIGITS = 40
+"""An integer of more digits is shown by the number of its digits. (Python does not convert an
+integer of more than 4,300 digits to text.)"""
+LOG10_OF_2 = 0.30102999566398120
+
+
+class InputError(ValueError):
+    """Wrong input, with a message of one line: source, field, what was expected, what was found.
+
+    Parameters
+    ----------
+    source : object
+        Where the input came from: a file's path, or the name of what was passed in.
+    field : str
+        Which field of it is wrong (``sensor[0].model``), or what was being read.
+    expected : str
+        What would have been right.
+    found : object
+        What was there instead: a text that is shown unchanged, or the value itself.
+    """
+
+    def __init__(self, source: object, field: str, expected: str, found: object) -> None:
+        self.source, self.field, self.expected, self.found = str(source), field, expected, found
+        where = f"{_middle_cut(visible(self.source))}: {_cut(visible(field), LONGEST_TEXT)}"
+        self._found_text = visible(found) if isinstance(found, str) else _short(found)
+        wanted = _cut(visible(expected), LONGEST_TEXT)
+        super().__init__(
+            f"{where}: expected {wanted}, found {_cut(self._found_text, LONGEST_FOUND)}"
+        )
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.source, self.field, self.expected, self._found_text)
+
+    def at(self, source: object) -> InputError:
+        """Return the same error with another source, such as the file of the value."""
+        return InputError(source, self.field, self.expected, self.found)
+
+
+def shown(value: object) -> str:
+    """Return a value as messages quote it: like `repr`, but short, and it never fails."""
+    return _cut(_SHORT.repr(value), LONGEST_FOUND)
+
+
+def visible(text: str) -> str:
+    """Return a text with unprintable characters escaped: controls, line ends, text direction."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else _escaped(c) for c in text[: 10 * LONGEST_TEXT])
+
+
+def _escaped(character: str) -> str:
+    return character.encode("unicode_escape").decode("ascii")
+
+
+class _Short(reprlib.Repr):
+    """`repr` of plain data, cut if long or deeply nested."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlevel = 3
+        self.maxstring = self.maxother = LONGEST_FOUND
+
+    def repr(self, x: Any) -> str:
+        if getattr(x, "ndim", None) == 0 and hasattr(x, "item"):
+            x = x.item()  # NumPy 2 would write np.float64(1.0)
+        return super().repr(x)
+
+    def repr_int(self, x: int, level: int) -> str:
+        digits = int(abs(x).bit_length() * LOG10_OF_2) + 1
+        return f"a whole number of {digits:,} digits" if digits > MANY_DIGITS else repr(x)
+
+    def repr_str(self, x: str, level: int) -> str:
+        return repr(x[: self.maxstring + 1])
+
+    def repr_instance(self, x: Any, level: int) -> str:
+        try:
+            text = " ".join(str(x).split()) if isinstance(x, Exception) else repr(x)
+        except Exception:  # the repr of a foreign object may fail; the message must not
+            return f"an object of type {type(x).__name__}"
+        return text
+
+
+_SHORT = _Short()
+
+
+def _short(found: object) -> str:
+    """Return a value as text: plain data as `shown`, a path or an exception by its `str`."""
+    plain = found is None or isinstance(found, (bool, int, float, list, tuple, dict, set, bytes))
+    if plain or hasattr(found, "ndim"):
+        return visible(shown(found))
+    try:
+        return visible(" ".join(str(found).split()))
+    except Exception:
+        return f"an object of type {type(found).__name__}"
+
+
+def _cut(text: str, longest: int) -> str:
+    return text if len(text) <= longest else text[: longest - len(CUT)] + CUT
+
+
+def _middle_cut(text: str) -> str:
+    """Cut a long source in its middle: both ends of a path are of use."""
+    if len(text) <= LONGEST_TEXT:
+        return text
+    half = (LONGEST_TEXT - len(CUT)) // 2
+    return text[:half] + CUT + text[-half:]

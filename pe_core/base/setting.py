@@ -1,0 +1,188 @@
+"""Settings of a study, each declared once: at its field in the dataclass that it belongs to.
+
+The declaration says what the setting may be (`rule`), what it means (`text`) and how Blender's
+panel shows it (`panel`); name, type and default are those of the field. Five things follow from it:
+the check when the dataclass is made (`check_settings`), the key of the study file
+(`study.setting_table`), the property and its tooltip in Blender, loading a study into a scene, and
+the table of keys in docs/settings.md.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable
+from dataclasses import MISSING, dataclass, field, fields
+from typing import Any, Protocol, TypeVar
+
+from .errors import InputError, shown
+from .values import Number, choice, pair
+
+T = TypeVar("T")
+_KEY = "setting"
+
+
+class ValueRule(Protocol):
+    """What a value may be."""
+
+    def checked(self, source: object, field: str, value: Any) -> Any:
+        """Return the value as plain Python, or raise `InputError`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Toggle:
+    """True or false, and no number that would pass for it."""
+
+    def checked(self, source: object, field: str, value: Any) -> bool:
+        """Return the value, or raise `InputError`."""
+        if not isinstance(value, bool):
+            raise InputError(source, field, "true or false", shown(value))
+        return value
+
+
+@dataclass(frozen=True, slots=True)
+class OneOf:
+    """One of several texts."""
+
+    among: tuple[str, ...]
+
+    def checked(self, source: object, field: str, value: Any) -> str:
+        """Return the value, or raise `InputError`."""
+        return choice(source, field, value, self.among)
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two numbers of one rule, low before high."""
+
+    rule: Number
+
+    def checked(self, source: object, field: str, value: Any) -> tuple[float, float]:
+        """Return the value, or raise `InputError`."""
+        return pair(source, field, value, self.rule)
+
+
+FLAG = Toggle()
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """How Blender's panel shows a setting.
+
+    Parameters
+    ----------
+    property : str
+        Name under which .blend files store it: it never changes.
+    label : str
+    default : optional
+        Where the panel starts with another value than a study file.
+    min, max, soft_max : float, optional
+        Ends of the field where they are not those of the rule.
+    zero : str
+        What a field of 0 says where the setting may be absent (None) in a file.
+    precision, step : optional
+        As in `bpy.props`.
+    """
+
+    property: str
+    label: str
+    default: Any = None
+    min: float | None = None
+    max: float | None = None
+    soft_max: float | None = None
+    zero: str = ""
+    precision: int | None = None
+    step: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """The declaration of a setting: of the field that it stands at.
+
+    Parameters
+    ----------
+    name : str
+        The field's.
+    default
+        The field's; `REQUIRED` where a study has to say it.
+    rule : ValueRule
+    text : str
+        What it means, in one or two sentences without the last full stop.
+    panel : Panel, optional
+        None: the panel does not have it.
+    scored : bool
+        Whether a score depends on it: then a change makes the stored score out of date.
+    """
+
+    name: str
+    default: Any
+    rule: ValueRule
+    text: str
+    panel: Panel | None
+    scored: bool
+
+    @property
+    def is_optional(self) -> bool:
+        """Whether it may be absent (None)."""
+        return self.default is None
+
+    @property
+    def tooltip(self) -> str:
+        """The text that Blender's panel shows."""
+        zero = self.panel.zero if self.panel is not None else ""
+        return f"{self.text}; 0: {zero}" if zero else self.text
+
+
+REQUIRED = MISSING
+
+
+def setting(
+    default: T, rule: ValueRule, text: str, panel: Panel | None = None, *, scored: bool = False
+) -> T:
+    """Return the field of a dataclass that is a setting."""
+    declared = {_KEY: (rule, text, panel, scored)}
+    made: T = field(default=default, metadata=declared)
+    return made
+
+
+def required_setting(rule: ValueRule, text: str, panel: Panel | None = None) -> Any:
+    """Return the field of a dataclass that is a setting without a default."""
+    return field(metadata={_KEY: (rule, text, panel, False)})
+
+
+def settings_of(cls: Any) -> dict[str, Setting]:
+    """Return the settings that a dataclass declares, by name, in their order."""
+    return _declared(cls)
+
+
+@functools.cache
+def _declared(cls: Any) -> dict[str, Setting]:
+    return {
+        each.name: Setting(each.name, each.default, *each.metadata[_KEY])
+        for each in fields(cls)
+        if _KEY in each.metadata
+    }
+
+
+def check_settings(instance: Any, source: str, prefix: str = "", names: Iterable[str] = ()) -> None:
+    """Replace each setting of a frozen dataclass by its checked value.
+
+    Parameters
+    ----------
+    instance : dataclass
+        Called from its ``__post_init__``.
+    source, prefix : str
+        What errors name: the source, and what stands before the field's name.
+    names : iterable of str
+        Of these settings alone; of all by default.
+
+    Raises
+    ------
+    InputError
+        When a value breaks its rule.
+    """
+    settings = settings_of(type(instance))
+    for name in names or settings:
+        value = getattr(instance, name)
+        if value is not None or not settings[name].is_optional:
+            checked = settings[name].rule.checked(source, prefix + name, value)
+            object.__setattr__(instance, name, checked)

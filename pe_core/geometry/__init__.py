@@ -1,0 +1,13 @@
+"""Geometry without sensors or vehicles: poses, grids, meshes, ray casting, convex shapes."""
+
+from .grids import GroundGrid, PerceptionSpace
+from .poses import Pose, rotate, rotation_matrix, rpy_from_matrix
+
+__all__ = [
+    "GroundGrid",
+    "PerceptionSpace",
+    "Pose",
+    "rotate",
+    "rotation_matrix",
+    "rpy_from_matrix",
+]

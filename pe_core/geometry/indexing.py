@@ -1,0 +1,23 @@
+"""Index arrays: ranges counted up side by side, and ranges cut into blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+Ints = NDArray[np.int64]
+
+
+def count_up(counts: Ints) -> Ints:
+    """Return ``0 .. c0 - 1, 0 .. c1 - 1, ...`` in one array."""
+    ends = np.cumsum(counts)
+    total = int(ends[-1]) if len(ends) else 0
+    return np.arange(total) - np.repeat(ends - counts, counts)
+
+
+def blocks(total: int, size: int) -> Iterator[slice]:
+    """Yield slices of at most `size` that cover ``range(total)``: blocks that fit the cache."""
+    for start in range(0, total, size):
+        yield slice(start, min(start + size, total))

@@ -1,0 +1,118 @@
+"""Poses and rotations.
+
+All products are written out. Matrix products are not used: BLAS builds differ in the last bit, and
+a study must have the same score in every Python, including Blender's.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..base.degrees import degrees_in_file
+from ..base.values import Angle, Number, vector
+
+Floats = NDArray[np.float64]
+
+FARTHEST_M = 1e4
+"""Maximum magnitude of a coordinate; kernels rely on it."""
+TURNS_DEG = 3600.0
+"""Maximum magnitude of an angle, ten turns: more is probably a mistake."""
+METRES = Number(-FARTHEST_M, FARTHEST_M, unit="m")
+ROTATION = Angle(-TURNS_DEG, TURNS_DEG)
+ROTATION_DEG = Number(-TURNS_DEG, TURNS_DEG, unit="degrees")
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Position and rotation of a sensor in the ground frame: its extrinsics.
+
+    Parameters
+    ----------
+    position : (3,) float
+        x forward, y left, z up, from the ground under the vehicle's centre [m].
+    rpy : (3,) float
+        Roll, pitch, yaw [rad]; ``ground_from_sensor = Rz(yaw) Ry(pitch) Rx(roll)``.
+        Positive pitch is nose down.
+
+    Angles are rounded so that a file, which has degrees, restores the same bits: an angle that is
+    not `math.radians` of any float changes by one unit in the last place.
+
+    Raises
+    ------
+    InputError
+        When a number is missing, NaN or infinite, a position beyond 10 km or an angle beyond ten
+        turns.
+    """
+
+    position: tuple[float, float, float]
+    rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        position = vector("pose", "position", self.position, 3, METRES)
+        object.__setattr__(self, "position", position)
+        object.__setattr__(self, "rpy", vector("pose", "rpy", self.rpy, 3, ROTATION))
+
+    @classmethod
+    def from_degrees(cls, position: ArrayLike, rotation_deg: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
+        """Return a pose with roll, pitch and yaw in degrees, as in files and the user interface."""
+        degrees = vector("pose", "rotation", rotation_deg, 3, ROTATION_DEG)
+        roll, pitch, yaw = (math.radians(d) for d in degrees)
+        return cls(position, (roll, pitch, yaw))  # type: ignore[arg-type]  # checked when made
+
+    @property
+    def rotation_deg(self) -> tuple[float, float, float]:
+        """Roll, pitch, yaw [deg], rounded so that `from_degrees` restores the same bits."""
+        roll, pitch, yaw = (degrees_in_file(a) for a in self.rpy)
+        return roll, pitch, yaw
+
+    @property
+    def ground_from_sensor(self) -> Floats:
+        """(3, 3) rotation from the sensor frame to the ground frame (G of eq. 1)."""
+        return rotation_matrix(*self.rpy)
+
+
+def rotation_matrix(roll: float, pitch: float, yaw: float) -> Floats:
+    """Return ``Rz(yaw) Ry(pitch) Rx(roll)``, (3, 3): Blender's XYZ Euler, URDF's rpy [rad]."""
+    cr, sr = math.cos(roll), math.sin(roll)
+    cp, sp = math.cos(pitch), math.sin(pitch)
+    cy, sy = math.cos(yaw), math.sin(yaw)
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def rpy_from_matrix(rotation: Floats) -> tuple[float, float, float]:
+    """Return roll, pitch, yaw [rad] of a (3, 3) rotation; roll is 0 if pitch is +-90 degrees."""
+    forward_xy = math.hypot(rotation[0, 0], rotation[1, 0])
+    pitch = math.atan2(-rotation[2, 0], forward_xy)
+    if forward_xy < 1e-6:  # gimbal lock: roll and yaw turn about the same axis
+        return 0.0, pitch, math.atan2(-rotation[0, 1], rotation[1, 1])
+    roll = math.atan2(rotation[2, 1], rotation[2, 2])
+    return roll, pitch, math.atan2(rotation[1, 0], rotation[0, 0])
+
+
+def rotate(rotation: Floats, points: Floats) -> Floats:
+    """Return points (..., 3) rotated by a matrix (3, 3)."""
+    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    return np.stack([row[0] * x + row[1] * y + row[2] * z for row in rotation], axis=-1)
+
+
+def dot(a: Floats, b: Floats) -> Floats:
+    """Return the row-wise scalar product (...,) of vectors (..., 3)."""
+    product = a * b
+    return product[..., 0] + product[..., 1] + product[..., 2]
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """Return the row-wise cross product of (..., 3); ``cross(b, a)`` is bitwise the negative."""
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)

@@ -1,0 +1,269 @@
+"""First hit of many rays from one point on a triangle mesh.
+
+All rays of a sensor start at the same point, so a box or a triangle covers a fixed range of
+directions. On each face of a cube round the point, rays are sorted into bins (`BinnedRays`). Boxes
+of the mesh's tree with rays in their range are opened, nearest first. Their triangles are tested
+against the rays in the bins that they may cover. If there are many more triangles than rays, rays
+are followed down the tree one by one in boxes with few rays (`ray_traversal`). A ray is finished
+when it has a hit nearer than all remaining boxes.
+
+The test uses the planes through the origin and each edge, computed from the two end points alone,
+so that triangles with a common edge leave no gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bins import FACES, Raster, RowSpans, Spans, row_spans
+from .culling import Ends, FaceLook, SeenBoxes
+from .indexing import blocks, count_up
+from .ray_traversal import RayBoxes, RayWalk
+from .ray_triangle import Facing, Targets, min_distance
+from .triangle_tree import TriangleTree
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+MAX_BINS = 1024
+"""Maximum number of bins along a side."""
+FINER = 2.0
+"""Maximum ratio of bins to rays along a side, for meshes with many triangles."""
+RADIX_BINS = 1 << 16
+"""Maximum number of bins for 16-bit keys, for which NumPy uses radix sort."""
+WORTH_SORTING = 0.8
+"""Rays are sorted again when at most this share of them is not finished."""
+
+
+class BinnedRays:
+    """Rays in the bins of a raster that covers exactly their directions.
+
+    Parameters
+    ----------
+    ray : (R,) int
+        Numbers of the rays.
+    u, v : (R,) float
+        Their directions on the face.
+    directions : (3, R) float
+    triangles : int
+        Number of triangles of the mesh.
+    """
+
+    def __init__(self, ray: Ints, u: Floats, v: Floats, directions: Floats, triangles: int) -> None:
+        along = np.sqrt(len(ray))
+        fine = max(along, min(FINER * along, np.sqrt(triangles) / 2.0))
+        side = 2 ** int(np.ceil(np.log2(fine + 1.0)))
+        self._triangles = triangles
+        ends = [(float(w.min()), float(w.max())) for w in (u, v)]
+        self.raster = Raster(ends[0], ends[1], min(side, MAX_BINS))
+        n = self.raster.count
+        bins = self.raster.rows(u) * n + self.raster.columns(v)
+        key = bins.astype(np.uint16) if n * n <= RADIX_BINS else bins
+        order = np.argsort(key, kind="stable")
+        self.ray, self.u, self.v = ray[order], u[order], v[order]
+        self.directions = directions[:, order]
+        counts = np.bincount(bins, minlength=n * n)
+        self._starts = np.concatenate([[0], np.cumsum(counts)])
+        sums = np.zeros((n + 1, n + 1), np.int32)
+        ray_counts = counts.reshape(n, n).astype(np.int32)
+        np.cumsum(np.cumsum(ray_counts, axis=1, dtype=np.int32), axis=0, out=sums[1:, 1:])
+        self._sums = sums.reshape(-1)
+
+    @classmethod
+    def within(cls, look: FaceLook, ends: Ends, d: Floats, ray: Ints) -> BinnedRays | None:
+        """Return the rays that pass a face within a rectangle; None if there are none.
+
+        `d` (3, B) are the directions of all rays, `ray` the numbers of those that pass the face.
+        """
+        depth, u, v = (w[ray] for w in look.face.split(d))
+        u, v = u / depth, v / depth
+        (u0, u1), (v0, v1) = ends
+        index = np.flatnonzero((u >= u0) & (u <= u1) & (v >= v0) & (v <= v1))
+        ray = ray[index]
+        return cls(ray, u[index], v[index], d[:, ray], len(look.tree.number)) if len(ray) else None
+
+    def but_nearer(self, distance: Floats, than: float) -> BinnedRays:
+        """Return the rays without a hit nearer than `than` [m]; all if few have one."""
+        left = np.flatnonzero(distance[self.ray] >= than)
+        if not 0 < len(left) <= WORTH_SORTING * len(self.ray):
+            return self  # also when none is left: the loop then ends soon
+        return BinnedRays(
+            self.ray[left], self.u[left], self.v[left], self.directions[:, left], self._triangles
+        )
+
+    def count_in(self, u: Spans, v: Spans) -> Ints:
+        """Return the number of rays in the bins of each rectangle, from cumulative sums."""
+        n = self.raster.count + 1
+        top, bottom = self.raster.rows(u[0]) * n, (self.raster.rows(u[1]) + 1) * n
+        left, right = self.raster.columns(v[0]), self.raster.columns(v[1]) + 1
+        ray_count = self._sums[bottom + right] - self._sums[top + right]
+        ray_count -= self._sums[bottom + left]
+        ray_count += self._sums[top + left]
+        return np.where(self.raster.touches(u, v), ray_count, 0)
+
+    def any_in(self, u: Spans, v: Spans) -> NDArray[np.bool_]:
+        """Whether there is a ray in the bins of each rectangle."""
+        return self.count_in(u, v) > 0
+
+    def ray_boxes(self, boxes: SeenBoxes, distance: Floats) -> RayBoxes:
+        """Return pairs of a box and a ray through its rectangle, but no ray with a nearer hit."""
+        (u0, u1), (v0, v1) = boxes.u, boxes.v
+        none_cut = np.zeros(len(u0), np.bool_)
+        first, count = self.in_bins(
+            spans := row_spans(self.raster, (boxes.u, boxes.v), [], u0, none_cut)
+        )
+        which = np.repeat(spans.item, count)
+        at = np.repeat(first, count) + count_up(count)
+        u, v, ray = self.u[at], self.v[at], self.ray[at]
+        passed = (u0[which] <= u) & (u <= u1[which]) & (v0[which] <= v) & (v <= v1[which])
+        passed &= boxes.near[which] <= distance[ray]
+        kept_pairs = np.flatnonzero(passed)
+        which = which[kept_pairs]
+        return RayBoxes(boxes.number[which], ray[kept_pairs], boxes.near[which].astype(np.float32))
+
+    def in_bins(self, spans: RowSpans) -> tuple[Ints, Ints]:
+        """Return the first ray in each run of bins, and the number of rays in it."""
+        row = spans.row * self.raster.count
+        first = self._starts[row + spans.first]
+        return first, self._starts[row + (spans.last + 1)] - first
+
+
+PAIRS_AT_ONCE = 1 << 15
+MANY = np.iinfo(np.int64).max
+"""A number larger than any index or count."""
+RAYS_AT_ONCE = 1 << 18
+"""Maximum rays that are cast at once, to limit memory."""
+FINE = 16
+"""Ratio of triangles to rays above which rays are followed down the tree one by one."""
+ENOUGH_BOXES = 256
+"""Minimum number of boxes of such a mesh's level that is sorted by distance."""
+FIRST_BOXES = 64
+"""Boxes that are opened before finished rays are removed; doubled each time."""
+FEW_RAYS = 12
+"""Maximum rays in a box for which each ray is followed on its own."""
+WORTH_CUTTING = 16
+"""Rays in a triangle's rectangle above which its bins are cut along its edges."""
+MOST_BOXES = 1 << 13
+"""Maximum boxes whose triangles are tested at once, to limit memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hits:
+    """First hits of B rays: `distance` (B,) [m], inf for a miss; `face` (B,), -1 for a miss."""
+
+    distance: Floats
+    face: Ints
+
+
+class SeenTriangles:
+    """A mesh for rays from one point.
+
+    Parameters
+    ----------
+    tree : TriangleTree
+    origin : (3,) float
+        The rays' common origin, in the frame of the mesh [m].
+    """
+
+    def __init__(self, tree: TriangleTree, origin: Floats) -> None:
+        self.tree, self.origin = tree, np.asarray(origin, dtype=float)
+
+    @property
+    def triangles(self) -> Floats:
+        """(F, 3, 3) corners relative to the origin, in the order of the tree [m]."""
+        return self.tree.triangles - self.origin
+
+    def first_hit(self, directions: Floats) -> Hits:
+        """Return the first hits along (B, 3) unit directions; ties: the lowest triangle index."""
+        hits = Hits(np.full(len(directions), np.inf), np.full(len(directions), -1))
+        for block in blocks(len(directions), RAYS_AT_ONCE):
+            part = Hits(hits.distance[block], hits.face[block])
+            self._cast(np.ascontiguousarray(directions[block].T), part)
+        return hits
+
+    def _cast(self, d: Floats, hits: Hits) -> None:
+        """Cast rays (3, B), face by face; the results go into `hits`."""
+        passed = _faces_passed(d)
+        walk = RayWalk(self.tree, self.origin, d)
+        for number, face in enumerate(FACES):
+            ray = np.flatnonzero(passed == number)
+            look = FaceLook(self.tree, self.origin, face)
+            ends = look.ends() if len(ray) else None
+            rays = None if ends is None else BinnedRays.within(look, ends, d, ray)
+            if rays is not None:
+                _cast(look, rays, walk, hits)
+
+
+def _faces_passed(d: Floats) -> NDArray[np.int8]:
+    """Return the index in `FACES` (B,) of the face that each of (3, B) directions passes."""
+    x, y, z = np.abs(d)
+    backward = (d < 0.0).astype(np.int8)
+    side = np.where(y >= z, backward[1] + np.int8(2), backward[2] + np.int8(4))
+    return np.where((x >= y) & (x >= z), backward[0], side)
+
+
+def _cast(look: FaceLook, rays: BinnedRays, walk: RayWalk, hits: Hits) -> None:
+    """Cast the rays of one face at the boxes that are visible on it, nearest first."""
+    fine = len(look.tree.number) > FINE * len(rays.ray)
+    level, boxes = look.largest(rays.count_in, ENOUGH_BOXES if fine else MANY)
+    count = FIRST_BOXES
+    while len(boxes.number):
+        unfinished = rays.but_nearer(hits.distance, boxes.near[0])
+        if unfinished is not rays:
+            rays, boxes = unfinished, boxes[np.flatnonzero(unfinished.any_in(boxes.u, boxes.v))]
+        few, many = look.opened(boxes[:count], level, rays.count_in, FEW_RAYS if fine else 0)
+        for some in blocks(len(many.number), MOST_BOXES):
+            _scatter(look.triangles(many.number[some], rays.any_in), look, rays, hits)
+        if fine:
+            starts = [rays.ray_boxes(some, hits.distance) for some in few]
+            walk.follow(starts, hits.distance, partial(_keep, hits))
+        boxes, count = boxes[count:], 2 * count
+
+
+def _scatter(triangles: Facing, look: FaceLook, rays: BinnedRays, hits: Hits) -> None:
+    """Test triangles, nearest first, against the rays in the bins that they may cover."""
+    distance = min_distance(triangles.corners)
+    order = np.argsort(distance, kind="stable")
+    _meet(Targets(triangles[order]), distance[order], look, rays, hits)
+
+
+def _meet(targets: Targets, near: Floats, look: FaceLook, rays: BinnedRays, hits: Hits) -> None:
+    """Test triangles, at least `near` (G,) [m] away, against the rays in their bins."""
+    u, v = targets.triangles.u, targets.triangles.v
+    spans = targets.spans(look.face, rays.raster, rays.count_in(u, v) > WORTH_CUTTING)
+    first, count = rays.in_bins(spans)
+    with_rays = np.flatnonzero(count)
+    item, first, count = spans.item[with_rays], first[with_rays], count[with_rays]
+    number = look.tree.number[targets.triangles.number]
+    for part in _portions(count):
+        n = count[part]
+        which, ray = np.repeat(item[part], n), np.repeat(first[part], n) + count_up(n)
+        unfinished = np.flatnonzero(near[which] <= hits.distance[rays.ray[ray]])
+        which, ray = which[unfinished], ray[unfinished]
+        x, y, z = rays.directions
+        met, distance = targets.met(which, (x[ray], y[ray], z[ray]))
+        _keep(hits, rays.ray[ray[met]], number[which[met]], distance)
+
+
+def _keep(hits: Hits, ray: Ints, face: Ints, distance: Floats) -> None:
+    """Store the hits that are nearer than those so far; ties go to the lowest triangle index."""
+    before = hits.distance[ray]
+    better = (distance < before) | ((distance == before) & (face < hits.face[ray]))
+    better = np.flatnonzero(better & (distance > 0.0))
+    ray, face, distance, before = ray[better], face[better], distance[better], before[better]
+    np.minimum.at(hits.distance, ray, distance)
+    hits.face[ray[distance < before]] = MANY
+    first = distance == hits.distance[ray]
+    np.minimum.at(hits.face, ray[first], face[first])
+
+
+def _portions(counts: Ints) -> list[slice]:
+    """Split counts into runs of about PAIRS_AT_ONCE in total, to fit the CPU cache and memory."""
+    portion = np.cumsum(counts) // PAIRS_AT_ONCE
+    edges = [0, *(np.flatnonzero(np.diff(portion)) + 1).tolist(), len(counts)]
+    return [slice(a, b) for a, b in pairwise(edges)]

@@ -1,0 +1,88 @@
+"""The interfaces of scoring: evaluators of rigs, and objectives of a search."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from ..scene.rig import Rig
+
+if TYPE_CHECKING:
+    from .score import Glance, Score, Watch
+
+
+class Judgement(NamedTuple):
+    """The value of a rig: its entropy, or a lower bound of it [nats]."""
+
+    entropy: float
+    is_lower_bound: bool
+
+
+class Objective(Protocol):
+    """What a search minimises: an `Evaluator`, or something that wraps one.
+
+    The same rig always has the same value.
+    """
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the value of a rig; lower is better [nats]."""
+
+    def judge(self, rig: Rig, below: float = inf) -> Judgement:
+        """Return the value of a rig; where it is not below `below`, perhaps a lower bound.
+
+        `is_lower_bound` tells the two apart. A lower bound is itself not below `below`, and must
+        not be ranked.
+        """
+
+
+class Scorer(Protocol):
+    """Scores rigs on the voxels of one evaluator: all of them, or a sample."""
+
+    def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
+        """Return the full score of a rig."""
+
+    def summary(self, rig: Rig, preview: bool = False) -> Glance:
+        """Return the score of a rig without the part by sensor."""
+
+    def entropy(self, rig: Rig, preview: bool = False) -> float:
+        """Return the entropy of a rig [nats]."""
+
+    def evaluate(self, rig: Rig, cutoff: float) -> Judgement:
+        """Return the entropy of a rig, or a lower bound that is not below the cutoff."""
+
+    def entropies(self, rigs: Sequence[Rig]) -> list[float]:
+        """Return the entropy of each of several rigs [nats]."""
+
+    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Judgement:
+        """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""
+
+
+class RigJudge(Protocol):
+    """Scores rigs in one space, under one prior, on one vehicle; methods are as `Evaluator`'s.
+
+    Attributes
+    ----------
+    samples : int
+        How many voxels or objects are evaluated; 0: all voxels.
+    """
+
+    samples: int
+
+    def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
+        """Score a rig in full."""
+
+    def glance(self, rig: Rig, *, draft: bool = False) -> Glance:
+        """Score a rig as a whole, without the part by sensor."""
+
+    def entropy(self, rig: Rig, *, draft: bool = False) -> float:
+        """Return a rig's entropy [nats]."""
+
+    def judge(self, rig: Rig, below: float = inf) -> Judgement:
+        """Return a rig's entropy, or a lower bound that is not below `below`."""
+
+    def entropies(self, rigs: Sequence[Rig]) -> list[float]:
+        """Return the entropy of each of several rigs [nats]."""
+
+    def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool = False) -> Judgement:
+        """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""

@@ -1,0 +1,242 @@
+"""Scores on a sample of voxels: fast, with a standard error."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from functools import cached_property
+from threading import RLock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.grids import PerceptionSpace
+from ..metric.entropy import H_BEST, H_BLIND
+from ..metric.fusion import Fusion
+from ..prior.prior import ClassDensity
+from ..scene.rig import Rig, Sensor
+from ..scene.vehicle import Vehicle
+from ..sensors import MeasurementCache, Voxels
+from .density_cache import outside_masses
+from .protocol import Judgement
+from .sampling import BLOCKS, CENTERED, VoxelSample, draw
+from .scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
+from .scenarios import Scenarios, fused_early, mean_or_worst
+from .score import (
+    Glance,
+    PartScore,
+    Score,
+    SensorScore,
+    Watch,
+    rounded,
+    sensor_score,
+    zone_masks,
+)
+
+Floats = NDArray[np.float64]
+
+
+class SampledScorer:
+    """Scores rigs on one fixed sample of voxels; unmoved sensors are not measured again.
+
+    It is thread-safe: a lock lets one thread score at a time.
+    """
+
+    def __init__(
+        self,
+        space: PerceptionSpace,
+        densities: list[ClassDensity],
+        vehicle: Vehicle | None,
+        fusion: Fusion,
+        samples: int,
+        shift: tuple[float, float, float] = CENTERED,
+    ) -> None:
+        self._vehicle, self._fusion = vehicle, fusion
+        tops = None if vehicle is None else vehicle.top(space)
+        self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
+        outside_masses(densities, space, tops)  # raises InputError when no weight is left
+        x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
+        masks = {name: mask for name, mask in zone_masks(x, y).items() if mask.any()}
+        self._zones = {n: (np.flatnonzero(m), rounded(float(np.mean(m)))) for n, m in masks.items()}
+        voxels = Voxels(space, self._sample.index, self._sample.centers)
+        self._sensors = MeasurementCache(voxels, vehicle, fusion.saturation_count)
+        self._lock = RLock()
+
+    @cached_property
+    def _digest(self) -> str:
+        return sample_digest([self._sample.centers, self._sample.classes])
+
+    def entropy(self, rig: Rig, preview: bool = False) -> float:
+        """Return the perception entropy alone."""
+        with self._lock:
+            self._sensors.measure(rig, preview)
+            return self._entropy_of(rig, self._sensors.m)
+
+    def evaluate(self, rig: Rig, cutoff: float) -> Judgement:
+        """Return the entropy, or a lower bound of it if the bound is not below the cutoff."""
+        with self._lock:
+            can_bound = cutoff < np.inf and self._vehicle is not None
+            bound = self._lower_bound(rig, cutoff) if can_bound else -np.inf
+            if bound >= cutoff:
+                return Judgement(bound, True)
+            return Judgement(self.entropy(rig), False)
+
+    def _lower_bound(self, rig: Rig, cutoff: float) -> float:
+        """Return a lower bound of a rig's entropy, which may already reach the cutoff.
+
+        The vehicle occludes beams and pixels and adds none, so without occlusion the entropy is no
+        higher. Occlusion is computed for one moved sensor after the other, while the bound is below
+        the cutoff.
+        """
+        cached = {s.name: self._sensors.cached(s, False) for s in rig}
+        moved = [s for s in rig if cached[s.name] is None]
+        m = {
+            s.name: self._sensors.unoccluded(s) if (one := cached[s.name]) is None else one.m
+            for s in rig
+        }
+        bound = self._entropy_of(rig, m)
+        for sensor in moved[:-1]:
+            if bound >= cutoff:
+                break
+            m[sensor.name] = self._sensors.measure_again(sensor)
+            bound = self._entropy_of(rig, m)
+        return bound
+
+    def entropies(self, rigs: Sequence[Rig]) -> list[float]:
+        """Return the entropy of each of several rigs; sensors that they share are measured once."""
+        scenarios = Scenarios(rigs)
+        with self._lock:
+            self._sensors.measure(scenarios.all)
+            m = self._sensors.m
+            return [self._entropy_of(part, m) for part in scenarios.parts]
+
+    def evaluate_together(self, rigs: Sequence[Rig], cutoff: float, worst: bool) -> Judgement:
+        """Evaluate the mean of several rigs' entropies, or the highest, with a cutoff."""
+        with self._lock:
+            can_bound = cutoff < np.inf and self._vehicle is not None
+            bound = self._bound_together(Scenarios(rigs), cutoff, worst) if can_bound else -np.inf
+            if bound >= cutoff:
+                return Judgement(bound, True)
+            return Judgement(mean_or_worst(self.entropies(rigs), worst), False)
+
+    def _bound_together(self, scenarios: Scenarios, cutoff: float, worst: bool) -> float:
+        """Return a lower bound for several rigs together, as `_lower_bound` for one.
+
+        Occlusion is computed for half of the moved sensors at once, because fusing all rigs again
+        takes time, too.
+        """
+        cached = {s.name: self._sensors.cached(s, False) for s in scenarios.all}
+        moved = [s for s in scenarios.all if cached[s.name] is None]
+        m = {
+            s.name: self._sensors.unoccluded(s) if (one := cached[s.name]) is None else one.m
+            for s in scenarios.all
+        }
+        bound = mean_or_worst([self._entropy_of(part, m) for part in scenarios.parts], worst)
+        first_half = moved[: len(moved) // 2]
+        if bound >= cutoff or not first_half:
+            return bound
+        m |= {sensor.name: self._sensors.measure_again(sensor) for sensor in first_half}
+        return mean_or_worst([self._entropy_of(part, m) for part in scenarios.parts], worst)
+
+    def summary(self, rig: Rig, preview: bool = False) -> Glance:
+        """Return the score without the part by sensor."""
+        with self._lock:
+            self._sensors.measure(rig, preview)
+            return self._summary(rig, *self._entropies(rig, [s.name for s in rig]))
+
+    def score(self, rig: Rig, preview: bool = False, watch: Watch | None = None) -> Score:
+        """Return the full score; it is computed too quickly to be watched."""
+        with self._lock:
+            self._sensors.measure(rig, preview)
+            values = self._entropies(rig, [s.name for s in rig])
+            whole = self._summary(rig, *values)
+            return Score(
+                whole.entropy,
+                whole.coverage,
+                whole.stderr,
+                whole.per_class,
+                whole.per_zone,
+                {s.name: self._sensor(s, rig, whole.entropy) for s in rig},
+                whole.voxels,
+                draft=whole.draft,
+                scatter=self._scatter(*values),
+            )
+
+    def _entropy_of(self, rig: Rig, measured: Mapping[str, NDArray]) -> float:
+        names = [s.name for s in rig]
+        return self._whole(*self._fusion.entropies(fused_early(rig, measured, names)))[0]
+
+    def _entropies(self, rig: Rig, members: Collection[str]) -> tuple[Floats, NDArray[np.bool_]]:
+        """Return entropy and visibility of every sampled voxel, for some of the rig's sensors."""
+        return self._fusion.entropies(fused_early(rig, self._sensors.m, members))
+
+    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Glance:
+        entropy, coverage = self._whole(entropies, visible)
+        return Glance(
+            entropy,
+            coverage,
+            self._standard_error(entropies, len(rig.groups)),
+            self._classes(entropies, visible),
+            self._by_zone(entropies, visible),
+            len(self._sample.index),
+            any(m.approximate for m in self._sensors.last.values()),
+        )
+
+    def _whole(self, entropies: Floats, visible: NDArray[np.bool_]) -> tuple[float, float]:
+        """Return mean entropy and coverage."""
+        return rounded(float(np.mean(entropies))), rounded(float(np.mean(visible)))
+
+    def _classes(self, entropies: Floats, visible: NDArray[np.bool_]) -> dict[str, PartScore]:
+        """Return the score by class; a voxel counts by the probability that its object is of it."""
+        per_class = {}
+        for name, likely in zip(self._sample.names, self._sample.classes.T, strict=True):
+            mass = float(likely.sum())
+            if mass > 0.0:
+                h, c = (float((values * likely).sum()) / mass for values in (entropies, visible))
+                per_class[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
+        return per_class
+
+    def _by_zone(self, entropies: Floats, visible: NDArray[np.bool_]) -> dict[str, PartScore]:
+        """Return the score by zone."""
+        return {
+            name: PartScore(*self._whole(entropies.take(inside), visible.take(inside)), share)
+            for name, (inside, share) in self._zones.items()
+        }
+
+    def _scatter(self, entropies: Floats, visible: NDArray[np.bool_]) -> Scatter:
+        """Return the residuals of entropy and coverage: of the rig, of zones and classes."""
+        by_figure: dict[FigureKey, tuple[float, ...]] = {}
+        everywhere = np.arange(len(entropies))
+        zones = {name: inside for name, (inside, _) in self._zones.items()}
+        by_class = dict(zip(self._sample.names, self._sample.classes.T, strict=True))
+        for measure, values in (("entropy", entropies), ("coverage", visible.astype(float))):
+            for name, inside in {"": everywhere, **zones}.items():
+                batch = self._sample.run[inside]
+                group = "zone" if name else "rig"
+                by_figure[group, name, measure] = residuals(values[inside], None, batch, BLOCKS)
+            for name, likely in by_class.items():
+                if likely.any():
+                    by_batch = residuals(values, likely, self._sample.run, BLOCKS)
+                    by_figure["class", name, measure] = by_batch
+        return Scatter(self._digest, by_figure)
+
+    def _sensor(self, sensor: Sensor, rig: Rig, entropy: float) -> SensorScore:
+        alone, coverage = self._whole(*self._entropies(rig, [sensor.name]))
+        remaining = [s.name for s in rig if s.name != sensor.name]
+        failed = self._whole(*self._entropies(rig, remaining))[0] if remaining else H_BLIND
+        stopped = self._sensors.occlusion(sensor)
+        return sensor_score(alone, coverage, rounded(failed - entropy), stopped)
+
+    def _standard_error(self, entropies: Floats, groups: int) -> float:
+        """Return the standard error from the scatter of runs of the sequence.
+
+        Each run is a lattice, so this overestimates the error. Where all voxels have equal entropy,
+        it is half of the bound by the rule of three, for voxels that may have any entropy from
+        blind to the best that all groups can reach.
+        """
+        if np.ptp(entropies) <= ALIKE:
+            largest = H_BLIND - H_BEST + np.log(groups)
+            return rounded(RULE_OF_THREE / 2.0 * largest / len(entropies))
+        run = self._sample.run
+        sums, sizes = np.bincount(run, entropies, BLOCKS), np.bincount(run, minlength=BLOCKS)
+        means = sums[sizes > 0] / sizes[sizes > 0]
+        return rounded(float(np.std(means, ddof=1)) / np.sqrt(len(means)))

@@ -1,0 +1,112 @@
+"""Scenarios: several rigs that are scored together, and the parts of one rig.
+
+A sensor that several rigs have at the same pose is measured once. The parts of a rig are each
+sensor alone, and the rig without each sensor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import InputError
+from ..geometry.poses import Pose
+from ..metric.fusion import CurveOf, group_sum
+from ..scene.rig import Rig, Sensor
+from .score import rounded
+
+
+class Scenarios:
+    """Rigs of the same sensors, in the same or other poses; sensors may be missing.
+
+    Parameters
+    ----------
+    rigs : sequence of Rig
+        Sensors of the same name and pose in several rigs are one sensor.
+
+    Attributes
+    ----------
+    parts : tuple of Rig
+        The rigs, with new names for the sensors: a number for each sensor and pose.
+    all : Rig
+        Every sensor of the parts once. The names are the same in every call with rigs in the same
+        order, so that measurements can be cached by name.
+
+    Raises
+    ------
+    InputError
+        When there is no rig.
+    """
+
+    def __init__(self, rigs: Sequence[Rig]) -> None:
+        if not rigs:
+            raise InputError("evaluator", "rigs", "at least one rig", "none")
+        self._by_pose: dict[tuple[str, Pose], Sensor] = {}
+        self._counts: dict[str, int] = {}
+        self.parts = tuple(Rig([self._numbered(sensor) for sensor in rig]) for rig in rigs)
+        self.all = Rig(list(self._by_pose.values()))
+
+    def _numbered(self, sensor: Sensor) -> Sensor:
+        """Return a sensor under a name for its pose, in its fusion group."""
+        key = sensor.name, sensor.pose
+        if key not in self._by_pose:
+            pose = self._counts.get(sensor.name, 0)
+            self._counts[sensor.name] = pose + 1
+            number = list(self._counts).index(sensor.name)
+            self._by_pose[key] = replace(sensor, name=f"{number}.{pose}", fusion=sensor.group)
+        return self._by_pose[key]
+
+
+def mean_or_worst(entropies: Sequence[float], worst: bool) -> float:
+    """Return the mean of several entropies, or the highest [nats]."""
+    return max(entropies) if worst else rounded(float(np.mean(entropies)))
+
+
+Members = tuple[str, ...]
+
+
+def parts_of(rig: Rig) -> list[Members]:
+    """Return the names in the rig, in each sensor alone, in the rig without each; no repeats."""
+    names = tuple(s.name for s in rig)
+    if len(names) == 1:
+        return [names]
+    alone = [(name,) for name in names]
+    without = [tuple(n for n in names if n != name) for name in names]
+    return [names, *dict.fromkeys([*alone, *without])]
+
+
+def fused_early(
+    rig: Rig, measured: Mapping[str, Any], members: Collection[str]
+) -> list[tuple[CurveOf, Any]]:
+    """Sum the members' measurements inside each fusion group, eq. 6: (AP curve, sum) of each."""
+    groups = []
+    for sensors in rig.groups.values():
+        present = [measured[s.name] for s in sensors if s.name in members]
+        if present:
+            groups.append((sensors[0].curve or sensors[0].kind, group_sum(present)))
+    return groups
+
+
+def members_of(rig: Rig, measured: Mapping[str, Any]) -> list[list[tuple[CurveOf, Any]]]:
+    """Return (AP curve, measurement) of each sensor of each fusion group."""
+    return [[(s.curve or s.kind, measured[s.name]) for s in group] for group in rig.groups.values()]
+
+
+def parts_by_sums(
+    rig: Rig, whole: float, blind: float, by_sensor: NDArray[np.float64]
+) -> dict[Members, NDArray[np.float64]]:
+    """Return weighted entropy and coverage (2, 1) of each sensor alone and the rig without it.
+
+    `whole` and `blind` are the weighted entropies of the rig and of no sensor; `by_sensor` (3, S)
+    holds the sums of `LeaveOneOut`. Coverage is computed for single sensors only, else 0.
+    """
+    names = tuple(s.name for s in rig)
+    order = [s.name for sensors in rig.groups.values() for s in sensors]
+    lost, gained, coverage = (dict(zip(order, values, strict=True)) for values in by_sensor)
+    without = {tuple(n for n in names if n != name): [whole + lost[name], 0.0] for name in names}
+    alone = {(name,): [blind + gained[name], coverage[name]] for name in names}
+    return {part: np.array(sums)[:, None] for part, sums in (without | alone).items()}

@@ -1,0 +1,23 @@
+"""What a rig sees, place by place: the ground map, blind ground round the vehicle, reach."""
+
+from .blind_ground import BlindGround, BlindSpot, shown_end, shown_start
+from .grid_regions import outlines
+from .reach import Reach, ReachLine, ends_with_space, reach_line
+from .sight import Sight, expected_ap
+from .visibility import GroundSight, SeenShares
+
+__all__ = [
+    "BlindGround",
+    "BlindSpot",
+    "GroundSight",
+    "Reach",
+    "ReachLine",
+    "SeenShares",
+    "Sight",
+    "ends_with_space",
+    "expected_ap",
+    "outlines",
+    "reach_line",
+    "shown_end",
+    "shown_start",
+]

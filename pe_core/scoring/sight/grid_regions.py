@@ -1,0 +1,247 @@
+"""Regions on the cells of a grid: morphology, smoothing, and outlines by marching squares."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.indexing import count_up
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Ints = NDArray[np.int64]
+
+
+def opened(flags: Flags, radius: float) -> Flags:
+    """Union of the discs of that radius, in cells, that fit into a region (NX, NY).
+
+    Beyond the edge the region goes on as at the edge.
+    """
+    disc = _disc(radius)
+    reach = int(np.abs(disc).max())
+    padded = np.pad(flags, 2 * reach, mode="edge")
+    union = _moved(~_moved(~padded, disc), disc)
+    inner = tuple(slice(2 * reach, n - 2 * reach) for n in union.shape)
+    return union[inner]
+
+
+def closed(flags: Flags, radius: float) -> Flags:
+    """Fill what no disc of that radius, in cells, fits into: the opening of what is not set."""
+    return ~opened(~flags, radius)
+
+
+def dilated(flags: Flags, widths: list[int]) -> Flags:
+    """Set what is near anything set in a region (NX, NY).
+
+    `widths` is a symmetric shape by its rows: k rows away (either way) reach is `widths[k]` cells
+    to either side. What is beyond the edge is not set.
+    """
+    near = np.zeros_like(flags)
+    by_width = {width: _along(flags, width) for width in set(widths)}
+    for k, width in enumerate(widths[: len(flags)]):
+        wide = by_width[width]
+        near[k:] |= wide[: len(wide) - k]
+        near[: len(wide) - k] |= wide[k:]
+    return near
+
+
+def _along(flags: Flags, reach: int) -> Flags:
+    """Set what is at most `reach` cells away in the same row; twice as far with each step."""
+    near, done = flags, 0
+    reach = min(reach, flags.shape[1] - 1)
+    while done < reach:
+        k = min(max(done, 1), reach - done)
+        wider = near.copy()
+        wider[:, k:] |= near[:, :-k]
+        wider[:, :-k] |= near[:, k:]
+        near, done = wider, done + k
+    return near
+
+
+def squares_within(radius: float) -> list[int]:
+    """Squares all of whose points are within a radius of all points of one square.
+
+    In squares, as `dilated` takes them: empty where the radius is less than a square's diagonal.
+    """
+    rows = int(math.sqrt(max(radius**2 - 1.0, 0.0)))
+    return [int(math.sqrt(radius**2 - (k + 1) ** 2)) - 1 for k in range(rows)]
+
+
+def squares_touching(radius: float) -> list[int]:
+    """Squares any of whose points are within a radius of any point of one square, as `dilated`."""
+    away = [max(k - 1, 0) for k in range(int(radius) + 2)]
+    return [int(math.sqrt(radius**2 - k**2)) + 1 for k in away]
+
+
+def without_specks(flags: Flags, min_cells: float) -> Flags:
+    """Drop connected pieces (by sides) of fewer cells than `min_cells`."""
+    width = flags.shape[1] + 1  # a cell more, so that no run goes on in the next row
+    edges = np.diff(np.pad(flags, ((0, 0), (1, 1))).astype(np.int8), axis=1).reshape(-1)
+    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    piece = _connected(len(starts), *_touching(starts, ends, width))
+    small = np.bincount(piece, ends - starts, len(starts))[piece] < min_cells
+    edges[starts[small]] = edges[ends[small]] = 0
+    return np.cumsum(edges.reshape(-1, width), axis=1, dtype=np.int8)[:, :-1] > 0
+
+
+def gauss(values: Floats, sigma: float) -> Floats:
+    """Sum of values (NX, NY) under a Gauss curve of that width, in cells, cut off at twice it."""
+    steps = np.arange(-int(2.0 * sigma), int(2.0 * sigma) + 1)
+    curve = [math.exp(-((k / sigma) ** 2) / 2.0) for k in steps.tolist()]
+    for _ in range(2):
+        padded = np.pad(values, ((len(steps) // 2,) * 2, (0, 0)))
+        total = np.zeros_like(values)
+        for k, w in enumerate(curve):
+            total += w * padded[k : k + len(values)]
+        values = np.ascontiguousarray(total.T)
+    return values
+
+
+def _disc(radius: float) -> Ints:
+    """(N, 2) steps from a cell to those whose middle is not farther away."""
+    reach = int(radius)
+    steps = np.indices((2 * reach + 1, 2 * reach + 1)).reshape(2, -1).T - reach
+    return steps[(steps**2).sum(axis=1) <= radius**2]
+
+
+def _moved(flags: Flags, steps: Ints) -> Flags:
+    """Set all cells that are one of the steps away from a set cell."""
+    moved = np.zeros_like(flags)
+    nx, ny = flags.shape
+    for i, j in steps.tolist():
+        to = slice(max(i, 0), nx + min(i, 0)), slice(max(j, 0), ny + min(j, 0))
+        of = slice(max(-i, 0), nx + min(-i, 0)), slice(max(-j, 0), ny + min(-j, 0))
+        moved[to] |= flags[of]
+    return moved
+
+
+def _touching(starts: Ints, ends: Ints, width: int) -> tuple[Ints, Ints]:
+    """Pairs of runs of cells, one in the row after the other, that share a side."""
+    first = np.searchsorted(ends, starts + width, side="right")
+    n = np.maximum(np.searchsorted(starts, ends + width, side="left") - first, 0)
+    run = np.repeat(np.arange(len(starts)), n)
+    return run, first[run] + count_up(n)
+
+
+def _connected(count: int, a: Ints, b: Ints) -> Ints:
+    """Return (count,) the smallest number in each item's component, by pairs (a, b)."""
+    smallest = np.arange(count)
+    while (differ := smallest[a] != smallest[b]).any():
+        one, other = smallest[a[differ]], smallest[b[differ]]
+        np.minimum.at(smallest, np.maximum(one, other), np.minimum(one, other))
+        while ((further := smallest[smallest]) != smallest).any():
+            smallest = further
+    return smallest
+
+
+BOTTOM, RIGHT, TOP, LEFT = range(4)
+SEGMENTS = {
+    1: ((BOTTOM, LEFT),),
+    2: ((RIGHT, BOTTOM),),
+    3: ((RIGHT, LEFT),),
+    4: ((TOP, RIGHT),),
+    6: ((TOP, BOTTOM),),
+    7: ((TOP, LEFT),),
+    8: ((LEFT, TOP),),
+    9: ((BOTTOM, TOP),),
+    11: ((RIGHT, TOP),),
+    12: ((LEFT, RIGHT),),
+    13: ((BOTTOM, RIGHT),),
+    14: ((LEFT, BOTTOM),),
+}
+"""Sides that the outline enters and leaves a square by, inside on its left, by which of the corners
+are inside: 1 lower left, 2 lower right, 4 upper right, 8 upper left. Two opposite ones are apart
+(`APART`), or joined where the middle of the square is inside (`JOINED`)."""
+APART = {5: ((BOTTOM, LEFT), (TOP, RIGHT)), 10: ((RIGHT, BOTTOM), (LEFT, TOP))}
+JOINED = {5: ((BOTTOM, RIGHT), (TOP, LEFT)), 10: ((LEFT, BOTTOM), (RIGHT, TOP))}
+"""As seen with x to the right and y up."""
+EDGE = 1e-9
+"""What a field is below its level where it ends: an outline that leaves it runs along the end."""
+
+
+def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats, ...]:
+    """Closed outlines of where a field is above a level.
+
+    Parameters
+    ----------
+    values : (NX, NY) float
+        The field at the middles of cells (x, y); it ends with them.
+    level : float
+    x : (NX,) float
+    y : (NY,) float
+        Evenly spaced.
+
+    Returns
+    -------
+    tuple of (N, 2) float
+        The region lies on the left of each; the last point is the first again. Longest first.
+    """
+    field = np.pad(values - level, 1, constant_values=-EDGE)
+    xs, ys = _widened(x), _widened(y)
+    starts, ends = _segments(field)
+    points = _EdgePoints(field, xs, ys)
+    rings = [points.at(ring) for ring in chained(starts, ends)]
+    return tuple(sorted(rings, key=len, reverse=True))
+
+
+def _widened(w: Floats) -> Floats:
+    """Middles of cells, and the ends of the first and the last."""
+    edge = (w[1] - w[0]) / 2.0 if len(w) > 1 else 0.5
+    return np.concatenate([[w[0] - edge], w, [w[-1] + edge]])
+
+
+def _segments(field: Floats) -> tuple[Ints, Ints]:
+    """Numbers of the edges that pieces of outline begin and end at."""
+    inside = field > 0.0
+    case = inside[:-1, :-1] + 2 * inside[1:, :-1] + 4 * inside[1:, 1:] + 8 * inside[:-1, 1:]
+    middle = field[:-1, :-1] + field[1:, :-1] + field[1:, 1:] + field[:-1, 1:] > 0.0
+    starts, ends = [], []
+    for number, sides, where in (
+        *((n, s, None) for n, s in SEGMENTS.items()),
+        *((n, s, ~middle) for n, s in APART.items()),
+        *((n, s, middle) for n, s in JOINED.items()),
+    ):
+        i, j = np.nonzero((case == number) if where is None else (case == number) & where)
+        for enter, leave in sides:
+            starts.append(_edge(i, j, enter, field.shape))
+            ends.append(_edge(i, j, leave, field.shape))
+    return np.concatenate(starts), np.concatenate(ends)
+
+
+def _edge(i: Ints, j: Ints, side: int, shape: tuple[int, ...]) -> Ints:
+    """Number of a side of squares (i, j): even along x, odd along y, by its lower end."""
+    i, j = i + (side == RIGHT), j + (side == TOP)
+    return 2 * (i * shape[1] + j) + (side in (LEFT, RIGHT))
+
+
+def chained(starts: Ints, ends: Ints) -> list[list[int]]:
+    """Put pieces together to rings of edges; every edge is entered once and left once."""
+    following = dict(zip(starts.tolist(), ends.tolist(), strict=True))
+    rings = []
+    while following:
+        first = at = next(iter(following))
+        ring = [first]
+        while (at := following.pop(at)) != first:
+            ring.append(at)
+        rings.append([*ring, first])
+    return rings
+
+
+class _EdgePoints:
+    """Where the level is crossed along edges of the grid."""
+
+    def __init__(self, field: Floats, x: Floats, y: Floats) -> None:
+        self._field, self._x, self._y = field, x, y
+
+    def at(self, edges: list[int]) -> Floats:
+        """Points (N, 2) on numbered edges."""
+        number, along_y = np.divmod(np.asarray(edges), 2)
+        i, j = np.divmod(number, self._field.shape[1])
+        i1, j1 = i + (1 - along_y), j + along_y
+        a, b = self._field[i, j], self._field[i1, j1]
+        t = a / (a - b)
+        x = self._x[i] + t * (self._x[i1] - self._x[i])
+        y = self._y[j] + t * (self._y[j1] - self._y[j])
+        return np.stack([x, y], axis=1)

@@ -1,0 +1,238 @@
+"""Reach: how far away objects of a class are still found.
+
+The expected AP of a class at a place is the mean of AP (eqs. 4 to 7) over the class's height
+profile in the prior. Along each bearing it is computed in rings of `RING_M`, as the mean of voxels
+spread over the ring's piece and the height, and then smoothed: a running mean over `SMOOTHED_M`,
+and over the neighbouring bearings with half its weight each. So neither the rings of a LiDAR nor
+the single voxels that its far beams meet end the reach.
+
+In a study on objects, reach is that of lone objects by eighths of the circle, the same that the
+score reports (`targets.lone_objects`), so that maps, views and tables show the same metres.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import InputError, shown
+from ...base.read_only import read_only
+from ...base.values import Number, Whole
+from ...geometry.grids import PerceptionSpace
+from ...prior.prior import ClassDensity
+from ...scene.rig import Rig
+from ..sampling import CENTERED, scrambled_sobol
+from ..score import FARTHEST_M
+from ..targets.lone_objects import SECTORS, LoneObjects
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+RING_M = 1.0
+SMOOTHED_M = 5.0
+"""About as long as a car."""
+BESIDE_RAD = math.radians(10.0)
+"""Bearings farther apart than this are not smoothed over, and no sector is wider."""
+VOXELS = 32
+"""Voxels of a ring's piece."""
+FEW = 0.25
+"""Where less than this share of them is in the space and outside the vehicle, nothing is found."""
+DECIMALS = 6
+"""Reaches are rounded to the micrometre."""
+AP = Number(0.0, 1.0, above=True, below=True)
+BEARINGS = Whole(4, 720)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reach:
+    """How far away a class is still found, by bearing.
+
+    Attributes
+    ----------
+    class_name : str
+    ap : float
+        What AP is asked for.
+    bearings : (B,) float
+        From straight ahead, to the left [rad].
+    distance : (B,) float
+        From the origin: as far as the class's AP is expected to be at least `ap`, without a break
+        since it began to be [m]; 0 where it never is.
+    per_sensor : dict of (B,) float
+        The same for each sensor alone, by name.
+    limit : (B,) float
+        Where the space ends [m]: a reach that equals it is "at least".
+    draft : bool
+        Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+    sector : float
+        Of a study on objects: each distance is that of a sector so wide round its bearing [rad],
+        and a lone object's. 0: distances are along bearings, and of the class's voxels.
+    """
+
+    class_name: str
+    ap: float
+    bearings: Floats
+    distance: Floats
+    per_sensor: Mapping[str, Floats]
+    limit: Floats
+    draft: bool = False
+    sector: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Spokes:
+    """Voxels along bearings: `index` (V, 3), and the `ring` (V,) each is in, of R a bearing.
+
+    None is in the vehicle or beyond the space. `limit` (B,) is where the space ends.
+    """
+
+    bearings: Floats
+    limit: Floats
+    index: Ints
+    ring: Ints
+    rings: int
+
+    @classmethod
+    def of(
+        cls, space: PerceptionSpace, tops: Floats | None, density: ClassDensity, bearings: int
+    ) -> Spokes:
+        """Choose voxels for a class, round the origin."""
+        angles = np.array([2.0 * math.pi * b / bearings for b in range(bearings)])
+        limit = np.array([_edge(space, angle) for angle in angles.tolist()])
+        rings = max(1, math.ceil(limit.max() / RING_M))
+        u = scrambled_sobol(bearings * rings * VOXELS, CENTERED).reshape(bearings, rings, VOXELS, 3)
+        distance = (np.arange(rings)[:, None] + u[..., 0]) * RING_M
+        half = math.tan(min(math.pi / bearings, BESIDE_RAD / 2.0))
+        aside = (2.0 * u[..., 1] - 1.0) * half
+        x, y = _turned(angles, aside, distance)
+        k = np.searchsorted(np.cumsum(density.profile), u[..., 2], side="right")
+        k = np.minimum(k, space.shape[2] - 1)
+        points = np.stack([x, y, space.centers(2)[k]], axis=-1)
+        index = np.floor((points - space.origin) / space.interval).astype(np.int64)
+        inside = ((index >= 0) & (index < space.shape)).all(axis=-1)
+        if tops is not None:
+            i, j, k = np.moveaxis(np.where(inside[..., None], index, 0), -1, 0)
+            inside &= space.centers(2)[k] >= tops[i, j]
+        ring = np.flatnonzero(inside) // VOXELS
+        return cls(read_only(angles), read_only(limit), index[inside], ring, rings)
+
+    def distance(self, ap: Floats, min_ap: float) -> Floats:
+        """Return how far (B,) the AP (V,) of voxels is at least `min_ap` [m]."""
+        shape = len(self.bearings), self.rings
+        weights = (ap, np.ones(len(ap)))
+        by_ring = [np.bincount(self.ring, w, math.prod(shape)).reshape(shape) for w in weights]
+        sums, mass = (self._smoothed(np.asarray(w, dtype=float)) for w in by_ring)
+        enough = (mass > 0.0) & (mass >= FEW * mass.max())
+        mean = sums / np.where(enough, mass, np.inf)
+        ends = [_end_of_longest(row, min_ap) for row in mean]
+        return np.minimum(np.round(np.array(ends) * RING_M, DECIMALS), self.limit)
+
+    def _smoothed(self, values: Floats) -> Floats:
+        """Sums (B, R) over rings and bearings beside each; fewer rings at the ends."""
+        half = int(SMOOTHED_M / RING_M) // 2
+        padded = np.pad(values, ((0, 0), (half, half)))
+        near = [padded[:, k : k + values.shape[1]] for k in range(2 * half + 1)]
+        total: Floats = np.sum(near, axis=0)
+        if 2.0 * math.pi / len(total) > BESIDE_RAD * (1.0 + 1e-9):
+            return total
+        return 2.0 * total + np.roll(total, 1, axis=0) + np.roll(total, -1, axis=0)
+
+
+def density_of(densities: list[ClassDensity], name: str) -> ClassDensity:
+    """Return the class of that name; `InputError` where there is none."""
+    for density in densities:
+        if density.name == name:
+            return density
+    names = ", ".join(d.name for d in densities)
+    raise InputError("sight", "class_name", f"one of {names}", shown(name))
+
+
+def _turned(angles: Floats, aside: Floats, distance: Floats) -> tuple[Floats, Floats]:
+    """Points (x, y) at a distance, beside bearings (B,) by an angle of that tangent, (B, R, n)."""
+    ahead = distance / np.sqrt(1.0 + aside * aside)
+    c, s = (np.array([f(a) for a in angles.tolist()])[:, None, None] for f in (math.cos, math.sin))
+    return ahead * (c - s * aside), ahead * (s + c * aside)
+
+
+def _edge(space: PerceptionSpace, bearing: float) -> float:
+    """How far the space reaches from the origin along a bearing [m]."""
+    ends = []
+    for component, (low, high) in ((math.cos(bearing), space.x), (math.sin(bearing), space.y)):
+        if abs(component) > 1e-12:
+            ends.append((high if component > 0.0 else low) / component)
+    return max(0.0, min(ends))
+
+
+def _end_of_longest(values: Floats, min_value: float) -> float:
+    """Where the longest run of values that are large enough ends, the first of several; else 0.
+
+    In rings from the first one's inner edge; between two rings' middles as a straight line has it.
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], values >= min_value, [False]])))
+    if not len(edges):
+        return 0.0
+    starts, ends = edges[::2], edges[1::2]
+    end = int(ends[np.argmax(ends - starts)])
+    if end == len(values):
+        return float(end)
+    above, below = float(values[end - 1]), float(values[end])
+    return end - 0.5 + (above - min_value) / (above - below)
+
+
+Flags = NDArray[np.bool_]
+
+AT_LEAST_M = 0.5
+"""A reach nearer than this to where was looked ends there: it is at least that far."""
+ARC_STEPS = 12
+"""Points along the arc of a sector."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReachLine:
+    """`points` (N, 2) [m], the last one beside the first, and where they are `at_least` (N,)."""
+
+    points: Floats
+    at_least: Flags
+
+
+def reach_line(reach: Reach, distance: Floats) -> ReachLine:
+    """Return the line of distances (B,) of a reach, of the rig or of one sensor.
+
+    Reaches along bearings are weighed with their neighbours 1 2 1: what beams leave is ragged. A
+    reach of sectors is an arc for each.
+    """
+    at_least = ends_with_space(reach, distance)
+    bearings = reach.bearings
+    if reach.sector:
+        aside = (np.arange(ARC_STEPS) / (ARC_STEPS - 1) - 0.5) * reach.sector
+        bearings = np.add.outer(bearings, aside).reshape(-1)
+        distance, at_least = np.repeat(distance, ARC_STEPS), np.repeat(at_least, ARC_STEPS)
+    else:
+        round_ = (np.roll(distance, 1) + 2.0 * distance + np.roll(distance, -1)) / 4.0
+        distance = np.where(at_least, distance, round_)
+    points = np.stack([distance * np.cos(bearings), distance * np.sin(bearings)], axis=1)
+    return ReachLine(points, at_least)
+
+
+def ends_with_space(reach: Reach, distance: Floats) -> Flags:
+    """Whether reaches (B,) end at the limit of the space: the true reach may be longer."""
+    return np.asarray(distance >= reach.limit - AT_LEAST_M)
+
+
+SECTOR_RAD = 2.0 * math.pi / len(SECTORS)
+
+
+def object_reach(lone: LoneObjects, rig: Rig, class_name: str, min_ap: float) -> Reach:
+    """Return how far a class is found with at least so much AP, by the rig and by each sensor."""
+
+    def metres(members: list[str] | None) -> np.ndarray:
+        by_sector = lone.reach(class_name, lone.ap(rig, members), min_ap)
+        return read_only(np.array([by_sector[way] for way in SECTORS]))
+
+    bearings = read_only(np.arange(len(SECTORS)) * SECTOR_RAD)
+    alone = {s.name: metres([s.name]) for s in rig}
+    limit = read_only(np.full(len(SECTORS), FARTHEST_M))
+    return Reach(class_name, min_ap, bearings, metres(None), alone, limit, sector=SECTOR_RAD)

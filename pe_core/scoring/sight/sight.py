@@ -1,0 +1,298 @@
+"""Sight: what is visible to rigs, in one space, under one prior, on one vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from functools import cached_property
+from threading import RLock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.read_only import read_only
+from ...geometry.grids import PerceptionSpace
+from ...metric.entropy import H_BLIND, ap_of_entropy
+from ...metric.fusion import Fusion
+from ...prior.prior import ClassDensity, Prior
+from ...scene.rig import Rig
+from ...scene.vehicle import Vehicle
+from ...sensors import PerceptionModel
+from ..sampling import VoxelSample, draw
+from ..scenarios import fused_early
+from ..score import rounded
+from ..targets.lone_objects import LoneObjects
+from ..targets.object_sampling import sample_objects
+from ..targets.target_rule import TargetRule
+from .blind_ground import BlindGround, blind_ground, body_rectangle
+from .blind_squares import STEP_M, BlindSearch, fine_enough
+from .ground_cells import GroundCells, widened
+from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
+from .visibility import GroundSight, SeenShares, ground_sight, seen_shares
+from .voxel_sets import VoxelsByCell, VoxelSetCache, by_prior, in_layer, layer_at
+
+Floats = NDArray[np.float64]
+
+ORIGIN = ((0.0, 0.0), (0.0, 0.0))
+SAMPLES = 65_536
+"""Number of voxels for the AP by class."""
+
+
+class Sight:
+    """Computes what is visible to rigs in one space, under one prior, on one vehicle.
+
+    A sensor that has not moved since the last call is not measured again. It is thread-safe: one
+    thread at a time computes.
+
+    Parameters
+    ----------
+    space : PerceptionSpace
+    prior : Prior
+    vehicle : Vehicle, optional
+        None: nothing occludes.
+    model : PerceptionModel, optional
+        AP curves and fusion rule; the paper's by default.
+    targets : TargetRule, optional
+        What the study is scored on. On objects, `reach` is that of lone objects, as in the score;
+        on voxels, the default, that of the class's voxels.
+
+    Raises
+    ------
+    InputError
+        When the prior has no weight in the space.
+    """
+
+    def __init__(
+        self,
+        space: PerceptionSpace,
+        prior: Prior,
+        vehicle: Vehicle | None = None,
+        *,
+        model: PerceptionModel | None = None,
+        targets: TargetRule | None = None,
+    ) -> None:
+        self.space, self.prior, self.vehicle = space, prior, vehicle
+        self._model, self.targets = model or PerceptionModel(), targets or TargetRule()
+        self._fusion = Fusion(self._model)
+        self._densities: list[ClassDensity] = prior.densities(space)
+        self._voxel_sets = VoxelSetCache(space, vehicle, self._fusion)
+        self._lock = RLock()
+
+    def ground(
+        self,
+        rig: Rig,
+        height: float | None = None,
+        step: float = 1.0,
+        draft: bool = False,
+        within: float | None = None,
+    ) -> GroundSight:
+        """Return what is visible to the rig at every location on the ground.
+
+        Parameters
+        ----------
+        rig : Rig
+        height : float, optional
+            The height of the layer of voxels that is evaluated [m]. None: averaged over height by
+            the prior, as in a score.
+        step : float
+            Side of a cell [m].
+        draft : bool
+            Return an approximate preview, as in `Evaluator.score`.
+        within : float, optional
+            Half the side of the square round the origin that is evaluated [m]; None: all.
+
+        Raises
+        ------
+        InputError
+            When the height is not in the space, the step is not positive or gives too many cells,
+            or no cell is within.
+        """
+        part = None if within is None else widened(ORIGIN, within)
+        cells = GroundCells.of(self.space, step, part)
+        layer = None if height is None else layer_at(self.space, height)
+        with self._lock:
+            key = "ground", layer, cells.key
+            measured = self._voxel_sets.voxels(key, lambda: self._ground_voxels(layer, cells))
+            m, approximate = measured.measured(rig, draft)
+            return ground_sight(measured.voxels, rig, m, self._fusion, height, approximate)
+
+    def blind(
+        self,
+        rig: Rig,
+        height: float = 0.0,
+        within: float = 10.0,
+        step: float = STEP_M,
+        draft: bool = False,
+    ) -> BlindGround:
+        """Return where round the vehicle a body on the ground is visible to no sensor.
+
+        The body is an upright cylinder, 0.3 m wide. All figures are conservative: no blind ground
+        and no distance is too small, and edges are at most three squares too far out.
+
+        Parameters
+        ----------
+        rig : Rig
+        height : float
+            Height of the body [m]; 0 or less: flat on the ground.
+        within : float
+            How far from the rectangle of the vehicle's body the ground is evaluated [m].
+        step : float
+            Side of the squares [m]; squares wider than 0.1 m are divided.
+        draft : bool
+            As in `ground`.
+
+        Raises
+        ------
+        InputError
+            When the height is not in the space, the step is not positive or gives too many cells,
+            or no cell is within.
+        """
+        body = body_rectangle(self.vehicle)
+        cells = GroundCells.of(self.space, fine_enough(step), widened(body, within))
+        layer_at(self.space, height)  # raises InputError for a height that is not in the space
+        height = float(height)
+        with self._lock:
+            search = self._voxel_sets.cached(
+                ("blind", height, cells.key),
+                lambda: BlindSearch.of(
+                    cells, max(height, 0.0), self.vehicle, self._voxel_sets.kernel_cache
+                ),
+            )
+            blind, approximate = search.blind(rig, draft)
+            return blind_ground(cells, blind, body, height, float(within), approximate)
+
+    def reach(
+        self,
+        rig: Rig,
+        class_name: str,
+        *,
+        ap: float = 0.5,
+        bearings: int = 72,
+        draft: bool = False,
+    ) -> Reach:
+        """Return how far away objects of a class are still found, all round.
+
+        In a study on objects it is how far lone objects are found, in each eighth of the circle, as
+        in the score; `bearings` and `draft` have no effect then.
+
+        Parameters
+        ----------
+        rig : Rig
+        class_name : str
+            A class of the prior.
+        ap : float
+            The expected AP from which an object counts as found, 0 to 1.
+        bearings : int
+        draft : bool
+            As in `ground`.
+
+        Raises
+        ------
+        InputError
+            When the prior has no such class, or a number is out of its range.
+        """
+        min_ap = AP.checked("sight", "ap", ap)
+        count = BEARINGS.checked("sight", "bearings", bearings)
+        density = density_of(self._densities, class_name)
+        with self._lock:
+            if self.targets.are_objects:
+                return object_reach(self._lone, rig, class_name, min_ap)
+            measured = self._voxel_sets.voxels(
+                ("reach", class_name, count),
+                lambda: Spokes.of(self.space, self._tops, density, count),
+            )
+            m, approximate = measured.measured(rig, draft)
+            spokes = measured.voxels
+            alone = {
+                s.name: read_only(spokes.distance(self._ap(rig, m, [s.name]), min_ap)) for s in rig
+            }
+            whole = read_only(spokes.distance(self._ap(rig, m, list(m)), min_ap))
+            return Reach(
+                class_name, min_ap, spokes.bearings, whole, alone, spokes.limit, approximate
+            )
+
+    def expected_ap(self, rig: Rig, *, draft: bool = False) -> dict[str, float]:
+        """Return the expected AP of the fused rig by class: the prior's mean over voxels.
+
+        It is computed on a sample of the prior, as a sampled score.
+
+        Parameters
+        ----------
+        rig : Rig
+        draft : bool
+            As in `ground`.
+
+        Returns
+        -------
+        dict of float
+            By class, 0.001 to 1; a class without mass is left out.
+        """
+        with self._lock:
+            measured = self._voxel_sets.voxels("prior", self._sampled)
+            m, _ = measured.measured(rig, draft)
+            ap = self._ap(rig, m, list(m))
+            likely = measured.voxels.classes
+            masses = likely.sum(axis=0)
+            return {
+                name: rounded(float((ap * weights).sum() / mass))
+                for name, weights, mass in zip(measured.voxels.names, likely.T, masses, strict=True)
+                if mass > 0.0
+            }
+
+    def shares(self, rig: Rig, *, draft: bool = False) -> SeenShares:
+        """Return the visible shares of the prior, and how much each sensor's failure costs by zone.
+
+        Computed on a sample of the prior, as `expected_ap`; `draft` as in `ground`.
+        """
+        with self._lock:
+            measured = self._voxel_sets.voxels("prior", self._sampled)
+            m, _ = measured.measured(rig, draft)
+            return seen_shares(measured.voxels, m, self._rises(rig, m))
+
+    @property
+    def densities(self) -> tuple[ClassDensity, ...]:
+        """The prior on the space, class by class."""
+        return tuple(self._densities)
+
+    def _sampled(self) -> VoxelSample:
+        return draw(self._densities, self.space, SAMPLES, self._tops)
+
+    def _ap(self, rig: Rig, m: Mapping[str, NDArray], members: Collection[str]) -> Floats:
+        """Return the AP of every voxel with some sensors fused: eqs. 4 to 7, and 5 inverted."""
+        entropies, _ = self._fusion.entropies(fused_early(rig, m, members))
+        return ap_of_entropy(entropies)
+
+    def _rises(self, rig: Rig, m: Mapping[str, NDArray]) -> dict[str, Floats]:
+        """Return how much the entropy of every voxel rises without each sensor [nats], by name."""
+        whole, _ = self._fusion.entropies(fused_early(rig, m, list(m)))
+        rises = {}
+        for name in m:
+            rest = [other for other in m if other != name]
+            without = self._fusion.entropies(fused_early(rig, m, rest))[0] if rest else H_BLIND
+            rises[name] = without - whole
+        return rises
+
+    def _ground_voxels(self, layer: int | None, cells: GroundCells) -> VoxelsByCell:
+        if layer is None:
+            return by_prior(cells, self.space, self._tops, self._densities)
+        return in_layer(cells, self.space, self._tops, layer)
+
+    @cached_property
+    def _lone(self) -> LoneObjects:
+        objects = sample_objects(self.prior, self.space, self.vehicle, self.targets)
+        return LoneObjects(objects, self.vehicle, self._model)
+
+    @cached_property
+    def _tops(self) -> Floats | None:
+        return None if self.vehicle is None else self.vehicle.top(self.space)
+
+
+def expected_ap(
+    space: PerceptionSpace,
+    prior: Prior,
+    rig: Rig,
+    vehicle: Vehicle | None = None,
+    *,
+    model: PerceptionModel | None = None,
+) -> dict[str, float]:
+    """Return the expected AP of a rig by class, as `Sight.expected_ap`."""
+    return Sight(space, prior, vehicle, model=model).expected_ap(rig)

@@ -1,0 +1,179 @@
+"""ObjectEvaluator: scores rigs on a fixed set of objects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property, partial
+from math import inf
+from threading import RLock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.grids import PerceptionSpace
+from ...metric.entropy import H_BLIND
+from ...prior.prior import Prior
+from ...scene.rig import Rig
+from ...scene.vehicle import Vehicle
+from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
+from ..protocol import Judgement
+from ..scenarios import Scenarios, mean_or_worst
+from ..score import Glance, ObjectScore, Score, ScoreStopped, SensorScore, Watch, rounded
+from .lone_objects import LoneObjects
+from .object_metric import FusedObjects, ObjectSums
+from .object_sampling import CENTERED, SampledObjects, sample_objects
+from .target_rule import OBJECTS, TargetRule
+
+Floats = NDArray[np.float64]
+MByName = Mapping[str, Floats]
+"""m of sensors on the objects, (N,) each, by name."""
+
+
+class ObjectEvaluator:
+    """Scores rigs on objects in one space, under one prior, on one vehicle.
+
+    It has the methods of `Evaluator`. It is thread-safe: one thread at a time scores.
+
+    Parameters
+    ----------
+    space : PerceptionSpace
+    prior : Prior
+    vehicle : Vehicle, optional
+        None: only other objects occlude, and the ground of a car is kept free.
+    targets : TargetRule, optional
+        By default, objects that do not occlude each other.
+    model : PerceptionModel, optional
+        AP curves by class and kind, and the fusion rule.
+    shift : float
+        A number in [0, 1) that scrambles the sample: others give other scenes of the same quality.
+
+    Raises
+    ------
+    InputError
+        When objects are missing, have no room or no weight, or memory does not suffice.
+    """
+
+    def __init__(
+        self,
+        space: PerceptionSpace,
+        prior: Prior,
+        vehicle: Vehicle | None = None,
+        *,
+        targets: TargetRule | None = None,
+        model: PerceptionModel | None = None,
+        shift: float = CENTERED,
+    ) -> None:
+        self.space, self.prior, self.vehicle = space, prior, vehicle
+        self.targets = targets or TargetRule(OBJECTS)
+        self._model, self._shift = model or PerceptionModel(), shift
+        self.drawn: SampledObjects = sample_objects(prior, space, vehicle, self.targets, shift)
+        self.samples = len(self.drawn.objects)
+        self._fused = FusedObjects(self.drawn.objects, self.drawn.weights, self._model)
+        self._sums = ObjectSums(self.drawn)
+        traffic = self.targets.traffic
+        self._sensors = ObjectMeasurementCache(self.drawn.objects, vehicle, traffic)
+        self._lock = RLock()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the arguments: another process makes an evaluator of its own from them."""
+        what = self.space, self.prior, self.vehicle
+        return _evaluator_again, (*what, self.targets, self._model, self._shift)
+
+    def entropy(self, rig: Rig, *, draft: bool = False) -> float:
+        """Return the object entropy of a rig [nats]; `draft` has no effect."""
+        with self._lock:
+            self._fused.check(rig)
+            return self._entropy(rig, self._sensors.measure(rig))
+
+    def judge(self, rig: Rig, below: float = inf) -> Judgement:
+        """Return a rig's entropy, whatever the cutoff."""
+        return Judgement(self.entropy(rig), False)
+
+    def entropies(self, rigs: Sequence[Rig]) -> list[float]:
+        """Return the object entropy of each of several rigs [nats], as `Evaluator.entropies`."""
+        scenarios = Scenarios(rigs)
+        with self._lock:
+            self._fused.check(scenarios.all)
+            m = self._sensors.measure(scenarios.all)
+            return [self._entropy(part, m) for part in scenarios.parts]
+
+    def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool = False) -> Judgement:
+        """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
+        return Judgement(mean_or_worst(self.entropies(rigs), worst), False)
+
+    def glance(self, rig: Rig, *, draft: bool = False) -> Glance:
+        """Return the score of a rig without the part by sensor."""
+        with self._lock:
+            self._fused.check(rig)
+            return self._summary(rig, *self._fused.entropies(rig, self._sensors.measure(rig)))
+
+    def score(self, rig: Rig, *, draft: bool = False, watch: Watch | None = None) -> Score:
+        """Score a rig in full: as `Evaluator.score`, with an `ObjectScore`."""
+        with self._lock:
+            _report(watch, 0.0)
+            self._fused.check(rig)
+            m = self._sensors.measure(rig)
+            entropies, visible = self._fused.entropies(rig, m)
+            summary = self._summary(rig, entropies, visible)
+            _report(watch, 0.5)
+            per_sensor = {s.name: self._sensor(s.name, rig, m, summary.entropy) for s in rig}
+            _report(watch, 0.7)
+            return Score(
+                summary.entropy,
+                summary.coverage,
+                summary.stderr,
+                summary.per_class,
+                summary.per_zone,
+                per_sensor,
+                0,
+                objects=self._object_score(rig, m, entropies),
+                scatter=self._sums.scatter(entropies, visible),
+            )
+
+    def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Glance:
+        whole = self._sums.part(entropies, visible)
+        return Glance(
+            whole.entropy,
+            whole.coverage,
+            self._sums.standard_error(entropies, len(rig.groups)),
+            self._sums.classes(entropies, visible),
+            self._sums.zones(entropies, visible),
+            0,
+        )
+
+    def _entropy(self, rig: Rig, m: MByName) -> float:
+        return self._sums.part(*self._fused.entropies(rig, m)).entropy
+
+    def _sensor(self, name: str, rig: Rig, m: MByName, entropy: float) -> SensorScore:
+        alone = self._sums.part(*self._fused.entropies(rig, m, [name]))
+        remaining = [s.name for s in rig if s.name != name]
+        failed = self._sums.part(*self._fused.entropies(rig, m, remaining)).entropy
+        lost = rounded((failed if remaining else H_BLIND) - entropy)
+        return SensorScore(alone.entropy, alone.coverage, lost, 0, 0, {})
+
+    @cached_property
+    def _lone(self) -> LoneObjects:
+        return LoneObjects(self.drawn, self.vehicle, self._model)
+
+    def _object_score(self, rig: Rig, m: MByName, entropies: Floats) -> ObjectScore:
+        points = [m[s.name] for s in rig if kind_of(s).counts_points]
+        reach = partial(self._lone.reach, ap=self._lone.ap(rig))
+        return self._sums.object_score(entropies, points, reach, self.targets.traffic)
+
+
+def _report(watch: Watch | None, share: float) -> None:
+    """Report the progress of a score; raise `ScoreStopped` when `watch` returns False."""
+    if watch is not None and not watch(share):
+        raise ScoreStopped
+
+
+def _evaluator_again(
+    space: PerceptionSpace,
+    prior: Prior,
+    vehicle: Vehicle | None,
+    targets: TargetRule,
+    model: PerceptionModel,
+    shift: float,
+) -> ObjectEvaluator:
+    """Make an evaluator from its pickled arguments, in a worker process."""
+    return ObjectEvaluator(space, prior, vehicle, targets=targets, model=model, shift=shift)

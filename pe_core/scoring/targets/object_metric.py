@@ -1,0 +1,193 @@
+"""The metric on objects: eqs. 4 to 9 with the AP curve of each class, and standard errors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import InputError
+from ...metric.entropy import H_BEST, H_BLIND, ap_of_entropy
+from ...metric.fusion import Fusion, early_fusion
+from ...scene.objects import Objects
+from ...scene.rig import Rig
+from ...sensors import PerceptionModel
+from ..scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
+from ..score import POINTS, FoundClass, ObjectScore, PartScore, rounded, zone_masks
+from .object_sampling import SampledObjects
+
+Floats = NDArray[np.float64]
+
+
+class FusedObjects:
+    """Fuses measurements of objects by a perception model; objects without weight are left out."""
+
+    def __init__(self, objects: Objects, weights: Floats, model: PerceptionModel) -> None:
+        self._model, self._fusion, self._count = model, Fusion(model), len(objects)
+        self._rows = {
+            name: rows
+            for c, name in enumerate(objects.class_names)
+            if len(rows := np.flatnonzero((objects.labels == c) & (weights > 0.0)))
+        }
+
+    def check(self, rig: Rig) -> None:
+        """Raise `InputError` for a sensor with a curve of its own, or a class without one."""
+        for sensor in rig:
+            if sensor.curve is not None:
+                expected = f"none: objects have curves by class, [ap.{sensor.kind}.objects.CLASS]"
+                raise InputError(f"sensor {sensor.name!r}", "ap", expected, "a curve of voxels")
+            for name in self._rows:
+                self._model.object_curve(sensor.kind, name)
+
+    def entropies(
+        self, rig: Rig, m: Mapping[str, Floats], members: Collection[str] | None = None
+    ) -> tuple[Floats, NDArray[np.bool_]]:
+        """Return the entropy (N,) of each object [nats], and whether any fusion group detects it.
+
+        `members` names the sensors that are fused; all, by default.
+        """
+        entropies, visible = np.full(self._count, H_BLIND), np.zeros(self._count, bool)
+        groups = _summed(rig, m, members)
+        if not groups:
+            return entropies, visible
+        for name, rows in self._rows.items():
+            measured = [
+                (self._model.object_curve(kind, name), total[rows]) for kind, total in groups
+            ]
+            entropies[rows], visible[rows] = self._fusion.entropies(measured)
+        return entropies, visible
+
+
+def _summed(
+    rig: Rig, m: Mapping[str, Floats], members: Collection[str] | None
+) -> list[tuple[str, Floats]]:
+    """Return kind and sum (N,) of each fusion group, eq. 6."""
+    groups = []
+    for sensors in rig.groups.values():
+        present = [m[s.name] for s in sensors if members is None or s.name in members]
+        if present:
+            groups.append((sensors[0].kind, early_fusion(present)))
+    return groups
+
+
+BATCHES = 32
+"""Number of batches of scenes, for the errors of differences; fewer for fewer scenes."""
+Bools = NDArray[np.bool_]
+
+
+class ObjectSums:
+    """Means over the objects: all of them, by class, by zone."""
+
+    def __init__(self, drawn: SampledObjects) -> None:
+        self._objects, self._weights, self._drawn = drawn.objects, drawn.weights, drawn
+        x, y = drawn.objects.centers[:, 0], drawn.objects.centers[:, 1]
+        self._zones = {n: mask for n, mask in zone_masks(x, y).items() if self._mass(mask) > 0.0}
+        self._classes = {
+            name: mask
+            for c, name in enumerate(drawn.objects.class_names)
+            if self._mass(mask := drawn.objects.labels == c) > 0.0
+        }
+
+    def part(self, entropies: Floats, visible: Bools, mask: Bools | None = None) -> PartScore:
+        """Return mean entropy (eq. 9) and coverage of the objects in a mask, and their share."""
+        weights = self._weights if mask is None else self._weights * mask
+        mass = float(weights.sum())
+        entropy, coverage = (float((v * weights).sum()) / mass for v in (entropies, visible))
+        return PartScore(rounded(entropy), rounded(coverage), rounded(mass))
+
+    def classes(self, entropies: Floats, visible: Bools) -> dict[str, PartScore]:
+        """Return the score of each class that has any weight."""
+        return {name: self.part(entropies, visible, mask) for name, mask in self._classes.items()}
+
+    def zones(self, entropies: Floats, visible: Bools) -> dict[str, PartScore]:
+        """Return the score of each zone, of the objects whose centres are in it."""
+        return {name: self.part(entropies, visible, mask) for name, mask in self._zones.items()}
+
+    def standard_error(self, entropies: Floats, groups: int, mask: Bools | None = None) -> float:
+        """Standard error of the mean entropy, from the scatter of the scenes' means.
+
+        Classes are low-discrepancy samples across the scenes, so it errs high. Where all objects
+        are alike it is half of what is left to doubt by the rule of three, as for voxels.
+        """
+        values = entropies if mask is None else entropies[mask]
+        if np.ptp(values) <= ALIKE:
+            max_difference = H_BLIND - H_BEST + math.log(groups)
+            return rounded(RULE_OF_THREE / 2.0 * max_difference / len(values))
+        return self._scatter(entropies, mask)
+
+    def object_score(
+        self,
+        entropies: Floats,
+        points: Sequence[Floats],
+        reach: Callable[[str], Mapping[str, float]],
+        traffic: bool,
+    ) -> ObjectScore:
+        """Return the part of a score that only objects have.
+
+        `points` are m of the LiDARs; `reach` returns how far lone objects of a class are found.
+        """
+        ap = ap_of_entropy(entropies)
+        total = np.sum(points, axis=0) if points else None
+        per_class = {}
+        for name, mask in self._classes.items():
+            per_class[name] = FoundClass(
+                int(mask.sum()),
+                rounded(self._mass(mask)),
+                rounded(self._mean(entropies, mask)),
+                self.standard_error(entropies, max(len(points), 1), mask),
+                rounded(self._mean(ap, mask)),
+                self._scatter(ap, mask),
+                {} if total is None else self._shares(total, mask),
+                reach(name),
+            )
+        whole = rounded(self._mean(ap, None)), self._scatter(ap, None)
+        return ObjectScore(*whole, len(ap), self._drawn.scenes, traffic, per_class)
+
+    def scatter(self, entropies: Floats, visible: Bools) -> Scatter:
+        """Return residuals by batch of scenes: entropy and coverage of all parts, AP of classes."""
+        scenes = self._drawn.scenes
+        batches = min(BATCHES, scenes)
+        batch = self._objects.scenes * batches // scenes
+        measures = {
+            "entropy": entropies,
+            "coverage": visible.astype(float),
+            "ap": ap_of_entropy(entropies),
+        }
+        parts = {("rig", ""): np.ones(len(entropies), bool)}
+        parts |= {("zone", name): mask for name, mask in self._zones.items()}
+        parts |= {("class", name): mask for name, mask in self._classes.items()}
+        by_figure: dict[FigureKey, tuple[float, ...]] = {
+            (*part, measure): residuals(values, self._weights * mask, batch, batches)
+            for measure, values in measures.items()
+            for part, mask in parts.items()
+            if measure != "ap" or part[0] != "zone"
+        }
+        return Scatter(self._digest, by_figure)
+
+    @cached_property
+    def _digest(self) -> str:
+        objects = self._objects
+        arrays = objects.centers, objects.sizes, objects.yaws, objects.scenes, self._weights
+        return sample_digest(arrays)
+
+    def _shares(self, points: Floats, mask: Bools) -> dict[int, float]:
+        return {n: rounded(self._mean(points >= n, mask)) for n in POINTS}
+
+    def _mass(self, mask: Bools) -> float:
+        return float((self._weights * mask).sum())
+
+    def _mean(self, values: Floats | Bools, mask: Bools | None) -> float:
+        weights = self._weights if mask is None else self._weights * mask
+        return float((values * weights).sum() / weights.sum())
+
+    def _scatter(self, values: Floats, mask: Bools | None) -> float:
+        """Standard error of a ratio of sums over scenes: scenes are what is drawn."""
+        weights = self._weights if mask is None else self._weights * mask
+        off = weights * (values - self._mean(values, mask))
+        scenes = self._drawn.scenes
+        sums = np.bincount(self._objects.scenes, off, scenes)
+        square = scenes / max(scenes - 1, 1) * float((sums * sums).sum())
+        return rounded(math.sqrt(square) / float(weights.sum()))

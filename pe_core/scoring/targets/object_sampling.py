@@ -1,0 +1,195 @@
+"""The objects that rigs are scored on: sampled from the prior and placed in scenes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import InputError
+from ...base.memory import require_memory
+from ...base.read_only import read_only
+from ...geometry.grids import PerceptionSpace
+from ...prior.prior import Prior
+from ...scene.objects import Objects
+from ...scene.vehicle import Vehicle
+from .scene_layout import (
+    BoxSource,
+    LabelledBoxes,
+    LaidOutBoxes,
+    ModelBoxes,
+    ground_rectangles,
+    labelled_boxes,
+    overlap,
+    place_boxes,
+    vehicle_rectangle,
+)
+from .target_rule import TargetRule
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+OBJECT_BYTES = 1500
+"""Memory of an object while scenes are sampled and sensors are measured on it."""
+CENTERED = 0.5
+CLASS_STEP = math.sqrt(2.0) - 1.0
+"""Difference between the scrambles of two classes, modulo 1."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SampledObjects:
+    """Objects and their weights in the score.
+
+    Attributes
+    ----------
+    objects : Objects
+        Sorted by scene.
+    weights : (N,) float
+        Share of each in the score, summing to 1: classes share as in the prior, however many of
+        each there are, and focus weights multiply.
+    scenes : int
+    """
+
+    objects: Objects
+    weights: Floats
+    scenes: int
+
+    @property
+    def weights_by_class(self) -> Floats:
+        """Share of each class in the score, (C,)."""
+        count = len(self.objects.class_names)
+        return np.bincount(self.objects.labels, self.weights, count).astype(np.float64)
+
+
+def sample_objects(
+    prior: Prior,
+    space: PerceptionSpace,
+    vehicle: Vehicle | None,
+    targets: TargetRule,
+    shift: float = CENTERED,
+) -> SampledObjects:
+    """Sample the objects of a study.
+
+    The objects of each class are a low-discrepancy sample of the prior; their scenes are random.
+    Without traffic, labelled boxes are taken as they are, each once.
+
+    Parameters
+    ----------
+    prior : Prior
+    space : PerceptionSpace
+        It contains the centres of objects, seen from above.
+    vehicle : Vehicle, optional
+        No object overlaps its rectangle on the ground.
+    targets : TargetRule
+    shift : float
+        A number in [0, 1); another one gives another sample of the same quality.
+
+    Raises
+    ------
+    InputError
+        When the prior has no classes or no number of objects for one, when scenes have no object or
+        no room for all, when no object has any weight, or memory does not suffice.
+    """
+    if prior.boxes is not None and not targets.traffic:
+        boxes, labels = _each_once(prior, space, vehicle)
+        scenes = np.arange(len(labels))
+    else:
+        boxes, labels, scenes = _in_scenes(prior, space, vehicle, targets, shift)
+    objects = Objects(
+        boxes.centers, boxes.sizes, boxes.yaws, labels, list(prior.class_names), scenes
+    )
+    return SampledObjects(objects, read_only(_weights(prior, objects)), int(scenes.max()) + 1)
+
+
+def _each_once(
+    prior: Prior, space: PerceptionSpace, vehicle: Vehicle | None
+) -> tuple[LaidOutBoxes, Ints]:
+    """Return all labelled boxes in the space that do not overlap the vehicle, and their classes."""
+    assert prior.boxes is not None
+    require_memory("prior", "boxes", len(prior.boxes) * OBJECT_BYTES)
+    by_class = [labelled_boxes(prior.boxes, name, space) for name in prior.class_names]
+    by_class = [_beside_vehicle(boxes, vehicle) for boxes in by_class]
+    labels = np.repeat(np.arange(len(by_class)), [len(boxes.yaws) for boxes in by_class])
+    if not len(labels):
+        raise InputError(prior.boxes.source, "boxes", "a box in the space", "none")
+    return LaidOutBoxes(*(np.concatenate(parts) for parts in zip(*by_class, strict=True))), labels
+
+
+def _beside_vehicle(boxes: LaidOutBoxes, vehicle: Vehicle | None) -> LaidOutBoxes:
+    ground = ground_rectangles(boxes.centers[:, :2], boxes.sizes, boxes.yaws)
+    return boxes.subset(~overlap(ground, vehicle_rectangle(vehicle)))
+
+
+def _in_scenes(
+    prior: Prior, space: PerceptionSpace, vehicle: Vehicle | None, targets: TargetRule, shift: float
+) -> tuple[LaidOutBoxes, Ints, Ints]:
+    """Return boxes, their classes and scenes: (N, ...), scene after scene."""
+    at_once = prior.objects_at_once(space)
+    boxes_of = prior.boxes and {
+        name: _beside_vehicle(labelled_boxes(prior.boxes, name, space), vehicle) for name in at_once
+    }
+    has_boxes = [name for name in at_once if not boxes_of or len(boxes_of[name].yaws)]
+    counts = _counts({name: at_once[name] for name in has_boxes}, targets)
+    shifts = {n: (shift + CLASS_STEP * (c + 1)) % 1.0 for c, n in enumerate(at_once)}
+    sources: list[BoxSource]
+    if boxes_of:
+        sources = [LabelledBoxes(boxes_of[n], count, shifts[n]) for n, count in counts.items()]
+    else:
+        by_name = {c.name: c for c in prior.classes}
+        sources = [ModelBoxes(by_name[n], space, k, shifts[n]) for n, k in counts.items()]
+    labels = np.repeat([list(at_once).index(n) for n in counts], list(counts.values()))
+    by_class = [_random_scenes(k, targets.scenes, shifts[n]) for n, k in counts.items()]
+    scenes = np.concatenate(by_class)
+    ground = (space.x[1] - space.x[0]) * (space.y[1] - space.y[0])
+    boxes = place_boxes(sources, labels, scenes, vehicle_rectangle(vehicle), ground, list(at_once))
+    order = np.argsort(scenes, kind="stable")
+    return boxes.subset(order), labels[order], scenes[order]
+
+
+def _counts(at_once: Mapping[str, float], targets: TargetRule) -> dict[str, int]:
+    """Return how many objects of each class there are in all scenes together."""
+    counts = {name: round(count * targets.scenes) for name, count in at_once.items()}
+    total = sum(counts.values())
+    if total < targets.scenes:
+        expected = "at least one object in a scene, on average"
+        raise InputError("prior", "density", expected, f"{total / targets.scenes:.3g}")
+    require_memory("metric", "scenes", total * OBJECT_BYTES)
+    return {name: count for name, count in counts.items() if count}
+
+
+def _random_scenes(count: int, scenes: int, shift: float) -> Ints:
+    """Return the scene of each of a class's objects, (count,): each scene has as many, or one more.
+
+    Which scenes have one more is random, and differs from class to class (another shift).
+    """
+    numbers = np.empty(count, np.int64)
+    order = _permutation(scenes, (shift + 0.5) % 1.0)
+    numbers[_permutation(count, shift)] = order[np.arange(count) * scenes // count]
+    return numbers
+
+
+def _permutation(count: int, shift: float) -> Ints:
+    """Return a permutation of the numbers below `count`, (count,), seeded by a shift in [0, 1)."""
+    x = np.arange(count, dtype=np.uint32) + np.uint32(int(shift * (1 << 32)))
+    for odd in (0x85EBCA6B, 0xC2B2AE35):  # MurmurHash3's mixing
+        x = (x ^ (x >> np.uint32(16))) * np.uint32(odd)
+    return np.argsort(x, kind="stable")
+
+
+def _weights(prior: Prior, objects: Objects) -> Floats:
+    """Return each object's share of the score, (N,); `InputError` when all have none."""
+    shares = {c.name: c.share for c in prior.classes}
+    counts = np.bincount(objects.labels, minlength=len(objects.class_names))
+    weights = np.zeros(len(objects))
+    for c, name in enumerate(objects.class_names):
+        of_class = np.flatnonzero(objects.labels == c)
+        x, y = objects.centers[of_class, 0], objects.centers[of_class, 1]
+        weights[of_class] = shares.get(name, 1.0) / max(counts[c], 1) * prior.focus_at(name, x, y)
+    total = float(weights.sum())
+    if not 0.0 < total < math.inf:
+        found = "infinitely much" if total else "none"
+        raise InputError("prior", "focus", "some weight left on the objects", found)
+    return np.asarray(weights / total)

@@ -1,0 +1,207 @@
+"""The parametrization of a rig: a vector of design variables, and the rig that it stands for.
+
+This is the only module that maps vectors to rigs: a search samples a vector, `candidate` turns it
+into a placement, and `allowed` checks the placement against the rules. `feasible_start` finds a
+placement that breaks no rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.errors import InputError
+from ..geometry.poses import Pose
+from ..scene.rig import Rig, Sensor
+from .design_variable import DesignVariable
+from .domains import BoxDomain, Domain, SlotDomain, SurfaceDomain
+from .linkage import followers
+from .mount_surface import MountSurface
+from .mounts import SlotMount, SurfaceMount
+from .rules import Rule, Trial, rules_of
+from .search_space import SearchSpace
+
+Vector = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A placement, and the vector that stands for it."""
+
+    rig: Rig
+    vector: Vector
+
+
+class Parametrization:
+    """The design variables of a search, and the rigs that vectors of them stand for.
+
+    Parameters
+    ----------
+    rig : Rig
+        Where the search starts.
+    space : SearchSpace
+
+    Attributes
+    ----------
+    variables : tuple of DesignVariable
+        In the rig's order of sensors; a sensor that follows another has none.
+    blocks : tuple of range
+        The positions in the vector of each sensor's variables, without sensors that have none.
+    start : Candidate
+        The rig as it is.
+    rules : tuple of Rule
+        What no placement may break.
+
+    Raises
+    ------
+    InputError
+        When a sensor, a part or a mount does not exist, a start is outside its bounds or its mount,
+        or a pair or a group is impossible.
+    """
+
+    variables: tuple[DesignVariable, ...]
+    blocks: tuple[range, ...]
+    start: Candidate
+    rules: tuple[Rule, ...]
+
+    def __init__(self, rig: Rig, space: SearchSpace) -> None:
+        self.space = space.checked(rig)
+        self._followers = followers(rig, space.mounting, space.vehicle)
+        following = {follower.name for follower in self._followers}
+        self._domains = _domains(rig, space, following)
+        self.variables = tuple(v for domain in self._domains.values() for v in domain.variables)
+        self.blocks = tuple(_blocks(self._domains.values()))
+        vector = tuple(value for domain in self._domains.values() for value in domain.start)
+        self.start = Candidate(rig, vector)
+        self.rules = rules_of(rig, space, self._moving(), self._clear(), self._domains)
+
+    def candidate(self, vector: Sequence[float]) -> Candidate:
+        """Return the placement that a vector (N,) of values stands for.
+
+        The vector of the candidate is the given one after rounding, and after projection onto a
+        surface.
+        """
+        poses, values, start = dict[str, Pose](), list[float](), 0
+        for name, domain in self._domains.items():
+            count = len(domain.variables)
+            poses[name], placed_values = domain.placed(vector[start : start + count])
+            values += placed_values
+            start += count
+        for follower in self._followers:
+            poses[follower.name] = follower.pose(poses[follower.leader])
+        rig = self.start.rig
+        return Candidate(rig.with_poses([poses[sensor.name] for sensor in rig]), tuple(values))
+
+    def allowed(self, rig: Rig) -> bool:
+        """Whether a placement breaks no rule."""
+        trial = Trial(rig, self.space)
+        return not any(rule.broken(trial) for rule in self.rules)
+
+    def broken(self, rig: Rig) -> frozenset[str]:
+        """Return the texts of all rules that a placement breaks."""
+        trial = Trial(rig, self.space)
+        return frozenset(rule.text for rule in self.rules if rule.broken(trial))
+
+    def _moving(self) -> set[str]:
+        """Names of the sensors that the search moves."""
+        return self._with_followers(
+            {name for name, domain in self._domains.items() if domain.variables}
+        )
+
+    def _clear(self) -> set[str]:
+        """Names of the sensors whose housings must be clear: always those on a surface."""
+        if self.space.mounting.constraints.clear_housings:
+            return {sensor.name for sensor in self.start.rig}
+        return self._with_followers(
+            {n for n, domain in self._domains.items() if isinstance(domain, SurfaceDomain)}
+        )
+
+    def _with_followers(self, names: set[str]) -> set[str]:
+        """Return names of sensors, with the names of all their followers."""
+        for follower in self._followers:
+            names |= {follower.name} if follower.leader in names else set()
+        return names
+
+
+def _domains(rig: Rig, space: SearchSpace, following: set[str]) -> dict[str, Domain]:
+    """Return the domain of each sensor that follows no other."""
+    surfaces: dict[str, MountSurface] = {}
+    return {s.name: _domain(s, space, surfaces) for s in rig if s.name not in following}
+
+
+def _blocks(domains: Iterable[Domain]) -> Iterator[range]:
+    """Yield the positions in the vector of each domain's variables, without empty domains."""
+    start = 0
+    for domain in domains:
+        count = len(domain.variables)
+        if count:
+            yield range(start, start + count)
+        start += count
+
+
+def _domain(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface]) -> Domain:
+    mounting, name = space.mounting, sensor.name
+    mount, bounds = mounting.mount_of(name), space.bounds.get(name, {})
+    who = f"sensor {name!r}"
+    if isinstance(mount, SlotMount):
+        return SlotDomain(who, mount, sensor.pose)
+    if isinstance(mount, SurfaceMount):
+        key = mounting.on[name]
+        if key not in surfaces:
+            surfaces[key] = MountSurface(f"mount {key!r}", mount, space.vehicle)
+        return SurfaceDomain(
+            who, mount, surfaces[key], sensor.pose, space.housings.get(name), bounds
+        )
+    return BoxDomain(sensor.pose, bounds)
+
+
+MAX_TRIES = 2000
+"""Placements checked before the rules are said to exclude all; nearest to the start first."""
+MAX_NAMED = 4
+"""How many rules the message names."""
+
+
+def feasible_start(parametrization: Parametrization, seed: int = 0) -> Candidate:
+    """Return the start; if it breaks a rule, a placement near it that breaks none.
+
+    Raises
+    ------
+    InputError
+        When no such placement is found; the message names rules that exclude each other.
+    """
+    if parametrization.allowed(parametrization.start.rig):
+        return parametrization.start
+    broken_rules = [parametrization.broken(parametrization.start.rig)]
+    for vector in _widening_samples(parametrization, seed):
+        candidate = parametrization.candidate(vector)
+        broken = parametrization.broken(candidate.rig)
+        if not broken:
+            return candidate
+        broken_rules.append(broken)
+    raise _excluded([rule.text for rule in parametrization.rules], broken_rules)
+
+
+def _widening_samples(parametrization: Parametrization, seed: int) -> Iterator[list[float]]:
+    """Yield random vectors round the start, from its neighbourhood to the full ranges."""
+    rng = np.random.default_rng(seed)
+    for number in range(MAX_TRIES if parametrization.variables else 0):
+        share = (number + 1) / MAX_TRIES
+        steps = rng.uniform(-1.0, 1.0, len(parametrization.variables)).tolist()
+        values = zip(parametrization.variables, parametrization.start.vector, steps, strict=True)
+        yield [u.clipped(v + share * (u.high - u.low) * step) for u, v, step in values]
+
+
+def _excluded(rules: Sequence[str], broken_rules: Sequence[frozenset[str]]) -> InputError:
+    """Return the error that names a smallest set of rules of which each placement breaks one."""
+    smallest = [text for text in rules if any(text in broken for broken in broken_rules)]
+    for text in list(smallest):
+        fewer = [other for other in smallest if other != text]
+        if all(broken & set(fewer) for broken in broken_rules):
+            smallest = fewer
+    names = " and ".join(smallest[:MAX_NAMED]) + (", ..." if len(smallest) > MAX_NAMED else "")
+    problem = "leaves no feasible placement" if len(smallest) == 1 else "exclude each other"
+    expected = "a placement that breaks no rule"
+    found = f"none in {len(broken_rules)} tried"
+    return InputError("optimize", f"{names} {problem}", expected, found)

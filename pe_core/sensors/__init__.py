@@ -1,0 +1,55 @@
+"""Kinds of sensors, one folder for each: intrinsics, the definition of m, and fast kernels."""
+
+from .camera import CAMERA, BrownConrady, Camera, FTheta, KannalaBrandt, Lens, Pinhole
+from .field_of_view import EgoMask, ViewPatch
+from .ground_kernel import GroundKernel, GroundView, VisibleGround
+from .kernels import GridKernel, Measured, Occlusion, SampleKernel, Voxels
+from .kind import KINDS, Kind, derived_object_curves, kind_named, kind_of, register, unregister
+from .lidar import LIDAR, BeamField, Lidar, RangePicture, beam_field, range_picture
+from .measure import measure, measure_objects
+from .measurement_cache import MeasurementCache, ObjectMeasurementCache, VisibleGroundCache
+from .object_kernel import ObjectKernel, ObjectView
+from .perception import BLIND_RULES, PerceptionModel
+
+__all__ = [
+    "BLIND_RULES",
+    "KINDS",
+    "BeamField",
+    "BrownConrady",
+    "Camera",
+    "EgoMask",
+    "FTheta",
+    "GridKernel",
+    "GroundKernel",
+    "GroundView",
+    "KannalaBrandt",
+    "Kind",
+    "Lens",
+    "Lidar",
+    "Measured",
+    "MeasurementCache",
+    "ObjectKernel",
+    "ObjectMeasurementCache",
+    "ObjectView",
+    "Occlusion",
+    "PerceptionModel",
+    "Pinhole",
+    "RangePicture",
+    "SampleKernel",
+    "ViewPatch",
+    "VisibleGround",
+    "VisibleGroundCache",
+    "Voxels",
+    "beam_field",
+    "derived_object_curves",
+    "kind_named",
+    "kind_of",
+    "measure",
+    "measure_objects",
+    "range_picture",
+    "register",
+    "unregister",
+]
+
+for _kind in (LIDAR, CAMERA):
+    register(_kind)

@@ -1,0 +1,78 @@
+"""The measurement of a camera by definition: the area of each voxel's image, if it is in range.
+
+The distance of a voxel's centre decides on its range, a ray to the centre on its occlusion.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.poses import dot
+from ...scene.rig import Sensor
+from ...scene.vehicle import SeenMesh, Vehicle
+from .bent_area import bent_pixel_area
+from .model import Camera
+from .pixel_area import clipped_pixel_area
+from .tie_rules import aims_at, axes_of, offsets_of
+
+Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Mask = NDArray[np.bool_]
+
+
+def is_ranged(camera: Camera) -> bool:
+    """Whether a camera has a range at all."""
+    return camera.min_range > 0.0 or camera.max_range < math.inf
+
+
+def out_of_range(camera: Camera, offsets: Floats) -> Mask:
+    """Whether centres (V, 3), from the camera [m], are nearer or farther than it sees."""
+    return _beyond(camera, dot(offsets, offsets))
+
+
+def cut_to_range(camera: Camera, area: Singles, axes: list[Floats], first: tuple[int, int]) -> None:
+    """Set the areas (n, rows, nz) of voxels out of range to 0.
+
+    `axes` are their places along each axis, `first` the first plane and row.
+    """
+    x, y, z = axes
+    y = y[first[1] : first[1] + area.shape[1]]
+    for plane, here in zip(area, x[first[0] :], strict=False):
+        plane[_beyond(camera, (here * here + y * y)[:, None] + z * z)] = 0.0
+
+
+def _beyond(camera: Camera, square: Floats) -> Mask:
+    beyond: Mask = square > camera.max_range**2
+    if camera.min_range > 0.0:
+        beyond |= square < camera.min_range**2
+    return beyond
+
+
+def count_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
+    camera, position = cast(Camera, sensor.model), sensor.pose.position
+    offsets = offsets_of(centers, position, side)
+    area = image_area(camera, axes_of(sensor.pose), offsets, side)
+    if is_ranged(camera):
+        area[out_of_range(camera, offsets)] = 0.0
+    in_view = np.flatnonzero(area)
+    if vehicle is not None and len(in_view):
+        seen = vehicle.seen_from(position, camera.sees_through_glass)
+        area[in_view[hidden(seen, aims_at(offsets[in_view], side))]] = 0.0
+    return area
+
+
+def image_area(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:
+    """(V,) pixels covered by cubes with centres at offsets, through the camera's own lens."""
+    exact = clipped_pixel_area if camera.projection.is_straight else bent_pixel_area
+    return exact(camera, axes, offsets, side)
+
+
+def hidden(seen: SeenMesh, aims: Floats) -> NDArray[np.bool_]:
+    """Whether the vehicle occludes the points (V, 3) that rays from the camera aim at [m]."""
+    distance = np.sqrt(dot(aims, aims))
+    hits = seen.first_hit(aims / distance[:, None])
+    return hits.distance < distance

@@ -1,0 +1,115 @@
+"""Object kernel of cameras: rays are cast only for boxes that may be partly occluded."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.poses import dot
+from ...scene.rig import Sensor
+from ...scene.vehicle import SeenMesh
+from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
+from .box_area import BoxImages, along_camera, box_images
+from .definition import is_ranged, out_of_range
+from .model import Camera
+from .object_definition import Rivals, behind_others, rays_to_boxes, seen_share
+from .picture import ShadowMap
+from .pixel_area import frustum_distance
+from .tie_rules import axes_of
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+MARGIN_M = 1e-3
+"""Balls round boxes are taken this much larger."""
+APART_RAD = 1e-6
+"""Seen from above, balls this much farther apart hide nothing of each other [rad]."""
+
+
+class CameraObjects(ObjectKernel):
+    """Measures what is seen of objects' images."""
+
+    def __init__(self, view: ObjectView) -> None:
+        self._view = view
+        self._balls = np.sqrt(dot(view.objects.sizes, view.objects.sizes)) / 2.0 + MARGIN_M
+
+    def measure(self, sensor: Sensor) -> Floats:
+        """Measure a camera, as the definition does."""
+        objects, camera, axes = self._view.objects, cast(Camera, sensor.model), axes_of(sensor.pose)
+        boxes = PlacedBoxes.of(objects, sensor.pose.position)
+        which = np.flatnonzero(_may_be_seen(camera, axes, boxes, self._balls))
+        images = box_images(camera, axes, boxes.take(which))
+        if is_ranged(camera):
+            offsets = objects.centers[which] - np.asarray(sensor.pose.position)
+            images.area[out_of_range(camera, offsets)] = 0.0
+        area = np.zeros(len(objects))
+        area[which] = images.area * self._share(sensor, axes, boxes, which, images)
+        return area
+
+    def _share(
+        self, sensor: Sensor, axes: Floats, boxes: PlacedBoxes, which: Ints, images: BoxImages
+    ) -> Floats:
+        """What share is seen of the images of boxes `which`."""
+        view, camera, seen = self._view, cast(Camera, sensor.model), None
+        if view.vehicle is not None:
+            seen = view.vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
+        asked = images.area > 0.0
+        if not view.traffic:
+            asked &= _may_be_hidden(camera, axes, images, seen)
+        some = np.flatnonzero(asked)
+        own, image = boxes.take(which[some]), images.some(some)
+        rays = rays_to_boxes(camera, axes, own, image, np.arange(len(some)))
+        hidden = np.zeros(len(rays.item), bool)
+        if seen is not None:
+            hidden |= seen.first_hit(rays.directions).distance < rays.distance
+        if view.traffic:
+            rivals = self._rivals(boxes, which[some])
+            hidden |= behind_others(boxes, rivals, rays)
+        share = np.ones(len(which))
+        share[some] = seen_share(rays, hidden, len(some))
+        return share
+
+    def _rivals(self, boxes: PlacedBoxes, which: Ints) -> Rivals:
+        """Return, for some boxes, the others of their scenes that may stand before them."""
+        rivals = Rivals.of(self._view.objects.scenes, which)
+        rank, other = rivals.ranks(), rivals.other
+        item = which[rank]
+        x, y = boxes.ground_offsets()
+        flat = np.hypot(x, y)
+        near = flat - self._balls
+        across, along = (
+            x[item] * y[other] - y[item] * x[other],
+            x[item] * x[other] + y[item] * y[other],
+        )
+        half = np.arcsin(self._balls / np.maximum(flat, self._balls))
+        apart = np.abs(np.arctan2(across, along)) > half[item] + half[other] + APART_RAD
+        before = near[other] < flat[item] + self._balls[item]
+        around = np.minimum(near[item], near[other]) <= 0.0
+        return rivals.some(before & (around | ~apart))
+
+
+def _may_be_seen(
+    camera: Camera, axes: Floats, boxes: PlacedBoxes, balls: Floats
+) -> NDArray[np.bool_]:
+    """Whether balls round boxes reach into the view; never false for a box that does."""
+    everything = np.arange(len(balls))
+    depth, left, up = along_camera(axes, boxes, everything, boxes.offsets).T
+    if camera.projection.is_straight:
+        inside = frustum_distance(camera, depth, left, up) > -balls
+        return np.asarray(inside & (depth > -balls))
+    distance = np.sqrt(dot(boxes.offsets, boxes.offsets))
+    safe = np.maximum(distance, balls)
+    theta = np.arctan2(np.hypot(left, up), depth)
+    within = theta - np.arcsin(balls / safe) < camera.projection.edge
+    return np.asarray(within | (distance <= balls))
+
+
+def _may_be_hidden(
+    camera: Camera, axes: Floats, images: BoxImages, seen: SeenMesh | None
+) -> NDArray[np.bool_]:
+    """Whether the vehicle may stand before images; of a lens that bends, wherever they are."""
+    if seen is None or not camera.projection.is_straight:
+        return np.full(len(images.area), seen is not None)
+    return ShadowMap(camera, axes, seen.seen.triangles).may_hide_in(images.low, images.high)

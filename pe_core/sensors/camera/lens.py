@@ -1,0 +1,270 @@
+"""`Lens`, the map from directions to image positions and back, and its field in a picture.
+
+A lens is rotationally symmetric: a direction at an angle theta from the axis has its image at a
+distance ``radius(theta)`` from the principal point, in focal lengths. Beyond the edge of the field
+the radius is continued linearly, so that a shape across the edge has an image that can be clipped.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import InputError
+from ...base.values import Angle, Number
+
+Floats = NDArray[np.float64]
+Own = TypeVar("Own", bound="Lens")
+
+FOCAL = Number(1e-6, cap=1e12, unit="pixels", noun="focal length")
+PLACE = Number(cap=1e7, unit="pixels")
+FOV = Angle(0.001, 220.0)
+COEFFICIENT = Number(cap=1e6, noun="coefficient")
+
+DEFAULT_EDGE = math.radians(100.0)
+"""How far from the axis a lens sees that bends wider than a plane can hold, unless told."""
+TABLE = 4096
+"""Angles at which a radius is tabulated, to be looked up backwards."""
+LEAST_SLOPE = 1e-9
+"""At its fold a radius has none."""
+ROUNDS = 5
+"""Of Newton's method after the look-up: each doubles the digits, and four are there."""
+SHIFT_ROUNDS = 15
+"""Of taking off the shift found before: each adds a digit or two."""
+
+
+@dataclass(frozen=True)
+class Lens(ABC):
+    """A projection.
+
+    Parameters
+    ----------
+    fx, fy : float
+        Focal lengths [px].
+    cx, cy : float
+        Principal point, from the picture's upper left corner, right and down [px].
+    fov : float, optional
+        Whole angle of the image circle [rad]; what is farther from the axis is not seen.
+
+    Raises
+    ------
+    InputError
+        When a number is impossible.
+    """
+
+    model: ClassVar[str]
+    coefficients: ClassVar[tuple[str, ...]] = ()
+    """Names of its further numbers, in the order in which files list them."""
+    widest: ClassVar[float] = DEFAULT_EDGE
+    """No direction farther from the axis is seen [rad], unless `fov` says so."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    fov: float | None = None
+    edge: float = field(init=False, default=0.0, compare=False, repr=False)
+    """Angle from the axis up to which it sees [rad]; `reaching` sets it for a picture."""
+
+    def __post_init__(self) -> None:
+        for key, rule in (("fx", FOCAL), ("fy", FOCAL), ("cx", PLACE), ("cy", PLACE)):
+            object.__setattr__(self, key, rule.checked(self.model, key, getattr(self, key)))
+        for key in self.coefficients:
+            object.__setattr__(
+                self, key, COEFFICIENT.checked(self.model, key, getattr(self, key)) + 0.0
+            )
+        if self.fov is not None:
+            object.__setattr__(self, "fov", FOV.checked(self.model, "fov", self.fov))
+        object.__setattr__(self, "edge", self.widest if self.fov is None else self.fov / 2.0)
+
+    @abstractmethod
+    def radius(self, theta: Floats) -> Floats:
+        """Distance from the principal point in focal lengths at angles up to the edge [rad]."""
+
+    @abstractmethod
+    def slope(self, theta: Floats) -> Floats:
+        """Derivative of `radius`."""
+
+    def shift(self, theta: Floats, right: Floats, down: Floats) -> tuple[Floats, Floats]:
+        """Return what the image is moved by besides, in focal lengths, at an angle up to the edge.
+
+        `right` and `down` are the unit vector away from the principal point.
+        """
+        return np.zeros_like(theta), np.zeros_like(theta)
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether straight lines are straight in the picture: a pinhole."""
+        return False
+
+    def project(self, depth: Floats, left: Floats, up: Floats) -> tuple[Floats, Floats]:
+        """Image position (right, down) [px] of points along the sensor's axes, of any shape."""
+        theta, right, down = around_axis(depth, left, up)
+        inside = np.minimum(theta, self.edge)
+        edge = np.asarray(self.edge)
+        reach = self.radius(inside) + self.slope(edge) * (theta - inside)
+        more = self.shift(inside, right, down)
+        return (
+            self.cx + self.fx * (reach * right + more[0]),
+            self.cy + self.fy * (reach * down + more[1]),
+        )
+
+    def unproject(self, right: Floats, down: Floats) -> Floats:
+        """Unit directions (..., 3), forward, left, up, of places in the picture [px].
+
+        NaN where nothing within the field falls.
+        """
+        x, y = (right - self.cx) / self.fx, (down - self.cy) / self.fy
+        x0, y0 = x, y
+        for _ in range(SHIFT_ROUNDS if self.shifts else 1):
+            away = np.hypot(x, y)
+            safe = np.where(away > 0.0, away, 1.0)
+            e, n = x / safe, y / safe
+            theta = self._angle_at(away)
+            moved = self.shift(theta, e, n)
+            x, y = x0 - moved[0], y0 - moved[1]
+        theta = np.where(away > self._farthest * (1.0 + 1e-12), np.nan, theta)
+        sine = np.sin(theta)
+        return np.stack([np.cos(theta), -sine * e, -sine * n], axis=-1)
+
+    def density(self, depth: Floats, left: Floats, up: Floats) -> Floats:
+        """Pixels a steradian in directions, of any shape; not above 0 where the lens folds."""
+        theta, _, _ = around_axis(depth, left, up)
+        inside = np.maximum(np.minimum(theta, self.edge), 1e-9)
+        around = self.radius(inside) / np.sin(inside)
+        return np.asarray(self.fx * self.fy * around * self.slope(inside))
+
+    def within(self: Own, edge: float) -> Own:
+        """Return the lens with another edge of its field [rad]."""
+        own = replace(self)
+        object.__setattr__(own, "edge", edge)
+        return own
+
+    @property
+    def shifts(self) -> bool:
+        """Whether `shift` is not 0 everywhere."""
+        return False
+
+    @property
+    def _farthest(self) -> float:
+        return float(self.radius(np.asarray(self.edge)))
+
+    def _angle_at(self, away: Floats) -> Floats:
+        """Angle from the axis whose radius is `away`; the edge beyond."""
+        table = np.linspace(0.0, self.edge, TABLE)
+        theta = np.interp(away, self.radius(table), table)
+        for _ in range(ROUNDS):
+            steps = (self.radius(theta) - away) / np.maximum(self.slope(theta), LEAST_SLOPE)
+            theta = np.clip(theta - steps, 0.0, self.edge)
+        return theta
+
+
+def around_axis(depth: Floats, left: Floats, up: Floats) -> tuple[Floats, Floats, Floats]:
+    """Angle from the axis [rad], and the unit vector away from it, right and down."""
+    flat = np.hypot(left, up)
+    safe = np.where(flat > 0.0, flat, 1.0)
+    return np.arctan2(flat, depth), -left / safe, -up / safe
+
+
+RINGS, SPOKES = 1100, 32
+"""Directions at which a lens is tried: so many angles from the axis, each so often round it."""
+ROOM_PX = 1e-6
+"""A corner this far beyond the edge of the field is on it."""
+
+
+def reaching(lens: Own, name: str, width: int, height: int) -> Own:
+    """Return the lens with the edge of its field set for a picture of that size.
+
+    Raises
+    ------
+    InputError
+        When it cannot be inverted in all of the picture, or up to its own field of view.
+    """
+    folds = fold_angle(lens)
+    wanted = lens.edge
+    if folds >= wanted:
+        return lens
+    inner = lens.within(folds)
+    if lens.fov is None and _holds(inner, width, height):
+        return inner
+    found = f"it folds {math.degrees(folds):.2f} deg from the axis, {_radius_px(inner):.0f} px"
+    most = f"or fov_deg of at most {math.floor(math.degrees(2.0 * folds) * 10.0) / 10.0:g}"
+    what = "a lens that can be inverted in all of the picture"
+    raise InputError(name, "distortion", f"{what}, {most}", f"{found} from the centre")
+
+
+def fold_angle(lens: Lens) -> float:
+    """Angle from the axis up to which a lens can be inverted [rad]; its edge, or where it folds.
+
+    Pixels a steradian are radius times slope, over the sine of the angle: both of them grow, or
+    none. What a shift adds to that has the other sign on the opposite spoke.
+    """
+    theta = np.linspace(0.0, lens.edge, RINGS + 1)[1:]
+    with np.errstate(all="ignore"):
+        spokes = SPOKES if lens.shifts else 1
+        grows = np.all(lens.density(*_rings(theta, spokes)) > 0.0, axis=1)
+        grows &= lens.radius(theta) > 0.0
+    bad = np.flatnonzero(~grows)
+    if not len(bad):
+        return lens.edge
+    return float(theta[bad[0] - 1]) if bad[0] else 0.0
+
+
+def edge_circle(lens: Lens, spokes: int = SPOKES) -> tuple[Floats, Floats]:
+    """Image (right, down) [px] of directions round the edge of a lens's field, (spokes,) each."""
+    depth, left, up = _rings(np.array([lens.edge]), spokes)
+    right, down = lens.project(depth, left, up)
+    return right[0], down[0]
+
+
+def field_outline(lens: Lens, width: int, height: int, places: int) -> Floats:
+    """(N, 3) unit directions, forward, left, up, round what a picture shows, clockwise as seen.
+
+    So many places along each side of the picture; where it shows nothing, the edge of the field.
+    """
+    share = np.arange(places) / places
+    none, all_ = np.zeros(places), np.ones(places)
+    right = np.concatenate([share, all_, 1.0 - share, none]) * width
+    down = np.concatenate([none, share, all_, 1.0 - share]) * height
+    found = lens.unproject(right, down)
+    x, y = (right - lens.cx) / lens.fx, (down - lens.cy) / lens.fy
+    away = np.maximum(np.hypot(x, y), 1e-12)
+    sine = math.sin(lens.edge)
+    edge = np.stack([np.full(len(x), math.cos(lens.edge)), -sine * x / away, -sine * y / away], 1)
+    return np.where(np.isnan(found[:, :1]), edge, found)
+
+
+def _rings(theta: Floats, spokes: int = SPOKES) -> tuple[Floats, Floats, Floats]:
+    """Directions at angles from the axis, (R, spokes) each."""
+    turn = np.linspace(0.0, 2.0 * math.pi, spokes, endpoint=False)
+    flat = np.sin(theta)[:, None]
+    depth = np.broadcast_to(np.cos(theta)[:, None], (len(theta), spokes))
+    return depth, flat * np.cos(turn), flat * np.sin(turn)
+
+
+def _holds(lens: Lens, width: int, height: int) -> bool:
+    """Whether the whole picture lies within the edge of the field."""
+    right, down = edge_circle(lens, 720)
+    turn = np.arctan2(down - lens.cy, right - lens.cx)
+    away = np.hypot(down - lens.cy, right - lens.cx)
+    for x, y in ((0, 0), (width, 0), (width, height), (0, height)):
+        corner = math.atan2(y - lens.cy, x - lens.cx)
+        reach = np.interp(corner, *_by_turn(turn, away), period=2.0 * math.pi)
+        if math.hypot(y - lens.cy, x - lens.cx) > reach + ROOM_PX:
+            return False
+    return True
+
+
+def _by_turn(turn: Floats, away: Floats) -> tuple[Floats, Floats]:
+    order = np.argsort(turn)
+    return turn[order], away[order]
+
+
+def _radius_px(lens: Lens) -> float:
+    right, down = edge_circle(lens)
+    return float(np.min(np.hypot(right - lens.cx, down - lens.cy)))

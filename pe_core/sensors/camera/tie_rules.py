@@ -1,0 +1,62 @@
+"""Tie rules of cameras: what a camera sees where otherwise rounding errors would decide.
+
+Ties are common: cameras are placed at round numbers and angles, and vehicles have round dimensions.
+Then corners of voxels lie in the camera's plane, centres on the vehicle's surface, and rays to
+centres run exactly along its edges. The definition and all kernels follow the same rules, so that
+they agree wherever the origin of the ground frame is:
+
+- The camera's axes are the same bits for angles a full turn apart, and zeros of them are zeros.
+- Where a voxel lies from the camera is rounded in voxels, which makes round numbers round again.
+- All corners of a voxel have to be IN_FRONT of the camera; one in the camera's plane is behind.
+- A voxel is looked at by a ray to its centre, moved a little nearer to the camera along each axis.
+  So a centre on a surface that the camera sees is in view, and where a ray would run along an edge
+  the nudge decides, not a rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.poses import Pose, rotation_matrix
+
+Floats = NDArray[np.float64]
+
+TURN_DEG = 360.0
+ANGLE_DECIMALS = 11
+"""Of degrees: ten turns leave so many."""
+AXES_DECIMALS = 15
+"""Of the axes' components: what is less is the rounding of a sine."""
+SNAP_DECIMALS = 11
+"""Of places in voxels: of some thousand, rounding leaves so many."""
+IN_FRONT = 1e-6
+"""In sides; nearer ones would show so large that rounding is all that is left of their area."""
+NUDGE = np.sqrt([5.0, 11.0, 26.0]) * 1e-8
+"""In sides: nanometres. In no ratio of whole numbers: directions to centres are in such ratios, and
+a nudge along the ray decides nothing."""
+MARGIN = 1e-6
+"""Voxels are taken this much larger, in sides, where forms of their area meet."""
+
+
+def axes_of(pose: Pose) -> Floats:
+    """(3, 3) rotation from the camera's frame to the ground frame."""
+    degrees = (math.remainder(angle, TURN_DEG) for angle in pose.rotation_deg)
+    turned = rotation_matrix(*(math.radians(round(d, ANGLE_DECIMALS)) for d in degrees))
+    return np.round(turned, AXES_DECIMALS) + 0.0
+
+
+def offsets_of(centers: Floats, position: Sequence[float] | float, side: float) -> Floats:
+    """Centres seen from a camera, ground axes [m].
+
+    (V, 3) from a position (3,); or those along one axis, from the position on it.
+    """
+    return np.round((centers - np.asarray(position)) / side, SNAP_DECIMALS) * side
+
+
+def aims_at(offsets: Floats, side: float, nudge: Floats | float = NUDGE) -> Floats:
+    """What rays to voxels at offsets [m] aim at, (V, 3), or along the one axis of `nudge`."""
+    toward = np.where(offsets < 0.0, side, -side)
+    return offsets + toward * nudge

@@ -1,0 +1,277 @@
+"""The beams of a mounted LiDAR: rotated into the ground frame, cast against the vehicle, cached.
+
+`beam_field` casts all beams at once. Kernels ask for less: `RotatedBeams` rotates the beams that a
+kernel needs, `LazyEnds` casts the beams whose end matters, and `BeamCache` holds both by the
+sensor's name until the sensor turns or moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.poses import rotate
+from ...geometry.raycast import Hits
+from ...scene.rig import Sensor
+from ...scene.vehicle import Vehicle
+from ..kernels import Occlusion
+from .definition import beam_directions
+from .lattice import lattice_of
+from .model import lidar_of
+from .occlusion import ApproximateOcclusion, BeamSlopes, occlusion_candidates
+from .tie_rules import without_zeros
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class BeamField:
+    """The beams of a mounted LiDAR, cast against a vehicle.
+
+    `directions` (B, 3) are unit vectors in the ground frame; `ends` (B,) the distances at which the
+    beams end, on the vehicle or at the maximum range [m].
+    """
+
+    directions: Floats
+    ends: Floats
+    _max_range: float
+    _hits: Hits | None = None
+    _vehicle: Vehicle | None = None
+
+    @cached_property
+    def stopped_by(self) -> NDArray[np.int64]:
+        """(B,) index of the vehicle's part on which a beam ends within its range, -1 for none."""
+        if self._hits is None or self._vehicle is None:
+            return np.full(len(self.ends), -1)
+        parts = np.asarray(self._vehicle.parts)[self._hits.face]
+        return np.where(self._hits.distance < self._max_range, parts, -1)
+
+    def stopped_count(self, part_names: tuple[str, ...]) -> dict[str, int]:
+        """Return the number of beams that end on each part, the largest number first."""
+        counts = np.bincount(self.stopped_by[self.stopped_by >= 0], minlength=len(part_names))
+        order = np.argsort(-counts, kind="stable")
+        return {part_names[i]: int(counts[i]) for i in order if counts[i]}
+
+
+def beam_field(
+    sensor: Sensor, vehicle: Vehicle | None, directions: Floats | None = None
+) -> BeamField:
+    """Cast all beams of a LiDAR against a vehicle; None: every beam ends at its maximum range.
+
+    `directions` (B, 3) are the beams' in the ground frame, where the caller has them already.
+    """
+    if directions is None:
+        directions = beam_directions(sensor)
+    max_range = lidar_of(sensor).max_range
+    if vehicle is None:
+        return BeamField(directions, np.full(len(directions), max_range), max_range)
+    hits = vehicle.first_hit(sensor.pose.position, directions, sensor.model.sees_through_glass)
+    ends = np.minimum(hits.distance, max_range)
+    return BeamField(directions, ends, max_range, hits, vehicle)
+
+
+def occlusion_of(field: BeamField, vehicle: Vehicle | None) -> Occlusion:
+    """Count a LiDAR's beams, those that the vehicle occludes, and the latter by part."""
+    names = () if vehicle is None else tuple(vehicle.part_names)
+    by_part = field.stopped_count(names)
+    return Occlusion(len(field.ends), sum(by_part.values()), by_part)
+
+
+@dataclass(frozen=True)
+class RotatedBeams:
+    """A LiDAR's beams at the orientation of `sensor`; valid for any position.
+
+    A few beams are rotated on request. All are rotated once many were requested.
+    """
+
+    sensor: Sensor
+
+    @cached_property
+    def directions(self) -> Floats:
+        """(B, 3) unit directions, ground frame."""
+        return beam_directions(self.sensor)
+
+    @cached_property
+    def _components(self) -> list[Floats]:
+        return [np.ascontiguousarray(w) for w in without_zeros(self.directions).T]
+
+    def prepare(self, count: int) -> None:
+        """Rotate all beams now if `count`, the beams to be requested, is more than there are."""
+        if count > lidar_of(self.sensor).beam_count:
+            _ = self.directions
+
+    def take(self, beams: Ints) -> Floats:
+        """Return the unit directions (N, 3) of the beams with these indices (N,)."""
+        if "directions" in vars(self):
+            return self.directions[beams]
+        in_sensor = lidar_of(self.sensor).directions[beams]
+        return rotate(self.sensor.pose.ground_from_sensor, in_sensor)
+
+    def components(self, beams: Ints) -> list[Floats]:
+        """Return the directions of beams (N,) as three arrays (N,), one an axis, without zeros.
+
+        This is the form in which kernels divide by them (`tie_rules.without_zeros`).
+        """
+        if "directions" in vars(self):
+            return [np.take(w, beams) for w in self._components]
+        x, y, z = np.ascontiguousarray(lidar_of(self.sensor).directions[beams].T)
+        axes = self.sensor.pose.ground_from_sensor
+        return [without_zeros(row[0] * x + row[1] * y + row[2] * z) for row in axes]
+
+    @cached_property
+    def slopes(self) -> BeamSlopes:
+        """The beams by sector and slope, for approximate occlusion."""
+        return BeamSlopes.of(self.directions)
+
+
+@dataclass(frozen=True)
+class FixedEnds:
+    """Ends (B,) of all beams [m], given beforehand."""
+
+    ends: Floats
+
+    @cached_property
+    def max_range(self) -> float:
+        """No beam ends farther away [m]."""
+        return float(self.ends.max())
+
+    @cached_property
+    def occludable(self) -> Flags:
+        """(B,) beams that end before the maximum range."""
+        return self.ends < self.max_range
+
+    @property
+    def max_occlusion(self) -> float:
+        """No `occludable` beam ends farther away [m]."""
+        return float(self.ends.max(where=self.occludable, initial=0.0))
+
+    def take(self, beams: Ints) -> Floats:
+        """Return the ends (N,) of the beams with these indices (N,) [m]."""
+        return self.ends[beams]
+
+
+class LazyEnds:
+    """Ends of a mounted LiDAR's beams; a beam is cast when its end is requested first.
+
+    `beams` are those of the sensor, at its orientation; `max_range` is as of `FixedEnds`.
+    """
+
+    max_occlusion = np.inf  # not known before casting
+
+    def __init__(self, sensor: Sensor, beams: RotatedBeams, vehicle: Vehicle) -> None:
+        model = lidar_of(sensor)
+        self._sensor, self._beams, self._vehicle = sensor, beams, vehicle
+        self._mesh = vehicle.seen_from(sensor.pose.position, model.sees_through_glass)
+        count = model.beam_count
+        self._hits = Hits(np.full(count, np.inf), np.full(count, -1))
+        self._uncast = np.ones(count, bool)
+        self.max_range = model.max_range
+
+    @cached_property
+    def occludable(self) -> Flags:
+        """(B,) beams that may end before the maximum range; no other beam does."""
+        lattice = lattice_of(lidar_of(self._sensor))
+        if lattice.slope_bounds is None:
+            return np.ones(len(self._uncast), bool)
+        axes = self._sensor.pose.ground_from_sensor
+        flags = np.empty((len(lattice.channels), lattice.width), bool)
+        flags[lattice.channels] = occlusion_candidates(self._mesh.seen, axes, lattice)
+        return flags.reshape(-1)
+
+    def take(self, beams: Ints) -> Floats:
+        """Return the ends (N,) of the beams with these indices (N,) [m]; cast the new ones."""
+        requested = np.zeros(len(self._uncast), bool)
+        requested[beams] = True
+        self._cast(np.flatnonzero(requested & self._uncast))
+        return np.minimum(self._hits.distance[beams], self.max_range)
+
+    def beam_field(self) -> BeamField:
+        """Cast the remaining beams and return all."""
+        self._cast(np.flatnonzero(self._uncast))
+        ends = np.minimum(self._hits.distance, self.max_range)
+        return BeamField(self._beams.directions, ends, self.max_range, self._hits, self._vehicle)
+
+    def _cast(self, beams: Ints) -> None:
+        hits = self._mesh.first_hit(self._beams.take(beams))
+        self._hits.distance[beams], self._hits.face[beams] = hits.distance, hits.face
+        self._uncast[beams] = False
+
+
+BeamEnds = FixedEnds | LazyEnds
+
+
+@dataclass(frozen=True, slots=True)
+class CastBeams:
+    """Where the beams of a sensor end, and whether that is an approximation."""
+
+    sensor: Sensor
+    ends: BeamEnds
+    approximate: bool
+
+
+class BeamCache:
+    """Rotated and cast beams of the LiDARs on a vehicle; several kernels may share one cache.
+
+    Entries are by the sensor's name: those of the last rig.
+    """
+
+    def __init__(self, vehicle: Vehicle | None) -> None:
+        self._vehicle, self._approximation = vehicle, ApproximateOcclusion(vehicle)
+        self._rotated: dict[str, RotatedBeams] = {}
+        self._cast: dict[str, CastBeams] = {}
+
+    def rotated(self, sensor: Sensor) -> RotatedBeams:
+        """Return a LiDAR's beams; the cached ones until the sensor turns."""
+        beams = self._rotated.get(sensor.name)
+        last = beams and beams.sensor
+        if beams and last and last.model is sensor.model and last.pose.rpy == sensor.pose.rpy:
+            return beams
+        beams = self._rotated[sensor.name] = RotatedBeams(sensor)
+        return beams
+
+    def cast(self, sensor: Sensor, approximate: bool) -> CastBeams:
+        """Return where a LiDAR's beams end; the cached ends until the sensor moves.
+
+        With `approximate` an approximation may be returned, where that is quicker.
+        """
+        cached = self._cast.get(sensor.name)
+        if (
+            cached
+            and (approximate or not cached.approximate)
+            and same_measurement(cached.sensor, sensor)
+        ):
+            return cached
+        beams = self._cast[sensor.name] = self._newly_cast(sensor, approximate)
+        return beams
+
+    def unoccluded(self, sensor: Sensor) -> FixedEnds:
+        """Return where a LiDAR's beams end without a vehicle: at the maximum range."""
+        model = lidar_of(sensor)
+        return FixedEnds(np.full(model.beam_count, model.max_range))
+
+    def _newly_cast(self, sensor: Sensor, approximate: bool) -> CastBeams:
+        beams = self.rotated(sensor)
+        if approximate and self._approximation.applies_to(sensor):
+            return CastBeams(
+                sensor, FixedEnds(self._approximation.ends(sensor, beams.slopes)), True
+            )
+        if self._vehicle is None:
+            return CastBeams(sensor, self.unoccluded(sensor), False)
+        return CastBeams(sensor, LazyEnds(sensor, beams, self._vehicle), False)
+
+    def keep_only(self, sensors: Collection[Sensor]) -> None:
+        """Drop the entries of all other sensors."""
+        names = {sensor.name for sensor in sensors}
+        self._rotated = {name: beams for name, beams in self._rotated.items() if name in names}
+        self._cast = {name: beams for name, beams in self._cast.items() if name in names}
+
+
+def same_measurement(one: Sensor, other: Sensor) -> bool:
+    """Whether two sensors measure the same: the same model at the same pose."""
+    return one.model is other.model and one.pose == other.pose

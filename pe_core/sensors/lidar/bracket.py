@@ -1,0 +1,228 @@
+"""Lower and upper bounds of the beams through single voxels, by table look-ups.
+
+Seen from the sensor a cube lies inside an outer window of azimuth and elevation, and every beam of
+an inner window passes through it. On a regular lattice the beams of a window are a product of two
+counts. Where both windows hold the same number of beams, it is m; `voxel_beams` counts the rest.
+All arithmetic is in single precision, with margins on the safe side.
+
+The inner window is that of a slice of the cube: the plane through its centre that contains the
+sensor frame's up direction and its two silhouette edges. docs/engine.md has a figure, and a voxel
+worked by hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.indexing import blocks
+from .slopes import SlopeBounds
+
+Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Counts = NDArray[np.int32]
+
+MARGIN = np.float32(4e-6)
+"""Outer windows are widened and inner ones narrowed by this, relative: more than the rounding of
+single precision."""
+SLACK = np.float32(1e-4)
+"""Cubes are taken larger (outer) or smaller (inner) by this, in sides: twice the rounding, in
+single precision, of a point a thousand sides away."""
+BLOCK = 1 << 15
+"""Voxels computed together: their arrays fit the processor's cache."""
+BALL = np.float32(0.867)
+"""Radius of the ball around a cube, in sides, rounded up; bounds a cube on the sensor's axis."""
+ON_AXIS = np.float32(1e-9)
+"""Replaces the minimum distance from the sensor's axis of a cube that the axis may touch."""
+MIN_SHARE, MAX_SHARE = np.float32(0.85), np.float32(1.0 - 1e-5)
+"""Limits of the inner window's width, as a share of the slice's width."""
+MAX_PICKED_SHARE = 0.85
+"""Inner windows are computed only for voxels whose outer window holds beams, if no more than this
+share of them; else for all, which saves the selection."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bracket:
+    """Bounds of the number of beams through voxels, and their outer windows; (V,) each.
+
+    At least `lower` and at most `upper` beams pass. The outer window is channels `row` to
+    ``row + rows - 1``, sorted by elevation, at azimuth steps `column` to ``column + columns - 1``,
+    which may lie outside [0, azimuth_count).
+    """
+
+    lower: Counts
+    upper: Counts
+    row: Counts
+    rows: Counts
+    column: Counts
+    columns: Counts
+
+
+def bracket(
+    points: Sequence[Singles],
+    ground_from_sensor: Floats,
+    slopes: SlopeBounds,
+    azimuth_count: int,
+) -> Bracket:
+    """Bound the number of beams through unit cubes, without a vehicle.
+
+    For a full-circle LiDAR without azimuth offsets. Fast because each bound is a product of two
+    counts: channels by table look-up, azimuths by arithmetic.
+
+    `points` are the cubes' centres, seen from the sensor along the ground axes, in voxel sides:
+    three arrays (V,), one an axis.
+    """
+    out = Bracket(*(np.empty(len(points[0]), np.int32) for _ in range(6)))
+    rotation = ground_from_sensor.astype(np.float32)
+    step = np.float32(2.0 * np.pi / azimuth_count)
+    for block in blocks(len(points[0]), BLOCK):
+        seen = Silhouettes.of([p[block] for p in points], rotation, step)
+        bounds = _bounds(seen, slopes, azimuth_count)
+        for whole, part in zip(
+            (out.lower, out.upper, out.row, out.rows, out.column, out.columns), bounds, strict=True
+        ):
+            whole[block] = part
+    return out
+
+
+@dataclass(frozen=True, slots=True)
+class Silhouettes:
+    """Unit cubes in the sensor frame; lengths in voxel sides, (V,) each.
+
+    `flat` and `z` are the centre's distance from the sensor's axis and its height; `middle` is its
+    azimuth, in steps of `step` [rad]. `radial`, `lateral` and `up` are the components of the
+    cube's three half edges (one per ground axis) away from the axis, across and up. `depth`,
+    `width` and `height` are the sums of their absolute values: half the cube's extents.
+    """
+
+    flat: Singles
+    z: Singles
+    middle: Singles
+    step: np.float32
+    radial: list[Singles]
+    lateral: list[Singles]
+    up: Singles
+    depth: Singles
+    width: Singles
+    height: np.float32
+
+    @classmethod
+    def of(cls, points: Sequence[Singles], rotation: Singles, step: np.float32) -> Silhouettes:
+        """Project cubes with these centres, seen from the sensor along the ground axes."""
+        x, y, z = (
+            rotation[0, w] * points[0] + rotation[1, w] * points[1] + rotation[2, w] * points[2]
+            for w in range(3)
+        )
+        flat = np.sqrt(x * x + y * y)
+        safe = np.maximum(flat, np.float32(0.1))
+        c, s = x / safe, y / safe
+        c[flat == 0.0] = 1.0  # a cube on the axis needs some azimuth; any will do
+        half = rotation * np.float32(0.5)
+        radial = [half[k, 0] * c + half[k, 1] * s for k in range(3)]
+        lateral = [half[k, 1] * c - half[k, 0] * s for k in range(3)]
+        depth, width = (np.abs(a) + np.abs(b) + np.abs(c) for a, b, c in (radial, lateral))
+        middle = np.arctan2(y, x) / step
+        up = half[:, 2]
+        return cls(flat, z, middle, step, radial, lateral, up, depth, width, np.abs(up).sum())
+
+    def take(self, index: NDArray[np.intp]) -> Silhouettes:
+        """Return the cubes with these indices."""
+        flat, z, middle, depth, width = (
+            w[index] for w in (self.flat, self.z, self.middle, self.depth, self.width)
+        )
+        radial, lateral = ([w[index] for w in side] for side in (self.radial, self.lateral))
+        step, up, height = self.step, self.up, self.height
+        return Silhouettes(flat, z, middle, step, radial, lateral, up, depth, width, height)
+
+
+def _bounds(seen: Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts, ...]:
+    """Compute the fields of a `Bracket`."""
+    depth, width, height = seen.depth + SLACK, seen.width + SLACK, seen.height + SLACK
+    off_axis = seen.flat > depth * np.float32(1.1)
+    near = np.where(off_axis, seen.flat - depth, ON_AXIS)
+    far = np.where(off_axis, np.sqrt((seen.flat + depth) ** 2 + width * width), seen.flat + BALL)
+    reach = width / near / seen.step * (1 + MARGIN) + np.abs(seen.middle) * MARGIN + MARGIN
+    reach = np.minimum(reach, np.float32(count))
+    first, last = np.ceil(seen.middle - reach), np.floor(seen.middle + reach)
+    columns = np.minimum(last - first + 1, count).astype(np.int32)
+    high = slopes.bins(_slope(seen.z + height, near, far))
+    low = slopes.bins(_slope(seen.z - height, far, near))
+    row = slopes.below[low]
+    rows = np.maximum(slopes.upto[high] - row, 0)
+    upper = rows * columns
+    lower = _lower(seen, slopes, upper, off_axis)
+    columns = np.where(off_axis, columns, np.int32(count))  # the cube may surround the axis
+    return lower, rows * columns, row, rows, first.astype(np.int32), columns
+
+
+def _lower(
+    seen: Silhouettes, slopes: SlopeBounds, upper: Counts, off_axis: NDArray[np.bool_]
+) -> Counts:
+    """Lower bounds (V,): the beams of the inner windows, where the outer windows hold any."""
+    picked = np.flatnonzero(off_axis & (upper > 0))
+    if len(picked) > MAX_PICKED_SHARE * len(upper):
+        rows, columns = _inner_window(seen, slopes)
+        return np.where(off_axis, np.minimum(rows * columns, upper), 0)
+    lower = np.zeros_like(upper)
+    rows, columns = _inner_window(seen.take(picked), slopes)
+    lower[picked] = np.minimum(rows * columns, upper[picked])
+    return lower
+
+
+def _slope(z: Singles, flat_if_above: Singles, flat_if_below: Singles) -> Singles:
+    """Slope of a height over one of two distances, by the height's sign."""
+    return z / np.where(z > 0, flat_if_above, flat_if_below)
+
+
+def _inner_window(seen: Silhouettes, slopes: SlopeBounds) -> tuple[Counts, Counts]:
+    """Numbers of rows and columns of the inner windows."""
+    width, height, skew = slice_through(seen)
+    drift = np.abs(skew) * width
+    near, far = seen.flat - drift, np.sqrt((seen.flat + drift) ** 2 + width * width)
+    near = np.maximum(near, np.float32(1e-3))
+    high = slopes.bins(_slope(seen.z + height, far, near))
+    low = slopes.bins(_slope(seen.z - height, near, far))
+    rows = np.maximum(slopes.below[high] - slopes.upto[low], 0)
+    left, right = (
+        width / np.maximum(reach, np.float32(1e-3)) / seen.step
+        for reach in (seen.flat + skew * width, seen.flat - skew * width)
+    )
+    # atan(t) >= t - t^3 / 3, so no arc tangent is needed
+    left, right = (t * (1 - (t * seen.step) ** 2 / 3) * (1 - MARGIN) for t in (left, right))
+    slack = np.abs(seen.middle) * MARGIN + MARGIN
+    columns = np.floor(seen.middle + left - slack) - np.ceil(seen.middle - right + slack) + 1
+    return rows, np.maximum(columns, 0).astype(np.int32)
+
+
+def slice_through(seen: Silhouettes) -> tuple[Singles, Singles, Singles]:
+    """Return half width and half height of a rectangle inside the slice, and the slice's skew.
+
+    The skew is the distance by which the slice recedes from the axis for each side to the left.
+    """
+    a, b, c = (np.copysign(r, r * s) for r, s in zip(seen.radial, seen.lateral, strict=True))
+    skew: Singles = (a + b + c) / seen.width
+    tilt: list[Singles] = [
+        np.float32(2) * np.abs(b + skew * a) for a, b in zip(seen.radial, seen.lateral, strict=True)
+    ]
+    rectangle = _rectangle(tilt, np.abs(2 * seen.up))
+    width, height = (np.maximum(side - SLACK, 0) for side in rectangle)
+    return width, height, skew
+
+
+def _rectangle(tilt: list[Singles], up: Singles) -> tuple[Singles, Singles]:
+    """Half width and half height of a rectangle in the slice.
+
+    A point of the slice, s to the left and u up, lies in the cube if ``|s tilt_k + u up_k| <= 1/2``
+    for its three axes k. A tilted slice has no height at its full width; from the share
+    ``1 - up_k`` of the width on, k being the second most upright axis, it has about the cube's.
+    """
+    half, tiny = np.float32(0.5), np.float32(1e-9)
+    widest = half / np.maximum(np.maximum(np.maximum(tilt[0], tilt[1]), tilt[2]), tiny)
+    share = np.clip(np.float32(1.0) - np.sort(up)[1], MIN_SHARE, MAX_SHARE)
+    width = widest * share
+    heights = [(half - width * t) / max(u, tiny) for t, u in zip(tilt, up, strict=True)]
+    height = np.minimum(np.minimum(heights[0], heights[1]), heights[2])
+    return width, np.maximum(height, 0)

@@ -1,0 +1,154 @@
+"""The measurement m of a LiDAR by definition: every beam is tested, of voxels and of objects.
+
+Fast kernels are held to these functions by tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.poses import dot, rotate
+from ...scene.objects import Objects
+from ...scene.rig import Sensor
+from ...scene.vehicle import Vehicle
+from ..object_kernel import PlacedBoxes
+from .model import lidar_of
+from .tie_rules import offsets_in_voxels, without_zeros
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+MAX_BEAM_TESTS = 1 << 23
+"""Beams times voxels (or boxes) tested together: a bound of the memory."""
+CULL_MARGIN_RAD = 1e-6
+"""Cones round cubes are widened by this against rounding [rad]."""
+BALL = np.sqrt(3.0) / 2.0
+"""Radius of the ball around a cube, in sides."""
+
+
+def beam_directions(sensor: Sensor) -> Floats:
+    """Return the unit directions (B, 3) of a LiDAR's beams, ground frame; eq. 1."""
+    return rotate(sensor.pose.ground_from_sensor, lidar_of(sensor).directions)
+
+
+def beam_ends(sensor: Sensor, directions: Floats, vehicle: Vehicle | None) -> Floats:
+    """Return the distance (B,) at which each beam ends: on the vehicle or at maximum range [m]."""
+    max_range = lidar_of(sensor).max_range
+    if vehicle is None:
+        return np.full(len(directions), max_range)
+    glass = sensor.model.sees_through_glass
+    hits = vehicle.first_hit(sensor.pose.position, directions, glass)
+    return np.minimum(hits.distance, max_range)
+
+
+def count_beams(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
+    """Count the beams through cubes: m of voxels.
+
+    A beam counts in a cube that it enters before it ends, and leaves (or ends in) no nearer than
+    the minimum range.
+
+    `centers` (V, 3) are in the ground frame [m], `side` in metres; returns (V,) numbers.
+    """
+    directions = beam_directions(sensor)
+    ends = beam_ends(sensor, directions, vehicle) / side
+    min_range = lidar_of(sensor).min_range / side
+    offsets = offsets_in_voxels(centers, sensor.pose.position, side)
+    counts = np.zeros(len(centers))
+    portion = max(1, MAX_BEAM_TESTS // len(directions))
+    for start in range(0, len(centers), portion):
+        block = offsets[start : start + portion]
+        voxel, beam = _voxel_beam_pairs(block, directions)
+        enter, leave = cube_crossing(block[voxel], directions[beam])
+        through = (enter < leave) & (enter <= ends[beam])
+        through &= np.minimum(leave, ends[beam]) >= min_range
+        counts[start : start + portion] = np.bincount(voxel[through], minlength=len(block))
+    return counts
+
+
+def _voxel_beam_pairs(offsets: Floats, directions: Floats) -> tuple[NDArray, NDArray]:
+    """Return (voxel, beam) pairs (P,): beams that meet the ball around the cube; others miss it."""
+    distance = np.sqrt(dot(offsets, offsets))
+    safe = np.maximum(distance, BALL)
+    min_cosine = np.where(distance > BALL, np.cos(np.arcsin(BALL / safe) + CULL_MARGIN_RAD), -2.0)
+    cosine = offsets @ directions.T / safe[:, None]
+    voxel, beam = np.nonzero(cosine >= min_cosine[:, None])
+    return voxel, beam
+
+
+def cube_crossing(offsets: Floats, directions: Floats) -> tuple[Floats, Floats]:
+    """Return the distances (P,) at which rays from the origin enter and leave unit cubes.
+
+    `offsets` (P, 3) are the cubes' centres, in sides. The first distance is at least 0; it is not
+    below the second where the ray misses.
+    """
+    components = without_zeros(directions)
+    t0, t1 = (offsets - 0.5) / components, (offsets + 0.5) / components
+    enter, leave = np.minimum(t0, t1), np.maximum(t0, t1)
+    return np.maximum(enter.max(axis=1), 0.0), leave.min(axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class BoxHits:
+    """Beams that enter boxes, (H,) each: box, beam, and distance at which it enters [m]."""
+
+    box: Ints
+    beam: Ints
+    enter: Floats
+
+
+def count_on_objects(
+    sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
+) -> Floats:
+    """Count the beams that end on objects (N,): m of objects.
+
+    In `traffic` the objects of a scene occlude each other.
+    """
+    directions = beam_directions(sensor)
+    ends = beam_ends(sensor, directions, vehicle)
+    hits = _box_hits(PlacedBoxes.of(objects, sensor.pose.position), directions, ends)
+    if traffic:
+        hits = first_of_scene(hits, objects.scenes)
+    in_range = hits.enter >= lidar_of(sensor).min_range
+    return np.bincount(hits.box[in_range], minlength=len(objects)).astype(float)
+
+
+def first_of_scene(hits: BoxHits, scenes: Ints) -> BoxHits:
+    """Return the nearest hit of each beam in each scene; of equal hits that of the lowest box."""
+    scene = scenes[hits.box]
+    order = np.lexsort((hits.box, hits.enter, hits.beam, scene))
+    beam, scene = hits.beam[order], scene[order]
+    first = np.ones(len(order), bool)
+    first[1:] = (beam[1:] != beam[:-1]) | (scene[1:] != scene[:-1])
+    kept = order[first]
+    return BoxHits(hits.box[kept], hits.beam[kept], hits.enter[kept])
+
+
+def _box_hits(boxes: PlacedBoxes, directions: Floats, ends: Floats) -> BoxHits:
+    """Return all hits of boxes: beams that enter a box before they end at `ends` (B,) [m]."""
+    parts = []
+    for box, beam in _box_beam_pairs(boxes, directions):
+        enter, leave = boxes.crossing(box, directions[beam])
+        hit = np.flatnonzero((enter < leave) & (enter <= ends[beam]))
+        parts.append((box[hit], beam[hit], enter[hit]))
+    box, beam, enter = (np.concatenate(w) for w in zip(*parts, strict=True))
+    return BoxHits(box, beam, enter)
+
+
+def _box_beam_pairs(boxes: PlacedBoxes, directions: Floats) -> Iterator[tuple[Ints, Ints]]:
+    """Yield (box, beam) pairs (P,) whose beam meets the ball around the box; no other can hit."""
+    c, s = boxes.headings.T
+    x, y, z = boxes.offsets.T
+    offsets = np.stack([c * x - s * y, s * x + c * y, z], axis=1)
+    distance, ball = np.sqrt(dot(offsets, offsets)), np.sqrt(dot(boxes.halves, boxes.halves))
+    safe = np.maximum(distance, ball)
+    min_cosine = np.where(distance > ball, np.cos(np.arcsin(ball / safe) + CULL_MARGIN_RAD), -2.0)
+    portion = max(1, MAX_BEAM_TESTS // len(directions))
+    for start in range(0, len(offsets), portion):
+        block = slice(start, start + portion)
+        cosine = offsets[block] @ directions.T / safe[block, None]
+        box, beam = np.nonzero(cosine >= min_cosine[block, None])
+        yield box + start, beam

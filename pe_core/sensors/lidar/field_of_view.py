@@ -1,0 +1,190 @@
+"""A LiDAR's field of view: as a mesh, as a range image, and as a mask of its own vehicle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.poses import rotate
+from ...scene.rig import Sensor
+from ...scene.vehicle import Vehicle
+from ..field_of_view import EgoMask, ViewPatch, grid_faces
+from .beams import beam_field
+from .model import Lidar, lidar_of
+
+Floats = NDArray[np.float64]
+
+MIN_EXTENT = math.radians(0.2)
+"""A field of view without height or width, as of a single channel, is drawn with this one [rad]."""
+POLE = math.radians(89.0)
+"""A field of view beyond this elevation is drawn up to the pole [rad]."""
+MIN_AZIMUTHS = 8
+"""A model of fewer azimuths than this is a pattern: its beams may have any azimuth."""
+
+
+def beam_patch(lidar: Lidar, step: float) -> ViewPatch:
+    """Return the region between a LiDAR's beams as triangles of about `step` [rad]."""
+    band = _lattice_band if lidar.azimuth_count >= MIN_AZIMUTHS else _pattern_band
+    azimuths, low, high, closed = band(lidar, step)
+    middle, half = (low + high) / 2.0, np.maximum((high - low) / 2.0, MIN_EXTENT / 2.0)
+    low, high = np.maximum(middle - half, -np.pi / 2.0), np.minimum(middle + half, np.pi / 2.0)
+    rows = max(math.ceil(float((high - low).max()) / step), 1) + 1
+    elevation = low + np.linspace(0.0, 1.0, rows)[:, None] * (high - low)
+    x, y = np.cos(elevation) * np.cos(azimuths), np.cos(elevation) * np.sin(azimuths)
+    directions = np.stack([x, y, np.sin(elevation)], axis=-1).reshape(-1, 3)
+    index = np.arange(len(directions)).reshape(rows, -1)
+    for row, angles in ((0, -low), (-1, high)):
+        if closed and float(angles.min()) > POLE:
+            index[row] = index[row, 0]
+            directions[index[row, 0]] = 0.0, 0.0, 1.0 if row else -1.0
+    return ViewPatch(directions, grid_faces(index, closed=closed))
+
+
+def _lattice_band(lidar: Lidar, step: float) -> tuple[Floats, Floats, Floats, bool]:
+    """Azimuths of columns, lowest and highest elevation at each [rad], and whether they close."""
+    steps, offsets = lidar.azimuth_steps, lidar.azimuth_offsets
+    closed = len(steps) == lidar.azimuth_count
+    first = float(steps[0]) * lidar.azimuth_step + float(offsets.min())
+    last = float(steps[-1]) * lidar.azimuth_step + float(offsets.max())
+    azimuths = _columns(first, last, step, closed)
+    flat = np.ones(len(azimuths))
+    return azimuths, flat * lidar.elevations.min(), flat * lidar.elevations.max(), closed
+
+
+def _pattern_band(lidar: Lidar, step: float) -> tuple[Floats, Floats, Floats, bool]:
+    """As `_lattice_band`, for beams at any azimuth: no column lies in the widest gap."""
+    azimuths, elevations = np.mod(lidar.azimuth_offsets, 2.0 * np.pi), lidar.elevations
+    order = np.argsort(azimuths, kind="stable")
+    azimuths, elevations = azimuths[order], elevations[order]
+    gaps = np.diff(azimuths, append=azimuths[0] + 2.0 * np.pi)
+    after = int(np.argmax(gaps)) + 1
+    closed = float(gaps.max()) < 4.0 * step
+    azimuths = np.concatenate([azimuths[after:], azimuths[:after] + 2.0 * np.pi])
+    elevations = np.concatenate([elevations[after:], elevations[:after]])
+    columns = _columns(float(azimuths[0]), float(azimuths[-1]), step, closed)
+    spacing = columns[1] - columns[0]
+    column = np.rint((azimuths - columns[0]) / spacing).astype(np.int64) % len(columns)
+    low, high = np.full(len(columns), np.inf), np.full(len(columns), -np.inf)
+    np.minimum.at(low, column, elevations)
+    np.maximum.at(high, column, elevations)
+    filled = np.isfinite(low)
+    period = 2.0 * np.pi
+    low = np.interp(columns, columns[filled], low[filled], period=period)
+    return columns, low, np.interp(columns, columns[filled], high[filled], period=period), closed
+
+
+def _columns(first: float, last: float, step: float, closed: bool) -> Floats:
+    """Azimuths of columns about `step` apart, from first to last or all round [rad]."""
+    if closed:
+        count = max(math.ceil(2.0 * math.pi / step), 3)
+        return first + np.arange(count) * (2.0 * math.pi / count)
+    middle, half = (first + last) / 2.0, max((last - first) / 2.0, MIN_EXTENT / 2.0)
+    return np.linspace(middle - half, middle + half, max(math.ceil(2.0 * half / step), 1) + 1)
+
+
+@dataclass(frozen=True, slots=True)
+class RangePicture:
+    """A range image: how far a LiDAR's beams reach, and what ends them.
+
+    A row is a channel, the highest first; a column is an azimuth, the leftmost first. The middle of
+    a full circle is straight ahead. A channel's azimuth offset moves its beams, not its columns.
+
+    Attributes
+    ----------
+    distance : (C, A) float
+        Distance at which each beam ends on the vehicle, on a thing or on the ground (z = 0) [m];
+        inf where there is no echo between minimum and maximum range.
+    stopped : (C, A) bool
+        Whether the vehicle ends the beam, also nearer than the minimum range.
+    things : (C, A) int
+        The part of `things` that ends the beam; -1 where none does, or without an echo.
+    elevations : (C,) float
+        Elevations of the rows, descending [rad].
+    azimuths : (A,) float
+        Azimuths of the columns, descending: positive is left [rad].
+    """
+
+    distance: Floats
+    stopped: NDArray[np.bool_]
+    things: NDArray[np.int64]
+    elevations: Floats
+    azimuths: Floats
+
+
+def range_picture(
+    sensor: Sensor, vehicle: Vehicle | None, things: Vehicle | None = None
+) -> RangePicture:
+    """Return the range image of a mounted LiDAR.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        A LiDAR.
+    vehicle : Vehicle or None
+        The vehicle it is mounted on.
+    things : Vehicle, optional
+        Other bodies in the scene, as parts of one mesh.
+    """
+    lidar, position = lidar_of(sensor), sensor.pose.position
+    directions = rotate(sensor.pose.ground_from_sensor, lidar.directions)
+    ground = _to_ground(position[2], directions[:, 2])
+    body = np.full(len(directions), np.inf)
+    if vehicle is not None:
+        body = vehicle.first_hit(position, directions).distance
+    thing, part = _to_things(things, np.asarray(position), directions)
+    surroundings = np.minimum(ground, thing)
+    distance = np.minimum(body, surroundings)
+    no_echo = (distance > lidar.max_range) | (distance < lidar.min_range)
+    on_thing = (part >= 0) & (thing < np.minimum(body, ground)) & ~no_echo
+    stopped = (body <= surroundings) & (body <= lidar.max_range)
+    rows = np.argsort(-lidar.elevations, kind="stable")
+    columns = np.argsort(-columns_around(lidar), kind="stable")
+
+    def as_image(values: NDArray) -> NDArray:
+        return values.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
+
+    return RangePicture(
+        as_image(np.where(no_echo, np.inf, distance)),
+        as_image(stopped),
+        as_image(np.where(on_thing, part, -1)),
+        lidar.elevations[rows],
+        columns_around(lidar)[columns],
+    )
+
+
+def _to_things(
+    things: Vehicle | None, origin: Floats, directions: Floats
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Distance (B,) to things [m], and the part (B,) that is hit, -1 for none."""
+    if things is None:
+        return np.full(len(directions), np.inf), np.full(len(directions), -1)
+    hits = things.first_hit_from(origin, directions)
+    parts = np.asarray(things.parts)[hits.face]
+    return hits.distance, np.where(hits.face >= 0, parts, -1).astype(np.int64)
+
+
+def _to_ground(height: float, up: Floats) -> Floats:
+    """Distance (B,) to z = 0 of rays from a height that rise by `up` (B,) per metre [m]."""
+    distance = np.full(len(up), np.inf)
+    if height > 0.0:
+        np.divide(height, -up, out=distance, where=up < 0.0)
+    return distance
+
+
+def columns_around(lidar: Lidar) -> Floats:
+    """Return the azimuths (A,) of the columns, above -180 to 180 degrees [rad]."""
+    azimuths = lidar.azimuth_steps * lidar.azimuth_step
+    turned: Floats = np.pi - np.mod(np.pi - azimuths, 2.0 * np.pi)
+    return turned
+
+
+def revolution_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
+    """Return which beams end on the vehicle within their maximum range, however near."""
+    lidar = lidar_of(sensor)
+    stopped, azimuths = beam_field(sensor, vehicle).stopped_by, columns_around(lidar)
+    rows, columns = (np.argsort(-angles, kind="stable") for angles in (lidar.elevations, azimuths))
+    parts = stopped.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
+    return EgoMask(parts.astype(np.int32), lidar.elevations[rows], azimuths[columns])

@@ -1,0 +1,107 @@
+"""The perception model: AP curves by kind of sensor, and the rule for blind sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ..base.errors import InputError, shown
+from ..base.read_only import ReadOnlyDict
+from ..base.values import A_NAME, choice
+from ..metric.entropy import ApCurve
+from .kind import KINDS, ClassCurves, kind_named
+
+BLIND_RULES = ("floor", "literal")
+SOURCE = "perception model"
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class PerceptionModel:
+    """The AP curve of every kind of sensor, and how late fusion takes sensors that see nothing.
+
+    Parameters
+    ----------
+    blind : {"floor", "literal"}
+        "floor": a sensor that sees nothing changes nothing. "literal": the literal formula (eq. 7),
+        in which a blind sensor changes the result.
+    objects : mapping of kind to mapping of class to ApCurve
+        Curves of whole objects, m counted on the object, in place of the kind's own.
+    **curves : ApCurve
+        By kind, ``lidar=ApCurve(0.2, 0.5)``; a kind's own by default. They are attributes as well:
+        ``model.lidar`` is ``model.curve("lidar")``.
+
+    Raises
+    ------
+    InputError
+        When there is no kind or rule of a name, or a curve is not an `ApCurve`.
+    """
+
+    blind: str
+    other_curves: Mapping[str, ApCurve]
+    """Curves by kind, only those that differ from the kind's own."""
+    objects: ClassCurves
+
+    def __init__(
+        self, blind: str = "floor", *, objects: ClassCurves | None = None, **curves: ApCurve
+    ) -> None:
+        put = object.__setattr__
+        put(self, "blind", choice("fusion", "blind", blind, BLIND_RULES))
+        put(self, "other_curves", _checked_curves(curves))
+        put(self, "objects", _checked_objects(objects or {}))
+
+    def __getattr__(self, kind: str) -> ApCurve:
+        if kind in KINDS:
+            return self.curve(kind)
+        raise AttributeError(kind)
+
+    def curve(self, kind: str) -> ApCurve:
+        """Return the AP curve of a kind of sensor."""
+        return self.other_curves.get(kind) or kind_named(kind, SOURCE).curve
+
+    def object_curve(self, kind: str, name: str) -> ApCurve:
+        """Return the AP curve of whole objects of a class, by the beams or pixels on each.
+
+        Raises
+        ------
+        InputError
+            When there is none.
+        """
+        own_curves = kind_named(kind, SOURCE).object_curves
+        curve = self.objects.get(kind, {}).get(name) or own_curves.get(name)
+        if curve is None:
+            field = f"[ap.{kind}.objects.{name}]"
+            expected = f"a and b of {name!r} as an object (pe fit finds them)"
+            raise InputError(SOURCE, field, expected, "none")
+        return curve
+
+    @property
+    def curves(self) -> dict[str, ApCurve]:
+        """The curve of every registered kind."""
+        return {kind: self.curve(kind) for kind in KINDS}
+
+    def __repr__(self) -> str:
+        curves = ", ".join(f"{kind}={curve!r}" for kind, curve in self.curves.items())
+        objects = f", objects={dict(self.objects)!r}" if self.objects else ""
+        return f"PerceptionModel(blind={self.blind!r}, {curves}{objects})"
+
+
+def _checked_curves(curves: Mapping[str, ApCurve]) -> Mapping[str, ApCurve]:
+    """Return the curves that differ from those of their kinds."""
+    for name, curve in curves.items():
+        kind_named(name, SOURCE)
+        if not isinstance(curve, ApCurve):
+            raise InputError(SOURCE, name, "an ApCurve", shown(curve))
+    return ReadOnlyDict({k: c for k, c in curves.items() if c != kind_named(k, SOURCE).curve})
+
+
+def _checked_objects(objects: ClassCurves) -> ClassCurves:
+    """Return read-only curves by kind and class, without kinds that have none."""
+    if not isinstance(objects, Mapping):
+        raise InputError(SOURCE, "objects", "curves by kind", shown(objects))
+    for kind, curves in objects.items():
+        kind_named(kind, SOURCE, "objects")
+        for name, curve in curves.items():
+            A_NAME.checked(SOURCE, f"objects of {kind}", name)
+            if not isinstance(curve, ApCurve):
+                raise InputError(SOURCE, f"{kind}.objects.{name}", "an ApCurve", shown(curve))
+    return ReadOnlyDict({kind: curves for kind, curves in objects.items() if curves})

@@ -1,0 +1,17 @@
+"""Names of the files in a folder of results."""
+
+RESULT, HISTORY, STUDY, MESH = "result.json", "history.csv", "study.toml", "vehicle.npz"
+AREAS = "areas.npz"
+"""Mesh file with the areas of mounts, one part for each mount."""
+BOXES = "boxes.csv"
+"""File of labelled boxes beside a study, when they have no file of their own."""
+OPTIMIZED, REVIEW = "optimized.blend", "review.png"
+"""Files that Blender adds."""
+REVIEW_PAGE = "review.html"
+"""The review page."""
+SEARCH = "search.json"
+"""Checkpoint of a search, from which it can be resumed."""
+BESIDE_RESULT = (STUDY, MESH, AREAS, BOXES, HISTORY, SEARCH, OPTIMIZED, REVIEW, REVIEW_PAGE)
+"""All files that belong to a result.json."""
+SCHEMA = 1
+"""Version of the schema of result.json."""

@@ -1,1 +1,0 @@
-"""``pe validate``: the scores held against what trained detectors were published to reach."""

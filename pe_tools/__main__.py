@@ -1,0 +1,32 @@
+"""``python -m pe_tools`` and the script ``pe``: Ctrl-C is answered from the start.
+
+Nothing is imported on top that takes long.
+"""
+
+import os
+import signal
+from types import FrameType
+
+
+def main() -> None:
+    """Run the command and exit with its status."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _leave)
+    from .cli import leave
+    from .cli.verbs import main as run
+
+    if signal.getsignal(signal.SIGINT) is _leave:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    leave(run())
+
+
+def _leave(_signum: int, _frame: FrameType | None) -> None:
+    """While loading there is nothing to lose."""
+    try:
+        os.write(2, b"pe: interrupted\n")
+    finally:
+        os._exit(130)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,77 @@
+"""Texts for the designer of a rig: warnings, scores in words, comparisons, and one location.
+
+Nothing here computes a score; results of `pe_core` are checked, compared and described.
+"""
+
+from pe_tools.advice.number_text import joined, percent
+
+from .advice import FRAGILE, Advice, fragile, off_by
+from .hidden_sensors import HiddenSensor, hidden_sensors, hidden_words
+from .key_figures import (
+    SENSOR_COLUMNS,
+    SHORT_ZONES,
+    KeyFigures,
+    SensorRow,
+    key_figures,
+    loss_text,
+    sensor_rows,
+    sensor_table,
+)
+from .location import AskedPlace, SensorAtPlace, ask_place
+from .mount_checks import stopped_shares
+from .ranking import Notation, ranking, win_words
+from .score_comparison import ComparedRow, compare, compare_figures
+from .summary import (
+    BLIND_TO_M,
+    Outlook,
+    class_of,
+    lone_reach,
+    object_words,
+    objects_looked_at,
+    outlook,
+)
+from .summary_text import WHERE, rig_words, sensor_words, stopped_words, words
+from .warnings import warnings
+
+__all__ = [
+    "BLIND_TO_M",
+    "FRAGILE",
+    "SENSOR_COLUMNS",
+    "SHORT_ZONES",
+    "WHERE",
+    "Advice",
+    "AskedPlace",
+    "ComparedRow",
+    "HiddenSensor",
+    "KeyFigures",
+    "Notation",
+    "Outlook",
+    "SensorAtPlace",
+    "SensorRow",
+    "ask_place",
+    "class_of",
+    "compare",
+    "compare_figures",
+    "fragile",
+    "hidden_sensors",
+    "hidden_words",
+    "joined",
+    "key_figures",
+    "lone_reach",
+    "loss_text",
+    "object_words",
+    "objects_looked_at",
+    "off_by",
+    "outlook",
+    "percent",
+    "ranking",
+    "rig_words",
+    "sensor_rows",
+    "sensor_table",
+    "sensor_words",
+    "stopped_shares",
+    "stopped_words",
+    "warnings",
+    "win_words",
+    "words",
+]

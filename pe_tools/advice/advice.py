@@ -1,0 +1,91 @@
+"""The warning record, and the warning about a placement that is sensitive to mounting errors."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from pe_tools.advice.number_text import metres
+
+FRAGILE = "fragile"
+"""Code of the warning that concerns the placement of all sensors."""
+
+
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """A warning about a probable mistake. Nothing is refused because of it.
+
+    Attributes
+    ----------
+    subject : str or None
+        Name of the sensor; None if the warning concerns the vehicle or the whole placement.
+    code : str
+        Identifier of the warning for programs: ``"inside"``, ``"size"``, ...
+    text : str
+        One sentence, without the name of the subject.
+    part : str or None
+        The part of the vehicle that causes the warning.
+    fix : str or None
+        Correction: "turn_vehicle" by `amount` degrees counter-clockwise, "scale_vehicle" by
+        a factor, "move_vehicle" by x, y and z [m], "roll_sensor" by degrees.
+    amount : tuple of float
+        Arguments of the fix.
+    """
+
+    subject: str | None
+    code: str
+    text: str
+    part: str | None = None
+    fix: str | None = None
+    amount: tuple[float, ...] = ()
+
+    @property
+    def line(self) -> str:
+        """The sentence after the name of its subject."""
+        whole = "placement" if self.code == FRAGILE else "vehicle"
+        return f"{self.subject or whole}: {self.text}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the warning as plain JSON data."""
+        return {**asdict(self), "amount": list(self.amount)}
+
+
+FRAGILE_NATS = 0.05
+"""A rise of the mean entropy up to this [nats] is within the uncertainty of voxels and mounting."""
+SURE = 2.0
+"""A rise of at most this many standard errors is not significant."""
+
+
+def fragile(
+    rise: float, stderr: float, position: float, angle: float, tolerant: bool
+) -> tuple[Advice, ...]:
+    """Return a warning if the entropy of a placement rises much under mounting errors.
+
+    Parameters
+    ----------
+    rise, stderr : float
+        Rise of the mean entropy over random mounting errors, and its standard error [nats].
+    position, angle : float
+        Standard deviations (1 sigma) of the errors [m, rad].
+    tolerant : bool
+        Whether the search already took such errors into account.
+
+    Returns
+    -------
+    tuple of Advice
+        One warning, or none.
+    """
+    if rise <= max(FRAGILE_NATS, SURE * stderr):
+        return ()
+    advice = "" if tolerant else "; a search with a tolerance looks for one that is less fragile"
+    text = f"{off_by(position, angle)} (1 sigma) it is {rise:.2f} nats worse on average{advice}"
+    return (Advice(None, FRAGILE, text),)
+
+
+def off_by(position: float, angle: float) -> str:
+    """Describe mounting errors [m, rad], 1 sigma: "mounted 1 cm and 0.3 deg off"."""
+    turned = f"{math.degrees(angle):.2g} deg"
+    moved = f"{1000.0 * position:.2g} mm" if position < 0.00995 else metres(position)
+    named = [*[moved] * (position > 0.0), *[turned] * (angle > 0.0)]
+    return f"mounted {' and '.join(named)} off"

@@ -1,0 +1,226 @@
+"""Key figures of a rig, and the table of its sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from pe_core.scene.rig import Rig
+from pe_core.scene.vehicle import Vehicle
+from pe_core.scoring.score import FAR_M, NEAR_M, Score
+from pe_core.scoring.sight import Reach, Sight, ends_with_space
+from pe_tools.advice.number_text import percent
+
+from .mount_checks import stopped_shares
+from .summary import BLIND_TO_M, Outlook, class_of
+
+SENSOR_COLUMNS = ("sensor", "loss [nats]", "costs most", "hidden by")
+SHORT_ZONES = {
+    "front": "ahead",
+    "rear": "behind",
+    "left": "left",
+    "right": "right",
+    "near": f"0-{NEAR_M:g} m",
+    "mid": f"{NEAR_M:g}-{FAR_M:g} m",
+    "far": f"> {FAR_M:g} m",
+}
+"""Short text for each zone of `scoring.zones.ZONES`, for a narrow column."""
+OCCLUDERS_NAMED = 3
+MIN_SHARE = 5e-4
+"""A part that hides a smaller share is not named: the share would read 0.0%."""
+MIN_RISE, MIN_LOSS = 0.005, 0.00005
+"""A rise of entropy [nats] below `MIN_RISE` would read 0.00; below `MIN_LOSS` it counts as none."""
+NO_FIGURE = "-"
+
+
+@dataclass(frozen=True, slots=True)
+class SensorRow:
+    """What one sensor contributes to its rig.
+
+    Attributes
+    ----------
+    name : str
+    loss : float or None
+        How much the rig's entropy rises when the sensor fails [nats]; None for the only sensor.
+    zone : str
+        Zone (`scoring.zones.ZONES`) whose entropy rises most; empty where none rises, or unknown.
+    zone_loss : float
+        Rise of the entropy in that zone [nats], on a sample of the prior.
+    hidden_by : dict of float
+        Share of the sensor's beams or pixels that each part of the vehicle occludes, highest first.
+    """
+
+    name: str
+    loss: float | None
+    zone: str
+    zone_loss: float
+    hidden_by: Mapping[str, float]
+
+    @property
+    def cells(self) -> tuple[str, str, str, str]:
+        """Texts of the columns `SENSOR_COLUMNS`."""
+        return self.name, loss_text(self.loss), where_text(self), hidden_text(self.hidden_by)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the row as plain JSON data."""
+        return {
+            "name": self.name,
+            "loss_nats": self.loss,
+            "zone": self.zone or None,
+            "zone_loss_nats": self.zone_loss if self.zone else None,
+            "hidden_by": dict(self.hidden_by),
+        }
+
+
+def sensor_rows(
+    score: Score,
+    rig: Rig | None = None,
+    vehicle: Vehicle | None = None,
+    seen: Outlook | None = None,
+) -> tuple[SensorRow, ...]:
+    """Return a row for every sensor of a score, in the rig's order.
+
+    Parameters
+    ----------
+    score : Score
+    rig, vehicle : Rig, Vehicle, optional
+        The rig and the vehicle that were scored. With both, the parts that hide pixels of a camera
+        are listed, too.
+    seen : Outlook, optional
+        Outlook of the same rig. It has the zone in which the loss of a sensor costs most; for a
+        score on objects this zone is unknown.
+
+    Returns
+    -------
+    tuple of SensorRow
+    """
+    only = len(score.per_sensor) == 1
+    rows = []
+    for name, sensor_score in score.per_sensor.items():
+        by_zone = {} if seen is None or score.objects else seen.shares.losses[name]
+        zone = max(by_zone, key=lambda zone_name: by_zone[zone_name], default="")
+        if not zone or by_zone[zone] < MIN_RISE:
+            zone = ""
+        parts = stopped_shares(None if rig is None else rig[name], sensor_score, vehicle)
+        shown = {part: share for part, share in parts.items() if share >= MIN_SHARE}
+        loss = None if only else sensor_score.lost
+        rows.append(SensorRow(name, loss, zone, by_zone.get(zone, 0.0), shown))
+    return tuple(rows)
+
+
+def sensor_table(rows: Sequence[SensorRow]) -> list[str]:
+    """Return rows as aligned lines of text under a header."""
+    table = [SENSOR_COLUMNS, *(row.cells for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    return [
+        "  ".join(
+            cell.rjust(width) if k == 1 else cell.ljust(width)
+            for k, (cell, width) in enumerate(zip(cells, widths, strict=True))
+        ).rstrip()
+        for cells in table
+    ]
+
+
+def loss_text(loss: float | None) -> str:
+    """Return the rise of entropy without a sensor, in nats: "1.29", "none", or "only"."""
+    if loss is None:
+        return "only"
+    if abs(loss) < MIN_LOSS:
+        return "none"
+    return f"{max(loss, 0.0) if abs(loss) < MIN_RISE else loss:.2f}"
+
+
+def where_text(row: SensorRow) -> str:
+    """Return the zone in which the loss of a sensor costs most, with the rise: "> 40 m +2.10"."""
+    return f"{SHORT_ZONES[row.zone]} +{row.zone_loss:.2f}" if row.zone else NO_FIGURE
+
+
+def hidden_text(parts: Mapping[str, float]) -> str:
+    """Return the parts that hide a sensor's view with their shares: "roof 6.0%, hood 1.5%"."""
+    named = [f"{part} {percent(share)}" for part, share in parts.items()]
+    more = ["..."] if len(named) > OCCLUDERS_NAMED else []
+    return ", ".join(named[:OCCLUDERS_NAMED] + more) or NO_FIGURE
+
+
+@dataclass(frozen=True, slots=True)
+class KeyFigures:
+    """Blind ground, reach ahead and expected AP of a rig.
+
+    Attributes
+    ----------
+    blind_m2 : float
+        Ground around the vehicle on which an object `height` tall is invisible [m2].
+    height, within : float
+        Height of the object, and the distance from the body's rectangle up to which the ground was
+        evaluated [m].
+    class_name : str or None
+        Class of the reach and the AP. None where objects are scored instead of voxels: that score
+        already has both.
+    reach_m : float or None
+        Distance straight ahead of the origin up to which an object of that class is found with an
+        AP of 0.5 or more [m]; 0 where it is not found.
+    at_least : bool
+        Whether the perception space ends there: the true reach may be longer.
+    expected_ap : float or None
+        Expected AP of that class, 0 to 1; None where the prior has no such objects in the space.
+    """
+
+    blind_m2: float
+    height: float
+    within: float
+    class_name: str | None = None
+    reach_m: float | None = None
+    at_least: bool = False
+    expected_ap: float | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the figures as plain JSON data."""
+        return asdict(self)
+
+
+def key_figures(
+    sight: Sight,
+    rig: Rig,
+    height: float = BLIND_TO_M,
+    class_name: str | None = None,
+    *,
+    of_voxels: bool = True,
+) -> KeyFigures:
+    """Return the key figures of a rig.
+
+    Parameters
+    ----------
+    sight : Sight
+    rig : Rig
+    height : float
+        Height of the object for which blind ground is computed [m]; the lowest height of the space
+        if that is greater.
+    class_name : str, optional
+        Class of the reach and the AP. By default pedestrians, or the first class of a prior without
+        them.
+    of_voxels : bool
+        False where objects are scored: the score then has reach and AP, and they are left out.
+
+    Returns
+    -------
+    KeyFigures
+
+    Raises
+    ------
+    InputError
+        When the prior has no such class, or the height is not in the space.
+    """
+    name = class_of(sight.prior, class_name)
+    blind = sight.blind(rig, max(height, sight.space.z[0]))
+    of_ground = blind.area, blind.height, blind.within
+    if not of_voxels:
+        return KeyFigures(*of_ground)
+    reach_m, at_least = ahead(sight.reach(rig, name))
+    return KeyFigures(*of_ground, name, reach_m, at_least, sight.expected_ap(rig).get(name))
+
+
+def ahead(reach: Reach) -> tuple[float, bool]:
+    """Return the reach straight ahead [m], and whether the space ends there."""
+    distance = float(reach.distance[0])  # the first bearing is straight ahead
+    return distance, distance > 0.0 and bool(ends_with_space(reach, reach.distance)[0])

@@ -1,0 +1,207 @@
+"""Checks of a sensor's mounting position: inside the body, off the body, or occluded by it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core import catalog
+from pe_core.geometry.grids import PerceptionSpace
+from pe_core.geometry.poses import dot
+from pe_core.geometry.raycast import Hits
+from pe_core.scene.housing import cuts_body
+from pe_core.scene.inside_test import is_enclosed
+from pe_core.scene.rig import Sensor
+from pe_core.scene.vehicle import Vehicle, closest_points
+from pe_core.scoring.score import SensorScore
+from pe_core.sensors import kind_of
+from pe_tools.advice.number_text import metres, percent
+
+from .advice import Advice
+from .vehicle_checks import Bodywork
+
+Floats = NDArray[np.float64]
+
+CLEAR_M, CLEAR_ABOVE_M = 0.5, 0.75
+"""Greatest distance from the body of a mounted sensor [m]. Above the body it is larger: there are
+racks and masts, and a search tries positions up to that height."""
+NEAR_M = 0.05
+"""First radius of the search for the nearest triangle, beyond the bounding box [m]."""
+LOOKS_AT_M = 0.3
+"""If half of a sensor's rays end nearer than this [m], it looks only at the body."""
+MOST_STOPPED = 1.0 / 3.0
+"""Occluded share from which there is a warning: more than the quarter that a sensor at a corner of
+the vehicle loses."""
+MOST_RAYS = 4096
+"""Rays of a sensor that are cast at most."""
+PARTS_NAMED = 3
+UPSIDE_DOWN = -0.2
+"""Vertical component of a sensor's unit upward axis below which its picture is upside down."""
+
+
+def stopped_shares(
+    sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
+) -> dict[str, float]:
+    """Return the share of a sensor's rays that each part of the vehicle blocks, highest first.
+
+    Parameters
+    ----------
+    sensor : Sensor or None
+        With None, only the beams that the score has counted are used.
+    own : SensorScore, optional
+        The sensor's part of a score. Without it, or where it counts no beams (cameras), an even
+        sample of the sensor's rays is cast.
+    vehicle : Vehicle, optional
+
+    Returns
+    -------
+    dict of str to float
+        Shares, 0 to 1, by name of the part; parts that block nothing are left out.
+    """
+    if own is not None and own.beams:
+        return _shares(own.beams, own.stopped_by)
+    if sensor is None or vehicle is None:
+        return {}
+    return _cast_shares(sensor, vehicle, _rays_met(sensor, vehicle))
+
+
+def _cast_shares(sensor: Sensor, vehicle: Vehicle, hits: Hits) -> dict[str, float]:
+    reach = getattr(sensor.model, "max_range", math.inf)
+    faces = hits.face[hits.distance < reach]
+    counts = np.bincount(np.asarray(vehicle.parts)[faces], minlength=len(vehicle.part_names))
+    return _shares(len(hits.face), dict(zip(vehicle.part_names, counts.tolist(), strict=True)))
+
+
+def _shares(rays: int, by_part: Mapping[str, int]) -> dict[str, float]:
+    shares = {name: count / rays for name, count in by_part.items() if count}
+    return dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
+
+
+def _rays_met(sensor: Sensor, vehicle: Vehicle) -> Hits:
+    """Return the first hits of a sample of a sensor's rays."""
+    return _first_hits(sensor, vehicle, kind_of(sensor).rays(sensor, MOST_RAYS))
+
+
+@dataclass(frozen=True)
+class SensorAtBody:
+    """A sensor on a vehicle's body, with its part of the score (`own`) where there is one."""
+
+    sensor: Sensor
+    body: Bodywork
+    own: SensorScore | None = None
+
+    @cached_property
+    def hits(self) -> Hits:
+        """First hits of a sample of the sensor's rays on the body."""
+        return _rays_met(self.sensor, self.body.vehicle)
+
+    @cached_property
+    def stopped_by(self) -> dict[str, float]:
+        """Share of the sensor's rays that each part blocks, highest first."""
+        if self.own is not None and self.own.beams:
+            return _shares(self.own.beams, self.own.stopped_by)
+        return _cast_shares(self.sensor, self.body.vehicle, self.hits)
+
+    @cached_property
+    def gap(self) -> float:
+        """Distance from the sensor to the nearest point of the body [m]."""
+        return distance_to(self.body.itself, np.asarray(self.sensor.pose.position))
+
+    @property
+    def above(self) -> bool:
+        """Whether the sensor is above the vehicle's bounding box."""
+        low, high = self.body.itself.bounds
+        x, y, z = self.sensor.pose.position
+        return bool(low[0] <= x <= high[0] and low[1] <= y <= high[1] and z > high[2])
+
+    @cached_property
+    def inside(self) -> bool:
+        """Whether the body encloses the sensor: rays hit it in nearly all directions."""
+        position = np.asarray(self.sensor.pose.position)
+        return is_enclosed(self.body.itself, position, self.sensor.model.sees_through_glass)
+
+
+def odd_mounting(mounted: SensorAtBody) -> Iterator[Advice]:
+    """Yield warnings about how a sensor is mounted on the vehicle."""
+    sensor = mounted.sensor
+    if mounted.inside:
+        yield Advice(sensor.name, "inside", "it is inside the body and sees next to nothing")
+        return
+    yield from _housing(mounted)
+    if mounted.gap > (CLEAR_ABOVE_M if mounted.above else CLEAR_M):
+        text = f"it is {metres(mounted.gap)} clear of the vehicle: what holds it?"
+        yield Advice(sensor.name, "clear", text)
+    yield from _in_the_way(mounted)
+
+
+def odd_place(sensor: Sensor, space: PerceptionSpace) -> Iterator[Advice]:
+    """Yield warnings about a sensor's pose that do not depend on the vehicle."""
+    x, y, z = sensor.pose.position
+    if z < 0.0:
+        yield Advice(sensor.name, "underground", f"it is {metres(-z)} under the ground")
+    bounds = (space.x, space.y, (min(0.0, space.z[0]), space.z[1]))
+    outside = (not low <= w <= high for w, (low, high) in zip((x, y, z), bounds, strict=True))
+    if z >= 0.0 and any(outside):
+        text = f"it is outside the perception space, at ({x:g}, {y:g}, {z:g}) m"
+        yield Advice(sensor.name, "outside", text)
+    up = float(sensor.pose.ground_from_sensor[2, 2])
+    kind = kind_of(sensor)
+    if kind.has_top and up < UPSIDE_DOWN:
+        text = f"the {kind.label.lower()} is upside down"
+        yield Advice(sensor.name, "upside_down", text, fix="roll_sensor", amount=(180.0,))
+
+
+def distance_to(vehicle: Vehicle, point: Floats) -> float:
+    """Return the distance from a point (3,) to the nearest triangle of a vehicle [m]."""
+    low, high = vehicle.bounds
+    gap = np.maximum(np.maximum(low - point, point - high), 0.0)
+    radius = NEAR_M + float(np.sqrt(dot(gap, gap)))
+    while True:
+        near = vehicle.triangles[vehicle.faces_near(point, radius)]
+        if len(near):
+            points = closest_points(point, near)
+            distance = float(np.sqrt(dot(points - point, points - point).min()))
+            if distance <= radius:
+                return distance
+        radius *= 2.0
+
+
+def _housing(mounted: SensorAtBody) -> Iterator[Advice]:
+    """Check for a housing of known size that intersects the body."""
+    sensor = mounted.sensor
+    housing = catalog.housing(sensor.model.name)
+    parts = () if housing is None else cuts_body(sensor.pose, housing, mounted.body.itself)
+    if housing is not None and parts:
+        size = " x ".join(f"{100.0 * side:.0f}" for side in housing.size)
+        named = ", ".join(parts[:PARTS_NAMED]) + (", ..." if len(parts) > PARTS_NAMED else "")
+        text = f"its housing ({size} cm) cuts into {named}"
+        yield Advice(sensor.name, "housing", text, part=parts[0])
+
+
+def _in_the_way(mounted: SensorAtBody) -> Iterator[Advice]:
+    """Check for a sensor that looks at the body from near, or whose view is mostly blocked."""
+    name, unit = mounted.sensor.name, kind_of(mounted.sensor).unit
+    if not mounted.stopped_by:
+        return
+    part, part_share = next(iter(mounted.stopped_by.items()))
+    median = float(np.median(mounted.hits.distance)) if len(mounted.hits.face) else math.inf
+    if median <= LOOKS_AT_M:
+        text = f"it looks at {part} from {metres(median)}"
+        yield Advice(name, "looks_at", text, part=part)
+        return
+    share = sum(mounted.stopped_by.values())
+    if share < MOST_STOPPED:
+        return
+    text = f"{percent(share)} of its {unit} are stopped by {part}"
+    if share - part_share > 0.005:
+        text = f"{percent(share)} of its {unit} are stopped, {percent(part_share)} by {part}"
+    yield Advice(name, "stopped", text, part=part)
+
+
+def _first_hits(sensor: Sensor, vehicle: Vehicle, rays: Floats) -> Hits:
+    return vehicle.first_hit(sensor.pose.position, rays, sensor.model.sees_through_glass)

@@ -1,0 +1,310 @@
+"""Compare scores of several rigs: differences, their standard errors, and which are significant."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from statistics import NormalDist
+from typing import Any
+
+from pe_core.scoring.sampling import BLOCKS
+from pe_core.scoring.scatter import FigureKey, paired_error
+from pe_core.scoring.score import PartScore, Score
+
+from .key_figures import KeyFigures
+
+CERTAINTY = 0.95
+LEAST = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05, "blind": 0.05}
+"""Smallest difference of each measure that counts: half of the last digit that is shown."""
+
+
+def sure_factor(studies: int, degrees: int = BLOCKS - 1) -> float:
+    """Return how many standard errors a difference must exceed to be significant.
+
+    Parameters
+    ----------
+    studies : int
+        Number of studies. All their pairs are compared; the Bonferroni correction divides the 5 %
+        error probability among the pairs.
+    degrees : int
+        Degrees of freedom of the standard errors: number of batches of the estimate, minus one.
+
+    Returns
+    -------
+    float
+        Two-sided quantile of Student's t distribution.
+    """
+    pairs = max(studies * (studies - 1) // 2, 1)
+    z = NormalDist().inv_cdf(1.0 - (1.0 - CERTAINTY) / (2.0 * pairs))
+    # Abramowitz & Stegun 26.7.5, quantile of Student's t from that of the normal distribution.
+    terms = (
+        z,
+        (z**3 + z) / 4.0,
+        (5.0 * z**5 + 16.0 * z**3 + 3.0 * z) / 96.0,
+        (3.0 * z**7 + 19.0 * z**5 + 17.0 * z**3 - 15.0 * z) / 384.0,
+        (79.0 * z**9 + 776.0 * z**7 + 1482.0 * z**5 - 1920.0 * z**3 - 945.0 * z) / 92160.0,
+    )
+    return math.fsum(term / degrees**k for k, term in enumerate(terms))
+
+
+def degrees_of(scores: Iterable[Score]) -> int:
+    """Return the degrees of freedom of the errors of several scores: the lowest of all."""
+    batches = [score.scatter.batches for score in scores if score.scatter is not None]
+    return max(min(batches, default=BLOCKS) - 1, 1)
+
+
+def difference_errors(scores: Sequence[Score], figure: FigureKey) -> tuple[tuple[float, ...], ...]:
+    """Return the standard errors of the differences of a figure between all pairs of scores.
+
+    Errors of scores on the same sample are paired (`scoring.scatter`). Errors of scores on
+    different samples are independent: their squares add up. The error is 0 for scores of the whole
+    grid, and for reach, which is not sampled.
+
+    Parameters
+    ----------
+    scores : sequence of Score
+        N scores.
+    figure : FigureKey
+        Group, name and measure of the figure.
+
+    Returns
+    -------
+    tuple of tuple of float
+        (N, N) symmetric, in the unit of the figure.
+    """
+    errors = [_error(score, figure) for score in scores]
+    rows = []
+    for i, one in enumerate(scores):
+        row = []
+        for j, other in enumerate(scores):
+            paired = paired_error(one.scatter, other.scatter, figure)
+            row.append(
+                0.0 if i == j else math.hypot(errors[i], errors[j]) if paired is None else paired
+            )
+        rows.append(tuple(row))
+    return tuple(rows)
+
+
+def _error(score: Score, figure: FigureKey) -> float:
+    """Return the standard error of a figure of one score."""
+    if not score.stderr or figure[2] == "reach":
+        return 0.0
+    if figure == ("rig", "", "entropy"):
+        return score.stderr
+    stored = None if score.scatter is None else score.scatter.error(figure)
+    return _bound(score, figure) if stored is None else stored
+
+
+def _bound(score: Score, figure: FigureKey) -> float:
+    """Return a standard error that the scatter lacks: that of the objects, or an upper bound."""
+    group, name, measure = figure
+    objects = score.objects
+    found_class = None if objects is None or group != "class" else objects.per_class.get(name)
+    if objects is not None and measure == "ap":
+        return objects.ap_stderr if found_class is None else found_class.ap_stderr
+    if found_class is not None and measure == "entropy":
+        return found_class.stderr
+    parts: Mapping[str, PartScore] = score.per_zone if group == "zone" else score.per_class
+    share = parts[name].share if name in parts else 1.0
+    if measure == "entropy":
+        return score.stderr / math.sqrt(share)  # as if its part of the sample were a random draw
+    count = score.voxels if objects is None else objects.objects
+    return 0.5 / math.sqrt(max(share * count, 1.0))  # maximum standard error of a share, at 0.5
+
+
+ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
+LOWER_IS_BETTER = frozenset({ENTROPY, BLIND})
+AHEAD = "front"
+"""Direction whose reach is compared."""
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedRow:
+    """One figure of several rigs: a row of a comparison table.
+
+    Attributes
+    ----------
+    group : {"rig", "zone", "class"}
+    name : str
+        Name of the zone or class; empty for the rig itself.
+    measure : {"entropy", "coverage", "ap", "reach", "blind"}
+        Entropy [nats] and blind ground [m2]: lower is better. Coverage and expected AP, 0 to 1, and
+        reach ahead [m]: higher is better.
+    values : tuple of float or None
+        One value for each score, in their order; None for a score without this zone or class.
+    differences : tuple of float or None
+        Value minus the value of the first score; None where one of the two is missing.
+    best : tuple of bool
+        Marks the best value and all values that are not significantly worse. All False where no
+        value is significantly worse than the best one.
+    errors : tuple of tuple of float
+        (N, N) standard errors of the differences between each two values; 0 where nothing is
+        sampled.
+    factor : float
+        Number of standard errors beyond which a difference is significant (`sure_factor`).
+    """
+
+    group: str
+    name: str
+    measure: str
+    values: tuple[float | None, ...]
+    differences: tuple[float | None, ...]
+    best: tuple[bool, ...]
+    errors: tuple[tuple[float, ...], ...]
+    factor: float
+
+    @property
+    def lower_is_better(self) -> bool:
+        """Whether the measure is entropy or blind ground."""
+        return self.measure in LOWER_IS_BETTER
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Indices of the scores that have a value, the best first."""
+        sign = 1.0 if self.lower_is_better else -1.0
+        present = [(sign * v, k) for k, v in enumerate(self.values) if v is not None]
+        return tuple(k for _, k in sorted(present))
+
+    @property
+    def winner(self) -> int | None:
+        """Index of the value that is significantly better than all others, if there is one."""
+        return self.best.index(True) if sum(self.best) == 1 else None
+
+    def differ(self, one: int, other: int) -> bool:
+        """Whether two values, given by index, differ significantly; False where one is missing."""
+        return _differ(self.measure, self.values, self.errors, self.factor, one, other)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the row as plain JSON data."""
+        return asdict(self)
+
+
+def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
+    """Compare scores: entropy and coverage of the rigs, of every zone and of every class.
+
+    For scores on objects, expected AP and reach ahead follow.
+
+    Parameters
+    ----------
+    scores : mapping of name to Score
+        In the order of the columns; differences refer to the first score.
+
+    Returns
+    -------
+    tuple of ComparedRow
+    """
+    return tuple(_rows(list(scores.values())))
+
+
+def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
+    """Compare key figures: blind ground, and reach ahead and expected AP of one class.
+
+    No AP is marked as the best: it comes from a sample, and the error of a difference is unknown.
+
+    Parameters
+    ----------
+    figures : mapping of name to KeyFigures
+        In the order of the columns, all of the same height and class; differences refer to the
+        first.
+
+    Returns
+    -------
+    tuple of ComparedRow
+    """
+    columns = list(figures.values())
+    if not columns:
+        return ()
+    height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
+    rows = [_exact_row("rig", height_text, BLIND, [f.blind_m2 for f in columns])]
+    if (name := columns[0].class_name) is not None:
+        rows.append(_exact_row("class", name, REACH, [f.reach_m for f in columns]))
+        ap = _exact_row("class", name, AP, [f.expected_ap for f in columns])
+        rows.append(replace(ap, best=(False,) * len(columns)))
+    return tuple(rows)
+
+
+def _exact_row(group: str, name: str, measure: str, values: Sequence[float | None]) -> ComparedRow:
+    """Return a row of figures without an error."""
+    errors = ((0.0,) * len(values),) * len(values)
+    best = _best(measure, values, errors, 0.0)
+    return ComparedRow(group, name, measure, tuple(values), _less(values), best, errors, 0.0)
+
+
+def _less(values: Sequence[float | None]) -> tuple[float | None, ...]:
+    """Return each value minus the first one; None where one of the two is missing."""
+    first = values[0] if values else None
+    return tuple(None if v is None or first is None else v - first for v in values)
+
+
+def _rows(scores: list[Score]) -> Iterator[ComparedRow]:
+    for measure in (ENTROPY, COVERAGE):
+        values = [getattr(score, measure) for score in scores]
+        yield _row(scores, "rig", "", measure, values)
+    yield from _parts("zone", scores, lambda score: score.per_zone)
+    yield from _parts("class", scores, lambda score: score.per_class)
+    yield from _found(scores)
+
+
+def _found(scores: list[Score]) -> Iterator[ComparedRow]:
+    """Yield rows of expected AP (all classes, each class) and reach ahead of scores on objects."""
+    objects = [score.objects for score in scores]
+    by_class = [{} if scored is None else scored.per_class for scored in objects]
+    names = dict.fromkeys(name for classes in by_class for name in classes)
+    if names:
+        whole = [None if scored is None else scored.ap for scored in objects]
+        yield _row(scores, "rig", "", AP, whole)
+    for name in names:
+        aps = [classes[name].ap if name in classes else None for classes in by_class]
+        yield _row(scores, "class", name, AP, aps)
+    for name in names:
+        ahead = [classes[name].reach[AHEAD] if name in classes else None for classes in by_class]
+        yield _row(scores, "class", name, REACH, ahead)
+
+
+def _parts(
+    group: str, scores: list[Score], parts_of: Callable[[Score], dict[str, PartScore]]
+) -> Iterator[ComparedRow]:
+    parts = [parts_of(score) for score in scores]
+    for name in dict.fromkeys(name for by_name in parts for name in by_name):
+        for measure in (ENTROPY, COVERAGE):
+            values = [getattr(p[name], measure) if name in p else None for p in parts]
+            yield _row(scores, group, name, measure, values)
+
+
+def _row(
+    scores: list[Score], group: str, name: str, measure: str, values: list[float | None]
+) -> ComparedRow:
+    errors = difference_errors(scores, (group, name, measure))
+    factor = sure_factor(len(scores), degrees_of(scores))
+    best = _best(measure, values, errors, factor)
+    return ComparedRow(group, name, measure, tuple(values), _less(values), best, errors, factor)
+
+
+def _best(
+    measure: str,
+    values: Sequence[float | None],
+    errors: Sequence[Sequence[float]],
+    factor: float,
+) -> tuple[bool, ...]:
+    """Mark the best value and the values not significantly worse; none if these are all values."""
+    sign = 1.0 if measure in LOWER_IS_BETTER else -1.0
+    present = [(sign * v, k) for k, v in enumerate(values) if v is not None]
+    if not present:
+        return (False,) * len(values)
+    first = min(present)[1]
+    best = {k for _, k in present if not _differ(measure, values, errors, factor, first, k)}
+    return tuple(k in best and len(best) < len(present) for k in range(len(values)))
+
+
+def _differ(
+    measure: str,
+    values: Sequence[float | None],
+    errors: Sequence[Sequence[float]],
+    factor: float,
+    one: int,
+    other: int,
+) -> bool:
+    a, b = values[one], values[other]
+    threshold = max(LEAST[measure], factor * errors[one][other])
+    return a is not None and b is not None and abs(a - b) > threshold

@@ -1,0 +1,243 @@
+"""Reach, blind ground and expected AP of a rig: the figures, and their description in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pe_core.base.errors import InputError, shown
+from pe_core.prior.prior import Prior
+from pe_core.scene.rig import Rig
+from pe_core.scoring.score import FARTHEST_M, FoundClass, ObjectScore
+from pe_core.scoring.sight import BlindGround, Reach, SeenShares, Sight, shown_end
+from pe_tools.advice.number_text import percent
+
+NEAREST_M = 0.5
+"""A shorter reach [m] is described as "nowhere"."""
+
+
+def object_words(found: ObjectScore) -> tuple[str, ...]:
+    """Describe a score on objects in lines: expected AP, LiDAR points, and reach by class."""
+    return tuple(_lines(found))
+
+
+def objects_looked_at(found: ObjectScore) -> str:
+    """Describe the evaluated objects: their number, and whether they can hide each other."""
+    if found.traffic:
+        return f"{found.objects:,} objects in {found.scenes:,} scenes, in traffic"
+    return f"{found.objects:,} objects, none hides another"
+
+
+def _lines(found: ObjectScore) -> Iterator[str]:
+    by_class = found.per_class
+    all_classes = f"expected AP {found.ap:.2f} +- {max(found.ap_stderr, 0.001):.3f}"
+    yield f"{all_classes}: {', '.join(f'{name} {c.ap:.2f}' for name, c in by_class.items())}"
+    for name, found_class in by_class.items():
+        yield f"{name}: {_points(found_class)}found alone (AP 0.5) {reach_words(found_class)}"
+
+
+def _points(own: FoundClass) -> str:
+    """Describe the shares of objects with a number of LiDAR points or more; empty without LiDARs.
+
+    The text ends in a space.
+    """
+    if not own.points:
+        return ""
+    shares = ", ".join(map(percent, own.points.values()))
+    return f"{shares} get {', '.join(map(str, own.points))} points or more; "
+
+
+def lone_reach(metres: float) -> str:
+    """Return the reach for a lone object: "73 m", "≥ 80 m" at the evaluated limit, or "nowhere"."""
+    if metres < NEAREST_M:
+        return "nowhere"
+    return f"{'≥ ' if metres >= FARTHEST_M else ''}{metres:.0f} m"
+
+
+def reach_words(own: FoundClass) -> str:
+    """Describe how far a class is found ahead, behind, left and right."""
+    reaches = {words: own.reach[way] for way, words in SIDES.items() if own.reach[way] >= NEAREST_M}
+    if not reaches:
+        return "nowhere ahead, behind, left or right"
+    missing = ", ".join(words for words in SIDES.values() if words not in reaches)
+    ways = ", ".join(
+        f"{reach:.0f} m{' and more' if reach >= FARTHEST_M else ''} {words}"
+        for words, reach in reaches.items()
+    )
+    return f"up to {ways}{f'; not {missing}' if missing else ''}"
+
+
+USUAL_CLASS = "pedestrian"
+"""Class of the reach unless the user chooses another."""
+SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
+"""Text for each side of the vehicle."""
+BEARINGS = {"front": 0.0, "rear": math.pi, "left": math.pi / 2.0, "right": -math.pi / 2.0}
+"""Bearing of each side, counter-clockwise from straight ahead [rad]."""
+ANY_CLASS = "any"
+"""Name of the only class of a prior without classes."""
+CLASSES_NAMED = 8
+BLIND_TO_M = 0.5
+"""Height of the object for which blind ground is computed [m]: a post at the kerb or a small child.
+Flat ground would not do: far from the vehicle beams meet it only in rings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """Results of `Sight` for a rig.
+
+    Attributes
+    ----------
+    expected_ap : dict of float
+        Expected AP by class, 0 to 1.
+    shares : SeenShares
+        Visible shares by number of sensors, by sensor and zone.
+    reach : Reach
+        Reach for one class.
+    blind : BlindGround
+        Ground on which an object of height `BLIND_TO_M` is invisible; of the lowest height of the
+        space if that is greater.
+    """
+
+    expected_ap: Mapping[str, float]
+    shares: SeenShares
+    reach: Reach
+    blind: BlindGround
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the results as plain JSON data, without the outlines of blind ground."""
+        return {
+            "expected_ap": dict(self.expected_ap),
+            "seen_by_at_least": list(self.shares.by_number),
+            "seen_by_sensor": {name: dict(shares) for name, shares in self.shares.zones.items()},
+            "reach": _reach_dict(self.reach),
+            "blind": _blind_dict(self.blind),
+        }
+
+
+def outlook(sight: Sight, rig: Rig, class_name: str | None = None) -> Outlook:
+    """Compute the outlook of a rig.
+
+    Parameters
+    ----------
+    sight : Sight
+    rig : Rig
+    class_name : str, optional
+        Class of the reach. By default pedestrians, or the first class of a prior without them.
+
+    Returns
+    -------
+    Outlook
+
+    Raises
+    ------
+    InputError
+        The prior has no class of that name.
+    """
+    name = class_of(sight.prior, class_name)
+    height = max(BLIND_TO_M, sight.space.z[0])
+    return Outlook(
+        sight.expected_ap(rig),
+        sight.shares(rig),
+        sight.reach(rig, name),
+        sight.blind(rig, height),
+    )
+
+
+def class_of(prior: Prior, name: str | None) -> str:
+    """Return the name of the class for the reach: `name`, or the default for None.
+
+    Raises
+    ------
+    InputError
+        The prior has no class of that name.
+    """
+    names = prior.class_names
+    if name is None:
+        return USUAL_CLASS if USUAL_CLASS in names else names[0]
+    if name not in names:
+        raise InputError("prior", "class", f"one of {', '.join(names)}", shown(name))
+    return name
+
+
+def outlook_words(found: Outlook, of_voxels: bool = True) -> Iterator[str]:
+    """Describe an outlook in short lines; without `of_voxels`, only its blind ground."""
+    if not of_voxels:
+        yield _blind_words(found.blind)
+        return
+    aps = [f"{name} {ap:.2f}" for name, ap in found.expected_ap.items()]
+    more = ["..."] if len(aps) > CLASSES_NAMED else []
+    yield f"expected AP: {', '.join(aps[:CLASSES_NAMED] + more)}"
+    yield _reach_words(found.reach)
+    yield _blind_words(found.blind)
+
+
+def _reach_words(reach: Reach) -> str:
+    subject = f"{_one(reach.class_name)} is found (AP {reach.ap:g} or more)"
+    ways = {side: _reach_to(reach, side) for side in SIDES}
+    if not any(ways.values()):
+        return f"{subject} nowhere ahead, behind, left or right"
+    return f"{subject} up to " + ", ".join(
+        f"{way or 'nowhere'} {SIDES[s]}" for s, way in ways.items()
+    )
+
+
+def _reach_to(reach: Reach, side: str) -> str:
+    """Describe the reach along the bearing nearest to a side; empty if the reach is 0."""
+    differences = [
+        abs(math.remainder(b - BEARINGS[side], math.tau)) for b in reach.bearings.tolist()
+    ]
+    k = differences.index(min(differences))
+    distance, limit = float(reach.distance[k]), float(reach.limit[k])
+    if distance <= 0.0:
+        return ""
+    return f"{distance:.0f} m{' and more' if distance >= limit else ''}"
+
+
+def _one(class_name: str) -> str:
+    """Return a class name with its article: "a pedestrian", "an object"."""
+    noun = "object" if class_name == ANY_CLASS else class_name
+    return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"
+
+
+def _blind_words(blind: BlindGround) -> str:
+    subject = f"blind to what is {blind.height:g} m tall"
+    if all(end == 0.0 for end in blind.zone.values()):
+        return f"{subject} nowhere at the body"
+    ways = (f"{_blind_to(blind, side)} {words}" for side, words in SIDES.items())
+    return f"{subject}, from the body: {', '.join(ways)}"
+
+
+def _blind_to(blind: BlindGround, side: str) -> str:
+    """Describe how far the blind ground that begins at the body extends to a side."""
+    end = blind.zone[side]
+    if end == 0.0:
+        return "none"
+    return f"beyond {blind.within:g} m" if end is None else f"to {shown_end(end):.1f} m"
+
+
+def _reach_dict(reach: Reach) -> dict[str, Any]:
+    return {
+        "class": reach.class_name,
+        "ap": reach.ap,
+        "bearings_deg": [round(math.degrees(b), 6) for b in reach.bearings],
+        "distance_m": reach.distance.tolist(),
+        "limit_m": reach.limit.tolist(),
+        "per_sensor_m": {name: distances.tolist() for name, distances in reach.per_sensor.items()},
+    }
+
+
+def _blind_dict(blind: BlindGround) -> dict[str, Any]:
+    spots = {
+        side: None if spot is None else {"point": list(spot.point), "distance_m": spot.distance}
+        for side, spot in blind.nearest.items()
+    }
+    return {
+        "height_m": blind.height,
+        "within_m": blind.within,
+        "area_m2": blind.area,
+        "nearest": spots,
+        "zone_m": dict(blind.zone),
+        "seen_from_m": dict(blind.seen_from),
+    }

@@ -1,0 +1,197 @@
+"""Describe a score in sentences: coverage, zones, and what each sensor contributes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from pe_core.scene.rig import Rig, Sensor
+from pe_core.scene.vehicle import Vehicle
+from pe_core.scoring.score import FAR_M, NEAR_M, PartScore, Score, SensorScore
+from pe_core.sensors import kind_of
+from pe_tools.advice.number_text import percent
+
+from .advice import Advice
+from .hidden_sensors import hidden_sensors, hidden_words
+from .mount_checks import stopped_shares
+from .summary import Outlook, object_words, objects_looked_at, outlook_words
+
+WHERE = {
+    "front": "ahead",
+    "rear": "behind",
+    "left": "on the left",
+    "right": "on the right",
+    "near": f"within {NEAR_M:g} m",
+    "mid": f"from {NEAR_M:g} to {FAR_M:g} m",
+    "far": f"beyond {FAR_M:g} m",
+}
+"""Text for each zone of `scoring.zones.ZONES`."""
+PARTS_NAMED = 3
+LITTLE = 0.05
+"""A part of the vehicle that blocks less than this share of all blocked beams is not named."""
+WORTH_NATS = 0.00005
+"""A smaller contribution of a sensor [nats] is described as none: four digits are shown."""
+
+
+def words(
+    score: Score,
+    rig: Rig | None = None,
+    vehicle: Vehicle | None = None,
+    seen: Outlook | None = None,
+    warnings: Sequence[Advice] = (),
+) -> tuple[str, ...]:
+    """Describe a score in short lines: hidden sensors, coverage, zones, and each sensor.
+
+    A sensor's first line begins with its name; its further lines begin with two spaces.
+
+    Parameters
+    ----------
+    score : Score
+    rig, vehicle : Rig, Vehicle, optional
+        The rig and the vehicle that were scored. With both, the share of its picture that a camera
+        loses to the vehicle is described, too.
+    seen : Outlook, optional
+        Outlook of the same rig. It adds the coverage by several sensors, expected AP, reach, blind
+        ground, and the zones that each sensor sees best.
+    warnings : sequence of Advice
+        Warnings about the same rig. They explain why a sensor sees nothing.
+
+    Returns
+    -------
+    tuple of str
+    """
+    of_rig = rig_words(score, seen, rig, warnings)
+    return *of_rig, *_sensor_lines(score, rig, vehicle, seen)
+
+
+def rig_words(
+    score: Score,
+    seen: Outlook | None = None,
+    rig: Rig | None = None,
+    warnings: Sequence[Advice] = (),
+) -> tuple[str, ...]:
+    """Return the lines of `words` that describe the whole rig; parameters as there."""
+    hidden = () if rig is None else hidden_words(hidden_sensors(rig, score, warnings))
+    return *hidden, *_rig_lines(score, seen)
+
+
+def _rig_lines(score: Score, seen: Outlook | None) -> Iterator[str]:
+    yield _coverage(score, seen)
+    yield from _zones(score.per_zone)
+    if score.objects is not None:
+        yield from object_words(score.objects)
+    if seen is not None:
+        yield from outlook_words(seen, of_voxels=score.objects is None)
+
+
+def _sensor_lines(
+    score: Score, rig: Rig | None, vehicle: Vehicle | None, seen: Outlook | None
+) -> Iterator[str]:
+    for name, sensor_score in score.per_sensor.items():
+        sensor = None if rig is None else rig[name]
+        zones = None if seen is None or score.objects else seen.shares.zones[name]
+        alone = len(score.per_sensor) == 1
+        first, *more = sensor_words(sensor_score, sensor, vehicle, zones, alone=alone)
+        yield f"{name}: {first}"
+        yield from (f"  {phrase}" for phrase in more)
+
+
+def sensor_words(
+    own: SensorScore,
+    sensor: Sensor | None = None,
+    vehicle: Vehicle | None = None,
+    zones: Mapping[str, float] | None = None,
+    *,
+    alone: bool = False,
+) -> tuple[str, ...]:
+    """Describe one sensor in phrases: its contribution, its best and worst zone, its occlusion.
+
+    Parameters
+    ----------
+    own : SensorScore
+        The sensor's part of the score.
+    sensor, vehicle : Sensor, Vehicle, optional
+        The sensor and the vehicle that were scored.
+    zones : mapping of str to float, optional
+        Share of each zone that the sensor sees, 0 to 1 (`sight.SeenShares`).
+    alone : bool
+        Whether the rig has no other sensor.
+
+    Returns
+    -------
+    tuple of str
+        Phrases that apply; there may be none.
+    """
+    phrases = (
+        "the only sensor" if alone else _adds(own),
+        "" if zones is None else _most_and_least(zones),
+        stopped_words(sensor, own, vehicle),
+    )
+    return tuple(filter(None, phrases))
+
+
+def _coverage(score: Score, seen: Outlook | None) -> str:
+    if score.objects is not None:
+        looked_at = objects_looked_at(score.objects)
+        return f"{percent(score.coverage)} of the objects are seen, by weight ({looked_at})"
+    line = f"{percent(score.coverage)} of where objects are is seen"
+    if seen is None or len(seen.shares.by_number) < 3:
+        return line
+    return f"{line}; {percent(seen.shares.by_number[2])} by two or more sensors"
+
+
+def _zones(zones: Mapping[str, PartScore]) -> Iterator[str]:
+    """Name the zones with the lowest and the highest entropy."""
+    order = sorted(zones, key=lambda name: zones[name].entropy)
+    if order and zones[order[0]].entropy < zones[order[-1]].entropy:
+        best, worst = (
+            f"{WHERE.get(name, name)} ({zones[name].entropy:.2f} nats, "
+            f"{percent(zones[name].coverage)} seen)"
+            for name in (order[0], order[-1])
+        )
+        yield f"best {best}, worst {worst}"
+
+
+def _adds(sensor_score: SensorScore) -> str:
+    """Describe how much worse the rig is without the sensor."""
+    if sensor_score.lost < WORTH_NATS:
+        return "without it no worse"
+    return (
+        f"without it {sensor_score.lost:.2f} nats worse"
+        if sensor_score.lost >= 0.005
+        else (f"without it {sensor_score.lost:.4f} nats worse")
+    )
+
+
+def _most_and_least(zones: Mapping[str, float]) -> str:
+    """Name the zones with the highest and the lowest visible share of one sensor."""
+    order = sorted(zones, key=lambda zone: -zones[zone])
+    if not order or zones[order[0]] == zones[order[-1]]:
+        return ""
+    best, worst = (f"{WHERE[z]} ({percent(zones[z])})" for z in (order[0], order[-1]))
+    return f"sees most {best}, least {worst}"
+
+
+def stopped_words(
+    sensor: Sensor | None, own: SensorScore | None = None, vehicle: Vehicle | None = None
+) -> str:
+    """Describe which parts block a sensor's view, as in "7.5% of its beams stopped by roof".
+
+    The beams counted by the score are used where it has them, otherwise a sample of the sensor's
+    rays (`stopped_shares`, which also explains the parameters).
+
+    Returns
+    -------
+    str
+        Empty where nothing blocks the view.
+    """
+    shares = stopped_shares(sensor, own, vehicle)
+    total = sum(shares.values())
+    if not total:
+        return ""
+    unit = "beams" if sensor is None else kind_of(sensor).unit
+    named = [part for part in shares if shares[part] >= LITTLE * total]
+    text = f"{percent(total)} of its {unit} stopped"
+    if len(named) == 1:
+        return f"{text} by {named[0]}"
+    by_part = ", ".join(f"{part} {percent(shares[part])}" for part in named[:PARTS_NAMED])
+    return f"{text}: {by_part}{', ...' if len(named) > PARTS_NAMED else ''}"

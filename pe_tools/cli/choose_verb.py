@@ -1,0 +1,182 @@
+"""`pe optimize` of a study with a choice of sensors: print and write the Pareto front."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pe_core.base import dump_json
+from pe_core.base.errors import InputError
+from pe_core.study import mounts_table
+
+from ..jobs import (
+    FRONT_NAMES,
+    SAVE_EVERY_S,
+    ChoiceJob,
+    Design,
+    TradeOff,
+    front_dict,
+    prepare_folder,
+    write_front,
+)
+from .interrupts import Interrupted, stop_at_first
+from .progress_line import Reporter
+from .run_job import folder_or_fallback
+from .terminal import BAD_INPUT, DONE, Answer, tell
+
+
+def front_summary(chosen: TradeOff) -> str:
+    """Return the front as a table: price, entropy, coverage, and the pose of each sensor."""
+    unit = chosen.study.selection.currency
+    head = (f"price [{unit}]" if unit else "price", "entropy", "coverage", "design")
+    rows = [_figures(design) for design in chosen.front]
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+    lines = [_line(head, widths)]
+    for row, design in zip(rows, chosen.front, strict=True):
+        lines += [_line(row, widths), *_placed(design, " " * (sum(widths[:3]) + 6))]
+    return "\n".join([*lines, "", *told(chosen)])
+
+
+def told(chosen: TradeOff) -> Iterator[str]:
+    """Yield sentences about the search: numbers of designs, early stop, infeasible designs."""
+    count, searched = len(chosen.designs) + len(chosen.refused), chosen.searched
+    more = "of more" if chosen.stopped else "of more, by local search"
+    every = "all that the limits allow" if chosen.is_complete else more
+    yield f"{len(chosen.front)} on the front; {searched} searched of {count} looked at ({every})"
+    if not searched:
+        yield "none was searched in full: entropies are those of a first look"
+    if chosen.stopped:
+        yield "stopped early: this is the front of what was found so far"
+    for name, why in chosen.refused.items():
+        yield f"no place for {name}: {why}"
+
+
+def _figures(design: Design) -> tuple[str, ...]:
+    coverage = "-" if design.score is None else f"{design.score.coverage:.1%}"
+    return (f"{design.price:,.10g}", f"{design.entropy:.4f}", coverage, design.name)
+
+
+def _line(cells: tuple[str, ...], widths: list[int]) -> str:
+    figures = (cell.rjust(width) for cell, width in zip(cells[:3], widths, strict=False))
+    return "  ".join([*figures, cells[3]])
+
+
+def _placed(design: Design, margin: str) -> Iterator[str]:
+    """Yield a line for each sensor: its slot, or its position and the nonzero angles."""
+    mounts = mounts_table(design.study.rig, design.study.search.mounting)
+    for sensor in design.study.rig:
+        mount = mounts.get(sensor.name, {})
+        slot = mount.get("slot")
+        where = (
+            f"{mount['mount']}, {slot}"
+            if slot
+            else _where(sensor.pose.position, sensor.pose.rotation_deg)
+        )
+        yield f"{margin}{sensor.name}: {sensor.model.name}; {where}"
+
+
+def _where(position: Sequence[float], rotation: Sequence[float]) -> str:
+    x, y, z = (round(value, 3) + 0.0 for value in position)
+    angles = zip(("roll", "pitch", "yaw"), rotation, strict=True)
+    turns = [f"{axis} {round(angle, 2):g} deg" for axis, angle in angles if round(angle, 2)]
+    return ", ".join([f"({x:g}, {y:g}, {z:g}) m", *turns])
+
+
+Draw = Callable[[Mapping[str, Any], Path], None]
+"""Draws a front from its data into its folder."""
+plots: list[Draw] = []
+"""What draws the front beside its files: packages built on the engine add to it, with their verbs.
+"""
+
+
+def check_not_resumed(args: argparse.Namespace) -> None:
+    """Raise `InputError` for `--resume`: a choice of sensors cannot be resumed."""
+    if getattr(args, "resume", None) is not None:
+        expected = "none for a study with choices, which begins anew"
+        raise InputError("command line", "--resume", expected, args.resume)
+
+
+def choose(
+    job: ChoiceJob,
+    output: Path | None,
+    *,
+    as_json: bool,
+    host: Mapping[str, str] | None = None,
+    more: Callable[[TradeOff, Path], None] | None = None,
+) -> Answer:
+    """Compute the front of a study's designs, write it, and return the text to print.
+
+    The first Ctrl-C, SIGTERM or SIGHUP stops the job: the front so far is written. The second one
+    ends at once; the front that was last saved stays. It is saved every few seconds.
+
+    Parameters
+    ----------
+    more : callable, optional
+        Writes further files to the folder (Blender's).
+    """
+    if output is not None:
+        prepare_folder(output, FRONT_NAMES)
+    with stop_at_first(job.stop) as received:
+        _drive(job, output, host)
+        chosen = job.trade_off
+        if chosen is None:
+            note = "no design was complete, so nothing was written"
+            raise Interrupted(received.signum or signal.SIGINT, note)
+        status, data = DONE, front_dict(chosen, host)
+        if output is not None:
+            status = _keep(chosen, output, host, more)
+        text = dump_json(data) if as_json else front_summary(chosen)
+        return text, status or received.status(DONE)
+
+
+def _drive(job: ChoiceJob, output: Path | None, host: Mapping[str, str] | None) -> None:
+    """Run a job to its end with progress; save the front so far every few seconds."""
+    reporter, saved, kept = Reporter(sys.stderr), time.monotonic(), 0
+    try:
+        for progress in job:
+            reporter.report(progress)
+            if output is None or time.monotonic() - saved < SAVE_EVERY_S:
+                continue
+            saved, chosen = time.monotonic(), job.trade_off
+            if chosen is not None and chosen.searched > kept:
+                kept = chosen.searched
+                _try_to_write(chosen, output, host)
+    finally:
+        reporter.clear()
+
+
+def _try_to_write(chosen: TradeOff, output: Path, host: Mapping[str, str] | None) -> None:
+    try:
+        write_front(chosen, output, host)
+    except InputError as error:
+        tell(f"{error}; the search goes on")
+
+
+def _keep(
+    chosen: TradeOff,
+    output: Path,
+    host: Mapping[str, str] | None,
+    more: Callable[[TradeOff, Path], None] | None,
+) -> int:
+    """Write the front to a folder; if that fails, to a fallback folder whose path is printed."""
+    for place in (output, None):
+        try:
+            with folder_or_fallback(place) as folder:
+                data = write_front(chosen, folder, host)
+                if more is not None:
+                    more(chosen, folder)
+                for draw in plots:
+                    draw(data, folder)
+        except InputError as error:
+            tell(str(error))
+            continue
+        if folder != output:
+            tell(f"the results are in {folder}")
+        return DONE if folder == output else BAD_INPUT
+    tell("the results are not in any file")
+    return BAD_INPUT

@@ -1,0 +1,153 @@
+"""What every command line shares: parser, options, the verb ``sensors``, exit status.
+
+Used by `pe`, by `blender --command pe` and by bpy as a module, so that they behave alike.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, NoReturn, TextIO
+
+from pe_core import catalog
+from pe_core.base.errors import InputError
+from pe_core.base.files import quoted
+from pe_core.sensors import kind_of
+from pe_core.study import METHODS, SCHEDULED_METHOD, Study
+
+from .interrupts import FATAL, signals_interrupt
+from .run_job import print_answer
+from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, tell
+
+MOST_WORKERS, MOST_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
+"""Greatest values of options: more threads or voxels than anyone has a use for."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose messages are printable text, and whose printing never fails."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong in the usage, and exit with status 2."""
+        super().error(one_line(message))
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        show(printable(message), file or sys.stderr)
+
+
+def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
+    """Add the options of ``score`` and ``optimize`` to a parser."""
+    folder = parser.add_mutually_exclusive_group()
+    folder.add_argument("-o", "--output", metavar="DIR", help="folder for the results")
+    if search:
+        about = "go on with the search that was begun in this folder"
+        folder.add_argument("--resume", metavar="DIR", help=about)
+    parser.add_argument("--json", action="store_true", help="print result.json on stdout")
+    add_score_options(parser)
+    if search:
+        add_search_options(parser)
+
+
+def add_search_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a search to a parser."""
+    options = (
+        ("--seed", LAST_SEED, "seed of the search"),
+        ("--candidates", MOST_VOXELS, "of the method random: placements tried in a round"),
+        ("--samples", MOST_VOXELS, "voxels a candidate is judged on (0: all)"),
+        ("--evaluations", MOST_VOXELS, "placements judged at most (0: as the method says)"),
+    )
+    about = f"how to search: one of {', '.join(METHODS)}"
+    parser.add_argument("--method", choices=METHODS, metavar="NAME", help=about)
+    for option, greatest, about in options:
+        parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
+
+
+def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads") -> None:
+    """Add the options of scoring a study to a parser."""
+    voxels, count = count_up_to(MOST_VOXELS), count_up_to(MOST_WORKERS)
+    about = "voxels a score looks at (0: all)"
+    parser.add_argument("--grid-samples", type=voxels, metavar="N", help=about)
+    parser.add_argument("--workers", type=count, metavar="N", help=f"{workers} (default: all)")
+
+
+def count_up_to(greatest: int) -> Callable[[str], int]:
+    """Return a function that parses a whole number from 0 to `greatest`."""
+
+    def count(text: str) -> int:
+        digits = text.isascii() and text.isdecimal() and len(text) <= len(str(greatest))
+        if not digits or int(text) > greatest:
+            expected = f"expected a whole number from 0 to {greatest}, found {quoted(text)}"
+            raise argparse.ArgumentTypeError(expected)
+        return int(text)
+
+    return count
+
+
+def with_options(study: Study, args: argparse.Namespace) -> Study:
+    """Return the study with the changes of the command line's options."""
+    if args.grid_samples is not None:
+        study = replace(study, samples=args.grid_samples)
+    search = study.search
+    for name in ("method", "seed", "samples", "evaluations"):
+        if (value := getattr(args, name, None)) is not None:
+            search = replace(search, **{name: value})
+    if getattr(args, "candidates", None) is not None:
+        schedule = replace(search.schedule, candidates=args.candidates)
+        method = args.method or SCHEDULED_METHOD  # the one that has candidates
+        search = replace(search, schedule=schedule, method=method)
+    return replace(study, search=search)
+
+
+def add_sensors_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add ``sensors``: the catalogue, or one of its entries with a plot of its channels."""
+    parser = verbs.add_parser("sensors", help="list the catalogue, or show one sensor")
+    parser.add_argument("name", nargs="?", help="a sensor's name")
+    parser.set_defaults(function=_show_sensors)
+
+
+def _show_sensors(args: argparse.Namespace) -> Answer:
+    if args.name:
+        return describe(args.name), DONE
+    return "\n".join(f"{e.kind:7} {e.name}" for e in catalog.entries().values()), DONE
+
+
+def describe(name: str) -> str:
+    """Return the figures of a sensor of the catalogue, their source, and a plot if there is one."""
+    model = catalog.load(name)
+    kind = kind_of(model)
+    plot = kind.plot(model)
+    source = f"source          {catalog.entries()[name].source}"
+    return "\n".join([name, *kind.data_sheet(model), source, *(["", *plot] if plot else [])])
+
+
+def as_typed(prog: str, argv: Sequence[str]) -> str:
+    """Return a command line as a shell takes it: the program, and what it was given."""
+    return " ".join([prog, *map(shlex.quote, argv)])
+
+
+def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
+    """Run a command, print its text on `out` (stdout), and return its exit status.
+
+    Bad input is one line on stderr and status 1; a signal that ends the command is 128 and its
+    number: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
+    """
+    try:
+        with signals_interrupt():
+            text, status = main()
+        return print_answer(text, status, out or sys.stdout)
+    except InputError as error:
+        tell(str(error))
+        return BAD_INPUT
+    except KeyboardInterrupt as error:
+        note = getattr(error, "note", "")
+        tell(f"interrupted; {note}" if note else "interrupted")
+        return FATAL + getattr(error, "signum", signal.SIGINT)
+    except MemoryError:
+        tell("not enough memory: close other programs, or ask for fewer voxels (--grid-samples)")
+        return BAD_INPUT
+    except BrokenPipeError as error:  # of a stream that a verb writes to itself
+        tell(str(error))
+        return BAD_INPUT

@@ -1,0 +1,229 @@
+"""`pe export`, `pe import` and `pe rigs`: rigs of other programs and known vehicles."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from pe_core import catalog
+from pe_core.base.errors import InputError
+from pe_core.base.files import quoted
+from pe_core.catalog import KnownRig
+from pe_core.scene import Pose, Reference, Vehicle, guessed_reference
+from pe_core.study import Study, save_study
+
+from ..exchange import RIG_FORMATS, ImportedRig, export_rig, import_rig, read_vehicle_info
+from ..formats import read_mesh
+from ..outputs import SCENE_OUTPUTS, export_scene
+from .terminal import DONE, Answer, tell
+
+
+def add_rigs_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add ``rigs``: the list, one of it, or a study of one."""
+    parser = verbs.add_parser("rigs", help="list known rigs, or write one as a study")
+    parser.add_argument("name", nargs="?", metavar="NAME", help="a rig's name in the list")
+    parser.add_argument("-o", "--output", metavar="STUDY", help="study to write")
+    about = "the vehicle's mesh, from the study's folder: sensors are stretched onto it"
+    parser.add_argument("--mesh", metavar="FILE", help=about)
+    about = "leave sensors where they were published, about the vehicle's centre"
+    parser.add_argument("--as-published", action="store_true", help=about)
+    parser.add_argument("--replace", action="store_true", help="replace a study that is there")
+    parser.set_defaults(function=show_rigs, usage_error=parser.error)
+
+
+def show_rigs(args: argparse.Namespace) -> Answer:
+    """List known rigs, tell of one, or write it."""
+    if args.name is None:
+        if args.output is not None:
+            args.usage_error("expected NAME, a rig to write")
+        return "\n".join(_list()), DONE
+    rig = catalog.known_rig(args.name)
+    if args.output is None:
+        return "\n".join(_described(rig)), DONE
+    return write_rig(rig, args), DONE
+
+
+def write_rig(rig: KnownRig, args: argparse.Namespace) -> str:
+    """Write a rig as a study, on a mesh or without a vehicle."""
+    output, vehicle = new_study(args)
+    study = study_of_rig(rig, vehicle, args.mesh, stretched=not args.as_published)
+    save_study(study, output)
+    tell(f"{rig.title}: {_standing(rig, vehicle, args.as_published)}. {rig.note}")
+    return f"wrote {output}: {len(study.rig)} sensor{'s' if len(study.rig) > 1 else ''}"
+
+
+def study_of_rig(
+    rig: KnownRig, vehicle: Vehicle | None = None, mesh: str | None = None, *, stretched: bool
+) -> Study:
+    """Return a known rig as a study: on a vehicle stretched onto it, or as it was published."""
+    return Study(catalog.rig_on(rig, vehicle if stretched else None), vehicle, mesh=mesh)
+
+
+def _standing(rig: KnownRig, vehicle: Vehicle | None, as_published: bool) -> str:
+    if vehicle is None or as_published or rig.size is None:
+        return "as published, about the vehicle's centre"
+    return "stretched onto this vehicle's box"
+
+
+def _list() -> list[str]:
+    rows = [
+        [rig.key, str(len(rig.sensors)), rig.title, rig.vehicle]
+        for rig in catalog.known_rigs().values()
+    ]
+    return _columns([["NAME", "SENSORS", "RIG", "VEHICLE"], *rows])
+
+
+def _described(rig: KnownRig) -> list[str]:
+    size = "" if rig.size is None else " {:g} x {:g} x {:g} m".format(*rig.size)
+    lines = [rig.title, f"vehicle  {rig.vehicle}{size}", f"origin   {rig.origin}"]
+    lines += [f"source   {rig.source}", f"note     {rig.note}", ""]
+    rows = [["sensor", "model", "x, y, z [m]", "roll, pitch, yaw [deg]"]]
+    for each in rig.sensors:
+        place = ", ".join(f"{v:.3f}" for v in each.pose.position)
+        turn = ", ".join(f"{v:.3f}" for v in each.pose.rotation_deg)
+        rows.append([each.name, each.model, place, turn])
+    return lines + _columns(rows)
+
+
+def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return rows as lines with their cells below each other."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    padded = ([cell.ljust(width) for cell, width in zip(row, widths, strict=True)] for row in rows)
+    return ["  ".join(cells).rstrip() for cells in padded]
+
+
+RANGED = tuple(row.name for row in SCENE_OUTPUTS.values() if row.has_range)
+"""Outputs that draw fields of view, as far as asked for."""
+POSE = ("X", "Y", "Z", "ROLL", "PITCH", "YAW")
+NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
+
+
+def add_export_options(
+    parser: argparse.ArgumentParser, *, also_study: bool = False, more: Sequence[str] = ()
+) -> None:
+    """Add the options of ``export`` to a parser; `also_study`: without a format that is written.
+
+    `more` names formats of whoever asks.
+    """
+    known = [*RIG_FORMATS, *SCENE_OUTPUTS, *more]
+    about = f"format: {', '.join(known)}" + (" (default: a study)" if also_study else "")
+    needed = not also_study
+    parser.add_argument("--to", required=needed, choices=known, metavar="FORMAT", help=about)
+    about = "file, or folder for a format of several files"
+    parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
+    about = f"of {', '.join(RANGED)}: how far sensors are drawn [m] (default: by their own range)"
+    parser.add_argument("--range", type=float, metavar="M", help=about)
+    parser.add_argument("--replace", action="store_true", help="replace files that are there")
+    _add_axle_options(parser)
+
+
+def add_import_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``import`` to a parser."""
+    parser.add_argument("file", metavar="FILE", help="file or folder of another program")
+    about = f"its format, if its name does not tell: {', '.join(RIG_FORMATS)}"
+    parser.add_argument("--from", dest="format", choices=RIG_FORMATS, metavar="FORMAT", help=about)
+    parser.add_argument("-o", "--output", required=True, metavar="STUDY", help="study to write")
+    about = "the vehicle's mesh, from the study's folder"
+    parser.add_argument("--mesh", metavar="FILE", help=about)
+    about = "a sensor's model, which the file does not tell; any number"
+    parser.add_argument("--model", action="append", default=[], metavar="NAME=MODEL", help=about)
+    about = "where the file's origin is: x y z in m, roll pitch yaw in degrees"
+    parser.add_argument(
+        "--at", type=float, nargs=6, metavar=("X", "Y", "Z", "R", "P", "W"), help=about
+    )
+    parser.add_argument("--replace", action="store_true", help="replace a study that is there")
+    _add_axle_options(parser)
+
+
+def _add_axle_options(parser: argparse.ArgumentParser) -> None:
+    where = parser.add_mutually_exclusive_group()
+    about = "middle of the rear axle: forward of the origin, above the ground [m]"
+    where.add_argument("--rear-axle", type=float, nargs=2, metavar=("X", "Z"), help=about)
+    about = "take it from Autoware's vehicle_info.param.yaml"
+    where.add_argument("--vehicle-info", metavar="FILE", help=about)
+    about = "take it from parts that are named as wheels"
+    where.add_argument("--guess-rear-axle", action="store_true", help=about)
+
+
+def export(study: Study, args: argparse.Namespace) -> Answer:
+    """Write a study's rig, or its scene, for another program."""
+    _refuse_range(args)
+    reference = _reference(args, study.reference, study.vehicle, args.to)
+    where, options = (args.to, args.output), {"replace": args.replace}
+    if args.to in SCENE_OUTPUTS:
+        study = replace(study, reference=reference)
+        paths, lines = export_scene(study, *where, args.range, **options)
+    else:
+        kept = study.passthrough
+        paths, lines = export_rig(study.rig, *where, reference, passthrough=kept, **options)
+    for line in lines:
+        tell(line)
+    return "\n".join(f"wrote {path}" for path in paths), DONE
+
+
+def _refuse_range(args: argparse.Namespace) -> None:
+    """Raise `InputError` for a range where no field of view is drawn."""
+    if args.range is not None and args.to not in RANGED:
+        raise InputError("--range", "option", f"one of {', '.join(RANGED)}", args.to)
+
+
+def new_study(args: argparse.Namespace) -> tuple[Path, Vehicle | None]:
+    """Return where a study is to be written, if it may be, and its vehicle if it has a mesh."""
+    output = Path(args.output)
+    if output.exists() and not args.replace:
+        raise InputError(output, "file", "a new file (or --replace)", "one is there")
+    if args.mesh is None:
+        return output, None
+    mesh = read_mesh(output.parent / args.mesh)
+    return output, Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
+
+
+def import_study(args: argparse.Namespace) -> Answer:
+    """Write a study of a rig that another program has written."""
+    output, vehicle = new_study(args)
+    reference = _reference(args, None, vehicle, args.format or args.file)
+    placed = None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
+    models = chosen_models(args.model)
+    found = import_rig(args.file, args.format, reference, models, placed)
+    kept = found.passthrough
+    study = Study(found.rig, vehicle, mesh=args.mesh, reference=reference, passthrough=kept)
+    save_study(study, output)
+    return "\n".join(_told(found, output)), DONE
+
+
+def _told(found: ImportedRig, output: Path) -> list[str]:
+    for line in found.lines:
+        tell(line)
+    count = len(found.rig)
+    return [f"wrote {output}: {count} sensor{'s' if count > 1 else ''}"]
+
+
+def _reference(
+    args: argparse.Namespace, known: Reference | None, vehicle: Vehicle | None, asking: str
+) -> Reference | None:
+    """Return where the axles are: as the options say, or else as the study does."""
+    if args.rear_axle is not None:
+        return Reference(*args.rear_axle)
+    if args.vehicle_info is not None:
+        return read_vehicle_info(args.vehicle_info)
+    if not args.guess_rear_axle:
+        return known
+    guess = guessed_reference(vehicle)
+    if guess is None:
+        raise InputError(asking, "rear axle", NO_GUESS, "none")
+    tell(f"rear axle guessed from its wheels: x {guess.rear_axle_x:g}, z {guess.rear_axle_z:g} m")
+    return guess
+
+
+def chosen_models(texts: Sequence[str]) -> dict[str, str]:
+    """Return models by the names of sensors, from texts NAME=MODEL."""
+    return dict(_model(text) for text in texts)
+
+
+def _model(text: str) -> tuple[str, str]:
+    name, equals, model = text.partition("=")
+    if not (name and equals and model):
+        raise InputError("--model", "choice", "NAME=MODEL", quoted(text))
+    return name, model

@@ -1,0 +1,266 @@
+"""Executors for the runs of a sweep: processes here, or a Dask cluster and its checkpoints."""
+
+from __future__ import annotations
+
+import logging
+import os
+import queue
+import re
+import secrets
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pe_core.base.errors import InputError, shown
+from pe_core.base.plugins import EXTRAS, optional_package
+from pe_core.scene import Pose
+from pe_core.search import EvaluatedRig, Journal, start_processes
+from pe_core.study import Study
+
+from ..jobs import Checkpoint, OptimizeJob, SearchState, read_search
+from ..sweep import FolderCheckpoints, RunCheckpoints, SweepRun, WorkerPool
+from .terminal import tell
+
+
+@dataclass(frozen=True, slots=True)
+class PostedCheckpoints:
+    """Checkpoints that a worker posts to a topic of the scheduler.
+
+    Attributes
+    ----------
+    topic, run : str
+    known : tuple of EvaluatedRig
+        The journal of an earlier part of the search.
+    """
+
+    topic: str
+    run: str
+    known: tuple[EvaluatedRig, ...] = ()
+
+    def begin(self, job: OptimizeJob) -> Callable[[], None]:
+        """Resume the search from the known journal; return a function that posts new entries."""
+        job.journal = Journal(self.known, self.run)
+        distributed = optional_package("distributed")
+        assert distributed is not None, "a worker of Dask runs this"
+        checkpoint, worker, posted = Checkpoint(job), distributed.get_worker(), len(self.known)
+
+        def post() -> None:
+            nonlocal posted
+            if checkpoint.due():
+                entries = job.journal.entries
+                worker.log_event(self.topic, self._event(posted, entries, job.best))
+                posted = len(entries)
+
+        return post
+
+    def _event(self, start: int, entries: tuple[EvaluatedRig, ...], best: Study) -> dict[str, Any]:
+        poses = [[list(s.pose.position), list(s.pose.rpy)] for s in best.rig]
+        judged = [list(entry) for entry in entries[start:]]
+        return {"run": self.run, "start": start, "judged": judged, "best": poses}
+
+
+@dataclass
+class _RunSearch:
+    """The search of a run, with the journal entries received so far."""
+
+    study: Study
+    folder: Path
+    entries: list[EvaluatedRig]
+    best: Study
+    meshes_saved: bool = False
+    state: SearchState = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.state = SearchState(self.study)
+
+    def add(self, event: Mapping[str, Any]) -> None:
+        """Add journal entries of an event; a restarted search sends the same entries again."""
+        if event["start"] <= len(self.entries):
+            new = [EvaluatedRig(float(e), bool(b), str(m)) for e, b, m in event["judged"]]
+            self.entries[event["start"] : event["start"] + len(new)] = new
+            poses = [Pose(tuple(at), tuple(rpy)) for at, rpy in event["best"]]
+            self.best = self.study.with_rig(self.study.rig.with_poses(poses))
+
+    def save(self) -> None:
+        """Write the checkpoint into the run's folder."""
+        with suppress(InputError):  # the search continues; its results are written elsewhere
+            self.state.save(self.folder, self.best, self.entries, meshes=not self.meshes_saved)
+            self.meshes_saved = True
+
+
+class ClusterCheckpoints:
+    """Receives and saves the checkpoints of all runs of a sweep.
+
+    Parameters
+    ----------
+    client : distributed.Client
+    """
+
+    def __init__(self, client: Any) -> None:
+        self._topic = f"perception-entropy-{secrets.token_hex(8)}"
+        self._events: queue.SimpleQueue[Mapping[str, Any]] = queue.SimpleQueue()
+        self._searches: dict[str, _RunSearch] = {}
+        client.subscribe_topic(self._topic, self._receive)
+
+    def for_run(self, run: SweepRun, folder: Path) -> PostedCheckpoints:
+        """Return the checkpoints of a run; they begin with those in its folder."""
+        search = self._searches.get(run.name)
+        if search is None:
+            search = _RunSearch(run.study, folder, _entries_in(folder, run.study), run.study)
+            self._searches[run.name] = search
+        return PostedCheckpoints(self._topic, run.name, tuple(search.entries))
+
+    def save(self) -> None:
+        """Save the entries received since the last call."""
+        changed = {}
+        with suppress(queue.Empty):
+            while True:
+                event = self._events.get_nowait()
+                search = changed[event["run"]] = self._searches[event["run"]]
+                search.add(event)
+        for search in changed.values():
+            search.save()
+
+    def _receive(self, event: tuple[float, Mapping[str, Any]]) -> None:
+        """Queue an event; called in the client's own thread."""
+        self._events.put(event[1])
+
+
+def _entries_in(folder: Path, study: Study) -> list[EvaluatedRig]:
+    """Return the journal in a run's folder; empty if there is none for this study."""
+    try:
+        return list(read_search(folder).journal_of(study).entries)
+    except InputError:
+        return []
+
+
+ADDRESS = re.compile(r"((tcp|tls)://)?[^/\s]+:[0-9]{1,5}")
+"""Address with a protocol that Dask supports without further libraries."""
+CONNECT_S = 5.0
+"""Time limit for the scheduler's answer [s]."""
+
+
+@contextmanager
+def workplace(workers: int | None, scheduler: str | None) -> Iterator[WorkerPool]:
+    """Open the worker pool that the command line asks for; close it at the end.
+
+    Raises
+    ------
+    InputError
+        When no scheduler answers, or the package for it is not installed.
+    """
+    place = Here(workers or os.cpu_count() or 1) if scheduler is None else DaskWorkers(scheduler)
+    try:
+        yield place
+    finally:
+        place.close()
+
+
+class Here:
+    """A pool of processes on this machine; a single thread if no process can be started."""
+
+    def __init__(self, count: int) -> None:
+        processes = start_processes(count)
+        self._count = 1 if processes is None else count
+        self.executor: Executor = processes or ThreadPoolExecutor(1)
+        self.threads = max(1, (os.cpu_count() or 1) // self._count)
+
+    def width(self) -> int:
+        """One task for each process: so a dead process identifies the task that killed it."""
+        return self._count
+
+    def check(self) -> None:
+        """Do nothing: local workers are always available."""
+
+    def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
+        """Return checkpoints that the worker process itself saves in the folder."""
+        return FolderCheckpoints(folder)
+
+    def close(self) -> None:
+        """Kill the processes in the middle of their tasks."""
+        processes = self._count > 1  # processes are killed; a thread finishes its task
+        self.executor.shutdown(wait=processes, cancel_futures=True)
+
+
+class DaskWorkers:
+    """The worker pool of a Dask scheduler."""
+
+    threads = 1
+    """Threads of one score: a Dask worker runs one task in each of its threads."""
+
+    def __init__(self, address: str) -> None:
+        self._address = address
+        self._client = _client_of(address)
+        self.executor: Executor = self._client.get_executor(pure=False)
+        self._alone = False
+        self._saved = ClusterCheckpoints(self._client)
+
+    def width(self) -> int:
+        """Two tasks for each thread, so that no thread waits for its next task."""
+        return 2 * max(1, self._count())
+
+    def check(self) -> None:
+        """Save received checkpoints; print a message, once, if there are no workers.
+
+        Raises
+        ------
+        InputError
+            The scheduler is gone.
+        """
+        self._saved.save()
+        if self._client.status == "closed":
+            found = "that it is gone; what is done is kept"
+            raise InputError(self._address, "scheduler", "one that stays until the end", found)
+        alone = self._client.status == "running" and not self._count()
+        if alone and not self._alone:
+            need = "they need this version of perception-entropy"
+            tell(f"{self._address}: no workers; waiting for some ({need})")
+        self._alone = alone
+
+    def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
+        """Return checkpoints that the worker, maybe remote, sends here to be saved."""
+        return self._saved.for_run(run, folder)
+
+    def _count(self) -> int:
+        """Return the number of threads of all workers."""
+        try:
+            return sum(self._client.nthreads().values())
+        except (
+            Exception
+        ):  # whatever a connection breaks with; a scheduler that is gone, `check` tells
+            return 1
+
+    def close(self) -> None:
+        """Disconnect from the cluster, which continues to run."""
+        self._client.close(timeout=CONNECT_S)
+
+
+def _client_of(address: str) -> Any:
+    distributed = optional_package("distributed")
+    if distributed is None:
+        expected = f'distributed: pip install "perception-entropy[{EXTRAS["distributed"]}]"'
+        raise InputError("command line", "scheduler", expected, "that it is not installed")
+    if not ADDRESS.fullmatch(address):
+        raise InputError(
+            "command line",
+            "scheduler",
+            "HOST:PORT, tcp://HOST:PORT or tls://HOST:PORT",
+            shown(address),
+        )
+    _hush()
+    try:
+        return distributed.Client(address, timeout=CONNECT_S, set_as_default=False)
+    except Exception as error:  # of an address that is none, a name or a port that nobody has
+        told = str(error).splitlines() or [type(error).__name__]
+        expected = f"a scheduler that answers within {CONNECT_S:g} s"
+        raise InputError(address, "scheduler", expected, told[0]) from None
+
+
+def _hush() -> None:
+    """Silence the log of `distributed`: this module reports lost connections itself."""
+    for name in list(logging.root.manager.loggerDict):
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -1,0 +1,221 @@
+"""`pe explain` and `pe compare`: a score in words, and several studies side by side."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pe_core import catalog
+from pe_core.base import dump_json
+from pe_core.base.errors import InputError
+from pe_core.base.serialization import finite
+from pe_core.study import Study, vehicle_digest
+
+from .. import advice
+from ..advice import ComparedRow
+from ..jobs import Outcome, ScoreJob
+from .command import add_score_options
+from .interrupts import Interrupted, stop_at_first
+from .run_job import drive, tell_vehicle
+from .summary import warned, with_error
+from .terminal import DONE, Answer
+
+BEST = "*"
+TITLES = {
+    "entropy": "entropy [nats], lower is better",
+    "coverage": "seen, of where objects are",
+    "ap": "expected AP",
+    "reach": "reach ahead (AP 0.5) [m]",
+    "blind": "blind ground [m2], lower is better",
+}
+WAYS = {
+    "entropy": (".4f", 1.0),
+    "coverage": (".1%", 100.0),
+    "ap": (".3f", 1.0),
+    "reach": (".1f", 1),
+    "blind": (".1f", 1),
+}
+"""Format of the figures of each measure, and the factor of their differences."""
+WIDEST = 24
+"""Longer names of studies are cut at the front: their ends tell them apart."""
+
+
+def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
+    """Return rows as lines, a column a study: the best is marked, differences are to the first."""
+    heads = [name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}" for name in names]
+    table = [["", *heads]]
+    for measure, title in TITLES.items():
+        own = [row for row in rows if row.measure == measure]
+        if own:
+            table.append([title, *[""] * len(heads)])
+        table += [[f"  {row.name or 'all'}", *_cells(row)] for row in own]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    lines = [_line(cells, widths) for cells in table]
+    return [*lines, f"{BEST} best; in brackets the difference to {heads[0]}"]
+
+
+def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
+    figures = (cell.rjust(width) for cell, width in zip(cells[1:], widths[1:], strict=True))
+    return "  ".join([cells[0].ljust(widths[0]), *figures]).rstrip()
+
+
+def _cells(row: ComparedRow) -> list[str]:
+    return [_cell(row, k) for k in range(len(row.values))]
+
+
+def _cell(row: ComparedRow, k: int) -> str:
+    value, less = row.values[k], row.differences[k]
+    if value is None:
+        return "- "
+    (way, times), mark = WAYS[row.measure], BEST if row.best[k] else " "
+    figure = f"{value:{way}}"
+    if k == 0 or less is None:
+        return f"{figure}{mark}"
+    change = f"{times * less:+{way.replace('%', 'f')}}"
+    return f"{figure} ({change}){mark}"
+
+
+COMPARED = ("space", "prior", "model", "targets")
+"""Fields that studies must have in common for their scores to be comparable."""
+
+
+def add_explain_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``explain`` to a parser."""
+    about = "ask one place instead: x, y and perhaps z (else 0) in metres"
+    parser.add_argument("--at", type=float, nargs="+", metavar=("X Y", "Z"), help=about)
+    about = "class whose reach is told (pedestrian)"
+    parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_score_options(parser)
+
+
+def add_compare_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``compare`` to a parser."""
+    about = "for what is so tall blind ground is told [m] (0.5)"
+    parser.add_argument("--height", type=float, default=advice.BLIND_TO_M, metavar="M", help=about)
+    about = "class whose reach and expected AP are told (pedestrian)"
+    parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
+    about = "a known rig on the first one's vehicle as a further column"
+    parser.add_argument("--beside", metavar="RIG", help=about)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_score_options(parser)
+
+
+def explain(study: Study, args: argparse.Namespace) -> Answer:
+    """Describe a study's score and warnings; with ``--at``, query one location instead."""
+    if args.at is not None:
+        parts = (study.rig, study.space, study.prior, study.vehicle, args.at, study.model)
+        place = advice.ask_place(*parts)
+        tell_vehicle(study)
+        return _answer({"place": place.to_dict()}, place.text, args.json)
+    name = advice.class_of(study.prior, args.class_name)
+    outcome = scored(study, args.workers)
+    seen = advice.outlook(study.sight(), study.rig, name)
+    scored_rig = outcome.after, study.rig, study.vehicle, seen
+    rows = advice.sensor_rows(*scored_rig)
+    data = {
+        "score": outcome.after.to_dict(),
+        **seen.to_dict(),
+        "sensors": [row.to_dict() for row in rows],
+        "words": list(advice.words(*scored_rig, outcome.warnings)),
+        "warnings": [each.to_dict() for each in outcome.warnings],
+    }
+    of_rig = advice.rig_words(outcome.after, seen, study.rig, outcome.warnings)
+    lines = *of_rig, *advice.sensor_table(rows)
+    return _answer(data, [_entropy(outcome), *lines, *warned(outcome)], args.json)
+
+
+def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
+    """Score studies by name, and print a table that compares them."""
+    refuse_different(studies)
+    studies = {**studies, **_beside(studies, args.beside)}
+    of = args.height, args.class_name
+    figures = {name: _figures(study, *of) for name, study in studies.items()}
+    scores = {name: scored(study, args.workers).after for name, study in studies.items()}
+    rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
+    alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
+    data = {
+        "scores": {name: score.to_dict() for name, score in scores.items()},
+        "figures": {name: own.to_dict() for name, own in figures.items()},
+        "rows": [row.to_dict() for row in (*rows, *figure_rows)],
+        "same_vehicle": alike,
+    }
+    names = list(scores)
+    said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
+    data["words"] = said
+    error = max(score.stderr for score in scores.values())
+    lines = [*comparison(names, [*rows, *figure_rows]), *said, *_notes(error, alike)]
+    return _answer(data, lines, args.json)
+
+
+def _notes(error: float, alike: bool) -> Iterator[str]:
+    """Yield notes to a comparison: different vehicles, and the standard error of samples."""
+    if not alike:
+        yield "their vehicles differ"
+    if error:
+        yield (
+            f"on samples: entropies have a standard error of up to {error:.4f} nats; +- is that of "
+            "a difference, smaller on a shared sample"
+        )
+
+
+def _figures(study: Study, height: float, class_name: str | None) -> advice.KeyFigures:
+    """Return the key figures of a study for a comparison."""
+    voxels = not study.targets.are_objects
+    return advice.key_figures(study.sight(), study.rig, height, class_name, of_voxels=voxels)
+
+
+def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
+    """Return a known rig in place of the first study's, by its name; nothing without one."""
+    if key is None:
+        return {}
+    known, first = catalog.known_rig(key), next(iter(studies.values()))
+    name = key if key not in studies else f"known rig {key}"
+    rig = catalog.rig_on(known, first.vehicle)
+    parts = {field: getattr(first, field) for field in COMPARED}
+    return {name: Study(rig, first.vehicle, samples=first.samples, **parts)}
+
+
+def named_by_file(paths: list[str]) -> dict[str, str]:
+    """Return study files by short names that tell them apart: of the file, or its folder too."""
+    for depth in (1, 2):
+        names = ["/".join(Path(path).with_suffix("").parts[-depth:]) for path in paths]
+        if len(set(names)) == len(names):
+            return dict(zip(names, paths, strict=True))
+    return dict(zip(paths, paths, strict=False))
+
+
+def scored(study: Study, workers: int | None) -> Outcome:
+    """Score a study, with progress; Ctrl-C ends it."""
+    tell_vehicle(study)
+    job = ScoreJob(study, workers)
+    with stop_at_first(job.stop) as received:
+        outcome = drive(job)
+    if outcome is None:
+        raise Interrupted(received.signum or signal.SIGINT, "no score was complete")
+    return outcome
+
+
+def refuse_different(studies: Mapping[str, Study]) -> None:
+    """Raise `InputError` for studies whose scores are not comparable (`COMPARED`)."""
+    first, *others = studies.items()
+    for name, study in others:
+        for field in COMPARED:
+            if getattr(study, field) != getattr(first[1], field):
+                field = "AP curves and fusion" if field == "model" else field
+                expected = f"the same as in {first[0]}, to be compared with it"
+                raise InputError(name, field, expected, "another")
+
+
+def _entropy(outcome: Outcome) -> str:
+    score = outcome.after
+    if score.objects is not None:
+        return f"object entropy {with_error(score.entropy, score.stderr)}; lower is better"
+    return f"perception entropy {with_error(score.entropy, score.stderr)}; lower is better"
+
+
+def _answer(data: dict[str, Any], lines: list[str] | tuple[str, ...], as_json: bool) -> Answer:
+    return (dump_json(finite(data)) if as_json else "\n".join(lines)), DONE

@@ -1,0 +1,114 @@
+"""Signals that end a run: the first one stops the job gracefully, the second one exits."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+FATAL = 128
+"""Exit status of a process that a signal ended, less the signal's number."""
+NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+
+
+class Interrupted(KeyboardInterrupt):
+    """Raised when a signal ends the work; `note` describes what happened to the results."""
+
+    def __init__(self, signum: int = signal.SIGINT, note: str = "") -> None:
+        super().__init__()
+        self.signum, self.note = signum, note
+
+
+@contextmanager
+def signals_interrupt() -> Iterator[None]:
+    """Have SIGTERM and SIGHUP raise `Interrupted`, as Ctrl-C raises KeyboardInterrupt.
+
+    By default they would end the program without cleanup and without a message.
+    """
+
+    def handler(signum: int, _frame: object) -> None:
+        raise Interrupted(signum)
+
+    before = {}
+    try:
+        for number in _handled():
+            if number != signal.SIGINT:
+                before[number] = signal.signal(number, handler)
+    except ValueError:  # not the main thread: someone else handles signals
+        pass
+    try:
+        yield
+    finally:
+        for number, old in before.items():
+            signal.signal(number, _default(number) if old is None else old)
+
+
+@contextmanager
+def noted_when_interrupted(note: str) -> Iterator[None]:
+    """Add a note about the results to the message of an interruption."""
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        signum = getattr(error, "signum", signal.SIGINT)
+        raise Interrupted(signum, getattr(error, "note", "") or note) from None
+
+
+@dataclass
+class Received:
+    """The received signal; None before the first."""
+
+    signum: int | None = None
+
+    def status(self, otherwise: int) -> int:
+        """Return the exit status for the signal; `otherwise` without a signal."""
+        return otherwise if self.signum is None else FATAL + self.signum
+
+
+@contextmanager
+def stop_at_first(stop: Callable[[], None]) -> Iterator[Received]:
+    """Call `stop` at the first Ctrl-C, SIGTERM or SIGHUP; raise `Interrupted` at the second."""
+    received = Received()
+
+    def handler(signum: int, _frame: object) -> None:
+        if received.signum is not None:
+            raise Interrupted(signum)
+        received.signum = signum
+        stop()
+
+    before = {}
+    try:
+        for number in _handled():
+            before[number] = signal.signal(number, handler)
+    except ValueError:  # not the main thread: someone else handles signals
+        yield received
+        return
+    try:
+        yield received
+    finally:
+        for number, old in before.items():
+            signal.signal(number, _default(number) if old is None else old)
+
+
+def _handled() -> list[signal.Signals]:
+    numbers = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
+    ignored = {n for n in numbers if signal.getsignal(n) is signal.SIG_IGN}
+    return [n for n in numbers if n == signal.SIGINT or n not in ignored]  # nohup means it
+
+
+def _default(number: signal.Signals) -> Any:
+    """A handler that is not Python's own (inside Blender) cannot be named, and is not restored."""
+    return signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
+
+
+def leave(status: int, *, at_once: bool = False) -> NoReturn:
+    """Exit the process; without waiting for its threads after a signal or with `at_once`."""
+    if status <= FATAL and not at_once:
+        sys.exit(status)
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(AttributeError, OSError, ValueError):  # it is closed, or nobody reads it
+            stream.flush()
+    os._exit(status)

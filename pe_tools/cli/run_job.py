@@ -1,0 +1,238 @@
+"""Run a job and keep its results whatever happens: checkpoints, and a fallback folder."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, NamedTuple, TextIO
+
+from pe_core.base import dump_json
+from pe_core.base.errors import InputError
+from pe_core.study import Study
+
+from ..jobs import (
+    Checkpoint,
+    Job,
+    OptimizeJob,
+    Outcome,
+    files_of_other_runs,
+    prepare_folder,
+    result_dict,
+    set_aside_files_of_other_runs,
+    write_outcome,
+)
+from .interrupts import Interrupted, stop_at_first
+from .progress_line import Reporter
+from .summary import summary
+from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, tell
+
+PREFIX = "perception-entropy-"
+"""Prefix of the name of a fallback folder."""
+
+
+@contextmanager
+def fallback_folder() -> Iterator[Path]:
+    """Make a folder among the system's temporary files; it is removed again if it stays empty.
+
+    Raises
+    ------
+    InputError
+        No folder can be made there.
+    """
+    try:
+        folder = Path(tempfile.mkdtemp(prefix=PREFIX))
+    except OSError as error:
+        where = "folder for temporary files"
+        raise InputError("system", where, "one that can be written", error) from None
+    try:
+        yield folder
+    finally:
+        if not any(path.is_file() for path in folder.rglob("[!.]*")):
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def folder_or_fallback(folder: Path | None) -> Iterator[Path]:
+    """Yield the folder, or a `fallback_folder` for None."""
+    if folder is not None:
+        yield folder
+        return
+    with fallback_folder() as other:
+        yield other
+
+
+def put_elsewhere(text: str) -> str:
+    """Save a text that could not be printed; return a message with its path."""
+    try:
+        with fallback_folder() as folder:
+            path = folder / "output.txt"
+            try:
+                path.write_text(text, encoding="utf-8", errors="backslashreplace")
+            except OSError:
+                with suppress(OSError):
+                    path.unlink(missing_ok=True)
+                raise
+    except (InputError, OSError) as error:
+        return f"it could not be kept either: {error}"
+    return f"what it would have said is in {path}"
+
+
+class Saver:
+    """Saves the checkpoints of a search in the output folder, and reports errors once."""
+
+    def __init__(self, job: Job, output: Path | None) -> None:
+        self._job = job if isinstance(job, OptimizeJob) else None
+        self._checkpoint = Checkpoint(self._job) if self._job else None
+        self._output = output
+        self._warned = False
+
+    def save_when_due(self) -> None:
+        """Save after every round, every few seconds, and when the search is stopped.
+
+        After a stop there may be no later opportunity.
+        """
+        if self._output is None or self._checkpoint is None or not self._checkpoint.due():
+            return
+        try:
+            self._checkpoint.save(self._output)
+        except InputError as error:
+            if not self._warned:
+                tell(f"{error}; the search goes on")
+            self._warned = True
+
+    def save_at_last(self) -> None:
+        """Save now, to the output folder or a fallback folder, and print the path."""
+        if self._output is None or self._job is None or len(self._job.history) < 2:
+            return
+        assert self._checkpoint is not None
+        for place in (self._output, None):
+            try:
+                with folder_or_fallback(place) as folder:
+                    saved = self._checkpoint.save(folder)
+                tell(f"the best placement so far is in {saved}")
+                return
+            except InputError as error:
+                tell(str(error))
+
+
+Data = dict[str, Any]
+
+
+class More(NamedTuple):
+    """Additional files of a run: their names, and the function that writes them.
+
+    `write` takes the outcome, the data of result.json, in which it lists the files, and the folder.
+    """
+
+    names: Sequence[str]
+    write: Callable[[Outcome, Data, Path], None]
+
+
+def carry_out(
+    job: Job,
+    output: Path | None,
+    *,
+    as_json: bool,
+    host: dict[str, str] | None = None,
+    more: More | None = None,
+) -> Answer:
+    """Run a job, keep its results, and return what is printed with the exit status.
+
+    The first Ctrl-C, SIGTERM or SIGHUP stops the job: the best placement so far is scored and kept.
+    The second one ends at once and keeps the best placement without its score. Results that cannot
+    be written to `output` go to a fallback folder; its path is printed on stderr, and the status is
+    1.
+    """
+    tell_vehicle(job.study)
+    with stop_at_first(job.stop) as received:
+        outcome = drive(job, output)
+        if outcome is None:
+            note = "no score was complete, so nothing was written"
+            raise Interrupted(received.signum or signal.SIGINT, note)
+        status, data = DONE, result_dict(outcome, host)
+        if output is not None:
+            status, data = keep(outcome, output, host, more)
+        text = dump_json(data) if as_json else summary(outcome)
+        return text, status or received.status(DONE)
+
+
+def tell_vehicle(study: Study) -> None:
+    """Print one line about the study's vehicle on stderr: its size and orientation."""
+    if study.vehicle_line is not None:
+        show(f"{one_line(study.vehicle_line)}\n", sys.stderr)
+
+
+def drive(job: Job, output: Path | None = None, stream: TextIO | None = None) -> Outcome | None:
+    """Run a job to its end, with progress on `stream` (default: stderr); return its outcome.
+
+    The outcome is None if the job was stopped before its first score. During a search, checkpoints
+    are saved in `output`: after every round, and when an exception ends the search.
+    """
+    reporter, saver = Reporter(stream or sys.stderr), Saver(job, output)
+    try:
+        for progress in job:
+            reporter.report(progress)
+            saver.save_when_due()
+    except BaseException:
+        saver.save_at_last()
+        raise
+    finally:
+        reporter.clear()
+    return job.outcome
+
+
+def keep(
+    outcome: Outcome, output: Path, host: dict[str, str] | None, more: More | None
+) -> tuple[int, Data]:
+    """Write the results to a folder; if that fails, to a fallback folder whose path is printed.
+
+    Returns
+    -------
+    status : int
+    data : dict
+        Content of result.json.
+    """
+    data, kept = result_dict(outcome, host), list[Path]()
+    names = more.names if more else ()
+    for place in (output, None):
+        try:
+            with folder_or_fallback(place) as folder:
+                prepare_folder(folder, names)  # the user may have added a file meanwhile
+                data = write_outcome(outcome, folder, host, names)
+                kept.append(folder)
+                if more is not None:
+                    more.write(outcome, data, folder)
+        except InputError as error:
+            tell(str(error))
+            if folder in kept:
+                for name, aside in set_aside_files_of_other_runs(folder).items():
+                    tell(f"{folder / name}: of an earlier run; it is {aside} now")
+            continue
+        _tell_of_other_runs(folder)
+        if folder != output:
+            tell(f"the results are in {folder}")
+        return (DONE if folder == output else BAD_INPUT), data
+    tell(f"all else is in {kept[0]}" if kept else "the results are not in any file")
+    _tell_of_other_runs(output)
+    return BAD_INPUT, data
+
+
+def _tell_of_other_runs(folder: Path) -> None:
+    for name in files_of_other_runs(folder):
+        tell(f"{folder / name}: not of this run")
+
+
+def print_answer(text: str, status: int, out: TextIO | None) -> int:
+    """Print the text of a command; return its exit status."""
+    encoding = getattr(out, "encoding", None)
+    shown = printable(text.removesuffix("\n"), encoding)
+    error = show(f"{shown}\n", out) if text else None
+    if error is None or isinstance(error, BrokenPipeError):  # the reader has gone, as `head` does
+        return status
+    tell(f"output: {getattr(error, 'strerror', None) or error}; {put_elsewhere(text)}")
+    return status or BAD_INPUT

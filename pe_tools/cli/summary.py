@@ -1,0 +1,81 @@
+"""Summarize an outcome in a few lines of text."""
+
+from __future__ import annotations
+
+from pe_core.sensors import kind_of
+from pe_core.study import Robustness
+
+from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
+from ..jobs import Outcome
+
+LEAST_SHOWN = 1e-4
+"""Smallest standard error that is printed [nats]: one unit of the last digit."""
+
+
+def summary(outcome: Outcome) -> str:
+    """Return an outcome in a few lines, for people."""
+    if outcome.kind == "score":
+        lines = [f"entropy   {with_error(outcome.after.entropy, outcome.after.stderr)}"]
+        lines.append(f"coverage  {outcome.after.coverage:.1%}")
+    else:
+        before, after = outcome.before, outcome.after
+        lines = [
+            f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats",
+            f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
+            *_moves(outcome.robustness),
+        ]
+    if outcome.after.objects is not None:
+        found = outcome.after.objects
+        lines += [*object_words(found), f"on {objects_looked_at(found)}"]
+    scores = outcome.after.per_sensor
+    rig = outcome.study.rig
+    hidden = hidden_sensors(rig, outcome.after, outcome.warnings)
+    lines += [f"ATTENTION: {line}" for line in hidden_words(hidden)]
+    for sensor in rig:
+        x, y, z = sensor.pose.position
+        roll, pitch, yaw = sensor.pose.rotation_deg
+        own = scores[sensor.name]
+        what = kind_of(sensor).occlusion_text
+        stopped = f", {own.stopped / own.beams:.1%} of its {what}" if own.stopped else ""
+        lines.append(
+            f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
+            f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"
+        )
+    if outcome.kind == "optimize":
+        lines.append(searched(outcome))
+    if outcome.stopped:
+        lines.append("stopped early: this is the best placement found so far")
+    return "\n".join([*lines, *warned(outcome)])
+
+
+def _moves(found: Robustness | None) -> list[str]:
+    """Return how far the entropy of start and end moves under mounting errors and failures."""
+    if found is None:
+        return []
+    before, after = found.before, found.after
+    off = off_by(found.errors.position, found.errors.angle)
+    lines = [f"{off} (1 sigma)  {before.rise:+.4f} -> {after.rise:+.4f} nats on average"]
+    if before.loss is not None and after.loss is not None:
+        lines.append(f"one sensor lost  {before.loss:+.4f} -> {after.loss:+.4f} nats on average")
+    return lines
+
+
+def searched(outcome: Outcome) -> str:
+    """Return how a search was made: method, seed, and the voxels candidates were judged on."""
+    study, search = outcome.start, outcome.start.search
+    looks = [study.looks_at(samples) for samples in search.level_samples]
+    levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
+    what = "scenes of objects" if study.targets.are_objects else "voxels"
+    count = f"{outcome.evaluations:,} placements"
+    return f"searched by {search.method}, seed {search.seed}: {count} judged on {levels} {what}"
+
+
+def warned(outcome: Outcome) -> list[str]:
+    """Return the warnings of an outcome, one line each."""
+    return [f"warning: {each.line}" for each in outcome.warnings]
+
+
+def with_error(entropy: float, stderr: float) -> str:
+    """Return an entropy with its standard error; a grid has none, a sample never shows 0."""
+    error = f" +- {max(stderr, LEAST_SHOWN):.4f}" if stderr else ""
+    return f"{entropy:.4f}{error} nats"

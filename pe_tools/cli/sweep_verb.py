@@ -1,0 +1,225 @@
+"""The verb ``sweep``: many studies, or one with many changes, in a table."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pe_core.base import dump_json
+from pe_core.base.errors import InputError
+from pe_core.study import SEARCH, STUDY
+
+from ..jobs import Outcome, Progress, check_files, prepare_folder, result_names, write_outcome
+from ..sweep import (
+    BEGUN,
+    DONE,
+    SWEEP_CSV,
+    SWEEP_JSON,
+    WAITING,
+    RunTask,
+    SweepRow,
+    SweepRun,
+    WorkerPool,
+    read_settings,
+    row_of,
+    row_of_result,
+    run_all,
+    sweep_runs,
+    table_lines,
+    write_table,
+)
+from . import terminal
+from .command import add_score_options, add_search_options, with_options
+from .executors import workplace
+from .interrupts import Interrupted, Received, stop_at_first
+from .progress_line import Reporter
+from .run_job import folder_or_fallback
+from .terminal import is_terminal, one_line, show, tell
+
+OPEN = (WAITING, BEGUN)
+"""The status of a run that has no result yet."""
+
+
+def add_sweep_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``sweep`` to a parser."""
+    parser.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for all runs")
+    about = "try these values of a key of the study; several: every combination"
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE,...", help=about)
+    parser.add_argument("--optimize", action="store_true", help="search in every run; else score")
+    about = "have the workers of a Dask scheduler do it, tcp://host:8786"
+    parser.add_argument("--scheduler", metavar="ADDRESS", help=about)
+    parser.add_argument("--json", action="store_true", help=f"print {SWEEP_JSON} on stdout")
+    add_score_options(parser, workers="processes")
+    add_search_options(parser)
+
+
+def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal.Answer:
+    """Run study files by name, with every combination of changes; write all results to a folder.
+
+    Runs whose results are in the folder already are not repeated.
+    """
+    kind = "optimize" if args.optimize else "score"
+    settings = read_settings(args.set)
+    runs = sweep_runs(files, settings, lambda study: with_options(study, args))
+    folder = prepare_folder(args.output, [SWEEP_CSV, SWEEP_JSON])
+    _refuse_folders(runs, files, folder, kind)
+    with ExitStack() as places, stop_at_first(lambda: None) as received:
+        work = _SweepVerb(runs, kind, folder, places)
+        work.run(args, received)
+        if received.signum is not None:
+            raise Interrupted(received.signum, f"{work.state}; the same command goes on")
+    text = dump_json(work.data) if args.json else "\n".join(table_lines(work.rows, kind))
+    whole = all(row.status == DONE for row in work.rows) and not work.fell_back
+    return text, terminal.DONE if whole else terminal.BAD_INPUT
+
+
+def _refuse_folders(
+    runs: Sequence[SweepRun], files: Mapping[str, str | Path], folder: Path, kind: str
+) -> None:
+    """Raise `InputError`, before the work, if results would replace files of the user."""
+    for run in runs:
+        at = folder / run.name
+        study = Path(files[run.study_name])
+        if (at / STUDY).exists() and (at / STUDY).samefile(study):
+            raise InputError(study, "output", "another folder than that of the study", "its own")
+        check_files(at, result_names(run.study, kind))
+
+
+class _SweepVerb:
+    """A sweep under way: its rows, and its folder."""
+
+    def __init__(
+        self, runs: Sequence[SweepRun], kind: str, folder: Path, places: ExitStack
+    ) -> None:
+        self._kind, self._folder, self._places = kind, folder, places
+        self._fallback: Path | None = None
+        found = [row_of_result(run, folder / run.name, kind) for run in runs]
+        self.rows = [
+            row or SweepRow(run, self._unfinished(run))
+            for row, run in zip(found, runs, strict=True)
+        ]
+        self._numbers = {run.name: number for number, run in enumerate(runs)}
+        self._reporter, self._on_terminal = Reporter(sys.stderr), is_terminal(sys.stderr)
+        self.data: dict[str, Any] = write_table(self.rows, kind, folder)
+
+    @property
+    def fell_back(self) -> bool:
+        """Whether something could not be written to the folder of the sweep."""
+        return self._fallback is not None
+
+    @property
+    def state(self) -> str:
+        """How many runs are done, and how many searches have a checkpoint, in words."""
+        kept = f", {self._begun} begun and kept" if self._begun else ""
+        return f"{self._done} of {len(self.rows)} runs are done{kept}"
+
+    @property
+    def _done(self) -> int:
+        return sum(row.status == DONE for row in self.rows)
+
+    @property
+    def _begun(self) -> int:
+        return sum(row.status == BEGUN for row in self.rows)
+
+    def _unfinished(self, run: SweepRun) -> str:
+        """The status of a run that is not done: begun, where its search has a checkpoint."""
+        searches = self._kind == "optimize"
+        return BEGUN if searches and (self._folder / run.name / SEARCH).exists() else WAITING
+
+    def run(self, args: argparse.Namespace, received: Received) -> None:
+        """Run what is not done yet."""
+        left = [row.run.name for row in self.rows if row.status != DONE]
+        if self._done or self._begun:
+            going_on = f"; searches that go on: {self._begun}" if self._begun else ""
+            tell(f"{self._done} of {len(self.rows)} runs are done already{going_on}")
+        if not left:
+            return
+        try:
+            with workplace(args.workers, args.scheduler) as place:
+
+                def make_task(name: str) -> RunTask:
+                    return self._begin(self.rows[self._numbers[name]].run, place)
+
+                run_all(left, make_task, place, self._take, lambda: self._goes_on(received))
+        finally:
+            self._reporter.clear()
+            self.rows = [
+                replace(row, status=self._unfinished(row.run)) if row.status in OPEN else row
+                for row in self.rows
+            ]
+            self._write_table()
+
+    def _begin(self, run: SweepRun, place: WorkerPool) -> RunTask:
+        """Return the task of a run that goes to a worker now."""
+        number = self._numbers[run.name]
+        searches = self._kind == "optimize"
+        self.rows[number] = replace(self.rows[number], status=BEGUN)
+        checkpoints = place.checkpoints(run, self._folder / run.name) if searches else None
+        return RunTask(run.study, searches, place.threads, checkpoints)
+
+    def _goes_on(self, received: Received) -> bool:
+        if self._on_terminal:
+            share = sum(row.status not in OPEN for row in self.rows) / len(self.rows)
+            self._reporter.report(Progress("sweeping", share))
+        return received.signum is None
+
+    def _take(self, name: str, found: Outcome | InputError) -> None:
+        """Store the result of a run, update the table, and report the run."""
+        number = self._numbers[name]
+        run = self.rows[number].run
+        if isinstance(found, Outcome):
+            found = self._keep(name, found)
+        row = self.rows[number] = row_of(run, found)
+        self._write_table()
+        self._tell(row, found)
+
+    def _keep(self, name: str, found: Outcome) -> Outcome | InputError:
+        """Write a run's results; where that fails, below a folder among temporary files."""
+        try:
+            write_outcome(found, self._folder / name)
+            return found
+        except InputError as error:
+            self._tell_failure(name, error)
+        try:
+            write_outcome(found, self._fall_back() / name)
+            return found
+        except InputError as error:
+            return error
+
+    def _write_table(self) -> None:
+        """Write the table; where that fails, to a folder among temporary files."""
+        try:
+            self.data = write_table(self.rows, self._kind, self._folder)
+        except InputError as error:
+            first = self._fallback is None
+            if first:
+                self._tell_failure("", error)
+            try:
+                self.data = write_table(self.rows, self._kind, self._fall_back())
+            except InputError as second:
+                if first:
+                    self._tell_failure("", second)
+
+    def _fall_back(self) -> Path:
+        """Return the fallback folder of the sweep; report it at its creation."""
+        if self._fallback is None:
+            self._fallback = self._places.enter_context(folder_or_fallback(None))
+            self._tell_failure("", f"what cannot be written there is in {self._fallback}")
+        return self._fallback
+
+    def _tell_failure(self, name: str, what: InputError | str) -> None:
+        self._reporter.clear()
+        tell(str(what) if not name else f"{name}: {what}")
+
+    def _tell(self, row: SweepRow, found: Outcome | InputError) -> None:
+        name = row.run.name
+        if isinstance(found, InputError):
+            self._tell_failure("" if found.source == name else name, found)
+        elif not self._on_terminal:
+            figures = f"entropy {row.entropy:.4f}  coverage {row.coverage:.1%}"
+            show(one_line(f"[{self._done}/{len(self.rows)}] {name}  {figures}") + "\n", sys.stderr)

@@ -1,0 +1,41 @@
+"""Import and export of sensor rigs in the file formats of other programs."""
+
+from pe_core.study.passthrough import Passthrough
+
+from .autoware_kit import read_vehicle_info
+from .exporting import export_rig, rig_files, write_files
+from .foreign_values import MAX_BEAMS, Written, require_at_most
+from .frames import pose_from_quaternion
+from .importing import STAND_INS, ImportedRig, import_rig
+from .lens_pictures import Picture, straight
+from .losses import MAX_RANGE, MIN_RANGE, MODEL, lost_line
+from .portable import PortableSensor, picture_of, portable_sensors, with_pictures
+from .rig_formats import RIG_FORMATS, RigFormat, rig_format
+
+__all__ = [
+    "MAX_BEAMS",
+    "MAX_RANGE",
+    "MIN_RANGE",
+    "MODEL",
+    "RIG_FORMATS",
+    "STAND_INS",
+    "ImportedRig",
+    "Passthrough",
+    "Picture",
+    "PortableSensor",
+    "RigFormat",
+    "Written",
+    "export_rig",
+    "import_rig",
+    "lost_line",
+    "picture_of",
+    "portable_sensors",
+    "pose_from_quaternion",
+    "read_vehicle_info",
+    "require_at_most",
+    "rig_files",
+    "rig_format",
+    "straight",
+    "with_pictures",
+    "write_files",
+]

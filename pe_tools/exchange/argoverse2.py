@@ -1,0 +1,122 @@
+"""Argoverse 2: the feather tables of a log's folder `calibration`.
+
+The ego frame has its origin in the middle of the rear axle, at the height of the axle. A camera's
+frame is optical. A LiDAR's frame has the axes of the ground frame. Cameras are read as pinholes:
+like Argoverse's own reader, this module ignores the distortion coefficients k1, k2 and k3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pe_core.base.errors import InputError
+from pe_core.base.files import read_bytes
+from pe_core.base.plugins import install_hint, required_plugin
+from pe_core.base.table_reader import Table
+from pe_core.base.values import vector
+from pe_core.geometry.poses import METRES
+
+from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Written
+from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
+from .lens_pictures import Picture, pinhole_picture
+from .portable import CAMERA, LIDAR, PortableSensor
+
+POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
+TITLE, NAME = "Argoverse 2", "sensor_name"
+TURN, SHIFT = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
+LENS, BENT = ("fx_px", "fy_px", "cx_px", "cy_px"), ("k1", "k2", "k3")
+SIZE = ("height_px", "width_px")
+CONVENTIONS = {
+    "frame": "middle of the rear axle at its height; x forward, y left, z up; metres",
+    "rotation": "egovehicle from sensor, unit quaternion; cameras: z forward, x right, y down",
+    "intrinsics": "pinhole, pixels from the upper left corner; k1, k2, k3 are 0",
+}
+"""Metadata of the written tables."""
+NO_BEND = "the file's k1, k2, k3 are not applied: Argoverse's own reader projects without them"
+
+
+def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return the tables of poses and of intrinsics, and no messages.
+
+    Raises
+    ------
+    InputError
+        When the library for feather files is not installed.
+    """
+    feather = _feather()
+    poses = [_pose_row(sensor) for sensor in sensors]
+    intrinsics = [_lens_row(s.name, s.picture) for s in sensors if s.picture is not None]
+    columns = (NAME, *TURN, *SHIFT), (NAME, *LENS, *BENT, *SIZE)
+    tables = zip((POSES, INTRINSICS), columns, (poses, intrinsics), strict=True)
+    return {
+        file: feather.table_bytes(_by_column(names, rows), SIZE, CONVENTIONS)
+        for file, names, rows in tables
+    }, []
+
+
+def _by_column(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> dict[str, list[Any]]:
+    return {name: [row[k] for row in rows] for k, name in enumerate(names)}
+
+
+def _pose_row(sensor: PortableSensor) -> list[Any]:
+    rotation = sensor.pose.ground_from_sensor
+    if sensor.kind == CAMERA:
+        rotation = product(rotation, BODY_FROM_OPTICAL)
+    return [sensor.name, *quaternion(rotation), *sensor.pose.position]
+
+
+def _lens_row(name: str, picture: Picture) -> list[Any]:
+    width, height = picture.size or (0, 0)
+    return [name, picture.fx, picture.fy, *picture.center, 0.0, 0.0, 0.0, height, width]
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the sensors from the table of poses and the table of intrinsics beside it.
+
+    Parameters
+    ----------
+    path : Path
+        The table of poses, or the folder that holds both tables.
+
+    Raises
+    ------
+    InputError
+        When a table is missing or malformed, or the library for feather files is not installed.
+    """
+    path = path / POSES if path.is_dir() else path
+    beside = path.with_name(INTRINSICS)
+    cameras = {row.text(NAME): row for row in _rows(beside)}
+    return tuple(_sensor(path, row, cameras) for row in _rows(path))
+
+
+def _rows(path: Path) -> list[Table]:
+    """Return the rows of a feather table; each row maps column names to values."""
+    data = _feather().rows_of(read_bytes(path))
+    if data is None:
+        raise InputError(path, "file", "a feather table", "something else")
+    return [Table(row, str(path), f"row {k}") for k, row in enumerate(data, 1)]
+
+
+def _sensor(path: Path, row: Table, cameras: Mapping[str, Table]) -> PortableSensor:
+    name = row.text(NAME)
+    rotation_values = vector(path, row.field("qw"), [row.number(key) for key in TURN], 4)
+    position = vector(path, row.field("tx_m"), [row.number(key) for key in SHIFT], 3, METRES)
+    rotation = from_quaternion(path, row.field("qw"), rotation_values)
+    if name not in cameras:
+        return PortableSensor(name, pose_of(rotation, position), LIDAR)
+    intrinsics = cameras[name]
+    size = intrinsics.whole("width_px", rule=PIXELS), intrinsics.whole("height_px", rule=PIXELS)
+    rules = FOCAL, FOCAL, PRINCIPAL_POINT, PRINCIPAL_POINT
+    fx, fy, cx, cy = (intrinsics.number(k, rule=rule) for k, rule in zip(LENS, rules, strict=True))
+    picture = pinhole_picture(fx, fy, cx, cy, size)
+    note = NO_BEND if any(intrinsics.number(key, 0.0, COEFFICIENT) for key in BENT) else ""
+    pose = pose_of(product(rotation, BODY_FROM_OPTICAL.T), position)
+    return PortableSensor(name, pose, CAMERA, None, picture, told=note)
+
+
+def _feather() -> Any:
+    """Return the feather module. Raise `InputError` when its library is not installed."""
+    expected = install_hint("library", "feather")
+    return required_plugin("library", "feather", TITLE, "library", expected)[1]

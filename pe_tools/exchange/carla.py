@@ -1,0 +1,199 @@
+"""CARLA's objects.json, from which its ROS bridge spawns sensors.
+
+Coordinates are right-handed, angles are in degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pe_core.base.errors import InputError
+from pe_core.base.serialization import parse_json
+from pe_core.base.table_reader import Table
+from pe_core.base.values import Number
+from pe_core.study.passthrough import json_entry
+
+from .foreign_values import (
+    CHANNELS,
+    PIXELS,
+    RANGE,
+    Written,
+    json_bytes,
+    json_of,
+    json_rows,
+    named_numbers,
+    pose_from,
+)
+from .frame_tree import with_legal_frames
+from .lens_pictures import Picture, picture_of_fov
+from .passthrough import ORIGIN, entry_row
+from .portable import CAMERA, LIDAR, PortableSensor, Scan, uneven
+
+FILE = "objects.json"
+TYPES = {CAMERA: "sensor.camera.rgb", LIDAR: "sensor.lidar.ray_cast"}
+VEHICLE = {"type": "vehicle.*", "id": "ego_vehicle"}
+FRAMES_A_SECOND = 10
+TINY_DEG = 1e-6
+SCAN_KEYS = (
+    *("channels", "upper_fov", "lower_fov", "range", "points_per_second", "rotation_frequency"),
+)
+FOV = Number(0.0, 180.0, above=True, below=True, unit="degrees", noun="angle")
+UP = Number(-90.0, 90.0, unit="degrees", noun="angle")
+AROUND = Number(0.0, 360.0, above=True, unit="degrees", noun="angle")
+RATE, TURNS = Number(0.0, above=True, cap=1e12), Number(1e-3, cap=1e6)
+"""Points per second, and rotations per second."""
+SPAWN, LISTS, ACROSS = "spawn_point", ("sensors", "objects"), "horizontal_fov"
+FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS)
+POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
+
+
+def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return a document with an ego vehicle that carries the rig, and messages on losses."""
+    return _written({"objects": [dict(VEHICLE)]}, sensors)
+
+
+def write_over(
+    texts: Mapping[str, str], sensors: tuple[PortableSensor, ...]
+) -> tuple[Written, list[str]]:
+    """Return the imported document with the rig on its vehicle, and messages on losses."""
+    return _written(parse_json("passthrough", texts.get(FILE, "")), sensors)
+
+
+def _written(document: Any, sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return a document whose first vehicle carries the rig, and messages on losses."""
+    named, lines = with_legal_frames(sensors)
+    supported = [sensor for sensor in named if sensor.is_left_out or sensor.kind in TYPES]
+    lines += [f"{s.name}: CARLA has no {s.kind}; left out" for s in named if s not in supported]
+    rows = [entry_row(sensor, _row, (SPAWN,), FIGURES) for sensor in supported]
+    vehicle, key = _place_of_sensors("passthrough", document)
+    vehicle[key] = rows
+    lines += [line for sensor in named if (line := _turned_line(sensor))]
+    return {FILE: json_bytes(document)}, lines + uneven(named, "CARLA")
+
+
+def _turned_line(sensor: PortableSensor) -> str:
+    """Return a message if a LiDAR's azimuth range is not symmetric; CARLA cannot express it."""
+    low, high = sensor.scan.fov if sensor.scan is not None else (0.0, 0.0)
+    if abs(math.degrees(low + high)) < TINY_DEG:
+        return ""
+    ends = " to ".join(f"{math.degrees(end):g}" for end in (low, high))
+    return (
+        f"{sensor.name}: CARLA's horizontal_fov is to both sides alike; its azimuths are {ends} deg"
+    )
+
+
+def _place_of_sensors(source: object, document: Any) -> tuple[dict[str, Any], str]:
+    """Return the object that holds the sensors, and the key of its list of sensors.
+
+    It is the first object with such a list, or else the first vehicle.
+    """
+    objects = document.get("objects") if isinstance(document, dict) else None
+    mappings = [mapping for mapping in objects or () if isinstance(mapping, dict)]
+    for mapping in mappings:
+        for key in LISTS:
+            if key in mapping:
+                return mapping, key
+    vehicle = next((o for o in mappings if str(o.get("type")).startswith("vehicle.")), None)
+    if vehicle is None:
+        raise InputError(source, "objects", "a vehicle with sensors", "none")
+    return vehicle, LISTS[0]
+
+
+def _row(sensor: PortableSensor) -> dict[str, Any]:
+    numbers = (*sensor.pose.position, *sensor.pose.rotation_deg)
+    row: dict[str, Any] = {
+        "type": TYPES[sensor.kind or ""],
+        "id": sensor.name,
+        SPAWN: dict(zip((*POSITION_KEYS, *ROTATION_KEYS), numbers, strict=True)),
+    }
+    if sensor.picture is not None and sensor.picture.size is not None:
+        width, height = sensor.picture.size
+        fov = math.degrees(2.0 * math.atan(width / (2.0 * sensor.picture.fx)))
+        row |= {"image_size_x": width, "image_size_y": height, "fov": fov}
+    if sensor.scan is not None:
+        row |= _lidar(sensor.scan)
+    return row
+
+
+def _lidar(scan: Scan) -> dict[str, Any]:
+    low, high = scan.fov
+    across = math.degrees(high - low)
+    return {
+        **({ACROSS: across} if across < 360.0 - TINY_DEG else {}),
+        "range": scan.max_range,
+        "channels": scan.channels,
+        "points_per_second": scan.beam_count * FRAMES_A_SECOND,
+        "upper_fov": math.degrees(scan.high),
+        "lower_fov": math.degrees(scan.low),
+        "rotation_frequency": FRAMES_A_SECOND,
+    }
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return the document without its sensors, as text by file name, for `write_over`."""
+    document = json_of(path)
+    vehicle, key = _place_of_sensors(path, document)
+    vehicle[key] = []
+    return {FILE: json_entry(document)}
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the sensors of the first vehicle that has a list of sensors.
+
+    Raises
+    ------
+    InputError
+        When there is no such vehicle, no sensor has a spawn point, or a value is out of range.
+    """
+    document = json_of(path)
+    vehicle, key = _place_of_sensors(path, document)
+    rows = json_rows(path, vehicle.get(key, []), f"{vehicle.get('id', 'vehicle')}.{key}")
+    sensors = tuple(_sensor(path, row) for row in rows)
+    if not any("spawn_point" in row for row in rows):
+        raise InputError(path, "objects", "a vehicle with sensors", "none")
+    return sensors
+
+
+def _sensor(path: Path, row: Table) -> PortableSensor:
+    type_name = row.text("type")
+    if SPAWN not in row:  # a pseudo sensor: CARLA's own view of the world
+        return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=json_entry(row.data))
+    spawn = row.table(SPAWN)
+    position, angles = (
+        [spawn.number(key, 0.0) for key in ROTATION_KEYS]
+        if keys is ROTATION_KEYS
+        else named_numbers(spawn, keys)
+        for keys in (POSITION_KEYS, ROTATION_KEYS)
+    )
+    pose = pose_from(path, row.field(SPAWN), position, angles, degrees=True)
+    kind = next((kind for kind in (CAMERA, LIDAR) if f".{kind}." in type_name), None)
+    kind = kind or type_name.removeprefix("sensor.").removeprefix("other.")
+    sensor = PortableSensor(row.text("id"), pose, kind, entry=json_entry(row.data))
+    if kind == CAMERA and all(key in row for key in ("image_size_x", "image_size_y", "fov")):
+        return replace(sensor, picture=_picture(row))
+    if kind == LIDAR and all(key in row for key in SCAN_KEYS):
+        return replace(sensor, scan=_scan(row))
+    return sensor
+
+
+def _picture(row: Table) -> Picture:
+    size = row.whole("image_size_x", rule=PIXELS), row.whole("image_size_y", rule=PIXELS)
+    return picture_of_fov(math.radians(row.number("fov", rule=FOV)), size)
+
+
+def _scan(row: Table) -> Scan:
+    frames, channels = (
+        row.number("rotation_frequency", rule=TURNS),
+        row.whole("channels", rule=CHANNELS),
+    )
+    beams = row.number("points_per_second", rule=RATE) / frames
+    low, high = (math.radians(row.number(key, rule=UP)) for key in ("lower_fov", "upper_fov"))
+    if low > high:
+        raise row.error("lower_fov", "an angle up to upper_fov", f"{math.degrees(low):g}")
+    azimuths = max(round(beams / channels), 1)
+    half = math.radians(row.number(ACROSS, 360.0, rule=AROUND)) / 2.0
+    return Scan(channels, low, high, azimuths, (-half, half), row.number("range", rule=RANGE))

@@ -1,0 +1,272 @@
+"""NVIDIA DriveWorks' rig.json.
+
+Angles are in degrees. The origin is the middle of the rear axle, projected to the ground.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.base.errors import InputError, shown
+from pe_core.base.serialization import parse_json
+from pe_core.base.table_reader import Table
+from pe_core.base.values import FINITE, Number, vector
+from pe_core.geometry.poses import METRES, Pose
+from pe_core.sensors.camera import FTheta
+from pe_core.study.passthrough import json_entry
+
+from .foreign_values import (
+    COEFFICIENT,
+    FOCAL,
+    PIXELS,
+    PRINCIPAL_POINT,
+    Written,
+    figure,
+    figures,
+    json_bytes,
+    json_of,
+    json_rows,
+    plain_number,
+    pose_from,
+    spaced,
+    whole_figure,
+)
+from .frames import composed, shifted
+from .lens_pictures import Picture, pinhole_picture
+from .passthrough import ORIGIN, entry_row
+from .portable import CAMERA, LIDAR, PortableSensor
+
+FILE = "rig.json"
+POSE_KEY, ROTATION_KEY, POSITION_KEY = "nominalSensor2Rig_FLU", "roll-pitch-yaw", "t"
+TURN_CORRECTION, SHIFT_CORRECTION = "correction_sensor_R_FLU", "correction_rig_T"
+PROTOCOLS = {CAMERA: "camera.gmsl", LIDAR: "lidar.virtual"}
+"""Protocols to write, by kind. When reading, the word before the dot is the kind."""
+UNKNOWN = ("", "virtual")
+"""Protocols from which the kind of a sensor does not follow."""
+FIGURES, CORRECTION = ("properties", "parameter"), "correction_"
+
+
+def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return a new rig file, and messages on sensor kinds that DriveWorks does not have."""
+    return _written({"rig": {}, "version": 2}, sensors)
+
+
+def write_over(
+    texts: Mapping[str, str], sensors: tuple[PortableSensor, ...]
+) -> tuple[Written, list[str]]:
+    """Return the imported file with the sensors of the rig, and messages as in `write`."""
+    return _written(parse_json("passthrough", texts.get(FILE, "")), sensors)
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return the document without its sensors, as text by file name, for `write_over`."""
+    document = json_of(path)
+    document["rig"]["sensors"] = []
+    return {FILE: json_entry(document)}
+
+
+def _written(document: Any, sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    rig = document.get("rig") if isinstance(document, dict) else None
+    if not isinstance(rig, dict):
+        raise InputError("passthrough", FILE, "a rig", "none")
+    rig["sensors"] = [_row_over(sensor) for sensor in sensors]
+    lines = [f"{s.name}: DriveWorks has no {s.kind}" for s in sensors
+             if s.kind not in PROTOCOLS and not s.is_left_out]  # fmt: skip
+    return {FILE: json_bytes(document)}, lines
+
+
+def _row_over(sensor: PortableSensor) -> dict[str, Any]:
+    """Return the JSON object of a sensor.
+
+    The pose of a sensor that moved includes the corrections, so their keys are removed.
+    """
+    row = entry_row(sensor, _row, (POSE_KEY,), FIGURES)
+    if not sensor.is_unmoved and not sensor.is_left_out:
+        row = {key: value for key, value in row.items() if not key.startswith(CORRECTION)}
+    return row
+
+
+def _row(sensor: PortableSensor) -> dict[str, Any]:
+    properties = {} if sensor.picture is None else write_properties(sensor.picture)
+    return {
+        "name": sensor.name,
+        "protocol": PROTOCOLS.get(sensor.kind or "", "virtual"),
+        "parameter": f"model={sensor.model}",
+        POSE_KEY: {
+            ROTATION_KEY: list(sensor.pose.rotation_deg),
+            POSITION_KEY: list(sensor.pose.position),
+        },
+        "properties": properties,
+    }
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the sensors of a rig.
+
+    A sensor without a pose (CAN, GPS) takes its kind from its protocol.
+
+    Raises
+    ------
+    InputError
+        When no sensor has a pose, or a value is malformed.
+    """
+    rig = Table(json_of(path), str(path)).table("rig")
+    rows = json_rows(path, rig.raw("sensors"), "rig.sensors")
+    if not any(POSE_KEY in row for row in rows):
+        raise InputError(path, "rig.sensors", f"sensors with {POSE_KEY}", "none")
+    return tuple(_sensor(path, row) for row in rows)
+
+
+def _corrected(path: Path, row: Table, nominal: Pose) -> Pose:
+    """Return a nominal pose with the corrections of the calibration applied.
+
+    The rotation is in the sensor's axes, the translation in the rig's axes:
+    R = R_nominal R_correction, t = t_nominal + t_correction.
+    """
+    shift, turn = row.raw(SHIFT_CORRECTION, None), row.raw(TURN_CORRECTION, None)
+    if shift is None and turn is None:
+        return nominal
+    angles = [0.0, 0.0, 0.0] if turn is None else row.table(TURN_CORRECTION).raw(ROTATION_KEY)
+    field = row.field(TURN_CORRECTION)
+    correction = pose_from(path, field, (0.0, 0.0, 0.0), angles, degrees=True)
+    moved = (0.0, 0.0, 0.0) if shift is None else shift
+    offset = vector(path, row.field(SHIFT_CORRECTION), moved, 3, METRES)
+    return shifted(composed(nominal, correction), offset)
+
+
+def _sensor(path: Path, row: Table) -> PortableSensor:
+    protocol, entry = row.text("protocol", "").partition(".")[0], json_entry(row.data)
+    if POSE_KEY not in row:
+        return PortableSensor(row.text("name"), ORIGIN, protocol or "other", entry=entry)
+    pose = row.table(POSE_KEY)
+    position, angles = pose.raw(POSITION_KEY), pose.raw(ROTATION_KEY)
+    kind = None if protocol in UNKNOWN else protocol
+    _, _, model = row.text("parameter", "").partition("model=")
+    sensor_pose = _corrected(path, row, pose_from(path, pose.path, position, angles, degrees=True))
+    picture_and_note = read_properties(row.table("properties")) if kind == CAMERA else (None, "")
+    attributes = row.text("name"), sensor_pose, kind, model.split(",")[0] or None
+    return PortableSensor(*attributes, picture_and_note[0], told=picture_and_note[1], entry=entry)
+
+
+Floats = NDArray[np.float64]
+
+PINHOLE, F_THETA = "pinhole", "ftheta"
+FOCAL_KEYS, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")
+POLYNOMIALS = ("polynomial", "bw-poly")
+FORWARD, BACKWARD = "angle-to-pixeldistance", "pixeldistance-to-angle"
+MOST = 6
+"""Maximum number of coefficients of a polynomial, the constant included."""
+PLACES = 2000
+"""Number of radii at which the inverse of a polynomial is fitted."""
+NOTICED_PX = 0.1
+TURNED = "its polynomial from pixels to angles is turned round to within {:.1f} px"
+GENTLEST = 1e-9
+"""Minimum linear coefficient [rad/px or px/rad]; a smaller one describes no lens."""
+GENTLE = 1.0
+"""A polynomial without a stated direction maps pixels to angles if its slope is below this."""
+
+
+def write_properties(picture: Picture) -> dict[str, str]:
+    """Return the properties of a camera's intrinsics; DriveWorks stores them as text."""
+    width, height = picture.size or (0, 0)
+    cx, cy = picture.center
+    common = {"width": str(width), "height": str(height)}
+    common |= {"cx": plain_number(cx), "cy": plain_number(cy)}
+    lens = picture.lens
+    if not isinstance(lens, FTheta):
+        focal = {"fx": plain_number(picture.fx), "fy": plain_number(picture.fy)}
+        return {"Model": PINHOLE, **common, **focal}
+    polynomial = [0.0, *(lens.fx * getattr(lens, key) for key in lens.coefficients)]
+    linear_terms = {"linear-c": "1.0", "linear-d": "0.0", "linear-e": "0.0"}
+    polynomial_texts = {"polynomial": spaced(polynomial[:MOST]), "polynomial-type": FORWARD}
+    return {"Model": F_THETA, **common, **polynomial_texts, **linear_terms}
+
+
+def read_properties(properties: Table) -> tuple[Picture | None, str]:
+    """Return a camera's intrinsics, and a note on the accuracy of the conversion.
+
+    The intrinsics are None if properties are missing or belong to another lens model. The note is
+    empty if there is nothing to report.
+
+    Raises
+    ------
+    InputError
+        When a number is malformed or out of range, or pixels are not square.
+    """
+    if not all(key in properties for key in (*MIDDLE, *SIZE)):
+        return None, ""
+    cx, cy = (_number(properties, key, PRINCIPAL_POINT) for key in MIDDLE)
+    width, height = size = _pixels(properties, SIZE[0]), _pixels(properties, SIZE[1])
+    key = next((name for name in POLYNOMIALS if name in properties), None)
+    if key is not None:
+        coefficients = _rising(properties, key)
+        max_radius = math.hypot(max(cx, width - cx), max(cy, height - cy))
+        _check_square(properties)
+        note, forward = "", coefficients
+        if not _is_forward(properties, key, coefficients):
+            forward, error_px = _turned_round(coefficients, max_radius)
+            note = TURNED.format(error_px) if error_px > NOTICED_PX else ""
+        return Picture(FTheta(1.0, 1.0, cx, cy, None, *forward[1:]), size), note
+    if not all(key in properties for key in FOCAL_KEYS):
+        return None, ""
+    fx, fy = (_number(properties, name, FOCAL) for name in FOCAL_KEYS)
+    return pinhole_picture(fx, fy, cx, cy, size), ""
+
+
+def _is_forward(properties: Table, key: str, coefficients: list[float]) -> bool:
+    direction = properties.text("polynomial-type", "", choices=("", FORWARD, BACKWARD))
+    if direction:
+        return direction == FORWARD
+    return key == POLYNOMIALS[0] and coefficients[1] >= GENTLE
+
+
+def _rising(properties: Table, key: str) -> list[float]:
+    """Return the coefficients of a polynomial, in ascending order; the constant is 0."""
+    value = properties.raw(key)
+    expected = f"2 to {MOST + 1} numbers, the first of them 0 and the second above 0"
+    if not isinstance(value, str) or not 2 <= len(value.split()) <= MOST + 1:
+        raise properties.error(key, expected, shown(value))
+    coefficients = figures(properties.source, properties.field(key), value, None, COEFFICIENT)
+    if coefficients[0] != 0.0 or coefficients[1] < GENTLEST:
+        raise properties.error(key, expected, shown(value))
+    return coefficients
+
+
+def _check_square(properties: Table) -> None:
+    """Raise `InputError` for sheared or stretched pixels: one polynomial serves both axes."""
+    for key, default in (("linear-c", 1.0), ("linear-d", 0.0), ("linear-e", 0.0)):
+        if key in properties and abs(_number(properties, key) - default) > 0.01:
+            number = _number(properties, key)
+            raise properties.error(key, f"{default:g}, within 0.01", f"{number:g}")
+
+
+def _turned_round(coefficients: list[float], max_radius: float) -> tuple[list[float], float]:
+    """Return the polynomial from angles to radii of one from radii to angles, and its error [px].
+
+    The result is a least-squares fit over radii from 0 to `max_radius` [px], as far as the angle
+    rises with the radius.
+    """
+    radius = np.linspace(0.0, max_radius, PLACES + 1)[1:]
+    theta = np.polyval(coefficients[::-1], radius)
+    is_rising = np.diff(theta, prepend=0.0) > 0.0
+    count = len(radius) if is_rising.all() else int(np.argmin(is_rising))
+    theta, radius = theta[:count], radius[:count]
+    scale = theta[-1] if count else 1.0
+    powers = np.stack([(theta / scale) ** n for n in range(1, MOST + 1)], axis=1)
+    solution = np.linalg.lstsq(powers, radius, rcond=None)[0]
+    error_px = float(np.abs(powers @ solution - radius).max()) if count else 0.0
+    return [0.0, *(float(v) / scale**n for n, v in enumerate(solution, start=1))], error_px
+
+
+def _number(properties: Table, key: str, rule: Number = FINITE) -> float:
+    return figure(properties.source, properties.field(key), properties.raw(key), rule)
+
+
+def _pixels(properties: Table, key: str) -> int:
+    return whole_figure(properties.source, properties.field(key), properties.raw(key), PIXELS)

@@ -1,0 +1,180 @@
+"""Export of a rig to the file formats of other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pe_core.base.errors import InputError
+from pe_core.base.files import write_all_bytes
+from pe_core.scene.rig import Rig
+from pe_core.scene.vehicle_description import Reference
+from pe_core.study.passthrough import Passthrough
+
+from .frames import origin_in_ground, seen_from, shifted
+from .losses import lost_line
+from .passthrough import listed_kinds, model_text, restored
+from .portable import PortableSensor, portable_sensors, with_pictures
+from .rig_formats import RigFormat, rig_format
+
+
+def rig_files(
+    rig: Rig,
+    name: str,
+    reference: Reference | None = None,
+    passthrough: Passthrough | None = None,
+) -> tuple[Mapping[str, bytes], list[str]]:
+    """Return a rig in another program's format.
+
+    Parameters
+    ----------
+    rig : Rig
+    name : str
+        Name of the format, a key of `RIG_FORMATS`.
+    reference : Reference, optional
+        Position of the rear axle, which is the origin of some formats.
+    passthrough : Passthrough, optional
+        Content of an imported file besides the rig. It is written again if the file had this
+        format.
+
+    Returns
+    -------
+    dict of str to bytes, list of str
+        Bytes by file name; a message for each property that the format cannot express.
+
+    Raises
+    ------
+    InputError
+        When the format is unknown, needs the rear axle, or cannot express the rig.
+    """
+    format_row = rig_format(name)
+    matching = passthrough if passthrough is not None and passthrough.format == name else None
+    return _written(
+        rig, format_row, reference, matching, {} if matching is None else matching.files
+    )
+
+
+def _written(
+    rig: Rig,
+    row: RigFormat,
+    reference: Reference | None,
+    passthrough: Passthrough | None,
+    texts: Mapping[str, str],
+) -> tuple[Mapping[str, bytes], list[str]]:
+    """Return the files of a rig and messages; existing `texts` are updated if there are any."""
+    sensors, lens_lines = _sensors(rig, row, reference, passthrough)
+    if texts and row.write_over is not None:
+        files, lines = row.write_over(texts, sensors)
+    else:
+        files, lines = row.write(sensors)
+    if passthrough is not None and passthrough.left_out:
+        left_out = listed_kinds((sensor.kind, sensor.name) for sensor in passthrough.left_out)
+        lens_lines = [*lens_lines, f"as they came in: {left_out}"]
+    return files, [*lines, *lens_lines]
+
+
+def _sensors(
+    rig: Rig, row: RigFormat, reference: Reference | None, passthrough: Passthrough | None
+) -> tuple[tuple[PortableSensor, ...], list[str]]:
+    """Return the sensors in a format's frame, reduced to what it can express, and the losses."""
+    back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
+    moved = tuple(s.moved(shifted(s.pose, back)) for s in portable_sensors(rig))
+    if passthrough is not None:
+        if passthrough.placed is not None:
+            moved = tuple(s.moved(seen_from(passthrough.placed, s.pose)) for s in moved)
+        moved = restored(
+            passthrough, moved, {sensor.name: model_text(sensor.model) for sensor in rig}
+        )
+    sensors, lines = with_pictures(moved, row.keeps, row.title)
+    return sensors, lines + lost_line(rig, row.title, row.holds)
+
+
+def export_rig(
+    rig: Rig,
+    name: str,
+    output: str | Path,
+    reference: Reference | None = None,
+    *,
+    passthrough: Passthrough | None = None,
+    replace: bool = False,
+) -> tuple[list[Path], list[str]]:
+    """Write a rig in another program's format.
+
+    When an existing Autoware kit is replaced, everything in it but the sensors is kept.
+
+    Parameters
+    ----------
+    rig : Rig
+    name : str
+        Name of the format, a key of `RIG_FORMATS`.
+    output : str or Path
+        File to write, or the folder if the format has several files.
+    reference : Reference, optional
+        Position of the rear axle, which is the origin of some formats.
+    passthrough : Passthrough, optional
+        Content of an imported file besides the rig. It is written again if the file had this
+        format.
+    replace : bool
+        Whether existing files may be overwritten.
+
+    Returns
+    -------
+    list of Path, list of str
+        Written files; a message for each property that the format cannot express.
+
+    Raises
+    ------
+    InputError
+        As `rig_files`, and when a file exists and `replace` is False, or cannot be written.
+    """
+    row, output = rig_format(name), Path(output)
+    matching = passthrough if passthrough is not None and passthrough.format == name else None
+    texts: Mapping[str, str] = {} if matching is None else matching.files
+    # The last of a format's files tells whether the folder already holds this format.
+    if replace and len(row.files) > 1 and (output / row.files[-1]).is_file():
+        texts = row.source(output) or texts
+    files, lines = _written(rig, row, reference, matching, texts)
+    return write_files(files, output, inside=len(row.files) > 1, replace=replace), lines
+
+
+def write_files(
+    files: Mapping[str, bytes], output: Path, *, inside: bool, replace: bool
+) -> list[Path]:
+    """Write several files, all or none, and return their paths.
+
+    Parameters
+    ----------
+    files : mapping of str to bytes
+        Bytes by file name.
+    output : Path
+        Folder, or path of the first file.
+    inside : bool
+        Whether `output` is a folder for all files. Otherwise the first file is written to `output`
+        and the others beside it.
+    replace : bool
+        Whether existing files may be overwritten.
+
+    Raises
+    ------
+    InputError
+        When a file exists and `replace` is False, or cannot be written. No file is written then.
+    """
+    folder = output if inside or output.is_dir() else output.parent
+    paths = {folder / file: data for file, data in files.items()}
+    if folder is not output:
+        first, *remaining = files
+        paths = {output: files[first]} | {folder / file: files[file] for file in remaining}
+    for path in paths:
+        if path.exists() and not replace:
+            raise InputError(path, "file", "a new file, or --replace", "one is there")
+    for folder in {path.parent for path in paths}:
+        _make_folder(folder)
+    write_all_bytes(paths)
+    return list(paths)
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(folder, "folder", "a place to write to", error) from None

@@ -1,0 +1,180 @@
+"""Axes and origins of other programs' frames, rotations and quaternions.
+
+Ours: x forward, y left, z up; a camera looks along its x; the origin is on the ground under the
+vehicle's centre. Optical frames (ROS REP 103, nuScenes, Argoverse, KITTI): z forward, x right,
+y down.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.base.errors import InputError
+from pe_core.base.values import vector
+from pe_core.geometry.poses import METRES, Pose, rpy_from_matrix
+from pe_core.scene.vehicle_description import Reference
+
+Floats = NDArray[np.float64]
+Quaternion = tuple[float, float, float, float]
+
+BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+"""A camera's optical frame in ours: rpy (-90, 0, -90) degrees."""
+OPTICAL_RPY = (-math.pi / 2.0, 0.0, -math.pi / 2.0)
+BODY_FROM_RIGHT_FORWARD = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+"""A LiDAR's frame with x right, y forward, z up (nuScenes), in ours."""
+
+GROUND, REAR_AXLE_GROUND, REAR_AXLE = "ground", "rear axle on the ground", "rear axle"
+"""Origins: ours; the middle of the rear axle projected to the ground; its middle itself."""
+PROPER_WITHIN = 1e-6
+"""How far a matrix may be from a rotation."""
+
+
+def product(a: Floats, b: Floats) -> Floats:
+    """Return the product of two (3, 3) matrices, in plain sums."""
+    rows = [[sum(a[i, k] * b[k, j] for k in range(3)) for j in range(3)] for i in range(3)]
+    return np.array(rows, dtype=float)
+
+
+def turned(rotation: Floats, vector: Sequence[float]) -> tuple[float, float, float]:
+    """Return a vector turned by a (3, 3) rotation."""
+    x, y, z = (float(sum(row[k] * vector[k] for k in range(3))) for row in rotation)
+    return x, y, z
+
+
+def quaternion(rotation: Floats) -> Quaternion:
+    """Return the unit quaternion (w, x, y, z) of a (3, 3) rotation, w >= 0."""
+    m = rotation.tolist()
+    squares = (
+        1.0 + m[0][0] + m[1][1] + m[2][2],
+        1.0 + m[0][0] - m[1][1] - m[2][2],
+        1.0 - m[0][0] + m[1][1] - m[2][2],
+        1.0 - m[0][0] - m[1][1] + m[2][2],
+    )
+    largest = max(range(4), key=lambda k: squares[k])
+    twice = math.sqrt(squares[largest])
+    a, b, c = m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]
+    d, e, f = m[1][0] + m[0][1], m[0][2] + m[2][0], m[2][1] + m[1][2]
+    rows = ((0.0, a, b, c), (a, 0.0, d, e), (b, d, 0.0, f), (c, e, f, 0.0))
+    halves = [value / (2.0 * twice) for value in rows[largest]]
+    halves[largest] = twice / 2.0
+    sign = -1.0 if halves[0] < 0.0 else 1.0
+    w, x, y, z = (sign * value for value in halves)
+    return w, x, y, z
+
+
+def from_quaternion(source: object, field: str, values: Sequence[float]) -> Floats:
+    """Return the (3, 3) rotation of a quaternion (w, x, y, z), or raise `InputError`."""
+    norm = math.sqrt(sum(v * v for v in values))
+    if not 0.5 < norm < 2.0:
+        raise InputError(source, field, "a quaternion of length 1", f"one of length {norm:g}")
+    w, x, y, z = (v / norm for v in values)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def checked_rotation(source: object, field: str, rotation: Floats) -> Floats:
+    """Return a (3, 3) rotation, or raise `InputError` for what is none, or mirrors."""
+    off = np.abs(product(rotation, rotation.T) - np.eye(3)).max()
+    if not off < PROPER_WITHIN * 100:
+        raise InputError(source, field, "a rotation", f"rows off by {off:.2g} from right angles")
+    if np.linalg.det(rotation) < 0.0:
+        raise InputError(source, field, "a right-handed rotation", "one that mirrors")
+    return rotation
+
+
+def pose_of(rotation: Floats, position: Sequence[float]) -> Pose:
+    """Return the pose of a (3, 3) rotation and a place."""
+    x, y, z = (float(v) for v in position)
+    return Pose((x, y, z), rpy_from_matrix(rotation))
+
+
+def composed(outer: Pose, inner: Pose) -> Pose:
+    """Return where `inner`, given in the frame of `outer`, is in the frame that `outer` is in."""
+    rotation = outer.ground_from_sensor
+    shift = turned(rotation, inner.position)
+    position = [a + b for a, b in zip(outer.position, shift, strict=True)]
+    return pose_of(product(rotation, inner.ground_from_sensor), position)
+
+
+def seen_from(outer: Pose, inner: Pose) -> Pose:
+    """Return where `inner` is in the frame of `outer`, both given in one frame."""
+    x, y, z = (a - b for a, b in zip(inner.position, outer.position, strict=True))
+    if outer.rpy == (0.0, 0.0, 0.0):
+        return Pose((x, y, z), inner.rpy)
+    back = outer.ground_from_sensor.T
+    return pose_of(product(back, inner.ground_from_sensor), turned(back, (x, y, z)))
+
+
+def origin_in_ground(
+    origin: str, reference: Reference | None, asking: str, source: object = "study"
+) -> tuple[float, ...]:
+    """Return where an origin is in the ground frame, (3,) [m].
+
+    Raises
+    ------
+    InputError
+        When it is at the rear axle, and nobody has said where that is.
+    """
+    if origin == GROUND:
+        return 0.0, 0.0, 0.0
+    if reference is None:
+        expected = f"the rear axle's place, which is the origin of {asking}"
+        raise InputError(source, "reference", expected, "none")
+    return reference.rear_axle_x, 0.0, reference.rear_axle_z if origin == REAR_AXLE else 0.0
+
+
+def shifted(pose: Pose, by: Sequence[float]) -> Pose:
+    """Return a pose moved without being turned."""
+    x, y, z = (a + b for a, b in zip(pose.position, by, strict=True))
+    return Pose((x, y, z), pose.rpy)
+
+
+ASKING = "calibration"
+
+
+def pose_from_quaternion(
+    rotation: Sequence[float],
+    translation: Sequence[float],
+    *,
+    optical: bool = False,
+    inverse: bool = False,
+    within: Pose | None = None,
+) -> Pose:
+    """Return a sensor's pose from a calibration.
+
+    Parameters
+    ----------
+    rotation : (4,) float
+        Quaternion w, x, y, z: from the sensor's axes to its parent's.
+    translation : (3,) float
+        Where the sensor is in its parent [m].
+    optical : bool
+        Whether the sensor's axes are a camera's optical ones: z forward, x right, y down.
+    inverse : bool
+        Whether both are given the other way round: from the parent to the sensor.
+    within : Pose, optional
+        Where the parent is; else it is the ground frame.
+
+    Raises
+    ------
+    InputError
+        When a number is missing, or the quaternion is none.
+    """
+    position: Sequence[float] = vector(ASKING, "translation", translation, 3, METRES)
+    matrix = from_quaternion(ASKING, "rotation", vector(ASKING, "rotation", rotation, 4))
+    if inverse:
+        matrix = matrix.T
+        position = [-value for value in turned(matrix, position)]
+    if optical:
+        matrix = product(matrix, BODY_FROM_OPTICAL.T)
+    pose = pose_of(matrix, position)
+    return pose if within is None else composed(within, pose)

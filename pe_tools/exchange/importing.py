@@ -1,0 +1,247 @@
+"""Import of a rig from the files of another program."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pe_core import catalog
+from pe_core.base.errors import InputError, shown
+from pe_core.base.memory import report_memory_errors
+from pe_core.base.values import A_NAME
+from pe_core.geometry.poses import Pose
+from pe_core.scene.rig import Rig, Sensor, SensorModel
+from pe_core.scene.vehicle_description import Reference
+from pe_core.study.passthrough import Passthrough, SourceSensor
+
+from .foreign_values import MAX_SENSORS, require_at_most
+from .frames import composed, origin_in_ground, shifted
+from .lens_pictures import alike
+from .passthrough import NO_WORD, listed_kinds, model_text, parted
+from .portable import (
+    CAMERA,
+    LIDAR,
+    PortableSensor,
+    camera_of,
+    lidar_of,
+    merged_lines,
+    named_apart,
+    picture_of,
+    with_ranges,
+)
+from .rig_formats import RigFormat, rig_format, told_format
+
+STAND_INS = {LIDAR: "Velodyne VLP-16 Puck", CAMERA: "nuScenes front"}
+"""Stand-in models by kind, for sensors whose model the file does not name."""
+CHOOSE = "choose its model"
+Modelled = tuple[PortableSensor, SensorModel, str]
+"""A sensor, its model, and a message about the model (may be empty)."""
+LENS_WORDS = ("cam", "fisheye", "rgb", "image")
+"""Parts of a name that identify a camera, if the file does not state the kind."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedRig:
+    """An imported rig and the messages about it.
+
+    Attributes
+    ----------
+    rig : Rig
+    to_choose : tuple of str
+        Names of sensors with a stand-in model, because the file does not name the model.
+    lines : tuple of str
+        Messages about single sensors and about sensors that were left out.
+    passthrough : Passthrough or None
+        Other content of the file, for an export in the same format; None if there is none.
+    """
+
+    rig: Rig
+    to_choose: tuple[str, ...]
+    lines: tuple[str, ...]
+    passthrough: Passthrough | None = None
+
+
+def import_rig(
+    path: str | Path,
+    name: str | None = None,
+    reference: Reference | None = None,
+    models: Mapping[str, str] | None = None,
+    placed: Pose | None = None,
+) -> ImportedRig:
+    """Read a rig of another program.
+
+    Parameters
+    ----------
+    path : str or Path
+        File or folder.
+    name : str, optional
+        Name of the format; by default it is derived from the file name.
+    reference : Reference, optional
+        Position of the rear axle, for formats with that origin.
+    models : mapping of sensor name to catalogue name, optional
+        Chosen models, for sensors whose model the file does not name.
+    placed : Pose, optional
+        Pose of the file's origin, for a format without a vehicle.
+
+    Raises
+    ------
+    InputError
+        When the file is malformed, the rear axle is missing, or a chosen model does not exist.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(path, "file", "an existing file or folder", "nothing of that name")
+    row = told_format(path) if name is None else rig_format(name)
+    origin = origin_in_ground(row.origin, reference, row.title, path)
+    with _in_file(path), report_memory_errors(path):
+        return _imported(path, row, _FileOrigin(origin, placed), models or {})
+
+
+@contextmanager
+def _in_file(path: Path) -> Iterator[None]:
+    """Re-raise errors about a lens, a pose or a model with the imported file as the source."""
+    try:
+        yield
+    except InputError as error:
+        if Path(error.source).is_relative_to(path if path.is_dir() else path.parent):
+            raise
+        field = f"{error.source}: {error.field}"
+        raise InputError(path, field, error.expected, error.found) from None
+
+
+@dataclass(frozen=True, slots=True)
+class _FileOrigin:
+    """Transform from the file's frame to the ground frame.
+
+    `origin` is the format's origin in the ground frame [m]; `placed` is the pose that the user gave
+    the file's frame, if any.
+    """
+
+    origin: tuple[float, ...]
+    placed: Pose | None
+
+    def __call__(self, pose: Pose) -> Pose:
+        return shifted(pose if self.placed is None else composed(self.placed, pose), self.origin)
+
+
+def _imported(
+    path: Path, row: RigFormat, file_origin: _FileOrigin, models: Mapping[str, str]
+) -> ImportedRig:
+    sensors = row.read(path)
+    require_at_most(path, "sensors", len(sensors), MAX_SENSORS, "sensors")
+    for number, sensor in enumerate(sensors, 1):
+        A_NAME.checked(path, f"name of sensor {number}", sensor.name)
+    names = named_apart([sensor.name for sensor in sensors])
+    named = [sensor.called(name) for sensor, name in zip(sensors, names, strict=True)]
+    included, left_out = parted(named, models)
+    if not included:
+        names_of_left_out = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
+        raise InputError(path, "sensors", "cameras or LiDARs", names_of_left_out or "none")
+    _check_chosen(path, models, included, left_out)
+    modelled = [_with_model(sensor, models.get(sensor.name), row) for sensor in included]
+    rig = Rig([Sensor(s.name, model, file_origin(s.pose), s.fusion) for s, model, _ in modelled])
+    sources = _kept(named, left_out, modelled, models)
+    passthrough = Passthrough(row.name, sources, row.source(path), file_origin.placed)
+    left_out_lines = [_left_out_line(left_out, row)] if left_out else []
+    notes = merged_lines(((sensor.name, sensor.told) for sensor, _, _ in modelled), len(modelled))
+    lines = (*left_out_lines, *notes, *(line for _, _, line in modelled if line))
+    to_choose = tuple(sensor.name for sensor, _, line in modelled if line.endswith(CHOOSE))
+    return ImportedRig(rig, to_choose, lines, passthrough if passthrough.holds else None)
+
+
+def _check_chosen(
+    path: Path,
+    models: Mapping[str, str],
+    included: Sequence[PortableSensor],
+    left_out: Sequence[PortableSensor],
+) -> None:
+    """Raise `InputError` if a model was chosen for a name that is no sensor of the rig."""
+    names, left_out_kinds = (
+        [sensor.name for sensor in included],
+        {sensor.name: sensor.kind for sensor in left_out},
+    )
+    for key in models:
+        if key not in names:
+            description = (
+                f"a {left_out_kinds[key]}, which is left out"
+                if key in left_out_kinds
+                else "no sensor"
+            )
+            raise InputError(path, f"model of {key}", f"one of {', '.join(names)}", description)
+
+
+def _left_out_line(left_out: Sequence[PortableSensor], row: RigFormat) -> str:
+    """Return the message that lists the sensors left out, and whether an export restores them."""
+    names = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
+    hint = f"; an export to {row.title} has them again" if row.passes_through else ""
+    return f"left out: {names}{hint}"
+
+
+def _kept(
+    named: Sequence[PortableSensor],
+    left_out: Sequence[PortableSensor],
+    modelled: Sequence[Modelled],
+    models: Mapping[str, str],
+) -> tuple[SourceSensor, ...]:
+    """Return the passthrough record of each sensor, in the file's order."""
+    sources = {
+        sensor.name: SourceSensor(sensor.name, sensor.kind or "", sensor.entry)
+        for sensor in left_out
+    }
+    for sensor, model, line in modelled:
+        text = "" if sensor.name in models else model_text(model)
+        fields = sensor.name, model.kind, sensor.entry, sensor.pose, text
+        sources[sensor.name] = SourceSensor(*fields, line.endswith(CHOOSE))
+    return tuple(sources[sensor.name] for sensor in named)
+
+
+def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> Modelled:
+    """Return a sensor with its kind resolved, its model, and a message about the model."""
+    sensor = replace(
+        sensor, kind=sensor.kind or (CAMERA if _sounds_like_a_camera(sensor.name) else LIDAR)
+    )
+    model, line = _model(sensor, chosen, row)
+    return row.settled(replace(sensor, model=model.name)), model, line
+
+
+def _sounds_like_a_camera(name: str) -> bool:
+    return any(word in name.lower() for word in LENS_WORDS)
+
+
+def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[SensorModel, str]:
+    if chosen is not None:
+        return catalog.load(chosen), ""
+    if (catalogue_name := _known(sensor)) is not None:
+        model, line = _known_or_own(sensor, catalog.load(catalogue_name), row)
+        return with_ranges(model, sensor), line
+    if sensor.kind == CAMERA and sensor.picture is not None:
+        camera, line = camera_of(sensor.name, sensor.picture, row.usual_size)
+        return with_ranges(camera, sensor), line
+    if sensor.kind == LIDAR and sensor.scan is not None:
+        return lidar_of(sensor.name, sensor.scan), ""
+    stand_in = STAND_INS.get(sensor.kind or "", STAND_INS[LIDAR])
+    reason = (
+        f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"
+    )
+    return catalog.load(stand_in), f"{sensor.name}: {reason}; {stand_in} stands in: {CHOOSE}"
+
+
+def _known(sensor: PortableSensor) -> str | None:
+    """Return the catalogue name that matches the model name in the file, or None."""
+    normalized = NO_WORD.sub("", (sensor.model or "").lower())
+    names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
+    return names.get(normalized) if normalized else None
+
+
+def _known_or_own(
+    sensor: PortableSensor, model: SensorModel, row: RigFormat
+) -> tuple[SensorModel, str]:
+    """Return the catalogue's model, or a camera with the file's lens if the lenses differ."""
+    picture = picture_of(model)
+    if picture is None or sensor.picture is None or alike(row.keeps(picture), sensor.picture):
+        return model, ""
+    camera, line = camera_of(sensor.name, sensor.picture, row.usual_size)
+    note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the file's"
+    return camera, line or note

@@ -1,0 +1,134 @@
+"""KITTI's calibration: projection matrices, and the transform from the LiDAR to the first camera.
+
+The file does not locate the vehicle; an imported LiDAR is at the origin. All cameras have the same
+orientation.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from pe_core.base.errors import InputError
+from pe_core.base.values import Number
+from pe_core.geometry.poses import Pose
+
+from .foreign_values import Written, figures, spaced, text_of
+from .frames import BODY_FROM_OPTICAL, Floats, checked_rotation, pose_of, product, turned
+from .lens_pictures import pinhole_picture
+from .portable import CAMERA, LIDAR, PortableSensor, cameras, lidars
+
+FILE, MOST_CAMERAS = "calib.txt", 4
+RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
+ODOMETRY = "Tr"
+"""Key of the transform to the rectified first camera; odometry files have no R_rect beside it."""
+KEY = re.compile(r"\s*([^\s:]*):?(.*)$")
+"""A key and its numbers, separated by a colon, or by a blank in files of the tracking benchmark."""
+PARALLEL = 1e-9
+ENTRY = Number(cap=1e9)
+"""An entry of a matrix."""
+
+
+def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return the calibration of one LiDAR and up to four cameras, and a message.
+
+    Raises
+    ------
+    InputError
+        When there is not exactly one LiDAR, not 1 to 4 cameras, or orientations differ.
+    """
+    rig_cameras, rig_lidars = cameras(sensors), lidars(sensors)
+    if len(rig_lidars) != 1 or not 1 <= len(rig_cameras) <= MOST_CAMERAS:
+        found = f"{len(rig_lidars)} LiDARs and {len(rig_cameras)} cameras"
+        expected = f"one LiDAR and 1 to {MOST_CAMERAS} cameras: KITTI's file has no room for others"
+        raise InputError("kitti", "sensors", expected, found)
+    first = product(rig_cameras[0].pose.ground_from_sensor, BODY_FROM_OPTICAL)
+    for sensor in rig_cameras[1:]:
+        axes = product(sensor.pose.ground_from_sensor, BODY_FROM_OPTICAL)
+        if np.abs(axes - first).max() > PARALLEL:
+            expected = f"a camera that looks as {rig_cameras[0].name!r} does, as KITTI's do"
+            raise InputError(
+                f"sensor {sensor.name!r}", "rotation", expected, sensor.pose.rotation_deg
+            )
+    rows = {
+        f"P{k}": _projection(sensor, rig_cameras[0], first) for k, sensor in enumerate(rig_cameras)
+    }
+    rows[RECTIFIED[0]] = np.eye(3)
+    rows[TO_CAMERA[0]] = _to_camera(rig_lidars[0], rig_cameras[0], first)
+    text = "".join(f"{key}: {spaced(matrix.ravel().tolist())}\n" for key, matrix in rows.items())
+    names = ", ".join(f"P{k} {sensor.name}" for k, sensor in enumerate(rig_cameras))
+    lines = [f"KITTI's file has no vehicle: poses are to {rig_lidars[0].name}; {names}"]
+    return {FILE: text.encode()}, lines
+
+
+def _projection(sensor: PortableSensor, first: PortableSensor, axes: Floats) -> Floats:
+    """Return P = K [I | -t], (3, 4); t is the position in the first camera's optical frame [m]."""
+    p = sensor.picture or pinhole_picture(1.0, 1.0, 0.0, 0.0)
+    cx, cy = p.center
+    offset = [a - b for a, b in zip(sensor.pose.position, first.pose.position, strict=True)]
+    x, y, z = turned(axes.T, offset)
+    return np.array(
+        [
+            [p.fx, 0.0, cx, -(p.fx * x + cx * z)],
+            [0.0, p.fy, cy, -(p.fy * y + cy * z)],
+            [0.0, 0.0, 1.0, -z],
+        ]
+    )
+
+
+def _to_camera(lidar: PortableSensor, camera: PortableSensor, axes: Floats) -> Floats:
+    """Return the transform (3, 4) from the LiDAR's frame to the first camera's optical frame."""
+    rotation = product(axes.T, lidar.pose.ground_from_sensor)
+    offset = [a - b for a, b in zip(lidar.pose.position, camera.pose.position, strict=True)]
+    return np.hstack([rotation, np.array(turned(axes.T, offset))[:, None]])
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the LiDAR, which is the origin, and the cameras.
+
+    Raises
+    ------
+    InputError
+        When a matrix is missing, malformed or no rotation, or a focal length is not positive.
+    """
+    rows = _rows(path)
+    is_odometry = ODOMETRY in rows and not any(key in rows for key in RECTIFIED)
+    rectified = np.eye(3) if is_odometry else _matrix(path, rows, RECTIFIED, (3, 3))
+    to_camera = _matrix(path, rows, TO_CAMERA, (3, 4))
+    rotation = checked_rotation(path, TO_CAMERA[0], product(rectified, to_camera[:, :3]))
+    shift = turned(rectified, to_camera[:, 3].tolist())
+    sensors = [PortableSensor("velodyne", Pose((0.0, 0.0, 0.0)), LIDAR)]
+    for key in sorted(key for key in rows if key[:1] == "P" and key[1:].isdigit()):
+        p = _matrix(path, rows, (key,), (3, 4))
+        fx, fy, cx, cy = (float(p[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
+        if fx <= 0.0 or fy <= 0.0:
+            raise InputError(path, key, "focal lengths above 0", f"{fx:g}, {fy:g}")
+        z = -float(p[2, 3])
+        position = (-(float(p[0, 3]) + cx * z) / fx, -(float(p[1, 3]) + cy * z) / fy, z)
+        offset = [a - b for a, b in zip(position, shift, strict=True)]
+        pose = pose_of(product(rotation.T, BODY_FROM_OPTICAL.T), turned(rotation.T, offset))
+        picture = pinhole_picture(fx, fy, cx, cy)
+        sensors.append(PortableSensor(f"camera_{key[1:]}", pose, CAMERA, None, picture))
+    return tuple(sensors)
+
+
+def _rows(path: Path) -> dict[str, list[float]]:
+    rows = {}
+    for number, line in enumerate(text_of(path).splitlines()):
+        key, values = KEY.match(line).groups()  # type: ignore[union-attr]
+        if key and values.strip() and key != "calib_time":
+            rows[key] = figures(path, f"line {number + 1}, {key}", values, None, ENTRY)
+    return rows
+
+
+def _matrix(
+    path: Path, rows: dict[str, list[float]], keys: tuple[str, ...], shape: tuple[int, int]
+) -> Floats:
+    key = next((name for name in keys if name in rows), None)
+    if key is None:
+        raise InputError(path, keys[0], f"{shape[0]} x {shape[1]} numbers", "nothing")
+    if len(rows[key]) != shape[0] * shape[1]:
+        raise InputError(path, key, f"{shape[0] * shape[1]} numbers", len(rows[key]))
+    return np.array(rows[key]).reshape(shape)

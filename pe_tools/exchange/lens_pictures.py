@@ -1,0 +1,230 @@
+"""Camera intrinsics for exchange: reduction to what a format can express, and conversions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.sensors.camera import BrownConrady, FTheta, KannalaBrandt, Lens, Pinhole
+
+Size = tuple[int, int]
+ALIKE_PX = 1e-6
+"""Tolerance below which two lens parameters are equal [px]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A camera's intrinsics: its lens, and its image size [px], None if the format has no size."""
+
+    lens: Lens
+    size: Size | None = None
+
+    @property
+    def fx(self) -> float:
+        """Horizontal focal length on the optical axis [px]."""
+        return self.lens.fx * self._on_axis
+
+    @property
+    def fy(self) -> float:
+        """Vertical focal length on the optical axis [px]."""
+        return self.lens.fy * self._on_axis
+
+    @property
+    def center(self) -> tuple[float, float]:
+        """Principal point (cx, cy), from the upper left corner to the right and down [px]."""
+        return self.lens.cx, self.lens.cy
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the lens is a pinhole with square pixels and a centred principal point."""
+        width, height = self.size or (0, 0)
+        centred = (2.0 * self.lens.cx, 2.0 * self.lens.cy) == (width, height)
+        return self.lens.is_straight and self.fx == self.fy and centred
+
+    @property
+    def matrix(self) -> list[list[float]]:
+        """K, the 3 x 3 matrix of the camera on its axis."""
+        (cx, cy) = self.center
+        return [[self.fx, 0.0, cx], [0.0, self.fy, cy], [0.0, 0.0, 1.0]]
+
+    @property
+    def _on_axis(self) -> float:
+        return float(self.lens.slope(np.zeros(1))[0])
+
+
+KeptPicture = Callable[[Picture], Picture]
+"""Function that reduces intrinsics to what a format can express."""
+
+
+def pinhole_picture(
+    fx: float, fy: float, cx: float, cy: float, size: Size | None = None
+) -> Picture:
+    """Return a pinhole's picture."""
+    return Picture(Pinhole(fx, fy, cx, cy), size)
+
+
+def picture_of_fov(fov: float, size: Size, fov_down: float | None = None) -> Picture:
+    """Return a centred pinhole's picture by its field of view [rad]."""
+    width, height = size
+    fx = width / (2.0 * math.tan(fov / 2.0))
+    fy = fx if fov_down is None else height / (2.0 * math.tan(fov_down / 2.0))
+    return pinhole_picture(fx, fy, width / 2.0, height / 2.0, size)
+
+
+def whole(p: Picture) -> Picture:
+    """Return the intrinsics unchanged."""
+    return p
+
+
+def straight(p: Picture) -> Picture:
+    """Return the pinhole with the same focal lengths on the axis and principal point."""
+    return p if p.lens.is_straight else pinhole_picture(p.fx, p.fy, *p.center, p.size)
+
+
+def centred(p: Picture) -> Picture:
+    """Return the pinhole with the same focal lengths on the axis and a centred principal point."""
+    if p.size is None:
+        return straight(p)
+    width, height = p.size
+    return pinhole_picture(p.fx, p.fy, width / 2.0, height / 2.0, p.size)
+
+
+def square(p: Picture) -> Picture:
+    """Return the centred pinhole with square pixels and the same horizontal focal length."""
+    if p.size is None:
+        return straight(p)
+    return pinhole_picture(p.fx, p.fx, p.size[0] / 2.0, p.size[1] / 2.0, p.size)
+
+
+def opencv(p: Picture) -> Picture:
+    """Return a lens model of OpenCV and ROS, without its image circle; a pinhole for others."""
+    if isinstance(p.lens, BrownConrady | KannalaBrandt):
+        return replace(p, lens=replace(p.lens, fov=None))
+    return straight(p)
+
+
+def opencv_of_five(p: Picture) -> Picture:
+    """Return the Brown-Conrady lens if k1, k2, p1, p2, k3 describe it; a pinhole for others."""
+    if isinstance(p.lens, BrownConrady) and not (p.lens.k4 or p.lens.k5 or p.lens.k6):
+        return opencv(p)
+    return straight(p)
+
+
+def f_theta_of_five(p: Picture) -> Picture:
+    """Return the f-theta lens if it has square pixels and degree 5 at most; a pinhole for others.
+
+    Its focal length is multiplied into the coefficients.
+    """
+    lens = p.lens
+    if not isinstance(lens, FTheta) or lens.fx != lens.fy or lens.k6:
+        return straight(p)
+    scaled = [lens.fx * getattr(lens, key) for key in lens.coefficients]
+    return Picture(FTheta(1.0, 1.0, *p.center, None, *scaled), p.size)
+
+
+def lost(p: Picture, kept: Picture) -> list[str]:
+    """Return descriptions of the properties of `p` that the reduced intrinsics `kept` lack."""
+    lines = []
+    if kept.lens.model != p.lens.model and not p.lens.is_straight:
+        lines.append(f"distortion ({p.lens.model})")
+    elif p.lens.fov is not None and kept.lens.fov is None:
+        lines.append(f"edge of its image, {math.degrees(p.lens.fov):.5g} deg across,")
+    if math.dist(p.center, kept.center) > ALIKE_PX:
+        lines.append(f"principal point ({p.center[0]:.6g}, {p.center[1]:.6g})")
+    if abs(p.fy - kept.fy) > ALIKE_PX:
+        lines.append(f"focal length down, {p.fy:.6g} px,")
+    return lines
+
+
+def alike(a: Picture, b: Picture) -> bool:
+    """Whether two cameras have the same intrinsics within rounding."""
+    if (
+        a.size != b.size
+        or a.lens.model != b.lens.model
+        or (a.lens.fov is None) != (b.lens.fov is None)
+    ):
+        return a.size == b.size and _straight_alike(a, b)
+    keys = ("fx", "fy", "cx", "cy", *a.lens.coefficients)
+    differences = [abs(getattr(a.lens, key) - getattr(b.lens, key)) for key in keys]
+    return max(*differences, abs((a.lens.fov or 0.0) - (b.lens.fov or 0.0))) <= ALIKE_PX
+
+
+def _straight_alike(a: Picture, b: Picture) -> bool:
+    """Whether both lenses are without distortion and have the same parameters."""
+    if not (a.lens.is_straight and b.lens.is_straight):
+        return False
+    figures = zip((a.fx, a.fy, *a.center), (b.fx, b.fy, *b.center), strict=True)
+    return all(abs(x - y) <= ALIKE_PX for x, y in figures)
+
+
+Floats = NDArray[np.float64]
+
+LAST_SQUARE = 10.0
+"""Maximum r^2 to which nuScenes' devkit applies the distortion."""
+PLACES = 2000
+NOTICED_PX = 0.1
+
+
+def with_fourth(
+    picture: Picture, radial: tuple[float, float, float, float], tangential: tuple[float, float]
+) -> tuple[Picture, str]:
+    """Return a pinhole with a distortion of four radial coefficients, and a note on the fit error.
+
+    The Brown-Conrady model has no fourth polynomial coefficient, so a quotient is fitted. The note
+    is empty if the error is below `NOTICED_PX`.
+
+    Parameters
+    ----------
+    picture : Picture
+        A pinhole; without a size, the image is assumed symmetric about the principal point.
+    radial : (4,) float
+        k1 to k4.
+    tangential : (2,) float
+        p1, p2.
+    """
+    lens = picture.lens
+    square = _squares(math.hypot(lens.cx / lens.fx, lens.cy / lens.fy), radial)
+    wanted = _factor(square, radial)
+    top, bottom = _quotient(square, wanted)
+    fitted = (1.0 + _power_sum(square, top)) / (1.0 + _power_sum(square, bottom))
+    error_px = float(np.abs((fitted - wanted) * np.sqrt(square)).max()) * max(lens.fx, lens.fy)
+    values = *top[:2], *tangential, top[2], *bottom
+    distorted = BrownConrady(lens.fx, lens.fy, lens.cx, lens.cy, None, *map(float, values))
+    note = f"its sixth coefficient is taken in to within {error_px:.1f} px"
+    return Picture(distorted, picture.size), note if error_px > NOTICED_PX else ""
+
+
+def _squares(corner: float, radial: tuple[float, ...]) -> Floats:
+    """Return r^2 from the axis to the image corner, or as far as the distortion is monotonic."""
+    square = np.linspace(0.0, LAST_SQUARE, PLACES + 1)[1:]
+    reached = np.sqrt(square) * _factor(square, radial)
+    grows = np.diff(reached, prepend=0.0) > 0.0
+    inside = grows & (reached <= corner)
+    count = len(square) if inside.all() else max(int(np.argmin(inside)), 1)
+    return np.linspace(0.0, float(square[min(count, len(square) - 1)]), PLACES + 1)[1:]
+
+
+def _factor(square: Floats, radial: tuple[float, ...]) -> Floats:
+    return 1.0 + _power_sum(square, radial)
+
+
+def _power_sum(square: Floats, values: tuple[float, ...] | Floats) -> Floats:
+    """Return the sum of values[n - 1] * square**n, n from 1."""
+    return np.asarray(sum(value * square**n for n, value in enumerate(values, 1)))
+
+
+def _quotient(square: Floats, wanted: Floats) -> tuple[Floats, Floats]:
+    """Return three coefficients of the numerator and three of the denominator (least squares).
+
+    The equation is linear after multiplication by the denominator.
+    """
+    last = float(square[-1])
+    powers = np.stack([(square / last) ** n for n in (1, 2, 3)], axis=1)
+    system = np.hstack([powers, -wanted[:, None] * powers])
+    coefficients = np.linalg.lstsq(system, wanted - 1.0, rcond=None)[0]
+    scale = np.array([last, last**2, last**3])
+    return coefficients[:3] / scale, coefficients[3:] / scale

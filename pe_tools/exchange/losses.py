@@ -1,0 +1,69 @@
+"""Message about the properties of a rig that a format cannot express.
+
+Each format declares the set of properties that it holds. Losses of lenses (`lens_pictures`) and of
+uneven LiDAR channels (`portable`) have messages of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pe_core import catalog
+from pe_core.scene.rig import Rig, Sensor, SensorModel
+
+from .portable import PortableSensor, portable_sensors
+
+MODEL = "model"
+"""The model name; properties of a catalogued model are then not lost."""
+BEAMS = "beams"
+"""A LiDAR's channels, azimuths and range."""
+MIN_RANGE, MAX_RANGE = "minimum range", "maximum range"
+FUSION, CURVE = "fusion group", "AP curve"
+EVERYTHING = (BEAMS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
+
+
+def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
+    """Return one message with the properties of a rig that a format loses; empty list if none.
+
+    Parameters
+    ----------
+    rig : Rig
+    title : str
+        Title of the format.
+    holds : frozenset of str
+        Properties that the format holds, from `MODEL` and `EVERYTHING`.
+    """
+    pairs = zip(rig, portable_sensors(rig), strict=True)
+    lost = {sensor.name: set(_owned(sensor, portable, holds)) - holds for sensor, portable in pairs}
+    parts = []
+    for feature in EVERYTHING:
+        names = [name for name, features in lost.items() if feature in features]
+        if names:
+            parts.append(f"{feature} of {', '.join(names)}")
+    return [f"left out of {title}: {'; '.join(parts)}"] if parts else []
+
+
+def _owned(sensor: Sensor, portable: PortableSensor, holds: frozenset[str]) -> Iterator[str]:
+    """Yield the properties of a sensor that differ from the defaults of its model."""
+    if sensor.fusion is not None:
+        yield FUSION
+    if sensor.curve is not None:
+        yield CURVE
+    if MODEL in holds and _is_catalogued(sensor.model):
+        return
+    if portable.scan is not None:
+        yield BEAMS
+        if BEAMS not in holds:
+            return  # with its ranges
+    if portable.min_range is not None:
+        yield MIN_RANGE
+    if portable.max_range is not None and portable.scan is None:
+        yield MAX_RANGE
+
+
+def _is_catalogued(model: SensorModel) -> bool:
+    """Whether the catalogue has an equal model of the same name."""
+    if model.name not in catalog.names(model.kind):
+        return False
+    catalogued = catalog.load(model.name)
+    return catalogued is model or catalog.to_table(catalogued) == catalog.to_table(model)

@@ -1,0 +1,147 @@
+"""nuScenes: the tables sensor.json and calibrated_sensor.json.
+
+The origin of the ego frame is the middle of the rear axle, projected to the ground. A camera's
+frame is optical. A LiDAR's frame has x to the right and y forward. The distortion is that of
+nuImages, camera_distortion: k1, k2, p1, p2, k3, and k4 for fisheyes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+from pe_core.base.errors import InputError, shown
+from pe_core.base.table_reader import Table
+from pe_core.base.values import numbers, vector
+from pe_core.geometry.poses import METRES
+from pe_core.sensors.camera import BrownConrady
+from pe_core.study.passthrough import json_entry
+
+from .foreign_values import Written, json_bytes, json_of, json_rows
+from .frames import (
+    BODY_FROM_OPTICAL,
+    BODY_FROM_RIGHT_FORWARD,
+    Floats,
+    from_quaternion,
+    pose_of,
+    product,
+    quaternion,
+)
+from .lens_pictures import Picture, pinhole_picture, with_fourth
+from .passthrough import entry_row
+from .portable import CAMERA, LIDAR, PortableSensor
+
+CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
+FIVE = ("k1", "k2", "p1", "p2", "k3")
+POSE, FIGURES = ("translation", "rotation"), ("camera_intrinsic", "camera_distortion")
+AXES = {CAMERA: BODY_FROM_OPTICAL, LIDAR: BODY_FROM_RIGHT_FORWARD}
+"""Rotation from nuScenes' sensor axes to those of this project, by kind; others have the same."""
+
+
+def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return the two tables, and messages on image sizes, which the tables cannot hold."""
+    calibrated = [entry_row(sensor, _calibrated, POSE, FIGURES, CALIBRATED) for sensor in sensors]
+    sensor_rows = [entry_row(sensor, _known, (), (), SENSORS) for sensor in sensors]
+    sizes = [
+        f"{s.name}: nuScenes' tables have no size of a picture; it is {w} x {h}"
+        for s in sensors
+        if s.picture is not None and s.picture.size is not None
+        for w, h in [s.picture.size]
+    ]
+    return {CALIBRATED: json_bytes(calibrated), SENSORS: json_bytes(sensor_rows)}, sizes
+
+
+def _known(sensor: PortableSensor) -> dict[str, Any]:
+    return {"token": _token("sensor", sensor.name), "channel": sensor.name, "modality": sensor.kind}
+
+
+def _calibrated(sensor: PortableSensor) -> dict[str, Any]:
+    rotation = sensor.pose.ground_from_sensor
+    if sensor.kind in AXES:
+        rotation = product(rotation, AXES[sensor.kind])
+    p = sensor.picture
+    row = {
+        "token": _token("calibrated", sensor.name),
+        "sensor_token": _token("sensor", sensor.name),
+        "translation": list(sensor.pose.position),
+        "rotation": list(quaternion(rotation)),
+        "camera_intrinsic": [] if p is None else p.matrix,
+    }
+    if p is not None and isinstance(p.lens, BrownConrady):
+        row["camera_distortion"] = [getattr(p.lens, key) for key in FIVE]
+    return row
+
+
+def _token(table: str, name: str) -> str:
+    """Return a nuScenes token of 32 hexadecimal digits, a hash of the table and the name."""
+    return hashlib.sha256(f"{table} {name}".encode()).hexdigest()[:32]
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the sensors from calibrated_sensor.json and the sensor.json beside it.
+
+    The last calibration of a sensor is used.
+
+    Parameters
+    ----------
+    path : Path
+        The file calibrated_sensor.json, or the folder that holds both files.
+
+    Raises
+    ------
+    InputError
+        When a file is missing or malformed, or a sensor token is unknown.
+    """
+    path = path / CALIBRATED if path.is_dir() else path
+    beside = path.with_name(SENSORS)
+    names = {row.text("token"): row for row in json_rows(beside, json_of(beside))}
+    sensors = {}
+    for row in json_rows(path, json_of(path)):
+        token = row.text("sensor_token")
+        if token not in names:
+            raise InputError(path, row.field("sensor_token"), f"one in {SENSORS}", shown(token))
+        sensor = _sensor(path, row, names[token])
+        sensors[sensor.name] = sensor
+    return tuple(sensors.values())
+
+
+def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
+    name, kind = sensor_row.text("channel"), sensor_row.text("modality")
+    position = vector(path, row.field("translation"), row.raw("translation"), 3, METRES)
+    rotation_values = vector(path, row.field("rotation"), row.raw("rotation"), 4)
+    rotation = from_quaternion(path, row.field("rotation"), rotation_values)
+    if kind in AXES:
+        rotation = product(rotation, AXES[kind].T)
+    picture = _picture(path, row.field("camera_intrinsic"), row.raw("camera_intrinsic", []))
+    note = ""
+    if picture is not None and row.raw("camera_distortion", []):
+        picture, note = _bent(path, row, picture)
+    entry = json_entry({CALIBRATED: row.data, SENSORS: sensor_row.data})
+    return PortableSensor(
+        name, pose_of(rotation, position), kind, None, picture, told=note, entry=entry
+    )
+
+
+def _picture(path: Path, field: str, value: Any) -> Picture | None:
+    if value == []:
+        return None
+    matrix: Floats | None = numbers(value)
+    if matrix is None or matrix.shape != (3, 3):
+        raise InputError(path, field, "a 3 x 3 matrix, or []", shown(value))
+    fx, fy, cx, cy = (float(matrix[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
+    return pinhole_picture(fx, fy, cx, cy)
+
+
+def _bent(path: Path, row: Table, picture: Picture) -> tuple[Picture, str]:
+    """Return the intrinsics with nuImages' distortion, and a note on accuracy (may be empty)."""
+    field, values = row.field("camera_distortion"), row.raw("camera_distortion")
+    coefficients = numbers(values)
+    if coefficients is None or coefficients.ndim != 1 or len(coefficients) not in (4, 5, 6):
+        raise InputError(path, field, "4 to 6 numbers: k1, k2, p1, p2, k3, k4", shown(values))
+    k1, k2, p1, p2, k3, k4 = [*map(float, coefficients), 0.0, 0.0][:6]
+    if k4:
+        return with_fourth(picture, (k1, k2, k3, k4), (p1, p2))
+    lens = picture.lens
+    intrinsics = lens.fx, lens.fy, lens.cx, lens.cy
+    return Picture(BrownConrady(*intrinsics, None, k1, k2, p1, p2, k3)), ""

@@ -1,0 +1,295 @@
+"""ASAM OSI: mounting positions in a SensorViewConfiguration, as protobuf's JSON.
+
+The origin is the middle of the rear axle, at the height of the axle. Angles are in radians. Fields
+are those of osi_sensorviewconfiguration.proto (OpenSimulationInterface/open-simulation-interface,
+00eec02). The configuration has one range for all its sensors.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pe_core.base.errors import InputError, shown
+from pe_core.base.table_reader import Table
+from pe_core.base.values import FINITE, Number, Whole, numbers, real
+from pe_core.geometry.poses import METRES
+from pe_core.study.passthrough import json_entry
+
+from .foreign_values import (
+    BEAM_BYTES,
+    MAX_BEAMS,
+    PIXELS,
+    PLAIN,
+    RANGE,
+    Written,
+    figure,
+    json_of,
+    pose_from,
+    require_at_most,
+    whole_figure,
+)
+from .lens_pictures import picture_of_fov
+from .passthrough import entry_row
+from .portable import CAMERA, LIDAR, PortableSensor, Scan
+
+FILE = "sensor_view_configuration.json"
+OTHER_KINDS = ("radar", "ultrasonic")
+"""Sensor kinds of OSI that this project does not evaluate; they are passed through."""
+LISTS = {k: f"{k}_sensor_view_configuration" for k in (CAMERA, LIDAR, *OTHER_KINDS)}
+DIGITS = 9
+"""Decimals of a beam's direction; a LiDAR has up to 240,000 beams."""
+OTHER = "generic_sensor_view_configuration"
+POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
+WIDEST = Number(0.0, 2.0 * math.pi, above=True, unit="rad", noun="angle")
+"""Field of view, fisheyes included; that of a pinhole is below pi."""
+IDENTIFIER = Whole(0, (1 << 64) - 1)
+STAND_IN_RANGE_M = 100.0
+"""Range of a LiDAR if the file states none; it is that of the stand-in model."""
+
+
+def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return a configuration with all sensors, and messages; ids count from 0 in rig order.
+
+    Raises
+    ------
+    InputError
+        When the LiDARs have more than `MAX_BEAMS` beams, because every beam is written.
+    """
+    beams = sum(s.scan.beam_count for s in sensors if s.scan is not None)
+    require_at_most("osi", "sensors", beams, MAX_BEAMS, "beams, each of which is written")
+    ranges = {s.name: s.scan.max_range for s in sensors if s.scan is not None}
+    top: dict[str, Any] = {"range": max(ranges.values())} if ranges else {}
+    left_out = [
+        (sensor, entry_row(sensor, lambda _: {}, (), ()))
+        for sensor in sensors
+        if sensor.is_left_out
+    ]
+    used_ids = {_id_of(row) for _, row in left_out}
+    free_ids = (number for number in count() if number not in used_ids)
+    sensor_by_id = {
+        number: sensor for number, sensor in zip(free_ids, _ours(sensors), strict=False)
+    }
+    for number, sensor in sensor_by_id.items():
+        row = {"sensor_id": {"value": number}, **_row(sensor)}
+        top.setdefault(LISTS.get(sensor.kind or "", OTHER), []).append(row)
+    for sensor, row in left_out:
+        top.setdefault(LISTS.get(sensor.kind or "", OTHER), []).append(row)
+    text = json.dumps(top, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return {FILE: text.encode()}, _lines(sensor_by_id, ranges)
+
+
+def _ours(sensors: Sequence[PortableSensor]) -> list[PortableSensor]:
+    return [sensor for sensor in sensors if not sensor.is_left_out]
+
+
+def _id_of(row: Mapping[str, Any]) -> int | None:
+    """Return the id of an entry; None if it has none."""
+    return Message(row, "passthrough").message("sensor_id").whole_figure("value", IDENTIFIER)
+
+
+def _lines(sensor_by_id: Mapping[int, PortableSensor], ranges: dict[str, float]) -> list[str]:
+    """Return messages on names and ranges, which the configuration cannot hold."""
+    order = ", ".join(f"{number} {sensor.name}" for number, sensor in sensor_by_id.items())
+    lines = [f"OSI numbers sensors, it has no names: {order}"]
+    farthest = max(ranges.values(), default=0.0)
+    shorter = [f"{name} {reach:g} m" for name, reach in ranges.items() if reach != farthest]
+    if shorter:
+        lines.append(
+            f"OSI has one range for all LiDARs, {farthest:g} m; left out: {', '.join(shorter)}"
+        )
+    return lines
+
+
+def _row(sensor: PortableSensor) -> dict[str, Any]:
+    mounting = {
+        "position": dict(zip(POSITION_KEYS, sensor.pose.position, strict=True)),
+        "orientation": dict(zip(ROTATION_KEYS, sensor.pose.rpy, strict=True)),
+    }
+    return {"mounting_position": mounting, **_figures(sensor)}
+
+
+def _figures(sensor: PortableSensor) -> dict[str, Any]:
+    """Return the OSI fields of a camera or LiDAR: fields of view [rad], counts, beam directions."""
+    if sensor.picture is not None and sensor.picture.size is not None:
+        (width, height), p = sensor.picture.size, sensor.picture
+        return {
+            "field_of_view_horizontal": 2.0 * math.atan(width / (2.0 * p.fx)),
+            "field_of_view_vertical": 2.0 * math.atan(height / (2.0 * p.fy)),
+            "number_of_pixels_horizontal": width,
+            "number_of_pixels_vertical": height,
+        }
+    if sensor.scan is None or (beams := sensor.scan.beams) is None:
+        return {}
+    low, high = sensor.scan.fov
+    return {
+        "field_of_view_horizontal": min(high - low, 2.0 * math.pi),
+        "field_of_view_vertical": 2.0 * max(abs(sensor.scan.low), abs(sensor.scan.high)),
+        "number_of_rays_horizontal": sensor.scan.azimuths,
+        "number_of_rays_vertical": sensor.scan.channels,
+        "max_number_of_interactions": 1,
+        "num_of_pixels": len(beams),
+        "directions": [
+            dict(zip(POSITION_KEYS, beam, strict=True)) for beam in np.round(beams, DIGITS).tolist()
+        ],
+    }
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the sensors of a configuration; a sensor's name is its kind and id.
+
+    Fields may have the names of the schema (snake case) or of protobuf's JSON (camel case).
+
+    Raises
+    ------
+    InputError
+        When a value is malformed, an id occurs twice, or there are more than `MAX_BEAMS` beams.
+    """
+    top = Message(json_of(path, BEAM_BYTES), str(path))
+    max_range = top.figure("range", RANGE)
+    sensors: dict[int, PortableSensor] = {}
+    for kind, key in (*LISTS.items(), (None, OTHER)):
+        for row in top.messages(key):
+            number = row.message("sensor_id").whole_figure("value", IDENTIFIER)
+            number = len(sensors) if number is None else number
+            if number in sensors:
+                raise InputError(path, row.field("sensor_id"), "an id used once", number)
+            sensors[number] = _sensor(path, row, kind, number, max_range)
+    return tuple(sensors[number] for number in sorted(sensors))
+
+
+def _sensor(
+    path: Path, row: Message, kind: str | None, number: int, max_range: float | None
+) -> PortableSensor:
+    mounting = row.message("mounting_position")
+    position, orientation = mounting.message("position"), mounting.message("orientation")
+    coordinates = [position.figure(key, METRES) or 0.0 for key in POSITION_KEYS]
+    angles = [orientation.figure(key, FINITE) or 0.0 for key in ROTATION_KEYS]
+    sensor = PortableSensor(
+        f"{kind or 'sensor'}_{number}", pose_from(path, mounting.path, coordinates, angles), kind
+    )
+    if kind in OTHER_KINDS:
+        return replace(sensor, entry=json_entry(row.data))
+    if kind == CAMERA:
+        return _camera(row, sensor)
+    return _lidar(path, row, sensor, max_range) if kind == LIDAR and "directions" in row else sensor
+
+
+def _camera(row: Message, sensor: PortableSensor) -> PortableSensor:
+    """Return a camera with its intrinsics, if image size and field of view are given."""
+    directions = ("horizontal", "vertical")
+    width, height = (
+        row.whole_figure(f"number_of_pixels_{direction}", PIXELS) for direction in directions
+    )
+    across, down = (row.figure(f"field_of_view_{direction}", WIDEST) for direction in directions)
+    if width is None or height is None or across is None or max(across, down or 0.0) >= math.pi:
+        return sensor
+    return replace(sensor, picture=picture_of_fov(across, (width, height), down))
+
+
+def _lidar(
+    path: Path, row: Message, sensor: PortableSensor, max_range: float | None
+) -> PortableSensor:
+    """Return a LiDAR with its beams, and a note if its range is the default."""
+    # No release of OSI has a range per LiDAR, but configurations written by hand do.
+    sensor_range = row.figure("range", RANGE)
+    note = (
+        ""
+        if sensor_range or max_range
+        else f"no range in the file; {STAND_IN_RANGE_M:g} m stands in"
+    )
+    return replace(
+        sensor, scan=_scan(path, row, sensor_range or max_range or STAND_IN_RANGE_M), told=note
+    )
+
+
+def _component(value: Any) -> float:
+    """Return a vector component: 0 if protobuf omitted it, NaN if it is not a number."""
+    if value is None:
+        return 0.0
+    return float(value) if isinstance(value, str) and PLAIN.fullmatch(value) else real(value)
+
+
+def _scan(path: Path, row: Message, max_range: float) -> Scan:
+    beams, field = row.raw("directions"), row.field("directions")
+    are_tables = isinstance(beams, list) and all(isinstance(beam, dict) for beam in beams)
+    if are_tables:
+        require_at_most(path, field, len(beams), MAX_BEAMS, "beams")
+    directions = (
+        numbers([[_component(beam.get(k)) for k in POSITION_KEYS] for beam in beams])
+        if are_tables
+        else None
+    )
+    if directions is None or not len(directions) or not np.isfinite(directions).all():
+        raise InputError(path, field, "a list of vectors {x, y, z}", shown(beams))
+    count = row.whole_figure("num_of_pixels", Whole(1))
+    if count is not None and count != len(directions):
+        raise InputError(
+            path, row.field("num_of_pixels"), f"{len(directions)}, one a direction", count
+        )
+    elevations = np.arctan2(directions[:, 2], np.hypot(directions[:, 0], directions[:, 1]))
+    fov, ends = (-math.pi, math.pi), (float(elevations.min()), float(elevations.max()))
+    return Scan(len(directions), *ends, 1, fov, max_range, False, directions)
+
+
+CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
+
+
+class Message(Table):
+    """A protobuf message: a table with the schema's field names, ``like_this``.
+
+    A field that is null is absent. Numbers may be given as text. The names of nested messages are
+    converted when these are accessed.
+
+    Raises
+    ------
+    InputError
+        When the data are no table, or a field occurs under both of its names.
+    """
+
+    def __init__(self, data: Any, source: str, path: str = "") -> None:
+        super().__init__(_as_in_schema(source, path, data), source, path)
+
+    def figure(self, key: str, rule: Number) -> float | None:
+        """Return a number; None if the field is absent. Raise `InputError` if it is invalid."""
+        value = self.raw(key, None)
+        return None if value is None else figure(self.source, self.field(key), value, rule)
+
+    def whole_figure(self, key: str, rule: Whole) -> int | None:
+        """Return an integer; None if the field is absent. Raise `InputError` if it is invalid."""
+        value = self.raw(key, None)
+        return None if value is None else whole_figure(self.source, self.field(key), value, rule)
+
+    def message(self, key: str) -> Message:
+        """Return a nested message; an empty one if the field is absent."""
+        return Message(self.raw(key, {}), self.source, self.field(key))
+
+    def messages(self, key: str) -> list[Message]:
+        """Return the messages of a repeated field; an empty list if the field is absent."""
+        rows = self.raw(key, [])
+        if not isinstance(rows, list):
+            raise self.error(key, "a list", type(rows).__name__)
+        return [Message(row, self.source, f"{self.field(key)}[{k}]") for k, row in enumerate(rows)]
+
+
+def _as_in_schema(source: str, path: str, data: Any) -> Any:
+    """Return the fields of a message that are set, by their names in the schema."""
+    if not isinstance(data, dict):
+        return data
+    fields: dict[str, Any] = {}
+    for key, value in data.items():
+        name = CAPITAL.sub(r"_\1", key).lower()
+        if name in fields:
+            field = f"{path}.{name}" if path else name
+            raise InputError(source, field, "a field once", "it twice, in both ways of writing")
+        if value is not None:
+            fields[name] = value
+    return fields

@@ -1,0 +1,213 @@
+"""Passthrough: content of an imported file besides the rig, written again to the same format.
+
+Sensors of unknown kinds, fields that are not read, and comments survive import and export. The
+entry of a sensor is written unchanged while the sensor has its imported pose and model.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from pe_core import catalog
+from pe_core.base.errors import InputError, shown
+from pe_core.geometry.poses import Pose
+from pe_core.scene.rig import SensorModel
+from pe_core.sensors import KINDS
+from pe_core.study.passthrough import Passthrough, SourceSensor, json_entry
+
+from .foreign_values import pose_from
+from .portable import PortableSensor
+
+ORIGIN = Pose((0.0, 0.0, 0.0))
+UNMOVED_M, UNTURNED = 2e-5, 4e-6
+"""A pose nearer than this to the one that came in is that one: .blend files and studies round to
+0.01 mm and 0.0001 degrees. The second is a difference of rotation matrices."""
+FIGURES_ALIKE = 1e-6
+"""Figures of a model that differ by less are the same: .blend files hold single precision."""
+LONGEST_MODEL = 50_000
+"""Characters of a model's figures; of more (single beams) a digest is kept."""
+
+
+def restored_sensor(source: SourceSensor, sensor: PortableSensor, model: str) -> PortableSensor:
+    """Return a sensor with its imported entry, and without properties that have not changed."""
+    untouched = bool(source.entry or source.is_stand_in) and same_model(source.model, model)
+    if untouched:
+        sensor = replace(sensor, picture=None, scan=None, is_stand_in=source.is_stand_in)
+        sensor = replace(sensor, min_range=None, max_range=None)
+    unmoved = source.pose is not None and same_pose(source.pose, sensor.pose)
+    return replace(sensor, entry=source.entry, is_unmoved=unmoved)
+
+
+def restored(
+    passthrough: Passthrough, sensors: Iterable[PortableSensor], models: Mapping[str, str]
+) -> tuple[PortableSensor, ...]:
+    """Return a rig's sensors with their imported entries, and the sensors left out at import.
+
+    Sensors are in the order of the file; sensors added since follow.
+
+    `models` are the `model_text` of the rig's models by the sensors' names.
+    """
+    by_name, result = {sensor.name: sensor for sensor in sensors}, []
+    for source in passthrough.sensors:
+        if source.pose is None:
+            values = source.name, ORIGIN, source.kind
+            result.append(PortableSensor(*values, entry=source.entry, is_left_out=True))
+        elif source.name in by_name:
+            result.append(restored_sensor(source, by_name.pop(source.name), models[source.name]))
+    return (*result, *by_name.values())
+
+
+def same_pose(a: Pose, b: Pose) -> bool:
+    """Whether two poses are the same, but for rounding."""
+    return all(map(is_there, a.position, b.position)) and is_turned_so(a, b)
+
+
+def is_there(a: float, b: float) -> bool:
+    """Whether two coordinates [m] are the same, but for rounding."""
+    return abs(a - b) <= UNMOVED_M
+
+
+def is_turned_so(a: Pose, b: Pose) -> bool:
+    """Whether two poses have the same rotation within rounding."""
+    difference = np.abs(a.ground_from_sensor - b.ground_from_sensor)
+    return bool(difference.max() <= UNTURNED)
+
+
+def model_text(model: SensorModel) -> str:
+    """Return a text that identifies a model: its catalogue name, or its parameters as JSON."""
+    entry = catalog.entries().get(model.name)
+    if entry is not None and entry.file != catalog.OWN and catalog.load(model.name) is model:
+        return model.name
+    text = json_entry(catalog.to_table(model))
+    return text if len(text) <= LONGEST_MODEL else hashlib.sha256(text.encode()).hexdigest()
+
+
+def same_model(a: str, b: str) -> bool:
+    """Whether two model texts identify the same model within rounding."""
+    if not (a.startswith("{") and b.startswith("{")):
+        return a == b
+    try:
+        return _alike(json.loads(a), json.loads(b))
+    except (ValueError, RecursionError):
+        return False
+
+
+def _alike(a: Any, b: Any) -> bool:
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(_alike(a[key], b[key]) for key in a)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(_alike, a, b))
+    if isinstance(a, int | float) and isinstance(b, int | float):
+        return math.isclose(a, b, rel_tol=FIGURES_ALIKE, abs_tol=FIGURES_ALIKE)
+    return bool(a == b)
+
+
+def entry_row(
+    sensor: PortableSensor,
+    fresh: Callable[[PortableSensor], Mapping[str, Any]],
+    pose_keys: Sequence[str],
+    figure_keys: Sequence[str],
+    part: str = "",
+) -> dict[str, Any]:
+    """Return a sensor's JSON object: its imported entry with the changed keys updated.
+
+    Parameters
+    ----------
+    each : PortableSensor
+    fresh : callable
+        Function of a sensor that returns its JSON object without regard to an entry.
+    pose_keys, figure_keys : sequence of str
+        Keys of the pose, and keys of the model.
+    part : str
+        Key of this object, if the entry has several objects.
+    """
+    if not sensor.entry:
+        return dict(fresh(sensor))
+    row = _object_of(sensor, part)
+    if sensor.is_left_out:
+        return row
+    changed = [*([] if sensor.is_unmoved else pose_keys)]
+    changed += figure_keys if sensor.picture is not None or sensor.scan is not None else []
+    current = fresh(sensor) if changed else {}
+    for key in changed:
+        if key in current:
+            row[key] = current[key]
+        else:
+            row.pop(key, None)
+    return row
+
+
+def _object_of(sensor: PortableSensor, part: str) -> dict[str, Any]:
+    row = json.loads(sensor.entry)
+    row = row.get(part) if part else row
+    if not isinstance(row, dict):
+        raise InputError("passthrough", f"entry of {sensor.name}", "a JSON object", shown(row))
+    return row
+
+
+def pose_entry(sensor: PortableSensor, **more: Any) -> str:
+    """Return an entry with a pose, position [m] and angles [rad], and further fields `more`."""
+    return json_entry({"pose": [list(sensor.pose.position), list(sensor.pose.rpy)], **more})
+
+
+def pose_of_entry(sensor: PortableSensor) -> Pose:
+    """Return the pose in an entry of `pose_entry`. Raise `InputError` if it is malformed."""
+    values = entry_row(sensor, lambda _: {}, (), ()).get("pose")
+    position, angles = values if isinstance(values, list) and len(values) == 2 else (values, None)
+    return pose_from("passthrough", sensor.name, position, angles)
+
+
+NO_WORD = re.compile("[^a-z0-9]+")
+NAMED_KINDS = ("radar", "ultrasonic", "sonar", "gnss", "gps", "imu", "ins", "collision")
+"""Words in sensor names that identify a kind, if the file states none."""
+NOUNS = {"radar", "ultrasonic"}
+"""Kinds that are nouns; of others one says sensor."""
+
+
+def parted(
+    sensors: Iterable[PortableSensor], chosen: Mapping[str, str]
+) -> tuple[list[PortableSensor], list[PortableSensor]]:
+    """Return the sensors of known kinds, and the sensors to leave out.
+
+    If the file states no kind, the sensor's name decides, unless a model was `chosen` for it.
+    """
+    included, left_out = [], []
+    for sensor in sensors:
+        kind = sensor.kind or ("" if sensor.name in chosen else _kind_in_name(sensor))
+        if not kind or kind in KINDS:
+            included.append(sensor)
+        else:
+            entry = sensor.entry or pose_entry(sensor)
+            left_out.append(replace(sensor, kind=kind, entry=entry, is_left_out=True))
+    return included, left_out
+
+
+def _kind_in_name(sensor: PortableSensor) -> str:
+    if sensor.model is not None or sensor.picture is not None or sensor.scan is not None:
+        return ""
+    words = NO_WORD.sub(" ", sensor.name.lower()).split()
+    return next((kind for kind in NAMED_KINDS if kind in words), "")
+
+
+def listed_kinds(sensors: Iterable[tuple[str, str]]) -> str:
+    """Return a text with the count and the names of each kind, from pairs (kind, name)."""
+    names: dict[str, list[str]] = {}
+    for kind, name in sensors:
+        names.setdefault(kind, []).append(name)
+    return ", ".join(
+        f"{len(kind_names)} {_noun(kind, len(kind_names))} ({', '.join(kind_names)})"
+        for kind, kind_names in names.items()
+    )
+
+
+def _noun(kind: str, count: int) -> str:
+    noun = kind if kind in NOUNS else f"{kind} sensor"
+    return noun if count == 1 else f"{noun}s"

@@ -1,0 +1,175 @@
+"""ROS 2 static transforms: a launch file of tf2's static_transform_publisher.
+
+Camera intrinsics are beside it, in the folder camera_info. Import also reads shell scripts that
+call the publisher.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Mapping
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from pe_core.base.errors import InputError, shown
+from pe_core.geometry.poses import Pose
+from pe_tools.formats.xml_text import parse_xml
+
+from .camera_info import info_files, with_info
+from .foreign_values import (
+    LONGEST_LINE,
+    MAX_FRAMES,
+    Written,
+    figure,
+    plain_number,
+    pose_from,
+    require_at_most,
+    text_of,
+)
+from .frame_tree import OPTICAL, poses_from_root, with_optical_frames
+from .frames import OPTICAL_RPY, from_quaternion, pose_of
+from .passthrough import pose_of_entry
+from .portable import CAMERA, PortableSensor
+
+FILE, ROOT = "rig.launch.xml", "base_link"
+AXES = (
+    "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
+    "103). "
+)
+OURS, THEIRS = " is on the ground under the vehicle's centre: ", " is that of the imported file: "
+PUBLISHER = "static_transform_publisher"
+POSITION_KEYS, ROTATION_KEYS, QUATERNION = (
+    ("x", "y", "z"),
+    ("roll", "pitch", "yaw"),
+    ("qw", "qx", "qy", "qz"),
+)
+ENDS = ("frame-id", "child-frame-id")
+EQUALS = re.compile(r"(--[a-z-]+)=")
+"""Between an option and its value, in place of a blank."""
+ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
+
+
+def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return a launch file with a publisher for each sensor."""
+    return _written(sensors, ROOT, OURS)
+
+
+def write_over(
+    texts: Mapping[str, str], sensors: tuple[PortableSensor, ...]
+) -> tuple[Written, list[str]]:
+    """Return a launch file as `write`, with the root frame of the imported file."""
+    launch = parse_xml("passthrough", texts.get(FILE, "").encode())
+    return _written(sensors, launch.get("root", ROOT), THEIRS)
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return an empty launch file that stores the root frame of this file, for `write_over`."""
+    links = _links(path / FILE if path.is_dir() else path)
+    root = next(parent for parent, _ in links.values() if parent not in links)
+    return {FILE: tostring(Element("launch", {"root": root}), "unicode")}
+
+
+def _written(
+    sensors: tuple[PortableSensor, ...], root: str, origin_text: str
+) -> tuple[Written, list[str]]:
+    left_out = [sensor for sensor in sensors if sensor.is_left_out]
+    included = [sensor for sensor in sensors if not sensor.is_left_out]
+    named, lines = with_optical_frames(included, (root, *(sensor.name for sensor in left_out)))
+    launch = Element("launch")
+    for sensor in named:
+        _publisher(launch, root, sensor.name, sensor.pose)
+        if sensor.kind == CAMERA:
+            optical = Pose((0.0, 0.0, 0.0), OPTICAL_RPY)
+            _publisher(launch, sensor.name, sensor.name + OPTICAL, optical)
+    for sensor in left_out:
+        _publisher(launch, root, sensor.name, pose_of_entry(sensor))
+    indent(launch)
+    text = f"<!-- {root}{origin_text}{AXES}-->\n{tostring(launch, 'unicode')}\n"
+    return {FILE: text.encode(), **info_files(named)}, lines
+
+
+def _publisher(launch: Element, parent: str, child: str, pose: Pose) -> None:
+    named = zip((*POSITION_KEYS, *ROTATION_KEYS), (*pose.position, *pose.rpy), strict=True)
+    numbers = " ".join(f"--{key} {plain_number(value)}" for key, value in named)
+    args = f"{numbers} --{ENDS[0]} {parent} --{ENDS[1]} {child}"
+    SubElement(launch, "node", {"pkg": "tf2_ros", "exec": PUBLISHER, "args": args})
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the transforms of all calls of the publisher in a file, in the frame of their root.
+
+    A frame with an optical frame below it is a camera; the kind of others is unknown.
+
+    Raises
+    ------
+    InputError
+        When there is no call, a number is malformed, or frames have two roots or a cycle.
+    """
+    path = path / FILE if path.is_dir() else path
+    links = _links(path)
+    frames = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
+    poses = poses_from_root(path, links, frames, "frame")
+    optical = {name for name in links if name.endswith(OPTICAL)}
+    cameras = {links[name][0] for name in optical}
+    names = [name for name in links if name not in optical]
+    sensors = [PortableSensor(n, poses[n], CAMERA if n in cameras else None) for n in names]
+    return with_info(path.parent, sensors)
+
+
+def _links(path: Path) -> dict[str, tuple[str, Pose]]:
+    """Return the parent and the pose in the parent frame, by frame name."""
+    calls = ARGS.findall(without_comments(text_of(path)))
+    require_at_most(path, "file", len(calls), MAX_FRAMES, f"calls of {PUBLISHER}")
+    links: dict[str, tuple[str, Pose]] = {}
+    for number, arguments in enumerate(calls):
+        require_at_most(path, f"transform {number + 1}", len(arguments), LONGEST_LINE, "characters")
+        parent, child, pose = _transform(path, f"transform {number + 1}", arguments)
+        if child in links:
+            raise InputError(path, f"frame {child}", "one parent", "two")
+        links[child] = parent, pose
+    if not links:
+        raise InputError(path, "file", f"calls of {PUBLISHER}", "none")
+    return links
+
+
+def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
+    """Return parent, child and pose of one call."""
+    try:
+        words = shlex.split(EQUALS.sub(r"\1 ", args))
+    except ValueError as error:
+        raise InputError(path, field, "arguments", error) from None
+    options = dict(zip(words[::2], words[1::2], strict=False))
+    ends = [options.get(f"--{end}", "") for end in ENDS]
+    if not all(ends):
+        raise InputError(path, field, "--frame-id and --child-frame-id", shown(args.strip()))
+    position = [_number(path, field, options, key) for key in POSITION_KEYS]
+    if any(f"--{key}" in options for key in QUATERNION):
+        default = {"qw": "1"}
+        rotation = [_number(path, field, default | _bare(options), key, "") for key in QUATERNION]
+        pose = pose_of(from_quaternion(path, field, rotation), position)
+    else:
+        pose = pose_from(
+            path, field, position, [_number(path, field, options, key) for key in ROTATION_KEYS]
+        )
+    return ends[0], ends[1], pose
+
+
+def _bare(options: dict[str, str]) -> dict[str, str]:
+    return {key.removeprefix("--"): value for key, value in options.items()}
+
+
+def _number(path: Path, field: str, options: dict[str, str], key: str, dashes: str = "--") -> float:
+    return figure(path, f"{field}, {key}", options.get(f"{dashes}{key}", "0"))
+
+
+def without_comments(text: str) -> str:
+    """Return XML without its comments, in one pass; an unclosed comment extends to the end."""
+    parts, begin = [], 0
+    while (start := text.find("<!--", begin)) >= 0:
+        parts.append(text[begin:start])
+        end = text.find("-->", start + 4)
+        if end < 0:
+            return "".join(parts)
+        begin = end + 3
+    return "".join([*parts, text[begin:]])

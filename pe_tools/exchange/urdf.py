@@ -1,0 +1,293 @@
+"""URDF: links and fixed joints, an optical frame for each camera (REP 103).
+
+Intrinsics are in Gazebo's sensor elements, as far as these can express them. The model name is in
+an element beside them, which other readers of URDF ignore.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from pe_core.base.errors import InputError, shown
+from pe_core.base.files import read_bytes
+from pe_core.geometry.poses import Pose
+from pe_core.sensors import KINDS
+from pe_tools.formats.xml_text import parse_xml
+
+from .foreign_values import (
+    FARTHEST,
+    MAX_FRAMES,
+    MIN_RANGE,
+    Written,
+    figure,
+    figures,
+    plain_number,
+    pose_from,
+    require_at_most,
+    spaced,
+)
+from .frame_tree import OPTICAL, poses_from_root, with_optical_frames
+from .frames import OPTICAL_RPY, seen_from
+from .gazebo import SensorElement, picture_in, scan_in, write_clip, write_picture, write_scan
+from .passthrough import entry_row, pose_entry, pose_of_entry
+from .portable import CAMERA, LIDAR, PortableSensor, uneven
+
+RANGES = ("min_range", "max_range")
+FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"
+ON_GROUND = "base_footprint"
+"""The link on the ground under a robot (REP 120)."""
+AXES = (
+    "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
+    "103). Links have a mass and joints are preserved, so that Gazebo keeps each sensor's frame; "
+    "gravity does not move them. "
+)
+OURS, THEIRS = " is on the ground under the vehicle's centre: ", " is that of the imported file: "
+GAZEBO_KINDS = {CAMERA: CAMERA, LIDAR: "gpu_lidar"}
+KIND_WORDS = {CAMERA: CAMERA, LIDAR: LIDAR, "ray": LIDAR, "depth": CAMERA}
+"""What a word in a Gazebo sensor's type says of its kind."""
+INERTIA_KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+MASS_KG, INERTIA = 0.01, 1e-5
+"""Of every link [kg, kg m2]: Gazebo has none without (sdformat's issue 199), nor below 1e-5 kg."""
+
+
+def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
+    """Return a robot that consists of the rig alone, and messages on losses."""
+    return _written(sensors, NAME, ROOT, OURS)
+
+
+def write_over(
+    texts: Mapping[str, str], sensors: tuple[PortableSensor, ...]
+) -> tuple[Written, list[str]]:
+    """Return a robot as `write`, with the name and root link of the imported one."""
+    robot = parse_xml("passthrough", texts.get(FILE, "").encode())
+    link = robot.find("link")
+    root = ROOT if link is None else link.get("name", ROOT)
+    return _written(sensors, robot.get("name", NAME), root, THEIRS)
+
+
+def source(path: Path) -> dict[str, str]:
+    """Return a robot of the same name with only the origin link, for `write_over`."""
+    robot = _robot(path)
+    skeleton = Element("robot", {"name": robot.get("name", NAME)})
+    SubElement(skeleton, "link", {"name": _origin_of(_poses(path, robot))})
+    return {FILE: tostring(skeleton, "unicode")}
+
+
+def _written(
+    sensors: tuple[PortableSensor, ...], name: str, root: str, origin_text: str
+) -> tuple[Written, list[str]]:
+    left_out = [sensor for sensor in sensors if sensor.is_left_out]
+    included = [sensor for sensor in sensors if not sensor.is_left_out]
+    named, lines = with_optical_frames(included, (root, *(sensor.name for sensor in left_out)))
+    robot = Element("robot", {"name": name})
+    _link(robot, root)
+    for sensor in named:
+        _joint(robot, root, sensor.name, sensor.pose)
+        if sensor.kind == CAMERA:
+            _joint(robot, sensor.name, sensor.name + OPTICAL, Pose((0.0, 0.0, 0.0), OPTICAL_RPY))
+        _gazebo(robot, sensor)
+    for sensor in left_out:
+        _as_it_came(robot, root, sensor)
+    indent(robot)
+    text = (
+        f'<?xml version="1.0"?>\n<!-- {root}{origin_text}{AXES}-->\n{tostring(robot, "unicode")}\n'
+    )
+    return {FILE: text.encode()}, lines + uneven(named, "Gazebo")
+
+
+def _link(robot: Element, name: str) -> None:
+    """Add a link with a mass, which Gazebo requires, and without gravity."""
+    inertial = SubElement(SubElement(robot, "link", {"name": name}), "inertial")
+    SubElement(inertial, "mass", {"value": repr(MASS_KG)})
+    values = {key: repr(INERTIA if key[1] == key[2] else 0.0) for key in INERTIA_KEYS}
+    SubElement(inertial, "inertia", values)
+    block = SubElement(robot, "gazebo", {"reference": name})
+    SubElement(block, "turnGravityOff").text = "true"
+
+
+def _joint(robot: Element, parent: str, child: str, pose: Pose) -> None:
+    """Add a link on a fixed joint that Gazebo must not merge into the parent."""
+    _link(robot, child)
+    name = f"{child}_joint"
+    joint = SubElement(robot, "joint", {"name": name, "type": "fixed"})
+    SubElement(joint, "parent", {"link": parent})
+    SubElement(joint, "child", {"link": child})
+    SubElement(joint, "origin", {"xyz": spaced(pose.position), "rpy": spaced(pose.rpy)})
+    block = SubElement(robot, "gazebo", {"reference": name})
+    SubElement(block, "preserveFixedJoint").text = "true"
+
+
+def _gazebo(robot: Element, sensor: PortableSensor) -> None:
+    block = SubElement(robot, "gazebo", {"reference": sensor.name})
+    kind = GAZEBO_KINDS.get(sensor.kind or "")
+    attributes = {
+        "kind": sensor.kind or "",
+        "model": sensor.known_model or "",
+        "fusion": sensor.fusion or "",
+    }
+    attributes |= {k: "" if (v := getattr(sensor, k)) is None else plain_number(v) for k in RANGES}
+    attributes = {k: v for k, v in attributes.items() if v or k in ("kind", "model")}
+    SubElement(block, "perception_entropy", attributes)
+    if kind is None or (sensor.picture is None and sensor.scan is None):
+        return
+    element = SubElement(block, "sensor", {"name": sensor.name, "type": kind})
+    if sensor.picture is not None and sensor.picture.size is not None:
+        camera = SubElement(element, CAMERA)
+        write_picture(camera, sensor.picture, sensor.picture.size)
+        write_clip(camera, sensor.min_range, sensor.max_range)
+    elif sensor.scan is not None:
+        write_scan(SubElement(element, LIDAR), sensor.scan)
+
+
+def _as_it_came(robot: Element, root: str, sensor: PortableSensor) -> None:
+    """Add the link of a sensor of unknown kind with its imported Gazebo elements."""
+    _joint(robot, root, sensor.name, pose_of_entry(sensor))
+    entry = entry_row(sensor, lambda _: {}, (), ())
+    for block in entry.get("gazebo", ()):
+        robot.append(parse_xml("passthrough", str(block).encode()))
+
+
+def read(path: Path) -> tuple[PortableSensor, ...]:
+    """Read the sensors of a robot, in the frame of its root.
+
+    Sensors are the links with a Gazebo sensor. If there are none, they are the links with an
+    optical frame, and the links without children and without a mass.
+
+    Raises
+    ------
+    InputError
+        When it is no URDF, has not exactly one root, has a cycle, or has no sensor.
+    """
+    robot = _robot(path)
+    in_root = _poses(path, robot)
+    blocks = {
+        block.get("reference", ""): block for block in robot.iter("gazebo") if _is_sensor(block)
+    }
+    names = [name for name in in_root if name in blocks] or list(_bodiless(robot, in_root))
+    if not names:
+        raise InputError(path, "link", "links of sensors", "none")
+    origin = _origin_of(in_root)
+    poses = {name: seen_from(in_root[origin], pose) for name, pose in in_root.items()}
+    sensors = [_sensor(path, name, poses, blocks.get(name)) for name in names]
+    is_ours = next(robot.iter("perception_entropy"), None) is not None
+    line = "" if is_ours else _origin_line(origin, in_root)
+    return tuple(_with_entry(replace(block, told=line), robot) for block in sensors)
+
+
+def _robot(path: Path) -> Element:
+    robot = parse_xml(str(path), read_bytes(path))
+    if robot.tag != "robot":
+        raise InputError(path, "file", "URDF, a <robot>", f"<{robot.tag}>")
+    return robot
+
+
+def _origin_of(poses: dict[str, Pose]) -> str:
+    """Return the origin link: the link on the ground (REP 120), or else the root."""
+    return ON_GROUND if ON_GROUND in poses else next(iter(poses))
+
+
+def _origin_line(origin: str, poses: dict[str, Pose]) -> str:
+    """Return where poses of a robot of another program are taken."""
+    if origin == ON_GROUND:
+        return (
+            f"taken in {ON_GROUND}, which is on the ground; if that is not under the middle of the "
+            "vehicle, --at says where it is"
+        )
+    return (
+        f"taken in the robot's root, {next(iter(poses))}; if that is not on the ground under the "
+        "middle of the vehicle, --at says where it is"
+    )
+
+
+def _with_entry(sensor: PortableSensor, robot: Element) -> PortableSensor:
+    """Return a sensor; one of unknown kind gets the Gazebo elements of its link as entry."""
+    if sensor.kind is None or sensor.kind in KINDS:
+        return sensor
+    blocks = [b for b in robot.iter("gazebo") if b.get("reference") == sensor.name]
+    texts = [tostring(block, "unicode").strip() for block in blocks]
+    return replace(sensor, entry=pose_entry(sensor, gazebo=texts))
+
+
+def _is_sensor(block: Element) -> bool:
+    return block.find("sensor") is not None or block.find("perception_entropy") is not None
+
+
+def _poses(path: Path, robot: Element) -> dict[str, Pose]:
+    """Return the poses of links in the root frame, by name, ordered by depth."""
+    links = dict.fromkeys(link.get("name", "") for link in robot.iter("link"))
+    require_at_most(path, "link", len(links), MAX_FRAMES, "links")
+    joints = {}
+    for joint in robot.findall("joint"):
+        child, parent = (_end(path, joint, end, links) for end in ("child", "parent"))
+        if child in joints:
+            raise InputError(path, f"link {child}", "one parent", "two")
+        joints[child] = parent, _origin(path, joint)
+    return poses_from_root(path, joints, links, "link")
+
+
+def _end(path: Path, joint: Element, end: str, links: Collection[str]) -> str:
+    element = joint.find(end)
+    name = "" if element is None else element.get("link", "")
+    if name not in links:
+        field = f"joint {joint.get('name', '')!r}, {end}"
+        raise InputError(path, field, "the name of a link", shown(name))
+    return name
+
+
+def _origin(path: Path, joint: Element) -> Pose:
+    """Return the pose of a joint's child in its parent; movable joints are at zero."""
+    element, field = joint.find("origin"), f"joint {joint.get('name', '')!r}"
+    values = {} if element is None else element.attrib
+    keys = ("xyz", "rpy")
+    numbers = [figures(path, f"{field}, {k}", values.get(k, "0 0 0"), (3,)) for k in keys]
+    return pose_from(path, field, *numbers)
+
+
+def _bodiless(robot: Element, poses: dict[str, Pose]) -> Iterator[str]:
+    """Yield the links that may be sensors, in a robot without Gazebo sensors."""
+    joints, links = robot.findall("joint"), robot.findall("link")
+    parents = {end.get("link") for joint in joints for end in joint.iter("parent")}
+    heavy = {link.get("name") for link in links if link.find("inertial") is not None}
+    for name in list(poses)[1:]:
+        is_end = name not in parents and name not in heavy
+        if OPTICAL not in name and (is_end or _optical_of(name, poses)):
+            yield name
+
+
+def _optical_of(name: str, poses: dict[str, Pose]) -> str | None:
+    """Return the optical frame of a link, by its name."""
+    stem = name.removesuffix("_link").removesuffix("_frame")
+    endings = (OPTICAL, f"{OPTICAL}_frame", f"{OPTICAL}_link")
+    return next((s + e for s in (name, stem) for e in endings if s + e in poses), None)
+
+
+def _sensor(path: Path, name: str, poses: dict[str, Pose], block: Element | None) -> PortableSensor:
+    kind = CAMERA if _optical_of(name, poses) else None
+    if block is None:
+        return PortableSensor(name, poses[name], kind)
+    project_element, sensor = block.find("perception_entropy"), block.find("sensor")
+    model = project_element.get("model") if project_element is not None else None
+    if sensor is not None:
+        type_name = sensor.get("type", "")
+        kind = next((k for word, k in KIND_WORDS.items() if word in type_name), type_name or kind)
+    if project_element is not None:
+        kind = project_element.get("kind") or kind
+    inside = SensorElement(path, name, sensor)
+    fields = {} if project_element is None else _known(path, name, project_element)
+    picture_and_scan = picture_in(inside), scan_in(inside)
+    return PortableSensor(name, poses[name], kind, model or None, *picture_and_scan, **fields)
+
+
+def _known(path: Path, name: str, project_element: Element) -> dict[str, Any]:
+    """Return a sensor's fusion group and ranges, from the element perception_entropy."""
+    rules = dict(zip(RANGES, (MIN_RANGE, FARTHEST), strict=True))
+    ranges = {
+        key: figure(path, f"sensor of {name}, {key}", project_element.get(key), rule)
+        for key, rule in rules.items()
+        if project_element.get(key) is not None
+    }
+    return {"fusion": project_element.get("fusion") or None, **ranges}

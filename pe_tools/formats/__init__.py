@@ -1,0 +1,25 @@
+"""Files of other programs: meshes, labelled boxes, tables of AP."""
+
+from pe_core.base.files import MESH_BYTES
+
+from .ap_fit import SATURATION, ApTable, CurveFit, fit_ap_curve, study_snippet
+from .ap_table import read_ap_table
+from .boxes import read_boxes, write_boxes
+from .meshes import FoundMesh, Mesh, MeshAxes, read_mesh, write_mesh
+
+__all__ = [
+    "MESH_BYTES",
+    "SATURATION",
+    "ApTable",
+    "CurveFit",
+    "FoundMesh",
+    "Mesh",
+    "MeshAxes",
+    "fit_ap_curve",
+    "read_ap_table",
+    "read_boxes",
+    "read_mesh",
+    "study_snippet",
+    "write_boxes",
+    "write_mesh",
+]

@@ -1,0 +1,93 @@
+"""KITTI's labels: of the object benchmark (label_2), or of tracking, with frame and id in front.
+
+A line is ``type truncated occluded alpha left top right bottom height width length x y z rotation_y
+[score]`` in the left camera's frame (x right, y down, z forward). The location is the middle of the
+box's bottom; rotation_y turns about y and is 0 where the object heads along x.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from pe_core.base.errors import InputError
+from pe_core.base.files import NUMBER, parse_number, quoted
+
+from .labels import BoxNumbers, Labels
+
+CAMERA = (-0.33, 0.0, 1.65)
+"""The camera in the ground frame under the middle of the wheelbase [m]. KITTI's set-up: 1.65 m
+above the ground, 0.27 m ahead of the LiDAR, which stands 0.76 m ahead of the rear axle; the
+Passat's wheelbase is 2.71 m."""
+
+CLASSES = {
+    "car": "car",
+    "van": "car",
+    "truck": "truck",
+    "pedestrian": "pedestrian",
+    "person_sitting": "pedestrian",
+    "person": "pedestrian",
+    "cyclist": "cyclist",
+}
+"""Trams and Misc (trailers and the like) are none of ours."""
+UNLABELLED = "dontcare"
+
+COLUMNS = 15
+FIRST_NUMBER = 8
+NUMBERS = ("the height", "the width", "the length", "x", "y", "z", "rotation_y")
+
+
+def looks_like_kitti(line: str) -> bool:
+    """Whether a line is words and numbers with blanks between: a class, then a number."""
+    name, number = [*line.split(maxsplit=2), "", ""][:2]
+    return _is_number(number) or bool(number and name.lower() in {*CLASSES, UNLABELLED})
+
+
+def read_kitti(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
+    """Read labels from numbered lines.
+
+    Raises
+    ------
+    InputError
+        When a line has another number of columns than KITTI's, or a number is wrong.
+    """
+    labels = Labels(source)
+    first = lines[0][1].split()
+    tracking = _is_number(first[0])
+    skipped = 2 if tracking else 0
+    expected = "frame, id and 15 columns" if tracking else "15 columns"
+    for number, line in lines:
+        where, cells = f"line {number}", line.split()
+        if len(cells) - skipped not in (COLUMNS, COLUMNS + 1):
+            kitti = f"KITTI's {expected}, and perhaps a score"
+            raise InputError(source, where, kitti, f"{len(cells)} columns")
+        _add(labels, where, cells[skipped:])
+    return labels
+
+
+def _add(labels: Labels, where: str, cells: Sequence[str]) -> None:
+    name = cells[0].lower()
+    if name == UNLABELLED:
+        labels.leave_out("marked DontCare")
+        return
+    if _is_number(name):
+        raise InputError(labels.source, where, "a class before the numbers", quoted(name))
+    row = _in_ground_axes(labels.source, where, cells)
+    if name in CLASSES:
+        labels.add(where, CLASSES[name], row, CAMERA)
+    else:
+        labels.leave_unknown(cells[0])
+
+
+def _in_ground_axes(source: str, where: str, cells: Sequence[str]) -> BoxNumbers:
+    """Return a box with axes as the ground frame's, from the camera."""
+    texts = cells[FIRST_NUMBER : FIRST_NUMBER + len(NUMBERS)]
+    height, width, length, right, down, forward, turn = (
+        parse_number(source, where, what, text) for what, text in zip(NUMBERS, texts, strict=True)
+    )
+    yaw = -turn - math.pi / 2.0
+    return forward, -right, -down + height / 2.0, length, width, height, yaw
+
+
+def _is_number(text: str) -> bool:
+    return NUMBER.fullmatch(text) is not None

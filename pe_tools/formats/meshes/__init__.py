@@ -1,0 +1,123 @@
+"""Triangle meshes from and to files, by their suffix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from pe_core.base.errors import InputError
+from pe_core.base.files import MESH_BYTES, read_bytes, write_bytes
+from pe_core.base.memory import report_memory_errors
+from pe_core.scene.mesh import AS_SAID, Mesh, MeshAxes
+
+from .axes import GLTF, OURS, UNSAID, SaidAxes, oriented, said_in_comments
+from .glb import read_glb
+from .mesh import make_mesh
+from .mesh_plugins import FoundMesh, is_read_elsewhere, read_elsewhere
+from .npz import dump_npz, read_npz
+from .obj import dump_obj, read_obj
+from .part_names import fit_names
+from .ply import read_ply
+from .stl import read_stl
+
+_F = TypeVar("_F")
+
+__all__ = ["AS_SAID", "FoundMesh", "Mesh", "MeshAxes", "read_mesh", "write_mesh"]
+
+_READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
+    ".npz": read_npz,
+    ".obj": read_obj,
+    ".stl": read_stl,
+    ".ply": read_ply,
+    ".glb": read_glb,
+}
+_SAYS: dict[str, Callable[[bytes], SaidAxes]] = {
+    ".npz": lambda _: OURS,
+    ".obj": said_in_comments,
+    ".glb": lambda _: GLTF,
+}
+"""What the files of a format say about their axes; of others it is unsaid."""
+_WRITERS: dict[str, Callable[[Path, Mesh], bytes]] = {".npz": dump_npz, ".obj": dump_obj}
+
+
+def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
+    """Read a mesh from a .npz, .obj, .stl, .ply or .glb file; with the extra `meshes`, .dae or USD.
+
+    Parameters
+    ----------
+    path : str or Path
+        The suffix, in either case, says the format.
+    axes : MeshAxes, optional
+        Which axes of the file are forward and up, a scale and a rotation. What it leaves out is
+        what the file says: .npz, and .obj with a comment like ours, are in the ground frame
+        (x forward, y left, z up), .glb has +Y up, .dae and USD say which is. Else names of parts
+        and the shape decide, or the default: the ground frame, in .glb +Z forward.
+
+    Returns
+    -------
+    Mesh
+        Triangles (F, 3, 3) [m] in the ground frame, F at least 1, those without area among them;
+        parts in the order the file names them, their names made printable
+        (`part_names.fit_names`); in words how the axes were taken.
+
+    Raises
+    ------
+    InputError
+        The file is missing, of no known suffix or of one whose reader is not installed; it is
+        not what its suffix says, cut short, has an index out of range or a coordinate that is
+        not finite, has no triangles, or is more than a mesh may be (`MESH_BYTES`,
+        `MOST_TRIANGLES`) or than memory holds.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in _READERS and not is_read_elsewhere(suffix):
+        _of_suffix(path, _READERS)  # complains
+    data = read_bytes(path, MESH_BYTES)
+    # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
+    with np.errstate(all="ignore"), report_memory_errors(path):
+        if suffix in _READERS:
+            mesh, said = _READERS[suffix](path, data), _SAYS.get(suffix, _unsaid)(data)
+        else:
+            mesh, said = read_elsewhere(path, data)
+        fit = replace(mesh, part_names=fit_names(mesh.part_names))
+        return oriented(str(path), fit, said, axes or MeshAxes())
+
+
+def write_mesh(path: str | Path, mesh: Mesh) -> None:
+    """Write a mesh to a .npz or .obj file from which it reads back exactly.
+
+    The file is replaced in one step: it is never seen half written.
+
+    Parameters
+    ----------
+    path : str or Path
+        The suffix says the format; the folder must exist.
+    mesh : Mesh
+        Triangles (F, 3, 3) [m], parts (F,) and their names. Parts without triangles are
+        not written, and parts of one name are written as one.
+
+    Raises
+    ------
+    InputError
+        The suffix is another, the mesh is not one that could be read back, or the file
+        cannot be written.
+    """
+    path = Path(path)
+    writer = _of_suffix(path, _WRITERS)
+    sound = make_mesh(str(path), mesh.triangles, mesh.parts, mesh.part_names)
+    write_bytes(path, writer(path, sound))
+
+
+def _unsaid(_data: bytes) -> SaidAxes:
+    return UNSAID
+
+
+def _of_suffix(path: Path, table: dict[str, _F]) -> _F:
+    suffix = path.suffix.lower()
+    if suffix not in table:
+        raise InputError(str(path), "suffix", " ".join(table), suffix or "none")
+    return table[suffix]

@@ -1,0 +1,150 @@
+"""Which axes of a mesh file are forward and up: what is asked for, what the file says, a guess.
+
+What a study says holds; then what the file says of itself; where neither does, names of parts and
+the shape decide, and else a default. However it was, it can be told in words.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.base.errors import InputError, shown
+from pe_core.geometry.poses import Pose, rotate
+from pe_core.scene.body_shape import BodyShape
+from pe_core.scene.mesh import Mesh, MeshAxes
+from pe_core.scene.orientation import along, front_by_names, hood_end, up_of
+
+Floats = NDArray[np.float64]
+
+BLENDER_S_FRONT = "-y"
+"""Where z is up and a body lies along y: what Blender shows from the front looks this way."""
+COMMENT_BYTES = 4096
+"""How far comments that say the axes of a text file are looked for."""
+_COMMENT = re.compile(
+    rb"^#.*?([+-]?)([xyz])[ -]*(forward|up)\b(?:.*?([+-]?)([xyz])[ -]*(up)\b)?",
+    re.IGNORECASE | re.MULTILINE,
+)
+
+
+class SaidAxes(NamedTuple):
+    """Axes and their sources; an empty source marks a default, which a guess may replace."""
+
+    up: str
+    up_by: str
+    forward: str
+    forward_by: str
+
+
+OURS = SaidAxes("+z", "file", "+x", "file")
+GLTF = SaidAxes("+y", "format", "+z", "")
+"""glTF says +Z forward, too, but many exporters leave a body as it was: its shape counts more."""
+UNSAID = SaidAxes("+z", "", "+x", "")
+
+
+def said_in_comments(data: bytes) -> SaidAxes:
+    """Return the axes that comments of a text file name ("x forward, z up")."""
+    axis_by_word: dict[str, str] = {}
+    for match in _COMMENT.finditer(data[:COMMENT_BYTES]):
+        for sign, axis, word in (match.groups()[:3], match.groups()[3:]):
+            if word:
+                name = f"{(sign or b'+').decode()}{axis.decode().lower()}"
+                axis_by_word.setdefault(word.decode().lower(), name)
+    up, forward = axis_by_word.get("up"), axis_by_word.get("forward")
+    if up is None or forward is None or up[1] == forward[1]:
+        return UNSAID
+    return SaidAxes(up, "file", forward, "file")
+
+
+def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
+    """Return a mesh in the ground frame, with a text on how its axes were determined."""
+    chosen = _chosen(mesh, said, axes)
+    triangles = _turned(mesh.triangles, chosen.up, chosen.forward)
+    if axes.scale != 1.0:
+        triangles = triangles * axes.scale
+        if not np.isfinite(triangles).all():
+            raise InputError(source, "scale", "finite coordinates", shown(axes.scale))
+    if any(axes.rotation_deg or ()):
+        turn = Pose.from_degrees((0, 0, 0), axes.rotation_deg or ())
+        triangles = rotate(turn.ground_from_sensor, triangles)
+    return Mesh(triangles, mesh.parts, mesh.part_names, _words(chosen))
+
+
+def _chosen(mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> SaidAxes:
+    """Return the axes from the study, or else the file, or else a guess, or else the default."""
+    said = _asked(said, axes)
+    if axes.rotation_deg is not None or (said.up_by and said.forward_by):
+        return _across(said)
+    shape = BodyShape(mesh.triangles, mesh.parts, mesh.part_names)
+    if not said.up_by and (guess := up_of(shape)) is not None:
+        name = "+z" if guess[0] == 2 else "+y"
+        if not (said.forward_by and said.forward[1] == name[1]):
+            said = said._replace(up=name, up_by=guess[1])
+    if said.forward_by:
+        return _across(said)
+    forward, by = _guessed_forward(shape, said)
+    return _across(said._replace(forward=forward, forward_by=by))
+
+
+def _asked(said: SaidAxes, axes: MeshAxes) -> SaidAxes:
+    """Return the axes of the file, overridden by those of the study."""
+    if axes.up is not None and (axes.up, "file") != (said.up, said.up_by):
+        said = said._replace(up=axes.up, up_by="study")
+    if axes.forward is not None and (axes.forward, "file") != (said.forward, said.forward_by):
+        said = said._replace(forward=axes.forward, forward_by="study")
+        if said.up[1] == axes.forward[1] and axes.up is None:
+            said = said._replace(up="+y" if axes.forward[1] == "z" else "+z", up_by="")
+    return said
+
+
+def _guessed_forward(shape: BodyShape, said: SaidAxes) -> tuple[str, str]:
+    up = "xyz".index(said.up[1])
+    ahead = front_by_names(shape)
+    if ahead is not None and ahead[0] != up:
+        return f"{'+' if ahead[1] > 0 else '-'}{'xyz'[ahead[0]]}", "part names"
+    axis = along(shape, up)
+    if axis is None or "xyz"[axis] == said.forward[1]:
+        return said.forward, said.forward_by
+    if (end := hood_end(shape, axis, up)) is not None:
+        return f"{'+' if end > 0.0 else '-'}{'xyz'[axis]}", "shape"
+    lies_along_y = axis == 1 and said.up[1] == "z"
+    return (BLENDER_S_FRONT if lies_along_y else f"+{'xyz'[axis]}"), "shape"
+
+
+def _across(said: SaidAxes) -> SaidAxes:
+    """Return axes with forward perpendicular to up; a default forward axis is replaced."""
+    if said.up[1] != said.forward[1]:
+        return said
+    return said._replace(forward="+x" if said.up[1] != "x" else "+z", forward_by="")
+
+
+def _turned(triangles: Floats, up: str, forward: str) -> Floats:
+    """Triangles with forward, left, up as x, y, z; corners are only exchanged and mirrored."""
+    if (up, forward) == ("+z", "+x"):
+        return triangles
+    ahead, above = _unit(forward), _unit(up)
+    turned = np.empty_like(triangles)
+    for k, axis in enumerate((ahead, np.cross(above, ahead), above)):
+        source = int(np.argmax(np.abs(axis)))
+        if axis[source] > 0:
+            turned[..., k] = triangles[..., source]
+        else:
+            np.negative(triangles[..., source], out=turned[..., k])
+    return turned
+
+
+def _unit(name: str) -> NDArray[np.int64]:
+    axis = np.zeros(3, np.int64)
+    axis["xyz".index(name[1])] = 1 if name[0] == "+" else -1
+    return axis
+
+
+def _words(chosen: SaidAxes) -> str:
+    """How the axes were taken, in words; none where the file is in the ground frame."""
+    if chosen == OURS:
+        return ""
+    up_by, forward_by = chosen.up_by or "assumed", chosen.forward_by or "assumed"
+    return f"faces {chosen.forward} ({forward_by}), up is {chosen.up} ({up_by})"

@@ -1,0 +1,213 @@
+"""Binary glTF 2.0: the container, and the scene's triangles in its own axes."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.base.errors import InputError
+from pe_core.base.memory import require_memory
+from pe_core.geometry.poses import rotate
+from pe_core.scene.mesh import Mesh
+
+from .glb_document import Document, Item, placed_meshes
+from .mesh import fan, gathered, make_mesh, require_room
+
+Floats = NDArray[np.float64]
+Faceted = tuple[Floats, NDArray[Any]]
+"""Points (N, 3) and the corners (F, 3) among them of triangles."""
+
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant")
+
+MOST_CHUNKS = 100
+MOST_JSON_BYTES = 32 << 20
+JSON_UNFOLDS = 30
+"""The longest scene, and what a byte of it takes once read, at most (measured)."""
+
+
+def read_glb(path: Path, data: bytes) -> Mesh:
+    """Read the default scene of a binary glTF 2.0 file.
+
+    glTF is right-handed with +Y up, +Z forward and -X right, in metres; so are the corners
+    here. Each node's transforms are applied down the hierarchy; a mirroring one also reverses
+    its triangles, so that their outer sides stay outside. Parts are the names of the nodes
+    that hold a mesh, or else of the mesh. Points and lines are passed over.
+
+    Raises
+    ------
+    InputError
+        Not binary glTF 2.0, cut short, malformed or with an index out of range; something
+        this reader has no notion of (Draco or meshopt compression, sparse accessors, skins,
+        morph weights, buffers in other files); coordinates not finite, or no triangles.
+    """
+    source = str(path)
+    text, binary = _chunks(source, data)
+    try:
+        document = Document(source, _parse(source, text), binary)
+        _require_known(document)
+        return _scene(document)
+    except InputError:
+        raise
+    except (TypeError, ValueError, KeyError, AttributeError, OverflowError) as error:
+        # The checks on the way name the usual faults; this is for JSON of another shape.
+        raise InputError(source, "JSON", "a well-formed glTF scene", error) from error
+
+
+def _chunks(source: str, data: bytes) -> tuple[bytes, memoryview]:
+    """The JSON chunk and the binary one (empty if there is none), the latter not copied."""
+    if data[:4] != b"glTF" or len(data) < 12:
+        raise InputError(source, "header", "12 bytes beginning with 'glTF'", data[:12])
+    version, length = struct.unpack_from("<II", data, 4)
+    if version != 2:
+        raise InputError(source, "version", "2", str(version))
+    if length > len(data):
+        raise InputError(source, "length", f"{length} bytes", f"{len(data)}")
+    chunks: dict[bytes, memoryview] = {}
+    for kind, chunk in _each_chunk(source, memoryview(data)[:length]):
+        chunks.setdefault(kind, chunk)
+    if b"JSON" not in chunks:
+        raise InputError(source, "chunk JSON", "one", "none")
+    return bytes(chunks[b"JSON"]), chunks.get(b"BIN\0", memoryview(b""))
+
+
+def _each_chunk(source: str, data: memoryview) -> Iterator[tuple[bytes, memoryview]]:
+    offset, count = 12, 0
+    while offset + 8 <= len(data):
+        size, kind = struct.unpack_from("<I4s", data, offset)
+        offset, count = offset + 8, count + 1
+        if offset + size > len(data):
+            found = f"{len(data) - offset} left"
+            raise InputError(source, f"chunk {kind!r}", f"{size} bytes", found)
+        if count > MOST_CHUNKS:
+            raise InputError(source, "chunks", f"at most {MOST_CHUNKS}", "more")
+        yield kind, data[offset : offset + size]
+        offset += size
+
+
+def _parse(source: str, text: bytes) -> Item:
+    if len(text) > MOST_JSON_BYTES:
+        expected = f"a scene of at most {MOST_JSON_BYTES:,} bytes"
+        raise InputError(source, "JSON", expected, f"{len(text):,}")
+    require_memory(source, "JSON", len(text) * JSON_UNFOLDS)
+    try:
+        root = json.loads(text.decode("utf-8"), parse_constant=_no_number)
+    except (ValueError, RecursionError) as error:
+        raise InputError(source, "JSON", "valid JSON in UTF-8", str(error)) from error
+    if not isinstance(root, dict):
+        raise InputError(source, "JSON", "an object", type(root).__name__)
+    return root
+
+
+def _no_number(word: str) -> None:
+    raise ValueError(f"{word}, which JSON has no number for")
+
+
+def _require_known(document: Document) -> None:
+    # Of extensions only used, not required, the file holds a plain fallback.
+    for name in document.root.get("extensionsRequired", []):
+        if not str(name).startswith(_HARMLESS):
+            expected = "a file without compression or other geometry extensions"
+            raise document.error("extensionsRequired", expected, str(name))
+
+
+def _scene(document: Document) -> Mesh:
+    """All placed meshes; how many triangles they come to is known before any is made."""
+    placed = list(placed_meshes(document))
+    sizes = {index: _size(document, index) for index in dict.fromkeys(m for _, m, _ in placed)}
+    require_room(document.source, sum(sizes[index] for _, index, _ in placed))
+    # Each mesh is read once, however many nodes show it.
+    shapes = {index: _shape(document, index) for index in sizes}
+    triangles = [
+        triangles_of_mesh
+        for _, m, world in placed
+        for triangles_of_mesh in _place(shapes[m], world)
+    ]
+    counts = [sizes[index] for _, index, _ in placed]
+    parts = np.repeat(np.arange(len(placed), dtype=np.int32), counts)
+    names = [name for name, _, _ in placed]
+    return make_mesh(document.source, _joined(triangles), parts, names)
+
+
+def _size(document: Document, index: int) -> int:
+    """How many triangles a mesh has, from its accessors' counts alone."""
+    total = 0
+    for primitive in document.item("meshes", index)["primitives"]:
+        if _has_faces(primitive):
+            count = document.count(_corner_list(primitive))
+            total += count // 3 if _mode(primitive) == _TRIANGLES else max(count - 2, 0)
+    return total
+
+
+def _mode(primitive: Item) -> Any:
+    return primitive.get("mode", _TRIANGLES)
+
+
+def _has_faces(primitive: Item) -> bool:
+    return _mode(primitive) in (_TRIANGLES, _STRIP, _FAN) and "POSITION" in primitive["attributes"]
+
+
+def _corner_list(primitive: Item) -> Any:
+    """Index of the accessor that lists a primitive's corners, one after the other."""
+    indexed = "indices" in primitive
+    return primitive["indices"] if indexed else primitive["attributes"]["POSITION"]
+
+
+def _joined(triangles: list[Floats]) -> Floats:
+    if len(triangles) == 1:
+        return triangles[0]
+    return np.concatenate([np.zeros((0, 3, 3)), *triangles])
+
+
+def _shape(document: Document, index: int) -> list[Faceted]:
+    """The triangles of a mesh in its own frame."""
+    primitives = document.item("meshes", index)["primitives"]
+    return [_primitive(document, primitive) for primitive in primitives if _has_faces(primitive)]
+
+
+def _primitive(document: Document, primitive: Item) -> Faceted:
+    """The triangles of a primitive in its mesh's own frame."""
+    mode, listed = _mode(primitive), _corner_list(primitive)
+    positions = primitive["attributes"]["POSITION"]
+    points = document.accessor(positions, "VEC3")
+    order: NDArray[Any] = np.arange(len(points))
+    if "indices" in primitive:
+        order = document.accessor(listed, "SCALAR").ravel()
+        if order.dtype.kind != "u" or int(order.max()) >= len(points):
+            expected = f"whole numbers within the {len(points)} vertices"
+            raise document.error(f"accessors[{listed}]", expected, f"up to {order.max()}")
+    if mode == _TRIANGLES and len(order) % 3:
+        raise document.error("primitive", "three corners to a triangle", f"{len(order)} corners")
+    corners = _corners(mode, order)
+    if corners.size < len(points):
+        # Only the corners become doubles: many small primitives may share a long list of points.
+        points = points[corners.ravel()]
+        corners = np.arange(len(points)).reshape(-1, 3)
+    return document.numbers(positions, points), corners
+
+
+def _corners(mode: int, order: NDArray[Any]) -> NDArray[Any]:
+    """Which of the corners in their order make up a primitive's triangles (F, 3)."""
+    if mode == _TRIANGLES:
+        return order.reshape(-1, 3)
+    if mode == _FAN:
+        return order[fan(np.array([len(order)]))[0]]
+    first = np.arange(max(len(order) - 2, 0))
+    # Every other triangle of a strip runs the other way round.
+    odd = first % 2
+    return order[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
+
+
+def _place(surfaces: list[Faceted], world: Floats) -> Iterator[Floats]:
+    """Triangles (F, 3, 3) of surfaces where a node puts them."""
+    linear = world[:3, :3]
+    mirrors = np.linalg.det(linear) < 0
+    for points, corners in surfaces:
+        moved = rotate(linear, points) + world[:3, 3]
+        yield gathered(moved, corners[:, ::-1] if mirrors else corners)

@@ -1,0 +1,138 @@
+"""The mesh every reader returns, the checks they share, and the fan that cuts polygons."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pe_core.base.errors import InputError
+from pe_core.base.memory import require_memory
+from pe_core.scene.mesh import Mesh
+
+MOST_TRIANGLES = 25_000_000
+"""The most of one mesh: cars are of some millions at most."""
+TRIANGLE_BYTES = 320
+"""What one triangle takes while it is read, at most (measured): corners, copies, indices."""
+TEXT_UNFOLDS = 20
+"""What a byte of a mesh in text takes once read (measured on files as programs write them)."""
+
+
+def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequence[str]) -> Mesh:
+    """Return a checked mesh with unique part names, from the output of a reader.
+
+    Parameters
+    ----------
+    source : str
+        The file, as error messages should name it.
+    triangles : (F, 3, 3) array_like
+        Corner coordinates in metres, ground frame.
+    parts : (F,) array_like of int
+        Index of each triangle's part in `names`.
+    names : sequence of str
+        Part names; repeated names become one part, names without triangles go.
+
+    Raises
+    ------
+    InputError
+        There is no triangle, a shape is wrong, a coordinate is NaN or infinite,
+        or a part index is out of range.
+    """
+    corners = np.ascontiguousarray(triangles, dtype=np.float64)
+    labels = np.asarray(parts)
+    if corners.size == 0:
+        raise InputError(source, "triangles", "at least one triangle", "none")
+    if corners.shape[1:] != (3, 3):
+        raise InputError(source, "triangles", "shape (F, 3, 3)", f"shape {corners.shape}")
+    _require_finite(source, corners)
+    require_labels(source, labels.shape, labels.dtype, len(corners))
+    _require_within(source, labels, len(names))
+    tidy, kept = _tidy_parts(labels, names)
+    return Mesh(corners, tidy, kept)
+
+
+def require_room(source: str, triangles: int) -> None:
+    """Raise `InputError` for too many triangles, before they are created.
+
+    Raises
+    ------
+    InputError
+        One line with how many there would be, or how much they would take.
+    """
+    if triangles > MOST_TRIANGLES:
+        found = f"{triangles:,}" if triangles < 10**18 else "more than 10^18"
+        raise InputError(source, "triangles", f"at most {MOST_TRIANGLES:,}", found)
+    require_memory(source, "triangles", triangles * TRIANGLE_BYTES)
+
+
+def require_labels(source: str, shape: tuple[int, ...], dtype: np.dtype[Any], faces: int) -> None:
+    """Raise `InputError` unless the array of parts has one integer per face."""
+    if shape != (faces,):
+        raise InputError(source, "parts", f"shape ({faces},)", f"shape {shape}")
+    if dtype.kind not in "iu":
+        raise InputError(source, "parts", "whole numbers", f"dtype {dtype}")
+
+
+def fan_size(counts: NDArray[Any]) -> int:
+    """Return the number of triangles that `fan` creates, as a Python int without overflow."""
+    sizes = counts.astype(np.float64) - 2.0
+    return int(sizes[sizes > 0.0].sum())
+
+
+def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Cut polygons, their corners laid end to end, into triangle fans.
+
+    Parameters
+    ----------
+    counts : (P,) int
+        Corners of each polygon; fewer than three give no triangle.
+
+    Returns
+    -------
+    corners : (T, 3) int64
+        Positions of each triangle's corners in the end-to-end list.
+    polygons : (T,) int64
+        The polygon each triangle came from.
+    """
+    sizes = counts.astype(np.int64)
+    if (sizes == 3).all():  # as nearly all files have it
+        return np.arange(3 * len(sizes)).reshape(-1, 3), np.arange(len(sizes))
+    triangles = np.maximum(sizes - 2, 0)
+    polygons = np.repeat(np.arange(len(sizes)), triangles)
+    step = np.arange(len(polygons)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
+    first = (np.cumsum(sizes) - sizes)[polygons]
+    return np.stack([first, first + step + 1, first + step + 2], axis=1), polygons
+
+
+def _require_finite(source: str, corners: NDArray[np.float64]) -> None:
+    if not np.isfinite(corners).all():
+        row = int(np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))[0])
+        found = str(corners[row].tolist())
+        raise InputError(source, f"triangles[{row}]", "finite coordinates", found)
+
+
+def gathered(points: NDArray[np.float64], corners: NDArray[Any]) -> NDArray[np.float64]:
+    """Triangles (T, 3, 3) of points (N, 3) at indices (T, 3) that are within them."""
+    return np.take(points, corners, axis=0, mode="clip")  # "clip" does without a buffer
+
+
+def _require_within(source: str, labels: NDArray[Any], names: int) -> None:
+    if labels.size and not 0 <= int(labels.min()) <= int(labels.max()) < names:
+        row = int(np.flatnonzero((labels < 0) | (labels >= names))[0])
+        expected = f"an index into the {names} part names"
+        raise InputError(source, f"parts[{row}]", expected, str(labels[row]))
+
+
+def _tidy_parts(
+    labels: NDArray[Any], names: Sequence[str]
+) -> tuple[NDArray[np.int32], tuple[str, ...]]:
+    if len(names) == 1:
+        return np.zeros(len(labels), np.int32), tuple(names)
+    used = np.bincount(labels.astype(np.int64), minlength=len(names)) > 0
+    used_names = [name for name, has_triangles in zip(names, used, strict=True) if has_triangles]
+    new_index = {name: new for new, name in enumerate(dict.fromkeys(used_names))}
+    # Unused names never get looked up, so any number will do for them.
+    renumber = np.array([new_index.get(name, -1) for name in names], dtype=np.int32)
+    return renumber[labels], tuple(new_index)

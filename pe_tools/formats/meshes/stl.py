@@ -1,0 +1,112 @@
+"""STL, binary and ASCII."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from pe_core.base.errors import InputError
+from pe_core.base.files import decode_text
+from pe_core.base.memory import require_memory
+from pe_core.scene.mesh import Mesh
+
+from .mesh import TEXT_UNFOLDS, make_mesh, require_room
+
+_HEADER = 84  # 80 bytes of anything, then the number of triangles
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def read_stl(path: Path, data: bytes) -> Mesh:
+    """Read an STL file; coordinates are metres in the ground frame, as they are.
+
+    ASCII parts are the solids' names, the file's stem where a solid has none; a binary
+    file is one part called by the stem. Stored normals are ignored.
+
+    Raises
+    ------
+    InputError
+        Not STL, shorter or longer than its triangle count says, a malformed line (with its
+        number), coordinates not finite, or no triangles.
+    """
+    # Many binary files begin with "solid" too, so the length is asked first.
+    if len(data) != _binary_length(data) and _looks_ascii(data):
+        require_memory(path, "file", len(data) * TEXT_UNFOLDS)
+        return _read_ascii(path, decode_text(data).split("\n"))
+    return _read_binary(path, data)
+
+
+def _binary_length(data: bytes) -> int:
+    return _HEADER + _FACET.itemsize * int.from_bytes(data[80:_HEADER], "little")
+
+
+def _looks_ascii(data: bytes) -> bool:
+    return data[:512].lstrip()[:5].lower() == b"solid" and b"\0" not in data
+
+
+def _read_binary(path: Path, data: bytes) -> Mesh:
+    source = str(path)
+    if len(data) < _HEADER:
+        found = f"{len(data)} bytes"
+        raise InputError(source, "header", "'solid' or 84 bytes of binary STL header", found)
+    expected_bytes = _binary_length(data)
+    if len(data) != expected_bytes:
+        count = (expected_bytes - _HEADER) // _FACET.itemsize
+        expected = f"{expected_bytes} bytes for the {count} triangles declared"
+        raise InputError(source, "length", expected, f"{len(data)} bytes")
+    require_room(source, (expected_bytes - _HEADER) // _FACET.itemsize)
+    facets = np.frombuffer(data, dtype=_FACET, offset=_HEADER)
+    return make_mesh(source, facets["corners"], np.zeros(len(facets), np.int32), [path.stem])
+
+
+def _read_ascii(path: Path, lines: list[str]) -> Mesh:
+    scan = _SolidLines(str(path), path.stem)
+    for number, line in enumerate(lines, 1):
+        scan.take(number, line)
+    scan.require(not scan.inside, len(lines), "endsolid", "the end of the file")
+    require_room(scan.source, len(scan.parts))
+    return make_mesh(scan.source, np.reshape(scan.points, (-1, 3, 3)), scan.parts, scan.names)
+
+
+@dataclass(slots=True)
+class _SolidLines:
+    """What the lines of an ASCII file said so far."""
+
+    source: str
+    stem: str
+    names: list[str] = field(default_factory=list)
+    parts: list[int] = field(default_factory=list)
+    points: list[float] = field(default_factory=list)
+    inside: bool = False  # between solid and endsolid
+
+    def take(self, number: int, line: str) -> None:
+        words = line.split()
+        kind = words[0].lower() if words else ""
+        if kind == "vertex":
+            self.require(self.inside, number, "vertices inside a solid", "one outside")
+            self.points += self.vertex(number, words)
+        elif kind in ("endfacet", "endsolid"):
+            if kind == "endfacet":
+                self.parts.append(len(self.names) - 1)
+            self.inside = self.inside and kind == "endfacet"
+            spare = len(self.points) // 3 - 3 * len(self.parts)
+            self.require(spare == 0, number, "three vertices in each facet", f"{3 + spare}")
+        elif kind == "solid":
+            self.require(not self.inside, number, "endsolid before the next solid", "none")
+            self.names.append(line.strip()[5:].strip() or self.stem)
+            self.inside = True
+        elif kind not in ("", "facet", "outer", "endloop"):
+            self.require(False, number, "an STL keyword", repr(words[0][:40]))
+
+    def vertex(self, number: int, words: list[str]) -> tuple[float, float, float]:
+        try:
+            x, y, z = map(float, words[1:])
+        except ValueError as error:
+            expected, found = "vertex and three numbers", repr(" ".join(words)[:60])
+            raise InputError(self.source, f"line {number}", expected, found) from error
+        return x, y, z
+
+    def require(self, holds: bool, number: int, expected: str, found: str) -> None:
+        if not holds:
+            raise InputError(self.source, f"line {number}", expected, found)

@@ -1,0 +1,186 @@
+"""Beams of LiDARs, cast at the vehicle and the ground, as lines."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.scene import Sensor, Vehicle, rotate
+from pe_core.sensors import Lidar
+
+from .sensor_images import lidar_of
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+A_DRAFT, MOST = 12_000, 1_500_000
+"""Maximum number of beams that are cast for a preview while the sensor moves, and when idle."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cast:
+    """Beams of a mounted LiDAR: some of its channels, each at the same azimuths.
+
+    `rows` (R,) channels and `columns` (K,) places among the azimuths, both ascending. Beam
+    ``r * K + k`` has `directions` (R * K, 3) unit, ground frame; `ends` (R * K,) at the vehicle or
+    the maximum range [m]; `face` (R * K,) the triangle of the vehicle that stops it, else -1.
+    """
+
+    sensor: Sensor
+    rows: Ints
+    columns: Ints
+    directions: Floats
+    ends: Floats
+    face: Ints
+
+    @property
+    def stopped(self) -> NDArray[np.bool_]:
+        """(R * K,) whether the vehicle stops the beam."""
+        return self.face >= 0
+
+    @property
+    def points(self) -> Floats:
+        """(R * K, 3) where the beams end, ground frame [m]."""
+        ends: Floats = self.directions * self.ends[:, None]
+        return ends + np.asarray(self.sensor.pose.position)
+
+
+def cast(sensor: Sensor, vehicle: Vehicle | None, most: int = MOST) -> Cast:
+    """Cast at most that many of a LiDAR's beams, evenly chosen, against the vehicle."""
+    lidar = lidar_of(sensor)
+    rows, columns = grid(lidar, most)
+    numbers = (rows[:, None] * len(lidar.azimuth_steps) + columns).ravel()
+    directions = rotate(sensor.pose.ground_from_sensor, lidar.directions[numbers])
+    if vehicle is None or not len(numbers):
+        ends, face = np.full(len(numbers), lidar.max_range), np.full(len(numbers), -1)
+        return Cast(sensor, rows, columns, directions, ends, face)
+    hits = vehicle.first_hit(sensor.pose.position, directions, lidar.sees_through_glass)
+    met = hits.distance < lidar.max_range
+    ends = np.where(met, hits.distance, lidar.max_range)
+    return Cast(sensor, rows, columns, directions, ends, np.where(met, hits.face, -1))
+
+
+def grid(lidar: Lidar, most: int) -> tuple[Ints, Ints]:
+    """Channels (R,) and azimuths (K,) of an even choice of at most `most` beams, both ascending."""
+    rows = evenly(len(lidar.elevations), most)
+    return rows, around(lidar, most // max(len(rows), 1))
+
+
+def around(lidar: Lidar, count: int) -> Ints:
+    """At most `count` of the azimuths, evenly spread; of a sector the first and the last, too."""
+    azimuths = len(lidar.azimuth_steps)
+    count = min(count, azimuths)
+    if azimuths == lidar.azimuth_count and count:
+        return np.arange(count) * azimuths // count  # a circle: the last is the first's neighbour
+    return evenly(azimuths, count)
+
+
+def evenly(total: int, count: int) -> Ints:
+    """(N,) at most `count` of the numbers below a total, evenly, the first and last among them."""
+    if total <= count:
+        return np.arange(total)
+    return np.linspace(0, total - 1, max(count, 0)).round().astype(np.int64)
+
+
+A_FEW, AZIMUTHS_OF_FEW = 5, 60
+"""Channels and azimuths of a few beams: they show the field of view without hiding the scene."""
+FEWEST_AZIMUTHS = 8
+"""A LiDAR with fewer has no channels to speak of: each beam has its own elevation."""
+
+
+class ChannelMode(enum.StrEnum):
+    """Of which channels beams are shown."""
+
+    FEW = "FEW"
+    ONE = "ONE"
+    EVERY = "EVERY"
+    ALL = "ALL"
+
+
+@dataclass(frozen=True, slots=True)
+class BeamChoice:
+    """At most `budget` beams; of the `number`-th channel from below, or of every `number`-th."""
+
+    budget: int
+    channels: ChannelMode = ChannelMode.ALL
+    number: int = 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beams:
+    """Some beams of a mounted LiDAR.
+
+    `directions` (N, 3) unit, ground frame; `ends` (N,) the vehicle or the maximum range [m];
+    `stopped` (N,) whether it was the vehicle; `channel` (N,) its number; `share` the part of beams
+    that are stopped, among all those that are meant.
+    """
+
+    directions: Floats
+    ends: Floats
+    stopped: NDArray[np.bool_]
+    channel: Ints
+    share: float
+
+
+def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
+    """Return at most `budget` beams of a cast, stopped ones in their true share.
+
+    That share is the sensor's; of one channel, that channel's own.
+    """
+    lidar, few = lidar_of(found.sensor), choice.channels == ChannelMode.FEW
+    rows = np.flatnonzero(np.isin(found.rows, channels_of(lidar, choice)))
+    stopped = found.stopped
+    meant = stopped.reshape(len(found.rows), -1)
+    meant = meant[rows] if choice.channels == ChannelMode.ONE else meant
+    share = float(meant.mean()) if meant.size else 0.0
+    budget = min(choice.budget, A_FEW * AZIMUTHS_OF_FEW) if few else choice.budget
+    chosen = _fair(found, rows, share, budget)
+    channel = found.rows[chosen // max(len(found.columns), 1)]
+    return Beams(found.directions[chosen], found.ends[chosen], stopped[chosen], channel, share)
+
+
+def channels_of(lidar: Lidar, choice: BeamChoice) -> Ints:
+    """(C,) numbers of the channels that are shown, ascending."""
+    count = len(lidar.elevations)
+    if choice.channels == ChannelMode.ALL or len(lidar.azimuth_steps) < FEWEST_AZIMUTHS:
+        return evenly(count, choice.budget)
+    upwards = np.argsort(lidar.elevations, kind="stable")
+    number = max(choice.number, 1)
+    if choice.channels == ChannelMode.ONE:
+        return upwards[[min(number, count) - 1]]
+    if choice.channels == ChannelMode.EVERY:
+        return np.sort(upwards[::number][: choice.budget])
+    return _a_few(lidar.elevations, min(A_FEW, choice.budget))
+
+
+def _a_few(elevations: Floats, count: int) -> Ints:
+    """Channels nearest to evenly spread elevations: where a sensor looks, from top to bottom."""
+    wanted = np.linspace(elevations.min(), elevations.max(), max(count, 1))
+    return np.unique(np.abs(elevations[:, None] - wanted).argmin(axis=0))
+
+
+def _fair(found: Cast, rows: Ints, share: float, budget: int) -> Ints:
+    """Numbers within a cast: free beams in a regular pattern, and stopped ones by their share."""
+    stopped, width = found.stopped, len(found.columns)
+    columns = np.searchsorted(
+        found.columns, around(lidar_of(found.sensor), budget // max(len(rows), 1))
+    )
+    columns = np.unique(np.minimum(columns, max(width - 1, 0)))
+    pattern = (rows[:, None] * width + columns).ravel()
+    of_rows = (rows[:, None] * width + np.arange(width)).ravel()
+    free_count = min(round(budget * (1.0 - share)), int((~stopped[of_rows]).sum()))
+    free = _some(free_count, pattern[~stopped[pattern]], np.flatnonzero(~stopped))
+    wanted = round(len(free) * share / (1.0 - share)) if len(free) else budget
+    room = budget - len(free)
+    count = min(max(wanted, 1), max(room, 1)) if share > 0.0 else 0
+    hit = _some(count, of_rows[stopped[of_rows]], np.flatnonzero(stopped))
+    return np.concatenate([free[: budget - len(hit)], hit])
+
+
+def _some(count: int, preferred: Ints, fallback: Ints) -> Ints:
+    """Return at most `count` numbers, evenly from `preferred`; from `fallback` if that is empty."""
+    pool = preferred if len(preferred) else fallback
+    return pool[evenly(len(pool), count)]

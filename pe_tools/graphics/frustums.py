@@ -1,0 +1,185 @@
+"""Frustums of cameras, straight or bent by their lens, as lines and faces."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.scene import Sensor
+
+from .colors import VIEWPORT, Palette, Rgba, with_alpha
+from .primitives import Primitives, fan, polyline
+from .sensor_images import camera_of
+
+Floats = NDArray[np.float64]
+
+PLACES = 16
+"""Along each side of the picture."""
+MARK_SIDE = 0.06
+"""Half the width of the mark that says up, in lengths of the view."""
+
+
+def outline(sensor: Sensor, length_m: float) -> Floats:
+    """(N, 3) points round a camera's view, `length_m` from it, ground frame [m]."""
+    rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
+    return rays * length_m + np.asarray(sensor.pose.position)
+
+
+def view_lines(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
+    """Edges of a view: from the camera to the corners, the curved outline, and the mark for up."""
+    points, place = outline(sensor, length_m), np.asarray(sensor.pose.position)
+    spokes = np.stack([np.broadcast_to(place, (4, 3)), points[::PLACES]], axis=1).reshape(-1, 3)
+    closed = polyline(np.vstack([points, points[:1]]))
+    lines = np.vstack([spokes, closed, _mark(sensor, points[PLACES // 2], length_m)])
+    return Primitives.of(lines, palette.camera)
+
+
+def view_faces(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
+    """Sides of a view: triangles from the camera to its outline."""
+    points = outline(sensor, length_m)
+    place = np.broadcast_to(np.asarray(sensor.pose.position), points.shape)
+    sides = np.stack([place, points, np.roll(points, -1, axis=0)], axis=1)
+    return Primitives.of(sides.reshape(-1, 3), palette.camera_face)
+
+
+def ground_outline(sensor: Sensor, far_m: float) -> Floats:
+    """(N, 3) outline of the ground (z = 0) that a camera looks at, as far as `far_m` [m].
+
+    What the vehicle hides is not taken away. Without points when it looks at no ground.
+    """
+    place = np.asarray(sensor.pose.position)
+    rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
+    flat = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 1e-9)
+    steep = place[2] / far_m
+    down = np.maximum(-rays[:, 2] / flat, steep)
+    if not (-rays[:, 2] / flat > steep).any():
+        return np.empty((0, 3))
+    points = np.zeros_like(rays)
+    points[:, :2] = place[:2] + rays[:, :2] / flat[:, None] * (place[2] / down)[:, None]
+    return points
+
+
+def _mark(sensor: Sensor, top: Floats, length_m: float) -> Floats:
+    """(6, 3) ends of the lines of a small triangle over the middle of the upper edge."""
+    axes = sensor.pose.ground_from_sensor
+    up, left = axes[:, 2], axes[:, 1] * length_m * MARK_SIDE
+    tip = top + up * length_m * MARK_SIDE * 2.0
+    base = top + up * length_m * MARK_SIDE * 0.5
+    corners = np.array([base + left, base - left, tip])
+    return corners[[0, 1, 1, 2, 2, 0]]
+
+
+FACE_CORNERS = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1))
+EDGES = ((0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 5))
+RING_POINTS, TICK_SHARE = 48, 0.35
+"""Corners of a ring, and the length of its tick in units of its radius."""
+MARK_GAP, MARK_HEIGHT, MARK_HALF_WIDTH = 0.08, 0.25, 0.2
+"""The mark over a picture's upper edge, in units of half the picture's height."""
+ROUND_POINTS = 180
+"""Corners of the circle that is as far as a footprint is drawn."""
+FOOT_LINE, FOOT_FACE = 0.55, 0.9
+"""How strong a footprint's edge and area are, beside the pyramid's edges and sides."""
+
+
+def frustum_points(sensor: Sensor, length_m: float) -> Floats:
+    """(8, 3) pinhole, picture corners and up mark of a camera, ground frame [m].
+
+    Corners: upper left, upper right, lower right, lower left as the camera sees them, `length_m`
+    from the pinhole. The mark's left, right and tip follow, above the upper edge.
+    """
+    side, up = _half_picture(sensor)
+    base, tip = up * (1.0 + MARK_GAP), up * (1.0 + MARK_GAP + MARK_HEIGHT)
+    mark = up * MARK_HALF_WIDTH
+    across = [side, -side, -side, side, mark, -mark, 0.0]
+    above = [up, up, -up, -up, base, base, tip]
+    points = np.column_stack([np.ones(7), across, above])
+    points *= length_m / np.sqrt(1.0 + side**2 + up**2)
+    points = np.vstack([np.zeros(3), points])
+    return points @ sensor.pose.ground_from_sensor.T + np.asarray(sensor.pose.position)
+
+
+def frustum_lines(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
+    """Edges of a camera's view: pyramid, picture, and a small triangle above that says: up."""
+    if camera_of(sensor).lens is not None:
+        return view_lines(sensor, length_m, palette)
+    points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
+    return Primitives.of(points, palette.camera)
+
+
+def frustum_faces(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
+    """Sides of a camera's view: four triangles from the pinhole."""
+    if camera_of(sensor).lens is not None:
+        return view_faces(sensor, length_m, palette)
+    points = frustum_points(sensor, length_m)[np.array(FACE_CORNERS).ravel()]
+    return Primitives.of(points, palette.camera_face)
+
+
+def footprint(sensor: Sensor, far_m: float) -> Floats:
+    """(N, 3) convex outline of the ground (z = 0) that a camera looks at, as far as `far_m` [m].
+
+    What the vehicle hides is not taken away. Without points when it looks at no ground.
+    """
+    place = np.asarray(sensor.pose.position)
+    if place[2] <= 0.0:
+        return np.empty((0, 3))
+    if camera_of(sensor).lens is not None:
+        return ground_outline(sensor, far_m)
+    angles = np.linspace(0.0, 2.0 * np.pi, ROUND_POINTS, endpoint=False)
+    outline = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(ROUND_POINTS)]) * far_m
+    outline[:, :2] += place[:2]
+    for normal in _inward(sensor):
+        outline = _cut(outline, (outline - place) @ normal)
+    return outline
+
+
+def footprint_lines(outline: Floats, color: Rgba) -> Primitives:
+    """The edge of a footprint."""
+    if len(outline) < 3:
+        return Primitives.empty()
+    closed = np.vstack([outline, outline[:1]])
+    return Primitives.of(polyline(closed), with_alpha(color, color[3] * FOOT_LINE))
+
+
+def footprint_faces(outline: Floats, color: Rgba) -> Primitives:
+    """The area of a footprint."""
+    return Primitives.of(fan(outline), with_alpha(color, color[3] * FOOT_FACE))
+
+
+def ring_lines(sensor: Sensor, radius_m: float, palette: Palette = VIEWPORT) -> Primitives:
+    """Ring around a sensor in its own level plane, and a tick where it looks ahead."""
+    angles = np.linspace(0.0, 2.0 * np.pi, RING_POINTS + 1)
+    ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
+    tick = np.array([[1.0, 0.0, 0.0], [1.0 + TICK_SHARE, 0.0, 0.0]])
+    points = np.vstack([polyline(ring), tick]) * radius_m
+    points = points @ sensor.pose.ground_from_sensor.T + np.asarray(sensor.pose.position)
+    return Primitives.of(points, palette.other)
+
+
+def _half_picture(sensor: Sensor) -> tuple[float, float]:
+    """Half width and half height of the picture one metre ahead [m]."""
+    camera = camera_of(sensor)
+    side = float(np.tan(camera.hfov / 2.0))
+    return side, side * camera.height / camera.width
+
+
+def _inward(sensor: Sensor) -> Floats:
+    """(4, 3) normals of the pyramid's sides, ground frame: what they point to is inside."""
+    side, up = _half_picture(sensor)
+    normals = np.array([[side, -1.0, 0.0], [side, 1.0, 0.0], [up, 0.0, -1.0], [up, 0.0, 1.0]])
+    return normals @ sensor.pose.ground_from_sensor.T
+
+
+def _cut(outline: Floats, inside: Floats) -> Floats:
+    """Return the part of a convex outline (N, 3) where a linear function (N,) is positive.
+
+    Sutherland and Hodgman, "Reentrant polygon clipping", 1974.
+    """
+    found = []
+    for at in range(len(outline)):
+        here, after = inside[at], inside[(at + 1) % len(outline)]
+        if here >= 0.0:
+            found.append(outline[at])
+        if (here >= 0.0) != (after >= 0.0):
+            part = here / (here - after)
+            found.append(outline[at] + part * (outline[(at + 1) % len(outline)] - outline[at]))
+    return np.array(found).reshape(-1, 3)

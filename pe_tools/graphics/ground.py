@@ -1,0 +1,265 @@
+"""The ground map as a coloured sheet: entropy, coverage, or the number of sensors by location."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.scene import PerceptionSpace
+from pe_core.scoring import GroundMap
+from pe_core.scoring.sight import GroundSight
+
+from .colors import CIVIDIS, COUNTS, DIFFERENCE_ON_DARK, VIRIDIS, Rgba, Scale, on_scale
+from .primitives import ColorKey, GroundSheet, LayerShape
+
+Floats = NDArray[np.float64]
+
+ENTROPY, COVERAGE, SENSORS = "ENTROPY", "COVERAGE", "SENSORS"
+BEST_NATS, UNSEEN_NATS = -10.976, 16.651
+"""H of a place that is seen as well as can be, and of one that nobody sees: equations 4, 5, 8."""
+COUNT_NAMES = ("nobody", "1 sensor", "2 sensors", "3 or more")
+SWATCHES = 13
+AS_SCORED = "as scored"
+PERCENT_LEFT_OUT = 2.0
+"""Share of the places, at each end, that a fitted range of colours leaves out [%]."""
+STEPS = {ENTROPY: 0.5, COVERAGE: 0.05}
+"""Fitted ranges end at multiples of these [nats; share]."""
+NARROWEST = {ENTROPY: 2.0, COVERAGE: 0.1}
+"""A narrower range would show grain."""
+ROUNDING = 1e-9
+ALIKE_ALPHA, DIFFERENCE_GAIN = 0.08, 2.0
+"""How much of a place that is alike is seen, and how much stronger than a map differences are."""
+FADE_M = 8.0
+"""Width of the margin in which the sheet fades out, where its edge is no edge of anything."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """Something that a ground map shows: its scale of colours from `low`, dark, to `high`, bright.
+
+    Bright is good. `shares`: values are shares, 0 to 1.
+    """
+
+    title: str
+    scale: Scale
+    low: float
+    high: float
+    ticks: tuple[str, ...]
+    shares: bool = False
+
+    def within(self, low: float, high: float) -> Quantity:
+        """Return the quantity with its colours spread from `low` to `high` alone."""
+        middle = (low + high) / 2.0
+        ticks = tuple(self.text(value) for value in (low, middle, high))
+        return replace(self, low=low, high=high, ticks=ticks)
+
+    def text(self, value: float) -> str:
+        """Return a value as a legend has it: "1.5", or "85 %"."""
+        text = f"{100.0 * value:.0f} %" if self.shares else f"{value:.1f}"
+        return text.replace("-", "\N{MINUS SIGN}")
+
+    def colors(self, values: Floats) -> NDArray[np.float32]:
+        """(..., 3) colours of values (...)."""
+        return on_scale((values - self.low) / (self.high - self.low), self.scale)
+
+    @property
+    def swatches(self) -> tuple[Rgba, ...]:
+        """Colours from the low end to the high one."""
+        row = on_scale(np.linspace(0.0, 1.0, SWATCHES), self.scale)
+        return tuple((float(r), float(g), float(b), 1.0) for r, g, b in row)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AsScored:
+    """A score's ground map, with the names that a `GroundSight` has; nobody has counted sensors."""
+
+    x: Floats
+    y: Floats
+    step: float
+    entropy: Floats
+    coverage: Floats
+    sensors: NDArray[np.int64]
+    height: float | None = None
+
+
+QUANTITIES = {
+    ENTROPY: Quantity(
+        "Entropy, nats", VIRIDIS, UNSEEN_NATS, BEST_NATS, ("16.7 unseen", "−11 sure")
+    ),
+    COVERAGE: Quantity("Coverage", CIVIDIS, 0.0, 1.0, ("0 %", "50 %", "100 %"), True),
+}
+
+
+def ground_map(
+    seen: GroundSight | AsScored,
+    quantity: str,
+    opacity: float,
+    *,
+    faded: bool = True,
+    where: str | None = None,
+    bounds: tuple[float, float] | None = None,
+) -> LayerShape:
+    """Return a ground map and its legend; transparent where the vehicle is.
+
+    Parameters
+    ----------
+    seen : GroundSight or AsScored
+    quantity : str
+        A key of `QUANTITIES`, or `SENSORS`.
+    opacity : float
+    faded : bool
+        Whether the map fades out towards the edges of the evaluated area.
+    where : str, optional
+        Text of the legend about heights.
+    bounds : (float, float), optional
+        Values of the dark and the bright end of the colours (`fitted_bounds`); by default those of
+        what nobody sees and of what is seen best. The bright end is the better one.
+    """
+    where = where or _where(seen.height)
+    if quantity == SENSORS:
+        is_known = seen.sensors >= 0
+        rgb = np.array(COUNTS, np.float32)[np.clip(seen.sensors, 0, 3)]
+        classes = tuple(((*c, 1.0), name) for c, name in zip(COUNTS, COUNT_NAMES, strict=True))
+        legend = ColorKey(f"Seen by, {where}", classes=classes)
+    else:
+        kind = QUANTITIES[quantity] if bounds is None else QUANTITIES[quantity].within(*bounds)
+        values = values_of(seen, quantity)
+        is_known = np.isfinite(values)
+        rgb = kind.colors(np.where(is_known, values, kind.low))
+        legend = ColorKey(
+            f"{kind.title}, {where}", kind.swatches, kind.ticks, bounds=(kind.low, kind.high)
+        )
+    return _shape(seen, rgb, np.where(is_known, opacity, 0.0), faded, legend)
+
+
+def difference_map(
+    seen: GroundSight,
+    before: GroundSight,
+    quantity: str,
+    opacity: float,
+    *,
+    name: str = "",
+    bound: float | None = None,
+) -> LayerShape:
+    """Return a map of where one rig sees better than another (blue), and where worse (orange).
+
+    Places that are alike are nearly clear, so that what differs is found.
+
+    Parameters
+    ----------
+    seen, before : GroundSight
+        Of the same places: what is shown, and what it is compared with.
+    quantity : str
+        A key of `QUANTITIES`: differences are in nats, or shares of a place.
+    opacity : float
+    name : str
+        What it is compared with, for the legend.
+    bound : float, optional
+        Difference at both ends of the colours; by default `fitted_bound` of what is shown.
+    """
+    kind = QUANTITIES[quantity]
+    better = difference(seen, before, quantity)
+    is_known = np.isfinite(better)
+    end = fitted_bound(better, quantity) if bound is None else bound
+    share = np.clip(np.where(is_known, better, 0.0) / end, -1.0, 1.0)
+    rgb = on_scale(0.5 + 0.5 * share, DIFFERENCE_ON_DARK)
+    strength = ALIKE_ALPHA + (1.0 - ALIKE_ALPHA) * np.abs(share)
+    row = on_scale(np.linspace(0.0, 1.0, SWATCHES), DIFFERENCE_ON_DARK)
+    swatches = tuple((float(r), float(g), float(b), 1.0) for r, g, b in row)
+    unit = " nats" if quantity == ENTROPY else ""
+    ticks = (f"{kind.text(end)}{unit} worse", "better")
+    title = f"{kind.title.split(',')[0]} against {name or 'before'}, {_where(seen.height)}"
+    legend = ColorKey(title, swatches, ticks, bounds=(-end, end))
+    alpha = np.where(is_known, np.minimum(1.0, DIFFERENCE_GAIN * opacity) * strength, 0.0)
+    return _shape(seen, rgb, alpha, True, legend)
+
+
+def difference(seen: GroundSight, before: GroundSight, quantity: str) -> Floats:
+    """(NX, NY) how much better a place is seen than before: positive is better, NaN unknown."""
+    sign = -1.0 if quantity == ENTROPY else 1.0
+    return sign * (values_of(seen, quantity) - values_of(before, quantity))
+
+
+def values_of(seen: GroundSight | AsScored, quantity: str) -> Floats:
+    """(NX, NY) values of a quantity (`QUANTITIES`)."""
+    return seen.entropy if quantity == ENTROPY else seen.coverage
+
+
+def fitted_bounds(seen: GroundSight | AsScored, quantity: str) -> tuple[float, float]:
+    """Return values for the dark and the bright end of the colours that fit what is shown.
+
+    Percentiles of the map's places, rounded outwards; never narrower than `NARROWEST`.
+    """
+    values = values_of(seen, quantity)
+    values = values[np.isfinite(values)]
+    kind = QUANTITIES[quantity]
+    if not len(values):
+        return kind.low, kind.high
+    step = STEPS[quantity]
+    low, high = np.percentile(values, (PERCENT_LEFT_OUT, 100.0 - PERCENT_LEFT_OUT)).tolist()
+    low, high = math.floor(low / step + ROUNDING) * step, math.ceil(high / step - ROUNDING) * step
+    lack = NARROWEST[quantity] - (high - low)
+    if lack > 0.0:
+        low, high = low - lack / 2.0, high + lack / 2.0
+    lower_limit, upper_limit = sorted((kind.low, kind.high))
+    low, high = max(lower_limit, low), min(upper_limit, high)
+    return (low, high) if kind.low < kind.high else (high, low)
+
+
+def fitted_bound(better: Floats, quantity: str) -> float:
+    """Return the difference at the ends of the colours that fits what is shown, rounded up.
+
+    Most places are as before: the percentile is that of those which are not.
+    """
+    step = STEPS[quantity]
+    size = np.abs(better[np.isfinite(better)])
+    size = size[size > step / 10.0]
+    if not len(size):
+        return step
+    return max(step, math.ceil(float(np.percentile(size, 95.0)) / step - ROUNDING) * step)
+
+
+def _shape(
+    seen: GroundSight | AsScored,
+    rgb: NDArray[np.float32],
+    alpha: Floats,
+    faded: bool,
+    legend: ColorKey,
+) -> LayerShape:
+    """Return a sheet in these colours (NX, NY, 3), as opaque as `alpha` (NX, NY) says."""
+    alpha = alpha * (_fading(seen) if faded else 1.0)
+    image = np.concatenate([rgb, alpha[..., None].astype(np.float32)], axis=-1)
+    return LayerShape(sheet=_sheet(seen, image.transpose(1, 0, 2)), legend=legend)
+
+
+def as_scored(found: GroundMap, space: PerceptionSpace, step: float) -> AsScored:
+    """Return the ground map of a score in squares of about `step` [m]."""
+    columns = max(1, round(step / space.interval))
+    coarse, side = found.coarser(columns), columns * space.interval
+    x, y = (
+        low + side * (np.arange(count) + 0.5)
+        for (low, _), count in zip((space.x, space.y), coarse.mass.shape, strict=True)
+    )
+    nobody = np.where(np.isfinite(coarse.entropy), 0, -1)
+    return AsScored(x, y, side, coarse.entropy, coarse.coverage, nobody)
+
+
+def _sheet(seen: GroundSight | AsScored, image: NDArray[np.float32]) -> GroundSheet:
+    half = seen.step / 2.0
+    low = (float(seen.x[0]) - half, float(seen.y[0]) - half)
+    high = (float(seen.x[-1]) + half, float(seen.y[-1]) + half)
+    return GroundSheet(np.ascontiguousarray(image, np.float32), low, high).prepared()
+
+
+def _fading(seen: GroundSight | AsScored) -> Floats:
+    """(NX, NY) 0 at the edges, 1 from `FADE_M` on."""
+    x, y = (np.minimum(v - v[0], v[-1] - v) + seen.step / 2.0 for v in (seen.x, seen.y))
+    edge = np.clip(np.minimum(x[:, None], y[None]) / FADE_M, 0.0, 1.0)
+    return edge * edge * (3.0 - 2.0 * edge)
+
+
+def _where(height: float | None) -> str:
+    return "all heights" if height is None else f"{height:g} m high"

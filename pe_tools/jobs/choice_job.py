@@ -1,0 +1,271 @@
+"""The job that chooses sensors: screen designs, search the promising ones, compute the front."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from pe_core.base.errors import InputError
+from pe_core.scoring import RigJudge
+from pe_core.scoring.score import Score
+from pe_core.search import DesignSearch, Picks, above_front, pareto_front
+from pe_core.study.study import Search, Study
+
+from ..advice import Advice
+from .designed import Models, design_names, design_study
+from .job import Job, Progress
+from .score_and_optimize import OptimizeJob
+
+ALL_SEARCHED_UP_TO = 16
+"""Up to this number of designs, each is searched in full; more are screened first."""
+PAPER_METHOD = "random"
+FIRST_LOOK = 16
+"""Screening is a search by Algorithm 1 with the number of candidates divided by this."""
+MARGIN = 0.3
+"""A design higher above the front than this after screening is not searched [nats]: usually the
+rest of a search gains less."""
+
+
+@dataclass(frozen=True, slots=True)
+class Design:
+    """A design that was evaluated.
+
+    Attributes
+    ----------
+    name : str
+    price : float
+    models : mapping of sensor name to SensorModel or None
+        Models of the sensors that the study lets choose; None for a sensor that is left out.
+    study : Study
+        The design as a study, with the best placement found and without choices.
+    entropy : float
+        Entropy of that placement [nats]: that of the score, or, for a design that was only
+        screened, that of the search.
+    score : Score, optional
+        Score without a ground map; None for a design that was only screened.
+    warnings : tuple of Advice
+    """
+
+    name: str
+    price: float
+    models: Models
+    study: Study
+    entropy: float
+    score: Score | None = None
+    warnings: tuple[Advice, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TradeOff:
+    """The result of a choice of sensors.
+
+    Attributes
+    ----------
+    study : Study
+        The study with its choices.
+    designs : tuple of Design
+        All evaluated designs with a feasible placement, cheapest first.
+    front : tuple of Design
+        Designs that no other design beats in both price and entropy, cheapest first. Only designs
+        that were searched are compared, if there are any.
+    refused : mapping of name to str
+        Names of designs without a feasible placement, and the reason.
+    is_complete : bool
+        Whether all designs within the limits were evaluated.
+    stopped : bool
+        Whether the job was stopped early.
+    seconds : float
+    """
+
+    study: Study
+    designs: tuple[Design, ...]
+    front: tuple[Design, ...]
+    refused: dict[str, str] = field(default_factory=dict)
+    is_complete: bool = True
+    stopped: bool = False
+    seconds: float = 0.0
+
+    @property
+    def searched(self) -> int:
+        """How many designs were searched in full."""
+        return sum(design.score is not None for design in self.designs)
+
+
+class ChoiceJob(Job):
+    """Computes the Pareto front of price and entropy among the designs of a study.
+
+    Up to `ALL_SEARCHED_UP_TO` designs are searched one by one with `OptimizeJob`. More designs are
+    screened first with fewer candidates, and those within `MARGIN` of the front are searched. Of
+    more than `pareto.ALL_UP_TO` designs, only those that a local search visits are screened. The
+    search of a design does not depend on the other designs.
+
+    Attributes
+    ----------
+    trade_off : TradeOff or None
+        The result; while the job runs, the result so far.
+    """
+
+    def __init__(self, study: Study, workers: int | None = None) -> None:
+        super().__init__(study, workers)
+        self._designs = study.designs()
+        self._found: dict[Picks, Design] = {}
+        self._errors: dict[Picks, InputError] = {}
+        self._inner: _DesignJob | None = None
+        self._possible: int | None = None
+        self._evaluators: dict[int, RigJudge] = {}
+
+    @property
+    def trade_off(self) -> TradeOff | None:
+        """The result so far; None before the first design, and after `drop`."""
+        if self.dropped or not self._found:
+            return None
+        ordered = sorted(self._named(), key=lambda design: (design.price, design.entropy))
+        compared = [d for d in ordered if d.score is not None] or ordered
+        front = pareto_front([(design.price, design.entropy) for design in compared])
+        names = design_names([self._designs.models(picks) for picks in self._errors])
+        refused = {n: str(e) for n, e in zip(names, self._errors.values(), strict=True)}
+        return TradeOff(
+            self.study,
+            tuple(ordered),
+            tuple(compared[k] for k in front),
+            refused,
+            self._possible is not None and len(self._found) + len(self._errors) == self._possible,
+            self.stopped,
+            self.seconds,
+        )
+
+    def stop(self) -> None:
+        """Stop the search; keep the design under search and the front so far."""
+        super().stop()
+        if self._inner is not None:
+            self._inner.stop()
+
+    def drop(self) -> None:
+        """Cancel the job; discard its results."""
+        super().drop()
+        if self._inner is not None:
+            self._inner.drop()
+
+    def __iter__(self) -> Iterator[Progress]:
+        wanted = self._designs.first(ALL_SEARCHED_UP_TO + 1)
+        if len(wanted) <= ALL_SEARCHED_UP_TO:
+            self._possible = len(wanted)
+        else:
+            yield from self._look()
+            wanted = self._promising()
+        for number, picks in enumerate(wanted):
+            if self.stopped:
+                break
+            yield from self._search(picks, number, len(wanted))
+        if not self._found and self._errors:
+            raise next(iter(self._errors.values()))
+        yield Progress("done", 1.0)
+
+    def _look(self) -> Iterator[Progress]:
+        """Screen designs with few candidates each."""
+        search = DesignSearch(self._designs)
+        self._possible = search.max_designs if search.is_complete else None
+        while (batch := search.ask()) and not self.stopped:
+            for picks in batch:
+                if self.stopped:
+                    return
+                done = (len(self._found) + len(self._errors)) / search.max_designs
+                yield from self._screen(picks, Progress("looking at designs", done))
+            search.tell({picks: design.entropy for picks, design in self._found.items()})
+
+    def _promising(self) -> list[Picks]:
+        """Return the designs within `MARGIN` of the front, those nearest to it first."""
+        evaluated = list(self._found)
+        figures = [(self._found[picks].price, self._found[picks].entropy) for picks in evaluated]
+        above = dict(zip(evaluated, above_front(figures), strict=True))
+        near = [picks for picks in evaluated if above[picks] <= MARGIN]
+        return sorted(near, key=lambda picks: (above[picks], self._found[picks].price, picks))
+
+    def _screen(self, picks: Picks, progress: Progress) -> Iterator[Progress]:
+        """Search a design with few candidates, and store the result."""
+        try:
+            job = self._job_of(picks)
+            full_search, search = job.study.search, _few_candidates(job.study.search)
+            job.study = replace(job.study, search=search)
+            for _ in job.look():
+                yield progress
+        except InputError as error:
+            self._errors[picks] = error
+            return
+        if job.history:
+            study, entropy = replace(job.best, search=full_search), job.history[-1].entropy
+            self._keep(picks, Design("", 0.0, {}, study, entropy))
+
+    def _search(self, picks: Picks, number: int, count: int) -> Iterator[Progress]:
+        """Search a design in full, and store the result."""
+        stage, fraction = f"searching {count} designs", 0.0
+        try:
+            self._inner = job = self._job_of(picks)
+            for progress in job:
+                if progress.stage == job.SEARCHING:
+                    fraction = progress.fraction
+                done = (number + fraction) / count
+                yield Progress(stage, done, evaluations=progress.evaluations)
+        except InputError as error:
+            self._errors[picks] = error
+            self._found.pop(picks, None)
+            return
+        finally:
+            self._inner = None
+        if (outcome := job.outcome) is not None:
+            score = replace(outcome.after, ground_map=None)
+            design = Design("", 0.0, {}, outcome.study, score.entropy, score, outcome.warnings)
+            self._keep(picks, design)
+
+    def _keep(self, picks: Picks, design: Design) -> None:
+        models, price = self._designs.models(picks), self._designs.price(picks)
+        self._found[picks] = replace(design, models=models, price=price)
+
+    def _named(self) -> list[Design]:
+        names = design_names([design.models for design in self._found.values()])
+        both = zip(self._found.values(), names, strict=True)
+        return [replace(design, name=name) for design, name in both]
+
+    def _job_of(self, picks: Picks) -> _DesignJob:
+        return _DesignJob(design_study(self.study, self._designs.models(picks)), self)
+
+    def evaluator_of(self, samples: int) -> RigJudge:
+        """Return the evaluator with this number of samples; all designs share it.
+
+        Designs differ only in their rigs, which the evaluator does not depend on.
+        """
+        sample_count = self.study.looks_at(samples)
+        if sample_count == self.study.looks_at(self.study.samples):
+            return self._evaluator
+        if sample_count not in self._evaluators:
+            self._evaluators[sample_count] = self.study.evaluator(samples, self.workers)
+        return self._evaluators[sample_count]
+
+
+class _DesignJob(OptimizeJob):
+    """The search of one design, with the evaluators that all designs share."""
+
+    SEARCHING = "optimizing"
+
+    def __init__(self, study: Study, parent: ChoiceJob) -> None:
+        super().__init__(study, parent.workers)
+        self._parent = parent
+
+    @property
+    def _evaluator(self) -> RigJudge:  # type: ignore[override]
+        return self._parent.evaluator_of(self.study.samples)
+
+    def _evaluator_of(self, samples: int) -> RigJudge:
+        return self._parent.evaluator_of(samples)
+
+    def look(self) -> Iterator[Progress]:
+        """Search without scoring the start and the result."""
+        waiting = Progress("preparing", 0.0)
+        yield from self._beside(self._checked, lambda: waiting)
+        yield from self._search()
+
+
+def _few_candidates(search: Search) -> Search:
+    schedule = search.schedule
+    fewer = replace(schedule, candidates=max(1, schedule.candidates // FIRST_LOOK))
+    return replace(search, method=PAPER_METHOD, schedule=fewer, evaluations=0)

@@ -1,0 +1,252 @@
+"""Output folders: write a set of files atomically, and never replace a file of the user.
+
+Each file is listed with its SHA-256 in a small file of the folder before it is written. A file that
+is not listed, or was changed since, belongs to the user and stays unchanged.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import secrets
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from pe_core.base.errors import InputError
+from pe_core.base.files import read_bytes, write_bytes
+from pe_core.base.serialization import dump_json
+
+try:
+    import fcntl
+except ImportError:  # on Windows two runs in one folder may reject each other's files
+    fcntl = None  # type: ignore[assignment]
+
+LISTING = ".perception-entropy.json"
+"""Name of the list of our files: ``{"perception-entropy": 1, "files": {name: [SHA-256, ...]}}``."""
+PROGRAM, VERSION = "perception-entropy", 1
+DIGESTS_KEPT = 8
+"""Number of digests listed for each file: those of its latest versions."""
+LOCK_TRIES, LOCK_PAUSE_S = 200, 0.01
+"""Attempts and pause [s] of waiting for another run that writes to the folder for milliseconds."""
+Write = Callable[[Path], None]
+"""Writes a file to the given path, which has the final suffix and is in the final folder."""
+Listed = dict[str, list[str]]
+
+
+def prepare_folder(folder: str | Path, names: Iterable[str] = ()) -> Path:
+    """Create the output folder; raise `InputError` early if the results could not be written.
+
+    Parameters
+    ----------
+    folder : path
+    names : iterable of str
+        Names of files that will be written. Each must be absent or written by this program.
+
+    Returns
+    -------
+    path
+
+    Raises
+    ------
+    InputError
+        The folder cannot be created or written, or this program did not write one of the files.
+    """
+    if not str(folder):
+        raise InputError("command line", "output", "the name of a folder", "an empty text")
+    folder = Path(folder)
+    probe = folder / f".{secrets.token_hex(8)}.tmp"  # never the name of a user's own file
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            probe.touch(exist_ok=False)
+        finally:
+            probe.unlink(missing_ok=True)
+    except OSError as error:
+        expected = "a folder that can be written"
+        raise InputError(folder, "output", expected, _reason(error)) from None
+    check_files(folder, names)
+    return folder
+
+
+def check_files(folder: Path, names: Iterable[str], replaceable: Collection[str] = ()) -> None:
+    """Check that files may be written: each is absent, or unchanged since this program wrote it.
+
+    Parameters
+    ----------
+    folder : path
+    names : iterable of str
+    replaceable : collection of str
+        Names of files that may be replaced in any case.
+
+    Raises
+    ------
+    InputError
+        A file with one of the names belongs to the user.
+    """
+    listed = _listed(folder)
+    for name in names:
+        path = folder / name
+        if name in replaceable and not path.is_dir():
+            continue
+        if os.path.lexists(path) and sha256_of(path) not in listed.get(name, ()):
+            expected = "no file, or one that was written here by this program and not changed since"
+            found = "another; it stays as it is, choose another folder or name"
+            raise InputError(path, "output", expected, found)
+
+
+class FileSet:
+    """Context manager that writes several files of one folder together, or none of them.
+
+    `add` writes each file under a temporary name. Leaving the context renames the files in the
+    order in which they were added. After an exception the folder stays unchanged.
+
+    Parameters
+    ----------
+    folder : path
+    replaceable : collection of str
+        Names of files that the user has chosen to replace, whoever wrote them.
+    """
+
+    def __init__(self, folder: Path, replaceable: Collection[str] = ()) -> None:
+        self._folder, self._replaceable = folder, replaceable
+        self._made: dict[str, tuple[Path, str]] = {}
+        self._unwanted: tuple[str, ...] = ()
+
+    def take_away(self, names: Collection[str]) -> None:
+        """Remove files at the end of the context, if they are unchanged files of this program."""
+        self._unwanted = tuple(names)
+
+    def add(self, name: str, write: Write | bytes) -> str:
+        """Write a file under a temporary name; return its SHA-256.
+
+        Raises
+        ------
+        InputError
+            The file cannot be written.
+        """
+        path = self._folder / name
+        temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
+        self._made[name] = (temporary, "")
+        try:
+            if isinstance(write, bytes):
+                temporary.write_bytes(write)
+            else:
+                write(temporary)
+        except InputError as error:
+            raise error.at(path) from None
+        except (OSError, ValueError) as error:
+            raise InputError(path, "file", "a place to write to", _reason(error)) from None
+        digest = sha256_of(temporary)
+        if not digest:  # Blender may fail to write without an error
+            raise InputError(path, "file", "a place to write to", "that nothing was written")
+        self._made[name] = (temporary, digest)
+        return digest
+
+    def __enter__(self) -> FileSet:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        try:
+            if kind is None:
+                with _alone_in(self._folder):
+                    self._put()
+        except OSError as failed:
+            raise InputError(
+                self._folder, "output", "a folder that can be written", _reason(failed)
+            ) from None
+        finally:
+            for temporary, _ in self._made.values():
+                _unlink(temporary)
+
+    def _put(self) -> None:
+        # A file with the same content is not replaced: a file of the user stays the user's.
+        new = {n: made for n, made in self._made.items() if sha256_of(self._folder / n) != made[1]}
+        check_files(self._folder, new, self._replaceable)
+        self._list(new)
+        for name, (temporary, _) in new.items():
+            os.replace(temporary, self._folder / name)
+        for name in set(self._unwanted) & set(our_files(self._folder)) - set(self._made):
+            _unlink(self._folder / name)
+
+    def _list(self, new: Collection[str]) -> None:
+        """List the new digests before renaming: if the process is killed, both are ours."""
+        listed = _listed(self._folder)
+        for name in new:
+            listed.setdefault(name, []).append(self._made[name][1])
+        recent = {name: digests[-DIGESTS_KEPT:] for name, digests in sorted(listed.items())}
+        data = {PROGRAM: VERSION, "files": recent}
+        if new:
+            write_bytes(self._folder / LISTING, dump_json(data).encode())
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Lock the folder against other runs that list and replace its files.
+
+    After a short wait the run continues without the lock: its holder may be suspended, or the file
+    system may not support locks.
+    """
+    if fcntl is None:
+        yield
+        return
+    number = os.open(folder, os.O_RDONLY)
+    try:
+        for _ in range(LOCK_TRIES):
+            with suppress(OSError):
+                fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            time.sleep(LOCK_PAUSE_S)
+        yield
+    finally:
+        os.close(number)
+
+
+def sha256_of(path: Path) -> str:
+    """Return the SHA-256 of a regular file in hexadecimal; empty for any other file."""
+    try:
+        if path.is_symlink() or not path.is_file():  # a pipe would never end
+            return ""
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return ""
+
+
+def our_files(folder: Path) -> dict[str, str]:
+    """Return the unchanged files of a folder that this program wrote, with their SHA-256."""
+    pairs = {name: (sha256_of(folder / name), listed) for name, listed in _listed(folder).items()}
+    return {name: digest for name, (digest, listed) in pairs.items() if digest in listed}
+
+
+def _listed(folder: Path) -> Listed:
+    """Return the digests of all files that this program wrote to a folder, by name."""
+    path = folder / LISTING
+    if not os.path.lexists(path):
+        return {}
+    try:
+        data: Any = json.loads(read_bytes(path))
+        if data[PROGRAM] == VERSION:
+            return {str(name): [str(d) for d in digests] for name, digests in data["files"].items()}
+    except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
+        pass
+    expected = "this program's list of the files it wrote here"
+    raise InputError(path, "file", expected, "another; remove it, or choose another folder")
+
+
+def _unlink(path: Path) -> None:
+    with suppress(OSError):  # the folder is gone, or may no longer be written
+        path.unlink(missing_ok=True)
+
+
+def _reason(error: OSError | ValueError) -> str:
+    return str(getattr(error, "strerror", None) or error).lower()

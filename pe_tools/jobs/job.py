@@ -1,0 +1,219 @@
+"""Jobs that any driver can run: base class, progress while a job runs, and outcome."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as NotYet
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, TypeVar
+
+from pe_core.scene.rig import Rig
+from pe_core.scoring import RigJudge
+from pe_core.scoring.score import Score, ScoreStopped
+from pe_core.search import EvaluatedRig, Robustness
+from pe_core.study.study import Study
+
+from ..advice import Advice, warnings
+
+
+@dataclass(frozen=True, slots=True)
+class HistoryRow:
+    """A placement that became the best: evaluation number, round, entropy [nats], and the rig."""
+
+    evaluation: int
+    round: int
+    entropy: float
+    rig: Rig
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The result of a job.
+
+    Attributes
+    ----------
+    kind : {"score", "optimize"}
+    start, study : Study
+        The given study, and the study with the best placement.
+    before, after : Score
+        Scores of the two. They are the same object if the job only scores, or if the search found
+        nothing better.
+    history : tuple of HistoryRow
+        Every placement that became the best, the start first.
+    evaluations : int
+        Number of rigs evaluated by the search.
+    stopped : bool
+        Whether the search was stopped early.
+    seconds : float
+        Duration of the job [s].
+    warnings : tuple of Advice
+        Warnings about `study`.
+    inputs : dict
+        Provenance at the beginning of a resumed search; file names in `start` may have changed.
+    judged : tuple of EvaluatedRig
+        Journal of the search, from which a stopped search resumes.
+    robustness : Robustness or None
+        Of a search: how the entropy of start and result changes under mounting errors and failures.
+    """
+
+    kind: str
+    start: Study
+    study: Study
+    before: Score
+    after: Score
+    history: tuple[HistoryRow, ...] = ()
+    evaluations: int = 0
+    stopped: bool = False
+    seconds: float = 0.0
+    warnings: tuple[Advice, ...] = ()
+    inputs: dict[str, Any] | None = None
+    judged: tuple[EvaluatedRig, ...] = ()
+    robustness: Robustness | None = None
+
+
+T = TypeVar("T")
+
+WAIT_S = 0.03
+"""How long a job waits for its thread before it yields: a frame of a responsive window."""
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Progress of a job.
+
+    Attributes
+    ----------
+    stage : str
+        What the job does.
+    fraction : float
+        Completed part of the stage, 0 to 1.
+    entropy : float or None
+        Best entropy so far [nats]; None before the first.
+    evaluations : int
+        Rigs evaluated so far.
+    """
+
+    stage: str
+    fraction: float
+    entropy: float | None = None
+    evaluations: int = 0
+
+
+class Job:
+    """Base class of the jobs: the outcome, a stopwatch, and requests to stop or cancel.
+
+    A driver iterates over the job, which yields its `Progress`.
+
+    Parameters
+    ----------
+    study : Study
+    workers : int, optional
+        Number of threads and processes; all processors by default.
+    """
+
+    def __init__(self, study: Study, workers: int | None = None) -> None:
+        self.study, self.workers = study, workers
+        self.outcome: Outcome | None = None
+        self.stopped = self.dropped = False
+        self.notes: tuple[Advice, ...] = ()
+        """Warnings of the program that created the study; they precede those of the checks."""
+        self._started = time.monotonic()
+
+    def __iter__(self) -> Iterator[Progress]:
+        raise NotImplementedError
+
+    def stop(self) -> None:
+        """Stop the search early; score and keep the best placement so far.
+
+        Before the first score is complete there is nothing to keep: the job ends and `outcome`
+        stays None.
+        """
+        self.stopped = True
+
+    def drop(self) -> None:
+        """Cancel the job and discard its results: `outcome` stays None."""
+        self.stopped = self.dropped = True
+
+    @property
+    def seconds(self) -> float:
+        """Time since the job was made [s]."""
+        return time.monotonic() - self._started
+
+    @cached_property
+    def _evaluator(self) -> RigJudge:
+        """Evaluator of rigs on the study's vehicle, space and prior."""
+        return self.study.evaluator(workers=self.workers)
+
+    def _score(
+        self, rig: Rig, waiting: Progress, *, to_the_end: bool = False
+    ) -> Generator[Progress, None, Score | None]:
+        """Score in a thread, yielding `waiting` until it is done.
+
+        Returns None if the job is dropped meanwhile, or stopped without `to_the_end`. The thread
+        then ends soon by itself; nothing waits for it.
+        """
+        done = waiting.fraction
+
+        def watch(share: float) -> bool:
+            nonlocal done
+            done = max(waiting.fraction, share)
+            return self._goes_on(to_the_end)
+
+        def work() -> Score | None:
+            try:
+                return self._evaluator.score(rig, watch=watch)
+            except ScoreStopped:
+                return None
+
+        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), to_the_end))
+
+    def _beside(
+        self, work: Callable[[], T], waiting: Callable[[], Progress], to_the_end: bool = False
+    ) -> Generator[Progress, None, T | None]:
+        """Run `work` in a thread, yielding progress; return None if the job ends before it."""
+        yield waiting()
+        return (yield from self._awaited(begun(work), waiting, to_the_end))
+
+    def _awaited(
+        self, future: Future[T], waiting: Callable[[], Progress], to_the_end: bool = False
+    ) -> Generator[Progress, None, T | None]:
+        while self._goes_on(to_the_end):
+            try:
+                return future.result(timeout=WAIT_S)
+            except NotYet:
+                if future.done():
+                    raise
+            yield waiting()
+        return None
+
+    def _goes_on(self, to_the_end: bool) -> bool:
+        return not self.dropped and (to_the_end or not self.stopped)
+
+    def _warnings(
+        self, study: Study, score: Score, waiting: Progress
+    ) -> Generator[Progress, None, tuple[Advice, ...] | None]:
+        """Collect the warnings about a study in a thread, yielding `waiting` until it is done."""
+
+        def work() -> tuple[Advice, ...]:
+            found_warnings = warnings(study.rig, study.vehicle, study.space, study.prior, score)
+            return (*self.notes, *found_warnings)
+
+        return (yield from self._beside(work, lambda: waiting, to_the_end=True))
+
+
+def begun(work: Callable[[], T]) -> Future[T]:
+    """Start `work` in a new thread; return the future of its result."""
+    future = Future[T]()
+    threading.Thread(target=_fill, args=(future, work), daemon=True).start()
+    return future
+
+
+def _fill(future: Future[T], work: Callable[[], T]) -> None:
+    try:
+        future.set_result(work())
+    except BaseException as error:  # the waiting thread raises it
+        future.set_exception(error)

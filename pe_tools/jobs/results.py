@@ -1,0 +1,252 @@
+"""The result files of a run in its output folder: result.json, history.csv, study.toml.
+
+The files of a run are one set. `FileSet` writes them together, with result.json last; result.json
+lists the SHA-256 of each other file.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import platform
+from collections.abc import Collection, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pe_core.base.files import read_bytes
+from pe_core.base.serialization import dump_json, finite
+from pe_core.scene.rig import Rig
+from pe_core.search import AXES
+from pe_core.study.catalog_lookup import mounts_table
+from pe_core.study.file_names import (
+    AREAS,
+    BESIDE_RESULT,
+    BOXES,
+    HISTORY,
+    MESH,
+    RESULT,
+    SCHEMA,
+    SEARCH,
+    STUDY,
+)
+from pe_core.study.mounting_file import areas_of
+from pe_core.study.study import Study
+from pe_core.version import __version__
+
+from .checkpoint import SearchState
+from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
+from .job import HistoryRow, Outcome
+from .study_export import inputs_of, study_writers
+
+EARLIER = ".earlier"
+
+
+def result_names(study: Study, kind: str) -> list[str]:
+    """Return the names of the files that a run of this kind (score or optimize) writes."""
+    vehicle, boxes = study.vehicle is not None, study.prior.boxes is not None
+    areas = bool(areas_of(study.search.mounting))
+    with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *[BOXES] * boxes]
+    return [*with_study, *[HISTORY, SEARCH] * (kind == "optimize"), RESULT]
+
+
+def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[str, Any]:
+    """Return a run as plain JSON data.
+
+    Everything outside `run` depends on the study alone: two runs of the same study agree in it to
+    the last bit. Infinity and NaN, which JSON does not have, become null.
+    """
+    return finite(_result(outcome, host or {}))
+
+
+def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
+    return {
+        "schema": SCHEMA,
+        "kind": outcome.kind,
+        "seed": outcome.study.search.seed,
+        "entropy": outcome.after.entropy,
+        "coverage": outcome.after.coverage,
+        "before": outcome.before.to_dict(),
+        "after": outcome.after.to_dict(),
+        "placements": {
+            "before": placements(outcome.start.rig),
+            "after": placements(outcome.study.rig),
+        },
+        "mounts": mounts_table(outcome.study.rig, outcome.study.search.mounting),
+        **_robustness(outcome),
+        **_search_dict(outcome),
+        "evaluations": outcome.evaluations,
+        "stopped": outcome.stopped,
+        "warnings": [each.to_dict() for each in outcome.warnings],
+        "history": [_history_dict(row) for row in outcome.history],
+        "inputs": outcome.inputs or inputs_of(outcome.start),
+        "run": run_dict(outcome.seconds, host),
+    }
+
+
+def _search_dict(outcome: Outcome) -> dict[str, Any]:
+    """Return the method and levels of a search; null and empty for a score."""
+    search = outcome.start.search
+    is_search = outcome.kind == "optimize"
+    return {
+        "method": search.method if is_search else None,
+        "level_samples": list(search.level_samples) if is_search else [],
+    }
+
+
+def run_dict(seconds: float, host: Mapping[str, str]) -> dict[str, Any]:
+    """Return the part of a result about the run: its duration, and versions of the programs."""
+    return {
+        "seconds": round(seconds, 3),
+        "versions": {
+            "perception-entropy": __version__,
+            "numpy": np.__version__,
+            "python": platform.python_version(),
+            **host,
+        },
+    }
+
+
+def placements(rig: Rig) -> dict[str, dict[str, list[float]]]:
+    """Return position [m] and roll, pitch, yaw [deg] of every sensor by name."""
+    return {
+        s.name: {"position": list(s.pose.position), "rotation": list(s.pose.rotation_deg)}
+        for s in rig
+    }
+
+
+def write_outcome(
+    outcome: Outcome,
+    folder: str | Path,
+    host: dict[str, str] | None = None,
+    later: Collection[str] = (),
+) -> dict[str, Any]:
+    """Write the result files of a run; return the data of result.json.
+
+    These are result.json and the study, and for a search also history.csv and its state. Files of
+    an earlier run that this run does not write are removed, if this program wrote them and nobody
+    has changed them since: they would belong to another result.
+
+    Parameters
+    ----------
+    outcome : Outcome
+    folder : path
+    host : dict of str, optional
+        Versions of the host program by name.
+    later : collection of str
+        Names of files that the caller writes afterwards; old ones stay until they are replaced.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or one of these files in it was not written by this program.
+        The folder then stays unchanged.
+    """
+    folder, data = prepare_folder(folder), result_dict(outcome, host)
+    writers = study_writers(outcome.study, STUDY)
+    if outcome.kind == "optimize":
+        writers[HISTORY] = history_csv(outcome.history).encode(errors="backslashreplace")
+        writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.judged)
+    add_to_result(data, folder, writers, unwanted=set(BESIDE_RESULT) - set(later))
+    return data
+
+
+def add_to_result(
+    data: dict[str, Any],
+    folder: Path,
+    writers: Mapping[str, Write | bytes],
+    unwanted: Collection[str] = (),
+) -> None:
+    """Write files of a run together with its result.json, which lists their SHA-256.
+
+    Parameters
+    ----------
+    data : dict
+        Data of result.json; its part "run" is updated.
+    folder : path
+    writers : mapping of str to callable or bytes
+        Content of each file by name.
+    unwanted : collection of str
+        Files to remove, unless they are in `writers` or were not written by this program.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or one of the files in it was not written by this program.
+    """
+    with FileSet(folder) as files:
+        files.take_away(unwanted)
+        digests = {name: files.add(name, write) for name, write in writers.items()}
+        run = {**data["run"], "files": {**data["run"].get("files", {}), **digests}}
+        text = dump_json({**data, "run": run})
+        files.add(RESULT, text.encode(errors="backslashreplace"))
+    data["run"] = run
+
+
+def files_of_other_runs(folder: Path) -> list[str]:
+    """Return names of result files in a folder that do not belong to the run of its result.json.
+
+    They were written by an earlier run or an interrupted later run, or were changed by hand.
+    """
+    try:
+        named = json.loads(read_bytes(folder / RESULT))["run"]["files"]
+        ours = set(our_files(folder))
+        present = [n for n in BESIDE_RESULT if n in ours or n in named]
+        digests = {n: sha256_of(folder / n) for n in present}
+        return [n for n, digest in digests.items() if digest and digest != named.get(n)]
+    except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
+        return []
+
+
+def set_aside_files_of_other_runs(folder: Path) -> dict[str, str]:
+    """Rename files of an earlier run beside a new result: ``optimized.earlier.blend``.
+
+    If a later file of a run cannot be written, for instance on a full disk, the user would mistake
+    the file of an earlier run for a part of the new result. No file is removed.
+
+    Returns
+    -------
+    dict of str
+        New names by old name. A file stays if it cannot be renamed or the new name is taken.
+    """
+    renamed = {}
+    for name in files_of_other_runs(folder):
+        path = folder / name
+        aside = path.with_name(f"{path.stem}{EARLIER}{path.suffix}")
+        with suppress(OSError):
+            if not aside.exists():
+                path.rename(aside)
+                renamed[name] = aside.name
+    return renamed
+
+
+def history_csv(history: tuple[HistoryRow, ...]) -> str:
+    """Return the history as CSV: one row each time a better placement was found."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    names = [s.name for s in history[0].rig] if history else []
+    units = {a: "m" if a in "xyz" else "deg" for a in AXES}
+    columns = [f"{name}.{axis}_{units[axis]}" for name in names for axis in AXES]
+    writer.writerow(["evaluation", "round", "entropy", *columns])
+    for row in history:
+        poses = [(*s.pose.position, *s.pose.rotation_deg) for s in row.rig]
+        writer.writerow([row.evaluation, row.round, row.entropy, *(v for p in poses for v in p)])
+    return text.getvalue()
+
+
+def _robustness(outcome: Outcome) -> dict[str, Any]:
+    """Return the robustness of a search; empty for a score."""
+    robustness = outcome.robustness
+    return {} if robustness is None else {"robustness": robustness.to_dict()}
+
+
+def _history_dict(row: HistoryRow) -> dict[str, Any]:
+    return {
+        "evaluation": row.evaluation,
+        "round": row.round,
+        "entropy": row.entropy,
+        "placements": placements(row.rig),
+    }

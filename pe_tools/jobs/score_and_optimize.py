@@ -1,0 +1,212 @@
+"""The jobs that score a study and that search for better poses."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from functools import cached_property
+from typing import Any
+
+from pe_core.scoring import RigJudge
+from pe_core.scoring.score import Score
+from pe_core.search import (
+    Journal,
+    LazyProcesses,
+    Objective,
+    Robustness,
+    Step,
+    feasible_start,
+    objective_of,
+    optimize,
+    robustness,
+)
+from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
+
+from ..advice import Advice, fragile
+from .job import HistoryRow, Job, Outcome, Progress, begun
+
+
+class ScoreJob(Job):
+    """Scores the rig of a study without changing it."""
+
+    def __iter__(self) -> Iterator[Progress]:
+        score = yield from self._score(self.study.rig, Progress("scoring", 0.0))
+        if score is None:
+            return
+        warnings = yield from self._warnings(
+            self.study, score, Progress("scoring", 1.0, score.entropy)
+        )
+        if warnings is None:
+            return
+        both = (self.study, self.study, score, score)
+        self.outcome = Outcome("score", *both, seconds=self.seconds, warnings=warnings)
+        yield Progress("done", 1.0, score.entropy)
+
+
+class OptimizeJob(Job):
+    """Scores a study's rig, searches for a better placement, and scores that.
+
+    Parameters
+    ----------
+    study : Study
+    workers : int, optional
+        Number of threads and processes; all processors by default.
+    before : Score, optional
+        Score of the study's rig, if the caller has it already: it is not computed again.
+    journal : Journal, optional
+        Journal of an earlier search of the same study, which is resumed.
+
+    Attributes
+    ----------
+    history : list of HistoryRow
+        Every placement that became the best so far.
+    evaluations, round : int
+        Evaluations and rounds of the search so far.
+    """
+
+    def __init__(
+        self,
+        study: Study,
+        workers: int | None = None,
+        before: Score | None = None,
+        journal: Journal | None = None,
+    ) -> None:
+        super().__init__(study, workers)
+        self.before, self.journal = before, journal or Journal()
+        self.inputs: dict[str, Any] | None = None
+        self.round = 0
+        self.history: list[HistoryRow] = []
+        self.evaluations = 0
+        self._progress = Progress("preparing", 0.0)
+
+    @property
+    def best(self) -> Study:
+        """The study with the best placement so far."""
+        return self.study.with_rig(self.history[-1].rig) if self.history else self.study
+
+    @cached_property
+    def _objectives(self) -> list[Objective]:
+        """Objectives that evaluate candidates, one for each level of the search method."""
+        search = self.study.search
+        return [
+            objective_of(evaluator, search.tolerance, search.seed) for evaluator in self._evaluators
+        ]
+
+    @cached_property
+    def _evaluators(self) -> list[RigJudge]:
+        """Evaluators of the rig, one for each level of the search method."""
+        return [self._evaluator_of(samples) for samples in self.study.search.level_samples]
+
+    def _evaluator_of(self, samples: int) -> RigJudge:
+        if self.study.looks_at(samples) == self.study.looks_at(self.study.samples):
+            return self._evaluator
+        return self.study.evaluator(samples, self.workers)
+
+    def __iter__(self) -> Iterator[Progress]:
+        preparing = Progress("preparing", 0.0)
+        if (yield from self._beside(self._checked, lambda: preparing)) is None:
+            return
+        before = self.before
+        if before is None:
+            before = yield from self._score(self.study.rig, Progress("scoring the start", 0.0))
+        if before is None:
+            return
+        yield from self._search()
+        stopped = self.stopped
+        after, best = yield from self._better_of(before)
+        looking = Progress("scoring the result", 1.0, after.entropy, self.evaluations)
+        robustness_result = yield from self._robustness(best, looking)
+        warnings = yield from self._warnings(best, after, looking)
+        if warnings is None or robustness_result is None:
+            return
+        self.outcome = Outcome(
+            "optimize",
+            self.study,
+            best,
+            before,
+            after,
+            tuple(self.history),
+            self.evaluations,
+            stopped,
+            self.seconds,
+            (*warnings, *_fragile(best, robustness_result)),
+            self.inputs,
+            self.journal.entries,
+            robustness_result,
+        )
+        yield Progress("done", 1.0, after.entropy, self.evaluations)
+
+    def _checked(self) -> list[Objective]:
+        """Return the objectives; raise `InputError` before the search if it is infeasible.
+
+        This runs in a thread, because the objectives of a large vehicle take long to build.
+        """
+        feasible_start(self.study.coding(), self.study.search.seed)
+        return self._objectives
+
+    def _better_of(self, before: Score) -> Generator[Progress, None, tuple[Score, Study]]:
+        """Score the best placement; return the start instead if it is feasible and no worse."""
+        if self.best.rig is self.study.rig:
+            return before, self.study
+        waiting = Progress("scoring the result", 1.0, self.history[-1].entropy, self.evaluations)
+        score = yield from self._score(self.best.rig, waiting, to_the_end=True)
+        if score is not None and (score.entropy < before.entropy or not self._start_may_stay):
+            return score, self.best
+        return before, self.study  # the search's sample overrated the placement
+
+    def _robustness(
+        self, best: Study, waiting: Progress
+    ) -> Generator[Progress, None, Robustness | None]:
+        """Compute in a thread how entropies change under mounting errors and sensor failures."""
+        search = self.study.search
+
+        def work() -> Robustness:
+            last = self._evaluators[-1]
+            sampled = last if last.samples else self._evaluator_of(DEFAULT_SEARCH_SAMPLES)
+            return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
+
+        return (yield from self._beside(work, lambda: waiting, to_the_end=True))
+
+    @property
+    def _start_may_stay(self) -> bool:
+        """Whether the start may be the result if the search finds nothing with a better score.
+
+        It may not if it violates a constraint of the search. It may not either if the search had a
+        tolerance: the scores ignore mounting errors and failures, which the search minimized.
+        """
+        return self.history[0].rig is self.study.rig and not self.study.search.tolerance.is_on
+
+    def _search(self) -> Iterator[Progress]:
+        """Search step by step in a thread: one candidate may take longer than a window can wait."""
+        search, helpers = self.study.search, LazyProcesses(self.workers)
+        steps = optimize(
+            self.journal.wrap(self._objectives),
+            self.study.rig,
+            self.study.search_space(),
+            search.seed,
+            search.schedule,
+            method=search.method,
+            evaluations=search.evaluations,
+            executor=helpers,
+        )
+        try:
+            while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
+                self._note(step)
+                yield self._now()
+        finally:
+            helpers.end()
+
+    def _now(self) -> Progress:
+        return self._progress
+
+    def _note(self, step: Step) -> None:
+        self.evaluations, self.round = step.evaluations, step.round
+        self._progress = Progress("optimizing", step.fraction, step.entropy, step.evaluations)
+        if step.improved or not self.history:
+            row = HistoryRow(step.evaluations, step.round, step.entropy, step.best)
+            self.history.append(row)
+
+
+def _fragile(study: Study, robustness_result: Robustness) -> tuple[Advice, ...]:
+    after, errors = robustness_result.after, robustness_result.errors
+    tolerant = study.search.tolerance.mounts_off
+    return fragile(after.rise, after.stderr, errors.position, errors.angle, tolerant)

@@ -1,0 +1,110 @@
+"""Write a study with all files that it refers to; compute its fingerprint and provenance."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pe_core import catalog
+from pe_core.base.serialization import finite
+from pe_core.study.file_names import AREAS, BOXES, MESH, STUDY
+from pe_core.study.mounting_file import areas_mesh, areas_of, with_areas_in
+from pe_core.study.study import Study, vehicle_digest
+from pe_core.study.study_file import study_bytes, study_to_dict
+
+from ..formats.boxes import write_boxes
+from ..formats.meshes import Mesh, write_mesh
+from .folder import FileSet, Write
+
+
+def export_study(study: Study, path: str | Path, *, replace_study: bool = False) -> None:
+    """Write a portable study: the study file with the vehicle's mesh, areas and boxes beside it.
+
+    Parameters
+    ----------
+    study : Study
+    path : path
+        Path of the study file; mesh, areas and boxes are named after it.
+    replace_study : bool
+        Whether the user has agreed to replace the file at `path`, even one that this program did
+        not write. This does not apply to the files beside it.
+
+    Raises
+    ------
+    InputError
+        A file exists that this program did not write or that was changed since, or a file cannot
+        be written. No file is written then.
+    """
+    path = Path(path)
+    with FileSet(path.parent, (path.name,) if replace_study else ()) as files:
+        for name, write in study_writers(study, path.name).items():
+            files.add(name, write)
+
+
+def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
+    """Return the content of a study file, and writers of the files beside it, by file name."""
+    path, writers = Path(name), dict[str, Write | bytes]()
+    if study.vehicle is not None:
+        vehicle = study.vehicle
+        mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
+        study = study.with_mesh(MESH if name == STUDY else path.with_suffix(".npz").name)
+        writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
+    search = study.search
+    if (areas := areas_mesh(search.mounting)) is not None:
+        file = AREAS if name == STUDY else path.with_suffix(f".{AREAS}").name
+        writers[file] = lambda at: write_mesh(at, areas)
+        search = replace(search, mounting=with_areas_in(search.mounting, file))
+        study = replace(study, search=search)
+    if (boxes := study.prior.boxes) is not None:
+        table = BOXES if name == STUDY else path.with_suffix(f".{BOXES}").name
+        writers[table] = lambda at: write_boxes(at, boxes)
+        named = replace(boxes, file=table, origin=None)
+        study = replace(study, prior=replace(study.prior, boxes=named))
+    writers[name] = study_bytes(study)
+    return writers
+
+
+def fingerprint(study: Study) -> str:
+    """Return the SHA-256 of the values of a study; the names of its files do not count.
+
+    Two studies with the same fingerprint give the same scores and the same search, to the bit.
+    """
+    digest = hashlib.sha256()
+    for part in _parts(study):
+        digest.update(len(part).to_bytes(8, "little") + part)
+    return digest.hexdigest()
+
+
+def _parts(study: Study) -> Iterator[bytes]:
+    written = study_writers(replace(study, passthrough=None), STUDY)[STUDY]
+    assert isinstance(written, bytes)
+    yield written
+    yield json.dumps([catalog.to_table(sensor.model) for sensor in study.rig]).encode()
+    if (vehicle := study.vehicle) is not None:
+        yield np.ascontiguousarray(vehicle.triangles).tobytes()
+        yield np.ascontiguousarray(vehicle.parts).tobytes()
+        yield json.dumps(list(vehicle.part_names)).encode()
+    for name, area in areas_of(study.search.mounting).items():
+        yield name.encode() + np.ascontiguousarray(area.triangles).tobytes()
+    if (boxes := study.prior.boxes) is not None:
+        yield boxes.digest.encode()
+
+
+def inputs_of(study: Study) -> dict[str, Any]:
+    """Return the provenance of a result as plain JSON data: study, fingerprint, vehicle."""
+    data: dict[str, Any] = finite(
+        {
+            "study": study_to_dict(study),
+            "study_sha256": fingerprint(study),
+            "vehicle": study.vehicle_line,
+            "vehicle_triangles": 0 if study.vehicle is None else len(study.vehicle.triangles),
+            "vehicle_sha256": vehicle_digest(study.vehicle),
+        }
+    )
+    return data

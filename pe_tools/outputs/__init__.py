@@ -1,0 +1,30 @@
+"""Export of the scene: solids, footprints, glTF, recordings and ego masks (no import)."""
+
+from .blind_volume import blind_volume
+from .colors import BLIND, BODY, GLASS, Rgb, hex_color
+from .footprints import GroundPlan, SeenGround
+from .glb import view_wires
+from .output_formats import SCENE_OUTPUTS, SceneOutput, export_scene, scene_files, scene_output
+from .request import OutputRequest, plain_names
+from .solid import Solid, mounted_view
+
+__all__ = [
+    "BLIND",
+    "BODY",
+    "GLASS",
+    "SCENE_OUTPUTS",
+    "GroundPlan",
+    "OutputRequest",
+    "Rgb",
+    "SceneOutput",
+    "SeenGround",
+    "Solid",
+    "blind_volume",
+    "export_scene",
+    "hex_color",
+    "mounted_view",
+    "plain_names",
+    "scene_files",
+    "scene_output",
+    "view_wires",
+]

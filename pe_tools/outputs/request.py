@@ -1,0 +1,78 @@
+"""Request for an output: a study and its options; and names for files and nodes."""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pe_core.base.values import LENGTH
+from pe_core.scene.rig import Sensor
+from pe_core.study import Study
+
+ODD = re.compile("[^A-Za-z0-9_-]+")
+
+
+def plain_names(names: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+    """Return a plain name for each of some different ones, and a line for each that changed.
+
+    Letters, digits, ``_`` and ``-``; no two alike, however they are capitalised.
+    """
+    plain_by_name: dict[str, str] = {}
+    for name in names:
+        plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
+        plain = ODD.sub("_", plain).strip("_") or "sensor"
+        plain_by_name[name] = _apart(plain, {used.lower() for used in plain_by_name.values()})
+    return plain_by_name, [
+        f"{a}: called {b} in names of files" for a, b in plain_by_name.items() if a != b
+    ]
+
+
+def _apart(name: str, taken: set[str]) -> str:
+    number, unique = 2, name
+    while unique.lower() in taken:
+        unique, number = f"{name}_{number}", number + 1
+    return unique
+
+
+NO_RANGE_M = 80.0
+"""How far a sensor is drawn that has no range of its own: as far as the paper looks ahead."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutputRequest:
+    """A study, and how far its sensors are drawn.
+
+    Parameters
+    ----------
+    study : Study
+    range_m : float, optional
+        Fields of view end here, or at a sensor's own range where that is nearer [m].
+
+    Raises
+    ------
+    InputError
+        When the range is not positive.
+    """
+
+    study: Study
+    range_m: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.range_m is not None:
+            checked = LENGTH.checked("export", "range", self.range_m)
+            object.__setattr__(self, "range_m", checked)
+
+    def reach(self, sensor: Sensor, default: float | None = None) -> float:
+        """Return the range to which a sensor is drawn [m].
+
+        It is the smaller of the sensor's range and `range_m`. Without `range_m`, `default` is used
+        instead. Without either, a sensor with infinite range is drawn to `NO_RANGE_M`.
+        """
+        sensor_range = float(getattr(sensor.model, "max_range", math.inf))
+        limit = self.range_m if self.range_m is not None else default
+        if limit is None:
+            return sensor_range if math.isfinite(sensor_range) else NO_RANGE_M
+        return min(sensor_range, limit)

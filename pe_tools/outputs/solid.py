@@ -1,0 +1,136 @@
+"""A sensor's field of view, cast from where it is mounted, as a closed solid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.scene import Sensor, Vehicle, rotate
+from pe_core.sensors import kind_of
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solid:
+    """A closed surface: `points` (N, 3) in the ground frame [m], `faces` (F, 3) outwards."""
+
+    name: str
+    points: Floats
+    faces: Ints
+
+    @classmethod
+    def of(cls, name: str, points: Floats, faces: Ints) -> Solid:
+        """Return a solid with only the points that faces use."""
+        used, index = np.unique(faces, return_inverse=True)
+        return cls(name, points[used], index.reshape(-1, 3))
+
+    @property
+    def volume(self) -> float:
+        """Volume [m3]: the sum of the signed tetrahedra below its triangles."""
+        a, b, c = (self.points[self.faces[:, k]] - self.points[0] for k in range(3))
+        return float((a * np.cross(b, c)).sum() / 6.0)
+
+
+def whole_solid(name: str, view: MountedView) -> Solid:
+    """Return the whole field of view, without occlusion by the vehicle."""
+    return _star(name, view, np.full(len(view.ends), view.reach))
+
+
+def free_solid(name: str, view: MountedView) -> Solid:
+    """Return the visible part of a field of view, which ends at the vehicle."""
+    return _star(name, view, view.ends)
+
+
+def hidden_solid(name: str, view: MountedView) -> Solid | None:
+    """Return the part of a field of view that the vehicle occludes; None if there is none."""
+    occluded = view.ends < view.reach - NEAREST_M
+    if not occluded[view.faces].any():
+        return None
+    taken = _without_pinches(view.faces, occluded[view.faces].any(axis=1))
+    faces, count = view.faces[taken], len(view.directions)
+    outer = view.origin + view.directions * view.reach
+    inner = view.origin + view.directions * np.minimum(view.ends, view.reach - NEAREST_M)[:, None]
+    a, b = border(faces).T
+    walls = [np.stack([b, a, a + count], axis=1), np.stack([b, a + count, b + count], axis=1)]
+    return Solid.of(
+        name, np.vstack([outer, inner]), np.vstack([faces, faces[:, ::-1] + count, *walls])
+    )
+
+
+def border(faces: Ints) -> Ints:
+    """Return the edges (E, 2) that belong to one face only, in the direction of that face."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    size = int(faces.max()) + 1 if len(faces) else 1
+    forward, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
+    return edges[~np.isin(forward, back)]
+
+
+def _star(name: str, view: MountedView, ends: Floats) -> Solid:
+    """Return the solid between a sensor and the ends of its directions."""
+    points = np.vstack([view.origin + view.directions * ends[:, None], view.origin])
+    edges = border(view.faces)
+    sides = np.stack([np.full(len(edges), len(points) - 1), edges[:, 1], edges[:, 0]], axis=1)
+    return Solid.of(name, points, np.vstack([view.faces, sides]))
+
+
+def _without_pinches(faces: Ints, taken: Flags) -> Flags:
+    """Take more faces until no two pieces of those taken touch in a point alone.
+
+    Walls over such a point would have an edge in common with four triangles.
+    """
+    while True:
+        starts = np.bincount(border(faces[taken])[:, 0], minlength=int(faces.max()) + 1)
+        more = (starts > 1)[faces].any(axis=1) & ~taken
+        if not more.any():
+            return taken
+        taken = taken | more
+
+
+NEAREST_M = 1e-3
+"""No ray ends nearer to its sensor: solids stay solid."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MountedView:
+    """A sensor's field of view on the vehicle.
+
+    Attributes
+    ----------
+    origin : (3,) float
+        Where the sensor is, ground frame [m].
+    directions : (N, 3) float
+        Unit, ground frame.
+    faces : (F, 3) int
+        Triangles of directions, counter-clockwise as seen from outside.
+    reach : float
+        Range without occlusion [m].
+    ends : (N,) float
+        Distance along each direction to the vehicle, at most `reach` [m].
+    """
+
+    origin: Floats
+    directions: Floats
+    faces: Ints
+    reach: float
+    ends: Floats
+
+
+def mounted_view(
+    sensor: Sensor, vehicle: Vehicle | None, reach: float, step: float
+) -> MountedView | None:
+    """Cast a field of view, in triangles of about `step` [rad]; None if its kind has none."""
+    patch = kind_of(sensor).view(sensor.model, step)
+    if patch is None:
+        return None
+    directions = rotate(sensor.pose.ground_from_sensor, patch.directions)
+    ends = np.full(len(directions), reach)
+    if vehicle is not None:
+        position, through = sensor.pose.position, sensor.model.sees_through_glass
+        hits = vehicle.first_hit(position, directions, through)
+        ends = np.clip(hits.distance, NEAREST_M, reach)
+    return MountedView(np.asarray(sensor.pose.position), directions, patch.faces, reach, ends)

@@ -1,0 +1,263 @@
+"""Dimensioned drawings of the vehicle and its sensors, from the side and from above."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+import pe_core as pe
+
+from ... import graphics
+from ..markup import Markup, number
+from .ground_plan import outline_of
+from .svg import Canvas, hexadecimal
+
+Floats = NDArray[np.float64]
+Extent1d = tuple[float, float]
+
+WIDTH = 460.0
+LEFT, RIGHT, TOP, BOTTOM = 62.0, 58.0, 34.0, 76.0
+"""Margins for dimensions, and for the coordinates of sensors."""
+MAX_HEIGHT = 300.0
+LABEL_GAP = 13.0
+"""Smallest distance of two labels along an edge."""
+EQUAL_M = 0.005
+"""Coordinates nearer to each other than this share a label."""
+SHARED_LABEL = 9.0
+"""Dots nearer to each other than this share a label."""
+LETTER_WIDTH = 7.0
+"""Mean width of a letter."""
+LabelBox = tuple[float, float, float, float]
+"""Left, top, right and bottom."""
+INK, SOFT = "#1b1f24", "#8c959f"
+
+
+@dataclass(frozen=True, slots=True)
+class ViewPlane:
+    """The content of one drawing: outlines and sensors in its plane.
+
+    Attributes
+    ----------
+    outlines : sequence of (N, 2) float
+        The vehicle, in the plane of the drawing [m].
+    across, up : (float, float)
+        Extent of the vehicle along the drawing's axes [m].
+    sensors : (S, 2) float
+        Positions of the sensors in that plane [m].
+    coordinates : (S, 2) float
+        Coordinates that are written along the lower and the left edge [m].
+    below, left : str
+        Names of these coordinates.
+    ground : bool
+        Whether a line is drawn at 0 of the second axis.
+    """
+
+    outlines: Sequence[Floats]
+    across: Extent1d
+    up: Extent1d
+    sensors: Floats
+    coordinates: Floats
+    below: str
+    left: str
+    ground: bool = False
+
+
+def side_view(rig: pe.Rig, vehicle: pe.Vehicle, alt: str) -> Markup:
+    """Return the vehicle seen from its right: heights above ground, distances from the front."""
+    low, high = vehicle.bounds
+    positions = _positions(rig)
+    turned = vehicle.triangles[:, :, [0, 2, 1]] * [1.0, 1.0, -1.0]
+    plane = ViewPlane(
+        outline_of(pe.Vehicle(turned)),
+        (float(low[0]), float(high[0])),
+        (min(float(low[2]), 0.0), float(high[2])),
+        positions[:, [0, 2]],
+        np.stack([float(high[0]) - positions[:, 0], positions[:, 2]], axis=1),
+        "from the foremost point [m]",
+        "height [m]",
+        ground=True,
+    )
+    return _drawing(plane, alt)
+
+
+def top_view(rig: pe.Rig, vehicle: pe.Vehicle, axle_x: float | None, alt: str) -> Markup:
+    """Return the vehicle seen from above: distances from the rear axle, or else the centre."""
+    low, high = vehicle.bounds
+    positions = _positions(rig)
+    plane = ViewPlane(
+        outline_of(vehicle),
+        (float(low[0]), float(high[0])),
+        (float(low[1]), float(high[1])),
+        positions[:, :2],
+        positions[:, :2] - [axle_x or 0.0, 0.0],
+        "forward of the centre [m]" if axle_x is None else "forward of the rear axle [m]",
+        "to the left [m]",
+    )
+    return _drawing(plane, alt)
+
+
+def spread_labels(positions: Sequence[float], gap: float, low: float, high: float) -> list[float]:
+    """Move positions apart by at least `gap`, each as little as possible; their order is kept.
+
+    Neighbours that are too close are pooled and spread evenly around their mean: isotonic
+    regression of the positions minus rank times `gap`. All are then shifted into [low, high] if
+    they fit.
+    """
+    order = sorted(range(len(positions)), key=lambda k: positions[k])
+    pools: list[tuple[float, int]] = []  # mean and size of each pool
+    for rank, k in enumerate(order):
+        mean, size = positions[k] - rank * gap, 1
+        while pools and pools[-1][0] >= mean:
+            before, more = pools.pop()
+            mean, size = (before * more + mean * size) / (more + size), more + size
+        pools.append((mean, size))
+    means = [mean for mean, size in pools for _ in range(size)]
+    spread = [mean + rank * gap for rank, mean in enumerate(means)]
+    if spread:
+        off = max(low - spread[0], 0.0) or min(high - spread[-1], 0.0)
+        spread = [position + off for position in spread]
+    by_index = dict(zip(order, spread, strict=True))
+    return [by_index[k] for k in range(len(positions))]
+
+
+def _positions(rig: pe.Rig) -> Floats:
+    return np.array([sensor.pose.position for sensor in rig], float).reshape(-1, 3)
+
+
+def _drawing(plane: ViewPlane, alt: str) -> Markup:
+    drawing = _DimensionDrawing(plane, alt)
+    drawing.vehicle()
+    drawing.dimensions()
+    drawing.coordinates()
+    drawing.sensors()
+    return drawing.canvas.svg()
+
+
+class _DimensionDrawing:
+    """Draws a `ViewPlane` on a canvas, step by step."""
+
+    def __init__(self, plane: ViewPlane, alt: str) -> None:
+        self.plane = plane
+        (x0, x1), (y0, y1) = (
+            (min(low, *values), max(high, *values))
+            for (low, high), values in zip(
+                (plane.across, plane.up), plane.sensors.T.tolist(), strict=True
+            )
+        )
+        self.x0, self.y1 = x0, y1
+        self.scale = min((WIDTH - LEFT - RIGHT) / (x1 - x0), MAX_HEIGHT / (y1 - y0))
+        self.left = LEFT + (WIDTH - LEFT - RIGHT - (x1 - x0) * self.scale) / 2.0
+        self.right = self.left + (x1 - x0) * self.scale
+        self.bottom = TOP + (y1 - y0) * self.scale
+        self.canvas = Canvas(WIDTH, self.bottom + BOTTOM, alt)
+
+    def points(self, points: Floats) -> Floats:
+        """(N, 2) positions in the drawing of points (N, 2) in the plane [m]."""
+        x = self.left + (points[:, 0] - self.x0) * self.scale
+        return np.stack([x, TOP + (self.y1 - points[:, 1]) * self.scale], axis=1)
+
+    def vehicle(self) -> None:
+        """Draw the outline, and the ground below it."""
+        for line in self.plane.outlines:
+            self.canvas.path([self.points(line)], css="body")
+        if self.plane.ground:
+            down = self.points(np.zeros((1, 2)))[0, 1]
+            self._line(f"M{self.left - 10:.1f} {down:.1f}H{self.right + 10:.1f}", INK)
+
+    def dimensions(self) -> None:
+        """Write the length above, and width or height to the right, with extension lines."""
+        (x0, x1), (y0, y1) = self.plane.across, self.plane.up
+        (a, top), (b, bottom) = self.points(np.array([[x0, y1], [x1, y0]])).tolist()
+        over, beside = TOP - 14.0, self.right + 20.0
+        self._line(f"M{a:.1f} {top:.1f}V{over - 5:.1f}M{b:.1f} {top:.1f}V{over - 5:.1f}", SOFT)
+        self._line(f"M{a:.1f} {over:.1f}H{b:.1f}{_ticks((a, over), (b, over))}", INK)
+        self._text((a + b) / 2.0, over - 4.0, f"{number(x1 - x0)} m", "middle", "strong halo")
+        ends = f"M{b:.1f} {top:.1f}H{beside + 5:.1f}M{b:.1f} {bottom:.1f}H{beside + 5:.1f}"
+        self._line(ends, SOFT)
+        self._line(
+            f"M{beside:.1f} {top:.1f}V{bottom:.1f}{_ticks((beside, top), (beside, bottom))}", INK
+        )
+        middle = (top + bottom) / 2.0 + 4.0
+        self._text(beside + 5.0, middle, number(y1 - y0), "start", "strong halo")
+
+    def coordinates(self) -> None:
+        """Write the sensors' coordinates along the edges, with lines to their positions."""
+        positions, values = self.points(self.plane.sensors), self.plane.coordinates
+        edge, end = self.bottom + 8.0, self.bottom + 22.0
+        for label, x, moved in self._labels(positions[:, 0], values[:, 0], self.left, self.right):
+            self._line(f"M{x:.1f} {edge:.1f}V{edge + 4:.1f}L{moved:.1f} {end:.1f}", SOFT)
+            turn = f"rotate(-90 {moved:.1f} {end + 4:.1f})"
+            self.canvas.text(
+                moved + 4.0, end + 4.0, label, text_anchor="end", transform=turn, css="ink"
+            )
+        edge, end = self.left - 8.0, self.left - 22.0
+        for label, y, moved in self._labels(positions[:, 1], values[:, 1], TOP, self.bottom):
+            self._line(f"M{edge:.1f} {y:.1f}H{edge - 4:.1f}L{end:.1f} {moved:.1f}", SOFT)
+            self._text(end - 3.0, moved + 4.0, label, "end", "ink")
+        self._text((self.left + self.right) / 2.0, self.bottom + 70.0, self.plane.below, "middle")
+        self._text(4.0, 12.0, self.plane.left, "start")
+
+    def _labels(
+        self, positions: Floats, values: Floats, low: float, high: float
+    ) -> Iterable[tuple[str, float, float]]:
+        """Return the labels of different coordinates, with exact and shifted position."""
+        different: list[tuple[float, float]] = []
+        for value, exact in sorted(zip(values.tolist(), positions.tolist(), strict=True)):
+            if not different or value - different[-1][0] > EQUAL_M:
+                different.append((value, exact))
+        moved = spread_labels([exact for _, exact in different], LABEL_GAP, low, high)
+        return [
+            (number(value), exact, shifted)
+            for (value, exact), shifted in zip(different, moved, strict=True)
+        ]
+
+    def sensors(self) -> None:
+        """Draw a numbered dot for each sensor; dots at one position share a label."""
+        positions = self.points(self.plane.sensors)
+        groups: list[list[int]] = []
+        for k, position in enumerate(positions):
+            near = (g for g in groups if np.hypot(*(positions[g[0]] - position)) < SHARED_LABEL)
+            group = next(near, None)
+            if group is None:
+                groups.append([k])
+            else:
+                group.append(k)
+        for k, (x, y) in enumerate(positions.tolist()):
+            color = hexadecimal(graphics.sensor_color_on_paper(k))
+            self.canvas.add("circle", cx=x, cy=y, r=3.6, fill=color, stroke="#fff")
+        taken = [(x - 5.0, y - 5.0, x + 5.0, y + 5.0) for x, y in positions.tolist()]
+        for group in groups:
+            x, y = positions[group[0]].tolist()
+            numbers = ", ".join(str(k + 1) for k in group)
+            taken.append(self._draw_label(numbers, x, y, taken))
+
+    def _draw_label(self, text: str, x: float, y: float, taken: Sequence[LabelBox]) -> LabelBox:
+        """Write numbers beside a dot, clear of other labels if possible; return their box."""
+        width = LETTER_WIDTH * len(text)
+        left, middle = x - 6.0 - width, x - width / 2.0
+        spots = [(x + 6.0, y - 5.0), (left, y - 5.0), (x + 6.0, y + 13.0)]
+        spots += [(left, y + 13.0), (middle, y - 9.0), (middle, y + 17.0)]
+        boxes = [(right, down - 9.0, right + width, down) for right, down in spots]
+        free = (box for box in boxes if not any(_overlap(box, other) for other in taken))
+        box = next(free, boxes[0])
+        self._text(box[0], box[3], text, "start", "strong halo")
+        return box
+
+    def _line(self, d: str, color: str) -> None:
+        self.canvas.add("path", d=d, fill="none", stroke=color, stroke_width=1.0)
+
+    def _text(self, x: float, y: float, text: str, anchor: str, css: str = "") -> None:
+        more = {"css": css} if css else {}
+        self.canvas.text(x, y, text, text_anchor=anchor, **more)
+
+
+def _ticks(*positions: tuple[float, float]) -> str:
+    """Return strokes across the ends of a dimension line."""
+    return "".join(f"M{x - 4:.1f} {y + 4:.1f}l8 -8" for x, y in positions)
+
+
+def _overlap(one: LabelBox, other: LabelBox) -> bool:
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]

@@ -1,0 +1,265 @@
+"""Plans of the ground, ahead to the right and left up: the drawing itself, and maps in it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import pe_core as pe
+from pe_core.scoring import sight
+
+from ... import graphics
+from ..markup import Markup, number
+from .svg import Canvas, hexadecimal
+
+Floats = NDArray[np.float64]
+PlanBounds = tuple[tuple[float, float], tuple[float, float]]
+
+WIDTH, MAX_HEIGHT = 440.0, 330.0
+LEFT, RIGHT, TOP, BOTTOM = 32.0, 20.0, 8.0, 24.0
+"""Margins of the plan for its numbers."""
+OUTLINE_M, MAX_SQUARES = 0.04, 600
+"""Cell size of the grid an outline is computed on, and the limit of cells along a side."""
+TICKS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
+MAX_NUMBERS = 9
+RINGS = (10.0, 40.0)
+"""Radii between the zones near, middle and far [m]."""
+KEY_HEIGHT, KEY_WIDTH = 34.0, 210.0
+WORSE, SAME, BETTER = graphics.DIFFERENCE
+MAX_CHANGE = 8.0
+"""Difference at the ends of the colour scale [nats]."""
+
+
+class PlanDrawing:
+    """A drawing of a part of the ground [m], with `below` units of space under it for a key."""
+
+    def __init__(
+        self, bounds: PlanBounds, alt: str, below: float = 0.0, width: float = WIDTH
+    ) -> None:
+        (self.x0, self.x1), (self.y0, self.y1) = bounds
+        length, breadth = self.x1 - self.x0, self.y1 - self.y0
+        self.scale = min((width - LEFT - RIGHT) / length, MAX_HEIGHT / breadth)
+        self.width, self.height = length * self.scale, breadth * self.scale
+        self.left = LEFT + (width - LEFT - RIGHT - self.width) / 2.0
+        self.bottom = TOP + self.height
+        self.canvas = Canvas(width, self.bottom + BOTTOM + below, alt)
+
+    def points(self, points: Floats) -> Floats:
+        """(N, 2) positions in the drawing of points (N, 2) on the ground [m]."""
+        x = self.left + (points[:, 0] - self.x0) * self.scale
+        y = TOP + (self.y1 - points[:, 1]) * self.scale
+        return np.stack([x, y], axis=1)
+
+    def point(self, x: float, y: float) -> tuple[float, float]:
+        """Return the position of one point in the drawing."""
+        right, down = self.points(np.array([[x, y]]))[0].tolist()
+        return right, down
+
+    def cells(self, png: bytes) -> None:
+        """Draw a PNG over the whole plan, one pixel for each cell of the ground."""
+        self.canvas.picture(png, (self.left, TOP, self.width, self.height), "cells")
+
+    def frame(self) -> None:
+        """Draw the border, with metres along it."""
+        size = {"width": self.width, "height": self.height}
+        self.canvas.add("rect", x=self.left, y=TOP, css="axis", **size)
+        step = next((t for t in TICKS if (self.x1 - self.x0) / t <= MAX_NUMBERS), TICKS[-1])
+        for x in _ticks(self.x0, self.x1, step):
+            right, down = self.point(x, self.y0)
+            self.canvas.add("path", d=f"M{right:.1f} {down:.1f}v4", css="axis")
+            text = number(x, 0) + (" m" if x + step > self.x1 else "")
+            self.canvas.text(right, down + 16.0, text, text_anchor="middle")
+        for y in _ticks(self.y0, self.y1, step):
+            right, down = self.point(self.x0, y)
+            self.canvas.add("path", d=f"M{right:.1f} {down:.1f}h-4", css="axis")
+            self.canvas.text(right - 7.0, down + 4.0, number(y, 0), text_anchor="end")
+
+    def ring(self, radius: float, label: str = "", color: str = "#fff") -> None:
+        """Draw a circle around the origin, clipped to the plan."""
+        turn = np.linspace(0.0, 2.0 * math.pi, 181)
+        circle = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        inside = (circle >= [self.x0, self.y0]) & (circle <= [self.x1, self.y1])
+        runs = np.split(np.arange(181), np.flatnonzero(np.diff(inside.all(axis=1))) + 1)
+        lines = [self.points(circle[run]) for run in runs if inside[run[0]].all() and len(run) > 1]
+        style: dict[str, Any] = {
+            "fill": "none",
+            "stroke": color,
+            "stroke_opacity": "0.75",
+            "stroke_width": 1.0,
+        }
+        self.canvas.path(lines, closed=False, stroke_dasharray="3 3", **style)
+        if label and radius * math.sqrt(0.5) < self.y1:
+            right, down = self.point(radius * math.sqrt(0.5), radius * math.sqrt(0.5))
+            self.canvas.text(right + 4.0, down - 2.0, label, css="dark")
+
+    def vehicle(self, vehicle: pe.Vehicle | None) -> None:
+        """Draw the vehicle's outline, and an arrow that points ahead."""
+        for line in () if vehicle is None else outline_of(vehicle):
+            self.canvas.path([self.points(line)], css="body")
+        nose = 0.0 if vehicle is None else float(vehicle.bounds[1][0])
+        right, down = self.point(nose, 0.0)
+        self.canvas.add(
+            "path",
+            d=f"M{right + 3:.1f} {down - 4:.1f}l7 4l-7 4z",
+            fill="#1b1f24",
+            stroke="#fff",
+            stroke_width=1.0,
+            paint_order="stroke",
+        )
+
+
+def outline_of(vehicle: pe.Vehicle) -> tuple[Floats, ...]:
+    """Return the vehicle's outline from above as closed lines (N, 2) [m]."""
+    (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.bounds)
+    step = max(OUTLINE_M, (x1 - x0) / MAX_SQUARES, (y1 - y0) / MAX_SQUARES)
+    across = [_padded_interval(low, high, step) for low, high in ((x0, x1), (y0, y1))]
+    space = pe.PerceptionSpace(x=across[0], y=across[1], z=(0.0, step), interval=step)
+    covered = np.isfinite(vehicle.top(space)).astype(float)
+    return sight.outlines(covered, 0.5, space.centers(0), space.centers(1))
+
+
+def _padded_interval(low: float, high: float, step: float) -> tuple[float, float]:
+    """Return an interval around [low, high] whose length is a whole number of steps."""
+    count = math.ceil((high - low) / step) + 2
+    return low - step, low - step + count * step
+
+
+def _ticks(low: float, high: float, step: float) -> list[float]:
+    first, last = math.ceil(low / step), math.floor(high / step)
+    return [k * step for k in range(first, last + 1)]
+
+
+@dataclass(frozen=True)
+class MapLayer:
+    """One map of a `GroundSight`: title, values (NX, NY), colours and key.
+
+    The key is either a `scale` of colours, from left to right, with `ticks` below it, or a swatch
+    with a name for each of the `classes`.
+    """
+
+    title: str
+    about: str
+    values: Callable[[sight.GroundSight], NDArray]
+    colors: Callable[[NDArray], NDArray]
+    ticks: tuple[str, ...] = ()
+    scale: tuple[tuple[float, ...], ...] = ()
+    classes: tuple[str, ...] = ()
+
+
+def _quantity_colors(name: str) -> Callable[[NDArray], NDArray]:
+    return graphics.QUANTITIES[name].colors
+
+
+def _count_colors(values: NDArray) -> NDArray:
+    return np.array(graphics.COUNTS)[np.clip(values, 0, 3).astype(np.int64)]
+
+
+ENTROPY = MapLayer(
+    "Entropy",
+    "in nats, averaged over height as in the score; lower is better",
+    lambda ground: ground.entropy,
+    _quantity_colors(graphics.ENTROPY),
+    ("16.7 unseen", "\N{MINUS SIGN}11.0 best"),
+    tuple(graphics.QUANTITIES[graphics.ENTROPY].swatches),
+)
+COVERAGE = MapLayer(
+    "Coverage",
+    "share of the height that at least one sensor sees",
+    lambda ground: ground.coverage,
+    _quantity_colors(graphics.COVERAGE),
+    graphics.QUANTITIES[graphics.COVERAGE].ticks,
+    tuple(graphics.QUANTITIES[graphics.COVERAGE].swatches),
+)
+SENSORS = MapLayer(
+    "Number of sensors",
+    "that see a location at any height",
+    lambda ground: ground.sensors,
+    _count_colors,
+    classes=("none", "1", "2", "3 or more"),
+    scale=graphics.COUNTS,
+)
+KINDS = MapLayer(
+    "Number of sensor kinds",
+    "that see a location; two kinds fail in different ways",
+    lambda ground: ground.kinds,
+    _count_colors,
+    classes=("none", "1", "2", "3 or more"),
+    scale=graphics.COUNTS,
+)
+LAYERS = (ENTROPY, COVERAGE, SENSORS, KINDS)
+
+
+def ground_map(
+    ground: sight.GroundSight, layer: MapLayer, vehicle: pe.Vehicle | None, alt: str
+) -> Markup:
+    """Return a map as SVG; the same colour means the same value on all maps of a layer."""
+    values = np.asarray(layer.values(ground), float)
+    known = np.isfinite(values) & (ground.sensors >= 0)
+    colors = np.asarray(layer.colors(np.where(known, values, 0.0)), float)
+    return _map_drawing(ground, colors, known, layer, vehicle, alt)
+
+
+def difference_map(
+    first: sight.GroundSight,
+    second: sight.GroundSight,
+    vehicle: pe.Vehicle | None,
+    alt: str,
+    ends: tuple[str, str],
+) -> Markup:
+    """Return a map of where the second rig has less entropy (blue) or more (orange) than the first.
+
+    `ends` are the texts at the ends of the key. Both arguments must have the same cells.
+    """
+    change = np.clip((second.entropy - first.entropy) / MAX_CHANGE, -1.0, 1.0)
+    known = np.isfinite(change)
+    share = 0.5 + 0.5 * np.where(known, change, 0.0)
+    scale = (BETTER, SAME, WORSE)
+    colors = np.asarray(graphics.on_scale(share, scale), float)
+    row = tuple(tuple(c) for c in graphics.on_scale(np.linspace(0.0, 1.0, 13), scale).tolist())
+    layer = MapLayer("", "", lambda s: s.entropy, lambda v: v, ends, row)
+    return _map_drawing(second, colors, known, layer, vehicle, alt)
+
+
+def _map_drawing(
+    ground: sight.GroundSight,
+    colors: Floats,
+    known: NDArray[np.bool_],
+    layer: MapLayer,
+    vehicle: pe.Vehicle | None,
+    alt: str,
+) -> Markup:
+    half = ground.step / 2.0
+    bounds = tuple((float(w[0]) - half, float(w[-1]) + half) for w in (ground.x, ground.y))
+    plan = PlanDrawing((bounds[0], bounds[1]), alt, KEY_HEIGHT)
+    rgba = np.concatenate([colors[..., :3], known[..., None]], axis=-1)
+    plan.cells(graphics.png_bytes(graphics.as_bytes(rgba.transpose(1, 0, 2)[::-1])))
+    for radius in RINGS:
+        plan.ring(radius, f"{radius:g} m")
+    plan.vehicle(vehicle)
+    plan.frame()
+    _draw_key(plan.canvas, layer, plan.left, plan.bottom + 30.0)
+    return plan.canvas.svg()
+
+
+def _draw_key(canvas: Canvas, layer: MapLayer, left: float, top: float) -> None:
+    """Draw the key of a map's colours."""
+    width = KEY_WIDTH / len(layer.scale)
+    if layer.classes:
+        at = left
+        for color, name in zip(layer.scale, layer.classes, strict=True):
+            canvas.add("rect", x=at, y=top, width=11.0, height=11.0, fill=hexadecimal(color))
+            canvas.text(at + 16.0, top + 10.0, name)
+            at += 34.0 + 7.5 * len(name)
+        return
+    for k, color in enumerate(layer.scale):
+        size = {"width": width + 0.4, "height": 9.0}
+        canvas.add("rect", x=left + k * width, y=top, fill=hexadecimal(color), **size)
+    anchors = ("start", "middle", "end") if len(layer.ticks) == 3 else ("start", "end")
+    for k, (tick, anchor) in enumerate(zip(layer.ticks, anchors, strict=True)):
+        position = left + KEY_WIDTH * k / (len(layer.ticks) - 1)
+        canvas.text(position, top + 23.0, tick, text_anchor=anchor)

@@ -1,0 +1,192 @@
+"""Rays of a picture and what they meet: viewpoint, pixel rays, solids, first hits, shadows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .painted_mesh import PaintedMesh, unit
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+NOTHING, SKY, GROUND = -2, -1, 0
+"""Surfaces of rays that meet no solid: outside the lens, sky, ground. Solids count from 1."""
+SLACK_M = 0.004
+"""Hits this near to a point do not shade it: they are the point's own surface."""
+PixelRays = Callable[[Floats, Floats], Floats]
+"""Maps positions in the picture (right, down) [px] to unit directions (N, 3), ground frame; NaN
+outside the image circle of a lens."""
+
+
+@dataclass(frozen=True, eq=False)
+class RayCamera:
+    """The eye of a picture and the ray through each of its pixels.
+
+    Attributes
+    ----------
+    eye : (3,) float
+        Ground frame [m].
+    width, height : int
+        Size of the picture [px].
+    rays_through : callable
+    pixel_rad : float
+        Angle between two neighbouring pixels in the centre [rad].
+    from_sensor : bool
+        Whether the eye is a camera on the vehicle, whose rays pass through the vehicle's glass.
+    """
+
+    eye: Floats
+    width: int
+    height: int
+    rays_through: PixelRays
+    pixel_rad: float
+    from_sensor: bool = False
+
+    def directions(self) -> Floats:
+        """(H * W, 3) unit directions through the centres of the pixels, row by row."""
+        down, right = np.mgrid[: self.height, : self.width] + 0.5
+        return self.rays_through(right.ravel(), down.ravel())
+
+
+@dataclass(frozen=True, slots=True)
+class Viewpoint:
+    """Eye, target [m] and horizontal field of view [deg] of a picture, ground frame."""
+
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
+    fov_deg: float = 30.0
+
+    @property
+    def axes(self) -> Floats:
+        """(3, 3) rows: ahead, right, up."""
+        ahead = np.subtract(self.target, self.eye)
+        ahead = ahead / math.sqrt(float(ahead @ ahead))
+        right = np.array([ahead[1], -ahead[0], 0.0])
+        right = right / max(math.sqrt(float(right @ right)), 1e-9)
+        return np.stack([ahead, right, np.cross(right, ahead)])
+
+    def camera(self, width: int, height: int) -> RayCamera:
+        """Return the rays of a picture of that size [px]."""
+        ahead, right, up = self.axes
+        focal = self.focal_px(width)
+
+        def rays_through(across: Floats, down: Floats) -> Floats:
+            x, y = (across - width / 2.0) / focal, (height / 2.0 - down) / focal
+            rays = ahead + x[:, None] * right + y[:, None] * up
+            return rays / np.sqrt((rays * rays).sum(axis=1))[:, None]
+
+        return RayCamera(np.array(self.eye), width, height, rays_through, 1.0 / focal)
+
+    def focal_px(self, width: int) -> float:
+        """Return the focal length of a picture of that width [px]."""
+        return width / 2.0 / math.tan(math.radians(self.fov_deg) / 2.0)
+
+    def project(self, points: Floats, width: int, height: int) -> tuple[Floats, Floats]:
+        """Return the positions (right, down) [px] of points (N, 3); NaN behind the eye."""
+        depth, x, y = self.axes @ (np.asarray(points, float) - np.array(self.eye)).T
+        scale = self.focal_px(width) / np.where(depth > 1e-6, depth, np.nan)
+        return width / 2.0 + x * scale, height / 2.0 - y * scale
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RayHits:
+    """The first hits of rays (N,).
+
+    Attributes
+    ----------
+    surface : (N,) int
+        NOTHING, SKY, GROUND, or the number of a solid.
+    part : (N,) int
+        Part of the solid; -1 without a solid.
+    points : (N, 3) float
+        Where the rays hit [m].
+    normals : (N, 3) float
+        Unit normals there, on the side of the eye.
+    color : (N, 4) float
+        Linear red, green, blue, and shine.
+    distance : (N,) float
+        Distance from the eye [m]; inf in the sky.
+    """
+
+    surface: Ints
+    part: Ints
+    points: Floats
+    normals: Floats
+    color: Floats
+    distance: Floats
+
+    @property
+    def is_solid(self) -> Flags:
+        """(N,) rays that meet a solid."""
+        return self.surface > GROUND
+
+    @property
+    def is_surface(self) -> Flags:
+        """(N,) rays that meet a solid or the ground."""
+        return self.surface >= GROUND
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RayScene:
+    """Solids on the ground, z = 0; with `has_vehicle` the first one is the vehicle."""
+
+    solids: Sequence[PaintedMesh]
+    has_vehicle: bool = True
+
+    def first_hits(self, eye: Floats, directions: Floats, *, from_sensor: bool = False) -> RayHits:
+        """Return the first hits of rays from an eye (3,) [m] in unit directions (N, 3) or NaN.
+
+        With `from_sensor` the eye is a camera on the vehicle: as in a measurement, its rays begin
+        outside the vehicle's surface and pass through the vehicle's glass.
+        """
+        count = len(directions)
+        valid = np.isfinite(directions[:, 0])
+        surface = np.where(valid, SKY, NOTHING)
+        distance, face = np.full(count, np.inf), np.full(count, -1)
+        down = valid & (directions[:, 2] < -1e-9)
+        if eye[2] > 0.0:
+            distance[down], surface[down] = -eye[2] / directions[down, 2], GROUND
+        valid_rays = np.flatnonzero(valid)
+        for number, solid in enumerate(self.solids, 1):
+            as_sensor = from_sensor and number == 1 and self.has_vehicle
+            mesh, rays = solid.mesh, directions[valid_rays]
+            hits = (
+                mesh.first_hit(eye.tolist(), rays, True)
+                if as_sensor
+                else mesh.first_hit_from(eye, rays)
+            )
+            nearer = hits.distance < distance[valid_rays]
+            at = valid_rays[nearer]
+            surface[at], distance[at], face[at] = number, hits.distance[nearer], hits.face[nearer]
+        return self._hits_of(eye, directions, surface, distance, face)
+
+    def lit(self, light: Floats, points: Floats) -> Flags:
+        """(N,) whether no solid shades points (N, 3) from a light at a position (3,) [m]."""
+        ray = points - light
+        length = np.sqrt((ray * ray).sum(axis=1))
+        free = np.ones(len(points), bool)
+        for solid in self.solids:
+            hits = solid.mesh.first_hit_from(light, ray / length[:, None])
+            free &= ~(hits.distance < length - SLACK_M)
+        return free
+
+    def _hits_of(
+        self, eye: Floats, directions: Floats, surface: Ints, distance: Floats, face: Ints
+    ) -> RayHits:
+        points = eye + directions * np.where(np.isfinite(distance), distance, 0.0)[:, None]
+        normals = np.tile([0.0, 0.0, 1.0], (len(surface), 1))
+        part, color = np.full(len(surface), -1), np.zeros((len(surface), 4))
+        for number, solid in enumerate(self.solids, 1):
+            at = np.flatnonzero(surface == number)
+            part[at] = solid.parts_of(face[at])
+            normals[at] = solid.normals_at(face[at], points[at])
+            color[at] = solid.colors[part[at]]
+        away = (normals * directions).sum(axis=1) > 0.0
+        normals = unit(np.where(away[:, None], -normals, normals))
+        return RayHits(surface, part, points, normals, color, distance)

@@ -1,0 +1,183 @@
+"""Persons and cars of known size that stand in a sensor's view, as a measure of its picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+import pe_core as pe
+
+from .painted_mesh import GLASS, TAIL, TYRE, Paint, PaintedMesh, capped, lathe
+
+Floats = NDArray[np.float64]
+
+PERSON_M = (0.5, 0.5, 1.75)
+"""Length, width and height of a person."""
+CAR_M = (4.5, 1.8, 1.5)
+"""Length, width and height of a car; about the mean of cars on the road."""
+SKIN, COAT = Paint((0.55, 0.36, 0.25)), Paint((0.80, 0.36, 0.02))
+TROUSERS = Paint((0.10, 0.11, 0.14))
+CAR_PAINT = Paint((0.03, 0.14, 0.38), 0.6)
+DISTANCES = (5.0, 10.0, 20.0, 40.0)
+"""Distances from the sensor to the near side of figures, along the ground [m]."""
+FIRST_RAD, GAP_RAD = math.radians(0.8), math.radians(0.7)
+"""Angles between straight ahead and the first figure, and between two figures."""
+VIEW_SHARE = 0.72
+"""Share of a wide view over which figures are spread."""
+MAX_SPREAD = 3.0
+"""Limit of the factor by which angles grow in a wide view."""
+CLEAR_M = 0.3
+"""Smallest distance between a figure and the vehicle."""
+ROUND = 16
+"""Points of a circle."""
+PaintedParts = tuple[tuple[Floats, Paint], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceFigure:
+    """A person or a car (`name`) at a `distance` [m]; `top` is the point that is labelled [m]."""
+
+    name: str
+    distance: float
+    top: tuple[float, float, float]
+    painted: PaintedMesh
+
+    @property
+    def label(self) -> str:
+        """The distance as text."""
+        return f"{self.distance:g} m"
+
+
+def reference_figures(
+    sensor: pe.Sensor, half_view: float, vehicle: pe.Vehicle | None
+) -> list[ReferenceFigure]:
+    """Return persons on the left and cars on the right of a sensor's heading.
+
+    Parameters
+    ----------
+    sensor : Sensor
+    half_view : float
+        Half the horizontal field of view [rad]. Figures that do not fit into it are left out.
+    vehicle : Vehicle or None
+        Figures that would overlap it are left out.
+    """
+    figures = []
+    for name, size, side in (("person", PERSON_M, 1.0), ("car", CAR_M, -1.0)):
+        angles = _angle_by_distance(size[1], half_view)
+        for distance, angle in angles.items():
+            figure = _figure_at(sensor, name, size, distance, side * angle)
+            if vehicle is None or not _overlaps(figure.painted.mesh, vehicle):
+                figures.append(figure)
+    return figures
+
+
+def _angle_by_distance(width: float, half_view: float) -> dict[float, float]:
+    """Return the angle from straight ahead [rad] by distance: side by side, the farthest first."""
+    edge, angles = FIRST_RAD, {}
+    for distance in reversed(DISTANCES):
+        half = math.atan(width / 2.0 / distance)
+        angles[distance] = edge + half
+        edge += 2.0 * half + GAP_RAD
+    spread = min(max(VIEW_SHARE * half_view / edge, 1.0), MAX_SPREAD)
+    return {d: spread * angle for d, angle in angles.items() if angle < half_view}
+
+
+def _figure_at(
+    sensor: pe.Sensor, name: str, size: tuple[float, float, float], distance: float, angle: float
+) -> ReferenceFigure:
+    heading = heading_of(sensor) + angle
+    away = distance + (size[0] / 2.0 if name == "car" else 0.0)
+    x = sensor.pose.position[0] + away * math.cos(heading)
+    y = sensor.pose.position[1] + away * math.sin(heading)
+    painted = car(x, y, heading) if name == "car" else person(x, y, heading + math.pi)
+    return ReferenceFigure(name, distance, (x, y, size[2]), painted)
+
+
+def heading_of(sensor: pe.Sensor) -> float:
+    """Return the heading of a sensor [rad]; if it looks up or down, that of its upper side."""
+    ahead, up = (sensor.pose.ground_from_sensor[:2, k] for k in (0, 2))
+    flat = ahead if math.hypot(*ahead.tolist()) > 0.2 else up
+    return math.atan2(float(flat[1]), float(flat[0]))
+
+
+def _overlaps(one: pe.Vehicle, other: pe.Vehicle) -> bool:
+    (low, high), (low_2, high_2) = one.bounds, other.bounds
+    apart = (low[:2] > high_2[:2] + CLEAR_M) | (high[:2] < low_2[:2] - CLEAR_M)
+    return not bool(apart.any())
+
+
+def person(x: float, y: float, heading: float) -> PaintedMesh:
+    """Return a person at a position [m] who faces a heading [rad]."""
+    legs = [_limb(side * 0.09, ((0.0, 0.07), (0.45, 0.065), (0.88, 0.09))) for side in (1, -1)]
+    arm = ((0.74, 0.04), (1.1, 0.047), (1.36, 0.06), (1.44, 0.03))
+    arms = [_limb(side * 0.225, arm) for side in (1, -1)]
+    shape = ((0.82, 0.12, 0.17), (1.05, 0.11, 0.16), (1.35, 0.13, 0.21), (1.46, 0.09, 0.17))
+    torso = capped([_oval(*ring) for ring in (*shape, (1.52, 0.06, 0.06))])
+    head = _ball(1.625, 0.10, 0.125)
+    groups = (
+        (head, SKIN),
+        (np.concatenate([torso, *arms]), COAT),
+        (np.concatenate(legs), TROUSERS),
+    )
+    return _placed(groups, x, y, heading)
+
+
+def car(x: float, y: float, heading: float) -> PaintedMesh:
+    """Return a car with its centre at a position [m] and a heading [rad]."""
+    lower = ((0.22, 2.15, 0.78), (0.34, 2.25, 0.88), (0.72, 2.23, 0.90), (0.90, 2.12, 0.84))
+    body = capped([_rounded(z, x0, y0, 0.0) for z, x0, y0 in lower])
+    upper = ((0.88, 1.45, 0.80), (1.44, 0.98, 0.64), (1.43, 0.99, 0.65), (1.5, 0.80, 0.52))
+    cabin, roof = (
+        capped([_rounded(*ring, -0.25) for ring in pair]) for pair in (upper[:2], upper[2:])
+    )
+    wheels = np.concatenate([_wheel(x0, y0) for x0 in (1.35, -1.35) for y0 in (0.80, -0.80)])
+    lamps = np.concatenate([_lamp(y0) for y0 in (0.62, -0.62)])
+    painted = np.concatenate([body, roof])
+    groups = ((painted, CAR_PAINT), (cabin, GLASS), (wheels, TYRE), (lamps, TAIL))
+    return _placed(groups, x, y, heading)
+
+
+def _placed(groups: PaintedParts, x: float, y: float, heading: float) -> PaintedMesh:
+    c, s = math.cos(heading), math.sin(heading)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    triangles = np.concatenate([part for part, _ in groups])
+    placed = np.einsum("ij,fkj->fki", turn, triangles) + np.array([x, y, 0.0])
+    parts = np.repeat(np.arange(len(groups)), [len(part) for part, _ in groups])
+    names = [f"part {k}" for k in range(len(groups))]
+    return PaintedMesh(pe.Vehicle(placed, parts, names), tuple(paint for _, paint in groups))
+
+
+def _oval(z: float, deep: float, wide: float) -> Floats:
+    turn = np.arange(ROUND) * 2.0 * np.pi / ROUND
+    return np.column_stack([deep * np.cos(turn), wide * np.sin(turn), np.full(ROUND, z)])
+
+
+def _limb(y: float, rings: tuple[tuple[float, float], ...]) -> Floats:
+    return capped([_oval(z, r, r) for z, r in rings]) + np.array([0.0, y, 0.0])
+
+
+def _ball(z: float, radius: float, high: float) -> Floats:
+    turn = np.linspace(-np.pi / 2.0, np.pi / 2.0, 9)
+    return lathe([(radius * math.cos(t), z + high * math.sin(t)) for t in turn.tolist()], ROUND)
+
+
+def _rounded(z: float, long: float, wide: float, x: float) -> Floats:
+    """Return a ring around a car at a height: a shape between an oval and a rectangle."""
+    turn = (np.arange(2 * ROUND) + 0.5) * np.pi / ROUND
+    c, s = np.cos(turn), np.sin(turn)
+    right, left = (np.sign(w) * np.abs(w) ** 0.4 for w in (c, s))
+    return np.column_stack([right * long + x, left * wide, np.full(len(turn), z)])
+
+
+def _wheel(x: float, y: float) -> Floats:
+    disc = lathe([(0.0, -0.1), (0.33, -0.1), (0.33, 0.1), (0.0, 0.1)], ROUND)
+    return np.stack([disc[..., 0] + x, disc[..., 2] + y, disc[..., 1] + 0.33], axis=-1)
+
+
+def _lamp(y: float) -> Floats:
+    ring = np.array([[0.0, 0.14, 0.0], [0.0, -0.14, 0.0], [-0.03, -0.14, 0.0], [-0.03, 0.14, 0.0]])
+    rings = [ring + np.array([-2.2, y, z]) for z in (0.68, 0.82)]
+    return capped(rings)

@@ -1,0 +1,219 @@
+"""Rendering: cast rays, shade paint and ground under sun and sky, antialias the edges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .illumination import skylight, sun_position, sunlight
+from .painted_mesh import unit
+from .ray_scene import GROUND, NOTHING, SKY, RayCamera, RayHits, RayScene
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Rgb = tuple[float, float, float]
+
+SUN, UPPER, LOWER = np.array([1.16, 1.11, 1.04]), np.array([0.50, 0.54, 0.60]), np.array([0.30] * 3)
+"""Linear light of the sun, of the sky above and of the ground below."""
+MIRRORED = 0.07
+"""Share of light that paint mirrors at normal incidence (Schlick's formula)."""
+GLOSS = 220.0
+"""Exponent of the sun's highlight."""
+KNEE = 0.75
+"""Linear light above this value is compressed, so that it approaches white."""
+OUTSIDE_LENS = (0.11, 0.115, 0.125)
+"""Colour outside the image circle of a lens; sRGB."""
+
+SUBPIXELS = ((-0.375, -0.125), (-0.125, 0.375), (0.125, -0.375), (0.375, 0.125))
+"""Rays within a pixel at an edge: no two in one row or column."""
+EDGE_COSINE = 0.92
+"""Cosine of the angle between neighbouring normals below which there is an edge."""
+EDGE_STEP = 0.06
+"""Relative step of neighbouring distances above which there is an edge."""
+
+
+@dataclass(frozen=True, eq=False)
+class Environment:
+    """Ground, sky, sun and haze around the solids.
+
+    Attributes
+    ----------
+    ground : callable
+        Takes points (N, 3) of the ground and the width (N,) of a pixel there [m]; returns linear
+        colours (N, 3).
+    sky : callable
+        Takes directions (N, 3); returns linear colours (N, 3).
+    sun : (3,) float
+        Direction to the sun.
+    haze : callable
+        Takes points (N, 3) of the ground; returns how far (N,) they fade into the sky, 0 to 1.
+    """
+
+    ground: Callable[[Floats, Floats], Floats]
+    sky: Callable[[Floats], Floats]
+    sun: Floats
+    haze: Callable[[Floats], Floats]
+
+
+def render(camera: RayCamera, scene: RayScene, environment: Environment) -> Floats:
+    """(H, W, 3) sRGB, 0 to 1: the picture of a scene."""
+    directions = camera.directions()
+    hits = scene.first_hits(camera.eye, directions, from_sensor=camera.from_sensor)
+    light = sun_position(scene, environment.sun)
+    sun = sunlight(scene, hits, light)
+    sky = skylight(scene, hits, (camera.width, camera.height))
+    colors = shade(hits, directions, environment, sun, sky, camera.pixel_rad)
+    edges = np.flatnonzero(_edges(hits, sun, (camera.height, camera.width)))
+    colors[edges] = _edge_colors(camera, scene, environment, edges, light, (sky, hits))
+    return colors.reshape(camera.height, camera.width, 3)
+
+
+def _edge_colors(
+    camera: RayCamera,
+    scene: RayScene,
+    environment: Environment,
+    edges: NDArray[np.int64],
+    light: Floats,
+    first: tuple[Floats, RayHits],
+) -> Floats:
+    """(E, 3) colours of pixels at edges: means over several rays in each."""
+    sky, hits = first
+    row, column = np.divmod(edges, camera.width)
+    total = np.zeros((len(edges), 3))
+    for right, down in SUBPIXELS:
+        directions = camera.rays_through(column + 0.5 + right, row + 0.5 + down)
+        subpixel = scene.first_hits(camera.eye, directions, from_sensor=camera.from_sensor)
+        sun = sunlight(scene, subpixel, light)
+        open_ = _skylight_at(subpixel, sky, hits, edges, (camera.height, camera.width))
+        total += shade(subpixel, directions, environment, sun, open_, camera.pixel_rad)
+    return total / len(SUBPIXELS)
+
+
+def _skylight_at(
+    subpixel: RayHits, sky: Floats, hits: RayHits, edges: NDArray[np.int64], shape: tuple[int, int]
+) -> Floats:
+    """(E,) skylight of rays within pixels: that of neighbouring pixels on the same surface."""
+    row, column = np.divmod(edges, shape[1])
+    total, weight = 1e-6 * sky[edges], np.full(len(edges), 1e-6)
+    for dy in (-1, 0, 1):
+        for dx in (-1, 0, 1):
+            i, j = np.clip(row + dy, 0, shape[0] - 1), np.clip(column + dx, 0, shape[1] - 1)
+            pixel = i * shape[1] + j
+            same = (hits.surface[pixel] == subpixel.surface).astype(float)
+            along = (hits.normals[pixel] * subpixel.normals).sum(axis=1)
+            same *= np.maximum(along, 0.0) ** 4
+            total += same * sky[pixel]
+            weight += same
+    return total / weight
+
+
+def _edges(hits: RayHits, sun: Floats, shape: tuple[int, int]) -> Flags:
+    """(H * W,) whether a pixel has a neighbour of another surface, part, light or slope."""
+    edges = np.zeros(shape, bool)
+    grids = [values.reshape(shape) for values in (hits.surface, hits.part, sun > 0.0)]
+    far = np.minimum(hits.distance, 1e6).reshape(shape)
+    normals = hits.normals.reshape(*shape, 3)
+    solid = (hits.surface > 0).reshape(shape)
+    for axis in (0, 1):
+        one, two = _neighbours(axis)
+        differs = np.zeros(grids[0][one].shape, bool)
+        for grid in grids:
+            differs |= grid[one] != grid[two]
+        bent = np.einsum("...k,...k->...", normals[one], normals[two]) < EDGE_COSINE
+        jump = np.abs(far[one] - far[two]) > EDGE_STEP * np.minimum(far[one], far[two])
+        differs |= bent | (jump & solid[one] & solid[two])
+        edges[one] |= differs
+        edges[two] |= differs
+    return edges.ravel()
+
+
+def _neighbours(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+    all_, first, last = slice(None), slice(None, -1), slice(1, None)
+    return ((first, all_), (last, all_)) if axis == 0 else ((all_, first), (all_, last))
+
+
+def shade(
+    hits: RayHits,
+    directions: Floats,
+    environment: Environment,
+    sun: Floats,
+    sky: Floats,
+    pixel_rad: float,
+) -> Floats:
+    """(N, 3) sRGB colours of first hits; `sun` and `sky` (N,) are the light on them."""
+    color = np.zeros((len(hits.surface), 3))
+    color[hits.surface == SKY] = environment.sky(directions[hits.surface == SKY])
+    at = np.flatnonzero(hits.surface == GROUND)
+    color[at] = _ground(hits, at, directions, environment, sun, sky, pixel_rad)
+    at = np.flatnonzero(hits.is_solid)
+    color[at] = _paint(hits, at, directions, environment, sun, sky)
+    srgb = to_srgb(color)
+    srgb[hits.surface == NOTHING] = OUTSIDE_LENS
+    return srgb
+
+
+def to_srgb(linear: Floats) -> Floats:
+    """Return sRGB of linear light; values above `KNEE` approach white smoothly."""
+    room, over = 1.0 - KNEE, np.maximum(linear - KNEE, 0.0)
+    soft = np.where(over > 0.0, KNEE + room * (1.0 - np.exp(-over / room)), linear)
+    soft = np.clip(soft, 0.0, 1.0)
+    return np.where(soft <= 0.0031308, 12.92 * soft, 1.055 * soft ** (1.0 / 2.4) - 0.055)
+
+
+def from_srgb(color: Floats) -> Floats:
+    """Return linear light of sRGB."""
+    c = np.asarray(color, float)
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+
+
+def _ground(
+    hits: RayHits,
+    at: NDArray,
+    directions: Floats,
+    environment: Environment,
+    sun: Floats,
+    sky: Floats,
+    pixel_rad: float,
+) -> Floats:
+    """Return colours of the ground: its own colour in full light, darker in the shade."""
+    points = hits.points[at]
+    slope = np.maximum(-directions[at, 2], 1e-3)
+    ground = environment.ground(points, hits.distance[at] * pixel_rad / slope)
+    full = float(unit(environment.sun)[2])
+    light = 0.52 * np.clip(sun[at] / full, 0.0, 1.0) + 0.48 * sky[at]
+    faded = environment.haze(points)[:, None]
+    return ground * light[:, None] * (1.0 - faded) + environment.sky(directions[at]) * faded
+
+
+def _paint(
+    hits: RayHits,
+    at: NDArray,
+    directions: Floats,
+    environment: Environment,
+    sun: Floats,
+    sky: Floats,
+) -> Floats:
+    """Return colours of paint: diffuse light, and reflections of sky and sun."""
+    normals, rays = hits.normals[at], directions[at]
+    paint, shine = hits.color[at, :3], hits.color[at, 3]
+    up = (0.5 + 0.5 * normals[:, 2])[:, None]
+    around = (LOWER * (1.0 - up) + UPPER * up) * sky[at][:, None]
+    scattered = paint * (around + SUN * sun[at][:, None])
+    along = np.clip(-(rays * normals).sum(axis=1), 0.0, 1.0)
+    mirrored = MIRRORED + (1.0 - MIRRORED) * (1.0 - along) ** 5
+    back = rays + 2.0 * along[:, None] * normals
+    bright = _mirrored_light(back[:, 2]) * (0.35 + 0.65 * sky[at])
+    glint = np.maximum((back * unit(environment.sun)).sum(axis=1), 0.0) ** GLOSS
+    glint = np.where(sun[at] > 0.0, 1.6 * glint, 0.0)
+    return scattered + ((mirrored * bright + glint * 0.5) * shine)[:, None] * UPPER / UPPER[1]
+
+
+def _mirrored_light(up: Floats) -> Floats:
+    """(N,) light from directions whose vertical component is `up`: bright horizon, dark ground."""
+    sky = 1.0 - 0.45 * np.clip(up, 0.0, 1.0)
+    ground = 0.22 + 0.5 * np.exp(5.0 * np.minimum(up, 0.0))
+    part = np.clip(up / 0.06 + 0.5, 0.0, 1.0)
+    return ground * (1.0 - part) + sky * part

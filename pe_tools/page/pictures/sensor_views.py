@@ -1,0 +1,317 @@
+"""What each sensor sees, as a figure: a row for each kind of sensor.
+
+A camera's image is rendered through its own lens; a LiDAR's ranges are an image of channels and
+azimuths. Persons and cars of known size stand in front of both. Of a kind without a row, the
+parameters are shown.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import pe_core as pe
+from pe_core import scene
+from pe_core import sensors as kinds
+
+from ... import graphics
+from ..markup import Markup, escaped, number, signed
+from .painted_mesh import painted_vehicle
+from .ray_scene import RayCamera, RayScene
+from .reference_figures import DISTANCES, ReferenceFigure, reference_figures
+from .rendering import Environment, from_srgb, render
+from .svg import LETTER_WIDTH, Canvas, LabelledPicture, TextLabel, figure, hexadecimal
+
+Floats = NDArray[np.float64]
+
+MAX_WIDTH, MAX_HEIGHT = 640, 480
+"""Size of a camera's image on the page [px]."""
+ROAD, RING = from_srgb(np.array([0.50, 0.51, 0.52])), from_srgb(np.array([0.93, 0.94, 0.95]))
+ZENITH, HORIZON = from_srgb(np.array([0.62, 0.74, 0.86])), from_srgb(np.array([0.90, 0.92, 0.93]))
+SUN = np.array([-0.35, 0.5, 1.0])
+"""Direction to the sun relative to the sensor's heading: from behind, on the left."""
+RING_M = 0.05
+"""Half the width of a ring's line."""
+MIN_LINE_PX = 0.6
+FADED_M = (30.0, 160.0)
+"""Distances at which the ground begins and ends to fade into the horizon."""
+CIRCLE_WIDTH, MIN_ROWS_HEIGHT, MAX_ROW_HEIGHT = 720, 144, 12
+"""Size of a LiDAR's image [px]: a full circle, all rows at least, one row at most."""
+SIDES = {"behind": -180.0, "right": -90.0, "ahead": 0.0, "left": 90.0, "behind ": 180.0}
+"""Azimuths that are labelled [deg]; both ends of a full circle are behind."""
+FIGURES_RAD = math.radians(80.0)
+"""Half the azimuth range in which persons and cars stand before a LiDAR."""
+KEY_WIDTH = 190.0
+SMALL_BOX = scene.Housing("box", (0.05, 0.06, 0.05), (0.025, 0.0, 0.025))
+"""About the size of a camera module."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorView:
+    """How the page shows the sensors of one kind.
+
+    Attributes
+    ----------
+    figure : callable
+        Takes a sensor and the vehicle or None; returns a figure of what the sensor sees.
+    housing : Housing
+        Drawn for models whose size the catalogue does not know.
+    image_field : callable
+        Takes a model; returns width and height of its image [deg], None if it has no image.
+    """
+
+    figure: Callable[[pe.Sensor, pe.Vehicle | None], Markup]
+    housing: scene.Housing = SMALL_BOX
+    image_field: Callable[[Any], tuple[float, float] | None] = lambda _model: None
+
+
+def sensor_view(kind: str) -> SensorView:
+    """Return how sensors of a kind are shown, by the kind's name."""
+    return SENSOR_VIEWS.get(kind, OTHER_KIND)
+
+
+def _parameter_figure(sensor: pe.Sensor, _vehicle: pe.Vehicle | None) -> Markup:
+    """Return the parameters of a sensor whose kind has no picture."""
+    kind = kinds.kind_of(sensor)
+    lines = [*kind.data_sheet(sensor.model), *kind.plot(sensor.model)]
+    text = "\n".join(escaped(line) for line in lines)
+    caption = f"{escaped(kind.label)}: no picture is available for this kind of sensor."
+    return figure(Markup(f"<pre>{text}</pre>"), caption)
+
+
+def camera_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
+    """Return a camera's image with a caption."""
+    camera = _camera_of(sensor)
+    lens = camera.projection.model.replace("_", " ")
+    alt = f"Image of {sensor.name}: persons on the left and cars on the right"
+    caption = f"{camera.width} × {camera.height} px, {lens} lens, rendered through this lens."
+    return figure(camera_picture(sensor, vehicle).svg(alt), caption)
+
+
+def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
+    """Return a LiDAR's range image with its key and a caption."""
+    lidar = _lidar_of(sensor)
+    alt = f"Ranges of {sensor.name} by azimuth: persons left of ahead and cars right of it"
+    drawing = lidar_picture(sensor, vehicle).svg(alt) + range_key(lidar.max_range)
+    min_range = f"{number(lidar.min_range, 1)} to " if lidar.min_range >= 0.1 else ""
+    caption = (
+        f"A row for each channel ({len(lidar.elevations)}), a column for each azimuth; "
+        f"range {min_range}{lidar.max_range:g} m."
+    )
+    return figure(Markup(drawing), caption)
+
+
+def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:
+    """Return the image of a camera on a vehicle, with persons and cars in front of it.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        A camera.
+    vehicle : Vehicle or None
+    """
+    rays, scale = ray_camera(sensor)
+    figures = reference_figures(sensor, _camera_of(sensor).hfov / 2.0, vehicle)
+    solids = [] if vehicle is None else [painted_vehicle(vehicle)]
+    road = RayScene([*solids, *(target.painted for target in figures)], vehicle is not None)
+    image = render(rays, road, _road_environment(sensor))
+    png = graphics.png_bytes(graphics.as_bytes(image))
+    labels = _camera_labels(sensor, figures, rays, scale)
+    return LabelledPicture(png, rays.width, rays.height, labels)
+
+
+def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
+    """Return the rays of a camera's image, reduced to the page's size, and the scale of it."""
+    camera = _camera_of(sensor)
+    scale = min(1.0, MAX_WIDTH / camera.width, MAX_HEIGHT / camera.height)
+    width, height = (max(1, round(n * scale)) for n in (camera.width, camera.height))
+    across, down = camera.width / width, camera.height / height
+    lens, ground_from_sensor = camera.projection, sensor.pose.ground_from_sensor
+
+    def rays_through(x: Floats, y: Floats) -> Floats:
+        return scene.rotate(ground_from_sensor, lens.unproject(x * across, y * down))
+
+    middle = np.array([width / 2.0, width / 2.0 + 1.0])
+    one, two = rays_through(middle, np.full(2, height / 2.0))
+    pixel_rad = math.sqrt(float(((two - one) ** 2).sum()))
+    eye = np.array(sensor.pose.position)
+    return RayCamera(eye, width, height, rays_through, pixel_rad, True), 1.0 / across
+
+
+def camera_field(camera: kinds.Camera) -> tuple[float, float]:
+    """Return width and height of a camera's image [deg]."""
+    return math.degrees(camera.hfov), math.degrees(camera.vfov)
+
+
+def _camera_labels(
+    sensor: pe.Sensor, figures: list[ReferenceFigure], rays: RayCamera, scale: float
+) -> tuple[TextLabel, ...]:
+    """Return the distances above heads and roofs, where these are in the image."""
+    camera, labels = _camera_of(sensor), []
+    for target in figures:
+        offset = scene.rotate(
+            sensor.pose.ground_from_sensor.T, np.subtract(target.top, sensor.pose.position)[None]
+        )
+        theta = math.atan2(math.hypot(offset[0, 1], offset[0, 2]), offset[0, 0])
+        if theta < camera.projection.edge:
+            x, y = (float(v[0]) * scale for v in camera.projection.project(*offset.T))
+            if 0.0 <= x <= rays.width and 0.0 <= y <= rays.height:
+                labels.append((round(x, 1), round(y, 1), target.label))
+    return tuple(labels)
+
+
+def _camera_of(sensor: pe.Sensor) -> kinds.Camera:
+    assert isinstance(sensor.model, kinds.Camera)
+    return sensor.model
+
+
+def _road_environment(sensor: pe.Sensor) -> Environment:
+    """Return a road with rings around the sensor, under a clear sky."""
+    foot = np.array(sensor.pose.position[:2])
+    ahead = sensor.pose.ground_from_sensor[:2, 0]
+    heading = math.atan2(float(ahead[1]), float(ahead[0]))
+    c, s = math.cos(heading), math.sin(heading)
+    sun = np.array([c * SUN[0] - s * SUN[1], s * SUN[0] + c * SUN[1], SUN[2]])
+
+    def ground(points: Floats, pixel_m: Floats) -> Floats:
+        away = np.hypot(points[:, 0] - foot[0], points[:, 1] - foot[1])
+        half, line = np.maximum(RING_M, MIN_LINE_PX / 2.0 * pixel_m), np.zeros(len(points))
+        for radius in DISTANCES:
+            inside = half + pixel_m / 2.0 - np.abs(away - radius)
+            line = np.maximum(line, np.clip(inside / np.maximum(pixel_m, 1e-6), 0.0, 1.0))
+        return np.asarray(ROAD + 0.75 * line[:, None] * (RING - ROAD))
+
+    def sky(rays: Floats) -> Floats:
+        up = np.clip(rays[:, 2], 0.0, 1.0)[:, None] ** 0.6
+        return np.asarray(HORIZON * (1.0 - up) + ZENITH * up)
+
+    def haze(points: Floats) -> Floats:
+        away = np.hypot(points[:, 0] - foot[0], points[:, 1] - foot[1])
+        part = np.clip((away - FADED_M[0]) / (FADED_M[1] - FADED_M[0]), 0.0, 1.0)
+        return np.asarray(part**0.7)
+
+    return Environment(ground, sky, sun, haze)
+
+
+def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:
+    """Return the range image of a LiDAR on a vehicle, with persons and cars in front of it.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        A LiDAR.
+    vehicle : Vehicle or None
+    """
+    lidar = _lidar_of(sensor)
+    half = min(FIGURES_RAD, (lidar.horizontal_fov[1] - lidar.horizontal_fov[0]) / 2.0)
+    figures = reference_figures(sensor, half, vehicle)
+    ranges = kinds.range_picture(sensor, vehicle, _joint_mesh(figures))
+    columns = _pixel_azimuths(ranges)
+    channels = len(ranges.elevations)
+    row_px = int(np.clip(math.ceil(MIN_ROWS_HEIGHT / channels), 1, MAX_ROW_HEIGHT))
+    rows = np.repeat(np.arange(channels), row_px)
+    colors = graphics.range_colors(ranges, lidar.max_range)[np.ix_(rows, columns)]
+    png = graphics.png_bytes(graphics.as_bytes(colors))
+    labels = _lidar_labels(ranges, figures, columns, row_px)
+    edges = _side_labels(ranges, len(columns)), _elevation_labels(ranges, len(rows))
+    return LabelledPicture(png, len(columns), len(rows), labels, *edges)
+
+
+def _lidar_of(sensor: pe.Sensor) -> kinds.Lidar:
+    assert isinstance(sensor.model, kinds.Lidar)
+    return sensor.model
+
+
+def _joint_mesh(figures: list[ReferenceFigure]) -> pe.Vehicle | None:
+    """Return all figures as one mesh, a part for each."""
+    if not figures:
+        return None
+    meshes = [target.painted.mesh.triangles for target in figures]
+    parts = np.repeat(np.arange(len(meshes)), [len(triangles) for triangles in meshes])
+    return pe.Vehicle(np.concatenate(meshes), parts, [f"thing {k}" for k in range(len(meshes))])
+
+
+def _pixel_azimuths(ranges: kinds.RangePicture) -> NDArray[np.int64]:
+    """(W,) index of the azimuth that each pixel shows.
+
+    It is the nearest one; if a pixel stands for several, the first that meets a figure.
+    """
+    if len(ranges.azimuths) == 1:
+        return np.zeros(1, np.int64)
+    nearest = graphics.even_angles(ranges.azimuths, CIRCLE_WIDTH / 360.0)
+    ends = np.append(nearest[1:], len(ranges.azimuths))
+    met = (ranges.things >= 0).any(axis=0)
+    for pixel in np.flatnonzero(ends > nearest + 1):
+        meeting = np.flatnonzero(met[nearest[pixel] : ends[pixel]])
+        if len(meeting):
+            nearest[pixel] += meeting[0]
+    return nearest
+
+
+def _lidar_labels(
+    ranges: kinds.RangePicture,
+    figures: list[ReferenceFigure],
+    columns: NDArray[np.int64],
+    row_px: int,
+) -> tuple[TextLabel, ...]:
+    """Return the distances above figures that beams meet; other figures have no label."""
+    labels = []
+    shown = ranges.things[:, columns]
+    for index, target in enumerate(figures):
+        rows, across = np.nonzero(shown == index)
+        if len(rows):
+            labels.append(
+                (float(np.median(across)) + 0.5, float(rows.min() * row_px), target.label)
+            )
+    return tuple(labels)
+
+
+def _side_labels(ranges: kinds.RangePicture, width: int) -> tuple[tuple[float, str], ...]:
+    """Return the sides and their positions along an image of that width."""
+    left, right = np.degrees(ranges.azimuths[[0, -1]]).tolist()
+    if left <= right:
+        return ()
+    positions = {side: (left - at) / (left - right) * width for side, at in SIDES.items()}
+    return tuple((round(x, 1), side) for side, x in positions.items() if -1.0 < x < width + 1.0)
+
+
+def _elevation_labels(ranges: kinds.RangePicture, height: int) -> tuple[tuple[float, str], ...]:
+    """Return the elevations of the uppermost and the lowest channel."""
+    top, bottom = np.degrees(ranges.elevations[[0, -1]]).tolist()
+    labels = ((0.0, f"{signed(top, 0)}°"), (float(height), f"{signed(bottom, 0)}°"))
+    return labels if len(ranges.elevations) > 1 else labels[:1]
+
+
+def range_key(far_m: float) -> Markup:
+    """Return the key of a range image: its colours from near to far."""
+    alt = f"Key: near is bright, {far_m:g} m is dark; orange is the own body"
+    canvas = Canvas(640.0, 34.0, alt)
+    scale = graphics.RANGES
+    width = KEY_WIDTH / 24
+    for k in range(24):
+        fill = hexadecimal(graphics.on_scale(k / 23.0, scale).tolist())
+        canvas.add("rect", x=k * width, y=0.0, width=width + 0.4, height=10.0, fill=fill)
+    canvas.text(0.0, 27.0, "0.5 m and nearer", css="mark")
+    canvas.text(KEY_WIDTH, 27.0, f"{far_m:g} m", text_anchor="end", css="mark")
+    at = KEY_WIDTH + 30.0
+    for color, name in ((graphics.BODY_NEAR, "own body"), (graphics.NO_ECHO, "no return")):
+        canvas.add("rect", x=at, y=0.0, width=14.0, height=14.0, fill=hexadecimal(color))
+        canvas.text(at + 20.0, 12.0, name, css="mark")
+        at += 44.0 + LETTER_WIDTH * len(name)
+    return canvas.svg()
+
+
+SENSOR_VIEWS = {
+    "lidar": SensorView(
+        lidar_figure, housing=scene.Housing("cylinder", (0.11, 0.11, 0.08), (0.0, 0.0, 0.04))
+    ),
+    "camera": SensorView(camera_figure, image_field=camera_field),
+}
+"""A row for each kind of sensor, by its name."""
+OTHER_KIND = SensorView(_parameter_figure)
+"""Of kinds that have no row."""

@@ -1,0 +1,185 @@
+"""SVG drawings inside the page: canvas, figures, grids of figures, and labelled pictures."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..markup import Markup, escaped
+
+Floats = NDArray[np.float64]
+PictureBox = tuple[float, float, float, float]
+"""Left, top, width and height."""
+LINE_HEIGHT, LETTER_WIDTH = 17.0, 10.0
+"""Height of a line of text, and mean width of a letter, in a picture 640 wide."""
+LABEL_RISE = 7.0
+"""Distance of a label above its point."""
+FOOT_HEIGHT = 26.0
+"""Space below a picture for the labels of its lower edge."""
+
+
+STYLE = Path(__file__).with_name("drawn.css").read_text("utf-8")
+"""CSS of drawings and of grids of figures."""
+
+
+@dataclass(eq=False)
+class Canvas:
+    """An SVG drawing; `width` and `height` are its view box, `alt` is its text alternative."""
+
+    width: float
+    height: float
+    alt: str
+    parts: list[str] = field(default_factory=list)
+
+    def add(self, name: str, **attributes: object) -> None:
+        """Add an element; underscores in attribute names become hyphens, `css` its class."""
+        self.parts.append(f"<{name}{_attributes(attributes)}/>")
+
+    def text(self, x: float, y: float, words: str, **attributes: object) -> None:
+        """Add a text."""
+        place = _attributes({"x": x, "y": y, **attributes})
+        self.parts.append(f"<text{place}>{escaped(words)}</text>")
+
+    def picture(self, png: bytes, box: PictureBox, css: str = "shot") -> None:
+        """Add a PNG, stretched to a box; class ``cells`` keeps the edges of pixels sharp."""
+        source = f"data:image/png;base64,{base64.b64encode(png).decode()}"
+        size = dict(zip(("x", "y", "width", "height"), map(float, box), strict=True))
+        self.add("image", href=source, preserveAspectRatio="none", css=css, **size)
+
+    def path(self, lines: Iterable[Floats], closed: bool = True, **attributes: object) -> None:
+        """Add lines (N, 2) as one path."""
+        self.add("path", d="".join(path_of(line, closed) for line in lines), **attributes)
+
+    def svg(self) -> Markup:
+        """Return the drawing as markup."""
+        box = f"0 0 {_svg_number(self.width)} {_svg_number(self.height)}"
+        head = f'<svg class="drawn" viewBox="{box}" role="img" aria-label="{escaped(self.alt)}">'
+        return Markup(f"{head}{''.join(self.parts)}</svg>")
+
+
+def path_of(line: Floats, closed: bool) -> str:
+    """Return the path of a line (N, 2), without points on the straight way to the next."""
+    points = np.round(np.asarray(line, float), 1)
+    if closed and len(points) > 1 and (points[0] == points[-1]).all():
+        points = points[:-1]
+    if len(points) > 2:
+        before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+        turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+        ends = np.zeros(len(points), bool)
+        ends[[0, -1]] = not closed
+        points = points[(np.abs(turn) > 1e-6) | ends]
+    if not len(points):
+        return ""
+    steps = " ".join(f"{_svg_number(x)} {_svg_number(y)}" for x, y in points.tolist())
+    return f"M{steps}{'z' if closed else ''}"
+
+
+def figure(drawing: Markup, caption: Markup | str = "") -> Markup:
+    """Return a drawing with its caption (HTML) as a figure."""
+    below = f"<figcaption>{caption}</figcaption>" if caption else ""
+    return Markup(f"<figure>{drawing}{below}</figure>")
+
+
+def figure_grid(figures: Iterable[Markup], min_rem: float = 21.0) -> Markup:
+    """Return a responsive grid of figures, each at least `min_rem` wide [rem]."""
+    return Markup(f'<div class="maps" style="--min:{min_rem:g}rem">{"".join(figures)}</div>')
+
+
+def hexadecimal(rgb: Sequence[float]) -> str:
+    """Return a colour of components 0 to 1 as "#0072b2"."""
+    return "#" + "".join(f"{round(255.0 * min(max(float(c), 0.0), 1.0)):02x}" for c in rgb[:3])
+
+
+def _attributes(values: dict[str, object]) -> str:
+    named = {name.rstrip("_").replace("_", "-"): value for name, value in values.items()}
+    named = {"class" if name == "css" else name: value for name, value in named.items()}
+    return "".join(f' {name}="{_svg_value(value)}"' for name, value in named.items())
+
+
+def _svg_value(value: object) -> str:
+    return _svg_number(value) if isinstance(value, float) else escaped(value)
+
+
+def _svg_number(value: float) -> str:
+    text = f"{value:.1f}"
+    return text[:-2] if text.endswith(".0") else text
+
+
+TextLabel = tuple[float, float, str]
+"""Position (right, down) in a picture [px], and text."""
+
+
+@dataclass(frozen=True, slots=True)
+class LabelledPicture:
+    """A PNG of a size [px] with labels.
+
+    `labels` stand above points of the picture, `bottom_labels` below its lower edge at a distance
+    from the left, `left_labels` at its left edge at a distance from the top.
+    """
+
+    png: bytes
+    width: int
+    height: int
+    labels: tuple[TextLabel, ...]
+    bottom_labels: tuple[tuple[float, str], ...] = ()
+    left_labels: tuple[tuple[float, str], ...] = ()
+
+    def svg(self, alt: str) -> Markup:
+        """Return the picture with its labels as a drawing."""
+        canvas = Canvas(float(self.width), self.head + self.height + self.foot, alt)
+        box = 0.0, self.head, float(self.width), float(self.height)
+        canvas.picture(self.png, box, "cells" if self.bottom_labels else "shot")
+        self._write_labels(canvas)
+        for x, text in self.bottom_labels:
+            anchor = "start" if x < 1.0 else "end" if x > self.width - 1.0 else "middle"
+            down = self.head + self.height + 18.0
+            canvas.text(x, down, text, text_anchor=anchor, css="mark")
+        for y, text in self.left_labels:
+            down = self.head + min(max(y, 15.0), self.height - 5.0)
+            canvas.text(5.0, down, text, css="mark dark")
+        return canvas.svg()
+
+    @property
+    def head(self) -> float:
+        """Space above the picture for labels, if it has bottom labels: such pictures are low."""
+        ups = stacked(self._on_edge, -math.inf) if self.bottom_labels else []
+        return LINE_HEIGHT - min(ups) if ups else 0.0
+
+    @property
+    def _on_edge(self) -> tuple[TextLabel, ...]:
+        return tuple((x, 0.0, text) for x, _, text in self.labels)
+
+    @property
+    def foot(self) -> float:
+        """Space below the picture for bottom labels."""
+        return FOOT_HEIGHT if self.bottom_labels else 0.0
+
+    def _write_labels(self, canvas: Canvas) -> None:
+        """Write the labels above their points, in the picture or in the space above it."""
+        head, css = self.head, "mark" if self.head else "mark dark"
+        ups = stacked(self._on_edge, -math.inf) if head else stacked(self.labels)
+        for (x, y, text), up in zip(self.labels, ups, strict=True):
+            if up < y - LINE_HEIGHT:
+                line = f"M{x:.1f} {head + y - 2:.1f}V{head + up + 3:.1f}"
+                color = "#8c959f" if head else "#fff"
+                canvas.add("path", d=line, stroke=color, stroke_opacity="0.7")
+            half = LETTER_WIDTH * len(text) / 2.0
+            across = min(max(x, half), self.width - half)
+            canvas.text(across, head + up, text, text_anchor="middle", css=css)
+
+
+def stacked(labels: tuple[TextLabel, ...], highest: float = LINE_HEIGHT) -> list[float]:
+    """Return the vertical position of each label: above its point, and clear of other labels."""
+    placed: list[tuple[float, float, float]] = []
+    for x, y, text in labels:
+        half, up = LETTER_WIDTH * len(text) / 2.0, max(y - LABEL_RISE, highest)
+        while any(abs(x - a) < half + b and abs(up - c) < LINE_HEIGHT for a, b, c in placed):
+            up -= LINE_HEIGHT
+        placed.append((x, half, up))
+    return [up for _, _, up in placed]

@@ -1,0 +1,244 @@
+"""The picture of a rig on its vehicle: rendered, with numbered labels and a key.
+
+Sensors are drawn in their colours, with housings of the size that data sheets state.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+import pe_core as pe
+from pe_core import catalog, scene
+
+from ... import graphics
+from ..markup import Markup, escaped
+from ..report_context import ReportContext
+from .painted_mesh import Paint, PaintedMesh, lathe, painted_vehicle, rounded_box
+from .ray_scene import RayScene, Viewpoint
+from .rendering import Environment, from_srgb, render
+from .sensor_views import sensor_view
+from .svg import Canvas, figure, hexadecimal
+
+Floats = NDArray[np.float64]
+
+SIZE = (960, 540)
+"""Width and height of the picture [px]."""
+FOV_DEG = 26.0
+VIEW_DIRECTION = np.array([0.80, -0.58, 0.29])
+"""From the vehicle to the default viewpoint: ahead, on the right, a little above."""
+PAPER = from_srgb(np.array([0.965, 0.97, 0.975]))
+FLOOR = from_srgb(np.array([0.905, 0.912, 0.92]))
+SUN = np.array([0.45, -0.62, 1.05])
+NO_VEHICLE_BOUNDS = (np.array([-2.0, -1.0, 0.0]), np.array([2.0, 1.0, 1.5]))
+"""Bounds that the picture shows without a vehicle [m]."""
+LABEL_RISE, RADIUS = 46.0, 15.0
+"""Distance of a number above its sensor, and radius of its disc [px]."""
+LABEL_SPACING = 34.0
+ROUNDS = 40
+"""Distance between two discs, and steps in which they are moved apart."""
+BEHIND_M = 0.12
+"""A sensor farther than this behind the visible surface counts as hidden by it."""
+PROUD_M = 0.0005
+"""Height of a window above the housing's surface."""
+WINDOW = Paint((0.02, 0.022, 0.025), 0.9)
+
+
+def picture_of(context: ReportContext) -> bytes:
+    """Return the picture of a study's rig on its vehicle, PNG; rendered once for all sections."""
+    return context.cached(
+        "still", lambda: vehicle_picture(context.display_vehicle[0], context.rig, SIZE)
+    )
+
+
+def labelled_picture_of(context: ReportContext, alt: str) -> Markup:
+    """Return the picture of a study's rig with numbered sensors, as a figure."""
+    return labelled_picture(context.display_vehicle[0], context.rig, alt, picture_of(context))
+
+
+def vehicle_picture(
+    vehicle: pe.Vehicle | None,
+    rig: pe.Rig,
+    size: tuple[int, int] = SIZE,
+    view: Viewpoint | None = None,
+) -> bytes:
+    """Return a picture of a rig on its vehicle as a PNG file.
+
+    Parameters
+    ----------
+    vehicle : Vehicle or None
+    rig : Rig
+        Sensors are drawn in their housings; in default ones if their size is not known.
+    size : (width, height) int
+        [px]
+    view : Viewpoint, optional
+        By default from ahead on the right, with the whole vehicle in the picture.
+    """
+    width, height = size
+    view = view or default_view(vehicle, rig, size)
+    camera = view.camera(width, height)
+    solids = [] if vehicle is None else [painted_vehicle(vehicle)]
+    bodies = RayScene([*solids, *sensor_solids(rig)], vehicle is not None)
+    picture = render(camera, bodies, _studio(_bounds(vehicle, rig)))
+    return graphics.png_bytes(graphics.as_bytes(picture))
+
+
+def default_view(
+    vehicle: pe.Vehicle | None, rig: pe.Rig, size: tuple[int, int] = SIZE
+) -> Viewpoint:
+    """Return the viewpoint from which a whole vehicle fits into a picture."""
+    low, high = _bounds(vehicle, rig)
+    target = (low + high) / 2.0
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True), indexing="ij")).reshape(3, 8).T
+    way = VIEW_DIRECTION / math.sqrt(float(VIEW_DIRECTION @ VIEW_DIRECTION))
+    far = 2.0 * float(np.abs(high - low).max())
+    for _ in range(4):  # each step comes nearer to filling the picture
+        view = _view(target + way * far, target)
+        right, down = view.project(corners, *size)
+        spans = (right.max() - right.min()) / size[0], (down.max() - down.min()) / size[1]
+        far *= max(spans) / 0.84
+    right, down = view.project(corners, *size)
+    return _view(target + way * far, target)
+
+
+def _view(eye: Floats, target: Floats) -> Viewpoint:
+    return Viewpoint(tuple(eye.tolist()), tuple(target.tolist()), FOV_DEG)
+
+
+def _bounds(vehicle: pe.Vehicle | None, rig: pe.Rig) -> tuple[Floats, Floats]:
+    places = np.array([sensor.pose.position for sensor in rig])
+    low, high = NO_VEHICLE_BOUNDS if vehicle is None else vehicle.bounds
+    return np.minimum(low, places.min(axis=0)), np.maximum(high, places.max(axis=0))
+
+
+def _studio(bounds: tuple[Floats, Floats]) -> Environment:
+    """Return a bright room without walls: the floor fades into the paper."""
+    low, high = bounds
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    reach = float(np.hypot(half[0], half[1]))
+
+    def ground(points: Floats, _: Floats) -> Floats:
+        return np.tile(FLOOR, (len(points), 1))
+
+    def haze(points: Floats) -> Floats:
+        away = np.hypot(points[:, 0] - middle[0], points[:, 1] - middle[1]) / reach
+        part = np.clip((away - 1.0) / 1.6, 0.0, 1.0)
+        return part * part * (3.0 - 2.0 * part)
+
+    return Environment(ground, lambda rays: np.tile(PAPER, (len(rays), 1)), SUN, haze)
+
+
+def labelled_picture(
+    vehicle: pe.Vehicle | None, rig: pe.Rig, alt: str, picture: bytes | None = None
+) -> Markup:
+    """Return a picture of a rig on its vehicle with numbered sensors, as a figure.
+
+    `picture` is its `vehicle_picture`, if it is rendered already.
+    """
+    view = default_view(vehicle, rig)
+    width, height = map(float, SIZE)
+    canvas = Canvas(width, height, alt)
+    png = picture or vehicle_picture(vehicle, rig, SIZE, view)
+    canvas.picture(png, (0.0, 0.0, width, height))
+    positions = np.array([sensor.pose.position for sensor in rig])
+    ends = np.stack(view.project(positions, *SIZE), axis=1)
+    hidden = _behind_vehicle(vehicle, view, positions)
+    discs = spread_apart(ends - [0.0, LABEL_RISE])
+    for number, (end, disc) in enumerate(zip(ends, discs, strict=True)):
+        _draw_number(canvas, number, end, disc, bool(hidden[number]))
+    return figure(canvas.svg(), sensor_key(rig))
+
+
+def sensor_key(rig: pe.Rig) -> Markup:
+    """Return a list of the sensors' numbers, colours and names."""
+    items = "".join(
+        '<li><span class="swatch" '
+        f'style="background:{hexadecimal(graphics.sensor_color_on_paper(k))}"></span>'
+        f"{k + 1} {escaped(sensor.name)} <small>({escaped(sensor.model.name)})</small></li>"
+        for k, sensor in enumerate(rig)
+    )
+    return Markup(f'<ul class="key">{items}</ul>')
+
+
+def spread_apart(positions: Floats) -> Floats:
+    """(N, 2) positions moved until all are `LABEL_SPACING` apart and inside the picture [px]."""
+    moved = positions.copy()
+    for _ in range(ROUNDS):
+        apart = moved[:, None] - moved[None]
+        distance = np.sqrt((apart * apart).sum(axis=2))
+        # Two labels at one position are moved to the left and the right, by their numbers.
+        sides = np.sign(np.subtract.outer(np.arange(len(moved)), np.arange(len(moved))))
+        apart[distance < 1e-6, 0] = sides[distance < 1e-6]
+        push = np.maximum(LABEL_SPACING - distance, 0.0) * (sides != 0)
+        length = np.maximum(distance, 1.0)
+        moved = moved + (apart / length[..., None] * push[..., None]).sum(axis=1) / 2.0
+        moved = np.clip(moved, RADIUS + 2.0, np.array(SIZE) - RADIUS - 2.0)
+    return moved
+
+
+def _draw_number(canvas: Canvas, number: int, end: Floats, disc: Floats, hidden: bool) -> None:
+    """Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it."""
+    color = hexadecimal(graphics.sensor_color_on_paper(number))
+    line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
+    dashes = "4 4" if hidden else "none"
+    canvas.add("path", d=line, stroke="#1b1f24", stroke_width=1.5, stroke_dasharray=dashes)
+    if hidden:
+        canvas.add("circle", cx=end[0], cy=end[1], r=4.0, fill=color, stroke="#1b1f24")
+    canvas.add("circle", cx=disc[0], cy=disc[1], r=RADIUS, fill=color, stroke="#1b1f24")
+    canvas.text(disc[0], disc[1] + 6.0, str(number + 1), text_anchor="middle", css="number")
+
+
+def _behind_vehicle(
+    vehicle: pe.Vehicle | None, view: Viewpoint, positions: Floats
+) -> NDArray[np.bool_]:
+    """(N,) whether the vehicle hides positions (N, 3) [m] from the viewpoint."""
+    if vehicle is None:
+        return np.zeros(len(positions), bool)
+    ray = positions - np.array(view.eye)
+    distance = np.sqrt((ray * ray).sum(axis=1))
+    hits = vehicle.first_hit_from(np.array(view.eye), ray / distance[:, None])
+    return np.asarray(hits.distance < distance - BEHIND_M)
+
+
+def sensor_solids(rig: pe.Rig) -> list[PaintedMesh]:
+    """Return a solid for each sensor, in its colour."""
+    colors = map(graphics.sensor_color_on_paper, range(len(rig)))
+    return [_solid(sensor, color) for sensor, color in zip(rig, colors, strict=True)]
+
+
+def housing_of(sensor: pe.Sensor) -> scene.Housing:
+    """Return a sensor's housing; the default of its kind if the catalogue knows no size."""
+    return catalog.housing(sensor.model.name) or sensor_view(sensor.kind).housing
+
+
+def _solid(sensor: pe.Sensor, rgb: tuple[float, float, float]) -> PaintedMesh:
+    housing = housing_of(sensor)
+    paint = Paint(tuple(from_srgb(np.array(rgb)).tolist()), 0.25)
+    shape = _cylinder_parts if housing.shape == "cylinder" else _box_parts
+    parts = shape(np.array(housing.size))
+    triangles = np.concatenate(parts) + housing.center
+    placed = scene.rotate(sensor.pose.ground_from_sensor, triangles.reshape(-1, 3))
+    placed = placed + np.array(sensor.pose.position)
+    numbers = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+    mesh = pe.Vehicle(placed.reshape(-1, 3, 3), numbers, [f"part {k}" for k in range(len(parts))])
+    return PaintedMesh(mesh, (paint, WINDOW)[: len(parts)])
+
+
+def _cylinder_parts(size: Floats) -> list[Floats]:
+    """Return a cylinder around the origin, and the window around it."""
+    r, h = size[0] / 2.0, size[2] / 2.0
+    body = [(0.0, -h), (r, -h), (r, -0.35 * h), (0.94 * r, -0.35 * h)]
+    upper = [(0.94 * r, 0.55 * h), (r, 0.55 * h), (r, 0.9 * h), (0.9 * r, h), (0.0, h)]
+    window = [(0.94 * r, -0.35 * h), (0.94 * r, 0.55 * h)]
+    return [np.concatenate([lathe(body), lathe(upper)]), lathe(window)]
+
+
+def _box_parts(size: Floats) -> list[Floats]:
+    """Return a box around the origin, and a round window at its front."""
+    box = rounded_box(size / 2.0)
+    radius = 0.36 * float(min(size[1], size[2]))
+    disc = lathe([(radius, 0.0), (0.8 * radius, 0.004), (0.0, 0.004)])
+    front = np.stack([disc[..., 2], disc[..., 0], disc[..., 1]], axis=-1)
+    return [box, front + np.array([size[0] / 2.0 + PROUD_M, 0.0, 0.0])]

@@ -1,0 +1,229 @@
+"""What a section of the review page works from and what it returns.
+
+`ReportContext` is one study with its results; `Section` is the HTML, data and scripts that a
+section adds to the page; `About` is what the head of the page says: title, author, date, revision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import date
+from string import ascii_lowercase
+from typing import Any, TypeVar
+
+import pe_core as pe
+from pe_core import search
+
+from .. import advice, graphics, jobs
+
+T = TypeVar("T")
+MAX_TRIANGLES = 200_000
+"""Of the vehicle in pictures on the page; rays are cast at all triangles."""
+MAX_STUDIES = 6
+"""On one page, side by side."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReportContext:
+    """One study, its results, and the values that sections derive from them.
+
+    Attributes
+    ----------
+    name : str
+        Name of the study as readers see it; any text.
+    outcome : Outcome
+        Result of a job: of a score, or of a search with the study before and after it.
+    key : str
+        A letter that identifies the study on its page: ids of elements end in it.
+    picture : bytes or None
+        Rendered picture of the study, PNG; None: a section renders one itself.
+    command : str
+        Command line that reproduces the results; empty if unknown.
+    versions : mapping of str
+        Versions of programs besides the engine's, by name.
+    cache : dict
+        Derived values by name, filled by `cached`; pages that show the same study share it.
+    study_count : int
+        Number of studies on the page.
+    """
+
+    name: str
+    outcome: pe.Outcome
+    key: str = "a"
+    picture: bytes | None = None
+    command: str = ""
+    versions: Mapping[str, str] = field(default_factory=dict)
+    cache: dict[str, Any] = field(default_factory=dict, repr=False)
+    study_count: int = 1
+
+    @property
+    def was_searched(self) -> bool:
+        """Whether the outcome is that of a search: `start` and `study` may then differ."""
+        return self.outcome.kind == "optimize"
+
+    @property
+    def start(self) -> pe.Study:
+        """The study as it was given."""
+        return self.outcome.start
+
+    @property
+    def study(self) -> pe.Study:
+        """The study with the best placement; without a search the study as it was given."""
+        return self.outcome.study
+
+    @property
+    def rig(self) -> pe.Rig:
+        """The sensors of `study`."""
+        return self.study.rig
+
+    @property
+    def before(self) -> pe.Score:
+        """Score of `start`."""
+        return self.outcome.before
+
+    @property
+    def after(self) -> pe.Score:
+        """Score of `study`."""
+        return self.outcome.after
+
+    @property
+    def warnings(self) -> tuple[pe.Advice, ...]:
+        """Warnings about `study`."""
+        return self.outcome.warnings
+
+    @property
+    def robustness(self) -> search.Robustness | None:
+        """Entropies under mounting errors and sensor failures; None without a search."""
+        return self.outcome.robustness
+
+    @property
+    def history(self) -> tuple[jobs.HistoryRow, ...]:
+        """Every placement that became the incumbent, the start first; empty without a search."""
+        return self.outcome.history
+
+    @property
+    def vehicle(self) -> pe.Vehicle | None:
+        """The vehicle at which rays are cast, with all its triangles."""
+        return self.study.vehicle
+
+    @property
+    def display_vehicle(self) -> tuple[pe.Vehicle | None, float]:
+        """The vehicle as the page draws it, and how far simplification moved its surface [m]."""
+        vehicle = self.vehicle
+        if vehicle is None:
+            return None, 0.0
+        return self.cached("vehicle", lambda: graphics.simplified(vehicle, MAX_TRIANGLES))
+
+    @property
+    def sight(self) -> pe.Sight:
+        """Evaluates which locations a rig of this study sees; it caches its measurements."""
+        return self.cached("sight", self.study.sight)
+
+    @property
+    def outlook(self) -> advice.Outlook:
+        """How far and how well the sensors see."""
+        return self.cached("outlook", lambda: advice.outlook(self.sight, self.rig))
+
+    def cached(self, what: str, compute: Callable[[], T]) -> T:
+        """Return the cached value of a name; compute it at the first call."""
+        if what not in self.cache:
+            self.cache[what] = compute()
+        value: T = self.cache[what]
+        return value
+
+    def evaluator(self, samples: int | None = None) -> pe.RigJudge:
+        """Return the evaluator of this study; `samples` replaces the study's own number."""
+        return self.study.evaluator(samples)
+
+
+def keyed_contexts(contexts: Sequence[ReportContext]) -> tuple[ReportContext, ...]:
+    """Return the studies of one page, each with a key of its own.
+
+    Raises
+    ------
+    InputError
+        When there is no study, or more than `MAX_STUDIES`.
+    """
+    if not 1 <= len(contexts) <= MAX_STUDIES:
+        raise pe.InputError("review", "studies", f"1 to {MAX_STUDIES}", len(contexts))
+    return tuple(
+        replace(context, key=key, study_count=len(contexts))
+        for context, key in zip(contexts, ascii_lowercase, strict=False)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """What a section adds to the page.
+
+    Attributes
+    ----------
+    anchor : str
+        Id of the section, the target of links: lower-case letters and hyphens.
+    title : str
+        Plain text; the page writes the heading.
+    html : str
+        The content: whole and well formed, names escaped (`markup`). Headings begin at h3. Ids end
+        in ``-KEY`` of the `ReportContext`, since a page may show several studies. If it is empty,
+        the section is left out.
+    data : dict
+        Plain JSON for the scripts, the text of ``#data-ANCHOR-KEY``.
+    scripts : tuple of str
+        Whole JavaScript programs. The page contains each once, at its end, however many sections
+        name it; a program looks for ``[data-section=ANCHOR]``, whose ``data-key`` is KEY.
+    styles : tuple of str
+        CSS; the page contains each once.
+    """
+
+    anchor: str
+    title: str
+    html: str
+    data: Mapping[str, Any] = field(default_factory=dict)
+    scripts: tuple[str, ...] = ()
+    styles: tuple[str, ...] = ()
+
+
+TODAY = "today"
+"""Date that stands for the day of the run. Without it the same study gives the same bytes."""
+MAX_LETTERS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """Title, author, date and revision at the head of the page; empty ones are left out.
+
+    Parameters
+    ----------
+    title : str
+        Heading in place of the studies' names, which then stand below it.
+    author, revision : str
+    date : str
+        Any text ("2026-05-04", "May 2026"); "today" is the day of the run.
+
+    Raises
+    ------
+    InputError
+        When a text is longer than 200 letters.
+    """
+
+    title: str = ""
+    author: str = ""
+    date: str = ""
+    revision: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("title", "author", "date", "revision"):
+            text = " ".join(str(getattr(self, name)).split())
+            if len(text) > MAX_LETTERS:
+                expected = f"{MAX_LETTERS} letters at most"
+                raise pe.InputError("review", name, expected, f"{len(text)}")
+            object.__setattr__(self, name, text)
+        if self.date.lower() == TODAY:
+            object.__setattr__(self, "date", date.today().isoformat())
+
+    @property
+    def line(self) -> str:
+        """Author, date and revision in one line."""
+        revision = f"Revision {self.revision}" if self.revision else ""
+        return ", ".join(filter(None, (self.author, self.date, revision)))

@@ -1,0 +1,45 @@
+"""The names of the tools that other programs use: `pe_core` shows them, too."""
+
+from . import advice
+from .advice import Advice
+from .exchange import export_rig, import_rig
+from .formats import read_boxes, read_mesh, write_boxes, write_mesh
+from .jobs import (
+    ChoiceJob,
+    Design,
+    Job,
+    OptimizeJob,
+    Outcome,
+    Progress,
+    ScoreJob,
+    TradeOff,
+    export_study,
+    prepare_folder,
+    result_dict,
+    write_front,
+    write_outcome,
+)
+
+__all__ = [
+    "Advice",
+    "ChoiceJob",
+    "Design",
+    "Job",
+    "OptimizeJob",
+    "Outcome",
+    "Progress",
+    "ScoreJob",
+    "TradeOff",
+    "advice",
+    "export_rig",
+    "export_study",
+    "import_rig",
+    "prepare_folder",
+    "read_boxes",
+    "read_mesh",
+    "result_dict",
+    "write_boxes",
+    "write_front",
+    "write_mesh",
+    "write_outcome",
+]

@@ -1,0 +1,195 @@
+"""The runs of a sweep: tasks for the workers of any executor, and checkpoints of their searches."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import closing, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from pe_core.base.errors import InputError
+from pe_core.search import Call, Reply, WorkerDied, run_tasks
+from pe_core.study import Study
+from pe_core.version import __version__
+
+from ..jobs import Checkpoint, OptimizeJob, Outcome, ScoreJob, read_search
+
+WAIT_S = 0.2
+"""How often it is checked whether the sweep continues, while no result arrives."""
+RunResult = Outcome | InputError
+
+
+@dataclass(frozen=True, slots=True)
+class SweepRun:
+    """A study to be scored or optimized.
+
+    Attributes
+    ----------
+    name : str
+        Name of the folder for its results.
+    study_name : str
+    changes : mapping of str to str
+        Values by key, as they were written.
+    study : Study
+        The study with the changes made.
+    """
+
+    name: str
+    study_name: str
+    changes: Mapping[str, str]
+    study: Study
+
+
+class RunCheckpoints(Protocol):
+    """Checkpoints of the search of one run; pickled, as they are sent to the worker."""
+
+    def begin(self, job: OptimizeJob) -> Callable[[], None]:
+        """Give the job the journal of an earlier part; return a function to call at every step."""
+
+
+@dataclass(frozen=True, slots=True)
+class FolderCheckpoints:
+    """Checkpoints that the worker itself saves in the folder of the run's results.
+
+    Attributes
+    ----------
+    folder : path
+    """
+
+    folder: Path
+
+    def begin(self, job: OptimizeJob) -> Callable[[], None]:
+        """Continue the search whose checkpoint is in the folder, if its study is the same."""
+        with suppress(InputError):  # no checkpoint, a damaged one, or another study: a new search
+            job.journal = read_search(self.folder).journal_of(job.study)
+        checkpoint = Checkpoint(job)
+
+        def save() -> None:
+            if checkpoint.due():
+                with suppress(InputError):  # the search continues; its results are saved elsewhere
+                    checkpoint.save(self.folder)
+
+        return save
+
+
+@dataclass(frozen=True, slots=True)
+class RunTask:
+    """The task of a run, as it is sent to a worker: all of it can be pickled.
+
+    Attributes
+    ----------
+    study : Study
+    optimize : bool
+        Whether to search; otherwise the study is scored.
+    threads : int
+        Threads of a grid score; the result does not depend on them.
+    checkpoints : RunCheckpoints, optional
+        Of the search; without them, an interrupted run leaves no checkpoint.
+    version : str
+        Version of the engine that sends the task.
+    """
+
+    study: Study
+    optimize: bool
+    threads: int
+    checkpoints: RunCheckpoints | None = None
+    version: str = __version__
+
+
+def run_task(task: RunTask) -> RunResult:
+    """Score or optimize a study, in a worker; an error is returned, because other runs continue."""
+    if task.version != __version__:
+        expected = f"{task.version}, the version of the program that sent the study"
+        return InputError("worker", "version", expected, __version__)
+    try:
+        outcome = _run_job(task)
+    except InputError as error:
+        return error
+    except Exception as error:  # some executors lose what a worker raises, and wait for ever
+        message = " ".join(f"{type(error).__name__}: {error}".split())
+        return InputError("worker", "run", "to run to its end", message)
+    assert outcome is not None
+    return outcome
+
+
+def _run_job(task: RunTask) -> Outcome | None:
+    if not task.optimize:
+        job = ScoreJob(task.study, task.threads)
+        for _ in job:
+            pass
+        return job.outcome
+    search = OptimizeJob(task.study, task.threads)
+    save = task.checkpoints.begin(search) if task.checkpoints else lambda: None
+    for _ in search:
+        save()
+    return search.outcome
+
+
+class WorkerPool(Protocol):
+    """The workers that run the tasks of a sweep."""
+
+    @property
+    def executor(self) -> Executor:
+        """The executor of the workers; it accepts tasks even after a worker's death."""
+
+    @property
+    def threads(self) -> int:
+        """How many threads a task may use."""
+
+    def width(self) -> int:
+        """How many tasks are submitted at a time."""
+
+    def check(self) -> None:
+        """Raise `InputError` when the workers are gone; called several times a second."""
+
+    def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
+        """Return the checkpoints of a run's search; `folder` is that of the run's results."""
+
+
+def run_all(
+    names: Sequence[str],
+    make_task: Callable[[str], RunTask],
+    pool: WorkerPool,
+    on_result: Callable[[str, RunResult], None],
+    should_continue: Callable[[], bool] = lambda: True,
+) -> None:
+    """Run tasks by name; `on_result` is called with each result as it arrives, in this thread.
+
+    A task whose worker died is run once more, alone, after all others.
+
+    Parameters
+    ----------
+    names : sequence of str
+    make_task : callable
+        From a name to the task; called when a worker is free, and again for a second attempt.
+    pool : WorkerPool
+    on_result : callable
+        Takes a name, and an outcome or an error.
+    should_continue : callable, optional
+        Called several times a second; when it returns False, the remaining tasks are cancelled.
+
+    Raises
+    ------
+    InputError
+        When the workers are gone.
+    """
+
+    def call_of(name: str, _missing: tuple[str, ...]) -> Call:
+        return Call(_reply, (make_task(name),))
+
+    with closing(run_tasks(pool.executor, deque(names), call_of, pool.width, WAIT_S)) as batches:
+        pool.check()
+        while should_continue() and (batch := next(batches, None)) is not None:
+            for name, result in batch:
+                if isinstance(result, WorkerDied):
+                    expected, found = "a worker that survives its task", "two that died"
+                    result = InputError(name, "worker", expected, f"{found} ({result.reason})")
+                on_result(name, result)
+            pool.check()
+
+
+def _reply(task: RunTask) -> Reply[RunResult]:
+    return Reply(run_task(task))

@@ -1,0 +1,147 @@
+"""The table of a sweep, one row for each run: as CSV, as JSON and for the terminal."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pe_core.base.errors import InputError
+from pe_core.base.files import read_bytes
+from pe_core.base.serialization import dump_json, finite
+from pe_core.study import RESULT
+from pe_core.version import __version__
+
+from ..jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_folder
+from .sweep_runner import SweepRun
+
+SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
+WAITING, BEGUN, DONE, FAILED = "waiting", "begun", "done", "failed"
+BEST, GAP = "*", "  "
+
+
+@dataclass(frozen=True, slots=True)
+class SweepRow:
+    """The state of a run.
+
+    Attributes
+    ----------
+    run : SweepRun
+    status : {"waiting", "begun", "done", "failed"}
+        A run that is begun may have a checkpoint of its search in its folder.
+    before, entropy : float or None
+        Of the given study, and of the result [nats]; equal if there was no search.
+    coverage : float or None
+    message : str
+        Why the run failed.
+    """
+
+    run: SweepRun
+    status: str = WAITING
+    before: float | None = None
+    entropy: float | None = None
+    coverage: float | None = None
+    message: str = ""
+
+
+def row_of(run: SweepRun, result: Outcome | InputError) -> SweepRow:
+    """Return the row of a run's result."""
+    if isinstance(result, InputError):
+        return SweepRow(run, FAILED, message=str(result))
+    before, after = result.before, result.after
+    return SweepRow(run, DONE, before.entropy, after.entropy, after.coverage)
+
+
+def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
+    """Return the row of a run whose result is in its folder already; None otherwise.
+
+    The result must be complete, of this study and kind, and of this version.
+    """
+    try:
+        data: Any = json.loads(read_bytes(folder / RESULT))
+        made = (data["kind"], data["stopped"], data["run"]["versions"]["perception-entropy"])
+        same = data["inputs"]["study_sha256"] == fingerprint(run.study)
+        if made != (kind, False, __version__) or not same or files_of_other_runs(folder):
+            return None
+        before, entropy = float(data["before"]["entropy"]), float(data["entropy"])
+        return SweepRow(run, DONE, before, entropy, float(data["coverage"]))
+    except (KeyError, RecursionError, TypeError, ValueError):
+        return None
+
+
+def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, Any]:
+    """Write sweep.csv and sweep.json, together; return what sweep.json holds.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or one of the files belongs to another program.
+    """
+    data = {"kind": f"sweep of {kind}", "version": __version__, "runs": [_dict(r) for r in rows]}
+    with FileSet(prepare_folder(folder)) as files:
+        files.add(SWEEP_CSV, _csv(rows).encode(errors="backslashreplace"))
+        files.add(SWEEP_JSON, dump_json(finite(data)).encode(errors="backslashreplace"))
+    return data
+
+
+def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
+    """Return the lines of the table for the terminal; the lowest entropy is marked."""
+    keys, several = _keys(rows), len({row.run.study_name for row in rows}) > 1
+    heads = [*["study"] * several, *keys, *["start"] * (kind != "score"), "entropy", "coverage"]
+    lowest = min((r.entropy for r in rows if r.entropy is not None), default=None)
+    table = [heads]
+    for row in rows:
+        before = [_figure(row.before)] if kind != "score" else []
+        best = BEST if row.entropy is not None and row.entropy == lowest else " "
+        entropy = row.status if row.entropy is None else f"{row.entropy:.4f}{best}"
+        coverage = "-" if row.coverage is None else f"{row.coverage:.1%}"
+        named = [*[row.run.study_name] * several, *(row.run.changes.get(k, "") for k in keys)]
+        table.append([*named, *before, entropy, coverage])
+    return _aligned(table, len(heads) - 2 - (kind != "score"))
+
+
+def _aligned(table: list[list[str]], texts: int) -> list[str]:
+    """Return the lines of a table: texts left-aligned, then figures right-aligned."""
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    lines = []
+    for cells in table:
+        each = enumerate(zip(cells, widths, strict=True))
+        lines.append(GAP.join(c.ljust(w) if k < texts else c.rjust(w) for k, (c, w) in each))
+    return [line.rstrip() for line in lines]
+
+
+def _figure(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4f}"
+
+
+def _keys(rows: Sequence[SweepRow]) -> list[str]:
+    return list(dict.fromkeys(key for row in rows for key in row.run.changes))
+
+
+def _dict(row: SweepRow) -> dict[str, Any]:
+    return {
+        "run": row.run.name,
+        "study": row.run.study_name,
+        "changes": dict(row.run.changes),
+        "status": row.status,
+        "entropy_before": row.before,
+        "entropy": row.entropy,
+        "coverage": row.coverage,
+        "message": row.message,
+    }
+
+
+def _csv(rows: Sequence[SweepRow]) -> str:
+    text, keys = io.StringIO(), _keys(rows)
+    writer = csv.writer(text, lineterminator="\n")
+    figures = ("status", "entropy_before", "entropy", "coverage", "message")
+    writer.writerow(["run", "study", *keys, *figures])
+    for row in rows:
+        data, changes = _dict(row), row.run.changes
+        named = [data["run"], data["study"], *(changes.get(key, "") for key in keys)]
+        writer.writerow([*named, *("" if data[f] is None else data[f] for f in figures)])
+    return text.getvalue()

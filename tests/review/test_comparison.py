@@ -1,0 +1,124 @@
+"""The comparison of studies: differing sensors, the better rig, hidden sensors, prices."""
+
+import dataclasses
+import re
+
+import pytest
+
+import pe_core as pe
+from pe_core.catalog import load
+from pe_tools.page import ReportContext, keyed_contexts
+from pe_tools.page.markup import escaped
+from pe_tools.page.sections.bill_of_materials import price_of, price_text
+from pe_tools.page.sections.comparison import comparison as comparison_section
+from pe_tools.page.sections.overview import cautions, overview
+from pe_tools.page.sections.sensor_details import sensor_details
+from pe_tools.page.sections.sensor_differences import sensor_differences
+from tests.review.conftest import NAMES, small_study
+
+LIDAR, CAMERA = NAMES
+
+
+def cells(html):
+    """The texts of a table's rows."""
+    rows = re.findall(r"<tr>(.*?)</tr>", html.partition("<tbody>")[2].partition("</tbody>")[0])
+    texts = (re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in rows)
+    return [[re.sub(r"<[^>]*>", "", text).strip() for text in row] for row in texts]
+
+
+def beside(*rigs, **changes):
+    """Studies of these rigs as a page has them; none is scored."""
+    study = dataclasses.replace(small_study(), **changes)
+    each = [pe.Outcome("score", s, s, None, None) for s in map(study.with_rig, rigs)]
+    return keyed_contexts(
+        [ReportContext(name, one) for name, one in zip("ABCDEF", each, strict=False)]
+    )
+
+
+def rig(*, x=0.0, yaw=170.0, camera="Camera 60 deg", without=()):
+    found = small_study(x).rig
+    eye = dataclasses.replace(
+        found[CAMERA], model=load(camera), pose=pe.Pose.from_degrees((2.3, 0.2, 1.2), (0, 0, yaw))
+    )
+    return pe.Rig([s for s in (found[LIDAR], eye) if s.name not in without])
+
+
+def test_a_row_a_sensor_with_what_differs():
+    each = beside(rig(), rig(x=-1.5, yaw=-175.0), rig(camera="Camera 120 deg"))
+    html = sensor_differences(each)
+    lidar, moved, eye, turned, other = cells(html)
+    assert lidar[1:] == ["A C", "small LiDAR", "0.000", "0.000", "1.800", *["0.00"] * 3]
+    assert moved[3] == "−1.500 (−1.500)" and moved[1] == "B"
+    assert eye[0] == "front &amp; left / 60°" and eye[-1] == "170.00"
+    assert turned[-1] == "−175.00 (+15.00)", "the short way round"
+    assert other[1:3] == ["C", "Camera 120 deg"] and "<b>Camera 120 deg</b>" in html
+    assert html.count("Price") == 0 and "give no prices" in html
+    assert "All 2 differ" in html
+
+
+def test_what_is_alike_stands_once_and_what_is_missing_is_told():
+    html = sensor_differences(beside(rig(), rig()))
+    assert "All sensors have the same models and poses." in html
+    assert [row[1] for row in cells(html)] == ["all", "all"]
+    missing = cells(sensor_differences(beside(rig(without=[CAMERA]), rig())))
+    assert missing[1][1:3] == ["A", "not mounted"] and missing[2][1] == "B"
+    model = dataclasses.replace(rig()[LIDAR].model, max_range=50.0)
+    own = pe.Rig([dataclasses.replace(rig()[LIDAR], model=model), rig()[CAMERA]])
+    assert "small LiDAR (other values)" in sensor_differences(beside(rig(), own))
+
+
+def test_prices_are_those_of_the_study_s_choices():
+    options = [pe.Option(load(name), price) for name, price in PRICES.items()]
+    choice = pe.Choice(options, sensors=[CAMERA])
+    each = beside(
+        rig(), rig(camera="Camera 120 deg"), selection=pe.Selection([choice], currency="EUR")
+    )
+    html = sensor_differences(each)
+    assert [row[3] for row in cells(html)] == ["", "1,200 EUR", "99.50 EUR"]
+    assert "Where a price is empty" in html
+    assert price_of(each[0].study, each[0].rig[LIDAR]) is None and price_text(5.0, "") == "5"
+
+
+PRICES = {"Camera 60 deg": 1200.0, "Camera 120 deg": 99.5}
+
+
+@pytest.fixture(scope="module")
+def comparison(scored, other):
+    """The comparison of two studies, as HTML."""
+    return comparison_section(keyed_contexts([scored, other])).html
+
+
+def test_the_comparison_says_the_engine_s_sentences(scored, other, comparison):
+    rows = pe.advice.compare({"a": scored.after, "b": other.after})
+    better = min((scored, other), key=lambda one: one.after.entropy)
+    text = re.sub(r"<[^>]*>", "", comparison)
+    name = re.escape(escaped(better.name))
+    assert re.search(rf"Overall\s+{name} is best by entropy: {better.after.entropy:.2f}", text)
+    assert rows[0].winner is not None
+    assert comparison.index("Differences between the rigs") < comparison.index(
+        "Maps of the difference"
+    )
+
+
+def test_tables_of_several_studies_are_one(scored, other, comparison):
+    """What each sensor is worth stands in the comparison, and in no column beside it."""
+    both = keyed_contexts([scored, other])
+    assert "Contribution of each sensor" in sensor_details(scored).html
+    assert "Contribution of each sensor" not in sensor_details(both[0]).html
+    lost = [one.after.per_sensor[LIDAR].lost for one in both]
+    row = next(row for row in cells(comparison.rpartition("<table")[2]) if row and "roof" in row[0])
+    assert row[1:] == [f"+{value:.2f}" for value in lost]
+
+
+def test_a_camera_in_the_body_is_named_in_the_summary(scored):
+    inside = dataclasses.replace(small_study().rig[CAMERA], pose=pe.Pose((0.0, 0.0, 0.9)))
+    study = small_study().with_rig(pe.Rig([small_study().rig[LIDAR], inside]))
+    job = pe.ScoreJob(study)
+    for _ in job:
+        pass
+    one = ReportContext("inside", job.outcome)
+    said = f"<b>{CAMERA.replace('&', '&amp;')}</b> (inside the body, 100% of its picture hidden)"
+    assert cautions(one).startswith(f"{said} sees nothing.")
+    assert said in overview((one,)).html and "sees nothing" not in overview((scored,)).html
+    named = comparison_section(keyed_contexts([scored, one])).html
+    assert f"{said} sees nothing." in named

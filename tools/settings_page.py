@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Write docs/settings.md: all settings that the engine declares, by key of the study file.
+
+``tools/settings_page.py`` writes the page; a test compares it with the declarations.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from pe_core.study import (  # noqa: E402
+    REQUIRED,
+    Number,
+    OneOf,
+    Pair,
+    Setting,
+    Toggle,
+    Whole,
+    setting_keys,
+    value_in_file,
+)
+
+PAGE = ROOT / "docs" / "settings.md"
+HEAD = """# Settings
+
+Numbers and switches of a study, as the engine declares them: written by `tools/settings_page.py`.
+Angles are in degrees in a file. [study.md](study.md) explains the file, its lists and tables.
+
+| key | default | range | in Blender's panel | meaning |
+| --- | --- | --- | --- | --- |
+"""
+
+
+def page() -> str:
+    """Return the whole page."""
+    return HEAD + "".join(row(key, setting) for key, setting in setting_keys())
+
+
+def row(key: str, setting: Setting) -> str:
+    """Return the row of one setting."""
+    panel = "" if setting.panel is None else setting.panel.label
+    cells = f"`{key}`", default_text(setting), range_text(setting.rule), panel, setting.text
+    return f"| {' | '.join(cells)} |\n"
+
+
+def default_text(setting: Setting) -> str:
+    """Return the default as a file has it; nothing for a setting that may be absent."""
+    if setting.default is REQUIRED:
+        return "required"
+    value = value_in_file(setting, setting.default)
+    return "" if value is None else f"`{json.dumps(value)}`"
+
+
+def range_text(rule: object) -> str:
+    """Return what a rule allows, in a few words."""
+    match rule:
+        case Toggle():
+            return "true or false"
+        case OneOf():
+            return " or ".join(f'"{text}"' for text in rule.among)
+        case Pair():
+            return f"low before high [{rule.rule.unit}]"
+        case Whole():
+            return f"{rule.minimum:,} to {rule.maximum:,}"
+        case Number():
+            return f"{_low(rule)}{_high(rule)}" + (f" [{rule.unit}]" if rule.unit else "")
+    raise TypeError(f"no words for {type(rule).__name__}")
+
+
+def _low(rule: Number) -> str:
+    return f"{'above ' if rule.above else ''}{rule.minimum:,.12g}"
+
+
+def _high(rule: Number) -> str:
+    if rule.maximum == float("inf"):
+        return "" if rule.above else " and more"
+    return f" to {'below ' if rule.below else ''}{rule.maximum:,.12g}"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), "utf-8")

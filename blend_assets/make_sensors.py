@@ -32,7 +32,7 @@ NAMESPACE = uuid.UUID("8d1f2c1e-6a3b-4b0e-9f0a-5f1c7f3e9a41")
 KINDS = {"lidar": "LiDAR", "camera": "Camera"}
 MAKERS = {"paper": "Paper", "cameras": "Data sets and modules", "robosense": "RoboSense"}
 """Files of the catalogue that are no maker's plain name."""
-MOST_RAYS = 33
+MAX_RAYS = 33
 
 
 def main() -> None:
@@ -143,7 +143,7 @@ def looks(model: pe.Lidar | pe.Camera) -> Array:
         half = model.hfov / 2.0
         return np.array([[np.cos(a), np.sin(a), 0.0] for a in (-half, half)])
     up = model.elevations
-    up = up[np.unique(np.linspace(0, len(up) - 1, min(len(up), MOST_RAYS)).round().astype(int))]
+    up = up[np.unique(np.linspace(0, len(up) - 1, min(len(up), MAX_RAYS)).round().astype(int))]
     return np.stack([np.cos(up), np.zeros(len(up)), np.sin(up)], axis=1)
 
 

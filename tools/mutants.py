@@ -38,7 +38,7 @@ SETTINGS = ROOT / "tests" / "mutants.toml"
 COPIED = ("pe_core", "pe_tools", "blend_assets", "tests", "docs/objects")
 
 KILLED, SURVIVED, TIMED_OUT = "killed", "survived", "timed out"
-LEAST_TIMEOUT_S, TIMEOUT_FACTOR = 20.0, 4.0
+MIN_TIMEOUT_S, TIMEOUT_FACTOR = 20.0, 4.0
 """A mutant that takes this many times as long as no mutant, and this at least, does not end."""
 MEMORY_BYTES = 6 << 30
 """What a mutant may ask for: some ask for all there is."""
@@ -264,7 +264,7 @@ def tried(mutants: list[Mutant], rooms: list[Room], workers: int) -> list[str]:
 
 
 def _timeout(baseline_s: float) -> float:
-    return max(LEAST_TIMEOUT_S, TIMEOUT_FACTOR * baseline_s)
+    return max(MIN_TIMEOUT_S, TIMEOUT_FACTOR * baseline_s)
 
 
 def _teller(total: int) -> Callable[[Mutant, str], None]:

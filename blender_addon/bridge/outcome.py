@@ -46,14 +46,14 @@ def store_outcome(
         _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
         obj.perception_entropy.result_of = obj.name
         obj.perception_entropy.result_run = signature
-    store_words(scene, outcome.study, outcome.after)
+    store_text(scene, outcome.study, outcome.after)
     _store_breakdown(settings, outcome.after)
     store_object_score(settings, outcome.after.objects)
     settings.result_stale = False
     settings.has_result = True
 
 
-def store_words(
+def store_text(
     scene: bpy.types.Scene,
     study: pe.Study,
     score: pe.Score,

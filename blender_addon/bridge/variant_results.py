@@ -18,7 +18,7 @@ from .variants import Variant, find_or_add_variant, mark_active, study_of_varian
 from .versions import score_from_dict, score_to_dict
 
 BEFORE = "Before choosing"
-LONGEST_NAME = 60
+MAX_NAME_LENGTH = 60
 
 
 def same_score(records: Sequence[SensorRecord], others: Sequence[SensorRecord]) -> bool:
@@ -137,7 +137,9 @@ def store_front(scene: bpy.types.Scene, trade_off: pe.TradeOff, surroundings: st
     before = find_or_add_variant(scene, BEFORE, records).key
     settings.front.clear()
     for design in trade_off.front:
-        variant = find_or_add_variant(scene, design.name[:LONGEST_NAME], _designed(records, design))
+        variant = find_or_add_variant(
+            scene, design.name[:MAX_NAME_LENGTH], _designed(records, design)
+        )
         if design.score is not None:
             store_variant_score(variant, design.score, surroundings)
         variant.note = variant.note or _note(design, settings.currency)

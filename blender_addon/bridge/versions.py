@@ -32,14 +32,14 @@ def migrated(old: Stored) -> Stored:
     return old
 
 
-def _with_words(old: Stored) -> Stored:
+def _with_text(old: Stored) -> Stored:
     """Migrate to version 1, which stores the sentences of a result and a new signature."""
     if not old.has_result:
         return old
-    return replace(old, result_words="\n".join(_words_of(old.result_json)), result_stale=True)
+    return replace(old, result_words="\n".join(_text_of(old.result_json)), result_stale=True)
 
 
-STEPS: dict[int, Callable[[Stored], Stored]] = {0: _with_words}
+STEPS: dict[int, Callable[[Stored], Stored]] = {0: _with_text}
 """The step from each version to the next."""
 
 
@@ -87,7 +87,7 @@ def score_from_dict(figures: dict) -> pe.Score:
     return pe.Score(*whole, by_class, by_zone, {}, voxels, objects=object_score, scatter=residuals)
 
 
-def _words_of(result_json: str) -> tuple[str, ...]:
+def _text_of(result_json: str) -> tuple[str, ...]:
     try:
         return advice.rig_words(score_from_dict(json.loads(result_json)["after"]))
     except (ValueError, KeyError, TypeError):  # a damaged result has no sentences

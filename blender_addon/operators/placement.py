@@ -56,7 +56,7 @@ class HeldSensor:
         self._drafts = self._study(context.scene, depsgraph)
         self._workspace = context.workspace.name
         self._preview.begin()
-        self.tell_keys()
+        self.show_keys()
 
     def point(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """Follow the mouse; return whether it is over a 3D view."""
@@ -73,7 +73,7 @@ class HeldSensor:
         """Change the stance of the sensor at its present spot."""
         self.stance = stance
         self._stand(self._spot)
-        self.tell_keys()
+        self.show_keys()
 
     def typed(self, letter: str) -> None:
         """Append a digit or a point to the typed stand-off; "" removes the last character."""
@@ -81,7 +81,7 @@ class HeldSensor:
         try:
             stand_off_m = float(self._typed or self.mount.stand_off_m)
         except ValueError:  # not yet a number, such as a point alone
-            self.tell_keys()
+            self.show_keys()
             return
         self.stand(replace(self.stance, stand_off_m=min(stand_off_m, MAX_STAND_OFF_M)))
 
@@ -113,7 +113,7 @@ class HeldSensor:
         self._drafts, self.score = self._study(scene, depsgraph), ""
         self._stand(None)
 
-    def tell_keys(self) -> None:
+    def show_keys(self) -> None:
         """Show the keys in the status bar."""
         workspace = bpy.data.workspaces.get(self._workspace)
         if workspace is not None:

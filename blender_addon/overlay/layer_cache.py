@@ -73,7 +73,7 @@ class LayerCache:
 
     def cast(self, request: ViewRequest, of: SceneSensor) -> graphics.Cast:
         """Return where the beams of a LiDAR end; of a few beams while something moves."""
-        most = graphics.A_DRAFT if request.moving else graphics.MOST
+        most = graphics.PREVIEW_BEAMS if request.moving else graphics.MAX_BEAMS
         key = of.key, request.body_key, most
         return self._keep("casts", key, lambda: graphics.cast(of.sensor, self.body(request), most))
 

@@ -71,10 +71,10 @@ class PE_PT_explain(Tab, bpy.types.Panel):
         if settings.has_result:
             draw_sensor_table(layout, context)
         if obj is not None and obj.perception_entropy.is_sensor:
-            draw_sensor_words(layout, context, obj)
+            draw_sensor_text(layout, context, obj)
 
 
-def draw_sensor_words(
+def draw_sensor_text(
     layout: bpy.types.UILayout, context: bpy.types.Context, obj: bpy.types.Object
 ) -> None:
     """Draw sentences on one sensor of the last result."""

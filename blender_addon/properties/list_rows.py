@@ -197,7 +197,7 @@ class PE_SensorOption(bpy.types.PropertyGroup):
     )
 
 
-LONGEST_NAME = 60
+MAX_NAME_LENGTH = 60
 
 KINDS = (
     (ON_SURFACE, "Surface", "The sensor moves on faces of the vehicle"),
@@ -256,7 +256,7 @@ class PE_MountSettings(bpy.types.PropertyGroup):
     name: StringProperty(
         name="Name",
         description="Name of the mount. Double-click to change it",
-        maxlen=LONGEST_NAME,
+        maxlen=MAX_NAME_LENGTH,
         update=_keep_apart,
     )
     known_as: StringProperty(name="Known As", description="Its name when last looked at")

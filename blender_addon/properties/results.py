@@ -53,7 +53,7 @@ class PE_StoppingPart(bpy.types.PropertyGroup):
     )
 
 
-LONGEST_NAME = 60
+MAX_NAME_LENGTH = 60
 
 
 def _keep_apart(variant: PE_Variant, _context: bpy.types.Context) -> None:
@@ -105,7 +105,7 @@ class PE_Variant(bpy.types.PropertyGroup):
     name: StringProperty(
         name="Name",
         description="Name of the variant. Double-click to change it",
-        maxlen=LONGEST_NAME,
+        maxlen=MAX_NAME_LENGTH,
         update=_keep_apart,
     )
     key: IntProperty(name="Key", description="Tells it from the others, whatever its name")

@@ -9,9 +9,9 @@ from __future__ import annotations
 import reprlib
 from typing import Any
 
-LONGEST_FOUND = 80
+MAX_FOUND_LENGTH = 80
 """Maximum characters of a found value in a message."""
-LONGEST_TEXT = 160
+MAX_TEXT_LENGTH = 160
 """Maximum characters of the field and of what was expected: a list of all keys of a table fits."""
 CUT = "..."
 MANY_DIGITS = 40
@@ -37,11 +37,11 @@ class InputError(ValueError):
 
     def __init__(self, source: object, field: str, expected: str, found: object) -> None:
         self.source, self.field, self.expected, self.found = str(source), field, expected, found
-        where = f"{_middle_cut(visible(self.source))}: {_cut(visible(field), LONGEST_TEXT)}"
+        where = f"{_middle_cut(visible(self.source))}: {_cut(visible(field), MAX_TEXT_LENGTH)}"
         self._found_text = visible(found) if isinstance(found, str) else _short(found)
-        wanted = _cut(visible(expected), LONGEST_TEXT)
+        wanted = _cut(visible(expected), MAX_TEXT_LENGTH)
         super().__init__(
-            f"{where}: expected {wanted}, found {_cut(self._found_text, LONGEST_FOUND)}"
+            f"{where}: expected {wanted}, found {_cut(self._found_text, MAX_FOUND_LENGTH)}"
         )
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -54,14 +54,14 @@ class InputError(ValueError):
 
 def shown(value: object) -> str:
     """Return a value as messages quote it: like `repr`, but short, and it never fails."""
-    return _cut(_SHORT.repr(value), LONGEST_FOUND)
+    return _cut(_SHORT.repr(value), MAX_FOUND_LENGTH)
 
 
 def visible(text: str) -> str:
     """Return a text with unprintable characters escaped: controls, line ends, text direction."""
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() else _escaped(c) for c in text[: 10 * LONGEST_TEXT])
+    return "".join(c if c.isprintable() else _escaped(c) for c in text[: 10 * MAX_TEXT_LENGTH])
 
 
 def _escaped(character: str) -> str:
@@ -74,7 +74,7 @@ class _Short(reprlib.Repr):
     def __init__(self) -> None:
         super().__init__()
         self.maxlevel = 3
-        self.maxstring = self.maxother = LONGEST_FOUND
+        self.maxstring = self.maxother = MAX_FOUND_LENGTH
 
     def repr(self, x: Any) -> str:
         if getattr(x, "ndim", None) == 0 and hasattr(x, "item"):
@@ -116,7 +116,7 @@ def _cut(text: str, longest: int) -> str:
 
 def _middle_cut(text: str) -> str:
     """Cut a long source in its middle: both ends of a path are of use."""
-    if len(text) <= LONGEST_TEXT:
+    if len(text) <= MAX_TEXT_LENGTH:
         return text
-    half = (LONGEST_TEXT - len(CUT)) // 2
+    half = (MAX_TEXT_LENGTH - len(CUT)) // 2
     return text[:half] + CUT + text[-half:]

@@ -24,7 +24,7 @@ MAX_NAME = 255
 """Maximum characters of a name, as in file systems and in Blender."""
 MAX_PATH = 4096
 """Maximum characters of a path, as in Linux."""
-COUNT_WORDS = {2: "two", 3: "three"}
+NUMBER_NAMES = {2: "two", 3: "three"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class Number:
         if count == 1:
             noun = f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"
         else:
-            noun = f"{COUNT_WORDS.get(count, count)} {noun}s"
+            noun = f"{NUMBER_NAMES.get(count, count)} {noun}s"
         if self.cap < abs(number) < math.inf:
             return f"{noun} within +-{self.cap:.12g}{self._unit}"
         return f"{noun}{self._range}"

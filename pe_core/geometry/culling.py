@@ -23,7 +23,7 @@ Ends = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True, slots=True)
-class SeenBoxes:
+class VisibleBoxes:
     """Boxes (N,) of a level: numbers, rectangles on a face, lower bounds of the distance [m]."""
 
     number: Ints
@@ -31,10 +31,10 @@ class SeenBoxes:
     v: Spans
     near: Floats
 
-    def __getitem__(self, index: NDArray | slice) -> SeenBoxes:
+    def __getitem__(self, index: NDArray | slice) -> VisibleBoxes:
         """Return the boxes at `index`."""
         u, v = ((w[0][index], w[1][index]) for w in (self.u, self.v))
-        return SeenBoxes(self.number[index], u, v, self.near[index])
+        return VisibleBoxes(self.number[index], u, v, self.near[index])
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class FaceLook:
         u, v = boxes.u, boxes.v
         return (float(u[0].min()), float(u[1].max())), (float(v[0].min()), float(v[1].max()))
 
-    def boxes(self, select: Select) -> SeenBoxes:
+    def boxes(self, select: Select) -> VisibleBoxes:
         """Return the selected boxes of the lowest level, nearest first."""
         level = len(self.tree.boxes) - 1
         boxes = self._shown(np.arange(len(self.tree.boxes[level])), level)
@@ -69,7 +69,7 @@ class FaceLook:
             boxes = self._shown(self.tree.below(boxes.number, level), level - 1)
             level -= 1
 
-    def largest(self, count_rays: CountRays, min_count: int) -> tuple[int, SeenBoxes]:
+    def largest(self, count_rays: CountRays, min_count: int) -> tuple[int, VisibleBoxes]:
         """Return the highest level with `min_count` boxes with rays, and these, nearest first."""
         level = len(self.tree.boxes) - 1
         boxes = self._shown(np.arange(len(self.tree.boxes[level])), level)
@@ -81,13 +81,13 @@ class FaceLook:
             level -= 1
 
     def opened(
-        self, boxes: SeenBoxes, level: int, count_rays: CountRays, max_rays: int
-    ) -> tuple[list[SeenBoxes], SeenBoxes]:
+        self, boxes: VisibleBoxes, level: int, count_rays: CountRays, max_rays: int
+    ) -> tuple[list[VisibleBoxes], VisibleBoxes]:
         """Split the boxes with more than `max_rays` rays, level by level.
 
         Returns boxes with at most `max_rays`, by level, lowest first; and lowest boxes with more.
         """
-        small: list[SeenBoxes] = []
+        small: list[VisibleBoxes] = []
         while True:
             ray_count = count_rays(boxes.u, boxes.v)
             small.insert(0, boxes[np.flatnonzero((ray_count > 0) & (ray_count <= max_rays))])
@@ -107,7 +107,7 @@ class FaceLook:
         shown = (corner_max(depth) > 0.0) & select(*spans)
         return facing[np.flatnonzero(shown)]
 
-    def _shown(self, boxes: Ints, level: int) -> SeenBoxes:
+    def _shown(self, boxes: Ints, level: int) -> VisibleBoxes:
         """Return which of these boxes of a level are visible on the face."""
         low, high = self.tree.boxes[level][boxes].transpose(1, 2, 0) - self.origin[:, None]
         (near, u0, v0), (far, u1, v1) = self.face.split(low), self.face.split(high)
@@ -117,4 +117,4 @@ class FaceLook:
         x, y, z = np.maximum(np.maximum(low, -high), 0.0)
         distance = np.sqrt(x * x + y * y + z * z) * (1.0 - BOX_MARGIN)
         shown = (far > 0.0) & (u[0] <= u[1]) & (v[0] <= v[1])
-        return SeenBoxes(boxes, u, v, distance)[np.flatnonzero(shown)]
+        return VisibleBoxes(boxes, u, v, distance)[np.flatnonzero(shown)]

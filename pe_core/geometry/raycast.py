@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bins import FACES, Raster, RowSpans, Spans, row_spans
-from .culling import Ends, FaceLook, SeenBoxes
+from .culling import Ends, FaceLook, VisibleBoxes
 from .indexing import blocks, count_up
 from .ray_traversal import RayBoxes, RayWalk
 from .ray_triangle import Facing, Targets, min_distance
@@ -36,7 +36,7 @@ FINER = 2.0
 """Maximum ratio of bins to rays along a side, for meshes with many triangles."""
 RADIX_BINS = 1 << 16
 """Maximum number of bins for 16-bit keys, for which NumPy uses radix sort."""
-WORTH_SORTING = 0.8
+SORTING_SHARE = 0.8
 """Rays are sorted again when at most this share of them is not finished."""
 
 
@@ -90,7 +90,7 @@ class BinnedRays:
     def but_nearer(self, distance: Floats, than: float) -> BinnedRays:
         """Return the rays without a hit nearer than `than` [m]; all if few have one."""
         left = np.flatnonzero(distance[self.ray] >= than)
-        if not 0 < len(left) <= WORTH_SORTING * len(self.ray):
+        if not 0 < len(left) <= SORTING_SHARE * len(self.ray):
             return self  # also when none is left: the loop then ends soon
         return BinnedRays(
             self.ray[left], self.u[left], self.v[left], self.directions[:, left], self._triangles
@@ -110,7 +110,7 @@ class BinnedRays:
         """Whether there is a ray in the bins of each rectangle."""
         return self.count_in(u, v) > 0
 
-    def ray_boxes(self, boxes: SeenBoxes, distance: Floats) -> RayBoxes:
+    def ray_boxes(self, boxes: VisibleBoxes, distance: Floats) -> RayBoxes:
         """Return pairs of a box and a ray through its rectangle, but no ray with a nearer hit."""
         (u0, u1), (v0, v1) = boxes.u, boxes.v
         none_cut = np.zeros(len(u0), np.bool_)
@@ -140,15 +140,15 @@ RAYS_AT_ONCE = 1 << 18
 """Maximum rays that are cast at once, to limit memory."""
 FINE = 16
 """Ratio of triangles to rays above which rays are followed down the tree one by one."""
-ENOUGH_BOXES = 256
+MIN_BOXES_TO_SORT = 256
 """Minimum number of boxes of such a mesh's level that is sorted by distance."""
 FIRST_BOXES = 64
 """Boxes that are opened before finished rays are removed; doubled each time."""
 FEW_RAYS = 12
 """Maximum rays in a box for which each ray is followed on its own."""
-WORTH_CUTTING = 16
+MIN_RAYS_TO_CUT = 16
 """Rays in a triangle's rectangle above which its bins are cut along its edges."""
-MOST_BOXES = 1 << 13
+MAX_BOXES = 1 << 13
 """Maximum boxes whose triangles are tested at once, to limit memory."""
 
 
@@ -160,7 +160,7 @@ class Hits:
     face: Ints
 
 
-class SeenTriangles:
+class VisibleTriangles:
     """A mesh for rays from one point.
 
     Parameters
@@ -210,14 +210,14 @@ def _faces_passed(d: Floats) -> NDArray[np.int8]:
 def _cast(look: FaceLook, rays: BinnedRays, walk: RayWalk, hits: Hits) -> None:
     """Cast the rays of one face at the boxes that are visible on it, nearest first."""
     fine = len(look.tree.number) > FINE * len(rays.ray)
-    level, boxes = look.largest(rays.count_in, ENOUGH_BOXES if fine else MANY)
+    level, boxes = look.largest(rays.count_in, MIN_BOXES_TO_SORT if fine else MANY)
     count = FIRST_BOXES
     while len(boxes.number):
         unfinished = rays.but_nearer(hits.distance, boxes.near[0])
         if unfinished is not rays:
             rays, boxes = unfinished, boxes[np.flatnonzero(unfinished.any_in(boxes.u, boxes.v))]
         few, many = look.opened(boxes[:count], level, rays.count_in, FEW_RAYS if fine else 0)
-        for some in blocks(len(many.number), MOST_BOXES):
+        for some in blocks(len(many.number), MAX_BOXES):
             _scatter(look.triangles(many.number[some], rays.any_in), look, rays, hits)
         if fine:
             starts = [rays.ray_boxes(some, hits.distance) for some in few]
@@ -235,7 +235,7 @@ def _scatter(triangles: Facing, look: FaceLook, rays: BinnedRays, hits: Hits) ->
 def _meet(targets: Targets, near: Floats, look: FaceLook, rays: BinnedRays, hits: Hits) -> None:
     """Test triangles, at least `near` (G,) [m] away, against the rays in their bins."""
     u, v = targets.triangles.u, targets.triangles.v
-    spans = targets.spans(look.face, rays.raster, rays.count_in(u, v) > WORTH_CUTTING)
+    spans = targets.spans(look.face, rays.raster, rays.count_in(u, v) > MIN_RAYS_TO_CUT)
     first, count = rays.in_bins(spans)
     with_rays = np.flatnonzero(count)
     item, first, count = spans.item[with_rays], first[with_rays], count[with_rays]

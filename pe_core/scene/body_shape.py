@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.errors import LONGEST_FOUND, InputError
+from ..base.errors import MAX_FOUND_LENGTH, InputError
 
 Floats = NDArray[np.float64]
 PartBounds = tuple[Floats, Floats, NDArray[np.bool_]]
@@ -183,7 +183,7 @@ def require_vehicle_size(source: str, body: Meshed) -> None:
         expected = f"a vehicle, {SMALLEST_M:g} to {LARGEST_M:g} m long"
         width_text = f" and up to {WIDEST_M:g} m wide" if max(size) <= LARGEST_M else ""
         texts = (f"{size_words(size)}; {_hint(size, units)}" for units in range(MAX_UNITS, 0, -1))
-        found = next((text for text in texts if len(text) <= LONGEST_FOUND), "")
+        found = next((text for text in texts if len(text) <= MAX_FOUND_LENGTH), "")
         raise InputError(source, "size", f"{expected}{width_text}", found or size_words(size))
 
 

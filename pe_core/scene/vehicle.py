@@ -15,7 +15,7 @@ from ..base.setting import Panel, check_settings, setting
 from ..base.values import A_NAME, Number, numbers
 from ..geometry.grids import PerceptionSpace, top_heights
 from ..geometry.poses import FARTHEST_M, cross, dot
-from ..geometry.raycast import Hits, SeenTriangles
+from ..geometry.raycast import Hits, VisibleTriangles
 from ..geometry.triangle_tree import TriangleTree
 
 Floats = NDArray[np.float64]
@@ -111,12 +111,12 @@ class Vehicle:
     def _tree_without_glass(self) -> TriangleTree:
         return TriangleTree(self.triangles[self._opaque]) if self.glass else self._tree
 
-    def seen_from(self, position: Sequence[float], through_glass: bool = False) -> SeenMesh:
+    def seen_from(self, position: Sequence[float], through_glass: bool = False) -> VisibleMesh:
         """Return the vehicle for rays from a position (3,) [m]; `through_glass` removes glass."""
         tree = self._tree_without_glass if through_glass else self._tree
         triangles = self.triangles[self._opaque] if through_glass else self.triangles
         origin = _with_clearance(np.asarray(position, dtype=float), triangles, tree, self.clearance)
-        return SeenMesh(SeenTriangles(tree, origin), self._opaque if through_glass else None)
+        return VisibleMesh(VisibleTriangles(tree, origin), self._opaque if through_glass else None)
 
     def first_hit(
         self, position: Sequence[float], directions: ArrayLike, through_glass: bool = False
@@ -143,7 +143,7 @@ class Vehicle:
 
     def first_hit_from(self, point: Floats, directions: Floats) -> Hits:
         """Return first hits from exactly this point (3,) [m]; the clearance is not applied."""
-        return SeenTriangles(self._tree, point).first_hit(directions)
+        return VisibleTriangles(self._tree, point).first_hit(directions)
 
     def faces_near(self, point: ArrayLike, distance: float) -> NDArray[np.int64]:
         """(N,) ascending indices of triangles that may be within `distance` [m] of a point (3,)."""
@@ -155,10 +155,10 @@ class Vehicle:
 
 
 @dataclass(frozen=True, slots=True)
-class SeenMesh:
+class VisibleMesh:
     """A vehicle for rays from one point; face indices are those of the whole vehicle."""
 
-    seen: SeenTriangles
+    seen: VisibleTriangles
     faces: NDArray[np.int64] | None
 
     def first_hit(self, directions: Floats) -> Hits:
@@ -229,7 +229,7 @@ def _open_side(point: Floats, lift: Floats, tree: TriangleTree) -> Floats:
     """Return ``+lift`` or ``-lift``: the side on which a ray runs farther, which is outside."""
     direction = lift / np.sqrt(dot(lift, lift))
     hits = [
-        SeenTriangles(tree, point + side * lift).first_hit(side * direction[None])
+        VisibleTriangles(tree, point + side * lift).first_hit(side * direction[None])
         for side in (1.0, -1.0)
     ]
     return lift if hits[0].distance[0] >= hits[1].distance[0] else -lift

@@ -34,10 +34,10 @@ NEAR_M = 0.05
 """First radius of the search for the nearest triangle, beyond the bounding box [m]."""
 LOOKS_AT_M = 0.3
 """If half of a sensor's rays end nearer than this [m], it looks only at the body."""
-MOST_STOPPED = 1.0 / 3.0
+MAX_OCCLUDED_SHARE = 1.0 / 3.0
 """Occluded share from which there is a warning: more than the quarter that a sensor at a corner of
 the vehicle loses."""
-MOST_RAYS = 4096
+MAX_RAYS = 4096
 """Rays of a sensor that are cast at most."""
 PARTS_NAMED = 3
 UPSIDE_DOWN = -0.2
@@ -84,7 +84,7 @@ def _shares(rays: int, by_part: Mapping[str, int]) -> dict[str, float]:
 
 def _rays_met(sensor: Sensor, vehicle: Vehicle) -> Hits:
     """Return the first hits of a sample of a sensor's rays."""
-    return _first_hits(sensor, vehicle, kind_of(sensor).rays(sensor, MOST_RAYS))
+    return _first_hits(sensor, vehicle, kind_of(sensor).rays(sensor, MAX_RAYS))
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ def _in_the_way(mounted: SensorAtBody) -> Iterator[Advice]:
         yield Advice(name, "looks_at", text, part=part)
         return
     share = sum(mounted.stopped_by.values())
-    if share < MOST_STOPPED:
+    if share < MAX_OCCLUDED_SHARE:
         return
     text = f"{percent(share)} of its {unit} are stopped by {part}"
     if share - part_share > 0.005:

@@ -10,7 +10,7 @@ from pe_tools.advice.number_text import joined
 from .score_comparison import AP, COVERAGE, ENTROPY, ComparedRow
 from .summary_text import WHERE
 
-MOST_PAIRS = 3
+MAX_PAIRS = 3
 """Up to this number, pairs that are alike behind the best are named; of more, only the number."""
 RANKED = (ENTROPY, COVERAGE, AP)
 
@@ -136,7 +136,7 @@ class _RankingSentences:
             for i, j in self._pairs(self._order)
             if j in self._rest and not self._row.differ(i, j)
         ]
-        if len(pairs) > MOST_PAIRS:
+        if len(pairs) > MAX_PAIRS:
             yield f"{len(pairs)} other pairs are alike."
         elif pairs:
             pair_names = [f"{self._names[i]} and {self._names[j]}" for i, j in pairs]

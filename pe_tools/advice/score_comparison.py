@@ -15,7 +15,7 @@ from pe_core.scoring.score import PartScore, Score
 from .key_figures import KeyFigures
 
 CERTAINTY = 0.95
-LEAST = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05, "blind": 0.05}
+MIN_CHANGE = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05, "blind": 0.05}
 """Smallest difference of each measure that counts: half of the last digit that is shown."""
 
 
@@ -306,5 +306,5 @@ def _differ(
     other: int,
 ) -> bool:
     a, b = values[one], values[other]
-    threshold = max(LEAST[measure], factor * errors[one][other])
+    threshold = max(MIN_CHANGE[measure], factor * errors[one][other])
     return a is not None and b is not None and abs(a - b) > threshold

@@ -11,7 +11,7 @@ from pe_core.base.errors import InputError, shown
 from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import FARTHEST_M, FoundClass, ObjectScore
-from pe_core.scoring.sight import BlindGround, Reach, SeenShares, Sight, shown_end
+from pe_core.scoring.sight import BlindGround, Reach, Sight, VisibleShares, shown_end
 from pe_tools.advice.number_text import percent
 
 NEAREST_M = 0.5
@@ -91,7 +91,7 @@ class Outlook:
     ----------
     expected_ap : dict of float
         Expected AP by class, 0 to 1.
-    shares : SeenShares
+    shares : VisibleShares
         Visible shares by number of sensors, by sensor and zone.
     reach : Reach
         Reach for one class.
@@ -101,7 +101,7 @@ class Outlook:
     """
 
     expected_ap: Mapping[str, float]
-    shares: SeenShares
+    shares: VisibleShares
     reach: Reach
     blind: BlindGround
 

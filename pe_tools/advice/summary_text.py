@@ -112,7 +112,7 @@ def sensor_words(
     sensor, vehicle : Sensor, Vehicle, optional
         The sensor and the vehicle that were scored.
     zones : mapping of str to float, optional
-        Share of each zone that the sensor sees, 0 to 1 (`sight.SeenShares`).
+        Share of each zone that the sensor sees, 0 to 1 (`sight.VisibleShares`).
     alone : bool
         Whether the rig has no other sensor.
 
@@ -123,7 +123,7 @@ def sensor_words(
     """
     phrases = (
         "the only sensor" if alone else _adds(own),
-        "" if zones is None else _most_and_least(zones),
+        "" if zones is None else _extreme_zones(zones),
         stopped_words(sensor, own, vehicle),
     )
     return tuple(filter(None, phrases))
@@ -162,7 +162,7 @@ def _adds(sensor_score: SensorScore) -> str:
     )
 
 
-def _most_and_least(zones: Mapping[str, float]) -> str:
+def _extreme_zones(zones: Mapping[str, float]) -> str:
     """Name the zones with the highest and the lowest visible share of one sensor."""
     order = sorted(zones, key=lambda zone: -zones[zone])
     if not order or zones[order[0]] == zones[order[-1]]:

@@ -23,7 +23,7 @@ from .interrupts import FATAL, signals_interrupt
 from .run_job import print_answer
 from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, tell
 
-MOST_WORKERS, MOST_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
+MAX_WORKERS, MAX_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
 """Greatest values of options: more threads or voxels than anyone has a use for."""
 
 
@@ -55,9 +55,9 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of a search to a parser."""
     options = (
         ("--seed", LAST_SEED, "seed of the search"),
-        ("--candidates", MOST_VOXELS, "of the method random: placements tried in a round"),
-        ("--samples", MOST_VOXELS, "voxels a candidate is judged on (0: all)"),
-        ("--evaluations", MOST_VOXELS, "placements judged at most (0: as the method says)"),
+        ("--candidates", MAX_VOXELS, "of the method random: placements tried in a round"),
+        ("--samples", MAX_VOXELS, "voxels a candidate is judged on (0: all)"),
+        ("--evaluations", MAX_VOXELS, "placements judged at most (0: as the method says)"),
     )
     about = f"how to search: one of {', '.join(METHODS)}"
     parser.add_argument("--method", choices=METHODS, metavar="NAME", help=about)
@@ -67,7 +67,7 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
 
 def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads") -> None:
     """Add the options of scoring a study to a parser."""
-    voxels, count = count_up_to(MOST_VOXELS), count_up_to(MOST_WORKERS)
+    voxels, count = count_up_to(MAX_VOXELS), count_up_to(MAX_WORKERS)
     about = "voxels a score looks at (0: all)"
     parser.add_argument("--grid-samples", type=voxels, metavar="N", help=about)
     parser.add_argument("--workers", type=count, metavar="N", help=f"{workers} (default: all)")

@@ -19,7 +19,7 @@ from ..advice import ComparedRow
 from ..jobs import Outcome, ScoreJob
 from .command import add_score_options
 from .interrupts import Interrupted, stop_at_first
-from .run_job import drive, tell_vehicle
+from .run_job import drive, print_vehicle
 from .summary import warned, with_error
 from .terminal import DONE, Answer
 
@@ -109,7 +109,7 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
     if args.at is not None:
         parts = (study.rig, study.space, study.prior, study.vehicle, args.at, study.model)
         place = advice.ask_place(*parts)
-        tell_vehicle(study)
+        print_vehicle(study)
         return _answer({"place": place.to_dict()}, place.text, args.json)
     name = advice.class_of(study.prior, args.class_name)
     outcome = scored(study, args.workers)
@@ -190,7 +190,7 @@ def named_by_file(paths: list[str]) -> dict[str, str]:
 
 def scored(study: Study, workers: int | None) -> Outcome:
     """Score a study, with progress; Ctrl-C ends it."""
-    tell_vehicle(study)
+    print_vehicle(study)
     job = ScoreJob(study, workers)
     with stop_at_first(job.stop) as received:
         outcome = drive(job)

@@ -66,7 +66,7 @@ def folder_or_fallback(folder: Path | None) -> Iterator[Path]:
         yield other
 
 
-def put_elsewhere(text: str) -> str:
+def save_to_fallback(text: str) -> str:
     """Save a text that could not be printed; return a message with its path."""
     try:
         with fallback_folder() as folder:
@@ -148,7 +148,7 @@ def carry_out(
     be written to `output` go to a fallback folder; its path is printed on stderr, and the status is
     1.
     """
-    tell_vehicle(job.study)
+    print_vehicle(job.study)
     with stop_at_first(job.stop) as received:
         outcome = drive(job, output)
         if outcome is None:
@@ -161,7 +161,7 @@ def carry_out(
         return text, status or received.status(DONE)
 
 
-def tell_vehicle(study: Study) -> None:
+def print_vehicle(study: Study) -> None:
     """Print one line about the study's vehicle on stderr: its size and orientation."""
     if study.vehicle_line is not None:
         show(f"{one_line(study.vehicle_line)}\n", sys.stderr)
@@ -213,16 +213,16 @@ def keep(
                 for name, aside in set_aside_files_of_other_runs(folder).items():
                     tell(f"{folder / name}: of an earlier run; it is {aside} now")
             continue
-        _tell_of_other_runs(folder)
+        _print_other_runs(folder)
         if folder != output:
             tell(f"the results are in {folder}")
         return (DONE if folder == output else BAD_INPUT), data
     tell(f"all else is in {kept[0]}" if kept else "the results are not in any file")
-    _tell_of_other_runs(output)
+    _print_other_runs(output)
     return BAD_INPUT, data
 
 
-def _tell_of_other_runs(folder: Path) -> None:
+def _print_other_runs(folder: Path) -> None:
     for name in files_of_other_runs(folder):
         tell(f"{folder / name}: not of this run")
 
@@ -234,5 +234,5 @@ def print_answer(text: str, status: int, out: TextIO | None) -> int:
     error = show(f"{shown}\n", out) if text else None
     if error is None or isinstance(error, BrokenPipeError):  # the reader has gone, as `head` does
         return status
-    tell(f"output: {getattr(error, 'strerror', None) or error}; {put_elsewhere(text)}")
+    tell(f"output: {getattr(error, 'strerror', None) or error}; {save_to_fallback(text)}")
     return status or BAD_INPUT

@@ -8,7 +8,7 @@ from pe_core.study import Robustness
 from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
 from ..jobs import Outcome
 
-LEAST_SHOWN = 1e-4
+MIN_SHOWN_ERROR = 1e-4
 """Smallest standard error that is printed [nats]: one unit of the last digit."""
 
 
@@ -77,5 +77,5 @@ def warned(outcome: Outcome) -> list[str]:
 
 def with_error(entropy: float, stderr: float) -> str:
     """Return an entropy with its standard error; a grid has none, a sample never shows 0."""
-    error = f" +- {max(stderr, LEAST_SHOWN):.4f}" if stderr else ""
+    error = f" +- {max(stderr, MIN_SHOWN_ERROR):.4f}" if stderr else ""
     return f"{entropy:.4f}{error} nats"

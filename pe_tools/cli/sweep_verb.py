@@ -184,7 +184,7 @@ class _SweepVerb:
             write_outcome(found, self._folder / name)
             return found
         except InputError as error:
-            self._tell_failure(name, error)
+            self._print_failure(name, error)
         try:
             write_outcome(found, self._fall_back() / name)
             return found
@@ -198,28 +198,28 @@ class _SweepVerb:
         except InputError as error:
             first = self._fallback is None
             if first:
-                self._tell_failure("", error)
+                self._print_failure("", error)
             try:
                 self.data = write_table(self.rows, self._kind, self._fall_back())
             except InputError as second:
                 if first:
-                    self._tell_failure("", second)
+                    self._print_failure("", second)
 
     def _fall_back(self) -> Path:
         """Return the fallback folder of the sweep; report it at its creation."""
         if self._fallback is None:
             self._fallback = self._places.enter_context(folder_or_fallback(None))
-            self._tell_failure("", f"what cannot be written there is in {self._fallback}")
+            self._print_failure("", f"what cannot be written there is in {self._fallback}")
         return self._fallback
 
-    def _tell_failure(self, name: str, what: InputError | str) -> None:
+    def _print_failure(self, name: str, what: InputError | str) -> None:
         self._reporter.clear()
         tell(str(what) if not name else f"{name}: {what}")
 
     def _tell(self, row: SweepRow, found: Outcome | InputError) -> None:
         name = row.run.name
         if isinstance(found, InputError):
-            self._tell_failure("" if found.source == name else name, found)
+            self._print_failure("" if found.source == name else name, found)
         elif not self._on_terminal:
             figures = f"entropy {row.entropy:.4f}  coverage {row.coverage:.1%}"
             show(one_line(f"[{self._done}/{len(self.rows)}] {name}  {figures}") + "\n", sys.stderr)

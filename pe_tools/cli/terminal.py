@@ -15,7 +15,7 @@ Answer = tuple[str, int]
 
 ESCAPED = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 """Unicode categories that control a terminal or the direction of text, or are no characters."""
-LONGEST_LINE = 2000
+MAX_LINE_LENGTH = 2000
 """Maximum number of characters of a message; the rest is cut."""
 
 
@@ -33,7 +33,7 @@ def printable(text: str, encoding: str | None = "utf-8") -> str:
 def one_line(text: str) -> str:
     """Return a message of one line, printable and not too long."""
     line = printable(" ".join(text.splitlines()))
-    return line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]}..."
+    return line if len(line) <= MAX_LINE_LENGTH else f"{line[:MAX_LINE_LENGTH]}..."
 
 
 def tell(text: str) -> None:

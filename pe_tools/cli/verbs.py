@@ -127,7 +127,7 @@ def _run_job(args: argparse.Namespace) -> Answer:
             _refuse_to_replace(Path(args.study), Path(output))
         more_names = more.names if more else ()
         prepare_folder(output, [*result_names(study, args.kind), *more_names])
-    _tell_of_boxes(study)
+    _print_boxes(study)
     folder = None if output is None else Path(output)
     return carry_out(job, folder, as_json=args.json, more=more)
 
@@ -136,11 +136,11 @@ def _choose(study: Study, args: argparse.Namespace) -> Answer:
     """Search for which sensors, too: the front is in the folder of results."""
     check_not_resumed(args)
     output = None if args.output is None else Path(args.output)
-    _tell_of_boxes(study)
+    _print_boxes(study)
     return choose(ChoiceJob(study, args.workers), output, as_json=args.json)
 
 
-def _tell_of_boxes(study: Study) -> None:
+def _print_boxes(study: Study) -> None:
     if (report := study.prior.report(study.space)) is not None:
         tell(str(report))
 

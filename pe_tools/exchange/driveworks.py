@@ -160,7 +160,7 @@ PINHOLE, F_THETA = "pinhole", "ftheta"
 FOCAL_KEYS, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")
 POLYNOMIALS = ("polynomial", "bw-poly")
 FORWARD, BACKWARD = "angle-to-pixeldistance", "pixeldistance-to-angle"
-MOST = 6
+MAX_POWER = 6
 """Maximum number of coefficients of a polynomial, the constant included."""
 PLACES = 2000
 """Number of radii at which the inverse of a polynomial is fitted."""
@@ -184,7 +184,7 @@ def write_properties(picture: Picture) -> dict[str, str]:
         return {"Model": PINHOLE, **common, **focal}
     polynomial = [0.0, *(lens.fx * getattr(lens, key) for key in lens.coefficients)]
     linear_terms = {"linear-c": "1.0", "linear-d": "0.0", "linear-e": "0.0"}
-    polynomial_texts = {"polynomial": spaced(polynomial[:MOST]), "polynomial-type": FORWARD}
+    polynomial_texts = {"polynomial": spaced(polynomial[:MAX_POWER]), "polynomial-type": FORWARD}
     return {"Model": F_THETA, **common, **polynomial_texts, **linear_terms}
 
 
@@ -229,8 +229,8 @@ def _is_forward(properties: Table, key: str, coefficients: list[float]) -> bool:
 def _rising(properties: Table, key: str) -> list[float]:
     """Return the coefficients of a polynomial, in ascending order; the constant is 0."""
     value = properties.raw(key)
-    expected = f"2 to {MOST + 1} numbers, the first of them 0 and the second above 0"
-    if not isinstance(value, str) or not 2 <= len(value.split()) <= MOST + 1:
+    expected = f"2 to {MAX_POWER + 1} numbers, the first of them 0 and the second above 0"
+    if not isinstance(value, str) or not 2 <= len(value.split()) <= MAX_POWER + 1:
         raise properties.error(key, expected, shown(value))
     coefficients = figures(properties.source, properties.field(key), value, None, COEFFICIENT)
     if coefficients[0] != 0.0 or coefficients[1] < GENTLEST:
@@ -258,7 +258,7 @@ def _turned_round(coefficients: list[float], max_radius: float) -> tuple[list[fl
     count = len(radius) if is_rising.all() else int(np.argmin(is_rising))
     theta, radius = theta[:count], radius[:count]
     scale = theta[-1] if count else 1.0
-    powers = np.stack([(theta / scale) ** n for n in range(1, MOST + 1)], axis=1)
+    powers = np.stack([(theta / scale) ** n for n in range(1, MAX_POWER + 1)], axis=1)
     solution = np.linalg.lstsq(powers, radius, rcond=None)[0]
     error_px = float(np.abs(powers @ solution - radius).max()) if count else 0.0
     return [0.0, *(float(v) / scale**n for n, v in enumerate(solution, start=1))], error_px

@@ -112,7 +112,7 @@ FOV_RAD = Number(0.0, math.pi, above=True, below=True, unit="rad", noun="angle")
 CHANNELS = Whole(1, 10_000, "channels")
 PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 """Syntax of a number in a file. Python's float() also accepts 1_0 and non-ASCII digits."""
-LONGEST = 400
+MAX_LENGTH = 400
 """Maximum characters of a number; a float written in full has up to 325 digits after the point."""
 
 
@@ -127,7 +127,7 @@ def figure(source: object, field: str, value: Any, rule: Number = FINITE) -> flo
     if not isinstance(value, str):
         return rule.checked(source, field, value)
     text = value.strip()
-    if len(text) > LONGEST or not PLAIN.fullmatch(text):
+    if len(text) > MAX_LENGTH or not PLAIN.fullmatch(text):
         raise InputError(source, field, rule.expected_text(), shown(value))
     number = float(text)
     if not rule.holds(number):
@@ -143,7 +143,7 @@ def whole_figure(source: object, field: str, value: Any, rule: Whole = PIXELS) -
     InputError
         When the value is not an integer or out of the rule's range.
     """
-    if isinstance(value, str) and len(value) <= LONGEST and PLAIN.fullmatch(value.strip()):
+    if isinstance(value, str) and len(value) <= MAX_LENGTH and PLAIN.fullmatch(value.strip()):
         number = float(value)
         return rule.checked(source, field, number if math.isfinite(number) else value)
     return rule.checked(source, field, value)
@@ -185,7 +185,7 @@ MAX_BEAMS = 1_000_000
 """Maximum beams that a file lists one by one; they take some 70 MB of text."""
 BEAM_BYTES = 256 << 20
 """Maximum size of a file that lists beams."""
-LONGEST_LINE = 10_000
+MAX_LINE_LENGTH = 10_000
 """Maximum characters of a line that is parsed."""
 
 

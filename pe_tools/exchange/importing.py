@@ -31,14 +31,14 @@ from .portable import (
     picture_of,
     with_ranges,
 )
-from .rig_formats import RigFormat, rig_format, told_format
+from .rig_formats import RigFormat, detect_format, rig_format
 
 STAND_INS = {LIDAR: "Velodyne VLP-16 Puck", CAMERA: "nuScenes front"}
 """Stand-in models by kind, for sensors whose model the file does not name."""
 CHOOSE = "choose its model"
 Modelled = tuple[PortableSensor, SensorModel, str]
 """A sensor, its model, and a message about the model (may be empty)."""
-LENS_WORDS = ("cam", "fisheye", "rgb", "image")
+LENS_NAMES = ("cam", "fisheye", "rgb", "image")
 """Parts of a name that identify a camera, if the file does not state the kind."""
 
 
@@ -93,7 +93,7 @@ def import_rig(
     path = Path(path)
     if not path.exists():
         raise InputError(path, "file", "an existing file or folder", "nothing of that name")
-    row = told_format(path) if name is None else rig_format(name)
+    row = detect_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
     with _in_file(path), report_memory_errors(path):
         return _imported(path, row, _FileOrigin(origin, placed), models or {})
@@ -207,7 +207,7 @@ def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> M
 
 
 def _sounds_like_a_camera(name: str) -> bool:
-    return any(word in name.lower() for word in LENS_WORDS)
+    return any(word in name.lower() for word in LENS_NAMES)
 
 
 def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[SensorModel, str]:

@@ -20,7 +20,7 @@ from .frames import BODY_FROM_OPTICAL, Floats, checked_rotation, pose_of, produc
 from .lens_pictures import pinhole_picture
 from .portable import CAMERA, LIDAR, PortableSensor, cameras, lidars
 
-FILE, MOST_CAMERAS = "calib.txt", 4
+FILE, MAX_CAMERAS = "calib.txt", 4
 RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
 ODOMETRY = "Tr"
 """Key of the transform to the rectified first camera; odometry files have no R_rect beside it."""
@@ -40,9 +40,9 @@ def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
         When there is not exactly one LiDAR, not 1 to 4 cameras, or orientations differ.
     """
     rig_cameras, rig_lidars = cameras(sensors), lidars(sensors)
-    if len(rig_lidars) != 1 or not 1 <= len(rig_cameras) <= MOST_CAMERAS:
+    if len(rig_lidars) != 1 or not 1 <= len(rig_cameras) <= MAX_CAMERAS:
         found = f"{len(rig_lidars)} LiDARs and {len(rig_cameras)} cameras"
-        expected = f"one LiDAR and 1 to {MOST_CAMERAS} cameras: KITTI's file has no room for others"
+        expected = f"one LiDAR and 1 to {MAX_CAMERAS} cameras: KITTI's file has no room for others"
         raise InputError("kitti", "sensors", expected, found)
     first = product(rig_cameras[0].pose.ground_from_sensor, BODY_FROM_OPTICAL)
     for sensor in rig_cameras[1:]:

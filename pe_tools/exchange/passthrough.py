@@ -32,7 +32,7 @@ UNMOVED_M, UNTURNED = 2e-5, 4e-6
 0.01 mm and 0.0001 degrees. The second is a difference of rotation matrices."""
 FIGURES_ALIKE = 1e-6
 """Figures of a model that differ by less are the same: .blend files hold single precision."""
-LONGEST_MODEL = 50_000
+MAX_MODEL_LENGTH = 50_000
 """Characters of a model's figures; of more (single beams) a digest is kept."""
 
 
@@ -87,7 +87,7 @@ def model_text(model: SensorModel) -> str:
     if entry is not None and entry.file != catalog.OWN and catalog.load(model.name) is model:
         return model.name
     text = json_entry(catalog.to_table(model))
-    return text if len(text) <= LONGEST_MODEL else hashlib.sha256(text.encode()).hexdigest()
+    return text if len(text) <= MAX_MODEL_LENGTH else hashlib.sha256(text.encode()).hexdigest()
 
 
 def same_model(a: str, b: str) -> bool:

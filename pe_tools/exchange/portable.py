@@ -130,7 +130,7 @@ class PortableSensor:
 
 def portable_sensors(rig: Rig) -> tuple[PortableSensor, ...]:
     """Return the sensors of a rig, in the ground frame."""
-    return tuple(_carried(sensor) for sensor in rig)
+    return tuple(_portable_sensor(sensor) for sensor in rig)
 
 
 def cameras(sensors: Iterable[PortableSensor]) -> list[PortableSensor]:
@@ -260,7 +260,7 @@ def with_ranges(model: SensorModel, sensor: PortableSensor) -> SensorModel:
     return replace(model, min_range=nearest, max_range=farthest)
 
 
-def _carried(sensor: Sensor) -> PortableSensor:
+def _portable_sensor(sensor: Sensor) -> PortableSensor:
     model = sensor.model
     figures: dict[str, Any] = {}
     if isinstance(model, Camera):

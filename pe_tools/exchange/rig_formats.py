@@ -222,7 +222,7 @@ def rig_format(name: str) -> RigFormat:
     return RIG_FORMATS[name]
 
 
-def told_format(path: Path) -> RigFormat:
+def detect_format(path: Path) -> RigFormat:
     """Return the format that a file name identifies. Raise `InputError` if none does."""
     names = {entry.name for entry in path.iterdir()} if path.is_dir() else {path.name}
     for row in RIG_FORMATS.values():

@@ -18,8 +18,8 @@ from pe_tools.formats.xml_text import parse_xml
 
 from .camera_info import info_files, with_info
 from .foreign_values import (
-    LONGEST_LINE,
     MAX_FRAMES,
+    MAX_LINE_LENGTH,
     Written,
     figure,
     plain_number,
@@ -123,7 +123,9 @@ def _links(path: Path) -> dict[str, tuple[str, Pose]]:
     require_at_most(path, "file", len(calls), MAX_FRAMES, f"calls of {PUBLISHER}")
     links: dict[str, tuple[str, Pose]] = {}
     for number, arguments in enumerate(calls):
-        require_at_most(path, f"transform {number + 1}", len(arguments), LONGEST_LINE, "characters")
+        require_at_most(
+            path, f"transform {number + 1}", len(arguments), MAX_LINE_LENGTH, "characters"
+        )
         parent, child, pose = _transform(path, f"transform {number + 1}", arguments)
         if child in links:
             raise InputError(path, f"frame {child}", "one parent", "two")

@@ -47,7 +47,7 @@ AXES = (
 )
 OURS, THEIRS = " is on the ground under the vehicle's centre: ", " is that of the imported file: "
 GAZEBO_KINDS = {CAMERA: CAMERA, LIDAR: "gpu_lidar"}
-KIND_WORDS = {CAMERA: CAMERA, LIDAR: LIDAR, "ray": LIDAR, "depth": CAMERA}
+KIND_BY_TEXT = {CAMERA: CAMERA, LIDAR: LIDAR, "ray": LIDAR, "depth": CAMERA}
 """What a word in a Gazebo sensor's type says of its kind."""
 INERTIA_KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 MASS_KG, INERTIA = 0.01, 1e-5
@@ -273,7 +273,7 @@ def _sensor(path: Path, name: str, poses: dict[str, Pose], block: Element | None
     model = project_element.get("model") if project_element is not None else None
     if sensor is not None:
         type_name = sensor.get("type", "")
-        kind = next((k for word, k in KIND_WORDS.items() if word in type_name), type_name or kind)
+        kind = next((k for word, k in KIND_BY_TEXT.items() if word in type_name), type_name or kind)
     if project_element is not None:
         kind = project_element.get("kind") or kind
     inside = SensorElement(path, name, sensor)

@@ -5,8 +5,8 @@ means. Nothing here needs a Blender scene or a GPU.
 """
 
 from .beams import (
-    A_DRAFT,
-    MOST,
+    MAX_BEAMS,
+    PREVIEW_BEAMS,
     BeamChoice,
     Beams,
     Cast,
@@ -72,7 +72,6 @@ from .simplify import simplified
 
 __all__ = [
     "AS_SCORED",
-    "A_DRAFT",
     "BODY_NEAR",
     "CIVIDIS",
     "COUNTS",
@@ -81,9 +80,10 @@ __all__ = [
     "DIFFERENCE",
     "DRAWINGS",
     "ENTROPY",
-    "MOST",
+    "MAX_BEAMS",
     "NO_ECHO",
     "PAPER",
+    "PREVIEW_BEAMS",
     "QUANTITIES",
     "RANGES",
     "RING_FAR_M",

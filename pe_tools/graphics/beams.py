@@ -16,7 +16,7 @@ from .sensor_images import lidar_of
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-A_DRAFT, MOST = 12_000, 1_500_000
+PREVIEW_BEAMS, MAX_BEAMS = 12_000, 1_500_000
 """Maximum number of beams that are cast for a preview while the sensor moves, and when idle."""
 
 
@@ -48,7 +48,7 @@ class Cast:
         return ends + np.asarray(self.sensor.pose.position)
 
 
-def cast(sensor: Sensor, vehicle: Vehicle | None, most: int = MOST) -> Cast:
+def cast(sensor: Sensor, vehicle: Vehicle | None, most: int = MAX_BEAMS) -> Cast:
     """Cast at most that many of a LiDAR's beams, evenly chosen, against the vehicle."""
     lidar = lidar_of(sensor)
     rows, columns = grid(lidar, most)

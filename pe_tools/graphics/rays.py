@@ -40,7 +40,7 @@ def free_lines(
     free = ~beams.stopped
     directions = beams.directions[free]
     ends = np.minimum(np.minimum(beams.ends[free], length_m), ground_distance(sensor, directions))
-    leave = np.minimum(_leaving(sensor, directions, around), ends)
+    leave = np.minimum(_housing_exits(sensor, directions, around), ends)
     points = np.empty((len(ends), 4, 3))
     points[:] = sensor.pose.position
     points[:, 1:3] += (directions * leave[:, None])[:, None]
@@ -109,7 +109,7 @@ def _joined(found: Cast, beams: NDArray[np.int64], far: Floats, colors: Floats) 
     return Primitives.of(points, shown)
 
 
-def _leaving(sensor: Sensor, directions: Floats, around: Box | None) -> Floats:
+def _housing_exits(sensor: Sensor, directions: Floats, around: Box | None) -> Floats:
     """(N,) distance at which directions leave a box and its surroundings; 0 outside of it [m]."""
     if around is None or not len(directions):
         return np.zeros(len(directions))

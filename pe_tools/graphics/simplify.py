@@ -31,11 +31,11 @@ CLOSE, MIDDLE, CLOSE_QUICKLY = 0.85, 0.93, 0.5
 """Shares of the triangles wanted: from where on it is near enough, what is aimed at, and what is
 near enough for previews. Cars keep 0.53 to 0.66 with the first cubes that are tried."""
 TRIES = 8
-MOST_ACROSS = 1 << 20
+MAX_CELLS_ACROSS = 1 << 20
 """Cubes along an axis: three numbers fit into one."""
-LEAST_M = 1e-9
+MIN_SIDE_M = 1e-9
 """Minimum side of a cube [m], for a mesh without extent."""
-MOST_NUMBERS = 1 << 62
+MAX_INDEX = 1 << 62
 TABLE = 1 << 26
 """Numbers below this are counted in a table, others sorted."""
 
@@ -142,7 +142,10 @@ class _Clusters:
 
 def _fitting(vehicle: Vehicle, wanted: int, close: float) -> tuple[_Clusters, _Kept]:
     """Cluster in cubes as small as the number of triangles allows; it goes with their square."""
-    min_side = float(np.ptp(vehicle.triangles.reshape(-1, 3), axis=0).max()) / MOST_ACROSS + LEAST_M
+    min_side = (
+        float(np.ptp(vehicle.triangles.reshape(-1, 3), axis=0).max()) / MAX_CELLS_ACROSS
+        + MIN_SIDE_M
+    )
     side = max(min_side, np.sqrt(3.0 * _area(vehicle.triangles) / wanted))
     best = None
     for attempt in range(2 * TRIES):
@@ -178,7 +181,7 @@ def _numbers(columns: Sequence[NDArray[np.integer]], sizes: Sequence[int]) -> In
     """
     number, span = columns[0].astype(np.int64), sizes[0]
     for column, size in zip(columns[1:], sizes[1:], strict=True):
-        if span * size >= MOST_NUMBERS:
+        if span * size >= MAX_INDEX:
             number, count = _counted(number)
             span = len(count)
         number = number * size + column

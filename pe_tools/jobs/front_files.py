@@ -25,7 +25,7 @@ FRONT_JSON, FRONT_CSV, FRONT_PLOT, DESIGNS = "front.json", "front.csv", "front.p
 FRONT_NAMES = (FRONT_JSON, FRONT_CSV, FRONT_PLOT)
 """Files of a front. Another package draws the plot, if matplotlib is installed."""
 FRONT_SCHEMA = 1
-LONGEST_STEM = 80
+MAX_STEM_LENGTH = 80
 """Maximum number of characters of a design's file name, without the suffix."""
 
 
@@ -120,7 +120,7 @@ def design_files(chosen: TradeOff) -> dict[str, str]:
 def _stem(name: str) -> str:
     """Return a name in ASCII letters, digits and hyphens, which every file system allows."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode().lower()
-    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:LONGEST_STEM].strip("-") or "design"
+    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:MAX_STEM_LENGTH].strip("-") or "design"
 
 
 def _writers(chosen: TradeOff) -> dict[str, Write | bytes]:

@@ -2,7 +2,7 @@
 
 from .blind_volume import blind_volume
 from .colors import BLIND, BODY, GLASS, Rgb, hex_color
-from .footprints import GroundPlan, SeenGround
+from .footprints import GroundFootprint, GroundPlan
 from .glb import view_wires
 from .output_formats import SCENE_OUTPUTS, SceneOutput, export_scene, scene_files, scene_output
 from .request import OutputRequest, plain_names
@@ -13,11 +13,11 @@ __all__ = [
     "BODY",
     "GLASS",
     "SCENE_OUTPUTS",
+    "GroundFootprint",
     "GroundPlan",
     "OutputRequest",
     "Rgb",
     "SceneOutput",
-    "SeenGround",
     "Solid",
     "blind_volume",
     "export_scene",

@@ -10,7 +10,7 @@ from typing import Any
 import ezdxf
 from ezdxf import units
 
-from . import BLIND, SeenGround, hex_color
+from . import BLIND, GroundFootprint, hex_color
 
 MM = 1000.0
 VEHICLE, BLIND_GROUND, LABELS = "VEHICLE", "BLIND_GROUND", "LABELS"
@@ -60,7 +60,7 @@ def _outlines(space: Any, layer: str, outlines: Iterable[Any]) -> None:
         space.add_lwpolyline(points, close=True, dxfattribs={"layer": layer})
 
 
-def _mark(space: Any, layer: str, footprint: SeenGround) -> None:
+def _mark(space: Any, layer: str, footprint: GroundFootprint) -> None:
     """Draw a sensor's position, at its height, its viewing direction, and its name."""
     position = [value * MM for value in footprint.pose.position]
     ahead = footprint.pose.ground_from_sensor[:, 0] * AHEAD_M * MM

@@ -34,7 +34,7 @@ ClosedLines = tuple[Floats, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SeenGround:
+class GroundFootprint:
     """Footprint of a sensor: closed `outlines` (N, 2) [m] with the visible ground on the left.
 
     `plain` is the name for files and layers, `model` the label of the model, `reach` the maximum
@@ -54,7 +54,7 @@ class SeenGround:
 class GroundPlan:
     """A rig from above, ground frame [m]: `vehicle` and `blind` are closed outlines."""
 
-    footprints: tuple[SeenGround, ...]
+    footprints: tuple[GroundFootprint, ...]
     vehicle: ClosedLines
     blind: ClosedLines
 
@@ -63,7 +63,7 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
     """Return a study's ground plan, and messages on what it lacks."""
     study = request.study
     names, _ = plain_names([sensor.name for sensor in study.rig])
-    footprints: list[SeenGround] = []
+    footprints: list[GroundFootprint] = []
     lines: list[str] = []
     for number, sensor in enumerate(study.rig):
         footprint = _footprint(request, sensor, names[sensor.name], sensor_color_on_paper(number))
@@ -79,12 +79,12 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
     ), lines + blind_lines
 
 
-def _footprint(request: OutputRequest, sensor: Sensor, plain: str, color: Rgb) -> SeenGround:
+def _footprint(request: OutputRequest, sensor: Sensor, plain: str, color: Rgb) -> GroundFootprint:
     reach = request.reach(sensor, REACH_M)
     view = mounted_view(sensor, request.study.vehicle, reach, STEP)
     loops = () if view is None else level_outlines(free_solid(plain, view), 0.0)
     model = f"{sensor.model.name}, {kind_of(sensor).label}"
-    return SeenGround(sensor.name, plain, model, color, sensor.pose, reach, loops)
+    return GroundFootprint(sensor.name, plain, model, color, sensor.pose, reach, loops)
 
 
 def _blind(request: OutputRequest) -> tuple[ClosedLines, list[str]]:

@@ -44,7 +44,7 @@ BLIND_VOLUME = "blind_volume"
 STEP = math.radians(1.0)
 REACH_M, BEAM_M = 4.0, 25.0
 """Default maximum lengths of fields of view and of beams [m]."""
-MOST_BEAMS = 2000
+MAX_RAYS = 2000
 MAP_M, MAP_STEP_M = 25.0, 0.5
 """Maps of the ground reach so far from the origin, in squares of this side."""
 FREE, STOPPED = (0, 115, 178, 70), (214, 94, 0, 255)
@@ -153,7 +153,7 @@ def _pinhole(picture: Picture) -> Any:
 
 def _beams(request: OutputRequest, sensor: Sensor) -> Any:
     """Return an even sample of a sensor's beams, up to the vehicle, the ground or the range."""
-    directions = kind_of(sensor).rays(sensor, MOST_BEAMS)
+    directions = kind_of(sensor).rays(sensor, MAX_RAYS)
     origin, max_distance = np.asarray(sensor.pose.position), request.reach(sensor, BEAM_M)
     reach = np.full(len(directions), max_distance)
     falling = (directions[:, 2] < 0.0) & (origin[2] > 0.0)

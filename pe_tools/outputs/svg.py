@@ -10,7 +10,7 @@ import numpy as np
 
 from ..exchange import Written
 from .colors import BLIND, BODY, hex_color
-from .footprints import ClosedLines, GroundPlan, SeenGround, ground_plan
+from .footprints import ClosedLines, GroundFootprint, GroundPlan, ground_plan
 from .request import OutputRequest
 
 FILE = "footprints.svg"
@@ -19,9 +19,9 @@ SCALE = 100
 SVG, INKSCAPE = "http://www.w3.org/2000/svg", "http://www.inkscape.org/namespaces/inkscape"
 INK = "#333333"
 GRID_M, MARGIN_M, MARK_M = 10.0, 2.0, 0.8
-LEAST_HALF_M = 15.0
+MIN_HALF_M = 15.0
 """The sheet is at least twice as wide: the legend has room."""
-BLIND_WORDS = "ground within 10 m of the body that no sensor sees"
+BLIND_TEXT = "ground within 10 m of the body that no sensor sees"
 LINE, TEXT = 1.1, 0.75
 """Height of a line of the legend and of its letters [m]."""
 STYLE = """
@@ -73,7 +73,7 @@ def _box(plan: GroundPlan) -> OnPaper:
     loops = [*plan.vehicle, *plan.blind, *(loop for f in plan.footprints for loop in f.outlines)]
     points = np.vstack([*loops, [f.pose.position[:2] for f in plan.footprints], [[0.0, 0.0]]])
     low, high = points.min(axis=0) - MARGIN_M, points.max(axis=0) + MARGIN_M
-    low[0], high[0] = min(low[0], -LEAST_HALF_M), max(high[0], LEAST_HALF_M)
+    low[0], high[0] = min(low[0], -MIN_HALF_M), max(high[0], MIN_HALF_M)
     (x0, y0), (x1, y1) = np.floor(low).tolist(), np.ceil(high).tolist()
     return x0, y0, x1, y1
 
@@ -84,7 +84,7 @@ def _layer(key: str, label: str, parts: Iterable[str]) -> list[str]:
     return [f'<g {name} inkscape:groupmode="layer">', *parts, "</g>"]
 
 
-def _footprint(footprint: SeenGround) -> tuple[str, str, list[str]]:
+def _footprint(footprint: GroundFootprint) -> tuple[str, str, list[str]]:
     path = _path(footprint.outlines, "seen", hex_color(footprint.color))
     return f"sensor-{footprint.plain}", footprint.name, path
 
@@ -97,7 +97,7 @@ def _path(loops: ClosedLines, kind: str, color: str) -> list[str]:
     return [f'<path class="{kind}" fill="{color}"{line} d="{data}Z"/>'] if data else []
 
 
-def _mark(footprint: SeenGround) -> list[str]:
+def _mark(footprint: GroundFootprint) -> list[str]:
     """Return a disc at a sensor's position, and a line in its viewing direction."""
     x, y, _ = footprint.pose.position
     ahead = footprint.pose.ground_from_sensor[:2, 0] * MARK_M
@@ -120,7 +120,7 @@ def _grid(box: OnPaper) -> list[str]:
 
 def _legend(plan: GroundPlan, x: float, top: float) -> list[str]:
     rows = [(hex_color(f.color), _words(f)) for f in plan.footprints]
-    rows += [(hex_color(BLIND), BLIND_WORDS)] if plan.blind else []
+    rows += [(hex_color(BLIND), BLIND_TEXT)] if plan.blind else []
     parts = []
     for number, (color, text) in enumerate(rows, 1):
         y = top + LINE * number + MARGIN_M / 4.0
@@ -130,7 +130,7 @@ def _legend(plan: GroundPlan, x: float, top: float) -> list[str]:
     return parts
 
 
-def _words(footprint: SeenGround) -> str:
+def _words(footprint: GroundFootprint) -> str:
     reach_text = f"to {footprint.reach:g} m" if footprint.outlines else "sees no ground"
     height = f"{footprint.pose.position[2]:.2f} m high"
     return f"{footprint.name} ({footprint.model}), {height}, {reach_text}"

@@ -24,7 +24,7 @@ from pe_core.study import Study, load_study_data, study_from_dict
 from .sweep_runner import SweepRun
 
 UNSAFE = re.compile(r"[^A-Za-z0-9._=+-]+")
-LONGEST = 100
+MAX_NAME_LENGTH = 100
 """Characters of a name; a longer one is cut and gets a hash."""
 RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 """Names that Windows does not allow for files."""
@@ -47,7 +47,7 @@ def folder_names(runs: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:
 
 
 def _name(plain: str, words: tuple[str, ...], alike: bool) -> str:
-    short = plain[:LONGEST].strip("-.") or "run"
+    short = plain[:MAX_NAME_LENGTH].strip("-.") or "run"
     if short == ",".join(words) and not alike and not RESERVED.fullmatch(short):
         return short
     content = "\0".join(words).encode("utf-8", "surrogatepass")

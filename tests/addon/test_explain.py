@@ -45,7 +45,7 @@ def test_nothing_is_odd_about_a_car_with_a_lidar_on_its_roof(car):
     assert told(car) == []
 
 
-def test_the_vehicle_is_told_in_a_line_under_its_field(car):
+def test_the_vehicle_is_reported_in_a_line_under_its_field(car):
     diagnostics.run_checks()
     line = "4.00 x 1.80 x 1.30 m, lies along x, 24 triangles, 2 parts"
     assert car.perception_entropy.vehicle_line == line
@@ -82,7 +82,7 @@ def test_a_vehicle_that_lies_along_y_is_turned_with_the_sensor_on_it(car):
     assert ("", "faces") not in told(car)
 
 
-def test_a_scaled_sensor_is_told_and_mended(car):
+def test_a_scaled_sensor_is_reported_and_mended(car):
     roof = car.objects["roof"]
     place = roof.location.copy()
     roof.scale = (2.0, 2.0, 2.0)
@@ -92,7 +92,7 @@ def test_a_scaled_sensor_is_told_and_mended(car):
     assert told(car) == [] and scenes.study().rig["roof"].pose.position == pytest.approx(place)
 
 
-def test_units_are_told_and_mended(car):
+def test_units_are_reported_and_mended(car):
     car.unit_settings.system = "IMPERIAL"
     assert ("", "units") in told(car)
     mend(car, "units")
@@ -180,7 +180,7 @@ def test_a_place_is_asked_as_the_engine_does(car):
     assert location_query.answer(car) is None
 
 
-def test_a_place_outside_the_space_is_told_in_one_line(car):
+def test_a_place_outside_the_space_is_reported_in_one_line(car):
     bpy.ops.pe.ask_place(point=(600.0, 3.0, 0.0))
     (line,) = location_query.answer(car).lines
     assert "inside the space" in line
@@ -210,7 +210,7 @@ def lost_roof(tmp_path):
     return path, whole
 
 
-def test_a_lost_library_is_told_by_name_and_marks_the_result(car, tmp_path):
+def test_a_lost_library_is_reported_by_name_and_marks_the_result(car, tmp_path):
     _, whole = lost_roof(tmp_path)
     scene = bpy.context.scene
     assert ("", "missing") in told(scene)
@@ -222,7 +222,7 @@ def test_a_lost_library_is_told_by_name_and_marks_the_result(car, tmp_path):
     assert '"code": "missing"' in settings.result_json
 
 
-def test_a_lost_library_is_told_without_a_window(car, tmp_path):
+def test_a_lost_library_is_reported_without_a_window(car, tmp_path):
     from tests.addon.test_commands import run
 
     path, _ = lost_roof(tmp_path)
@@ -231,7 +231,7 @@ def test_a_lost_library_is_told_without_a_window(car, tmp_path):
     assert "cabin is missing" in answer.stdout + answer.stderr
 
 
-def test_a_driver_that_failed_is_told_by_name(car):
+def test_a_driver_that_failed_is_reported_by_name(car):
     curve = car.objects["roof"].driver_add("location", 0)
     curve.driver.expression = "no_such_thing + 1"
     scenes.depsgraph().update()
@@ -313,7 +313,7 @@ def hide_in_renders(layer):
     ("hide", "told"),
     [(exclude_it, "excluded from"), (hide_it, "in the viewport"), (hide_in_renders, "in renders")],
 )
-def test_a_vehicle_that_is_out_of_the_view_is_told_by_name_and_can_be_shown(car, hide, told):
+def test_a_vehicle_that_is_out_of_the_view_is_reported_by_name_and_can_be_shown(car, hide, told):
     layer = bpy.context.view_layer.layer_collection.children["Car"]
     assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
     hide(layer)
@@ -325,7 +325,7 @@ def test_a_vehicle_that_is_out_of_the_view_is_told_by_name_and_can_be_shown(car,
     assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
 
 
-def test_a_part_of_the_vehicle_that_is_hidden_is_told_and_left(car):
+def test_a_part_of_the_vehicle_that_is_hidden_is_reported_and_left(car):
     inner = scenes.add_collection(bpy.data.collections["Car"], "Seats")
     scenes.add_box(inner, "seat", (0.1, 0.1, 0.1))
     layer = bpy.context.view_layer.layer_collection.children["Car"].children["Seats"]

@@ -69,7 +69,7 @@ def test_a_lidar_s_ranges_are_asked_for_beside_the_window(car, monkeypatch):
     assert (image.width, image.height) == (round(359.8 * 3), 30 * 3)
 
 
-def test_a_bent_lens_is_told_in_the_title(car):
+def test_a_bent_lens_is_reported_in_the_title(car):
     straight = pe.Sensor("front", catalog.load("KITTI cam2"))
     assert inset.title_of(straight) == "front"
     bent = next(n for n in catalog.names("camera") if catalog.load(n).lens is not None)

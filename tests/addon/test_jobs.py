@@ -303,7 +303,7 @@ def test_before_is_where_the_first_of_several_searches_began(car):
         car.perception_entropy.seed += 1
 
 
-def test_nothing_free_is_told_before_the_work(car):
+def test_nothing_free_is_reported_before_the_work(car):
     car.objects["roof"].perception_entropy.free = (False,) * 6
     with pytest.raises(RuntimeError, match="Yaw ticked of at least one sensor"):
         bpy.ops.pe.optimize()
@@ -323,7 +323,7 @@ def constrain(sensor):
 
 
 @pytest.mark.parametrize("hold", [animate, drive, constrain])
-def test_a_sensor_that_something_holds_is_told_before_the_work(car, hold, monkeypatch):
+def test_a_sensor_that_something_holds_is_reported_before_the_work(car, hold, monkeypatch):
     sensor = car.objects["roof"]
     hold(sensor)
     monkeypatch.setattr(score_jobs.pe, "OptimizeJob", lambda *_, **__: pytest.fail("begun"))

@@ -14,7 +14,7 @@ from tests.addon import scenes
 
 BLEND = library.FOLDER / "sensors.blend"
 CATALOGS = library.FOLDER / "blender_assets.cats.txt"
-MOST_BYTES = 600_000
+MAX_BYTES = 600_000
 KINDS = ("lidar", "camera")
 
 
@@ -76,7 +76,7 @@ def test_true_sizes_are_true(assets):
 
 
 def test_the_file_is_small_and_nothing_else_is_in_it(assets):
-    assert BLEND.stat().st_size < MOST_BYTES
+    assert BLEND.stat().st_size < MAX_BYTES
     with bpy.data.libraries.load(str(BLEND)) as (there, _):
         assert len(there.objects) == len(assets)
         assert not there.cameras and not there.images and not there.texts

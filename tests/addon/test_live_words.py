@@ -119,7 +119,7 @@ def test_better_and_worse_differ_by_arrow_and_colour():
     assert blue[2] > blue[0] and orange[0] > orange[2]
 
 
-def test_a_body_that_was_made_simpler_is_told():
+def test_a_body_that_was_made_simpler_is_reported():
     assert (
         readout_text.readout_of(reading_of(glance(), moved_m=0.0204), score_of(glance())).error
         == "± 0.022  exact, vehicle simplified to 20 mm"

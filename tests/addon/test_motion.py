@@ -75,7 +75,7 @@ def drag(obj):
     bpy.context.view_layer.update()
 
 
-def test_a_drag_is_told_as_long_as_it_lasts_and_its_rest_once(car, timers, heard):
+def test_a_drag_is_reported_as_long_as_it_lasts_and_its_rest_once(car, timers, heard):
     for _ in range(5):
         drag(car.objects["roof"])
         timers.pass_by(0.1)
@@ -85,7 +85,7 @@ def test_a_drag_is_told_as_long_as_it_lasts_and_its_rest_once(car, timers, heard
 
 
 @pytest.mark.parametrize("signal", [signals.moving, signals.idle], ids=[MOVED, RESTED])
-def test_a_move_that_comes_while_one_is_told_is_told_as_well(car, timers, heard, signal):
+def test_a_move_during_a_move_s_signal_is_reported_too(car, timers, heard, signal):
     """Timers run before Blender's update of a move; who listens may bring it about."""
     late = [car.objects["roof"]]
 
@@ -143,7 +143,7 @@ def play(car):
         *("sensor hidden", "part hidden", "sensor added"),
     ],
 )
-def test_whatever_changes_a_sensor_or_the_vehicle_is_told(car, timers, heard, change):
+def test_whatever_changes_a_sensor_or_the_vehicle_is_reported(car, timers, heard, change):
     change(car)
     bpy.context.view_layer.update()
     timers.pass_by(10.0)
@@ -160,7 +160,7 @@ def test_what_concerns_no_score_is_not_told(car, timers, heard):
     assert heard == []
 
 
-def test_undo_is_told(car, timers, heard):
+def test_undo_is_reported(car, timers, heard):
     for message in ("before", "after"):
         bpy.ops.ed.undo_push(message=message)
     timers.pass_by(10.0)
@@ -171,7 +171,7 @@ def test_undo_is_told(car, timers, heard):
 
 
 @pytest.mark.parametrize("name", ["undo_post", "redo_post", "load_post", "frame_change_post"])
-def test_what_blender_calls_after_a_step_back_or_a_load_is_told(car, timers, heard, name):
+def test_what_blender_calls_after_a_step_back_or_a_load_is_reported(car, timers, heard, name):
     """Whether or not an update of the scene follows, in which objects seem to have changed."""
     ours = [f for f in getattr(bpy.app.handlers, name) if f.__module__ == wiring.__name__]
     assert len(ours) == 1

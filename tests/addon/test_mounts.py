@@ -122,7 +122,7 @@ def history(study):
     return [(row.entropy, row.rig["roof"].pose) for row in job.history], job.outcome.after.entropy
 
 
-def test_a_start_that_is_not_on_its_mount_is_told(roof):
+def test_a_start_that_is_not_on_its_mount_is_reported(roof):
     bpy.data.objects["roof"].location.z += 0.1
     bpy.context.view_layer.update()
     with pytest.raises(RuntimeError, match="a start on its mount, such as"):
@@ -209,7 +209,7 @@ def test_locks_hold_a_coordinate(car):
     assert place_of("roof")[0] == before[0] and place_of("roof") != before
 
 
-def test_a_lock_on_a_surface_is_told(roof):
+def test_a_lock_on_a_surface_is_reported(roof):
     bpy.data.objects["roof"].lock_location[1] = True
     with pytest.raises(RuntimeError, match=r"sensor 'roof': expected no lock .* a lock of Y"):
         bpy.ops.pe.optimize()
@@ -231,7 +231,7 @@ def test_limit_constraints_are_bounds(car):
     assert scenes.study().search.limits["roof"] == {"x": (-1.0, -0.2)}
 
 
-def test_bounds_and_constraints_that_leave_nothing_are_told(car):
+def test_bounds_and_constraints_that_leave_nothing_are_reported(car):
     sensor = bpy.data.objects["roof"]
     own, limit = sensor.perception_entropy, sensor.constraints.new("LIMIT_LOCATION")
     own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, -1.0, -0.7

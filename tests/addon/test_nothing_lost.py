@@ -117,7 +117,7 @@ def test_a_scene_that_does_not_fit_on_the_disk_sets_the_old_one_aside(blend, tmp
 
 
 @pytest.mark.parametrize("name", ["cut.blend", "cut.png", "empty.png"])
-def test_half_a_file_is_told(addon, tmp_path, name):
+def test_half_a_file_is_reported(addon, tmp_path, name):
     path = tmp_path / name
     path.write_bytes(
         {"cut.blend": b"\x28\xb5\x2f\xfdhalf", "cut.png": b"\x89PNGhalf"}.get(name, b"")

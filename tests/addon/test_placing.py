@@ -57,7 +57,7 @@ def test_what_is_held_changes_nothing_in_the_scene(held, car):
     assert [obj.name for obj in car.objects] == before
 
 
-def test_its_score_is_told_beside_where_it_stands(held):
+def test_its_score_is_reported_beside_where_it_stands(held):
     held._stand(ROOF)
     model, where, score = held._preview._text
     assert (model, where) == ("Camera 60 deg", "0.05 m from cabin, upright")

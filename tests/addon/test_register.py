@@ -163,7 +163,7 @@ def heard():
         assert listener not in signal.listeners
 
 
-def test_a_change_is_told_to_those_who_listen(car, heard):
+def test_a_change_is_reported_to_those_who_listen(car, heard):
     settings = car.perception_entropy
     settings.beam_limit = 10
     assert heard == ["picture"]

@@ -98,7 +98,7 @@ def test_undo_and_a_new_file_are_seen(car):
     assert listed_sensors(bpy.context.scene) == []
 
 
-def test_scenes_are_told_apart(car):
+def test_scenes_are_reported_apart(car):
     other = bpy.data.scenes.new("other")
     assert [obj.name for obj in listed_sensors(car)] == ["roof"]
     assert listed_sensors(other) == []

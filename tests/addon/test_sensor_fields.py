@@ -45,7 +45,7 @@ def test_the_fields_are_the_transform_of_the_object(car, parented):
     assert tuple(fields.ground_position) == pytest.approx(pose(roof).position, abs=1e-6)
 
 
-def test_what_is_held_is_told_and_not_typed(car):
+def test_what_is_held_is_reported_and_not_typed(car):
     roof = car.objects["roof"]
     layout = Layout()
     sensor_panel.draw_pose(layout, Window(car), roof)

@@ -61,7 +61,7 @@ def test_the_live_score_follows_on_the_same_targets(settings):
     assert glance.entropy == study.evaluator().entropy(study.rig) and glance.voxels == 0
 
 
-def test_a_prior_without_objects_is_told_in_a_line(settings):
+def test_a_prior_without_objects_is_reported_in_a_line(settings):
     settings.prior = "uniform"
     with pytest.raises(RuntimeError, match="one with classes, to have objects, found uniform"):
         bpy.ops.pe.score()

@@ -34,7 +34,7 @@ def test_the_worst_of_one_case_is_that_case(settings):
     assert scenes.study().search.tolerance == pe.Tolerance()
 
 
-def test_a_failure_that_leaves_nothing_is_told_by_the_search_and_hinders_no_score(settings):
+def test_a_failure_that_leaves_nothing_is_reported_by_the_search_and_hinders_no_score(settings):
     settings.failures = True
     study = scenes.study()
     with pytest.raises(pe.InputError, match="failures: expected a rig of at least two sensors"):

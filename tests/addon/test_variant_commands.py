@@ -68,7 +68,7 @@ def test_variants_are_compared(blend):
     assert run("blender_addon", blend, "compare", "High", *FEW).returncode == 0
 
 
-def test_an_unknown_variant_is_told(blend):
+def test_an_unknown_variant_is_reported(blend):
     for verb in ("score", "export", "explain"):
         folder = ("-o", blend.parent / "x") if verb == "export" else ()
         answer = run("blender_addon", blend, verb, *folder, "--variant", "Middle")

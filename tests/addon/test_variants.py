@@ -144,7 +144,7 @@ def test_undo_takes_a_switch_back_in_one_step(ideas):
     assert variants(bpy.context.scene) == ["Variant"]
 
 
-def test_a_held_sensor_is_told_and_nothing_is_changed(ideas):
+def test_a_held_sensor_is_reported_and_nothing_is_changed(ideas):
     bpy.ops.pe.save_variant()
     roof = ideas.objects["roof"]
     roof.location.z = 2.5
@@ -283,7 +283,7 @@ def test_the_start_of_a_search_is_no_second_variant(ideas):
     assert rows(ideas)["Variant"].has_result
 
 
-def test_unknown_names_are_told(ideas):
+def test_unknown_names_are_reported(ideas):
     with pytest.raises(pe.InputError, match="variant: expected one of Variant, found 'Roof'"):
         bridge.variant_named(ideas, "Roof")
 
@@ -382,7 +382,7 @@ def test_a_comparison_that_is_stopped_keeps_what_is_complete(ideas):
     assert set(job.outcome) == {1}
 
 
-def test_a_variant_that_cannot_be_scored_is_told_and_the_others_are(ideas):
+def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
     bpy.ops.pe.duplicate_variant()
     ideas.perception_entropy.variants[0].sensors[0].model = "no such sensor"
     bpy.ops.pe.compare_variants()

@@ -57,7 +57,7 @@ def test_a_saved_file_has_its_version(car, tmp_path):
     assert car.perception_entropy.version == choices.VERSION
 
 
-def test_a_newer_file_is_told_in_one_line_and_keeps_its_version(car, tmp_path):
+def test_a_newer_file_is_reported_in_one_line_and_keeps_its_version(car, tmp_path):
     path = tmp_path / "newer.blend"
     car.perception_entropy.version = choices.VERSION + 6
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
@@ -139,7 +139,7 @@ def test_an_overridden_vehicle_is_the_vehicle_and_can_be_turned(car, tmp_path):
     assert (scenes.study().vehicle.triangles != expected.vehicle.triangles).any()
 
 
-def test_variants_of_a_linked_sensor_are_told(car, tmp_path):
+def test_variants_of_a_linked_sensor_are_reported(car, tmp_path):
     """A sensor of another file cannot be placed: a switch says so, and changes nothing."""
     library = tmp_path / "sensors.blend"
     bpy.data.libraries.write(str(library), {car.objects["roof"]})

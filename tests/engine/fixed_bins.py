@@ -47,7 +47,7 @@ def _bin(u: Floats) -> Ints:
     return np.clip(((u + 1.0) * (CELLS / 2)).astype(np.int64), 0, CELLS - 1)
 
 
-class SeenTriangles:
+class VisibleTriangles:
     """A mesh as seen from one point: which triangles may lie in which direction bin.
 
     Inside a bin the triangles are sorted by how near they may be, so that a ray need not look
@@ -169,12 +169,12 @@ def windows(depth: Floats, u: Floats, v: Floats) -> tuple[Ints, Window, Window]:
     Returns their indices (G,), and for u and v the first and last bin (G,) of each: never fewer
     bins than the projection touches.
     """
-    index = np.flatnonzero(_may_be_seen(depth, u, v))
+    index = np.flatnonzero(_may_be_visible(depth, u, v))
     depth = depth[:, index]
     return index, _window(depth, u[:, index]), _window(depth, v[:, index])
 
 
-def _may_be_seen(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
+def _may_be_visible(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
     """Whether no side of the face's pyramid has all three corners (3, F) outside."""
     seen: NDArray[np.bool_] = _greatest(depth) > 0.0
     for w in (u, v):

@@ -162,12 +162,12 @@ def one_line_test(cases: dict[str, tuple[str, bytes, str, str]]) -> Callable[...
     @pytest.mark.parametrize(("name", "data", "field", "words"), cases.values(), ids=cases.keys())
     def test(tmp_path: Path, name: str, data: bytes, field: str, words: str) -> None:
         """The error names the file and the field and says what was there; NumPy does not warn."""
-        check_told_in_one_line(tmp_path, name, data, field, words)
+        check_one_line_error(tmp_path, name, data, field, words)
 
     return test
 
 
-def check_told_in_one_line(folder: Path, name: str, data: bytes, field: str, words: str) -> None:
+def check_one_line_error(folder: Path, name: str, data: bytes, field: str, words: str) -> None:
     """Reading the file fails with one line: the file, the field, then text that has `words`."""
     with pytest.raises(InputError) as caught:
         read(folder, name, data)

@@ -185,7 +185,7 @@ def test_beyond_its_range_nothing_is_stopped():
     assert ("s", "stopped") not in told(wall, near)
 
 
-def test_several_parts_that_stop_are_told_by_the_worst():
+def test_several_parts_that_stop_are_reported_by_the_worst():
     triangles = [shapes.box((1, -1, 0), (1.1, 1, 2)), shapes.box((0.2, 1.2, 0), (1, 1.3, 2))]
     both = pe.Vehicle(np.concatenate(triangles), np.repeat([0, 1], 12), ("wall", "post"))
     level = pe.Lidar("ring", np.zeros(1), 3600, 50.0)
@@ -193,13 +193,13 @@ def test_several_parts_that_stop_are_told_by_the_worst():
     assert text == "48% of its beams are stopped, 38% by wall"
 
 
-def test_pixels_that_are_stopped_are_told_too():
+def test_pixels_that_are_stopped_are_reported_too():
     """The lower half of a level picture is the bonnet's."""
     found = told(shapes.box_car(), camera_at(0.85, 0, 0.95, hfov_deg=40.0))["s", "stopped"]
     assert found.text.endswith("of its pixels are stopped by body") and found.part == "body"
 
 
-def test_a_score_s_counts_are_those_that_are_told():
+def test_a_score_s_counts_are_those_that_are_reported():
     car, sensor = shapes.box_car(), lidar_at(2.0, 0.0, 0.93, channels=32, azimuths=360)
     space = shapes.small_space()
     score = pe.Evaluator(space, PRIOR, car, samples=1024).score(pe.Rig([sensor]))
@@ -237,7 +237,7 @@ def test_without_names_only_the_long_side_tells(sedan):
     assert (None, "faces") not in told(moved(unnamed(sedan), BACK))  # it cannot be told
 
 
-def test_a_body_as_wide_as_long_is_told_by_its_mirror_image(sedan):
+def test_a_body_as_wide_as_long_is_reported_by_its_mirror_image(sedan):
     """Left and right are alike, front and rear are not."""
     short = pe.Vehicle(sedan.triangles * (0.44, 1.0, 1.0))
     assert (None, "faces") not in told(short)

@@ -95,7 +95,7 @@ def test_the_table_has_a_row_a_sensor():
     assert [advice.loss_text(loss) for loss in losses] == texts
 
 
-def test_a_loss_is_told_where_it_costs_most():
+def test_a_loss_is_reported_where_it_costs_most():
     """Two LiDARs see all round, a camera looks ahead: without it, ahead is what gets worse."""
     roof = shapes.lidar_on_roof(shapes.small_lidar(32, 360))
     camera = shapes.camera(60.0, (1.9, 0.0, 0.9))

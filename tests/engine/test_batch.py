@@ -85,7 +85,7 @@ def test_results_do_not_depend_on_who_judges(evaluator, rigs, pool):
     assert [found.entropy for found in backward[::-1]] == alone
 
 
-def test_what_is_not_below_is_told_alike_by_all(evaluator, rigs, pool):
+def test_what_is_not_below_is_reported_alike_by_all(evaluator, rigs, pool):
     """Whether an evaluator needs the vehicle to tell so depends on what it measured before."""
     alone = [evaluator.entropy(rig) for rig in rigs]
     below = sorted(alone)[2]

@@ -200,7 +200,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]} {case[1]:g} m")
-def test_no_unseen_body_stands_where_nothing_is_told_and_no_edge_is_far_out(case, monkeypatch):
+def test_no_unseen_body_stands_where_nothing_is_reported_and_no_edge_is_far_out(case, monkeypatch):
     monkeypatch.setattr(blind_squares, "MIN_AREA_M2", 0.0)
     vehicle, rig = CASES[case][0](), pe.Rig(CASES[case][1])
     height, rng = case[1], np.random.default_rng(7)

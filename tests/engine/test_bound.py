@@ -28,7 +28,7 @@ def sensors(rng):
 
 
 @pytest.mark.parametrize("blind", ["floor", "literal"])
-def test_a_bound_is_one_and_is_told_only_where_it_settles_the_matter(blind):
+def test_a_bound_is_one_and_is_reported_only_where_it_settles_the_matter(blind):
     rng = np.random.default_rng(5)
     model = pe.PerceptionModel(blind=blind)
     evaluator, plain = (

@@ -189,7 +189,7 @@ def test_nuscenes_results(write):
     assert dict(table.left_out) == {"of unknown class 'barrier'": 1}
 
 
-def test_boxes_of_a_map_are_told_from_the_vehicle_s(write):
+def test_boxes_of_a_map_are_reported_from_the_vehicle_s(write):
     path = write([nuscenes_box(translation=[1010.1, 612.0, 0.8])])
     prior = pe.Prior.from_boxes(pe.read_boxes(path))
     with pytest.raises(pe.InputError, match="in the ground frame of the vehicle, found all 1 out"):
@@ -314,7 +314,7 @@ def test_a_column_of_tracks_is_no_column_of_classes(tmp_path):
     assert len(pe.read_boxes(path).classes) == 64
 
 
-def test_classes_that_do_not_fit_in_memory_are_told_before_work(monkeypatch):
+def test_classes_that_do_not_fit_in_memory_are_reported_before_work(monkeypatch):
     rows = [(f"class {n}", 10, 2, 0.75, 4.5, 1.8, 1.5, 0.0) for n in range(50)]
     prior, space = pe.Prior.from_boxes(rows), pe.PerceptionSpace()
     monkeypatch.setattr(memory, "available_bytes", lambda: 10**9)

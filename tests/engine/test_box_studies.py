@@ -114,7 +114,7 @@ def test_bad_priors_of_boxes_are_one_clear_line(write, old, new, message):
     assert str(caught.value).startswith(f"{path}: ") and "\n" not in str(caught.value)
 
 
-def test_a_wrong_label_is_told_with_the_study_the_file_and_the_line(write):
+def test_a_wrong_label_is_reported_with_the_study_the_file_and_the_line(write):
     write(changed(KITTI, "1.75", "-1"))
     path = write(STUDY, "study.toml")
     with pytest.raises(

@@ -131,7 +131,7 @@ def test_a_stop_keeps_the_front_so_far(after):
     assert f"{after} searched of {after} looked at (of more)" in told
 
 
-def test_a_design_without_a_place_is_told_and_the_others_stay():
+def test_a_design_without_a_place_is_reported_and_the_others_stay():
     """The tall can does not fit under a height that the small one keeps to."""
     given = study([pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])], free=("x",))
     limits = pe.Constraints(max_height=mounting.ON_ROOF[2] + 0.04)

@@ -101,7 +101,7 @@ def test_exit_status(argv, status, message, capsys):
         assert len(err.strip().splitlines()) == 1
 
 
-def test_an_output_that_cannot_be_written_is_told_at_once(study, tmp_path, capsys):
+def test_an_output_that_cannot_be_written_is_reported_at_once(study, tmp_path, capsys):
     (tmp_path / "file").touch()
     assert main(["optimize", "--no-review", str(study), "-o", str(tmp_path / "file" / "out")]) == 1
     assert "output: expected a folder that can be written" in capsys.readouterr().err

@@ -135,7 +135,7 @@ def test_alike_is_not_said_of_two_that_differ_within_the_best():
     assert "A, B and C are alike" in said and "C is worse than B, by 0.09 +- 0.02" in said
 
 
-def test_winners_are_told_by_coverage_as_well():
+def test_winners_are_reported_by_coverage_as_well():
     part = pe.PartScore
     exact = dataclasses.replace(score(2.0, 0.6), stderr=0.0)
     a = dataclasses.replace(

@@ -164,7 +164,7 @@ def test_entries_of_the_catalogue_without_a_source_are_the_three_it_tells_of():
 
 GUIDE = (ROOT / "docs" / "guide.md").read_text("utf-8")
 IMAGES = ROOT / "docs" / "images"
-MOST_STILL_BYTES, MOST_FILM_BYTES = 400_000, 3_000_000
+MAX_STILL_BYTES, MAX_FILM_BYTES = 400_000, 3_000_000
 
 
 def test_every_picture_of_the_guide_is_there_and_made_by_the_script():
@@ -178,6 +178,6 @@ def test_every_picture_of_the_guide_is_there_and_made_by_the_script():
 
 def test_pictures_are_small():
     for path in IMAGES.glob("*.png"):
-        assert path.stat().st_size < MOST_STILL_BYTES, path.name
+        assert path.stat().st_size < MAX_STILL_BYTES, path.name
     for path in IMAGES.glob("*.webp"):
-        assert path.stat().st_size < MOST_FILM_BYTES, path.name
+        assert path.stat().st_size < MAX_FILM_BYTES, path.name

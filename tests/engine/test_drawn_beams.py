@@ -122,8 +122,8 @@ def test_edges_of_a_limited_field_of_view_show():
 
 def test_a_draft_casts_few_beams_of_every_channel(vehicle):
     sensor = mounted(catalog.load("Pandar64"))
-    found = beams.cast(sensor, vehicle, beams.A_DRAFT)
-    assert len(found.rows) == 64 and 10_000 < len(found.ends) <= beams.A_DRAFT
+    found = beams.cast(sensor, vehicle, beams.PREVIEW_BEAMS)
+    assert len(found.rows) == 64 and 10_000 < len(found.ends) <= beams.PREVIEW_BEAMS
     fine = beams.cast(sensor, vehicle)
     assert abs(found.stopped.mean() - fine.stopped.mean()) < 0.01
 

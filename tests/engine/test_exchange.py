@@ -101,7 +101,7 @@ def test_carla_brings_back_even_channels_and_says_what_it_cannot(tmp_path):
     assert puck.beam_count == model.beam_count and puck.max_range == model.max_range
 
 
-def test_a_lens_keeps_its_middle_and_its_distortion_is_told(tmp_path):
+def test_a_lens_keeps_its_middle_and_its_distortion_is_reported(tmp_path):
     rig = pe.Rig([sensor("wide", "PandaSet wide", (1.5, 0, 1.6))])
     (path,), lines = pe.export_rig(rig, "driveworks", tmp_path / "rig.json", AXLE)
     assert lines == ["wide: the distortion (brown-conrady) of PandaSet wide is left out of "

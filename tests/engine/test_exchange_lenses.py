@@ -48,7 +48,7 @@ def read_back(sensor, name, folder):
 
 @pytest.mark.parametrize("name", KEEPS)
 @pytest.mark.parametrize("key", LENSES)
-def test_a_lens_comes_back_or_is_told(name, key, tmp_path):
+def test_a_lens_comes_back_or_is_reported(name, key, tmp_path):
     """Every figure within 1e-6; of a lens that a format cannot say the axis is right."""
     ours, lines = LENSES[key], None
     found, lines = read_back(camera("eye", ours), name, tmp_path)
@@ -75,7 +75,7 @@ def test_kitti_s_projection_has_the_pinhole_alone(tmp_path):
     assert (theirs.fx, theirs.fy, theirs.cx, theirs.cy) == pytest.approx(PLACE, abs=1e-6)
 
 
-def test_the_edge_of_an_image_stands_in_a_table_and_is_told_elsewhere(tmp_path):
+def test_the_edge_of_an_image_stands_in_a_table_and_is_reported_elsewhere(tmp_path):
     own = camera("eye", KannalaBrandt(500.0, 500.0, 960.0, 540.0, math.radians(190.0)))
     (tmp_path / "table").mkdir()
     found, lines = read_back(own, "csv", tmp_path / "table")

@@ -90,7 +90,7 @@ def test_a_foreign_clip_is_no_range(tmp_path):
 
 
 @pytest.mark.parametrize(("name", "asking"), [("urdf", "Gazebo"), ("carla", "CARLA")])
-def test_channels_that_stand_apart_in_azimuth_are_told(name, asking):
+def test_channels_that_stand_apart_in_azimuth_are_reported(name, asking):
     offsets = np.radians([0.0, -2.5, 0.0])
     own = pe.Lidar("own", np.radians([-10, 0, 10]), 36, 80.0, offsets)
     _, lines = rig_files(pe.Rig([pe.Sensor("roof", own, pe.Pose((0.0, 0.0, 2.0)))]), name)

@@ -66,7 +66,7 @@ def test_what_protobuf_s_printer_writes_is_read(parsed, schema_names, tmp_path):
     assert found.rig["camera_2"].model.hfov == pytest.approx(math.radians(70.0))
 
 
-def test_one_range_is_there_for_all_lidars_and_others_are_told(tmp_path):
+def test_one_range_is_there_for_all_lidars_and_others_are_reported(tmp_path):
     (path,), lines = pe.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
     assert "OSI has one range for all LiDARs, 80 m; left out: nose 30 m" in lines
     found = pe.import_rig(path, "osi", AXLE)

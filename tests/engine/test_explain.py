@@ -146,7 +146,7 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
         assert out == "" and "expected" in err and "scoring" not in err
 
 
-def test_files_of_one_name_are_told_apart_by_their_folders(tmp_path, capsys):
+def test_files_of_one_name_are_reported_apart_by_their_folders(tmp_path, capsys):
     for folder in "ab":
         (tmp_path / folder).mkdir()
         saved(tmp_path / folder, "study.toml")
@@ -191,7 +191,7 @@ def without_sight(text):
 
 
 @pytest.mark.parametrize("asked", [("--grid-samples", "65536"), ("--at", "-8", "6")])
-def test_the_page_s_examples_are_what_is_told(asked, monkeypatch, capsys):
+def test_the_page_s_examples_are_what_is_reported(asked, monkeypatch, capsys):
     monkeypatch.chdir(Path(pe.__file__).parent.parent)
     command = ["explain", "blend_assets/experiments/4_cameras.toml", *asked]
     assert main(command) == 0

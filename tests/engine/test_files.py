@@ -92,7 +92,7 @@ def test_only_files_are_written_over(tmp_path, kind):
         (10**4000, "more than a million TB"),
     ],
 )
-def test_sizes_are_told_as_people_say_them(count, told):
+def test_sizes_are_reported_as_people_say_them(count, told):
     assert size_text(count) == told
 
 

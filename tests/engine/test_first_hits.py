@@ -8,7 +8,7 @@ import pytest
 import pe_core as pe
 from pe_core.geometry import ray_traversal, raycast
 from pe_core.geometry.poses import cross, dot
-from pe_core.geometry.raycast import SeenTriangles
+from pe_core.geometry.raycast import VisibleTriangles
 from pe_core.geometry.triangle_tree import TriangleTree
 from tests.engine import fixed_bins, shapes
 from tests.thorough import pairs, tries
@@ -91,11 +91,11 @@ MESHES = {f.__name__: f for f in (soup, slivers, coincident, edge_on, lattice)}
 
 
 def assert_same(triangles, directions):
-    hits = SeenTriangles(TriangleTree(triangles), np.zeros(3)).first_hit(directions)
+    hits = VisibleTriangles(TriangleTree(triangles), np.zeros(3)).first_hit(directions)
     distance, face = every_triangle(triangles, directions)
     assert hits.distance.tobytes() == distance.tobytes()
     assert hits.face.tolist() == face.tolist()
-    before = fixed_bins.SeenTriangles(triangles).first_hit(directions)
+    before = fixed_bins.VisibleTriangles(triangles).first_hit(directions)
     assert hits.distance.tobytes() == before.distance.tobytes()
     return hits
 
@@ -113,7 +113,7 @@ def test_hits_are_those_of_every_triangle_tested(mesh, seed):
 def test_hits_do_not_depend_on_how_much_is_looked_at_at_once(mesh, monkeypatch):
     """A box at a time, some rays at a time: ties are then between what was met and what is."""
     monkeypatch.setattr(raycast, "FIRST_BOXES", 1)
-    monkeypatch.setattr(raycast, "MOST_BOXES", 2)
+    monkeypatch.setattr(raycast, "MAX_BOXES", 2)
     monkeypatch.setattr(raycast, "PAIRS_AT_ONCE", 16)
     monkeypatch.setattr(raycast, "RAYS_AT_ONCE", 700)
     rng = np.random.default_rng(9)
@@ -127,7 +127,7 @@ def test_rays_followed_by_themselves_hit_the_same(mesh, few, monkeypatch):
     """Some of the rays into some of the boxes, and all into all; many at once and one by one."""
     monkeypatch.setattr(raycast, "FINE", 0)
     monkeypatch.setattr(raycast, "FEW_RAYS", few)
-    monkeypatch.setattr(raycast, "ENOUGH_BOXES", 2)
+    monkeypatch.setattr(raycast, "MIN_BOXES_TO_SORT", 2)
     monkeypatch.setattr(ray_traversal, "PAIRS_AT_ONCE", 100 if few == 3 else 1 << 11)
     rng = np.random.default_rng(4)
     triangles = MESHES[mesh](rng)[:283]  # no multiple of what a box holds
@@ -154,8 +154,8 @@ def test_triangles_whose_area_is_rounding_stop_what_they_did():
     start, along = rng.normal(0, 3, (2, 300, 3))
     flat = np.stack([start, start + along, start + 2 * along], axis=1)
     directions = rays_at(flat, rng)
-    hits = SeenTriangles(TriangleTree(flat), np.zeros(3)).first_hit(directions)
-    before = fixed_bins.SeenTriangles(flat).first_hit(directions)
+    hits = VisibleTriangles(TriangleTree(flat), np.zeros(3)).first_hit(directions)
+    before = fixed_bins.VisibleTriangles(flat).first_hit(directions)
     assert hits.distance.tobytes() == before.distance.tobytes()
 
 
@@ -183,7 +183,7 @@ def test_few_rays_at_many_triangles(count):
 
 
 def test_no_rays_and_no_triangles():
-    none = SeenTriangles(TriangleTree(np.zeros((0, 3, 3))), np.zeros(3))
+    none = VisibleTriangles(TriangleTree(np.zeros((0, 3, 3))), np.zeros(3))
     assert none.first_hit(np.eye(3)).face.tolist() == [-1, -1, -1]
     assert not len(none.first_hit(np.zeros((0, 3))).face)
 
@@ -195,7 +195,7 @@ def test_a_frame_at_a_shipped_vehicle_is_to_the_bit_what_it_was(mesh, up):
     origin = np.array([-0.4, 0.02, vehicle.bounds[1][2] + up])
     directions = pe.catalog.load("Pandar64").directions
     seen = vehicle.seen_from(origin)
-    before = fixed_bins.SeenTriangles(vehicle.triangles - seen.seen.origin).first_hit(directions)
+    before = fixed_bins.VisibleTriangles(vehicle.triangles - seen.seen.origin).first_hit(directions)
     hits = seen.first_hit(directions)
     assert hits.distance.tobytes() == before.distance.tobytes()
     tied = hits.face != before.face  # before, a tie could go to a higher triangle

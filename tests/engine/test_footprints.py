@@ -54,7 +54,7 @@ def test_the_body_s_outline_is_that_from_above():
     assert np.abs(np.vstack(outline)).max(axis=0) == pytest.approx([2.3, 0.9], abs=0.02)
 
 
-def test_what_sees_no_ground_is_told():
+def test_what_sees_no_ground_is_reported():
     up = camera(rotation=(0.0, -90.0, 0.0), name="up")
     plan, lines = plan_of(up)
     assert plan.footprints[0].outlines == ()

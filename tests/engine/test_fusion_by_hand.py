@@ -111,7 +111,7 @@ def test_no_pixels_are_none_even_where_the_least_is_enough(kind):
     np.testing.assert_allclose(found, expected, atol=1e-5)
 
 
-def test_areas_far_beyond_a_picture_and_far_below_a_pixel_are_told_apart():
+def test_areas_far_beyond_a_picture_and_far_below_a_pixel_are_reported_apart():
     """1e-6 px, where AP is clipped, and 4e9, beyond 4,617,918 px, where it is too."""
     area = np.array([[[1e-6, 4e9, 1.0]]], np.float32)
     fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (1, 3))

@@ -43,7 +43,7 @@ RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), n
     ],
     ids=["well", "half", "mostly", "inside", "sampled", "away"],
 )
-def test_what_is_told_of_it(stopped, coverage, warned, stderr, lines):
+def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
     own = {"roof": sensor_score(0.6), INSIDE: sensor_score(coverage, stopped)}
     score = pe.Score(2.0, 0.6, stderr, {}, {}, own, 9)
     warnings = [pe.Advice(INSIDE, code, "it is inside the body") for code in warned]

@@ -14,7 +14,7 @@ from pe_core.study.study_file import study_from_dict
 from tests.engine import shapes
 from tests.thorough import pairs
 
-LONGEST_LINE = 300
+MAX_LINE_LENGTH = 300
 
 
 def nested(depth, of=list):
@@ -206,7 +206,7 @@ def refused(read, *words):
             read()
         except pe.InputError as error:
             line = str(error)
-            assert len(line) < LONGEST_LINE and line.isprintable(), line
+            assert len(line) < MAX_LINE_LENGTH and line.isprintable(), line
             assert any(word in line for word in words), (words, line)
             return line
     return None

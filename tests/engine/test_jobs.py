@@ -179,7 +179,7 @@ def test_the_same_study_gives_the_same_result_but_for_the_run():
     assert json.dumps(first) == json.dumps(second)
 
 
-def test_an_output_folder_that_cannot_be_written_is_told_before_the_work(tmp_path):
+def test_an_output_folder_that_cannot_be_written_is_reported_before_the_work(tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("in the way")
     with pytest.raises(pe.InputError, match="output: expected a folder that can be written"):

@@ -88,7 +88,7 @@ def test_without_a_size_nothing_is_stretched():
     assert rig.on_vehicle((-9.0, -9.0, 0.0), (9.0, 9.0, 9.0)) == rig.sensors
 
 
-def test_an_unknown_one_is_told():
+def test_an_unknown_one_is_reported():
     with pytest.raises(InputError, match=r"rig: expected one of .*nuscenes.*, found 'zoe'"):
         catalog.known_rig("zoe")
 

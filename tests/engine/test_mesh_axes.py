@@ -199,7 +199,7 @@ def test_an_exported_mesh_is_not_turned_again(tmp_path):
         ({"rotation": "left"}, r"vehicle\.rotation"),
     ],
 )
-def test_impossible_keys_are_told_in_one_line(tmp_path, keys, words):
+def test_impossible_keys_are_reported_in_one_line(tmp_path, keys, words):
     with pytest.raises(pe.InputError, match=words):
         study_of(tmp_path, obj("ours"), **keys)
 

@@ -26,7 +26,7 @@ BAD = {
 }
 
 
-test_bad_input_is_told_in_one_line = one_line_test(BAD)
+test_bad_input_is_reported_in_one_line = one_line_test(BAD)
 
 
 @pytest.mark.parametrize("name", ["a.npz", "a.obj", "a.stl", "a.ply", "a.glb"])

@@ -64,4 +64,4 @@ BAD = {
 }
 
 
-test_bad_input_is_told_in_one_line = one_line_test(BAD)
+test_bad_input_is_reported_in_one_line = one_line_test(BAD)

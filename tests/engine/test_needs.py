@@ -74,7 +74,7 @@ def test_where_nobody_tells_how_much_there_is_all_is_tried(monkeypatch):
     assert ours.evaluator(0).entropy(ours.rig) > 0.0
 
 
-def test_too_large_a_sample_is_told_with_one_that_fits(monkeypatch):
+def test_too_large_a_sample_is_reported_with_one_that_fits(monkeypatch):
     ours = study(1, 0)
     monkeypatch.setattr(memory_need, "available_bytes", lambda: 100_000_000)
     words = r"score: memory: .*100\.0 MB .*try samples = 131072, found about 10\.0 GB"

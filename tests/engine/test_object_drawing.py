@@ -162,7 +162,7 @@ def test_scenes_of_labelled_boxes_are_drawn_from_them():
         ({"car": 1e6}, "metric: scenes: expected what fits in the .* of memory"),
     ],
 )
-def test_what_cannot_stand_is_told_in_one_line(prior, told, monkeypatch):
+def test_what_cannot_stand_is_reported_in_one_line(prior, told, monkeypatch):
     monkeypatch.setattr("pe_core.base.memory.available_bytes", lambda: 10**9)
     if isinstance(prior, dict):
         prior = pe.Prior("road", ROAD.classes, density=prior)
@@ -171,7 +171,7 @@ def test_what_cannot_stand_is_told_in_one_line(prior, told, monkeypatch):
     assert "\n" not in str(error.value)
 
 
-def test_a_space_too_small_for_its_objects_is_told():
+def test_a_space_too_small_for_its_objects_is_reported():
     yard = pe.PerceptionSpace(x=(-6, 6), y=(-6, 6))
     share = ROAD.objects_at_once(yard)["car"] / 8.2
     crowded = pe.Prior("road", ROAD.classes[:1], density={"car": 15 / share})
@@ -179,7 +179,7 @@ def test_a_space_too_small_for_its_objects_is_told():
         drawn(crowded, targets=TargetRule("objects", True, 8), space=yard)
 
 
-def test_a_prior_without_weight_on_the_objects_is_told():
+def test_a_prior_without_weight_on_the_objects_is_reported():
     nothing = pe.Prior.road([pe.Focus(0.0)])
     with pytest.raises(pe.InputError, match="some weight left on the objects, found none"):
         drawn(nothing)

@@ -86,7 +86,7 @@ def test_a_score_is_the_equations_on_every_object(whole):
     assert score.coverage == pytest.approx(weights[(m["lidar"] > 0) | (m["camera"] > 0)].sum())
 
 
-def test_what_is_told_of_sensors_is_that_of_rigs_with_and_without_them(whole):
+def test_what_is_reported_of_sensors_is_that_of_rigs_with_and_without_them(whole):
     evaluator, score = whole
     lidar, camera = rig(shapes.camera())
     alone = evaluator.score(pe.Rig([lidar]))
@@ -195,7 +195,7 @@ def test_objects_that_are_all_alike_leave_something_to_doubt():
     assert set(score.objects.per_class["car"].reach.values()) == {0.0}
 
 
-def test_reach_is_told_of_the_side_that_a_sensor_looks_to():
+def test_reach_is_reported_of_the_side_that_a_sensor_looks_to():
     """A LiDAR over a quarter to the left: a car is found there, and on no other side."""
     left = shapes.small_lidar(32, 360, horizontal_fov=(math.pi / 4, 3 * math.pi / 4))
     reach = judge().score(pe.Rig([shapes.lidar_on_roof(left)])).objects.per_class["car"].reach
@@ -233,7 +233,7 @@ def test_a_curve_carried_over_is_the_voxel_s_where_the_object_has_its_share():
 TRAM = pe.ObjectClass("tram", (15.0, 2.5, 3.6), 0.3, 50.0, 5.0, 2.0, 0.5)
 
 
-def test_a_class_without_a_curve_is_told_unless_it_weighs_nothing():
+def test_a_class_without_a_curve_is_reported_unless_it_weighs_nothing():
     with_tram = pe.Prior("road", (*ROAD.classes, TRAM), density={"tram": 1})
     told = r"\[ap\.lidar\.objects\.tram\]: expected a and b of 'tram' as an object"
     with pytest.raises(pe.InputError, match=told):
@@ -282,7 +282,7 @@ def test_a_search_s_coarser_levels_have_fewer_scenes():
         ({"objects": 2}, r"metric\.objects: expected one of scenes, targets, traffic"),
     ],
 )
-def test_bad_keys_are_told(metric, told):
+def test_bad_keys_are_reported(metric, told):
     with pytest.raises(pe.InputError, match=told):
         study_from_dict({"sensor": [SENSOR], "metric": metric})
 

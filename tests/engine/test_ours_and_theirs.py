@@ -133,7 +133,7 @@ def test_someone_elses_result_json_makes_nothing_ours(study, out):
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"perception-entropy": 1, "files": [3]}'])
-def test_a_damaged_list_is_told(study, out, text, capsys):
+def test_a_damaged_list_is_reported(study, out, text, capsys):
     (out / LISTING).write_text(text)
     assert optimize(study, out) == 1
     assert f"{out / LISTING}: file: expected this program's list" in one_line(capsys)
@@ -182,7 +182,7 @@ def test_a_set_is_written_whole_or_not_at_all(tmp_path):
     assert contents(tmp_path) == before
 
 
-def test_a_writer_that_writes_nothing_is_told(tmp_path):
+def test_a_writer_that_writes_nothing_is_reported(tmp_path):
     with pytest.raises(pe.InputError, match="nothing was written"), FileSet(tmp_path) as files:
         files.add("a", lambda path: None)
 
@@ -247,7 +247,7 @@ def test_what_somebody_changed_of_another_run_stays(study, out):
     assert (out / "history.csv").read_text() == "mine"
 
 
-def test_a_study_newer_than_the_result_is_told(study, out):
+def test_a_study_newer_than_the_result_is_reported(study, out):
     """As after a search that was killed: it had saved its best so far."""
     assert optimize(study, out) == 0
     pe.export_study(a_study(x=0.2), out / "study.toml")

@@ -35,7 +35,7 @@ def test_names_are_made_fit_and_stay_different(names: list[str], fit: list[str])
     assert all(name.isprintable() and len(name) <= MAX_NAME for name in fit)
 
 
-def test_a_hundred_thousand_alike_are_told_apart() -> None:
+def test_a_hundred_thousand_alike_are_reported_apart() -> None:
     """Each name is tried once, not with all numbers before its own."""
     names = [f"{chr(0xE000 + i % 6000)}{'x' * (i // 6000)}" for i in range(100_000)]
     assert len(set(fit_names(names))) == len(set(names)) == 100_000
@@ -72,7 +72,7 @@ def test_a_file_s_own_name_as_a_part_s(tmp_path: Path, stem: str) -> None:
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("size", [1e5, 1e154, 1e308, -1.7e308])
-def test_a_vehicle_of_any_size_is_told_without_warnings(tmp_path: Path, size: Any) -> None:
+def test_a_vehicle_of_any_size_is_reported_without_warnings(tmp_path: Path, size: Any) -> None:
     """The mesh is read as it is; as a vehicle it is refused, and NumPy does not overflow first."""
     mesh = read(tmp_path, "a.npz", npz_bytes(triangles=np.sign(BOX) * size))
     with pytest.raises(pe.InputError, match="vehicle: triangles: expected"):

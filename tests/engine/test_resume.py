@@ -263,7 +263,7 @@ def test_usage(arguments, status, complaint, capsys):
     assert complaint in capsys.readouterr().err
 
 
-def test_a_folder_that_cannot_be_written_is_told_before_the_work(out, capsys):
+def test_a_folder_that_cannot_be_written_is_reported_before_the_work(out, capsys):
     begun_in(out)
     (out / "history.csv").write_text("somebody's own\n")
     assert main(["optimize", "--resume", str(out)]) == 1

@@ -66,7 +66,7 @@ def test_it_tells_the_loss_of_each_sensor(outcome):
     assert told.before is told.after and told.before.failed is told.before.loss is None
 
 
-def test_a_study_without_mounting_errors_is_told_of_a_careful_workshop_s():
+def test_a_study_without_mounting_errors_is_reported_of_a_careful_workshop_s():
     evaluator, rig = study().evaluator(1024), study().rig
     told = robustness(evaluator, rig, rig, pe.Tolerance(failures=True))
     assert told.errors == pe.Tolerance(0.01, math.radians(0.3), 6)
@@ -111,7 +111,7 @@ def test_a_search_under_errors_keeps_what_it_found_though_it_scores_worse_as_it_
     ("rise", "stderr", "told"),
     [(0.051, 0.01, True), (0.05, 0.0, False), (0.2, 0.11, False), (0.2, 0.09, True)],
 )
-def test_a_fragile_placement_is_told(rise, stderr, told):
+def test_a_fragile_placement_is_reported(rise, stderr, told):
     found = advice.fragile(rise, stderr, 0.01, math.radians(0.3), tolerant=False)
     assert bool(found) is told
 

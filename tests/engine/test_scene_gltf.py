@@ -107,7 +107,7 @@ def test_a_part_called_as_a_sensor_gets_another_name():
     assert {"cabin", "cabin (body)"} <= {node["name"] for node in document["nodes"]}
 
 
-def test_what_gltf_cannot_say_is_told():
+def test_what_gltf_cannot_say_is_reported():
     bent = pe.Camera("fish", 800, 600, lens=pe.KannalaBrandt(300, 300, 410, 300))
     rig = pe.Rig([pe.Sensor("fish", bent, pe.Pose((0, 0, 2)))])
     lines = scene_files(pe.Study(rig), "gltf")[1]

@@ -16,9 +16,9 @@ EYES = {
 """Linear sRGB as it is seen: Machado, Oliveira and Fernandes, 2009, severity 1."""
 TO_XYZ = np.array([(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)])
 WHITE = np.array([0.9505, 1.0, 1.089])
-LEAST_APART = 18.0
+MIN_DISTANCE = 18.0
 """In CIE Lab; some 2 can just be told side by side."""
-LEAST_CONTRAST = 3.0
+MIN_CONTRAST = 3.0
 """Of what is drawn beside its ground: WCAG 2.1, 1.4.11."""
 
 
@@ -49,17 +49,17 @@ SHADES = {
 
 @pytest.mark.parametrize("eyes", EYES)
 @pytest.mark.parametrize("shade", SHADES)
-def test_any_two_are_told_apart_and_from_what_is_stopped(shade, eyes):
+def test_any_two_are_reported_apart_and_from_what_is_stopped(shade, eyes):
     own, stopped, _ = SHADES[shade]
     for one, other in combinations([*own, stopped], 2):
         apart = np.linalg.norm(lab(one, EYES[eyes]) - lab(other, EYES[eyes]))
-        assert apart > LEAST_APART, (one, other)
+        assert apart > MIN_DISTANCE, (one, other)
 
 
 @pytest.mark.parametrize("shade", SHADES)
 def test_each_stands_out_from_its_ground(shade):
     own, _, ground = SHADES[shade]
-    assert min(contrast(color, ground) for color in own) > LEAST_CONTRAST
+    assert min(contrast(color, ground) for color in own) > MIN_CONTRAST
 
 
 def test_shades_are_of_the_same_sensors():

@@ -152,7 +152,7 @@ def test_mirrored_rigs_have_mirrored_blind_ground():
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.013, 0.031, 0.049])
-def test_nothing_blind_is_told_as_nothing_wherever_the_body_ends(shift):
+def test_nothing_blind_is_reported_as_nothing_wherever_the_body_ends(shift):
     """Channels steep enough to see up to the body, whose ends lie anywhere on the squares."""
     body = pe.Vehicle(shapes.box((-2.0 - shift, -0.5, 0.0), (2.0 + shift, 0.5 + shift, 1.0)))
     places = [(x, y) for x in (-2.3, 0.0, 2.3) for y in (-0.8, 0.85) if x or y]
@@ -173,7 +173,7 @@ def test_nothing_blind_is_told_as_nothing_wherever_the_body_ends(shift):
         ({"within": -1.0}, "sight: within: expected a length above 0 m, found -1"),
     ],
 )
-def test_what_cannot_be_looked_at_is_told_in_a_line(asked, line):
+def test_what_cannot_be_looked_at_is_reported_in_a_line(asked, line):
     with pytest.raises(pe.InputError, match=line):
         Sight(SPACE, pe.Prior.road()).blind(pe.Rig([cone_lidar()]), **asked)
 

@@ -268,7 +268,7 @@ def test_a_kind_of_one_s_own_is_seen(ring_kind):
         ({"within": 0.1}, r"sight: within: expected a part of the space"),
     ],
 )
-def test_what_cannot_be_looked_at_is_told_in_a_line(asked, line):
+def test_what_cannot_be_looked_at_is_reported_in_a_line(asked, line):
     with pytest.raises(pe.InputError, match=line) as told:
         sight().ground(pe.Rig([lidar()]), **asked)
     assert "\n" not in str(told.value)

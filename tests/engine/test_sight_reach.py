@@ -148,7 +148,7 @@ def test_two_of_a_kind_find_the_same_bits():
         ("car", {"bearings": 3}, "sight: bearings: expected a whole number >= 4, found 3"),
     ],
 )
-def test_what_cannot_be_asked_is_told_in_a_line(name, asked, line):
+def test_what_cannot_be_asked_is_reported_in_a_line(name, asked, line):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
     with pytest.raises(pe.InputError, match=line):
         sight.Sight(shapes.small_space(), pe.Prior.road()).reach(rig, name, **asked)

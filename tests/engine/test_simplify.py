@@ -124,7 +124,7 @@ def test_a_mesh_without_extent_is_no_trouble():
 
 
 @pytest.mark.parametrize("wanted", [999, -1, 2.5, "many", None, True])
-def test_what_is_no_number_of_triangles_is_told(wanted):
+def test_what_is_no_number_of_triangles_is_reported(wanted):
     with pytest.raises(pe.InputError, match="simplify: triangles: expected a whole number of tri"):
         simplified(shapes.box_car(), wanted)
 

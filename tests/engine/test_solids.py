@@ -188,7 +188,7 @@ def test_the_blind_volume_is_where_nothing_is_measured(files):
     assert seen[0] > 0
 
 
-def test_what_there_is_to_know_is_told_in_lines():
+def test_what_there_is_to_know_is_reported_in_lines():
     own = scene_files(a_study(camera(name="a b")), "solids")[1]
     assert own == [
         "a b: called a_b in names of files",
@@ -239,7 +239,7 @@ def test_the_check_for_closed_surfaces_sees_a_hole_a_fold_and_a_turned_triangle(
         (["--to", "csv", "--range", "5"], "--range: option: expected one of solids"),
     ],
 )
-def test_what_cannot_be_written_is_told_in_a_line(options, words, tmp_path, monkeypatch, capsys):
+def test_what_cannot_be_written_is_reported(options, words, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     pe.save_study(a_study(camera()), "study.toml")
     (tmp_path / "taken").write_text("mine")

@@ -27,7 +27,7 @@ from pe_tools.sweep import (
     run_task,
     sweep_runs,
 )
-from pe_tools.sweep.parameter_grid import LONGEST, folder_names
+from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
 from tests.engine import shapes
 from tests.engine.processes import GUARD_S, Command
 
@@ -154,7 +154,7 @@ def test_names_are_safe_short_and_of_one_run_each():
     assert len({name.casefold() for name in names}) == len(names)
     for name in names:
         assert name.isascii() and not set(name) & set('/\\:*?"<>| ') and name[0] not in ".-"
-        assert len(name) <= LONGEST + 9 and name.casefold() != "con"
+        assert len(name) <= MAX_NAME_LENGTH + 9 and name.casefold() != "con"
     assert names[-1] == "plain" and names[0].startswith("car,m=a-b-")
     assert folder_names([("car", {"m": "x"})]) == ["car,m=x"]
 
@@ -400,6 +400,6 @@ def test_real_processes_that_are_killed_are_replaced(study):
         assert not child.is_alive(), "one that outlives its pool keeps the program from ending"
 
 
-def test_another_version_in_a_worker_is_told(study):
+def test_another_version_in_a_worker_is_reported(study):
     found = run_task(replace(RunTask(pe.load_study(study), False, 1), version="0.0.9"))
     assert str(found).startswith("worker: version: expected 0.0.9, the version of the program")

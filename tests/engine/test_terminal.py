@@ -8,7 +8,7 @@ import pytest
 import pe_core as pe
 from pe_core.base import dump_json
 from pe_tools.cli import command, printable, show
-from pe_tools.cli.terminal import LONGEST_LINE, one_line
+from pe_tools.cli.terminal import MAX_LINE_LENGTH, one_line
 from pe_tools.cli.verbs import main
 
 STEERING = {
@@ -45,7 +45,7 @@ def test_json_means_the_same_afterwards(text):
 
 def test_a_message_is_one_short_line():
     assert one_line("two\nlines") == "two lines"
-    assert len(one_line("x" * 10**6)) == LONGEST_LINE + 3
+    assert len(one_line("x" * 10**6)) == MAX_LINE_LENGTH + 3
 
 
 def test_a_stream_that_fails_says_so_and_raises_nothing():

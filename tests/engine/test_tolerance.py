@@ -247,7 +247,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("line", BAD)
-def test_what_is_wrong_is_told_in_one_line(line):
+def test_what_is_wrong_is_reported_in_one_line(line):
     with pytest.raises(pe.InputError) as error:
         read(**BAD[line])
     assert str(error.value) == f"study.toml: {line}"

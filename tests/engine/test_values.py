@@ -71,14 +71,14 @@ def test_infinity_is_a_number_where_the_rule_says_so():
         (values.Angle(-90.0, 90.0), [math.pi / 2, 0], [2.0], "an angle within +-90 degrees"),
     ],
 )
-def test_a_range_holds_its_ends_and_is_told_in_words(rule, good, bad, words):
+def test_a_range_holds_its_ends_and_is_reported_in_words(rule, good, bad, words):
     for value in good:
         assert rule.checked("a", "b", value) == value
     for value in bad:
         assert words in refused(rule, value)
 
 
-def test_numbers_beyond_a_float_are_told_by_their_digits():
+def test_numbers_beyond_a_float_are_reported_by_their_digits():
     for rule in (values.FINITE, values.Whole(0, 10)):
         refused(rule, HUGE, "found a whole number of 401 digits")
         refused(rule, -ENDLESS, "found a whole number of 5,001 digits")
@@ -102,7 +102,7 @@ def test_names_that_a_line_cannot_hold_are_refused(name):
         values.choice("file", "field", name, ("roof", "bumper"))
 
 
-def test_vectors_have_their_count_and_are_told_whole():
+def test_vectors_have_their_count_and_are_reported_whole():
     assert values.vector("a", "b", np.array([1, 2, 3]), 3) == (1.0, 2.0, 3.0)
     for bad in ([1, 2], [1, 2, 3, 4], "123", {1: 1, 2: 2, 3: 3}, [1, 2, math.nan], None, 3, DEEP):
         with pytest.raises(InputError, match="expected three finite numbers, found"):

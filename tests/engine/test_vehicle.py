@@ -49,7 +49,7 @@ def test_rays_on_shared_edges_do_not_leak():
     assert np.isfinite(vehicle.first_hit((0.1, 0.2, 1.3), directions).distance).all()
 
 
-def test_the_part_that_stops_a_beam_is_told():
+def test_the_part_that_stops_a_beam_is_reported():
     vehicle = shapes.box_car()
     sensor = shapes.lidar_on_roof(position=(0.6, 0.0, 1.6))
     stopped = pe.beam_field(sensor, vehicle).stopped_count(vehicle.part_names)

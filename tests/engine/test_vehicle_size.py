@@ -43,7 +43,7 @@ def test_real_vehicles_of_all_sizes_are_taken(size):
         ("millimetres", 0.001, "0.001"),
     ],
 )
-def test_other_units_are_told_with_their_factor(unit, metres, factor):
+def test_other_units_are_reported_with_their_factor(unit, metres, factor):
     with pytest.raises(pe.InputError) as caught:
         body(CAR / metres)
     assert f"; scale = {factor} if {unit} (4.50 m)" in str(caught.value)

@@ -30,7 +30,7 @@ def test_the_share_rises_to_the_whole_and_changes_no_score():
 
 
 @pytest.mark.parametrize("at", [0.0, 0.4, 1.0])
-def test_a_score_ends_when_it_is_told_and_the_next_is_sound(at):
+def test_a_score_ends_when_it_is_reported_and_the_next_is_sound(at):
     own = evaluator()
     told = []
 

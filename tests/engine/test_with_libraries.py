@@ -172,7 +172,7 @@ def test_argoverse_s_own_projection_sees_a_point_where_ours_does():
     assert (u, v) == pytest.approx((960.0 - 0.2 * f, 540.0 + 0.1 * f), abs=1e-6)
 
 
-def test_distortion_in_an_argoverse_table_is_told(tmp_path):
+def test_distortion_in_an_argoverse_table_is_reported(tmp_path):
     pytest.importorskip("pyarrow", reason="of the extra argoverse")
     pe.export_rig(RIG, "argoverse2", tmp_path, AXLE)
     from pe_tools.exchange import feather

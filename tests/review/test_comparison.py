@@ -56,7 +56,7 @@ def test_a_row_a_sensor_with_what_differs():
     assert "All 2 differ" in html
 
 
-def test_what_is_alike_stands_once_and_what_is_missing_is_told():
+def test_what_is_alike_stands_once_and_what_is_missing_is_reported():
     html = sensor_differences(beside(rig(), rig()))
     assert "All sensors have the same models and poses." in html
     assert [row[1] for row in cells(html)] == ["all", "all"]

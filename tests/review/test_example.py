@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "reviews" / "four_corners.html"
-MOST_BYTES = 2_500_000
+MAX_BYTES = 2_500_000
 ELSEWHERE = r'(?:src|href|action)="(?!#|data:)[^"]*"|url\((?!["\']?data:)|@import'
 """Addresses that a browser would request."""
 
@@ -40,7 +40,7 @@ def test_it_holds_all_it_needs(shown):
     assert shown.endswith("</html>\n")
     drawn = re.sub(r"<script.*?</script>", "", shown, flags=re.S)
     assert re.findall(ELSEWHERE, drawn) == []
-    assert PAGE.stat().st_size < MOST_BYTES
+    assert PAGE.stat().st_size < MAX_BYTES
 
 
 def test_it_is_of_today_s_make(shown, searched_page):
@@ -49,7 +49,7 @@ def test_it_is_of_today_s_make(shown, searched_page):
     assert shape(view(shown)) == shape(view(searched_page))
 
 
-def test_its_sensors_are_the_example_s_and_the_search_is_told(shown):
+def test_its_sensors_are_the_example_s_and_the_search_is_reported(shown):
     names = [sensor["name"] for sensor in view(shown)["sensors"]]
     assert names == ["camera_left", "camera_right", "lidar_left", "lidar_right"]
     assert "pe optimize blend_assets/examples/four_corners/study.toml" in shown

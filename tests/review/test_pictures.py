@@ -126,7 +126,7 @@ def test_numbers_stand_apart_and_in_the_picture():
     assert found.min() > 0 and (found < picture_module.SIZE).all()
 
 
-def test_a_sensor_behind_the_body_is_told_apart(car):
+def test_a_sensor_behind_the_body_is_reported_apart(car):
     """From ahead on the right: the one behind the box is dashed; names are escaped."""
     vehicle, rig = car
     behind = pe.Sensor("a <b>", rig["right"].model, pe.Pose((-2.3, 0.5, 0.6)))

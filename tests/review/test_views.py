@@ -158,7 +158,7 @@ def test_the_section_tells_where_and_how_much(scored):
     assert "no [reference]" in section.html
 
 
-def test_places_are_told_from_the_rear_axle_where_it_is_known(scored):
+def test_places_are_reported_from_the_rear_axle_where_it_is_known(scored):
     study = dataclasses.replace(scored.study, reference=pe.Reference(-1.4, 0.33))
     outcome = dataclasses.replace(scored.outcome, study=study)
     html = position_tables(dataclasses.replace(scored, outcome=outcome))

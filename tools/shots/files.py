@@ -8,11 +8,11 @@ from pathlib import Path
 from PIL import Image
 
 Box = tuple[int, int, int, int]
-MOST_PIXELS = 1600
+MAX_PIXELS = 1600
 """Along the longer side."""
 LOST_BITS = (0, 1, 2, 3)
-MOST_PNG_BYTES = 400_000
-MOST_FILM_BYTES = 3_000_000
+MAX_PNG_BYTES = 400_000
+MAX_FILM_BYTES = 3_000_000
 
 
 def save_still(source: Path, target: Path, crop: Box | None = None) -> int:
@@ -24,12 +24,12 @@ def save_still(source: Path, target: Path, crop: Box | None = None) -> int:
     image = Image.open(source).convert("RGB")
     if crop:
         image = image.crop(crop)
-    image.thumbnail((MOST_PIXELS, MOST_PIXELS), Image.Resampling.LANCZOS)
+    image.thumbnail((MAX_PIXELS, MAX_PIXELS), Image.Resampling.LANCZOS)
     for lost in LOST_BITS:
         rounded(image, lost).save(target, optimize=True)
-        if target.stat().st_size <= MOST_PNG_BYTES:
+        if target.stat().st_size <= MAX_PNG_BYTES:
             break
-    return checked(target, MOST_PNG_BYTES)
+    return checked(target, MAX_PNG_BYTES)
 
 
 def rounded(image: Image.Image, bits: int) -> Image.Image:
@@ -59,7 +59,7 @@ def save_film(
         quality=quality,
         method=4,
     )
-    return checked(target, MOST_FILM_BYTES)
+    return checked(target, MAX_FILM_BYTES)
 
 
 def checked(path: Path, most: int) -> int:

@@ -4,7 +4,7 @@ from .blind_ground import BlindGround, BlindSpot, shown_end, shown_start
 from .grid_regions import outlines
 from .reach import Reach, ReachLine, ends_with_space, reach_line
 from .sight import Sight, expected_ap
-from .visibility import GroundSight, SeenShares
+from .visibility import GroundSight, VisibleShares
 
 __all__ = [
     "BlindGround",
@@ -12,8 +12,8 @@ __all__ = [
     "GroundSight",
     "Reach",
     "ReachLine",
-    "SeenShares",
     "Sight",
+    "VisibleShares",
     "ends_with_space",
     "expected_ap",
     "outlines",

@@ -27,7 +27,7 @@ from .blind_ground import BlindGround, blind_ground, body_rectangle
 from .blind_squares import STEP_M, BlindSearch, fine_enough
 from .ground_cells import GroundCells, widened
 from .reach import AP, BEARINGS, Reach, Spokes, density_of, object_reach
-from .visibility import GroundSight, SeenShares, ground_sight, seen_shares
+from .visibility import GroundSight, VisibleShares, ground_sight, visible_shares
 from .voxel_sets import VoxelsByCell, VoxelSetCache, by_prior, in_layer, layer_at
 
 Floats = NDArray[np.float64]
@@ -238,7 +238,7 @@ class Sight:
                 if mass > 0.0
             }
 
-    def shares(self, rig: Rig, *, draft: bool = False) -> SeenShares:
+    def shares(self, rig: Rig, *, draft: bool = False) -> VisibleShares:
         """Return the visible shares of the prior, and how much each sensor's failure costs by zone.
 
         Computed on a sample of the prior, as `expected_ap`; `draft` as in `ground`.
@@ -246,7 +246,7 @@ class Sight:
         with self._lock:
             measured = self._voxel_sets.voxels("prior", self._sampled)
             m, _ = measured.measured(rig, draft)
-            return seen_shares(measured.voxels, m, self._rises(rig, m))
+            return visible_shares(measured.voxels, m, self._rises(rig, m))
 
     @property
     def densities(self) -> tuple[ClassDensity, ...]:

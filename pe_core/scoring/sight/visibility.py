@@ -90,7 +90,7 @@ def _number(flags: Mapping[str, NDArray[np.bool_]], voxels: VoxelsByCell) -> Int
 
 
 @dataclass(frozen=True, slots=True)
-class SeenShares:
+class VisibleShares:
     """Shares of the prior that are seen, 0 to 1.
 
     Attributes
@@ -109,9 +109,9 @@ class SeenShares:
     losses: Mapping[str, Mapping[str, float]]
 
 
-def seen_shares(
+def visible_shares(
     sample: VoxelSample, m: Mapping[str, NDArray], rises: Mapping[str, NDArray]
-) -> SeenShares:
+) -> VisibleShares:
     """Aggregate measurements over a sample of the prior.
 
     Parameters
@@ -133,4 +133,4 @@ def seen_shares(
         }
 
     by_number = tuple(float(np.mean(number >= n)) for n in range(len(m) + 1))
-    return SeenShares(by_number, by_zone(sees), by_zone(rises))
+    return VisibleShares(by_number, by_zone(sees), by_zone(rises))

@@ -13,20 +13,20 @@ from numpy.typing import NDArray
 from ...geometry.grids import PerceptionSpace
 from ...geometry.poses import Pose
 from ...metric.fusion import VisibleRows
-from ...scene.vehicle import SeenMesh
+from ...scene.vehicle import VisibleMesh
 from .bent_area import BALL
 from .definition import cut_to_range, hidden, is_ranged
 from .model import Camera
 from .sample_areas import Sorter, edge_areas
 from .tie_rules import NUDGE, aims_at, axes_of, offsets_of
-from .voxel_occlusion import CoverShadow, places_of, span_of
+from .voxel_occlusion import VoxelOcclusion, places_of, span_of
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
 
 ALL_ROUND = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
-"""Directions to what `CoverShadow` takes for the corners of the picture: no side is left out."""
+"""Directions to what `VoxelOcclusion` takes for the corners of the picture: no side is left out."""
 
 
 class BentPlanes:
@@ -37,12 +37,12 @@ class BentPlanes:
     camera : Camera
     pose : Pose
     space : PerceptionSpace
-    seen : SeenMesh, optional
+    seen : VisibleMesh, optional
         The vehicle from the camera's position.
     """
 
     def __init__(
-        self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: SeenMesh | None
+        self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: VisibleMesh | None
     ) -> None:
         self._camera, self._space, self._seen = camera, space, seen
         side, self._axes = space.interval, axes_of(pose)
@@ -55,7 +55,7 @@ class BentPlanes:
         ]
         self._square = np.add.outer(y * y, z * z).astype(np.float32)
         self._away = np.add.outer(self._away_from(y), self._away_from(z)).astype(np.float32)
-        self._cover = None if seen is None else CoverShadow(self._aims, seen, ALL_ROUND)
+        self._cover = None if seen is None else VoxelOcclusion(self._aims, seen, ALL_ROUND)
 
     def areas(self, planes: slice) -> VisibleRows:
         """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
-from ...scene.vehicle import SeenMesh, Vehicle
+from ...scene.vehicle import Vehicle, VisibleMesh
 from .bent_area import bent_pixel_area
 from .model import Camera
 from .pixel_area import clipped_pixel_area
@@ -71,7 +71,7 @@ def image_area(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Fl
     return exact(camera, axes, offsets, side)
 
 
-def hidden(seen: SeenMesh, aims: Floats) -> NDArray[np.bool_]:
+def hidden(seen: VisibleMesh, aims: Floats) -> NDArray[np.bool_]:
     """Whether the vehicle occludes the points (V, 3) that rays from the camera aim at [m]."""
     distance = np.sqrt(dot(aims, aims))
     hits = seen.first_hit(aims / distance[:, None])

@@ -19,14 +19,14 @@ from ...geometry.grids import PerceptionSpace
 from ...geometry.indexing import count_up
 from ...geometry.poses import Pose, dot
 from ...metric.fusion import VisibleRows
-from ...scene.vehicle import SeenMesh
+from ...scene.vehicle import VisibleMesh
 from .definition import cut_to_range, hidden, is_ranged
 from .model import Camera
-from .picture import BORDER, ShadowMap
+from .picture import BORDER, PictureBins
 from .pixel_area import clipped_pixel_area, in_sensor_frame
 from .sample_areas import NEAR_SIDES
 from .tie_rules import MARGIN, NUDGE, aims_at, axes_of, offsets_of
-from .voxel_occlusion import CoverShadow, places_of, span_of
+from .voxel_occlusion import VoxelOcclusion, places_of, span_of
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -71,12 +71,12 @@ class CameraPlanes:
     camera : Camera
     pose : Pose
     space : PerceptionSpace
-    seen : SeenMesh, optional
+    seen : VisibleMesh, optional
         The vehicle from the camera's position.
     """
 
     def __init__(
-        self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: SeenMesh | None
+        self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: VisibleMesh | None
     ) -> None:
         self._camera, self._space, self._seen = camera, space, seen
         side, self._axes = space.interval, axes_of(pose)
@@ -92,9 +92,9 @@ class CameraPlanes:
         self._keep_below, self._keep_from = -below, below - 1  # masks: all bits, or none
         self._shadow = self._cover = None
         if seen is not None:
-            self._shadow = ShadowMap(camera, self._axes, seen.seen.triangles)
+            self._shadow = PictureBins(camera, self._axes, seen.seen.triangles)
             widest = (max(abs(low), top) for low, top in (wide, high))
-            self._cover = CoverShadow(self._aims, seen, self._corners(*widest))
+            self._cover = VoxelOcclusion(self._aims, seen, self._corners(*widest))
 
     def areas(self, planes: slice) -> VisibleRows:
         """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""

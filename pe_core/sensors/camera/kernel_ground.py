@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...scene.rig import Sensor
-from ...scene.vehicle import SeenMesh
+from ...scene.vehicle import VisibleMesh
 from ..ground_kernel import Flags, GroundKernel, GroundView, VisibleGround, heights_of_post
 from .definition import hidden, is_ranged, out_of_range
 from .model import Camera
-from .picture import ShadowMap
+from .picture import PictureBins
 from .pixel_area import frustum_distance, in_sensor_frame
 from .tie_rules import IN_FRONT, aims_at, axes_of
 
@@ -39,7 +39,7 @@ class CameraGround(GroundKernel):
     def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
         """Look at one post of each block, then at those along the edges of what is seen."""
         grid = self._view.grid
-        look = _PostsSeen(sensor, self._view)
+        look = PostVisibility(sensor, self._view)
         side = max(1, int(BLOCK_M / grid.step + 1e-9))
         marked = np.zeros(grid.shape, bool)
         flat = marked.reshape(-1)
@@ -53,19 +53,19 @@ class CameraGround(GroundKernel):
         return VisibleGround(sensor, marked)
 
 
-class _PostsSeen:
+class PostVisibility:
     """A camera that looks at posts."""
 
     def __init__(self, sensor: Sensor, view: GroundView) -> None:
         self._camera, self._view = cast(Camera, sensor.model), view
         self._position, self._axes = np.asarray(sensor.pose.position), axes_of(sensor.pose)
-        self._seen: SeenMesh | None = None
-        self._shadow: ShadowMap | None = None
+        self._seen: VisibleMesh | None = None
+        self._shadow: PictureBins | None = None
         if view.vehicle is not None:
             glass = self._camera.sees_through_glass
             self._seen = view.vehicle.seen_from(sensor.pose.position, glass)
             if self._camera.projection.is_straight:
-                self._shadow = ShadowMap(self._camera, self._axes, self._seen.seen.triangles)
+                self._shadow = PictureBins(self._camera, self._axes, self._seen.seen.triangles)
 
     def sees(self, squares: Ints) -> Flags:
         """Whether any point of posts (N,) in the middles of squares is seen."""

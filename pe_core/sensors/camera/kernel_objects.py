@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
-from ...scene.vehicle import SeenMesh
+from ...scene.vehicle import VisibleMesh
 from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
 from .box_area import BoxImages, along_camera, box_images
 from .definition import is_ranged, out_of_range
 from .model import Camera
-from .object_definition import Rivals, behind_others, rays_to_boxes, seen_share
-from .picture import ShadowMap
+from .object_definition import Rivals, behind_others, rays_to_boxes, visible_share
+from .picture import PictureBins
 from .pixel_area import frustum_distance
 from .tie_rules import axes_of
 
@@ -39,7 +39,7 @@ class CameraObjects(ObjectKernel):
         """Measure a camera, as the definition does."""
         objects, camera, axes = self._view.objects, cast(Camera, sensor.model), axes_of(sensor.pose)
         boxes = PlacedBoxes.of(objects, sensor.pose.position)
-        which = np.flatnonzero(_may_be_seen(camera, axes, boxes, self._balls))
+        which = np.flatnonzero(_may_be_visible(camera, axes, boxes, self._balls))
         images = box_images(camera, axes, boxes.take(which))
         if is_ranged(camera):
             offsets = objects.centers[which] - np.asarray(sensor.pose.position)
@@ -68,7 +68,7 @@ class CameraObjects(ObjectKernel):
             rivals = self._rivals(boxes, which[some])
             hidden |= behind_others(boxes, rivals, rays)
         share = np.ones(len(which))
-        share[some] = seen_share(rays, hidden, len(some))
+        share[some] = visible_share(rays, hidden, len(some))
         return share
 
     def _rivals(self, boxes: PlacedBoxes, which: Ints) -> Rivals:
@@ -90,7 +90,7 @@ class CameraObjects(ObjectKernel):
         return rivals.some(before & (around | ~apart))
 
 
-def _may_be_seen(
+def _may_be_visible(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, balls: Floats
 ) -> NDArray[np.bool_]:
     """Whether balls round boxes reach into the view; never false for a box that does."""
@@ -107,9 +107,9 @@ def _may_be_seen(
 
 
 def _may_be_hidden(
-    camera: Camera, axes: Floats, images: BoxImages, seen: SeenMesh | None
+    camera: Camera, axes: Floats, images: BoxImages, seen: VisibleMesh | None
 ) -> NDArray[np.bool_]:
     """Whether the vehicle may stand before images; of a lens that bends, wherever they are."""
     if seen is None or not camera.projection.is_straight:
         return np.full(len(images.area), seen is not None)
-    return ShadowMap(camera, axes, seen.seen.triangles).may_hide_in(images.low, images.high)
+    return PictureBins(camera, axes, seen.seen.triangles).may_hide_in(images.low, images.high)

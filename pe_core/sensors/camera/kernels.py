@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...geometry.grids import PerceptionSpace
 from ...metric.fusion import VisibleRows
 from ...scene.rig import Sensor
-from ...scene.vehicle import SeenMesh, Vehicle
+from ...scene.vehicle import Vehicle, VisibleMesh
 from ..kernels import GridKernel, Measured, Occlusion, Planes, SampleKernel, Voxels, block_voxels
 from .bent_grid_areas import BentPlanes
 from .grid_areas import CameraPlanes
@@ -90,7 +90,7 @@ def _areas(cameras: Sequence[ReadyCamera], planes: slice) -> VisibleRows:
     return reduce(add, (camera.view.areas(planes) for camera in cameras))
 
 
-def _seen(vehicle: Vehicle | None, sensor: Sensor) -> SeenMesh | None:
+def _seen(vehicle: Vehicle | None, sensor: Sensor) -> VisibleMesh | None:
     if vehicle is None:
         return None
     return vehicle.seen_from(sensor.pose.position, sensor.model.sees_through_glass)

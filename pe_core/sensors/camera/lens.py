@@ -30,7 +30,7 @@ DEFAULT_EDGE = math.radians(100.0)
 """How far from the axis a lens sees that bends wider than a plane can hold, unless told."""
 TABLE = 4096
 """Angles at which a radius is tabulated, to be looked up backwards."""
-LEAST_SLOPE = 1e-9
+MIN_SLOPE = 1e-9
 """At its fold a radius has none."""
 ROUNDS = 5
 """Of Newton's method after the look-up: each doubles the digits, and four are there."""
@@ -159,7 +159,7 @@ class Lens(ABC):
         table = np.linspace(0.0, self.edge, TABLE)
         theta = np.interp(away, self.radius(table), table)
         for _ in range(ROUNDS):
-            steps = (self.radius(theta) - away) / np.maximum(self.slope(theta), LEAST_SLOPE)
+            steps = (self.radius(theta) - away) / np.maximum(self.slope(theta), MIN_SLOPE)
             theta = np.clip(theta - steps, 0.0, self.edge)
         return theta
 

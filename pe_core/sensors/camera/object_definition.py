@@ -62,7 +62,7 @@ def rays_to_boxes(
     return BoxRays(*(np.concatenate(w) for w in zip(*found, strict=True)))
 
 
-def seen_share(rays: BoxRays, hidden: Flags, count: int) -> Floats:
+def visible_share(rays: BoxRays, hidden: Flags, count: int) -> Floats:
     """(P,) share of each box's rays that nothing hides; 1 of a box that none of them meets."""
     whole = np.bincount(rays.item, minlength=count)
     unseen = np.bincount(rays.item[hidden], minlength=count)
@@ -148,7 +148,7 @@ def count_object_pixels(
         hidden |= seen.first_hit(rays.directions).distance < rays.distance
     if traffic:
         hidden |= behind_others(boxes, Rivals.of(objects.scenes, shown), rays)
-    area[shown] *= seen_share(rays, hidden, len(shown))
+    area[shown] *= visible_share(rays, hidden, len(shown))
     return area
 
 

@@ -116,7 +116,7 @@ BORDER = 1.05
 """The map reaches this far beyond the picture's edges, for voxels that only touch the picture."""
 
 
-class ShadowMap:
+class PictureBins:
     """Bins of a picture, CELLS by CELLS, that a triangle may touch.
 
     Parameters
@@ -189,14 +189,14 @@ def _bins(depth: Floats, u: Floats, v: Floats) -> tuple[Extent, Extent]:
 
     Never fewer bins than a triangle touches.
     """
-    index = np.flatnonzero(_may_be_seen(depth, u, v))
+    index = np.flatnonzero(_may_be_visible(depth, u, v))
     depth = depth[:, index]
     i0, i1 = (MAP.rows(w).astype(np.int64) for w in spans_of_triangles(depth, u[:, index]))
     j0, j1 = (MAP.columns(w).astype(np.int64) for w in spans_of_triangles(depth, v[:, index]))
     return (i0, i1), (j0, j1)
 
 
-def _may_be_seen(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
+def _may_be_visible(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
     """Whether no side of the map's pyramid has all three corners (3, F) outside."""
     seen: NDArray[np.bool_] = corner_max(depth) > 0.0
     for w in (u, v):

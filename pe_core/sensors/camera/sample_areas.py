@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.poses import Pose, dot
-from ...scene.vehicle import SeenMesh
+from ...scene.vehicle import VisibleMesh
 from .bent_area import BALL, bent_pixel_area
 from .definition import hidden, is_ranged, out_of_range
 from .lens_lookup import Array, QuickLens
@@ -32,7 +32,7 @@ most."""
 
 
 def pixel_areas(
-    camera: Camera, pose: Pose, centers: Floats, side: float, seen: SeenMesh | None
+    camera: Camera, pose: Pose, centers: Floats, side: float, seen: VisibleMesh | None
 ) -> Floats:
     """(V,) pixels covered by each voxel; 0 where the vehicle `seen` hides its centre.
 
@@ -44,7 +44,7 @@ def pixel_areas(
         Ground frame [m].
     side : float
         Side of a voxel [m].
-    seen : SeenMesh, optional
+    seen : VisibleMesh, optional
         The vehicle from the camera's position.
     """
     axes, area = axes_of(pose), np.zeros(len(centers))
@@ -136,7 +136,7 @@ class Sorter:
 
 
 def bent_pixel_areas(
-    camera: Camera, pose: Pose, centers: Floats, side: float, seen: SeenMesh | None
+    camera: Camera, pose: Pose, centers: Floats, side: float, seen: VisibleMesh | None
 ) -> Floats:
     """(V,) pixels covered by each voxel; as `points.pixel_areas`, through a lens that bends."""
     axes, offsets = axes_of(pose), offsets_of(centers, pose.position, side)

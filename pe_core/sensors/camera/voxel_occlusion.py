@@ -16,7 +16,7 @@ from ...geometry.bins import FACES, CubeFace, Raster
 from ...geometry.culling import Ends, FaceLook
 from ...geometry.indexing import count_up
 from ...geometry.occlusion_map import Cover
-from ...scene.vehicle import SeenMesh
+from ...scene.vehicle import VisibleMesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -40,7 +40,7 @@ def span_of(mask: NDArray[np.bool_]) -> slice:
 
 Mask = NDArray[np.bool_]
 
-MOST_BINS, LEAST_BINS = 512, 64
+MAX_BINS, MIN_BINS = 512, 64
 """Along a side of a face."""
 VOXELS_A_BIN = 256
 """What a bin should be worth in voxels of the space."""
@@ -53,20 +53,20 @@ EVERYWHERE = ((-1.0, 1.0), (-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
-class Shade:
+class OcclusionFlags:
     """Flags of voxels (..., rows, nz): surely occluded, and unsure (a ray has to decide)."""
 
     hidden: Mask
     unsure: Mask
 
     @classmethod
-    def none(cls, shape: tuple[int, ...]) -> Shade:
+    def none(cls, shape: tuple[int, ...]) -> OcclusionFlags:
         """Nothing is hidden."""
         return cls(np.zeros(shape, bool), np.zeros(shape, bool))
 
-    def __getitem__(self, some: int | slice | tuple[slice, slice]) -> Shade:
+    def __getitem__(self, some: int | slice | tuple[slice, slice]) -> OcclusionFlags:
         """Return a view of some of the voxels."""
-        return Shade(self.hidden[some], self.unsure[some])
+        return OcclusionFlags(self.hidden[some], self.unsure[some])
 
     def doubt(self, voxels: slice | Mask | tuple[Ints, Ints]) -> None:
         """Have some voxels asked about."""
@@ -74,34 +74,34 @@ class Shade:
         self.unsure[voxels] = True
 
 
-class CoverShadow:
+class VoxelOcclusion:
     """A vehicle's shadow on the voxels of a space.
 
     Parameters
     ----------
     offsets : three (n,) float
         Where the centres of voxels lie along each axis, from the camera, ascending [m].
-    seen : SeenMesh
+    seen : VisibleMesh
         The vehicle from the camera's position.
     corners : (4, 3) float
         Directions to the corners of the picture, or of a somewhat larger one, ground axes.
     """
 
-    def __init__(self, offsets: list[Floats], seen: SeenMesh, corners: Floats) -> None:
+    def __init__(self, offsets: list[Floats], seen: VisibleMesh, corners: Floats) -> None:
         self._offsets, self._seen, self._corners = offsets, seen, corners
         self._highest = float(np.abs(offsets[2]).max())
-        self._faces: dict[CubeFace, FaceShadow] = {}
+        self._faces: dict[CubeFace, FaceOcclusion] = {}
         self._making = Lock()
 
-    def judge(self, planes: slice, rows: slice) -> Shade:
+    def judge(self, planes: slice, rows: slice) -> OcclusionFlags:
         """Judge the voxels of planes across x, in some rows (y)."""
         x, y = self._offsets[0][planes], self._offsets[1][rows]
-        shade = Shade.none((len(x), len(y), len(self._offsets[2])))
+        shade = OcclusionFlags.none((len(x), len(y), len(self._offsets[2])))
         for number, depth in enumerate(x):
             self._judge(float(depth), rows, y, shade[number])
         return shade
 
-    def _judge(self, x: float, rows: slice, y: Floats, shade: Shade) -> None:
+    def _judge(self, x: float, rows: slice, y: Floats, shade: OcclusionFlags) -> None:
         across = (np.abs(y) <= abs(x)) & (x != 0.0)
         for face, some in (
             (FACES[0 if x > 0.0 else 1], across),
@@ -116,7 +116,7 @@ class CoverShadow:
             nearer = np.maximum(np.abs(y), abs(x))[:, None]
             shade.doubt(np.abs(self._offsets[2]) > nearer)
 
-    def _face(self, face: CubeFace) -> FaceShadow:
+    def _face(self, face: CubeFace) -> FaceOcclusion:
         """One of the four sides; made when a voxel first lies there."""
         with self._making:  # threads share the planes
             if face not in self._faces:
@@ -142,7 +142,7 @@ def _cover(look: FaceLook, ends: Ends, view: Ends, offsets: list[Floats]) -> Cov
         return None
     voxels = _voxels_within(look.face, (u, v), offsets)
     side = 2 ** int(np.log2(np.sqrt(voxels / VOXELS_A_BIN) + 1.0))
-    return Cover(look, Raster(u, v, int(np.clip(side, LEAST_BINS, MOST_BINS))))
+    return Cover(look, Raster(u, v, int(np.clip(side, MIN_BINS, MAX_BINS))))
 
 
 def _voxels_within(face: CubeFace, ends: Ends, offsets: list[Floats]) -> float:
@@ -157,7 +157,7 @@ def _voxels_within(face: CubeFace, ends: Ends, offsets: list[Floats]) -> float:
     return float(count.sum())
 
 
-class FaceShadow:
+class FaceOcclusion:
     """The shadow on voxels that are seen through one side of the cube round the camera."""
 
     def __init__(self, look: FaceLook, view: Ends, offsets: list[Floats]) -> None:
@@ -166,7 +166,7 @@ class FaceShadow:
         if self._cover is not None:
             self._aims, self._heights = self._corners(look)
 
-    def judge(self, x: float, rows: slice, shade: Shade) -> None:
+    def judge(self, x: float, rows: slice, shade: OcclusionFlags) -> None:
         """Judge a plane's voxels, in rows that all lie on this side; `shade` is theirs."""
         raise NotImplementedError
 
@@ -182,13 +182,13 @@ class FaceShadow:
         order = np.argsort(aims)
         return aims[order], heights[order]
 
-    def _settle(self, cover: Cover, bins: Ints, depth: Floats, shade: Shade) -> None:
+    def _settle(self, cover: Cover, bins: Ints, depth: Floats, shade: OcclusionFlags) -> None:
         depth = depth.astype(np.float32)
         np.greater(depth, cover.far[bins], out=shade.hidden)
         np.greater_equal(depth, cover.near[bins], out=shade.unsure)
         np.greater(shade.unsure, shade.hidden, out=shade.unsure)
 
-    def _doubt_aligned(self, aims: Floats, depths: Floats, shade: Shade) -> None:
+    def _doubt_aligned(self, aims: Floats, depths: Floats, shade: OcclusionFlags) -> None:
         """Doubt voxels in line with a corner, in rows of some aims and depths, (rows,) each."""
         if not shade.hidden.any():
             return
@@ -204,10 +204,10 @@ class FaceShadow:
         shade.doubt((row[some], k[some]))
 
 
-class AcrossX(FaceShadow):
+class AcrossX(FaceOcclusion):
     """Towards x or against it: a plane lies at one depth, a row of voxels in a row of bins."""
 
-    def judge(self, x: float, rows: slice, shade: Shade) -> None:
+    def judge(self, x: float, rows: slice, shade: OcclusionFlags) -> None:
         """Look at the bins of rows and of heights."""
         if self._ends is None:
             return
@@ -226,7 +226,7 @@ class AcrossX(FaceShadow):
         return u, v
 
 
-class AlongX(FaceShadow):
+class AlongX(FaceOcclusion):
     """Towards y or against it: a row of voxels lies at one depth, in a column of bins."""
 
     def __init__(self, look: FaceLook, view: Ends, offsets: list[Floats]) -> None:
@@ -239,7 +239,7 @@ class AlongX(FaceShadow):
             raster = self._cover.raster
             self._inside, self._bins = _within(u, raster.u), raster.rows(u) * raster.count
 
-    def judge(self, x: float, rows: slice, shade: Shade) -> None:
+    def judge(self, x: float, rows: slice, shade: OcclusionFlags) -> None:
         """Look at the bins of each row's column."""
         if self._ends is None:
             return
@@ -252,7 +252,7 @@ class AlongX(FaceShadow):
         raster = self._cover.raster
         j = span(_within(v, raster.v))
         here, shade = _moved(j, rows.start), shade[j]
-        found = Shade.none(shade.hidden.shape)
+        found = OcclusionFlags.none(shade.hidden.shape)
         self._settle(
             self._cover, self._bins[here] + raster.columns(v[j])[:, None], depth[j, None], found
         )

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from ...geometry.bins import corner_max, corner_min
 from ...geometry.grids import PerceptionSpace, top_heights
 from ...geometry.poses import rotate
-from ...geometry.raycast import SeenTriangles
+from ...geometry.raycast import VisibleTriangles
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from .model import lidar_of
@@ -80,7 +80,7 @@ class BeamWindows:
 
 
 def occlusion_candidates(
-    mesh: SeenTriangles, ground_from_sensor: Floats, lattice: Lattice
+    mesh: VisibleTriangles, ground_from_sensor: Floats, lattice: Lattice
 ) -> Flags:
     """Flag the beams of a regular LiDAR that the vehicle may occlude: too many rather than too few.
 
@@ -100,7 +100,7 @@ def occlusion_candidates(
 
 
 def _windows(
-    mesh: SeenTriangles, ground_from_sensor: Floats, lattice: Lattice
+    mesh: VisibleTriangles, ground_from_sensor: Floats, lattice: Lattice
 ) -> Iterator[BeamWindows]:
     """Yield windows that together cover every visible triangle of the vehicle."""
     tree, level = mesh.tree, len(mesh.tree.boxes) - 1
@@ -256,7 +256,7 @@ class TopMap:
         ends = np.full(len(beams.slope), max_range)
         low = np.flatnonzero(horizon[beams.sector, -1] >= beams.slope)
         slope = beams.slope[low]
-        first = _first_at_least(horizon, beams.sector[low], slope)
+        first = _first_above(horizon, beams.sector[low], slope)
         slope = slope.astype(np.float64)
         ends[low] = np.minimum(steps[first] * np.sqrt(1.0 + slope * slope), max_range)
         return ends
@@ -287,7 +287,7 @@ class TopMap:
         return horizon
 
 
-def _first_at_least(horizon: Singles, sector: Indices, slope: Singles) -> Indices:
+def _first_above(horizon: Singles, sector: Indices, slope: Singles) -> Indices:
     """First step (B,) at which the horizon reaches each beam's slope, by bisection."""
     last = horizon.shape[1] - 1
     low, high = np.zeros(len(slope), np.intp), np.full(len(slope), last, np.intp)

@@ -14,7 +14,7 @@ from pe_core.base.values import MAX_NAME
 from pe_core.prior.boxes import COLUMNS, MAX_M, SIZES, Boxes, is_class_name
 
 GROUND = (0.0, 0.0, 0.0)
-MOST_REASONS = 20
+MAX_REASONS = 20
 OTHER_CLASSES = "of other unknown classes"
 """Maximum number of reasons for boxes left out; further classes are counted together."""
 FIRST_SIZE = COLUMNS.index(SIZES[0])
@@ -54,9 +54,9 @@ class Labels:
         self.left_out[reason] += 1
 
     def leave_unknown(self, name: str) -> None:
-        """Count a box of an unknown class; beyond `MOST_REASONS`, classes are counted together."""
+        """Count a box of an unknown class; beyond `MAX_REASONS`, classes are counted together."""
         reason = f"of unknown class {quoted(name)}"
-        is_listed = reason in self.left_out or len(self.left_out) < MOST_REASONS
+        is_listed = reason in self.left_out or len(self.left_out) < MAX_REASONS
         self.leave_out(reason if is_listed else OTHER_CLASSES)
 
     def boxes(self, origin: Origin | None = None) -> Boxes:
@@ -82,6 +82,6 @@ def joined(parts: Iterable[Labels], source: str) -> Labels:
         whole.rows += part.rows
         whole.origins += part.origins
         for reason, count in part.left_out.items():
-            is_listed = reason in whole.left_out or len(whole.left_out) < MOST_REASONS
+            is_listed = reason in whole.left_out or len(whole.left_out) < MAX_REASONS
             whole.left_out[reason if is_listed else OTHER_CLASSES] += count
     return whole

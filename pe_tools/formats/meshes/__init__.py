@@ -17,7 +17,7 @@ from pe_core.scene.mesh import AS_SAID, Mesh, MeshAxes
 from .axes import GLTF, OURS, UNSAID, SaidAxes, oriented, said_in_comments
 from .glb import read_glb
 from .mesh import make_mesh
-from .mesh_plugins import FoundMesh, is_read_elsewhere, read_elsewhere
+from .mesh_plugins import FoundMesh, has_plugin, read_with_plugin
 from .npz import dump_npz, read_npz
 from .obj import dump_obj, read_obj
 from .part_names import fit_names
@@ -70,11 +70,11 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
         The file is missing, of no known suffix or of one whose reader is not installed; it is
         not what its suffix says, cut short, has an index out of range or a coordinate that is
         not finite, has no triangles, or is more than a mesh may be (`MESH_BYTES`,
-        `MOST_TRIANGLES`) or than memory holds.
+        `MAX_TRIANGLES`) or than memory holds.
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    if suffix not in _READERS and not is_read_elsewhere(suffix):
+    if suffix not in _READERS and not has_plugin(suffix):
         _of_suffix(path, _READERS)  # complains
     data = read_bytes(path, MESH_BYTES)
     # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
@@ -82,7 +82,7 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
         if suffix in _READERS:
             mesh, said = _READERS[suffix](path, data), _SAYS.get(suffix, _unsaid)(data)
         else:
-            mesh, said = read_elsewhere(path, data)
+            mesh, said = read_with_plugin(path, data)
         fit = replace(mesh, part_names=fit_names(mesh.part_names))
         return oriented(str(path), fit, said, axes or MeshAxes())
 

@@ -26,8 +26,8 @@ Faceted = tuple[Floats, NDArray[Any]]
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant")
 
-MOST_CHUNKS = 100
-MOST_JSON_BYTES = 32 << 20
+MAX_CHUNKS = 100
+MAX_JSON_BYTES = 32 << 20
 JSON_UNFOLDS = 30
 """The longest scene, and what a byte of it takes once read, at most (measured)."""
 
@@ -85,15 +85,15 @@ def _each_chunk(source: str, data: memoryview) -> Iterator[tuple[bytes, memoryvi
         if offset + size > len(data):
             found = f"{len(data) - offset} left"
             raise InputError(source, f"chunk {kind!r}", f"{size} bytes", found)
-        if count > MOST_CHUNKS:
-            raise InputError(source, "chunks", f"at most {MOST_CHUNKS}", "more")
+        if count > MAX_CHUNKS:
+            raise InputError(source, "chunks", f"at most {MAX_CHUNKS}", "more")
         yield kind, data[offset : offset + size]
         offset += size
 
 
 def _parse(source: str, text: bytes) -> Item:
-    if len(text) > MOST_JSON_BYTES:
-        expected = f"a scene of at most {MOST_JSON_BYTES:,} bytes"
+    if len(text) > MAX_JSON_BYTES:
+        expected = f"a scene of at most {MAX_JSON_BYTES:,} bytes"
         raise InputError(source, "JSON", expected, f"{len(text):,}")
     require_memory(source, "JSON", len(text) * JSON_UNFOLDS)
     try:

@@ -102,7 +102,7 @@ class Document:
         return value
 
 
-MOST_NODES = 200_000
+MAX_NODES = 200_000
 MAX_PLACED, MAX_PRIMITIVES = 20_000, 100_000
 """Nodes that hold a mesh, and primitives of all meshes: each takes a part of a millisecond."""
 
@@ -120,8 +120,8 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
         From the mesh's coordinates to the scene's [m], glTF axes.
     """
     count = len(document.root.get("nodes", []))
-    if count > MOST_NODES:
-        raise document.error("nodes", f"at most {MOST_NODES:,}", f"{count:,}")
+    if count > MAX_NODES:
+        raise document.error("nodes", f"at most {MAX_NODES:,}", f"{count:,}")
     _require_few_pieces(document)
     waiting = [(index, np.eye(4)) for index in reversed(_roots(document))]
     seen: set[int] = set()

@@ -12,7 +12,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.memory import require_memory
 from pe_core.scene.mesh import Mesh
 
-MOST_TRIANGLES = 25_000_000
+MAX_TRIANGLES = 25_000_000
 """The most of one mesh: cars are of some millions at most."""
 TRIANGLE_BYTES = 320
 """What one triangle takes while it is read, at most (measured): corners, copies, indices."""
@@ -61,9 +61,9 @@ def require_room(source: str, triangles: int) -> None:
     InputError
         One line with how many there would be, or how much they would take.
     """
-    if triangles > MOST_TRIANGLES:
+    if triangles > MAX_TRIANGLES:
         found = f"{triangles:,}" if triangles < 10**18 else "more than 10^18"
-        raise InputError(source, "triangles", f"at most {MOST_TRIANGLES:,}", found)
+        raise InputError(source, "triangles", f"at most {MAX_TRIANGLES:,}", found)
     require_memory(source, "triangles", triangles * TRIANGLE_BYTES)
 
 

@@ -37,7 +37,7 @@ class FoundMesh(NamedTuple):
     up: str
 
 
-def read_elsewhere(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
+def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
     """Read a mesh by the reader that is installed for its suffix.
 
     Raises
@@ -57,6 +57,6 @@ def read_elsewhere(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
     return mesh, SaidAxes(found.up, "file", forward, "")
 
 
-def is_read_elsewhere(suffix: str) -> bool:
+def has_plugin(suffix: str) -> bool:
     """Whether a plugin reads files of a suffix."""
     return find_plugin(MESH_PLUGIN, suffix[1:]) is not None

@@ -21,7 +21,7 @@ from pe_core.scene.mesh import Mesh
 from .mesh import make_mesh, require_labels, require_room
 
 ARRAYS = ("triangles", "parts", "part_names")
-MOST_MEMBERS = 1000
+MAX_ARRAYS = 1000
 MEMBER = b"PK\x01\x02"
 """How each member's entry in the directory begins."""
 VERSIONS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
@@ -49,8 +49,8 @@ class Archive:
     """
 
     def __init__(self, source: str, data: bytes) -> None:
-        if data.count(MEMBER) > MOST_MEMBERS:
-            raise InputError(source, "file", f"at most {MOST_MEMBERS:,} arrays", "more")
+        if data.count(MEMBER) > MAX_ARRAYS:
+            raise InputError(source, "file", f"at most {MAX_ARRAYS:,} arrays", "more")
         self._source = source
         self._zip = zipfile.ZipFile(io.BytesIO(data))
         self._members = self._find()
@@ -90,7 +90,7 @@ class Archive:
 
 
 @contextmanager
-def told_in_one_line(source: str) -> Iterator[None]:
+def one_line_errors(source: str) -> Iterator[None]:
     """Convert the exceptions of zipfile, zlib, tokenize and NumPy into `InputError`."""
     try:
         yield
@@ -109,8 +109,8 @@ def _read_header(file: IO[bytes]) -> Header:
     return Header(shape, dtype)
 
 
-MOST_PARTS = 1_000_000
-MOST_NAME_BYTES = 256 << 20
+MAX_PARTS = 1_000_000
+MAX_NAME_BYTES = 256 << 20
 """The most names of parts, and what they may take side by side, all as long as the longest."""
 
 
@@ -130,7 +130,7 @@ def read_npz(path: Path, data: bytes) -> Mesh:
     # A bare .npy, or anything else NumPy would understand, is not an archive.
     if not data.startswith(b"PK"):
         raise InputError(source, "file", "a NumPy .npz archive", "some other format")
-    with told_in_one_line(source), Archive(source, data) as archive:
+    with one_line_errors(source), Archive(source, data) as archive:
         faces = _check(source, archive.headers)
         arrays = {name: archive.array(name) for name in archive.headers}
         names = _names(arrays.get("part_names"), path.stem)
@@ -176,8 +176,8 @@ def _check_names(source: str, names: Header, has_parts: bool) -> None:
         found = f"dtype {names.dtype} of shape {names.shape}"
         raise InputError(source, "part_names", "a one-dimensional unicode array", found)
     count = names.shape[0]
-    if count > MOST_PARTS or names.size > MOST_NAME_BYTES:
-        expected = f"at most {MOST_PARTS:,} names in {size_text(MOST_NAME_BYTES)}"
+    if count > MAX_PARTS or names.size > MAX_NAME_BYTES:
+        expected = f"at most {MAX_PARTS:,} names in {size_text(MAX_NAME_BYTES)}"
         found = f"{count:,} in {size_text(names.size)}"
         raise InputError(source, "part_names", expected, found)
     if not has_parts and count != 1:

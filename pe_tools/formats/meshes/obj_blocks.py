@@ -16,7 +16,7 @@ Bytes = NDArray[np.uint8]
 Offsets = NDArray[np.int64]
 
 NEWLINE, BLANK = b"\n"[0], b" "[0]
-LONGEST_INDEX = 18
+MAX_INDEX_DIGITS = 18
 """Digits of an index that 64 bits hold whatever they are."""
 POINT_LETTERS = np.isin(np.arange(256), list(b"v 0123456789+-.eE\n"))
 LETTER, SPACE, SLASH, DIGIT = 1, 2, 3, 4
@@ -125,7 +125,7 @@ def _faces(block: _Block) -> tuple[Offsets, Offsets] | None:
     if ((sort[1:] == SLASH) & (sort[:-1] == SPACE)).any():
         return None  # a corner begins with a slash
     begins, stops = begins[leads], stops[leads]
-    if len(begins) and int((stops - begins).max()) > LONGEST_INDEX:
+    if len(begins) and int((stops - begins).max()) > MAX_INDEX_DIGITS:
         return None
     if _each_has(3, begins, ends):
         counts = np.full(len(ends), 3)

@@ -10,7 +10,7 @@ from pe_core.base.values import A_NAME, MAX_NAME
 
 INSTEAD = "?"
 """What stands for a character that cannot be printed, and for a name without any that can."""
-LONGEST_NUMBER = 12
+MAX_NUMBER_DIGITS = 12
 """Characters kept free for a number behind a name."""
 
 
@@ -40,7 +40,7 @@ def _is_fit(name: str) -> bool:
 
 
 def _new_name(name: str, taken: set[str], used: Counter[str]) -> str:
-    start = name[: MAX_NAME - LONGEST_NUMBER]
+    start = name[: MAX_NAME - MAX_NUMBER_DIGITS]
     base = "".join(c if c.isprintable() else INSTEAD for c in start).strip() or INSTEAD
     fit = base
     while not used[base] or fit in taken:

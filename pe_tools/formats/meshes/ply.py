@@ -27,7 +27,7 @@ _TYPES = {
     "f4": ("float", "float32"),
     "f8": ("double", "float64"),
 }
-MOST_HEADER_BYTES = 1 << 20
+MAX_HEADER_BYTES = 1 << 20
 _CODES = {word: code for code, words in _TYPES.items() for word in words}
 
 
@@ -75,10 +75,10 @@ def _split(source: str, data: bytes) -> tuple[list[str], bytes]:
     if ending is None:
         raise InputError(source, "header", "'ply' on the first line", repr(data[:16]))
     last = ending + b"end_header" + ending
-    end = data.find(last, 0, MOST_HEADER_BYTES)
+    end = data.find(last, 0, MAX_HEADER_BYTES)
     if end < 0:
-        whole = len(data) <= MOST_HEADER_BYTES
-        found = "the end of the file" if whole else f"none in {MOST_HEADER_BYTES:,} bytes"
+        whole = len(data) <= MAX_HEADER_BYTES
+        found = "the end of the file" if whole else f"none in {MAX_HEADER_BYTES:,} bytes"
         raise InputError(source, "header", "end_header", found)
     return decode_text(data[:end]).split("\n"), data[end + len(last) :]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pe_core.base.errors import InputError
 from pe_core.base.memory import require_memory
 
-LONGEST_ROW = 2**31 - 1
+MAX_ROW_BYTES = 2**31 - 1
 """Bytes of a row that NumPy can read in one go."""
 WALKED_BYTES = 200
 """What a value or list takes that is read by itself (measured)."""
@@ -105,7 +105,7 @@ def _even_rows(
 ) -> NDArray[np.void] | None:
     """All rows as one structured array, or None if a list differs in length from the first."""
     row = _row_bytes(element, lengths)
-    if row > LONGEST_ROW or offset + element.count * row > len(data):
+    if row > MAX_ROW_BYTES or offset + element.count * row > len(data):
         return None
     fields: list[tuple[str, str] | tuple[str, str, tuple[int]]] = []
     for i, (item, length) in enumerate(zip(element.properties, lengths, strict=True)):

@@ -13,7 +13,7 @@ from ..report_context import ReportContext, Section
 STEP_M = 1.0
 HEIGHTS = (0.0, 0.5, 1.5)
 """Heights of objects for which blind ground is shown [m]."""
-HEIGHT_WORDS = {0.0: "flat on the ground", 0.5: "0.5 m tall", 1.5: "1.5 m tall"}
+HEIGHT_TEXT = {0.0: "flat on the ground", 0.5: "0.5 m tall", 1.5: "1.5 m tall"}
 SIDES = {"front": "ahead", "left": "left", "right": "right", "rear": "behind"}
 PREFERRED_CLASSES = ("pedestrian", "car")
 """Classes whose reach is shown, if the prior has them."""
@@ -82,7 +82,7 @@ def _blind_ground(context: ReportContext) -> str:
     plans = [
         figure(
             blind_plan(blind, context.vehicle, f"Plan of ground blind to objects {h:g} m tall"),
-            Markup(f"<b>Blind to objects {HEIGHT_WORDS[h]}</b>: {blind.area:.1f} m²"),
+            Markup(f"<b>Blind to objects {HEIGHT_TEXT[h]}</b>: {blind.area:.1f} m²"),
         )
         for h, blind in by_height.items()
     ]

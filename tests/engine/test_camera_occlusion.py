@@ -9,7 +9,7 @@ import pe_core as pe
 from benchmarks import problems
 from pe_core.geometry.poses import dot, rotate
 from pe_core.sensors.camera import grid_areas
-from pe_core.sensors.camera.voxel_occlusion import CoverShadow
+from pe_core.sensors.camera.voxel_occlusion import VoxelOcclusion
 from tests.engine import fixed_bins, shapes
 from tests.engine.test_camera_kernels import whole_grid
 
@@ -64,7 +64,7 @@ def aimed(offsets):
 
 def hidden_by_rays(triangles, offsets):
     distance = np.sqrt(dot(offsets, offsets))
-    hits = fixed_bins.SeenTriangles(triangles).first_hit(offsets / distance[:, None])
+    hits = fixed_bins.VisibleTriangles(triangles).first_hit(offsets / distance[:, None])
     return hits.distance < distance
 
 
@@ -100,7 +100,7 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
 def counted(monkeypatch):
     """Count how often the cover is asked, and how many rays are cast."""
     count = {"judged": 0, "cast": 0}
-    judge, hidden = CoverShadow.judge, grid_areas.hidden
+    judge, hidden = VoxelOcclusion.judge, grid_areas.hidden
 
     def count_judged(*args):
         count["judged"] += 1
@@ -110,7 +110,7 @@ def counted(monkeypatch):
         count["cast"] += len(offsets)
         return hidden(seen, offsets)
 
-    monkeypatch.setattr(CoverShadow, "judge", count_judged)
+    monkeypatch.setattr(VoxelOcclusion, "judge", count_judged)
     monkeypatch.setattr(grid_areas, "hidden", count_cast)
     return count
 
@@ -144,7 +144,7 @@ def shade_of(triangles, position, corners):
     """Over the whole space, with the picture's corners given."""
     offsets = [SPACE.centers(k) - position[k] for k in range(3)]
     seen = pe.Vehicle(triangles, clearance=0.0).seen_from(position)
-    shade = CoverShadow(offsets, seen, corners).judge(slice(0, 160), slice(0, 80))
+    shade = VoxelOcclusion(offsets, seen, corners).judge(slice(0, 160), slice(0, 80))
     grid = np.stack(np.meshgrid(*offsets, indexing="ij"), axis=-1).reshape(-1, 3)
     return shade, grid
 
@@ -228,7 +228,7 @@ def test_rays_that_slip_between_triangles_at_a_corner_are_not_overlooked(corner)
     aligned = np.round(np.multiply.outer(np.arange(2, 11), corner), 1)
     slips = ~hidden_by_rays(fan(corner), aligned)
     seen = pe.Vehicle(fan(corner), clearance=0.0).seen_from((0.0, 0.0, 0.0))
-    shade = CoverShadow(offsets, seen, ALL_ROUND).judge(slice(0, 401), slice(0, 401))
+    shade = VoxelOcclusion(offsets, seen, ALL_ROUND).judge(slice(0, 401), slice(0, 401))
     i, j, k = (np.searchsorted(w, aligned[:, a] - 0.05) for a, w in enumerate(offsets))
     assert shade.unsure[i, j, k].all() and not shade.hidden[i, j, k].any()
     assert shade.hidden.sum() > 1000

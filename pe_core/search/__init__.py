@@ -23,7 +23,7 @@ from .search_space import (
 )
 from .selection import Choice, Option, Selection, Site
 from .tolerance import Tolerance, mounted_off
-from .worker_pool import Call, Reply, WorkerDied, run_tasks
+from .worker_pool import Call, WorkerDied, run_tasks
 
 __all__ = [
     "AXES",
@@ -52,7 +52,6 @@ __all__ = [
     "Parametrization",
     "Picks",
     "Processes",
-    "Reply",
     "RigRobustness",
     "RobustObjective",
     "Robustness",

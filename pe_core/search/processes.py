@@ -9,13 +9,15 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from multiprocessing import resource_tracker
 from types import ModuleType
 from typing import Any, TypeVar
+
+from .payload import Unreadable, receive, send_payload
 
 T = TypeVar("T")
 
@@ -36,7 +38,7 @@ for name, folder in {packages!r}:
         sys.modules[name] = types.ModuleType(name)
         sys.modules[name].__path__ = [folder]
 from importlib import import_module
-import_module({here!r}).end_with_parent()
+import_module({here!r}).begin_worker(*payload)
 """
 """The first code that a worker process runs. Packages that contain the engine, as the add-on does
 inside Blender, are not run in it: empty packages stand for them. It is text, because nothing can be
@@ -47,6 +49,7 @@ class Processes(Executor):
     """Worker processes as an executor; processes that died are replaced.
 
     Functions and arguments must not come from the main script, which workers do not run.
+    `payload.send_payload` gives them what tasks have in common.
 
     Parameters
     ----------
@@ -56,13 +59,24 @@ class Processes(Executor):
 
     def __init__(self, count: int) -> None:
         self._count, self._lock = count, threading.Lock()
+        self._payload: tuple[str, bytes] | None = None
         self._pool = self._new_pool()
 
     def _new_pool(self) -> ProcessPoolExecutor:
         context = multiprocessing.get_context("spawn")
         initializer = INITIALIZER.format(packages=_packages_around(), here=__name__)
         with _signals_blocked():
-            return ProcessPoolExecutor(self._count, context, exec, (initializer,))
+            names = {"payload": self._payload or ()}
+            return ProcessPoolExecutor(self._count, context, exec, (initializer, names))
+
+    def start_with(self, key: str, data: bytes) -> None:
+        """Have all processes start with a payload; those that run without it are replaced."""
+        with self._lock:
+            if self._payload is not None and self._payload[0] == key:
+                return
+            self._payload = key, data
+            self._pool.shutdown(wait=False)  # tasks under way run to their end
+            self._pool = self._new_pool()
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
         """Call a function in a process; start new processes if the pool is broken."""
@@ -82,19 +96,24 @@ class Processes(Executor):
         self._pool.shutdown(wait, cancel_futures=cancel_futures)
 
 
-def start_processes(count: int | None = None) -> Processes | None:
+def start_processes(count: int | None = None, common: Iterable[object] = ()) -> Processes | None:
     """Start processes and wait until they are up; None for a count of 1, or if none can be started.
 
     Parameters
     ----------
     count : int, optional
         How many; by default as many as there are processors.
+    common : iterable, optional
+        What their tasks have in common, such as objectives and models of sensors. Objects that are
+        not among it are sent when they are first needed, to processes that are started anew.
     """
     count = count or os.cpu_count() or 1
     if count < 2:
         return None
     processes = Processes(count)
     try:
+        with suppress(Unreadable):  # tasks that need these objects are not sent to processes
+            send_payload(processes, common)
         if all(f.result(START_S) for f in [processes.submit(os.getpid) for _ in range(count)]):
             return processes
     except Exception:  # whatever prevents processes on this system: this one suffices
@@ -110,10 +129,12 @@ class LazyProcesses:
     ----------
     count : int, optional
         How many processes; by default as many as there are processors, 1: none.
+    common : iterable, optional
+        What their tasks have in common.
     """
 
-    def __init__(self, count: int | None = None) -> None:
-        self._count, self._began = count, time.monotonic()
+    def __init__(self, count: int | None = None, common: Iterable[object] = ()) -> None:
+        self._count, self._common, self._began = count, tuple(common), time.monotonic()
         self._thread: threading.Thread | None = None
         self._processes: Processes | None = None
         self._ended = False
@@ -133,9 +154,15 @@ class LazyProcesses:
             self._processes.shutdown(wait=False, cancel_futures=True)
 
     def _start(self) -> None:
-        self._processes = start_processes(self._count)
+        self._processes = start_processes(self._count, self._common)
         if self._ended:
             self.end()
+
+
+def begin_worker(key: str = "", data: bytes = b"") -> None:
+    """In a worker: keep the payload, leave signals to the parent process, and end with it."""
+    receive(key, data)
+    end_with_parent()
 
 
 def end_with_parent() -> None:

@@ -7,32 +7,31 @@ worker dies too, the task is named.
 from __future__ import annotations
 
 import sys
+import traceback
 from collections import deque
 from collections.abc import Callable, Generator, Hashable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
 
-R = TypeVar("R")
 TaskKey = TypeVar("TaskKey", bound=Hashable)
 
 
 @dataclass(frozen=True, slots=True)
-class Reply(Generic[R]):
-    """The reply of a worker: a result, or an error, or the keys of payloads that it lacks.
+class _Reply:
+    """The reply of a worker: a result or an error.
 
     An error is returned, not raised: an exception of a future means that its worker died.
     """
 
-    result: R | None = None
+    result: Any = None
     error: Exception | None = None
-    missing: tuple[str, ...] = ()
 
 
 class Call(NamedTuple):
-    """What a worker runs: a function that returns a `Reply`, and its arguments."""
+    """What a worker runs: a function that it can import, and arguments that can be pickled."""
 
-    function: Callable[..., Reply[Any]]
+    function: Callable[..., Any]
     arguments: tuple[Any, ...]
 
 
@@ -46,7 +45,7 @@ class WorkerDied:
 def run_tasks(
     executor: Executor,
     waiting: deque[TaskKey],
-    call_of: Callable[[TaskKey, tuple[str, ...]], Call],
+    call_of: Callable[[TaskKey], Call],
     width: Callable[[], int] = lambda: sys.maxsize,
     wait_s: float | None = None,
 ) -> Generator[list[tuple[TaskKey, Any | WorkerDied]], None, None]:
@@ -62,8 +61,8 @@ def run_tasks(
     waiting : deque
         Items that stand for the tasks. Items that are appended meanwhile are run as well.
     call_of : callable
-        From an item, and the keys of payloads that its worker lacks, to the call. It is called
-        when a worker is free, and again for every further attempt.
+        From an item to the call. It is called when a worker is free, and again for a second
+        attempt.
     width : callable, optional
         How many tasks are submitted at a time; all, by default.
     wait_s : float, optional
@@ -73,7 +72,7 @@ def run_tasks(
     Raises
     ------
     Exception
-        The error that a worker replied.
+        What a call raises in its worker.
     """
     run = _TaskRun(executor, call_of)
     try:
@@ -89,20 +88,12 @@ def run_tasks(
 
 
 class _TaskRun(Generic[TaskKey]):
-    """Tasks under way.
+    """Tasks under way."""
 
-    Payloads may be large, so one task at a time carries some. Meanwhile, other tasks that lack
-    payloads wait: by then, their worker may have them.
-    """
-
-    def __init__(
-        self, executor: Executor, call_of: Callable[[TaskKey, tuple[str, ...]], Call]
-    ) -> None:
+    def __init__(self, executor: Executor, call_of: Callable[[TaskKey], Call]) -> None:
         self._executor, self._call_of = executor, call_of
         self._order: dict[TaskKey, int] = {}
-        self._lacking: deque[tuple[TaskKey, tuple[str, ...]]] = deque()
-        self._carrier: Future[Reply[Any]] | None = None
-        self.running: dict[Future[Reply[Any]], TaskKey] = {}
+        self.running: dict[Future[_Reply], TaskKey] = {}
         self.died: dict[TaskKey, str] = {}
 
     def take_died(self) -> list[TaskKey]:
@@ -114,34 +105,24 @@ class _TaskRun(Generic[TaskKey]):
         self, waiting: deque[TaskKey], width: Callable[[], int], wait_s: float | None
     ) -> Iterator[list[tuple[TaskKey, Any]]]:
         """Submit the waiting tasks; yield the results that arrive at a time, perhaps none."""
-        while waiting or self.running or self._lacking:
+        while waiting or self.running:
             while waiting and len(self.running) < width():
                 self._submit(waiting.popleft())
-            if self._lacking and self._carrier is None:
-                self._submit(*self._lacking.popleft())
             done = wait(self.running, wait_s, FIRST_COMPLETED).done
             yield [completed for future in done for completed in self._take(future)]
 
-    def _submit(self, item: TaskKey, missing: tuple[str, ...] = ()) -> None:
+    def _submit(self, item: TaskKey) -> None:
         self._order.setdefault(item, len(self._order))
-        function, arguments = self._call_of(item, missing)
+        function, arguments = self._call_of(item)
         try:
-            future = self._executor.submit(function, *arguments)
-        except RuntimeError as error:  # the executor is broken, or was shut down
+            future = self._executor.submit(_replied, function, *arguments)
+        except (RuntimeError, OSError) as error:  # the executor is broken, or was shut down
             self.died[item] = type(error).__name__
             return
         self.running[future] = item
-        if missing:
-            self._carrier = future
 
-    def _take(self, future: Future[Reply[Any]]) -> Iterator[tuple[TaskKey, Any]]:
+    def _take(self, future: Future[_Reply]) -> Iterator[tuple[TaskKey, Any]]:
         item = self.running.pop(future)
-        if future is self._carrier:
-            self._carrier = None
-            items = [item for item, _ in self._lacking]
-            self._lacking.clear()
-            for lacking in items:
-                self._submit(lacking)
         try:
             reply = future.result()
         except Exception as error:  # each executor reports a dead worker in its own way
@@ -149,7 +130,13 @@ class _TaskRun(Generic[TaskKey]):
             return
         if reply.error is not None:
             raise reply.error
-        if reply.missing:
-            self._lacking.append((item, reply.missing))
-        else:
-            yield item, reply.result
+        yield item, reply.result
+
+
+def _replied(function: Callable[..., Any], *arguments: Any) -> _Reply:
+    """Call a function in a worker; an error keeps its traceback as a note."""
+    try:
+        return _Reply(function(*arguments))
+    except Exception as error:
+        error.add_note("".join(traceback.format_exception(error)))
+        return _Reply(error=error)

@@ -177,7 +177,8 @@ class OptimizeJob(Job):
 
     def _search(self) -> Iterator[Progress]:
         """Search step by step in a thread: one candidate may take longer than a window can wait."""
-        search, helpers = self.study.search, LazyProcesses(self.workers)
+        search, models = self.study.search, (sensor.model for sensor in self.study.rig)
+        helpers = LazyProcesses(self.workers, (*self._objectives, *models))
         steps = optimize(
             self.journal.wrap(self._objectives),
             self.study.rig,

@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from pe_core import InputError
-from pe_core.search import Processes
+from pe_core.search import Call, Processes, WorkerDied, run_tasks
 
 from ..cli import noted_when_interrupted, show
 from .results_file import CheckValue, ResultsFile
@@ -57,7 +58,7 @@ def compute(
     Raises
     ------
     InputError
-        When results.json is damaged, or a worker process was killed from outside.
+        When results.json is damaged, or two worker processes were killed with the same task.
     """
     results = ResultsFile(folder, effort, check_value)
     if results.loaded:
@@ -65,62 +66,56 @@ def compute(
     if results.old_results:
         print_progress(f"the results of another run are moved to {results.old_results}")
     note = f"{results.path} keeps the finished tasks; the same command goes on from them"
-    with noted_when_interrupted(note), worker_processes(workers) as pool:
-        run_tasks(pool, results, ready_tasks, print_progress)
+    processors = os.cpu_count() or 1
+    count = min(workers or processors, processors)
+    with noted_when_interrupted(note), _worker_processes(count) as pool:
+        _run_all(pool, count, results, ready_tasks)
     return results
 
 
 @contextmanager
-def worker_processes(count: int | None) -> Iterator[Processes]:
+def _worker_processes(count: int) -> Iterator[Processes]:
     """Provide worker processes as an executor; an exception ends them in the middle of a task.
 
     Ctrl-C, SIGTERM and SIGHUP are such exceptions, which the command line raises.
     """
-    processors = os.cpu_count() or 1
-    with Processes(min(count or processors, processors)) as pool:
+    with Processes(count) as pool:
         try:
             yield pool
-        except BaseException as error:
+        except BaseException:
             pool.shutdown(cancel_futures=True)
-            if isinstance(error, BrokenExecutor):
-                found = "one that was killed; the finished tasks are kept"
-                raise InputError("workers", "process", "one that runs to its end", found) from None
             raise
 
 
-def run_tasks(
-    executor: Executor,
+def _run_all(
+    pool: Processes,
+    width: int,
     results: ResultsFile,
     ready_tasks: Callable[[Values], list[Task]],
-    report: Callable[[str], None],
 ) -> None:
-    """Run tasks until none is left, and write each result to the file when it arrives.
+    """Run tasks until none is left, and write each result to the file when it arrives."""
+    tasks: dict[str, Task] = {}
+    waiting: deque[str] = deque()
 
-    Parameters
-    ----------
-    executor : Executor
-        Any executor of `concurrent.futures`.
-    results : ResultsFile
-    ready_tasks : callable
-        Takes the values by task name, and returns the tasks that can run now and have no value. It
-        is called again when results have arrived, as they may make further tasks possible.
-    report : callable
-        Takes a line for each result.
-    """
-    running: dict[Future[TimedValue], Task] = {}
-    while True:
-        names = {task.name for task in running.values()}
-        for task in ready_tasks(results.values):
-            if task.name not in names:
-                running[executor.submit(_run, task)] = task
-        if not running:
-            return
-        for future in wait(running, return_when=FIRST_COMPLETED).done:
-            value, seconds = future.result()
-            name = running.pop(future).name
-            results.add(name, value, seconds)
+    def add_ready() -> None:
+        new = {t.name: t for t in ready_tasks(results.values) if t.name not in tasks}
+        tasks.update(new)
+        waiting.extend(new)
+
+    def call_of(name: str) -> Call:
+        return Call(_timed, (tasks[name],))
+
+    add_ready()
+    loaded = len(results.entries)
+    with closing(run_tasks(pool, waiting, call_of, lambda: width)) as batches:
+        for name, result in chain.from_iterable(batches):
+            if isinstance(result, WorkerDied):
+                found = f"two that were killed with {name}; the finished tasks are kept"
+                raise InputError("workers", "process", "one that runs to its end", found)
+            results.add(name, *result)
+            add_ready()
             done = len(results.entries)
-            report(f"[{done}/{done + len(running)}] {name}  {seconds:.1f} s")
+            print_progress(f"[{done}/{loaded + len(tasks)}] {name}  {result[1]:.1f} s")
 
 
 def print_progress(line: str) -> None:
@@ -128,7 +123,8 @@ def print_progress(line: str) -> None:
     show(f"{line}\n", sys.stderr)
 
 
-def _run(task: Task) -> TimedValue:
+def _timed(task: Task) -> TimedValue:
+    """Run a task, in a worker."""
     started = time.perf_counter()
     value = task.function(**task.arguments)
     return value, time.perf_counter() - started

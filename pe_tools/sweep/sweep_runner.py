@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 from pe_core.base.errors import InputError
-from pe_core.search import Call, Reply, WorkerDied, run_tasks
+from pe_core.search import Call, WorkerDied, run_tasks
 from pe_core.study import Study
 from pe_core.version import __version__
 
@@ -177,8 +177,8 @@ def run_all(
         When the workers are gone.
     """
 
-    def call_of(name: str, _missing: tuple[str, ...]) -> Call:
-        return Call(_reply, (make_task(name),))
+    def call_of(name: str) -> Call:
+        return Call(run_task, (make_task(name),))
 
     with closing(run_tasks(pool.executor, deque(names), call_of, pool.width, WAIT_S)) as batches:
         pool.check()
@@ -189,7 +189,3 @@ def run_all(
                     result = InputError(name, "worker", expected, f"{found} ({result.reason})")
                 on_result(name, result)
             pool.check()
-
-
-def _reply(task: RunTask) -> Reply[RunResult]:
-    return Reply(run_task(task))

@@ -5,7 +5,13 @@ import os
 import subprocess
 import sys
 import time
-from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
+from concurrent.futures import (
+    BrokenExecutor,
+    Executor,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+)
+from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
@@ -13,7 +19,7 @@ import pytest
 import pe_core as pe
 from pe_core.scoring import Judgement
 from pe_core.search import Processes, evaluate_all, processes, start_processes
-from pe_core.search.dispatch import payload_of
+from pe_core.search.payload import Payload
 from tests.engine import shapes
 
 CANDIDATES = 7
@@ -77,8 +83,9 @@ def test_results_do_not_depend_on_who_judges(evaluator, rigs, pool):
     """To the bit: here, in one process, in two, in threads, in any order, after anything."""
     alone = [evaluator.entropy(rig) for rig in rigs]
     assert len(set(alone)) == CANDIDATES
-    with ThreadPoolExecutor(3) as threads, Processes(1) as one:
-        for executor in (None, threads, one, pool):
+    foreign = ProcessPoolExecutor(1, get_context("spawn"))
+    with ThreadPoolExecutor(3) as threads, foreign:
+        for executor in (None, threads, foreign, pool):
             judged = evaluate_all(evaluator, rigs, math.inf, executor)
             assert judged == [(entropy, False) for entropy in alone]
         backward = evaluate_all(evaluator, rigs[::-1], math.inf, pool)
@@ -104,11 +111,51 @@ def test_an_objective_is_sent_to_a_process_once(tmp_path, rigs, pool):
     assert len(set(objective.unpacked)) == len(objective.unpacked)
 
 
-def test_evaluators_of_one_vehicle_share_it_in_a_worker(evaluator, rigs, pool):
-    """A vehicle is a payload of its own, named by its content: a second evaluator's is small."""
+def test_processes_that_start_with_an_objective_stay(tmp_path, rigs):
+    """Their initializer has brought it: none is started anew, and no task brings it."""
+    objective = Landscape(tmp_path)
+    with start_processes(2, (objective, *(s.model for s in rigs[0]))) as made:
+        pids = {str(pid) for pid in made._pool._processes}
+        evaluate_all(objective, rigs, math.inf, made)
+        assert {str(pid) for pid in made._pool._processes} == pids
+    assert objective.unpacked and set(objective.unpacked) <= pids
+
+
+def test_threads_unpack_an_objective_once_each(tmp_path, rigs):
+    objective = Landscape(tmp_path)
+    with ThreadPoolExecutor(2) as threads:
+        for _ in range(3):
+            evaluate_all(objective, rigs, math.inf, threads)
+    assert 1 <= len(objective.unpacked) <= 2
+
+
+def test_a_cluster_scatters_an_objective(tmp_path, evaluator, rigs):
+    """Dask: each call refers to the payload by a future of the cluster's own."""
+    distributed = pytest.importorskip("distributed")
+    local = {"processes": False, "dashboard_address": None, "threads_per_worker": 1}
+    with distributed.Client(n_workers=2, **local) as client:
+        executor, calls, objective = client.get_executor(pure=False), [], Landscape(tmp_path)
+        submit = executor.submit
+        executor.submit = lambda *call: calls.append(call) or submit(*call)
+        expected = [objective.judge(rig, math.inf) for rig in rigs]
+        for _ in range(2):
+            assert evaluate_all(objective, rigs, math.inf, executor) == expected
+        assert 1 <= len(objective.unpacked) <= 2
+        assert len(calls) == 2 * CANDIDATES
+        assert all(isinstance(call[2], distributed.Future) for call in calls)
+        judged = evaluate_all(evaluator, rigs, math.inf, executor)
+    assert [j.entropy for j in judged] == [evaluator.entropy(rig) for rig in rigs]
+
+
+def test_what_objectives_and_rigs_share_is_sent_once(evaluator, rigs):
+    """The vehicle of two evaluators once; a candidate refers to its sensors' models by number."""
     finer = pe.Evaluator(ROOM, pe.Prior.uniform(), evaluator.vehicle, samples=2048)
-    assert evaluate_all(finer, rigs[:1], math.inf, pool)[0].entropy == finer.entropy(rigs[0])
-    assert payload_of(finer).inner == payload_of(evaluator).inner != {}
+    payload = Payload([evaluator, finer, *(sensor.model for sensor in rigs[0])])
+    assert payload.packed.data.count(evaluator.vehicle.triangles.tobytes()) == 1
+    assert payload.covers([finer, rigs[1].sensors[0].model])
+    candidate = payload.pickled((finer, rigs[1]))
+    assert b"Evaluator" not in candidate and b"Lidar" not in candidate
+    assert b"Lidar" in Payload([evaluator]).pickled((evaluator, rigs[1]))
 
 
 def test_a_worker_that_dies_is_replaced_and_its_rig_judged_again(tmp_path, rigs, pool):
@@ -132,6 +179,9 @@ def test_what_an_objective_raises_in_a_worker_is_raised(tmp_path, rigs, pool):
     with pytest.raises(pe.InputError) as raised:
         evaluate_all(Landscape(tmp_path, error=error), rigs, math.inf, pool)
     assert str(raised.value) == str(error)
+    with pytest.raises(ZeroDivisionError) as fault:
+        evaluate_all(Landscape(tmp_path, error=ZeroDivisionError()), rigs, math.inf, pool)
+    assert "in judge" in fault.value.__notes__[0], "the worker's traceback comes along"
 
 
 def test_an_objective_that_cannot_be_sent_judges_here(tmp_path, rigs, pool):

@@ -322,7 +322,7 @@ class Dying(Executor):
         self.deadly, self.deaths, self.given = deadly, dict.fromkeys(deadly, deaths), []
         self.open = []
 
-    def submit(self, fn, task):
+    def submit(self, fn, call, task):
         self.given.append(task.study.search.seed)
         future = Future()
         seed = task.study.search.seed
@@ -333,7 +333,7 @@ class Dying(Executor):
                 if not each.done():
                     each.set_exception(BrokenExecutor("died"))
         elif seed not in HELD or len(self.open) > 2:
-            future.set_result(fn(task))
+            future.set_result(fn(call, task))
         return future
 
 

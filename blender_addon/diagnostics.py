@@ -98,7 +98,7 @@ def explain_score(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -
     def deliver(seen: advice.Outlook) -> None:
         scene = bpy.data.scenes.get(name)
         if scene is not None and scene.perception_entropy.result_signature == signature:
-            bridge.store_words(scene, study, score, seen)
+            bridge.store_text(scene, study, score, seen)
             signals.view_changed.emit()
 
     background_worker.ask(EXPLANATION, work, deliver, lambda _: None)

@@ -15,7 +15,7 @@ from .mirroring import (
     unlink_mirror,
 )
 from .mounting import LimitBox, bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes
-from .outcome import blender_version, store_outcome, store_warnings, store_words
+from .outcome import blender_version, store_outcome, store_text, store_warnings
 from .own_sensors import add_own_sensor, remove_own_sensors, sync_own_sensors, table_of
 from .plain_objects import plain_objects, put_objects, sensors_of_objects
 from .prior import focus_rows, prior_from_scene, prior_key
@@ -192,10 +192,10 @@ __all__ = [
     "store_front",
     "store_outcome",
     "store_search",
+    "store_text",
     "store_variant_score",
     "store_variant_scores",
     "store_warnings",
-    "store_words",
     "study_from_scene",
     "study_of",
     "study_of_rig",

@@ -10,7 +10,7 @@ import math
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,7 +111,8 @@ def range_pixels(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Pixels:
     picture = kinds.range_picture(sensor, vehicle)
     angles = picture.elevations, picture.azimuths
     rows, columns = (graphics.even_angles(axis, PIXELS_PER_DEG) for axis in angles)
-    colors = graphics.range_colors(picture, sensor.model.max_range)[np.ix_(rows, columns)]
+    farthest = cast(pe.Lidar, sensor.model).max_range
+    colors = graphics.range_colors(picture, farthest)[np.ix_(rows, columns)]
     return np.concatenate([colors, np.ones((*colors.shape[:2], 1))], axis=2).astype(np.float32)
 
 

@@ -85,8 +85,8 @@ class VehicleCache:
 def vehicle_digest(vehicle: pe.Vehicle) -> str:
     """Return a digest of a vehicle: its triangles, its parts and their names."""
     digest = hashlib.blake2b(digest_size=16)
-    digest.update(vehicle.triangles)
-    digest.update(vehicle.parts)
+    digest.update(vehicle.triangles.data)
+    digest.update(vehicle.parts.data)
     digest.update(repr((vehicle.part_names, vehicle.glass)).encode())
     return digest.hexdigest()
 

@@ -115,7 +115,6 @@ def _handler(event: str) -> Function:
     called.
     """
 
-    @persistent
     def handle(*args: object) -> None:
         for function in EVENTS[event]:
             try:
@@ -124,6 +123,7 @@ def _handler(event: str) -> Function:
                 traceback.print_exc()
 
     handle.__name__ = f"on_{event}"
+    persistent(handle)
     return handle
 
 

@@ -8,6 +8,7 @@ timer then.
 
 from __future__ import annotations
 
+import functools
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -124,7 +125,7 @@ def _run_task(work: WorkerTask, deliver: Deliver, fail: Fail) -> Callable[[], No
     try:
         result = work()
     except Exception as error:  # whatever it is, `fail` has to know
-        return lambda problem=error: fail(problem)
+        return functools.partial(fail, error)
     return lambda: deliver(result)
 
 

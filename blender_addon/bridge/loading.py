@@ -9,18 +9,19 @@ import contextlib
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import bpy
 
 from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, pe, search, studies
 from .apply_variant import apply_records
-from .model_options import ModelOption, write_options
+from .model_options import write_options
 from .prior import write_prior
 from .rig import place_at, view_layer_of
 from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene
 from .scene_settings import write_settings, write_values
-from .sensor_records import NO_BOUNDS, ZEROS, SensorRecord
+from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
 from .vehicle import make_body, paint_area, same_body
 
 RACK = "rack {}"
@@ -143,14 +144,14 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
     return tuple(sorted(records, key=lambda record: record.name))
 
 
-def _options(selection: pe.Selection, name: str, mount: str) -> dict[str, object]:
+def _options(selection: pe.Selection, name: str, mount: str) -> dict[str, Any]:
     """Return the models that a sensor is offered, and whether it may be left out."""
     choices = [c for c in selection.choices if name in c.sensors or c.mount == mount]
     options = tuple(ModelOption(o.model.name, o.price) for c in choices for o in c.options)
     return {"options": options, "may_be_left_out": bool(choices) and choices[-1].optional}
 
 
-def _bounds(limits: Mapping[str, tuple[float, float]]) -> dict[str, tuple]:
+def _bounds(limits: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
     """Return bounds in the units of a record: metres and degrees."""
     bounded, low, high = list(NO_BOUNDS), list(ZEROS), list(ZEROS)
     for number, axis in enumerate(search.AXES):
@@ -218,8 +219,9 @@ def _slots(scene: bpy.types.Scene, name: str, mount: pe.SlotMount) -> bpy.types.
 def _empty(name: str) -> bpy.types.Object:
     """Return the empty with that name, or a new one; a sensor is never returned."""
     obj = bpy.data.objects.get(name)
-    usable = obj is not None and obj.type == "EMPTY" and not obj.perception_entropy.is_sensor
-    return obj if usable else bpy.data.objects.new(name, None)
+    if obj is not None and obj.type == "EMPTY" and not obj.perception_entropy.is_sensor:
+        return obj
+    return bpy.data.objects.new(name, None)
 
 
 def _write_constraints(scene: bpy.types.Scene, constraints: pe.Constraints) -> None:

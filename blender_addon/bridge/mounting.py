@@ -6,7 +6,7 @@ are computed here, too.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import bpy
@@ -331,10 +331,15 @@ def bounds_box(
         ends.append(
             limits.get(axis, side_range) if around is not None or axis in free else side_range
         )
-    return LimitBox(*zip(*ends, strict=True), False)
+    return _box(ends, False)
 
 
 def no_go_boxes(scene: bpy.types.Scene) -> tuple[LimitBox, ...]:
     """Return the no-go areas of a scene."""
-    sides = ((area.x, area.y, area.z) for area in no_go_of(scene))
-    return tuple(LimitBox(*zip(*ranges, strict=True), True) for ranges in sides)
+    return tuple(_box((area.x, area.y, area.z), True) for area in no_go_of(scene))
+
+
+def _box(sides: Iterable[tuple[float, float] | None], forbidden: bool) -> LimitBox:
+    """Return a box with ranges along all axes: those of a scene's objects have no open side."""
+    low, high = zip(*(side for side in sides if side is not None), strict=True)
+    return LimitBox(low, high, forbidden)

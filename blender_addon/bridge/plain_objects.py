@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import cast
 
 import bpy
 import numpy as np
@@ -95,8 +96,8 @@ def _camera(
         model = catalog.load(model_name)
         picture = exchange.picture_of(model)
         if picture is None or _is_of(picture, table):
-            return model
-    return catalog.from_table(name, table)
+            return cast(pe.Camera, model)
+    return cast(pe.Camera, catalog.from_table(name, table))
 
 
 def _table(scene: bpy.types.Scene, camera: bpy.types.Camera) -> dict[str, object]:
@@ -156,7 +157,7 @@ def put_objects(scene: bpy.types.Scene, rig: pe.Rig) -> tuple[list[bpy.types.Obj
         obj = bpy.data.objects.new(sensor.name, data)
         obj[NAME], obj[MODEL] = sensor.name, sensor.model.name
         obj.matrix_world = _matrix(sensor.pose, data is not None)
-        if data is None:
+        if picture is None:
             obj.empty_display_type = "ARROWS"
         elif not picture.lens.is_straight:
             lines.append(LEFT_OUT.format(sensor.name, picture.lens.model))
@@ -176,7 +177,8 @@ def _matrix(pose: pe.Pose, is_camera: bool) -> Matrix:
 def _camera_data(sensor: pe.Sensor, picture: exchange.Picture) -> bpy.types.Camera:
     """Return a camera with a picture's lens, size and range."""
     camera = bpy.data.cameras.new(sensor.name)
-    width, height = picture.size
+    model = cast(pe.Camera, sensor.model)
+    width, height = model.width, model.height
     aspect = picture.fx / picture.fy
     camera.lens_unit, camera.sensor_fit = "MILLIMETERS", "HORIZONTAL"
     camera.sensor_width = max(FILM_MM, SHORTEST_MM * width / picture.fx)
@@ -185,7 +187,7 @@ def _camera_data(sensor: pe.Sensor, picture: exchange.Picture) -> bpy.types.Came
     cx, cy = picture.center
     camera.shift_x = (width / 2.0 - cx) / width
     camera.shift_y = (cy - height / 2.0) * aspect / width
-    min_range, max_range = sensor.model.min_range, sensor.model.max_range
+    min_range, max_range = model.min_range, model.max_range
     camera.clip_start = min_range or CLIPS[0]
     camera.clip_end = max_range if math.isfinite(max_range) else FAR_M
     camera[SIZE], camera[ASPECT] = (width, height), aspect

@@ -89,7 +89,8 @@ def _prior_from_boxes(path: str) -> pe.Prior:
         raise pe.InputError("scene", "boxes", "a file of labelled boxes", "none chosen")
     prior = pe.Prior.from_boxes(pe.read_boxes(bpy.path.abspath(path)))
     # The name they get beside a study is part of what is reported, where they lie here is not.
-    return replace(prior, boxes=replace(prior.boxes, file=None))
+    boxes = prior.boxes
+    return prior if boxes is None else replace(prior, boxes=replace(boxes, file=None))
 
 
 def _checked(prior: pe.Prior, number: int, row: bpy.types.PropertyGroup) -> list[pe.Focus]:

@@ -124,8 +124,11 @@ def place_poses(scene: bpy.types.Scene, poses: Mapping[str, pe.Pose]) -> list[st
         When a constraint, a driver or an animation holds a sensor where it is, or it is another
         file's.
     """
-    pairs = [(scene.objects.get(name), pose) for name, pose in poses.items()]
-    present = [(obj, pose) for obj, pose in pairs if _is_sensor(obj)]
+    present: list[tuple[bpy.types.Object, pe.Pose]] = [
+        (scene.objects[name], pose)
+        for name, pose in poses.items()
+        if _is_sensor(scene.objects.get(name))
+    ]
     layer = view_layer_of(scene)
     # Parents first: a sensor may be mounted on another.
     for obj, pose in sorted(present, key=lambda pair: len(_ancestors(pair[0]))):

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import bpy
 
-from ..engine import pe, search, studies
+from ..engine import exchange, pe, search, studies
 from .model_options import selection_limits, selection_of
 from .mounting import constraints_of, mounting_of, mounts_of
 from .prior import prior_from_scene
@@ -38,6 +38,8 @@ from .sensor_records import (
 from .transform_constraints import Limits, search_bounds, unlocked_axes
 from .vehicle import vehicle_from_collection
 
+AnyMount = search.AnyMount  # the record has a field `search`
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneRecord:
@@ -57,11 +59,11 @@ class SceneRecord:
     targets: pe.TargetRule
     samples: int
     search: pe.Search
-    mounts: Mapping[str, search.AnyMount]
+    mounts: Mapping[str, AnyMount]
     constraints: pe.Constraints
     selection: pe.Selection
     reference: pe.Reference | None
-    passthrough: object | None
+    passthrough: exchange.Passthrough | None
 
 
 def study_from_scene(

@@ -33,7 +33,7 @@ def values_of(
     An optional setting is None if its property is 0; angles are converted to radians.
     """
     return {
-        setting.name: _value(setting, getattr(settings, setting.panel.property))
+        setting.name: _value(setting, getattr(settings, _property(setting)))
         for setting in _in_panel(cls, names)
     }
 
@@ -48,12 +48,18 @@ def write_values(
             value = math.degrees(value)
         elif isinstance(setting.rule, studies.Whole):
             value = min(value or 0, LARGEST_INT)
-        setattr(settings, setting.panel.property, 0 if value is None else value)
+        setattr(settings, _property(setting), 0 if value is None else value)
 
 
 def _in_panel(cls: Any, names: Iterable[str] = ()) -> Iterator[studies.Setting]:
     declared = studies.settings_of(cls)
     return (declared[name] for name in names or declared if declared[name].panel is not None)
+
+
+def _property(setting: studies.Setting) -> str:
+    """Return the name of the property that stores a setting of the panel."""
+    assert setting.panel is not None
+    return setting.panel.property
 
 
 def _value(setting: studies.Setting, value: Any) -> Any:
@@ -83,7 +89,7 @@ def space_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionSpace:
 
 def perception_of(settings: bpy.types.PropertyGroup) -> pe.PerceptionModel:
     """Return the AP curves of a scene; a kind without a curve has its default curve."""
-    curves = {
+    curves: dict[str, Any] = {
         row.name: pe.ApCurve(as_typed(row.a), as_typed(row.b))
         for row in settings.curves
         if row.own and row.name in kinds.KINDS

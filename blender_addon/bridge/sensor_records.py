@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -68,7 +68,7 @@ class SensorRecord:
     mount: str = ""
     rack: str = ""
     curve: pe.ApCurve | None = None
-    intrinsics: object | None = None
+    intrinsics: Any = None  # the engine's model, where the catalogue may not have it
 
     locked: tuple[str, ...] = ()
     constraints: tuple[AxisLimit, ...] = ()
@@ -153,7 +153,7 @@ def record_of_object(
     )
 
 
-def _object_fields(obj: bpy.types.Object | None) -> dict[str, object]:
+def _object_fields(obj: bpy.types.Object | None) -> dict[str, Any]:
     """Return the fields of a record that belong to the object; empty without an object."""
     if obj is None:
         return {}
@@ -304,8 +304,9 @@ def bounds_by_axis(
     for n, axis in enumerate(search.AXES):
         if bounded[n]:
             bounds = pair_as_typed((low[n], high[n]))
-            angle = axis not in search.POSITION_AXES
-            limits[axis] = tuple(map(math.radians, bounds)) if angle else bounds
+            if axis not in search.POSITION_AXES:
+                bounds = math.radians(bounds[0]), math.radians(bounds[1])
+            limits[axis] = bounds
     return limits
 
 

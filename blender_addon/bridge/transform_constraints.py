@@ -7,7 +7,7 @@ constraint defines the sensor's pose, so that a search of that sensor is impossi
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import bpy
 
@@ -149,5 +149,5 @@ def _curves(action: bpy.types.Action) -> Iterator[bpy.types.FCurve]:
         return
     for layer in action.layers:
         for strip in layer.strips:
-            for bag in strip.channelbags:
+            for bag in cast(bpy.types.ActionKeyframeStrip, strip).channelbags:
                 yield from bag.fcurves

@@ -205,7 +205,7 @@ def figures_of(variant: Variant, signature: str) -> advice.KeyFigures | None:
 
 
 def restore_result(
-    scene: bpy.types.Scene, variant: Variant, now: Fingerprint, depsgraph: object
+    scene: bpy.types.Scene, variant: Variant, now: Fingerprint, depsgraph: bpy.types.Depsgraph
 ) -> pe.Outcome | None:
     """Show the stored score of the variant that was applied to the scene.
 

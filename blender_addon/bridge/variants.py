@@ -92,7 +92,9 @@ def mark_active(scene: bpy.types.Scene, key: int) -> None:
     settings.variant_index = keys.index(key) if key in keys else 0
 
 
-def study_of_variant(scene: bpy.types.Scene, variant: Variant, depsgraph: object) -> pe.Study:
+def study_of_variant(
+    scene: bpy.types.Scene, variant: Variant, depsgraph: bpy.types.Depsgraph
+) -> pe.Study:
     """Return the study that the scene would have if the variant were applied to it.
 
     Raises

@@ -141,7 +141,9 @@ def _camera_of(obj: bpy.types.Object) -> pe.Camera | None:
 
 def _settings(scene: bpy.types.Scene) -> dict[str, object]:
     """Return the scene's settings that `look_through` changes."""
-    names = ("resolution_x", "resolution_y", "resolution_percentage")
-    names += ("pixel_aspect_x", "pixel_aspect_y")
+    names = (
+        *("resolution_x", "resolution_y", "resolution_percentage"),
+        *("pixel_aspect_x", "pixel_aspect_y"),
+    )
     values = {name: getattr(scene.render, name) for name in names}
     return values | {"camera": None if scene.camera is None else scene.camera.name}

@@ -77,7 +77,7 @@ def run_job(args: argparse.Namespace) -> app.Answer:
     if kind == "optimize":
         with from_file():
             bridge.check_placeable(bpy.context.scene, study)
-    job, output = app.job_and_folder(study, args, app.begun_search(args))
+    job, name = app.job_and_folder(study, args, app.begun_search(args))
     ours = [OPTIMIZED] * (kind == "optimize") + [REVIEW] * args.render
 
     def leave(outcome: pe.Outcome, data: dict, folder: Path) -> None:
@@ -85,8 +85,10 @@ def run_job(args: argparse.Namespace) -> app.Answer:
             write_artifacts(outcome, data, folder, render=args.render)
 
     more = app.with_pages(args, app.More(ours, leave))
-    if output is not None:
-        output = pe.prepare_folder(output, [*more.names, *jobs.result_names(study, kind)])
+    output = None
+    if name is not None:
+        names = [*(more.names if more else ()), *jobs.result_names(study, kind)]
+        output = pe.prepare_folder(name, names)
     job.notes = bridge.missing_data(bpy.context.scene)
     return app.carry_out(
         job,

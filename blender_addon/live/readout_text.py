@@ -45,7 +45,7 @@ def readout_of(score: LiveScore, shown: ShownScore) -> ReadoutText:
         state_of(shown, score.moved_m),
         change,
         sense,
-        f"compared with {shortened(score.baseline.label)}" if before else "",
+        f"compared with {shortened(score.baseline.label)}" if score.baseline and before else "",
         (coverage, *zone_lines(now, before)),
     )
 
@@ -125,8 +125,8 @@ def reach_line(now: advice.KeyFigures, before: advice.KeyFigures | None) -> str:
     line = f"{now.class_name.capitalize()} detected {to}{change_text(by, 0)}"
     if now.expected_ap is None:
         return line
-    known = before is not None and before.expected_ap is not None
-    by = now.expected_ap - before.expected_ap if known else None
+    earlier_ap = None if before is None else before.expected_ap
+    by = None if earlier_ap is None else now.expected_ap - earlier_ap
     return f"{line}, AP {now.expected_ap:.2f}{change_text(by, 2)}"
 
 
@@ -137,8 +137,11 @@ def change_text(by: float | None, digits: int) -> str:
 
 
 def known_rig_line(known_rig: KnownRigScore, now: pe.Glance) -> str:
-    """Return "nuScenes here: 2.867 nats; this is 0.229 worse"."""
-    by = now.entropy - known_rig.summary.entropy
+    """Return "nuScenes here: 2.867 nats; this is 0.229 worse"; empty until it is scored."""
+    summary = known_rig.summary
+    if summary is None:
+        return ""
+    by = now.entropy - summary.entropy
     same = abs(by) < MIN_CHANGE
     word = "alike" if same else f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}"
-    return f"{known_rig.title} here: {known_rig.summary.entropy:.3f} nats; this is {word}"
+    return f"{known_rig.title} here: {summary.entropy:.3f} nats; this is {word}"

@@ -46,7 +46,7 @@ class Baseline:
 class ChosenBaseline(NamedTuple):
     """A baseline that the user chose, and what it was made from."""
 
-    key: Hashable
+    key: tuple[Hashable, ...]
     baseline: Baseline
 
 

@@ -15,7 +15,7 @@ from ..engine import catalog, graphics, kinds, pe
 from ..housing import measured_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
 from ..sensor_kinds import Mount, mount_of
-from .reports import USER_ERRORS, report_error
+from .reports import USER_ERRORS, OperatorResult, report_error
 from .surface_pose import nearest_spot, parts_of
 
 ROOF_DEPTH_M = 0.1
@@ -158,7 +158,7 @@ class PE_OT_add_sensor(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             kind = kinds.kind_of(catalog.load(self.model))
             mount = mount_of(kind.name)
@@ -238,11 +238,11 @@ class PE_OT_search_sensor(bpy.types.Operator):
     kind: StringProperty(name="Kind", description="Kind of sensors to list; all when empty")
     model: EnumProperty(name="Model", description="Sensor of the catalogue", items=_menu_items)
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         context.window_manager.invoke_search_popup(self)
         return {"FINISHED"}
 
-    def execute(self, _context: bpy.types.Context) -> set[str]:
+    def execute(self, _context: bpy.types.Context) -> OperatorResult:
         return bpy.ops.pe.place_sensor("INVOKE_DEFAULT", True, model=self.model)
 
 

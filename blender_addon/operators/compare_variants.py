@@ -11,7 +11,7 @@ import bpy
 
 from .. import bridge, result_staleness
 from ..engine import advice, pe
-from .reports import report
+from .reports import OperatorResult, report
 from .score_jobs import JobOperator, SceneJob
 
 FIGURES_SHARE = 0.1
@@ -109,12 +109,12 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
             return False
         return super().poll(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         if not pending_variants(context.scene):
             return {"FINISHED"}
         return super().execute(context)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         """Show the table at once where all scores are valid."""
         self.asked_in_window = not bpy.app.background
         if self.asked_in_window and not pending_variants(context.scene):
@@ -166,10 +166,10 @@ class PE_OT_show_comparison(bpy.types.Operator):
     bl_label = "Variants Compared"
     bl_options = {"INTERNAL"}
 
-    def execute(self, _context: bpy.types.Context) -> set[str]:
+    def execute(self, _context: bpy.types.Context) -> OperatorResult:
         return {"FINISHED"}
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         """Compute the table, and open it under the mouse."""
         self.names, self.rows = comparison_of(context.scene)
         width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
@@ -209,7 +209,7 @@ def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: s
         row.label(text=text, icon="SOLO_ON" if best else other, translate=False)
 
 
-def open_table() -> set[str]:
+def open_table() -> OperatorResult:
     """Open the table."""
     bpy.ops.pe.show_comparison("INVOKE_DEFAULT")
     return {"FINISHED"}

@@ -9,7 +9,7 @@ from mathutils import Matrix
 from .. import bridge, sensor_cache, signals
 from ..engine import pe
 from .add_sensor import select_only
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorResult, report, report_error
 
 
 def listed_sensors(scene: bpy.types.Scene) -> list[bpy.types.Object]:
@@ -30,7 +30,7 @@ class PE_OT_select_sensor(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return context.mode == "OBJECT"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         obj = context.view_layer.objects.get(self.name)
         if obj is None or not obj.visible_get():
             report(self, "WARNING", f"{self.name} is hidden")
@@ -52,7 +52,7 @@ class PE_OT_select_part(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return context.mode == "OBJECT"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         # The name of a linked part includes its file; the view layer's objects have no such key.
         matches = (o for o in context.view_layer.objects if self.name in (o.name_full, o.name))
         obj = next(matches, None)
@@ -72,7 +72,7 @@ class PE_OT_toggle_sensor(bpy.types.Operator):
 
     name: StringProperty(name="Name", description="Name of the sensor's object")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         obj = context.scene.objects.get(self.name)
         if obj is None or obj.name not in context.view_layer.objects:
             report(
@@ -110,7 +110,7 @@ class PE_OT_mirror_sensor(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         obj = context.scene.objects.get(self.name) if self.name else context.active_object
         try:
             made = mirrored_copy(context, obj)
@@ -132,7 +132,7 @@ class PE_OT_unlink_mirror(bpy.types.Operator):
 
     name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         obj = context.scene.objects.get(self.name) if self.name else context.active_object
         if obj is None or not obj.perception_entropy.mirror_of:
             report(self, "WARNING", "This sensor is not linked")
@@ -177,7 +177,7 @@ class PE_OT_apply_scale(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return context.mode == "OBJECT"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         obj = context.scene.objects.get(self.name) if self.name else context.active_object
         if obj is None or not obj.perception_entropy.is_sensor:
             report(self, "WARNING", "No sensor is selected")

@@ -14,7 +14,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 from .. import bridge, signals
 from ..engine import app, exchange, jobs, outputs, page, pe
 from .export_job import ExportJob, ExportOperator, ExportSteps, WrittenFiles, report_files
-from .reports import USER_ERRORS, chosen_file, report, report_error
+from .reports import USER_ERRORS, OperatorResult, chosen_file, report, report_error
 
 
 class PE_OT_export_study(ExportHelper, bpy.types.Operator):
@@ -26,7 +26,7 @@ class PE_OT_export_study(ExportHelper, bpy.types.Operator):
     filename_ext = ".toml"
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             path = chosen_file(self.filepath)
             study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
@@ -55,7 +55,7 @@ class PE_OT_import_study(ImportHelper, bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             study = pe.load_study(chosen_file(self.filepath))
             lost = bridge.load_into(context.scene, study)
@@ -94,7 +94,7 @@ class PE_OT_export_scene(ExportOperator, bpy.types.Operator):
         name="Replace", description="Replace existing files of a folder", default=False
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         self.filepath = outputs.scene_output(self.output).file
         return super().invoke(context, event)
 

@@ -18,7 +18,7 @@ from bpy_extras.io_utils import ExportHelper
 from .. import viewport
 from ..engine import pe
 from . import running_job
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorMixin, OperatorResult, report, report_error
 from .score_jobs import JobOperator, SceneJob
 
 
@@ -100,7 +100,7 @@ class ExportJob(pe.Job):
         return note
 
 
-class ExportOperator(ExportHelper):
+class ExportOperator(ExportHelper, OperatorMixin):
     """Base class of export operators; a subclass makes the job."""
 
     asked_in_window = False
@@ -112,12 +112,12 @@ class ExportOperator(ExportHelper):
             return False
         return True
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         """Open the file dialog; the export then runs as a job."""
         self.asked_in_window = not bpy.app.background
         return super().invoke(context, event)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """Export to the given file: at once, or as a job after a file dialog."""
         try:
             job = self.job(context)
@@ -144,7 +144,7 @@ class PE_OT_run_export(JobOperator, bpy.types.Operator):
     def _task(self, _context: bpy.types.Context) -> SceneJob:
         return SceneJob(_take_waiting(), None)
 
-    def _apply(self, _scene: bpy.types.Scene | None, task: SceneJob) -> set[str]:
+    def _apply(self, _scene: bpy.types.Scene | None, task: SceneJob) -> OperatorResult:
         return finished(self, task.job)
 
 
@@ -159,7 +159,7 @@ class PE_OT_open_folder(bpy.types.Operator):
     def poll(cls, _context: bpy.types.Context) -> bool:
         return last is not None
 
-    def execute(self, _context: bpy.types.Context) -> set[str]:
+    def execute(self, _context: bpy.types.Context) -> OperatorResult:
         if not last.folder.is_dir():
             report(self, "WARNING", f"The folder {last.folder} was removed")
             return {"CANCELLED"}
@@ -173,7 +173,7 @@ class PE_OT_dismiss_written(bpy.types.Operator):
     bl_label = "Dismiss"
     bl_options = {"INTERNAL"}
 
-    def execute(self, _context: bpy.types.Context) -> set[str]:
+    def execute(self, _context: bpy.types.Context) -> OperatorResult:
         set_last(None)
         return {"FINISHED"}
 
@@ -183,7 +183,7 @@ last: WrittenFiles | None = None
 _waiting: ExportJob | None = None
 
 
-def start(job: ExportJob) -> set[str]:
+def start(job: ExportJob) -> OperatorResult:
     """Run a job in a separate operator, because a file dialog's operator ends with it."""
     global _waiting
     _waiting = job
@@ -191,7 +191,7 @@ def start(job: ExportJob) -> set[str]:
     return {"FINISHED"}
 
 
-def finished(operator: bpy.types.Operator, job: ExportJob) -> set[str]:
+def finished(operator: bpy.types.Operator, job: ExportJob) -> OperatorResult:
     """Report the files that a job wrote, and store their names for the panel."""
     if job.written is None:
         report(operator, "INFO", "Stopped: nothing was written")
@@ -211,7 +211,7 @@ def report_written(operator: bpy.types.Operator, written: WrittenFiles) -> None:
 
 def report_files(
     operator: bpy.types.Operator, *paths: Path, lines: tuple[str, ...] = ()
-) -> set[str]:
+) -> OperatorResult:
     """Report the files of an export without a job, and store their names for the panel."""
     set_last(WrittenFiles(tuple(paths), tuple(lines)))
     report_written(operator, last)

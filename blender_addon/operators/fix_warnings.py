@@ -11,7 +11,7 @@ from mathutils import Matrix, Vector
 
 from .. import bridge, signals
 from ..engine import pe
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorResult, report, report_error
 
 AdviceAmount = tuple[float, float, float]
 ON_VEHICLE_M = 0.5
@@ -51,7 +51,7 @@ class PE_OT_mend(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             FIXES[self.fix](context, self.subject, tuple(self.amount))
         except USER_ERRORS as error:

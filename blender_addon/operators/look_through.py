@@ -17,7 +17,7 @@ from .. import bridge
 from ..engine import pe
 from ..sensor_kinds import kind_label, row_of
 from . import sensor_pictures
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorResult, report, report_error
 
 SPACE_FIELDS = ("lens", "clip_start", "clip_end", "lock_camera")
 VIEW_FIELDS = (
@@ -133,7 +133,7 @@ class PE_OT_look_through(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
         obj = scene.objects.get(self.name) if self.name else context.active_object
         try:
@@ -154,7 +154,9 @@ class PE_OT_look_through(bpy.types.Operator):
         look_along(scene, context.area)
         return {"FINISHED"}
 
-    def _picture(self, context: bpy.types.Context, sensor: pe.Sensor, legend: str) -> set[str]:
+    def _picture(
+        self, context: bpy.types.Context, sensor: pe.Sensor, legend: str
+    ) -> OperatorResult:
         """Have a picture made by the background worker, and show it when it is there."""
         try:
             vehicle = _vehicle(context)
@@ -176,7 +178,7 @@ class PE_OT_look_back(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return context.mode == "OBJECT" and looking_through(context.scene) is not None
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         come_back(context.scene)
         return {"FINISHED"}
 

@@ -9,7 +9,7 @@ from bpy.props import EnumProperty, StringProperty
 from .. import bridge, signals
 from ..choices import BY_GROUP, BY_PARTS, free_name
 from ..engine import catalog, pe, search
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorMixin, OperatorResult, report, report_error
 
 IN_A_BOX = "BOX"
 """The entry for no mount in the menu of a sensor's mounts."""
@@ -28,7 +28,7 @@ class PE_OT_add_mount(bpy.types.Operator):
     bl_label = "Add Mount"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
         taken = {row.name for row in settings.mounts}
         painted = painted_group(context)
@@ -43,7 +43,7 @@ class PE_OT_add_mount(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class MountRow:
+class MountRow(OperatorMixin):
     """What operators on the selected mount share."""
 
     @classmethod
@@ -62,7 +62,7 @@ class PE_OT_remove_mount(MountRow, bpy.types.Operator):
     bl_label = "Remove Mount"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
         settings = scene.perception_entropy
         index = settings.mount_index
@@ -83,7 +83,7 @@ class PE_OT_mount_parts(MountRow, bpy.types.Operator):
     bl_label = "Take Selected"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings, parts = context.scene.perception_entropy, selected_parts(context)
         if not parts:
             report(self, "WARNING", "Select objects of the vehicle's collection first")
@@ -113,7 +113,7 @@ class PE_OT_mount_sensor(bpy.types.Operator):
     mount: EnumProperty(name="Mount", description="Where it may sit", items=_menu_items)
     name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
         obj = scene.objects.get(self.name) if self.name else context.active_object
         try:
@@ -134,7 +134,7 @@ class PE_OT_add_no_go(bpy.types.Operator):
     bl_label = "Add No-Go Area"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         obj = bpy.data.objects.new("no_go", None)
         obj.empty_display_type, obj.empty_display_size = "CUBE", NO_GO_SIZE_M
         low, high = no_go_extent(context)

@@ -14,7 +14,7 @@ from ..live import live_state
 from ..overlay.layer_cache import shown
 from ..properties import DEFAULT_REGION
 from ..sensor_kinds import own_kinds, row_of
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorResult, report, report_error
 
 
 class PE_OT_add_focus(bpy.types.Operator):
@@ -31,7 +31,7 @@ class PE_OT_add_focus(bpy.types.Operator):
         default=DEFAULT_REGION,
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
         name = free_focus_name({row.name for row in settings.focus})
         row = settings.focus.add()
@@ -57,7 +57,7 @@ class PE_OT_remove_focus(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
         index = settings.focus_index
         name = settings.focus[index].name
@@ -89,7 +89,7 @@ class PE_OT_add_own_sensor(bpy.types.Operator):
 
     kind: EnumProperty(items=own_kinds, name="Kind", description="What it is")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
         row = settings.own_sensors.add()
         row.kind = self.kind
@@ -116,7 +116,7 @@ class PE_OT_remove_own_sensor(bpy.types.Operator):
         settings = context.scene.perception_entropy
         return settings.own_index < len(settings.own_sensors)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
         settings.own_sensors.remove(settings.own_index)
         settings.own_index = max(0, min(settings.own_index, len(settings.own_sensors) - 1))
@@ -131,7 +131,7 @@ class PE_OT_own_curves(bpy.types.Operator):
     bl_label = "Own AP Curves"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         rows = context.scene.perception_entropy.curves
         for name, kind in kinds.KINDS.items():
             if name not in rows:
@@ -149,7 +149,7 @@ class PE_OT_bound_axis(bpy.types.Operator):
 
     axis: IntProperty(name="Axis", description="x, y, z, roll, pitch, yaw", min=0, max=5)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         obj = context.active_object
         settings = obj.perception_entropy
         try:
@@ -172,7 +172,7 @@ class PE_OT_guess_axles(bpy.types.Operator):
     bl_label = "From Wheels"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
         try:
             vehicle = vehicle_cache.shared.read(scene, context.evaluated_depsgraph_get()).vehicle
@@ -202,7 +202,7 @@ class PE_OT_fix_colors(bpy.types.Operator):
     bl_label = "Fix Colors"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         view = context.scene.perception_entropy.view
         items = shown.items(context.scene.name, "ground").values()
         bounds = next((i.shape.legend.bounds for i in items if i.shape.legend is not None), None)
@@ -237,7 +237,7 @@ class PE_OT_live_against(bpy.types.Operator):
             return "Pin the sensors as they are now: compare the live score with them from now on"
         return cls.__doc__
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
         if self.key == PINNED:
             state = live_state(scene.name)

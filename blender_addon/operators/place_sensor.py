@@ -15,7 +15,7 @@ from ..properties import DEFAULT_MODEL, model_suggestions
 from ..sensor_kinds import Mount, mount_for
 from . import placement
 from .add_sensor import choose_vehicle, default_location, new_sensor, select_only, tooltip_of
-from .reports import USER_ERRORS, report_error
+from .reports import USER_ERRORS, OperatorResult, report_error
 from .surface_pose import STAND_OFF_STEP_M, Stance, SurfaceSpot, view_under
 
 BY_KIND = -1.0
@@ -106,7 +106,7 @@ class PE_OT_place_sensor(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """Place the sensor at the given location."""
         try:
             model = catalog.load(self.model)
@@ -120,7 +120,7 @@ class PE_OT_place_sensor(bpy.types.Operator):
         self._add(context, mount, kind.label, self._stance(mount).placed(spot, mount, middle))
         return {"FINISHED"}
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         """Hold the sensor under the mouse."""
         if bpy.app.background:
             return self.execute(context)
@@ -133,7 +133,7 @@ class PE_OT_place_sensor(bpy.types.Operator):
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         """Follow the mouse; events that are not handled here are passed to Blender."""
         held = placement.current
         if held is None:  # the add-on has ended the placement
@@ -154,7 +154,7 @@ class PE_OT_place_sensor(bpy.types.Operator):
 
     def _pressed(
         self, context: bpy.types.Context, event: bpy.types.Event, held: placement.HeldSensor
-    ) -> set[str]:
+    ) -> OperatorResult:
         """Handle a key or a button that was pressed over a 3D view."""
         if event.type == "RIGHTMOUSE":
             placement.end()
@@ -180,7 +180,7 @@ class PE_OT_place_sensor(bpy.types.Operator):
 
     def _click(
         self, context: bpy.types.Context, held: placement.HeldSensor, more: bool
-    ) -> set[str]:
+    ) -> OperatorResult:
         """Place the held sensor; then hold the next one, or finish."""
         if held.matrix is None:
             return {"RUNNING_MODAL"}

@@ -8,7 +8,7 @@ from bpy_extras import view3d_utils
 from mathutils import Vector
 
 from .. import bridge, location_query
-from .reports import report
+from .reports import OperatorResult, report
 
 OFF_SURFACE_M = 0.05
 """How far outside a surface the query is: half a voxel, as the inside does not count."""
@@ -32,19 +32,19 @@ class PE_OT_ask_place(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """Query `point`, as scripts do."""
         location_query.query(context.scene, context.evaluated_depsgraph_get(), tuple(self.point))
         return {"FINISHED"}
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         """Query at each click, until Esc."""
         context.window_manager.modal_handler_add(self)
         context.window.cursor_modal_set("EYEDROPPER")
         context.workspace.status_text_set(HINT)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             end_query(context)
             return {"FINISHED"}
@@ -74,7 +74,7 @@ class PE_OT_dismiss_place(bpy.types.Operator):
     bl_label = "Dismiss"
     bl_options = {"INTERNAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         location_query.discard(context.scene)
         return {"FINISHED"}
 

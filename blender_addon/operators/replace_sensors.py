@@ -14,7 +14,7 @@ from .. import bridge, signals, vehicle_cache
 from ..engine import catalog, exchange, kinds, pe, search
 from ..properties import FREE_BY_DEFAULT
 from ..sensor_kinds import mount_of, row_of
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorResult, report, report_error
 from .variants import stand_as_variant
 
 
@@ -49,7 +49,7 @@ class PE_OT_add_rig(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
         try:
             rig = catalog.known_rig(self.key)
@@ -102,7 +102,7 @@ def replace_sensors(
     sensors: Iterable[pe.Sensor],
     lines: Sequence[str],
     origin: str,
-) -> set[str]:
+) -> OperatorResult:
     """Replace the sensors of the scene, as a variant, and report warnings.
 
     Raises
@@ -166,7 +166,7 @@ class PE_OT_sensors_from_objects(bpy.types.Operator):
         search_options=set(),
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         self.selected = bool(bridge.plain_objects(context.selected_objects))
         return context.window_manager.invoke_props_dialog(self, width=420)
 
@@ -177,7 +177,7 @@ class PE_OT_sensors_from_objects(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
         objects = context.selected_objects if self.selected else scene.objects
         try:
@@ -196,7 +196,7 @@ class PE_OT_sensors_to_objects(bpy.types.Operator):
     bl_label = "Cameras and Empties from Sensors"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
         try:
             rig = bridge.rig_from_objects(bridge.sensor_objects(scene), depsgraph)

@@ -1,8 +1,9 @@
-"""Reports of operators in the status bar: one line each, whatever the input was."""
+"""What operators return, and report in the status bar: one line each, whatever the input was."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
 import bpy
 
@@ -11,9 +12,18 @@ from ..engine import pe
 USER_ERRORS = (pe.InputError, MemoryError)
 """Errors that end an operator with one line: wrong input, and too little memory."""
 MAX_LETTERS = 400
+OperatorResult = set[Literal["RUNNING_MODAL", "CANCELLED", "FINISHED", "PASS_THROUGH", "INTERFACE"]]
+"""What ``execute``, ``invoke`` and ``modal`` return."""
+
+# Blender registers the subclasses of Operator alone. What several operators have in common is a
+# plain class for Blender, and an Operator for the checker of types.
+if TYPE_CHECKING:
+    OperatorMixin = bpy.types.Operator
+else:
+    OperatorMixin = object
 
 
-def report_error(operator: bpy.types.Operator, error: Exception) -> set[str]:
+def report_error(operator: bpy.types.Operator, error: Exception) -> OperatorResult:
     """Report an error; the operator has changed nothing."""
     text = str(error)
     if isinstance(error, MemoryError):
@@ -22,7 +32,9 @@ def report_error(operator: bpy.types.Operator, error: Exception) -> set[str]:
     return {"CANCELLED"}
 
 
-def report(operator: bpy.types.Operator, level: str, text: str) -> None:
+def report(
+    operator: bpy.types.Operator, level: Literal["INFO", "WARNING", "ERROR"], text: str
+) -> None:
     """Report one line; characters that would break or reverse it are escaped."""
     shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[:MAX_LETTERS])
     operator.report({level}, shown)

@@ -13,7 +13,7 @@ from .. import bridge
 from ..engine import catalog, exchange, pe
 from .export_job import report_files
 from .replace_sensors import replace_sensors
-from .reports import USER_ERRORS, chosen_file, report_error
+from .reports import USER_ERRORS, OperatorResult, chosen_file, report_error
 
 _FORMAT_ITEMS = tuple(
     (row.name, row.title, "", k) for k, row in enumerate(exchange.RIG_FORMATS.values())
@@ -36,12 +36,12 @@ class PE_OT_export_rig(ExportHelper, bpy.types.Operator):
         name="Replace", description="Replace existing files of a folder", default=False
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         files = exchange.rig_format(self.format).files
         self.filepath = files[0] if len(files) == 1 else f"{self.format}_rig"
         return super().invoke(context, event)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene, row = context.scene, exchange.rig_format(self.format)
         try:
             path = chosen_file(self.filepath)
@@ -73,7 +73,7 @@ class PE_OT_import_rig(ImportHelper, bpy.types.Operator):
         default=True,
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             path = chosen_file(self.filepath)
             rig_file = read_rig(context.scene, path, self.format, {})
@@ -114,7 +114,7 @@ class PE_OT_choose_models(bpy.types.Operator):
     format: EnumProperty(items=(*_FORMAT_ITEMS, BY_NAME), default="TOLD", options={"HIDDEN"})
     rows: CollectionProperty(type=PE_ModelChoice)
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         try:
             rig_file = read_rig(context.scene, chosen_file(self.filepath), self.format, {})
         except USER_ERRORS as error:
@@ -132,7 +132,7 @@ class PE_OT_choose_models(bpy.types.Operator):
             split.label(text=row.sensor)
             split.prop(row, "model", text="")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             path = chosen_file(self.filepath)
             models = {row.sensor: row.model for row in self.rows}
@@ -153,7 +153,7 @@ def read_rig(
 
 def place_rig(
     operator: bpy.types.Operator, scene: bpy.types.Scene, path: Path, found: exchange.ImportedRig
-) -> set[str]:
+) -> OperatorResult:
     """Put the rig of a file into the scene, as a variant, and report warnings."""
     title = path.stem or path.parent.name
     come = tuple(found.rig), found.lines, f"Read from {path}"

@@ -14,7 +14,7 @@ from .. import bridge, diagnostics, result_staleness, sensor_cache, signals, veh
 from ..engine import pe
 from ..live import FinishedScore, live_state
 from . import running_job
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorMixin, OperatorResult, report, report_error
 
 
 def cached_score(
@@ -41,7 +41,7 @@ class SceneJob(NamedTuple):
     """A job, and the fingerprint of the scene that it was read from."""
 
     job: pe.Job
-    taken: bridge.Fingerprint
+    taken: bridge.Fingerprint | None
 
 
 def is_undo(event: bpy.types.Event) -> bool:
@@ -49,7 +49,7 @@ def is_undo(event: bpy.types.Event) -> bool:
     return event.type == "Z" and event.value == "PRESS" and (event.ctrl or event.oskey)
 
 
-class JobOperator:
+class JobOperator(OperatorMixin):
     """What operators with a job share; a subclass makes the job and its message."""
 
     @classmethod
@@ -62,7 +62,7 @@ class JobOperator:
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """Run the job to its end, as scripts and Blender without a window do."""
         try:
             task = self._task(context)
@@ -72,7 +72,7 @@ class JobOperator:
         except USER_ERRORS as error:
             return report_error(self, error)
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         """Start the job; the window's timer steps it."""
         if bpy.app.background:
             return self.execute(context)
@@ -86,7 +86,7 @@ class JobOperator:
         running_job.current.show(context)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         """Step the job; Esc stops it, Esc once more discards all changes."""
         job, more = running_job.current, False
         if job is None:  # it was ended from outside
@@ -129,7 +129,7 @@ class JobOperator:
         job.notes = bridge.missing_data(scene, sensors)  # what the scene lacks
         return SceneJob(job, taken)
 
-    def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> set[str]:
+    def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> OperatorResult:
         """Write placements and result to the scene; undo takes both back in one step."""
         outcome = task.job.outcome
         if outcome is None:
@@ -234,13 +234,13 @@ class PE_OT_cancel(bpy.types.Operator):
     def poll(cls, _context: bpy.types.Context) -> bool:
         return running_job.current is not None
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         running_job.current.stop()
         running_job.current.show(context)
         return {"FINISHED"}
 
 
-class OptionOperator:
+class OptionOperator(OperatorMixin):
     """What operators on the active sensor's models share."""
 
     bl_options = {"REGISTER", "UNDO"}
@@ -260,7 +260,7 @@ class PE_OT_add_option(OptionOperator, bpy.types.Operator):
     bl_idname = "pe.add_option"
     bl_label = "Add Model"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.active_object.perception_entropy
         first = not settings.options
         option = settings.options.add()
@@ -276,7 +276,7 @@ class PE_OT_remove_option(OptionOperator, bpy.types.Operator):
 
     index: IntProperty(name="Index", description="Which of the models", min=0)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         options = context.active_object.perception_entropy.options
         if self.index >= len(options):
             report(self, "WARNING", "This model was already removed")
@@ -297,7 +297,7 @@ class PE_OT_choose_sensors(JobOperator, bpy.types.Operator):
         bridge.check_choosable(scene, study)
         return pe.ChoiceJob(study)
 
-    def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> set[str]:
+    def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> OperatorResult:
         """Keep the Pareto front as variants; undo removes them in one step."""
         trade_off = task.job.trade_off
         if trade_off is None or scene is None:

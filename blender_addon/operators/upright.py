@@ -18,7 +18,7 @@ from .. import bridge, sensor_cache
 from ..engine import catalog, pe
 from ..sensor_kinds import Mount, mount_for
 from .placement import vehicle_center
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorResult, report, report_error
 from .surface_pose import NO_HEADING_M, Stance, SurfaceSpot, outward_yaw
 
 
@@ -40,7 +40,7 @@ class PE_OT_stand_upright(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
         middle = vehicle_center(scene.perception_entropy.vehicle)
         try:

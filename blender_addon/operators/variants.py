@@ -10,12 +10,12 @@ from bpy.props import IntProperty
 from .. import bridge, diagnostics, result_staleness, signals
 from ..choices import BEFORE_MOVE, free_name
 from ..engine import pe
-from .reports import USER_ERRORS, report, report_error
+from .reports import USER_ERRORS, OperatorMixin, OperatorResult, report, report_error
 
 UNSAVED = "Unsaved"
 
 
-class VariantOperator:
+class VariantOperator(OperatorMixin):
     """Base of these operators: the variant by its key, or the selected one."""
 
     bl_options = {"REGISTER", "UNDO"}
@@ -35,7 +35,7 @@ class VariantOperator:
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
         rows = list(settings.variants)
         wanted = [row for row in rows if row.key == self.key] or rows[settings.variant_index :][:1]

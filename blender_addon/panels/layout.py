@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import blf
 import bpy
@@ -12,8 +13,14 @@ import numpy as np
 
 from ..operators import FIX_LABELS, SENSOR_COLORS, warnings_outdated
 
+# Blender registers the subclasses of Panel alone; for the checker of types this is one.
+if TYPE_CHECKING:
+    _Panel = bpy.types.Panel
+else:
+    _Panel = object
 
-class Tab:
+
+class Tab(_Panel):
     """The tab of all panels."""
 
     bl_space_type = "VIEW_3D"
@@ -185,7 +192,7 @@ def register() -> None:
     for number, color in enumerate(SENSOR_COLORS):
         made = icons.new(str(number))
         made.icon_size = made.image_size = (SIDE_PX, SIDE_PX)
-        made.icon_pixels_float = made.image_pixels_float = pixels(color)
+        made.icon_pixels_float = made.image_pixels_float = pixels(color)  # type: ignore[assignment]
     _icons.append(icons)
 
 

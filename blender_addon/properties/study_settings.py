@@ -8,7 +8,7 @@ are those of the declaration. Menus are declared in `scene`: a .blend file holds
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, cast
 
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntProperty
 
@@ -23,7 +23,8 @@ DRAWN = "reference."
 
 def property_of(key: str, setting: studies.Setting) -> Any:
     """Return the property that a setting is stored in; its values are those of the panel."""
-    panel, rule = setting.panel, setting.rule
+    panel, rule = setting.panel, cast(Any, setting.rule)
+    assert panel is not None  # asked for those alone that have one
     options: dict[str, Any] = {
         "name": panel.label,
         "description": setting.tooltip,
@@ -56,7 +57,7 @@ def _made(kind: Any, options: dict[str, Any]) -> Any:
     return kind(**{key: value for key, value in options.items() if value is not None})
 
 
-StudySettings = type(
+StudySettings: Any = type(
     "StudySettings",
     (),
     {

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..engine import graphics, kinds
 from .picture_geometry import DESIGN_HEIGHT, Frame
-from .stage import FAINT_INK, Lettering
+from .stage import FAINT_INK, INK, Lettering
 
 if TYPE_CHECKING:
     from ..engine import pe
@@ -64,11 +64,12 @@ def occluded_text(score: pe.SensorScore | None) -> str:
 
 def _table(study: pe.Study, outcome: pe.Outcome) -> tuple[tuple[str, ...], ...]:
     moved = outcome.kind == "optimize"
-    rows = [HEADINGS + ((START_HEADING,) if moved else ())]
+    rows: list[tuple[str, ...]] = [HEADINGS + ((START_HEADING,) if moved else ())]
     for sensor in study.rig.sensors[:MAX_ROWS]:
         _, pitch, yaw = sensor.pose.rotation_deg
-        row = (sensor.name, sensor.model.name, position(sensor.pose), angle(pitch), angle(yaw))
-        row += (occluded_text(outcome.after.per_sensor.get(sensor.name)),)
+        pose = position(sensor.pose), angle(pitch), angle(yaw)
+        occluded = occluded_text(outcome.after.per_sensor.get(sensor.name))
+        row = (sensor.name, sensor.model.name, *pose, occluded)
         rows.append(row + ((_start_text(outcome, sensor.name),) if moved else ()))
     if len(study.rig) > MAX_ROWS:
         rows.append((f"and {len(study.rig) - MAX_ROWS} more",))
@@ -195,9 +196,9 @@ def _write_table(pen: Lettering, table: tuple[tuple[str, ...], ...], scale: floa
     ends = (*COLUMNS[1:], frame.width / scale - 2 * MARGIN)
     for number, row in enumerate(table):
         y = top + scale * (STRIP_PADDING + number * ROW)
-        ink = {"color": FAINT_INK} if number == 0 else {}
+        ink = FAINT_INK if number == 0 else INK
         for text, x, end in zip(row, COLUMNS, ends, strict=False):
-            pen.write(_shortened(text, end - x), (scale * (MARGIN + x), y), scale * TEXT, **ink)
+            pen.write(_shortened(text, end - x), (scale * (MARGIN + x), y), scale * TEXT, ink)
 
 
 def _write_legend(pen: Lettering, legend: Legend, scale: float) -> None:

@@ -143,7 +143,7 @@ def ground_ring(radius_m: float, color: graphics.Rgba) -> graphics.Primitives:
     circle = radius_m * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
     points = np.stack([circle[:-1], circle[1:]], axis=1).reshape(-1, 3)
     return graphics.Primitives(
-        points.astype(np.float32), np.tile(np.float32(color), (len(points), 1))
+        points.astype(np.float32), np.tile(np.asarray(color, np.float32), (len(points), 1))
     )
 
 

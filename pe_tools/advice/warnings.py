@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from pe_core.geometry.grids import PerceptionSpace
 from pe_core.prior.prior import Prior
-from pe_core.scene.rig import Rig
+from pe_core.scene.rig import Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import Score
 
@@ -16,7 +16,7 @@ from .vehicle_checks import Bodywork, odd_vehicle
 
 
 def warnings(
-    rig: Rig,
+    rig: Iterable[Sensor],
     vehicle: Vehicle | None,
     space: PerceptionSpace,
     prior: Prior,
@@ -26,7 +26,7 @@ def warnings(
 
     Parameters
     ----------
-    rig : Rig
+    rig : Rig, or any sensors
     vehicle : Vehicle, optional
     space : PerceptionSpace
     prior : Prior
@@ -42,7 +42,7 @@ def warnings(
 
 
 def _warnings(
-    rig: Rig, vehicle: Vehicle | None, space: PerceptionSpace, score: Score | None
+    rig: Iterable[Sensor], vehicle: Vehicle | None, space: PerceptionSpace, score: Score | None
 ) -> Iterator[Advice]:
     body = None if vehicle is None else Bodywork(vehicle)
     if body is not None:

@@ -101,7 +101,7 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     return replace(study, search=search)
 
 
-def add_sensors_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_sensors_verb(verbs: argparse._SubParsersAction[Any]) -> None:
     """Add ``sensors``: the catalogue, or one of its entries with a plot of its channels."""
     parser = verbs.add_parser("sensors", help="list the catalogue, or show one sensor")
     parser.add_argument("name", nargs="?", help="a sensor's name")

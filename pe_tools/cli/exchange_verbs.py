@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from pe_core import catalog
 from pe_core.base.errors import InputError
@@ -20,7 +21,7 @@ from ..outputs import SCENE_OUTPUTS, export_scene
 from .terminal import DONE, Answer, tell
 
 
-def add_rigs_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_rigs_verb(verbs: argparse._SubParsersAction[Any]) -> None:
     """Add ``rigs``: the list, one of it, or a study of one."""
     parser = verbs.add_parser("rigs", help="list known rigs, or write one as a study")
     parser.add_argument("name", nargs="?", metavar="NAME", help="a rig's name in the list")

@@ -7,7 +7,7 @@ are computed here, too.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import bpy
 import numpy as np
@@ -21,7 +21,7 @@ from .sensor_records import SensorRecord, bounds_by_axis
 from .transform_constraints import free_axes, limit_constraints, search_bounds
 from .vehicle import drawn_meshes, placed_triangles, triangles_of
 
-MountSettings = bpy.types.PropertyGroup
+MountSettings: TypeAlias = bpy.types.PropertyGroup
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 PAINTED = 0.5
 """A vertex with a larger weight counts as painted."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
 import bpy
 
@@ -21,7 +22,7 @@ from .sensor_records import (
     write_records,
 )
 
-Variant = bpy.types.PropertyGroup
+Variant: TypeAlias = bpy.types.PropertyGroup
 
 
 def active_variant(scene: bpy.types.Scene) -> Variant | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import bpy
 
@@ -18,7 +18,7 @@ OperatorResult = set[Literal["RUNNING_MODAL", "CANCELLED", "FINISHED", "PASS_THR
 # Blender registers the subclasses of Operator alone. What several operators have in common is a
 # plain class for Blender, and an Operator for the checker of types.
 if TYPE_CHECKING:
-    OperatorMixin = bpy.types.Operator
+    OperatorMixin: TypeAlias = bpy.types.Operator
 else:
     OperatorMixin = object
 

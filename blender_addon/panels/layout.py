@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import blf
 import bpy
@@ -15,7 +15,7 @@ from ..operators import FIX_LABELS, SENSOR_COLORS, warnings_outdated
 
 # Blender registers the subclasses of Panel alone; for the checker of types this is one.
 if TYPE_CHECKING:
-    _Panel = bpy.types.Panel
+    _Panel: TypeAlias = bpy.types.Panel
 else:
     _Panel = object
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeAlias
 
 import bpy
 
 from ..operators import reference_label
 
-UILayout = bpy.types.UILayout
-OverlaySettings = bpy.types.PropertyGroup
+UILayout: TypeAlias = bpy.types.UILayout
+OverlaySettings: TypeAlias = bpy.types.PropertyGroup
 
 
 class PE_PT_view(bpy.types.Panel):

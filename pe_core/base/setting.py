@@ -1,10 +1,10 @@
-"""Settings of a study, each declared once: at its field in the dataclass that it belongs to.
+"""Settings of a study: each is declared once, at its field in a dataclass.
 
-The declaration says what the setting may be (`rule`), what it means (`text`) and how Blender's
-panel shows it (`panel`); name, type and default are those of the field. Five things follow from it:
-the check when the dataclass is made (`check_settings`), the key of the study file
-(`study.setting_table`), the property and its tooltip in Blender, loading a study into a scene, and
-the table of keys in docs/settings.md.
+The declaration has the allowed values (`rule`), the meaning (`text`) and the field in Blender's
+panel (`panel`). Name, type and default are those of the dataclass field. Five things follow from
+the declaration: the check when the dataclass is made (`check_settings`), the key of the study file
+(`setting_file`), the property and its tooltip in Blender, loading a study into a scene, and the
+table of keys in docs/settings.md.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _KEY = "setting"
 
 
 class ValueRule(Protocol):
-    """What a value may be."""
+    """A rule for values."""
 
     def checked(self, source: object, field: str, value: Any) -> Any:
         """Return the value as plain Python, or raise `InputError`."""
@@ -30,7 +30,7 @@ class ValueRule(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Toggle:
-    """True or false, and no number that would pass for it."""
+    """True or False; numbers are not allowed."""
 
     def checked(self, source: object, field: str, value: Any) -> bool:
         """Return the value, or raise `InputError`."""
@@ -52,7 +52,7 @@ class OneOf:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two numbers of one rule, low before high."""
+    """Two numbers that meet one rule, the lower one first."""
 
     rule: Number
 
@@ -66,19 +66,19 @@ FLAG = Toggle()
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """How Blender's panel shows a setting.
+    """A setting in Blender's panel.
 
     Parameters
     ----------
     property : str
-        Name under which .blend files store it: it never changes.
+        Name of the property in .blend files; it never changes.
     label : str
     default : optional
-        Where the panel starts with another value than a study file.
+        The panel's initial value, if it differs from that of a study file.
     min, max, soft_max : float, optional
-        Ends of the field where they are not those of the rule.
+        Limits of the field, if they differ from those of the rule.
     zero : str
-        What a field of 0 says where the setting may be absent (None) in a file.
+        Text of the field at 0, for a setting that may be absent (None) in a file.
     precision, step : optional
         As in `bpy.props`.
     """
@@ -96,21 +96,21 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """The declaration of a setting: of the field that it stands at.
+    """The declaration of a setting.
 
     Parameters
     ----------
     name : str
-        The field's.
+        Name of the field.
     default
-        The field's; `REQUIRED` where a study has to say it.
+        Default of the field; `REQUIRED` if a study must have the setting.
     rule : ValueRule
     text : str
-        What it means, in one or two sentences without the last full stop.
+        Meaning of the setting, in one or two sentences without the last full stop.
     panel : Panel, optional
-        None: the panel does not have it.
+        None if the panel does not have the setting.
     scored : bool
-        Whether a score depends on it: then a change makes the stored score out of date.
+        Whether a score depends on the setting. If so, a change makes the stored score out of date.
     """
 
     name: str
@@ -122,12 +122,12 @@ class Setting:
 
     @property
     def is_optional(self) -> bool:
-        """Whether it may be absent (None)."""
+        """Whether the setting may be absent (None)."""
         return self.default is None
 
     @property
     def tooltip(self) -> str:
-        """The text that Blender's panel shows."""
+        """The tooltip in Blender's panel."""
         zero = self.panel.zero if self.panel is not None else ""
         return f"{self.text}; 0: {zero}" if zero else self.text
 
@@ -171,9 +171,9 @@ def check_settings(instance: Any, source: str, prefix: str = "", names: Iterable
     instance : dataclass
         Called from its ``__post_init__``.
     source, prefix : str
-        What errors name: the source, and what stands before the field's name.
+        Source and prefix of the field's name, for messages.
     names : iterable of str
-        Of these settings alone; of all by default.
+        Only these settings; all by default.
 
     Raises
     ------

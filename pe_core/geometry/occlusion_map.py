@@ -42,8 +42,8 @@ BOXES_AT_ONCE = 1 << 12
 PAIRS_AT_ONCE = 1 << 17
 
 
-class Cover:
-    """The mesh seen through a part of a face.
+class OcclusionMap:
+    """The occlusion map of a mesh, for the part of a face that a raster covers.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Cover:
     Attributes
     ----------
     near, far : (count * count,) float
-        Depths, row after row of the raster [m]; inf where nothing is, or there may be a gap.
+        Depths, row after row of the raster [m]; inf where there is no mesh, or perhaps a gap.
     """
 
     def __init__(self, look: FaceLook, raster: Raster) -> None:
@@ -80,9 +80,9 @@ class Cover:
 
 @dataclass(frozen=True, slots=True)
 class _EdgePairs:
-    """Triangles and bins they show in, (P,): depths there, and whether they cover the middle.
+    """Triangles and the bins they overlap, (P,): depths there, and whether they cover the middle.
 
-    `side` is 1 or -1, which side of the triangle is seen; 0 where it is seen edge-on.
+    `side` is the visible side of the triangle, 1 or -1; 0 where the triangle is seen edge-on.
     """
 
     bin: Ints
@@ -93,14 +93,14 @@ class _EdgePairs:
 
 
 def _side(targets: Targets) -> Floats:
-    """Which side (G,) of triangles is seen; 0 where their plane all but holds the origin."""
+    """Visible side (G,) of triangles, 1 or -1; 0 where the plane nearly contains the origin."""
     normal = targets.normal
     size = dot(normal.T, normal.T) * targets.reach
     return np.sign(targets.offset) * (np.abs(targets.offset) > EDGE_ON * np.sqrt(size))
 
 
 def _in_bins(targets: Targets, look: FaceLook, raster: Raster) -> Iterator[_EdgePairs]:
-    """All pairs of triangles and bins, some at a time."""
+    """Yield all pairs of triangles and bins, in blocks."""
     spans = targets.spans(look.face, raster, np.ones(len(targets.offset), bool))
     shown = _Depths(targets, look, raster)
     counts = spans.last - spans.first + 1
@@ -127,7 +127,7 @@ class _Depths:
         self._least, self._most = np.maximum(corner_min(depth), 0.0), corner_max(depth)
 
     def pairs(self, item: Ints, row: Ints, column: Ints) -> _EdgePairs:
-        """Judge triangles (P,) in bins (P,): a depth is least or greatest in a bin's corner."""
+        """Compute triangles (P,) in bins (P,): minimum and maximum depth are at a bin's corners."""
         raster = self._window
         step_u = (raster.u[1] - raster.u[0]) / raster.count
         step_v = (raster.v[1] - raster.v[0]) / raster.count
@@ -172,14 +172,14 @@ class _Sheet:
         self._owned: list[Ints] = []
 
     def add(self, pairs: _EdgePairs) -> None:
-        """Note how far the triangles reach in their bins, and whose middles they cover."""
+        """Update the maximum depth of the triangles in their bins, and which middles are covered."""
         mine = np.flatnonzero(pairs.side == self._side)
         bins = pairs.bin[mine]
         np.maximum.at(self._far, bins, pairs.far[mine])
         self._middle[bins[pairs.middle[mine]]] = True
 
     def own(self, targets: Targets) -> None:
-        """Note which triangles these are."""
+        """Store which triangles show this side."""
         self._owned.append(targets.triangles.number[_side(targets) == self._side])
 
     def covered(self) -> Singles:
@@ -190,7 +190,7 @@ class _Sheet:
         return np.where(self._middle, self._far, np.inf).astype(np.float32)
 
     def _outline(self) -> Ints:
-        """Bins that are touched by edges where the sheet ends, or folds."""
+        """Bins that edges touch where the sheet ends or folds."""
         edges, own = self._look.tree.edges, np.concatenate(self._owned)
         edge, turn = edges.edge[own], edges.turn[own]
         net = np.bincount(edge.reshape(-1), turn.reshape(-1), edges.count)
@@ -203,7 +203,7 @@ class _Sheet:
 
 
 def _bins_of_lines(a: Floats, b: Floats, look: FaceLook, raster: Raster) -> Ints:
-    """Bins that lines from corners a to b, each (L, 3), may show in."""
+    """Bins that lines from corners a to b, each (L, 3), may touch."""
     depth, u, v = look.face.split(np.stack([a, b, b]).transpose(2, 0, 1))
     spans = (spans_of_triangles(depth, u), spans_of_triangles(depth, v))
     some = np.flatnonzero((corner_max(depth) > 0.0) & raster.touches(*spans))

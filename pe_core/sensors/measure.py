@@ -22,13 +22,14 @@ def measure(
 ) -> Floats:
     """Return the measurement of each voxel by one sensor.
 
-    LiDAR: the number of beams that pass through the cube, which enter it within the maximum range
-    and are not occluded by the vehicle before it. A cube owns its lower faces: a beam exactly along
-    a face belongs to the cube above it (`lidar.tie_rules`). Camera: the area in pixels of the
-    cube's image, clipped to the picture; 0 if a corner lies behind the camera or in its plane, the
-    centre is out of range, or the vehicle occludes the centre (`camera.tie_rules`). Through a lens
-    with distortion the part inside the lens's field counts, wherever the corners are
-    (`camera.bent_area`).
+    LiDAR: the number of beams that pass through the cube. A beam has to enter the cube within the
+    maximum range, and before the vehicle occludes it. A cube owns its lower faces: a beam exactly
+    along a face belongs to the cube above it (`lidar.tie_rules`).
+
+    Camera: the area of the cube's image in pixels, clipped to the picture. It is 0 if a corner is
+    behind the camera or in its plane, if the centre is out of range, or if the vehicle occludes
+    the centre (`camera.tie_rules`). Through a lens with distortion, the part inside the lens's
+    field counts, also if a corner is behind the camera (`camera.bent_area`).
 
     Parameters
     ----------

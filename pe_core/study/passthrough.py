@@ -1,6 +1,6 @@
-"""What an imported rig's file had besides the rig, as studies and .blend files hold it.
+"""Data of an imported file that a rig cannot hold; studies and .blend files keep it unchanged.
 
-The formats of `pe_tools.exchange` write it again: out of what came in comes what came in.
+An export in the same format writes this data again, so the file keeps its content.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ FILE_NAME = re.compile(r"(camera_info/)?[^/\\\x00-\x1f]+")
 
 @dataclass(frozen=True, slots=True)
 class SourceSensor:
-    """A sensor as its file had it.
+    """A sensor of an imported file.
 
     Attributes
     ----------
     name : str
-        Of the sensor in the rig, or in the file if it was left out.
+        Name of the sensor in the rig; for a sensor that was left out, its name in the file.
     kind : str
     entry : str
-        What stood in the file, in the words of its format; empty where that is in `files`.
+        Its entry in the file, in the file's format; empty where `files` has the entry.
     pose : Pose or None
-        Where it was imported, in the format's frame; None: it was left out.
+        Pose at the import, in the format's frame; None for a sensor that was left out.
     model : str
-        The model it was imported with, as `model_text` has it; empty if a person chose it.
+        The model at the import, as `model_text` writes it; empty if the user chose the model.
     is_stand_in : bool
-        Whether that model only stands in for one that the file does not name.
+        Whether the model is a substitute, because the file names no model.
     """
 
     name: str
@@ -50,18 +50,18 @@ class SourceSensor:
 
 @dataclass(frozen=True, slots=True)
 class Passthrough:
-    """What is kept of an imported file, for an export in the same format.
+    """Data kept of an imported file, for an export in the same format.
 
     Attributes
     ----------
     format : str
         The name of the format.
     sensors : tuple of SourceSensor
-        In the file's order, with those that were left out.
+        All sensors in the file's order, also those that were left out.
     files : mapping of str to str
-        Texts by file name into which sensors are written.
+        Text of each file into which an export writes sensors, by file name.
     placed : Pose or None
-        Where the file's origin was put.
+        Pose of the file's origin in the ground frame.
     """
 
     format: str
@@ -71,30 +71,30 @@ class Passthrough:
 
     @property
     def holds(self) -> bool:
-        """Whether there is anything that a rig does not have."""
+        """Whether there is any data that a rig cannot hold."""
         return bool(self.files) or any(s.entry or s.is_stand_in for s in self.sensors)
 
     @property
     def left_out(self) -> tuple[SourceSensor, ...]:
-        """Those that are not in the rig."""
+        """The sensors that are not in the rig."""
         return tuple(each for each in self.sensors if each.pose is None)
 
 
 def passthrough_text(kept: Passthrough | None) -> str:
-    """Return a text in JSON, as .blend files have it; an empty one of nothing."""
+    """Return the data as JSON text for .blend files; an empty text if there is none."""
     table = passthrough_table(kept)
     return "" if table is None else json_entry(table)
 
 
 def passthrough_of_text(text: str, source: str) -> Passthrough | None:
-    """Return what such a text says, or raise `InputError`."""
+    """Read the text of `passthrough_text`, or raise `InputError`."""
     if not text:
         return None
     return read_passthrough(Table(parse_json(source, text), source, "passthrough"))
 
 
 def passthrough_table(kept: Passthrough | None) -> dict[str, Any] | None:
-    """Return plain data, as a study's file has it; None of nothing."""
+    """Return the data as plain tables for a study file; None if there is none."""
     if kept is None:
         return None
     table = {
@@ -124,12 +124,12 @@ def _numbers(pose: Pose) -> list[float]:
 
 
 def read_passthrough(table: Table) -> Passthrough:
-    """Return what plain data says.
+    """Read the tables of `passthrough_table`.
 
     Raises
     ------
     InputError
-        When a key is unknown, or a value is none that it may have.
+        When a key is unknown, or a value is not valid.
     """
     files = table.table("files")
     for name in files.names:
@@ -154,7 +154,7 @@ def _read_sensor(row: Table) -> SourceSensor:
 
 
 def _read_entry(row: Table) -> str:
-    """Return an entry, which is a JSON object or nothing."""
+    """Return an entry: the text of a JSON object, or an empty text."""
     text = _text(row, "entry") if "entry" in row else ""
     try:
         is_object = not text or isinstance(json.loads(text), dict)
@@ -173,7 +173,7 @@ def _read_pose(table: Table, key: str) -> Pose | None:
 
 
 def _text(table: Table, key: str) -> str:
-    """Return a text of any length, over several lines too."""
+    """Return a text of any length; it may have several lines."""
     value = table.raw(key)
     if not isinstance(value, str):
         raise table.error(key, "a text", shown(value))
@@ -181,5 +181,5 @@ def _text(table: Table, key: str) -> str:
 
 
 def json_entry(row: Any) -> str:
-    """Return an object of a file as an entry."""
+    """Return an object of a file as the text of an entry."""
     return json.dumps(row, ensure_ascii=False, separators=(",", ":"))

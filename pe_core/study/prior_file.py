@@ -1,4 +1,4 @@
-"""A study's [prior]: its table to `Prior` and back."""
+"""The table [prior] of a study: read as a `Prior`, and written."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def read_prior(table: Table, folder: Path) -> Prior:
 
 
 def prior_table(prior: Prior) -> dict[str, Any]:
-    """Return a prior as the plain data of its table; what is left out is None."""
+    """Return the table of a prior; keys that the file leaves out are None."""
     focus = [_focus_table(f) for f in prior.focus]
     if prior.boxes is not None:
         named, origin = prior.boxes.file or BOXES, prior.boxes.origin
@@ -55,7 +55,7 @@ def prior_table(prior: Prior) -> dict[str, Any]:
 
 
 def _read_density(table: Table, prior: Prior) -> Densities:
-    """Return how many of each class stand round the vehicle at once."""
+    """Return the number of objects of each class round the vehicle at a time."""
     names = [name for name in prior.class_names if name in table]
     counts = tuple((name, table.number(name)) for name in names)
     table.finish()
@@ -92,7 +92,7 @@ def _read_model(table: Table) -> Prior:
 
 
 def _read_class(table: Table, shipped: Sequence[ObjectClass]) -> ObjectClass:
-    """Read a class; one with a shipped class's name need say only what differs."""
+    """Read a class; a class with the name of a shipped one needs only the keys that differ."""
     name = table.text("name", rule=A_NAME)
     base = next((c for c in shipped if c.name == name), None)
 
@@ -118,7 +118,7 @@ def _read_lanes(table: Table, default: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _class_table(cls: ObjectClass, shipped: Sequence[ObjectClass]) -> dict[str, Any]:
-    """Return the name of a class, and what a file has to say of it."""
+    """Return the table of a class: its name, and the keys that differ from the shipped class."""
     base = next((c for c in shipped if c.name == cls.name), None)
     told = [f for f in FIELDS if getattr(cls, f) != getattr(base, f, OF_OBJECTS.get(f))]
     values = {f: getattr(cls, f) for f in ("name", *told)}
@@ -126,7 +126,7 @@ def _class_table(cls: ObjectClass, shipped: Sequence[ObjectClass]) -> dict[str, 
 
 
 def _names(shipped: Sequence[ObjectClass], classes: Sequence[ObjectClass]) -> list[str]:
-    """Names in the order they have when a file does not say it: new ones after the shipped."""
+    """Return names in the default order: the shipped classes first, then new ones."""
     names = [c.name for c in shipped]
     return names + [c.name for c in classes if c.name not in names]
 

@@ -100,7 +100,7 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
 def counted(monkeypatch):
     """Count how often the cover is asked, and how many rays are cast."""
     count = {"judged": 0, "cast": 0}
-    judge, hidden = VoxelOcclusion.judge, grid_areas.hidden
+    judge, hidden = VoxelOcclusion.classify, grid_areas.hidden
 
     def count_judged(*args):
         count["judged"] += 1
@@ -110,7 +110,7 @@ def counted(monkeypatch):
         count["cast"] += len(offsets)
         return hidden(seen, offsets)
 
-    monkeypatch.setattr(VoxelOcclusion, "judge", count_judged)
+    monkeypatch.setattr(VoxelOcclusion, "classify", count_judged)
     monkeypatch.setattr(grid_areas, "hidden", count_cast)
     return count
 
@@ -144,9 +144,9 @@ def shade_of(triangles, position, corners):
     """Over the whole space, with the picture's corners given."""
     offsets = [SPACE.centers(k) - position[k] for k in range(3)]
     seen = pe.Vehicle(triangles, clearance=0.0).seen_from(position)
-    shade = VoxelOcclusion(offsets, seen, corners).judge(slice(0, 160), slice(0, 80))
+    flags = VoxelOcclusion(offsets, seen, corners).classify(slice(0, 160), slice(0, 80))
     grid = np.stack(np.meshgrid(*offsets, indexing="ij"), axis=-1).reshape(-1, 3)
-    return shade, grid
+    return flags, grid
 
 
 ALL_ROUND = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
@@ -157,9 +157,9 @@ ALL_ROUND = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
 def test_what_is_sure_is_so_all_round(mesh, position):
     """Every voxel of the space, in view or not."""
     triangles = mesh()
-    shade, grid = shade_of(triangles, position, ALL_ROUND)
+    flags, grid = shade_of(triangles, position, ALL_ROUND)
     hidden = hidden_by_rays(triangles - np.array(position), grid)
-    sure, unsure = shade.hidden.reshape(-1), shade.unsure.reshape(-1)
+    sure, unsure = flags.hidden.reshape(-1), flags.unsure.reshape(-1)
     assert hidden[sure].all()
     assert not hidden[~sure & ~unsure].any()
     assert not (sure & unsure).any()
@@ -177,9 +177,9 @@ def test_the_benchmark_s_cameras_see_none_of_their_car():
     study = problems.two_lidars_two_cameras(problems.plain_study(problems.car()))
     cameras = [sensor for sensor in study.rig if isinstance(sensor.model, pe.Camera)]
     for sensor in cameras:
-        shade, grid = shade_of(study.vehicle.triangles, sensor.pose.position, picture_of(sensor))
+        flags, grid = shade_of(study.vehicle.triangles, sensor.pose.position, picture_of(sensor))
         hidden = hidden_by_rays(study.vehicle.triangles - sensor.pose.position, grid)
-        assert not hidden[~(shade.hidden | shade.unsure).reshape(-1)].any()
+        assert not hidden[~(flags.hidden | flags.unsure).reshape(-1)].any()
     assert len(cameras) == 2
 
 
@@ -187,16 +187,16 @@ def test_a_picture_between_two_parts_of_a_mesh_hides_nothing():
     """The parts lie on either side of the picture, on the same face."""
     side = shapes.refined(shapes.box((5.0, 2.0, 1.0), (5.2, 3.0, 3.0)), 3)
     narrow = np.array([(1.0, 0.1 * i, 0.1 * j) for i in (-1, 1) for j in (-1, 1)])
-    shade, _ = shade_of(np.concatenate([side, side * [1, -1, 1]]), (0.0, 0.0, 2.0), narrow)
-    assert not shade.hidden.any()
+    flags, _ = shade_of(np.concatenate([side, side * [1, -1, 1]]), (0.0, 0.0, 2.0), narrow)
+    assert not flags.hidden.any()
 
 
 def test_little_is_left_to_ask_over_a_plain_roof():
-    shade, grid = shade_of(roof(), (0.0, 0.0, 3.05), ALL_ROUND)
-    hidden = hidden_by_rays(roof() - [0.0, 0.0, 3.05], grid).reshape(shade.hidden.shape)
+    flags, grid = shade_of(roof(), (0.0, 0.0, 3.05), ALL_ROUND)
+    hidden = hidden_by_rays(roof() - [0.0, 0.0, 3.05], grid).reshape(flags.hidden.shape)
     steep = np.abs(grid[:, 2]) > np.abs(grid[:, :2]).max(axis=1)
-    assert shade.hidden.sum() > 0.8 * hidden.sum()
-    assert (shade.unsure.reshape(-1) & ~steep).sum() < 0.1 * len(grid)
+    assert flags.hidden.sum() > 0.8 * hidden.sum()
+    assert (flags.unsure.reshape(-1) & ~steep).sum() < 0.1 * len(grid)
 
 
 def test_a_hole_of_one_triangle_is_seen_through():
@@ -228,8 +228,8 @@ def test_rays_that_slip_between_triangles_at_a_corner_are_not_overlooked(corner)
     aligned = np.round(np.multiply.outer(np.arange(2, 11), corner), 1)
     slips = ~hidden_by_rays(fan(corner), aligned)
     seen = pe.Vehicle(fan(corner), clearance=0.0).seen_from((0.0, 0.0, 0.0))
-    shade = VoxelOcclusion(offsets, seen, ALL_ROUND).judge(slice(0, 401), slice(0, 401))
+    flags = VoxelOcclusion(offsets, seen, ALL_ROUND).classify(slice(0, 401), slice(0, 401))
     i, j, k = (np.searchsorted(w, aligned[:, a] - 0.05) for a, w in enumerate(offsets))
-    assert shade.unsure[i, j, k].all() and not shade.hidden[i, j, k].any()
-    assert shade.hidden.sum() > 1000
+    assert flags.unsure[i, j, k].all() and not flags.hidden[i, j, k].any()
+    assert flags.hidden.sum() > 1000
     assert slips.any() or corner != (1.9, 0.6, -0.4)

@@ -1,13 +1,13 @@
 """Pixel area of a cube's image through a lens with distortion: the definition.
 
-The image of a cube is the union of its visible faces. An edge of a face is split into PIECES
-straight pieces whose ends are projected. The part of a face inside the picture and the edge of the
-lens's field (the aperture) is found by Green's theorem, edge by edge: a cube that is partly outside
-the field counts by its visible part.
+The image of a cube is the union of its visible faces. Each edge of a face is split into PIECES
+straight pieces, and the ends of the pieces are projected. The aperture is the picture, cut by the
+edge of the lens's field. The part of a face inside the aperture follows from Green's theorem, edge
+by edge. A cube that is partly outside the field counts by its visible part.
 
-Compared with cubes whose sides are split into small patches, areas are within 0.5 %; for images cut
-by the picture or the edge of the field, within 0.1 % of a side of the cube on the lens's axis
-besides.
+The reference are cubes whose faces are split into small patches. Areas differ from it by at most
+0.5 %. Images that the aperture cuts may differ by another 0.1 % of the area of a face on the lens's
+axis.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ ImagePoints = tuple[Floats, Floats]
 
 @dataclass(frozen=True)
 class Aperture:
-    """A picture of `width` by `height` [px], all of which is inside the field."""
+    """A picture of `width` by `height` [px] that lies inside the lens's field."""
 
     width: float
     height: float
 
     def area(self, places: ImagePoints) -> Floats:
-        """Area (V,) inside, of outlines with corners (V, N) each."""
+        """Area (V,) inside the picture of outlines with corners (V, N) each."""
         x0, y0 = places
         x1, y1 = _next(places)
         parts = clamped_integral(x0, y0, x1, y1, self.width, self.height)
@@ -45,10 +45,10 @@ class Aperture:
 
 @dataclass(frozen=True)
 class RoundAperture(Aperture):
-    """A picture that the edge of the field runs through: an ellipse of half axes `wide`, `high`.
+    """A picture cut by the edge of the field, an ellipse of half axes `wide` and `high` [px].
 
-    A lens that shifts its image moves the ellipse, by another way on each side: an outline is cut
-    by the ellipse as it is moved where the outline is.
+    Tangential distortion shifts the ellipse, differently on each side of the picture. An outline
+    is cut by the ellipse with the shift at the outline.
     """
 
     lens: Lens
@@ -56,9 +56,9 @@ class RoundAperture(Aperture):
     high: float
 
     def area(self, places: ImagePoints) -> Floats:
-        """Area (V,) inside both, of outlines with corners (V, N) each.
+        """Area (V,) inside picture and ellipse of outlines with corners (V, N) each.
 
-        What sticks out of the picture is first folded flat onto its border.
+        Parts outside the picture are first moved onto its border, where they have no area.
         """
         x, y = places
         inside = ((x >= 0.0) & (x <= self.width) & (y >= 0.0) & (y <= self.height)).all(axis=1)
@@ -69,7 +69,7 @@ class RoundAperture(Aperture):
         return area
 
     def _centers(self, places: ImagePoints) -> Floats:
-        """(V, 2) middles of the ellipse, as moved on the side that outlines are on."""
+        """(V, 2) centres of the ellipse with the shift at each outline [px]."""
         lens = self.lens
         centers = np.broadcast_to([lens.cx, lens.cy], (len(places[0]), 2))
         if not lens.shifts:
@@ -88,7 +88,7 @@ class RoundAperture(Aperture):
         return circle * (self.wide * self.high)
 
     def _folded(self, places: ImagePoints) -> ImagePoints:
-        """Outlines held inside the picture, with corners where they cross its sides: (V, 5 N)."""
+        """Outlines clamped to the picture, with corners where they cross its sides: (V, 5 N)."""
         starts, ends, shares = places, _next(places), [np.zeros_like(places[0])]
         for a, b, most in zip(starts, ends, (self.width, self.height), strict=True):
             run = np.where(a == b, np.inf, b - a)
@@ -104,7 +104,7 @@ class RoundAperture(Aperture):
 
 
 def aperture_of(camera: Camera) -> Aperture:
-    """Return what of a camera's image counts."""
+    """Return the part of a camera's image that counts."""
     lens, (width, height) = camera.projection, (float(camera.width), float(camera.height))
     reach = float(lens.radius(np.asarray(lens.edge)))
     wide, high = lens.fx * reach, lens.fy * reach
@@ -115,7 +115,7 @@ def aperture_of(camera: Camera) -> Aperture:
 
 
 def _next(places: ImagePoints) -> ImagePoints:
-    """The corners that follow."""
+    """The next corner of each corner."""
     x, y = places
     return np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
 
@@ -123,8 +123,8 @@ def _next(places: ImagePoints) -> ImagePoints:
 def _area_in_circle(places: ImagePoints) -> Floats:
     """Area (V,) inside the unit circle, of outlines with corners (V, N) each.
 
-    The sum over edges of the triangle with the centre, cut by the circle: a sector where the edge
-    is outside, a triangle where it is inside.
+    Sums over the edges the triangle of edge and centre, cut by the circle: a sector where the edge
+    is outside the circle, a triangle where it is inside.
     """
     a, b = places, _next(places)
     step = b[0] - a[0], b[1] - a[1]
@@ -145,13 +145,13 @@ def _angle(a: ImagePoints, b: ImagePoints) -> Floats:
 
 
 PIECES = 8
-"""Straight pieces that an edge of a face is taken for."""
+"""Straight pieces of an edge of a face."""
 BESIDE_SIDES, BESIDE_PIECES = 4.0, 32
-"""Nearer than so many sides, where an edge takes 15 degrees and more, it is taken for so many."""
+"""Nearer than this many sides an edge covers 15 degrees and more: it has this many pieces."""
 BALL = math.sqrt(3.0) / 2.0
 """Radius of the ball round a cube, in sides."""
 RIGHT_BEHIND = math.pi - 1e-3
-"""A cube whose ball reaches the direction opposite to the view has no outline to tell [rad]."""
+"""A cube whose ball reaches the direction opposite to the view has no outline [rad]."""
 CUBES_AT_ONCE = 4096
 
 
@@ -160,18 +160,19 @@ def bent_pixel_area(
 ) -> Floats:
     """(V,) pixels covered by cubes of side `side` [m] through a camera's lens.
 
-    0 where the camera is inside the ball round a cube, or that ball reaches right behind it.
+    0 where the camera is inside the ball round a cube, or the ball reaches the direction opposite
+    to the view.
 
     Parameters
     ----------
     camera : Camera
     axes : (3, 3) float
-        Rotation from the camera's frame to the ground frame (`ties.axes_of`).
+        Rotation from the camera's frame to the ground frame (`tie_rules.axes_of`).
     offsets : (V, 3) float
-        The cubes' centres from the camera, ground axes (`ties.offsets_of`) [m].
+        The cubes' centres from the camera, ground axes (`tie_rules.offsets_of`) [m].
     side : float
     pieces : int
-        Of an edge; fewer are enough from afar.
+        Pieces of an edge; fewer are enough for distant cubes.
     """
     area = np.zeros(len(offsets))
     shown = in_reach(camera.projection, axes, offsets, side)
@@ -185,7 +186,7 @@ def bent_pixel_area(
 
 
 def in_reach(lens: Lens, axes: Floats, offsets: Floats, side: float) -> NDArray[np.bool_]:
-    """Whether cubes may be seen by the angle from the axis; never false for one that is."""
+    """Whether cubes may be visible, by their angle from the axis; true for every visible cube."""
     distance = np.sqrt(dot(offsets, offsets))
     outside = distance > BALL * side
     safe = np.where(outside, distance, 1.0)
@@ -198,7 +199,7 @@ def _area(camera: Camera, axes: Floats, offsets: Floats, side: float, pieces: in
     half, aperture = side / 2.0, aperture_of(camera)
     area = np.zeros(len(offsets))
     for k in range(3):
-        toward = -np.sign(offsets[:, k]) * half  # the face on the camera's side
+        toward = -np.sign(offsets[:, k]) * half  # the face that faces the camera
         face = offsets.copy()
         face[:, k] += toward
         outline = _outline(k, half, pieces)
@@ -209,7 +210,7 @@ def _area(camera: Camera, axes: Floats, offsets: Floats, side: float, pieces: in
 
 
 def _outline(axis: int, half: float, pieces: int) -> Floats:
-    """(4 pieces, 3) points round a face across an axis, from its centre."""
+    """(4 pieces, 3) points on the border of a face, normal along `axis`, from its centre."""
     share = np.arange(pieces) / pieces
     points = np.zeros((4, pieces, 3))
     i, j = (axis + 1) % 3, (axis + 2) % 3
@@ -220,7 +221,7 @@ def _outline(axis: int, half: float, pieces: int) -> Floats:
 
 
 def _seen(points: Floats, axes: Floats) -> SensorAxes:
-    """Points (..., 3), ground axes, as the camera sees them."""
+    """Points (..., 3) along ground axes, converted to the camera's axes."""
     x, y, z = points[..., 0], points[..., 1], points[..., 2]
     depth, left, up = (x * a[0] + y * a[1] + z * a[2] for a in axes.T)
     return depth, left, up

@@ -1,8 +1,8 @@
-"""Pixel areas of the voxels of a run of x-planes, through a lens that bends.
+"""Pixel areas of all voxels of consecutive x-planes, through a lens with distortion.
 
-A plane at a time its voxels are sorted as in `camera.bent_points`, in single precision; those on
-the border of what is seen are handed to the exact function, all of a run at once. What the vehicle
-surely hides or surely does not is told by `camera.cover_shadow`, which looks all round.
+The voxels of each plane are classified as in `sample_areas`, in single precision. Voxels on the
+border of the field of view get the exact area, all planes at once. `voxel_occlusion` decides for
+most voxels whether the vehicle hides them; it covers all directions.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from .definition import cut_to_range, hidden, is_ranged
 from .model import Camera
 from .sample_areas import Sorter, edge_areas
 from .tie_rules import NUDGE, aims_at, axes_of, offsets_of
-from .voxel_occlusion import VoxelOcclusion, places_of, span_of
+from .voxel_occlusion import VoxelOcclusion, positions_of, span_of
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
 
 ALL_ROUND = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
-"""Directions to what `VoxelOcclusion` takes for the corners of the picture: no side is left out."""
+"""The directions that `VoxelOcclusion` gets as corners of the picture: they include all sides."""
 
 
 class BentPlanes:
-    """A mounted camera with a lens that bends, ready to measure a space plane by plane.
+    """A mounted camera whose lens has distortion, ready to measure a space plane by plane.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class BentPlanes:
     pose : Pose
     space : PerceptionSpace
     seen : VisibleMesh, optional
-        The vehicle from the camera's position.
+        The vehicle, seen from the camera's position.
     """
 
     def __init__(
@@ -58,11 +58,11 @@ class BentPlanes:
         self._cover = None if seen is None else VoxelOcclusion(self._aims, seen, ALL_ROUND)
 
     def areas(self, planes: slice) -> VisibleRows:
-        """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""
+        """Pixels covered by each voxel of the x-planes; rows out of view are left out."""
         rows = self._rows_in_view(planes)
         area, edge = self._sorted(planes, rows)
         first = planes.start, rows.start
-        offsets = places_of(self._offsets, edge, area.shape, first)
+        offsets = positions_of(self._offsets, edge, area.shape, first)
         exact = edge_areas(self._camera, self._axes, offsets, self._space.interval)
         area.reshape(-1)[edge] = exact
         if is_ranged(self._camera):
@@ -72,13 +72,13 @@ class BentPlanes:
         return VisibleRows(rows, area)
 
     def _away_from(self, offset: Floats) -> Floats:
-        """Distance along an axis from the camera to the nearer face across it; 0 inside."""
+        """Distance from the camera to a voxel along one axis; 0 beside the voxel [m]."""
         return np.maximum(np.abs(offset) - self._space.interval / 2.0, 0.0)
 
     def _rows_in_view(self, planes: slice) -> slice:
-        """Rows (y) that may touch the field, on some of the planes and at some height.
+        """Rows (y) with a voxel that may touch the field, on any of the planes.
 
-        A bound on the cosine of the angle from the axis: greatest depth over least distance.
+        The cosine of the angle from the axis is at most maximum depth over minimum distance.
         """
         x, y, z = self._offsets[0][planes], self._offsets[1], self._offsets[2]
         forward, ball = self._axes[:, 0], BALL * self._space.interval
@@ -91,7 +91,7 @@ class BentPlanes:
         return span_of(depth + 2.0 * ball >= cosine * distance - 2.0 * ball)
 
     def _sorted(self, planes: slice, rows: slice) -> tuple[Singles, Ints]:
-        """Areas by the closed form, 0 elsewhere; and the numbers of voxels on the border."""
+        """Areas by the closed form, 0 where it does not apply; and the indices of border voxels."""
         x = self._offsets[0][planes]
         area = np.empty((len(x), *self._square[rows].shape), np.float32)
         edges = []
@@ -108,18 +108,18 @@ class BentPlanes:
         return area, np.concatenate(edges) if edges else np.zeros(0, np.int64)
 
     def _settle_hidden(self, area: Singles, first: tuple[int, int]) -> None:
-        """Set the areas of those voxels to 0 that the vehicle hides."""
+        """Set the areas of the voxels that the vehicle hides to 0."""
         assert self._cover is not None and self._seen is not None
         planes, rows = (slice(f, f + n) for f, n in zip(first, area.shape[:2], strict=True))
-        shade = self._cover.judge(planes, rows)
-        np.copyto(area, 0.0, where=shade.hidden)
-        index = np.flatnonzero(shade.unsure)
+        flags = self._cover.classify(planes, rows)
+        np.copyto(area, 0.0, where=flags.hidden)
+        index = np.flatnonzero(flags.unsure)
         index = index[area.reshape(-1)[index] > 0.0]
-        aims = places_of(self._aims, index, area.shape, first)
+        aims = positions_of(self._aims, index, area.shape, first)
         area.reshape(-1)[index[hidden(self._seen, aims)]] = 0.0
 
 
 def _least(offsets: Floats) -> float:
-    """Least distance from 0 of places that follow one another along an axis."""
+    """Minimum distance from 0 of ascending coordinates, and of the range between them."""
     inside = offsets[0] < 0.0 < offsets[-1]
     return 0.0 if inside else float(np.min(np.abs(offsets)))

@@ -1,9 +1,10 @@
-"""Boxes' images: their pixel area, clipped to the picture, and the rectangle that holds them.
+"""Images of boxes: their pixel area, clipped to the picture, and their bounding rectangle.
 
-As of a cube (`camera.area`) the image is the union of the faces on the camera's side, and what of a
-face lies in the picture is found by Green's theorem, edge by edge. A face that reaches behind a
-pinhole is cut where it passes its plane. Through a lens that bends edges are taken for straight
-pieces; a face that lies right behind it has the outline of all that is not its image.
+As for a cube (`pixel_area`), the image is the union of the faces that face the camera. The part of
+a face inside the picture follows from Green's theorem, edge by edge. A face that reaches behind a
+pinhole camera is cut at the camera's plane. Through a lens with distortion, edges are split into
+straight pieces. If a face contains the direction opposite to the view, the outline is that of the
+complement of its image.
 """
 
 from __future__ import annotations
@@ -36,9 +37,9 @@ away, and farther."""
 
 @dataclass(frozen=True, slots=True)
 class BoxImages:
-    """Images of boxes: `area` (N,) in the picture [px], and upright rectangles that hold that.
+    """Images of boxes: `area` (N,) inside the picture [px], and bounding rectangles.
 
-    `low` and `high` (N, 2) are corners of the rectangles, right and down [px].
+    `low` and `high` (N, 2) are the rectangles' corners, right and down [px].
     """
 
     area: Floats
@@ -46,18 +47,18 @@ class BoxImages:
     high: Floats
 
     def some(self, which: Ints) -> BoxImages:
-        """Return some of them."""
+        """Return the images with these indices or flags."""
         return BoxImages(self.area[which], self.low[which], self.high[which])
 
 
 def box_images(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> BoxImages:
-    """Return boxes' images; without area of a box that the camera is in.
+    """Return the images of boxes; a box that contains the camera has no area.
 
     Parameters
     ----------
     camera : Camera
     axes : (3, 3) float
-        Rotation from the camera's frame to the ground frame (`ties.axes_of`).
+        Rotation from the camera's frame to the ground frame (`tie_rules.axes_of`).
     boxes : PlacedBoxes
     """
     faces = _straight_faces if camera.projection.is_straight else _bent_faces
@@ -76,7 +77,7 @@ def box_images(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> BoxImages:
 
 
 def along_camera(axes: Floats, boxes: PlacedBoxes, which: Ints, points: Floats) -> Floats:
-    """Points (P, ..., 3) along the axes of box `which` (P,) each, along the camera's axes."""
+    """Convert points (P, ..., 3) from the axes of their boxes `which` (P,) to the camera's axes."""
     wide = (len(which), *(1,) * (points.ndim - 2))
     c, s = (w[which].reshape(wide) for w in boxes.headings.T)
     x, y, z = points[..., 0], points[..., 1], points[..., 2]
@@ -85,9 +86,9 @@ def along_camera(axes: Floats, boxes: PlacedBoxes, which: Ints, points: Floats) 
 
 
 def face_points(boxes: PlacedBoxes, which: Ints, axis: int, places: Floats) -> Floats:
-    """(P, K, 3) points of the faces across an axis that look at the sensor, along boxes' own axes.
+    """(P, K, 3) points of the faces that face the sensor, along the boxes' own axes.
 
-    `places` (K, 2) in halves along the other two axes.
+    The faces' normals are along `axis`; `places` (K, 2) are in half sides along the other two axes.
     """
     i, j = (axis + 1) % 3, (axis + 2) % 3
     offsets, halves = boxes.offsets[which], boxes.halves[which]
@@ -101,7 +102,7 @@ def face_points(boxes: PlacedBoxes, which: Ints, axis: int, places: Floats) -> F
 def _straight_faces(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int
 ) -> Iterator[ImagedFaces]:
-    """ImagedFaces through a pinhole: those in front, and those that are cut."""
+    """Images of faces through a pinhole: faces in front of it, and faces that its plane cuts."""
     corners = face_points(boxes, which, axis, np.array(QUAD))
     corners = along_camera(axes, boxes, which, corners)
     front = corners[..., 0] > NEAREST_M
@@ -114,9 +115,10 @@ def _straight_faces(
 
 
 def _in_front(corners: Floats, front: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """Starts and ends (P, 5, 3) of the edges of quadrilaterals, cut at `NEAREST_M`.
+    """Starts and ends (P, 5, 3) of the edges of quadrilaterals, cut at depth `NEAREST_M`.
 
-    Edges that lie behind are points; the last joins where the outline leaves and comes back.
+    Edges behind the cut become points. The last edge joins the two points where the outline
+    crosses the cut.
     """
     ends, front_too = np.roll(corners, -1, axis=1), np.roll(front, -1, axis=1)
     run = ends[..., :1] - corners[..., :1]
@@ -130,7 +132,7 @@ def _in_front(corners: Floats, front: NDArray[np.bool_]) -> tuple[Floats, Floats
 
 
 def _between(camera: Camera, starts: Floats, ends: Floats) -> tuple[Floats, ImagePoints]:
-    """Area (P,) inside the picture of outlines of edges (P, K, 3), and where these begin."""
+    """Area (P,) inside the picture of outlines of edges (P, K, 3), and images of their starts."""
     lens = camera.projection
     (x0, y0), (x1, y1) = (
         (lens.cx - p[..., 1] * lens.fx / p[..., 0], lens.cy - p[..., 2] * lens.fy / p[..., 0])
@@ -143,7 +145,7 @@ def _between(camera: Camera, starts: Floats, ends: Floats) -> tuple[Floats, Imag
 def _bent_faces(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int
 ) -> Iterator[ImagedFaces]:
-    """ImagedFaces through a lens that bends: near ones of more pieces an edge than far ones."""
+    """Images of faces through a lens with distortion; edges of near faces have more pieces."""
     offsets, halves = boxes.offsets[which], boxes.halves[which]
     ratio = np.sqrt(dot(offsets, offsets) / dot(halves, halves))
     nearer = 0.0
@@ -157,7 +159,7 @@ def _bent_faces(
 def _outlined(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int, pieces: int
 ) -> tuple[Floats, ImagePoints]:
-    """Area of faces, of edges in so many pieces, in the picture and the field; their outlines."""
+    """Area of faces in the picture and the field, with so many pieces an edge; their outlines."""
     aperture = aperture_of(camera)
     outline = face_points(boxes, which, axis, _round_a_face(pieces))
     depth, left, up = np.moveaxis(along_camera(axes, boxes, which, outline), -1, 0)
@@ -173,10 +175,10 @@ def _outlined(
 
 
 def _projected(lens: Lens, depth: Floats, left: Floats, up: Floats) -> ImagePoints:
-    """Places of directions [px]; those beyond the edge of the field are moved farther out.
+    """Image positions of directions [px]; those beyond the edge of the field are moved outwards.
 
-    So a straight piece between two of them does not cut across the picture, even where what it
-    stands for passes right behind the camera.
+    So a straight piece between two such positions does not cross the picture, even if the edge
+    of the face passes right behind the camera.
     """
     theta = np.arctan2(np.hypot(left, up), depth)
     most = np.minimum(theta, RIGHT_BEHIND) / 2.0
@@ -186,7 +188,7 @@ def _projected(lens: Lens, depth: Floats, left: Floats, up: Floats) -> ImagePoin
 
 
 def _round_a_face(pieces: int) -> Floats:
-    """(4 pieces, 2) places round a face, in halves."""
+    """(4 pieces, 2) points on the border of a face, in half sides."""
     corners = np.array(QUAD)
     share = (np.arange(pieces) / pieces)[None, :, None]
     steps = np.roll(corners, -1, axis=0) - corners
@@ -194,7 +196,7 @@ def _round_a_face(pieces: int) -> Floats:
 
 
 def _holds_behind(axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int) -> NDArray[np.bool_]:
-    """Whether the direction right behind the camera meets faces."""
+    """Whether the direction opposite to the view meets faces."""
     back = np.broadcast_to(-axes[:, 0], (len(which), 3))
     speed = np.stack(boxes.along(which, back), axis=1)
     offsets, halves = boxes.offsets[which], boxes.halves[which]
@@ -207,7 +209,7 @@ def _holds_behind(axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int) -> N
 
 
 def _picture(camera: Camera, count: int) -> ImagePoints:
-    """Outline (1, count) of the picture [px], its last corner several times."""
+    """Outline (1, count) of the picture [px]; the last corner is repeated to fill it."""
     wide, high = float(camera.width), float(camera.height)
     x, y = np.zeros((1, count)), np.full((1, count), high)
     x[0, 1:3], y[0, :2] = wide, 0.0

@@ -1,6 +1,7 @@
 """The measurement of a camera by definition: the area of each voxel's image, if it is in range.
 
-The distance of a voxel's centre decides on its range, a ray to the centre on its occlusion.
+The distance of a voxel's centre decides whether it is in range. A ray to the centre decides whether
+it is occluded.
 """
 
 from __future__ import annotations
@@ -25,19 +26,19 @@ Mask = NDArray[np.bool_]
 
 
 def is_ranged(camera: Camera) -> bool:
-    """Whether a camera has a range at all."""
+    """Whether a camera has a minimum or maximum range."""
     return camera.min_range > 0.0 or camera.max_range < math.inf
 
 
 def out_of_range(camera: Camera, offsets: Floats) -> Mask:
-    """Whether centres (V, 3), from the camera [m], are nearer or farther than it sees."""
+    """Whether centres (V, 3), relative to the camera [m], are out of its range."""
     return _beyond(camera, dot(offsets, offsets))
 
 
 def cut_to_range(camera: Camera, area: Singles, axes: list[Floats], first: tuple[int, int]) -> None:
     """Set the areas (n, rows, nz) of voxels out of range to 0.
 
-    `axes` are their places along each axis, `first` the first plane and row.
+    `axes` are the centres' coordinates along each axis, `first` the first plane and row.
     """
     x, y, z = axes
     y = y[first[1] : first[1] + area.shape[1]]

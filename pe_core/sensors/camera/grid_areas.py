@@ -1,11 +1,11 @@
-"""Pixel areas of the voxels of a run of x-planes.
+"""Pixel areas of all voxels of consecutive x-planes, through a pinhole.
 
-Where a column of voxels (along z) enters and leaves the picture follows from the four sides of the
-frustum. The voxels between are filled with the closed form of `camera.points`, in single precision;
-depth and the faces' distances are a term of x and one of y and z, which all planes share. Voxels on
-the picture's border, near the camera, or perhaps behind the vehicle are listed from such sides as
-well, and handed to the exact functions, all of a run at once. Where the vehicle may hide very many,
-`camera.cover_shadow` tells most of them without a ray.
+The four sides of the frustum decide where a column of voxels (along z) enters and leaves the
+picture. The voxels between have the closed form of `sample_areas`, in single precision. Depth and
+the distances of faces are the sum of a term of x and a term of y and z; the second is the same for
+all planes. Half spaces also give the voxels on the picture's border, near the camera, and perhaps
+behind the vehicle. These get the exact functions, all planes at once. If the vehicle may hide very
+many voxels, `voxel_occlusion` decides most of them without a ray.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .picture import BORDER, PictureBins
 from .pixel_area import clipped_pixel_area, in_sensor_frame
 from .sample_areas import NEAR_SIDES
 from .tie_rules import MARGIN, NUDGE, aims_at, axes_of, offsets_of
-from .voxel_occlusion import VoxelOcclusion, places_of, span_of
+from .voxel_occlusion import VoxelOcclusion, positions_of, span_of
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -43,20 +43,20 @@ LEVEL = 1e-12
 
 
 class ColumnRuns(NamedTuple):
-    """A run of voxels in each column (along z), `first` to before `end`, (n, rows) each."""
+    """A run of voxels in each column (along z), from `first` to before `end`, (n, rows) each."""
 
     first: Ints
     end: Ints
 
     def within(self, outer: ColumnRuns) -> ColumnRuns:
-        """Cut to the outer runs; an empty one is put at the outer one's end."""
+        """Return the parts inside the outer runs; an empty run is at the outer run's end."""
         first = np.clip(self.first, outer.first, outer.end)
         end = np.clip(self.end, first, outer.end)
         empty = first == end
         return ColumnRuns(np.where(empty, outer.end, first), np.where(empty, outer.end, end))
 
     def listed(self, nz: int) -> Ints:
-        """Numbers (V,) of all voxels of the runs, counted through planes, rows and heights."""
+        """Flat indices (V,) of all voxels of the runs, in an array of planes, rows and heights."""
         first, end = self.first.reshape(-1), self.end.reshape(-1)
         some = np.flatnonzero(end > first)
         counts = end[some] - first[some]
@@ -72,7 +72,7 @@ class CameraPlanes:
     pose : Pose
     space : PerceptionSpace
     seen : VisibleMesh, optional
-        The vehicle from the camera's position.
+        The vehicle, seen from the camera's position.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class CameraPlanes:
         self._depth = np.add.outer(self._forward[1] * y, self._forward[2] * z).astype(np.float32)
         self._away = np.add.outer(self._away_from(y), self._away_from(z)).astype(np.float32)
         below = np.tri(len(z) + 1, len(z), -1, dtype=np.int32)  # row k: 1 for heights below k
-        self._keep_below, self._keep_from = -below, below - 1  # masks: all bits, or none
+        self._keep_below, self._keep_from = -below, below - 1  # masks: all bits set, or none
         self._shadow = self._cover = None
         if seen is not None:
             self._shadow = PictureBins(camera, self._axes, seen.seen.triangles)
@@ -97,7 +97,7 @@ class CameraPlanes:
             self._cover = VoxelOcclusion(self._aims, seen, self._corners(*widest))
 
     def areas(self, planes: slice) -> VisibleRows:
-        """Pixels covered by each voxel of the x-planes; without rows where the camera sees none."""
+        """Pixels covered by each voxel of the x-planes; rows out of view are left out."""
         rows = self._rows_in_view(planes)
         near = (NEAR_SIDES + MARGIN) * self._space.interval
         touched = self._runs(planes, rows, [(self._forward, 0.0), *self._at_sides(-1.0)])
@@ -117,7 +117,7 @@ class CameraPlanes:
         return VisibleRows(rows, area)
 
     def _shaded(self, planes: slice, rows: slice, plain: ColumnRuns) -> ColumnRuns:
-        """Those of the voxels inside the picture that lie where triangles fall into the map."""
+        """Of the voxels inside the picture, those in the directions of the vehicle's triangles."""
         assert self._shadow is not None
         if self._shadow.empty:
             return ColumnRuns(plain.end, plain.end)
@@ -125,25 +125,25 @@ class CameraPlanes:
         return self._runs(planes, rows, [(n, -MARGIN) for n in sides]).within(plain)
 
     def _corners(self, wide: float, high: float) -> Floats:
-        """Directions (4, 3) to the corners of the shadow's map."""
+        """Directions (4, 3) to the corners of the bins that the vehicle may touch."""
         forward, left, up = self._axes.T
         ends = [(i * BORDER * wide, j * BORDER * high) for i in (-1.0, 1.0) for j in (-1.0, 1.0)]
         return np.array([forward + a * left + b * up for a, b in ends])
 
     def _away_from(self, offset: Floats) -> Floats:
-        """Distance along an axis from the camera to the nearer face across it; 0 inside."""
+        """Distance from the camera to a voxel along one axis; 0 beside the voxel [m]."""
         return np.maximum(np.abs(offset) - self._space.interval / 2.0, 0.0)
 
     def _at_sides(self, radii: float) -> list[HalfSpace]:
-        """Half spaces of voxels inside the frustum's sides by so many of their own radii."""
+        """Half spaces of voxels inside the frustum's sides by a number of the voxels' radii."""
         return [(n, radii * self._radius(n)) for n in self._sides]
 
     def _radius(self, normal: Floats) -> float:
-        """How far a voxel reaches along a direction [m]."""
+        """Extent of a voxel from its centre along a direction [m]."""
         return (float(np.abs(normal).sum()) / 2.0 + MARGIN) * self._space.interval
 
     def _rows_in_view(self, planes: slice) -> slice:
-        """Rows (y) that may touch the picture, on some of the planes and at some height."""
+        """Rows (y) with a voxel that may touch the picture, on any of the planes."""
         x, y, z = self._offsets[0][planes], self._offsets[1], self._offsets[2]
         inside = np.ones(len(y), bool)
         for n, least in [(self._forward, 0.0), *self._at_sides(-1.0)]:
@@ -152,7 +152,7 @@ class CameraPlanes:
         return span_of(inside)
 
     def _runs(self, planes: slice, rows: slice, half_spaces: list[HalfSpace]) -> ColumnRuns:
-        """Voxels that lie in all half spaces."""
+        """Runs of voxels that lie in all half spaces."""
         x, y = self._offsets[0][planes], self._offsets[1][rows]
         nz, step = len(self._offsets[2]), self._space.interval
         lowest = self._offsets[2][0] / step
@@ -171,7 +171,7 @@ class CameraPlanes:
         return ColumnRuns(first, end)
 
     def _filled(self, planes: slice, rows: slice, plain: ColumnRuns) -> Singles:
-        """Areas of small flat faces in the runs, see `camera.points`; 0 elsewhere."""
+        """Areas by the closed form of `sample_areas` in the runs; 0 elsewhere."""
         depth, away = self._depth[rows], self._away[rows]
         x = self._offsets[0][planes]
         area = np.empty((len(x), *depth.shape), np.float32)
@@ -195,7 +195,7 @@ class CameraPlanes:
         depth: tuple[Singles, float],
         away: tuple[Singles, float],
     ) -> None:
-        """Area of small faces; `depth` and `away` in two terms, `cube` for the depth's cube."""
+        """Write the closed form to `out`; `depth` and `away` have two terms, `cube` is scratch."""
         side = self._space.interval
         np.add(depth[0], np.float32(depth[1]), out=out)
         np.maximum(out, np.float32(NEAR_SIDES * side), out=out)  # nearer ones are not for this form
@@ -207,55 +207,55 @@ class CameraPlanes:
         out /= cube
 
     def _settle_edges(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
-        """Measure voxels on the picture's border, and near ones, exactly."""
-        offsets = places_of(self._offsets, index, area.shape, first)
+        """Measure voxels on the picture's border, and voxels near the camera, exactly."""
+        offsets = positions_of(self._offsets, index, area.shape, first)
         exact = clipped_pixel_area(self._camera, self._axes, offsets, self._space.interval)
         area.reshape(-1)[index] = exact
 
     def _settle_hidden(self, area: Singles, index: Ints, first: tuple[int, int]) -> None:
-        """Set the areas of those voxels to 0 that the vehicle does hide."""
+        """Set the areas of the voxels that the vehicle hides to 0."""
         assert self._seen is not None
         index = index[area.reshape(-1)[index] > 0.0]
-        if len(index) > MANY_RAYS and self._many_perhaps(index, area.shape, first):
+        if len(index) > MANY_RAYS and self._may_hide_many(index, area.shape, first):
             index, aims = self._unsure(area, first)
         else:
-            index, aims = self._perhaps(index, area.shape, first)
+            index, aims = self._maybe_hidden(index, area.shape, first)
         area.reshape(-1)[index[hidden(self._seen, aims)]] = 0.0
 
-    def _many_perhaps(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> bool:
-        """Whether the vehicle may hide very many of some voxels, to judge by some of those."""
-        some, _ = self._perhaps(index[::ASKED], shape, first)
+    def _may_hide_many(self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]) -> bool:
+        """Whether the vehicle may hide very many of these voxels, estimated from some of them."""
+        some, _ = self._maybe_hidden(index[::ASKED], shape, first)
         return len(some) * ASKED > MANY_RAYS
 
-    def _perhaps(
+    def _maybe_hidden(
         self, index: Ints, shape: tuple[int, ...], first: tuple[int, int]
     ) -> tuple[Ints, Floats]:
-        """Those of some voxels that the vehicle may hide, and where the rays to them aim at."""
+        """Of these voxels, those that the vehicle may hide, and the points to aim rays at."""
         assert self._shadow is not None
-        aims = places_of(self._aims, index, shape, first)
+        aims = positions_of(self._aims, index, shape, first)
         perhaps = np.flatnonzero(self._shadow.may_hide(*in_sensor_frame(self._axes, aims)))
         return index[perhaps], aims[perhaps]
 
     def _unsure(self, area: Singles, first: tuple[int, int]) -> tuple[Ints, Floats]:
-        """Set what is surely hidden to 0; the seen voxels not sure, and where rays aim at."""
+        """Set surely hidden voxels to 0; return the undecided ones and the points rays aim at."""
         assert self._cover is not None
         planes, rows = (slice(f, f + n) for f, n in zip(first, area.shape[:2], strict=True))
-        shade = self._cover.judge(planes, rows)
-        np.copyto(area, 0.0, where=shade.hidden)
-        index = np.flatnonzero(shade.unsure)
+        flags = self._cover.classify(planes, rows)
+        np.copyto(area, 0.0, where=flags.hidden)
+        index = np.flatnonzero(flags.unsure)
         index = index[area.reshape(-1)[index] > 0.0]
-        return index, places_of(self._aims, index, area.shape, first)
+        return index, positions_of(self._aims, index, area.shape, first)
 
 
 def _slopes(camera: Camera) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Least and greatest left / depth, and up / depth, of the picture."""
+    """Minimum and maximum of left / depth, and of up / depth, in the picture."""
     lens = camera.projection
     wide = -(camera.width - lens.cx) / lens.fx, lens.cx / lens.fx
     return wide, (-(camera.height - lens.cy) / lens.fy, lens.cy / lens.fy)
 
 
 def _sides(axes: Floats, wide: tuple[float, float], high: tuple[float, float]) -> list[Floats]:
-    """Inward unit normals, ground axes, of the pyramid of these slopes to the left and up."""
+    """Inward unit normals, ground axes, of the pyramid with these slopes to the left and up."""
     forward, left, up = axes.T
     normals = [
         sign * (axis - slope * forward)

@@ -31,13 +31,13 @@ ROOM_M = 1e-3
 
 
 class CameraGround(GroundKernel):
-    """Marks squares in whose middle a post is seen."""
+    """Marks squares with a visible post in their middle."""
 
     def __init__(self, view: GroundView) -> None:
         self._view = view
 
     def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
-        """Look at one post of each block, then at those along the edges of what is seen."""
+        """Test one post of each block, then the posts along the edges of the visible area."""
         grid = self._view.grid
         look = PostVisibility(sensor, self._view)
         side = max(1, int(BLOCK_M / grid.step + 1e-9))
@@ -54,7 +54,7 @@ class CameraGround(GroundKernel):
 
 
 class PostVisibility:
-    """A camera that looks at posts."""
+    """Tests which posts a camera sees."""
 
     def __init__(self, sensor: Sensor, view: GroundView) -> None:
         self._camera, self._view = cast(Camera, sensor.model), view
@@ -68,7 +68,7 @@ class PostVisibility:
                 self._shadow = PictureBins(self._camera, self._axes, self._seen.seen.triangles)
 
     def sees(self, squares: Ints) -> Flags:
-        """Whether any point of posts (N,) in the middles of squares is seen."""
+        """Whether a point of each post (N,) in the middle of its square is visible."""
         middles = self._view.grid.middles(squares) - self._position[:2]
         possible = self._may_see(middles)
         found = np.zeros(len(squares), bool)
@@ -79,7 +79,7 @@ class PostVisibility:
         return found
 
     def _may_see(self, middles: Floats) -> Flags:
-        """Whether balls round posts (N, 2) reach into the field of view; never false for a post."""
+        """Whether balls round posts (N, 2) reach into the view; true for every visible post."""
         radius = self._view.height / 2.0 + ROOM_M
         up = np.full(len(middles), self._view.height / 2.0 - self._position[2])
         depth, aside, high = in_sensor_frame(self._axes, np.column_stack([middles, up]))
@@ -120,12 +120,12 @@ class PostVisibility:
 
 
 def _edges(seen: Flags) -> Flags:
-    """Blocks that are seen, beside one that is not, or the other way round; corners count."""
+    """Blocks with a neighbour of the other state, visible or not; corners count as neighbours."""
     return _beside(seen) & _beside(~seen)
 
 
 def _beside(flags: Flags) -> Flags:
-    """Set what is beside anything set, and that itself."""
+    """Set the flagged cells and all their neighbours."""
     found = flags.copy()
     for axis in (0, 1):
         moved = np.moveaxis(found, axis, 0)

@@ -29,14 +29,14 @@ APART_RAD = 1e-6
 
 
 class CameraObjects(ObjectKernel):
-    """Measures what is seen of objects' images."""
+    """Measures the visible area of objects' images."""
 
     def __init__(self, view: ObjectView) -> None:
         self._view = view
         self._balls = np.sqrt(dot(view.objects.sizes, view.objects.sizes)) / 2.0 + MARGIN_M
 
     def measure(self, sensor: Sensor) -> Floats:
-        """Measure a camera, as the definition does."""
+        """Measure the objects with a camera; equal to the definition."""
         objects, camera, axes = self._view.objects, cast(Camera, sensor.model), axes_of(sensor.pose)
         boxes = PlacedBoxes.of(objects, sensor.pose.position)
         which = np.flatnonzero(_may_be_visible(camera, axes, boxes, self._balls))
@@ -51,7 +51,7 @@ class CameraObjects(ObjectKernel):
     def _share(
         self, sensor: Sensor, axes: Floats, boxes: PlacedBoxes, which: Ints, images: BoxImages
     ) -> Floats:
-        """What share is seen of the images of boxes `which`."""
+        """Visible share of the images of boxes `which`."""
         view, camera, seen = self._view, cast(Camera, sensor.model), None
         if view.vehicle is not None:
             seen = view.vehicle.seen_from(sensor.pose.position, camera.sees_through_glass)
@@ -72,7 +72,7 @@ class CameraObjects(ObjectKernel):
         return share
 
     def _rivals(self, boxes: PlacedBoxes, which: Ints) -> Rivals:
-        """Return, for some boxes, the others of their scenes that may stand before them."""
+        """Return, for some boxes, the other boxes of their scenes that may hide them."""
         rivals = Rivals.of(self._view.objects.scenes, which)
         rank, other = rivals.ranks(), rivals.other
         item = which[rank]
@@ -93,7 +93,7 @@ class CameraObjects(ObjectKernel):
 def _may_be_visible(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, balls: Floats
 ) -> NDArray[np.bool_]:
-    """Whether balls round boxes reach into the view; never false for a box that does."""
+    """Whether balls round boxes reach into the view; true for every visible box."""
     everything = np.arange(len(balls))
     depth, left, up = along_camera(axes, boxes, everything, boxes.offsets).T
     if camera.projection.is_straight:
@@ -109,7 +109,7 @@ def _may_be_visible(
 def _may_be_hidden(
     camera: Camera, axes: Floats, images: BoxImages, seen: VisibleMesh | None
 ) -> NDArray[np.bool_]:
-    """Whether the vehicle may stand before images; of a lens that bends, wherever they are."""
+    """Whether the vehicle may hide images; always true for a lens with distortion."""
     if seen is None or not camera.projection.is_straight:
         return np.full(len(images.area), seen is not None)
     return PictureBins(camera, axes, seen.seen.triangles).may_hide_in(images.low, images.high)

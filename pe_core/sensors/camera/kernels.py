@@ -1,4 +1,4 @@
-"""Cameras on the grid and on a sample, as scoring asks for them."""
+"""The camera's kernels for voxels: all voxels of a space, and a sample of them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..kernels import GridKernel, Measured, Occlusion, Planes, SampleKernel, Vox
 from .bent_grid_areas import BentPlanes
 from .grid_areas import CameraPlanes
 from .model import Camera
-from .picture import hidden_places
+from .picture import picture_occlusion
 from .sample_areas import bent_pixel_areas, pixel_areas
 
 SEEN_BYTES = 2
@@ -27,7 +27,7 @@ SEEN_BYTES = 2
 
 
 class ReadyCamera(NamedTuple):
-    """A mounted camera, and what measures planes through its lens."""
+    """A mounted camera with the object that measures planes through its lens."""
 
     sensor: Sensor
     view: CameraPlanes | BentPlanes
@@ -40,23 +40,23 @@ class CameraGrid(GridKernel):
         self._space, self._vehicle = space, vehicle
 
     def prepare(self, sensor: Sensor) -> ReadyCamera:
-        """Look at the vehicle from the camera."""
+        """Prepare the measurement: the vehicle seen from the camera, and half spaces."""
         camera, seen = cast(Camera, sensor.model), _seen(self._vehicle, sensor)
         kind = CameraPlanes if camera.projection.is_straight else BentPlanes
         return ReadyCamera(sensor, kind(camera, sensor.pose, self._space, seen))
 
     def occlusion(self, prepared: ReadyCamera) -> Occlusion:
         """Count places of the picture that the vehicle hides."""
-        return hidden_places(prepared.sensor, self._vehicle)
+        return picture_occlusion(prepared.sensor, self._vehicle)
 
     def memory_bytes(
         self, groups: Sequence[Sequence[Sensor]], space: PerceptionSpace, workers: int
     ) -> int:
-        """Return about how many bytes it takes: areas in the rows that each sees."""
+        """Estimate the memory for the areas of the rows that each group sees [bytes]."""
         return len(groups) * workers * block_voxels(space) * SEEN_BYTES
 
     def planes(self, groups: Sequence[Sequence[ReadyCamera]], pool: Executor) -> list[Planes]:
-        """Measure each group when its planes are asked for."""
+        """Return functions that measure a group's planes on request."""
         return [partial(_areas, cameras) for cameras in groups]
 
 
@@ -65,10 +65,10 @@ class CameraSample(SampleKernel):
 
     def __init__(self, voxels: Voxels, vehicle: Vehicle | None) -> None:
         self._voxels, self._vehicle = voxels, vehicle
-        self._centers = np.asfortranarray(voxels.centers)  # worked on axis by axis
+        self._centers = np.asfortranarray(voxels.centers)  # fast for arithmetic axis by axis
 
     def measure(self, sensor: Sensor, approximate: bool) -> Measured:
-        """Measure a camera; there are no drafts."""
+        """Measure a camera, always exactly."""
         return Measured(sensor, self._pixels(sensor, self._vehicle))
 
     def unoccluded(self, sensor: Sensor) -> NDArray:
@@ -77,7 +77,7 @@ class CameraSample(SampleKernel):
 
     def occlusion(self, measured: Measured) -> Occlusion:
         """Count places of the picture that the vehicle hides."""
-        return hidden_places(measured.sensor, self._vehicle)
+        return picture_occlusion(measured.sensor, self._vehicle)
 
     def _pixels(self, sensor: Sensor, vehicle: Vehicle | None) -> NDArray:
         camera, side = cast(Camera, sensor.model), self._voxels.space.interval

@@ -1,4 +1,4 @@
-"""`CameraKind`: what the engine asks of cameras, and their data sheet."""
+"""The camera as a kind of sensor: its row of the registry, and its figures in text."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .picture import picture_mask, picture_patch, picture_rays
 
 
 def summary(camera: Camera) -> str:
-    """Picture, field of view across and up."""
+    """Return the resolution, and the field of view across and up, in one line."""
     across, up = math.degrees(camera.hfov), math.degrees(camera.vfov)
     return f"{camera.width} x {camera.height} px, {across:.0f} x {up:.0f} deg"
 

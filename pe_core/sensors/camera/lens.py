@@ -1,8 +1,8 @@
 """`Lens`, the map from directions to image positions and back, and its field in a picture.
 
-A lens is rotationally symmetric: a direction at an angle theta from the axis has its image at a
+A lens is rotationally symmetric: the image of a direction at an angle theta from the axis is at a
 distance ``radius(theta)`` from the principal point, in focal lengths. Beyond the edge of the field
-the radius is continued linearly, so that a shape across the edge has an image that can be clipped.
+the radius continues linearly, so the image of a shape across the edge can be clipped.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ class Lens(ABC):
     cx, cy : float
         Principal point, from the picture's upper left corner, right and down [px].
     fov : float, optional
-        Whole angle of the image circle [rad]; what is farther from the axis is not seen.
+        Full angle of the image circle [rad]; directions farther from the axis are not visible.
 
     Raises
     ------
     InputError
-        When a number is impossible.
+        When a number is not possible.
     """
 
     model: ClassVar[str]
@@ -91,7 +91,7 @@ class Lens(ABC):
         """Derivative of `radius`."""
 
     def shift(self, theta: Floats, right: Floats, down: Floats) -> tuple[Floats, Floats]:
-        """Return what the image is moved by besides, in focal lengths, at an angle up to the edge.
+        """Return the additional shift of the image, in focal lengths, at an angle up to the edge.
 
         `right` and `down` are the unit vector away from the principal point.
         """
@@ -99,7 +99,7 @@ class Lens(ABC):
 
     @property
     def is_straight(self) -> bool:
-        """Whether straight lines are straight in the picture: a pinhole."""
+        """Whether straight lines are straight in the picture, as through a pinhole."""
         return False
 
     def project(self, depth: Floats, left: Floats, up: Floats) -> tuple[Floats, Floats]:
@@ -115,9 +115,9 @@ class Lens(ABC):
         )
 
     def unproject(self, right: Floats, down: Floats) -> Floats:
-        """Unit directions (..., 3), forward, left, up, of places in the picture [px].
+        """Unit directions (..., 3), forward, left, up, of positions in the picture [px].
 
-        NaN where nothing within the field falls.
+        NaN for positions outside the image of the field.
         """
         x, y = (right - self.cx) / self.fx, (down - self.cy) / self.fy
         x0, y0 = x, y
@@ -133,7 +133,7 @@ class Lens(ABC):
         return np.stack([np.cos(theta), -sine * e, -sine * n], axis=-1)
 
     def density(self, depth: Floats, left: Floats, up: Floats) -> Floats:
-        """Pixels a steradian in directions, of any shape; not above 0 where the lens folds."""
+        """Pixels per steradian in directions, of any shape; 0 or less where the lens folds."""
         theta, _, _ = around_axis(depth, left, up)
         inside = np.maximum(np.minimum(theta, self.edge), 1e-9)
         around = self.radius(inside) / np.sin(inside)
@@ -147,7 +147,7 @@ class Lens(ABC):
 
     @property
     def shifts(self) -> bool:
-        """Whether `shift` is not 0 everywhere."""
+        """Whether `shift` is anywhere different from 0."""
         return False
 
     @property
@@ -155,7 +155,7 @@ class Lens(ABC):
         return float(self.radius(np.asarray(self.edge)))
 
     def _angle_at(self, away: Floats) -> Floats:
-        """Angle from the axis whose radius is `away`; the edge beyond."""
+        """Angle from the axis with the radius `away`; at most the edge."""
         table = np.linspace(0.0, self.edge, TABLE)
         theta = np.interp(away, self.radius(table), table)
         for _ in range(ROUNDS):
@@ -183,7 +183,7 @@ def reaching(lens: Own, name: str, width: int, height: int) -> Own:
     Raises
     ------
     InputError
-        When it cannot be inverted in all of the picture, or up to its own field of view.
+        When the lens cannot be inverted in all of the picture, or up to its own field of view.
     """
     folds = fold_angle(lens)
     wanted = lens.edge
@@ -199,10 +199,11 @@ def reaching(lens: Own, name: str, width: int, height: int) -> Own:
 
 
 def fold_angle(lens: Lens) -> float:
-    """Angle from the axis up to which a lens can be inverted [rad]; its edge, or where it folds.
+    """Angle from the axis up to which a lens can be inverted [rad]: its edge, or where it folds.
 
-    Pixels a steradian are radius times slope, over the sine of the angle: both of them grow, or
-    none. What a shift adds to that has the other sign on the opposite spoke.
+    Pixels per steradian are radius times slope, divided by the sine of the angle. Where the lens
+    can be inverted, this is above 0. The contribution of a shift has opposite signs on opposite
+    spokes.
     """
     theta = np.linspace(0.0, lens.edge, RINGS + 1)[1:]
     with np.errstate(all="ignore"):
@@ -216,16 +217,17 @@ def fold_angle(lens: Lens) -> float:
 
 
 def edge_circle(lens: Lens, spokes: int = SPOKES) -> tuple[Floats, Floats]:
-    """Image (right, down) [px] of directions round the edge of a lens's field, (spokes,) each."""
+    """Image (right, down) [px] of directions on the edge of a lens's field, (spokes,) each."""
     depth, left, up = _rings(np.array([lens.edge]), spokes)
     right, down = lens.project(depth, left, up)
     return right[0], down[0]
 
 
 def field_outline(lens: Lens, width: int, height: int, places: int) -> Floats:
-    """(N, 3) unit directions, forward, left, up, round what a picture shows, clockwise as seen.
+    """(N, 3) unit directions, forward, left, up, on the border of the view, clockwise as seen.
 
-    So many places along each side of the picture; where it shows nothing, the edge of the field.
+    There are `places` of them along each side of the picture. Where the border of the picture is
+    outside the field, the edge of the field takes its place.
     """
     share = np.arange(places) / places
     none, all_ = np.zeros(places), np.ones(places)
@@ -240,7 +242,7 @@ def field_outline(lens: Lens, width: int, height: int, places: int) -> Floats:
 
 
 def _rings(theta: Floats, spokes: int = SPOKES) -> tuple[Floats, Floats, Floats]:
-    """Directions at angles from the axis, (R, spokes) each."""
+    """Directions in rings round the axis, at angles (R,) from it, (R, spokes) each."""
     turn = np.linspace(0.0, 2.0 * math.pi, spokes, endpoint=False)
     flat = np.sin(theta)[:, None]
     depth = np.broadcast_to(np.cos(theta)[:, None], (len(theta), spokes))

@@ -33,10 +33,11 @@ BORDER_PLACES = 33
 
 
 class Imaged(NamedTuple):
-    """Voxels through a lens: image position right and down [px], and pixels a steradian.
+    """Voxels through a lens: image position right and down [px], and pixels per steradian.
 
-    `stretch` is the most pixels a radian from the axis to a little beyond a voxel. `uneven` is how
-    far the density may be from its mean over a voxel, relative, a squared radian that it is wide.
+    `stretch` is the maximum of pixels per radian between the axis and the far side of a voxel.
+    `uneven`, times the squared angular width of a voxel [rad^2], bounds how far the density at its
+    centre is from the mean over the voxel, relative to that mean.
     """
 
     right: Array
@@ -49,7 +50,7 @@ class Imaged(NamedTuple):
 class QuickLens:
     """A camera's lens in tables.
 
-    `outer` is the greatest angle from the axis that the picture shows [rad].
+    `outer` is the maximum angle from the axis that the picture shows [rad].
     """
 
     def __init__(self, camera: Camera) -> None:
@@ -71,7 +72,7 @@ class QuickLens:
         self._tilt = self._tilted(lens, inside) if isinstance(lens, BrownConrady) else None
 
     def _tilted(self, lens: BrownConrady, theta: Floats) -> Array | None:
-        """What the tangential part adds to the density, a unit of p1 times down, p2 times right."""
+        """Density added by the tangential part, per unit of p1 times down plus p2 times right."""
         if not lens.shifts:
             return None
         r = np.tan(theta)
@@ -80,7 +81,7 @@ class QuickLens:
         return np.asarray(added.astype(np.float32))
 
     def seen(self, cosine: Array, depth: Array, left: Array, up: Array, per: Array) -> Imaged:
-        """See voxels at an angle from the axis with that cosine; `per` is 1 / distance."""
+        """Return the images of voxels from the cosine of their angle; `per` is 1 / distance."""
         lens = self._lens
         entry = ((1.0 - cosine) * np.float32(self._per_cosine)).astype(np.int32)
         around = np.take(self._around, entry, mode="clip") * per
@@ -98,10 +99,11 @@ class QuickLens:
 
 
 def _unevenness(lens: Lens, last: float) -> tuple[Floats, Floats]:
-    """Angles up to the last, and how fast the density bends there or a little farther out, over it.
+    """Angles up to the last, and the curvature of the density near them, relative to the density.
 
-    The mean of a density over a cube's image, as wide as s / r, is off the middle's by about 0.07
-    times the sum of its second derivatives times the square of that; the largest counts.
+    The mean of the density over the image of a cube differs from the density at its middle by
+    about 0.07 (s / r)^2 times the sum of the second derivatives, with the side s and the distance
+    r. The largest value counts.
     """
     theta = (np.arange(ANGLES) + 0.5) * (last / ANGLES)
     inside = np.minimum(theta, lens.edge)
@@ -124,7 +126,7 @@ def _shifts(lens: BrownConrady, depth: Array, left: Array, up: Array) -> tuple[A
 
 
 def _widest_in(camera: Camera) -> float:
-    """Greatest angle from the axis that falls on the border of the picture [rad]."""
+    """Maximum angle from the axis of a point on the border of the picture [rad]."""
     share = np.linspace(0.0, 1.0, BORDER_PLACES)
     none, all_ = np.zeros_like(share), np.ones_like(share)
     right = np.concatenate([share, share, none, all_]) * camera.width

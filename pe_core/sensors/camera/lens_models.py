@@ -32,7 +32,7 @@ class Pinhole(Lens):
 
     @property
     def is_straight(self) -> bool:
-        """A pinhole is."""
+        """True: a pinhole has no distortion."""
         return self.fov is None
 
     def radius(self, theta: Floats) -> Floats:
@@ -67,7 +67,7 @@ class BrownConrady(Lens):
 
     @property
     def is_straight(self) -> bool:
-        """Without any distortion."""
+        """Whether there is no distortion."""
         return self.fov is None and not any(getattr(self, key) for key in self.coefficients)
 
     def radius(self, theta: Floats) -> Floats:
@@ -77,7 +77,7 @@ class BrownConrady(Lens):
         return np.asarray(r * above / below)
 
     def slope(self, theta: Floats) -> Floats:
-        """By the rules of quotient and chain."""
+        """Derivative of `radius`, by the quotient rule and the chain rule."""
         r = np.tan(theta)
         return np.asarray(self._growth(r * r) * (1.0 + r * r))
 
@@ -89,12 +89,12 @@ class BrownConrady(Lens):
         return np.asarray(square * x), np.asarray(square * y)
 
     def density(self, depth: Floats, left: Floats, up: Floats) -> Floats:
-        """Determinant of the distortion's derivative, over the cubed cosine."""
+        """Determinant of the distortion's Jacobian, divided by the cubed cosine."""
         theta, e, n = around_axis(depth, left, up)
         r = np.tan(np.minimum(theta, self.edge))
         above, below = self._sums(r * r)
         factor, growth = above / below, self._growth(r * r)
-        bend = growth - factor  # of the radial part: its derivative is factor + bend along r
+        bend = growth - factor  # the derivative of the radial part along r is factor + bend
         x, y = r * e, r * n
         xx = factor + bend * e * e + 2.0 * self.p1 * y + 6.0 * self.p2 * x
         yy = factor + bend * n * n + 6.0 * self.p1 * y + 2.0 * self.p2 * x
@@ -112,7 +112,7 @@ class BrownConrady(Lens):
         return above, 1.0 + square * (self.k4 + square * (self.k5 + square * self.k6))
 
     def _growth(self, square: Floats) -> Floats:
-        """Derivative by r of r times the radial factor."""
+        """Derivative of r times the radial factor with respect to r."""
         above, below = self._sums(square)
         up = square * (self.k1 + square * (2.0 * self.k2 + square * 3.0 * self.k3))
         down = square * (self.k4 + square * (2.0 * self.k5 + square * 3.0 * self.k6))
@@ -139,7 +139,7 @@ class KannalaBrandt(Lens):
         )
 
     def slope(self, theta: Floats) -> Floats:
-        """Its derivative."""
+        """Derivative of `radius`."""
         s = theta * theta
         k = 3.0 * self.k1, 5.0 * self.k2, 7.0 * self.k3, 9.0 * self.k4
         return np.asarray(1.0 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3]))))
@@ -149,7 +149,7 @@ class KannalaBrandt(Lens):
 class FTheta(Lens):
     """``radius = k1 theta + k2 theta^2 + ... + k6 theta^6`` [px].
 
-    `fx` and `fy` scale it, as a rule by 1.
+    `fx` and `fy` scale the radius; they are usually 1.
     """
 
     model: ClassVar[str] = "f-theta"
@@ -167,7 +167,7 @@ class FTheta(Lens):
         return np.asarray(np.polyval([*self._falling, 0.0], theta))
 
     def slope(self, theta: Floats) -> Floats:
-        """Its derivative."""
+        """Derivative of `radius`."""
         falling = [n * k for n, k in zip(range(6, 0, -1), self._falling, strict=True)]
         return np.asarray(np.polyval(falling, theta))
 

@@ -1,4 +1,4 @@
-"""A camera's intrinsics: its picture, its lens, and how far it sees."""
+"""A camera's intrinsics: picture, lens and range."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FARTHEST = Number(0.0, above=True, cap=1e9, unit="m", noun="length", infinite=Tr
 
 @dataclass(frozen=True, eq=False)
 class Camera(SensorModel):
-    """Intrinsics of a camera: an ideal pinhole (eq. 3) told by its field of view, or any `Lens`.
+    """Intrinsics of a camera: an ideal pinhole (eq. 3) with a field of view, or any `Lens`.
 
     Parameters
     ----------
@@ -35,18 +35,18 @@ class Camera(SensorModel):
         Active resolution [px].
     hfov : float, optional
         Horizontal field of view [rad] of a pinhole with square pixels and a centred principal
-        point, below 180 degrees; as a file's degrees give it back. With a lens it is worked out:
-        the angle between the ends of the row through the principal point.
+        point, below 180 degrees; stored as a file in degrees gives it back. With a lens it is
+        computed: the angle between the ends of the row through the principal point.
     lens : Lens, optional
-        In place of `hfov`. Its `edge` is set for this picture.
+        Instead of `hfov`. The edge of its field is set for this picture.
     min_range, max_range : float
-        A voxel whose centre is nearer or farther is not seen [m].
+        A voxel with a centre nearer or farther is not visible [m].
 
     Raises
     ------
     InputError
-        When the name, the resolution, the field of view, a range or the lens is not possible: one
-        that cannot be inverted in all of the picture, or has its principal point outside.
+        When the name, the resolution, the field of view, a range or the lens is not possible. A
+        lens must be invertible in all of the picture, with its principal point inside.
     """
 
     kind: ClassVar[str] = "camera"
@@ -88,7 +88,7 @@ class Camera(SensorModel):
 
     @cached_property
     def projection(self) -> Lens:
-        """The lens; of an ideal camera the pinhole of its field of view."""
+        """The lens; for an ideal camera, the pinhole with its field of view."""
         if self.lens is not None:
             return self.lens
         f = self.width / (2.0 * math.tan(self.hfov / 2.0))
@@ -108,14 +108,14 @@ class Camera(SensorModel):
         return self._across((self.lens.cx, self.lens.cx), (0.0, self.height))
 
     def outline(self, places: int = 16) -> NDArray[np.float64]:
-        """(4 places, 3) unit directions, forward, left, up, round what the picture shows.
+        """(4 places, 3) unit directions, forward, left, up, on the border of the view.
 
         From the upper left corner clockwise, as the camera sees it.
         """
         return field_outline(self.projection, self.width, self.height, places)
 
     def _across(self, right: tuple[float, float], down: tuple[float, float]) -> float:
-        """Sum of the angles from the axis to two places of the picture [rad]; or its edge."""
+        """Sum of the angles from the axis to two image positions [rad], each at most the edge."""
         depth = self.projection.unproject(np.array(right), np.array(down))[:, 0]
         angles = np.where(np.isnan(depth), self.projection.edge, np.arccos(np.clip(depth, -1, 1)))
         return float(angles.sum())

@@ -1,11 +1,11 @@
 """The measurement of objects by a camera, by definition: the visible area of each box's image.
 
-The visible share is that of rays through a fixed lattice over the image. Over the upright rectangle
-that holds a box's image lie RAYS places, a Fibonacci lattice: no two are at the same height or side
-by side, so an edge that cuts the image, however it runs, has the right share of them on each side
-to a hundredth or two. The rays through them that meet the box decide. None may: of a box as thin as
-a wire, or one that reaches into a fisheye's field by a sliver. Then rays to places on its sides
-decide, those that are in the picture and in the field.
+Rays through a fixed lattice over the image give the visible share. The bounding rectangle of a
+box's image has RAYS points in a Fibonacci lattice. No two of them have the same height or the same
+horizontal position. So an edge that cuts the image at any angle has the right share of the points
+on each side, within one or two hundredths. The rays through these points that hit the box decide.
+Sometimes no ray hits: the box is as thin as a wire, or only a sliver of it is in a fisheye's field.
+Then rays to points on the box's sides decide, if these are in the picture and in the field.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).
 
 @dataclass(frozen=True, slots=True)
 class BoxRays:
-    """Rays from a camera that meet boxes, (R,) each.
+    """Rays from a camera that hit boxes, (R,) each.
 
-    `item` the box, by its rank among those asked for; `directions` (R, 3) unit, ground
-    frame; `distance` to the box [m].
+    `item` is the box, by its position in the request; `directions` (R, 3) are unit vectors in the
+    ground frame; `distance` is the distance to the box [m].
     """
 
     item: Ints
@@ -55,7 +55,7 @@ class BoxRays:
 def rays_to_boxes(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, images: BoxImages, which: Ints
 ) -> BoxRays:
-    """Return the rays through the images of boxes `which` (P,) that meet them."""
+    """Return the rays through the images of boxes `which` (P,) that hit these boxes."""
     found = list(_met(camera, axes, boxes, images, which))
     if not found:
         return BoxRays(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros(0))
@@ -63,7 +63,7 @@ def rays_to_boxes(
 
 
 def visible_share(rays: BoxRays, hidden: Flags, count: int) -> Floats:
-    """(P,) share of each box's rays that nothing hides; 1 of a box that none of them meets."""
+    """(P,) visible share of each box's rays; 1 for a box that no ray hits."""
     whole = np.bincount(rays.item, minlength=count)
     unseen = np.bincount(rays.item[hidden], minlength=count)
     return np.asarray((whole - unseen + (whole == 0)) / np.maximum(whole, 1))
@@ -91,7 +91,7 @@ def _met(
 def _to_sides(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, rank: Ints
 ) -> tuple[Ints, Floats, Floats]:
-    """Rays to places on the sides that look at the camera, or to the one nearest to its view."""
+    """Rays to points on the sides that face the camera; if none is in view, to the nearest one."""
     sides, towards = [], []
     for axis in range(3):
         places = face_points(boxes, which, axis, SIDE_PLACES)
@@ -107,7 +107,7 @@ def _to_sides(
 
 
 def _beyond_view(camera: Camera, points: Floats) -> Floats:
-    """How far points (..., 3) along the camera's axes are outside what it shows [px]; 0 inside."""
+    """Distance of points (..., 3), camera's axes, from the camera's view [px]; 0 inside."""
     lens, (depth, left, up) = camera.projection, np.moveaxis(points, -1, 0)
     theta = np.arctan2(np.hypot(left, up), depth)
     inside = theta < (np.pi / 2.0 if lens.is_straight else lens.edge)
@@ -119,7 +119,7 @@ def _beyond_view(camera: Camera, points: Floats) -> Floats:
 
 
 def _through(camera: Camera, axes: Floats, places: Floats) -> tuple[Floats, Ints]:
-    """Unit directions, ground frame, through places (P, 2) of the picture, and of which places."""
+    """Unit directions, ground frame, through positions (P, 2) in the picture, and their indices."""
     lens, (x, y) = camera.projection, places.T
     if not lens.is_straight:
         rays = lens.unproject(x, y)
@@ -132,7 +132,7 @@ def _through(camera: Camera, axes: Floats, places: Floats) -> tuple[Floats, Ints
 def count_object_pixels(
     sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
 ) -> Floats:
-    """(N,) pixels of each object's image that are in the picture and hidden by nothing."""
+    """(N,) pixels of each object's image that are in the picture and not occluded."""
     camera, axes = cast(Camera, sensor.model), axes_of(sensor.pose)
     boxes = PlacedBoxes.of(objects, sensor.pose.position)
     images = box_images(camera, axes, boxes)
@@ -154,7 +154,7 @@ def count_object_pixels(
 
 @dataclass(frozen=True, slots=True)
 class Rivals:
-    """Boxes that may stand before some boxes (P,): box k's are `count[k]` from `first[k]` on."""
+    """Boxes that may hide boxes (P,): for box k, `count[k]` of `other` from `first[k]` on."""
 
     first: Ints
     count: Ints
@@ -162,7 +162,7 @@ class Rivals:
 
     @classmethod
     def of(cls, scenes: Ints, which: Ints) -> Rivals:
-        """Take all others of their scenes."""
+        """Return all other boxes of the same scenes."""
         order = np.argsort(scenes, kind="stable")
         first = np.searchsorted(scenes[order], scenes[which], "left")
         count = np.searchsorted(scenes[order], scenes[which], "right") - first
@@ -171,17 +171,17 @@ class Rivals:
         return rivals.some(other != which[rivals.ranks()])
 
     def ranks(self) -> Ints:
-        """(R,) whose rival each is."""
+        """(R,) the box that each entry may hide."""
         return np.repeat(np.arange(len(self.count)), self.count)
 
     def some(self, kept: Flags) -> Rivals:
-        """Return those of flags (R,)."""
+        """Return the flagged entries (R,)."""
         count = np.bincount(self.ranks()[kept], minlength=len(self.count))
         return Rivals(np.cumsum(count) - count, count, self.other[kept])
 
 
 def behind_others(boxes: PlacedBoxes, rivals: Rivals, rays: BoxRays) -> Flags:
-    """Whether rays enter a rival of their box before it; both count the boxes alike."""
+    """Whether rays enter another box of `rivals` before their own; boxes have the same indices."""
     hidden = np.zeros(len(rays.item), bool)
     first, count = rivals.first[rays.item], rivals.count[rays.item]
     for rank in range(int(count.max(initial=0))):

@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 
 def picture_rays(sensor: Sensor, most: int) -> Floats:
-    """(R, 3) unit directions, ground frame, through an even raster of at most `most` pixels."""
+    """(R, 3) unit directions, ground frame, through a regular raster of at most `most` pixels."""
     camera = cast(Camera, sensor.model)
     across, down = _raster(camera, most)
     u = (np.arange(across) + 0.5) / across - 0.5
@@ -36,14 +36,14 @@ def picture_rays(sensor: Sensor, most: int) -> Floats:
 
 
 def _raster(camera: Camera, most: int) -> tuple[int, int]:
-    """Columns and rows of squares, so many at most and never more than pixels."""
+    """Columns and rows of a raster of squares: at most `most` squares, no more than pixels."""
     size = max(1.0, math.sqrt(camera.width * camera.height / most))
     across = min(max(1, math.floor(camera.width / size)), most)
     return across, max(1, min(math.floor(camera.height / size), most // across))
 
 
 def picture_patch(camera: Camera, step: float) -> ViewPatch:
-    """Return what a picture shows, in triangles of about `step` [rad]."""
+    """Return the view of a camera as triangles of about `step` [rad]."""
     widest = max(camera.hfov, camera.vfov)
     outline = camera.outline(max(math.ceil(widest / step), 2))
     angle = np.arccos(np.clip(outline[:, 0], -1.0, 1.0))
@@ -63,8 +63,8 @@ PICTURE_RAYS = 16_384
 """Places of the picture that are looked at: a share is good to about a thousandth."""
 
 
-def hidden_places(sensor: Sensor, vehicle: Vehicle | None) -> Occlusion:
-    """Count places spread evenly over a picture, those that show the vehicle, and those by part."""
+def picture_occlusion(sensor: Sensor, vehicle: Vehicle | None) -> Occlusion:
+    """Count evenly spread positions of a picture: all, those on the vehicle, these by part."""
     rays = picture_rays(sensor, PICTURE_RAYS)
     if vehicle is None:
         return Occlusion(len(rays))
@@ -81,7 +81,7 @@ RAYS_AT_ONCE = 1 << 19
 
 
 def picture_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
-    """Ask every pixel by the ray through its middle, some rows at a time."""
+    """Cast a ray through the middle of every pixel, some rows at a time."""
     camera = cast(Camera, sensor.model)
     require_mask_size(sensor.name, camera.width * camera.height)
     found = np.full((camera.height, camera.width), FREE, np.int32)
@@ -117,13 +117,13 @@ BORDER = 1.05
 
 
 class PictureBins:
-    """Bins of a picture, CELLS by CELLS, that a triangle may touch.
+    """Bins of a picture, CELLS by CELLS, with a flag where a triangle of the vehicle may be.
 
     Parameters
     ----------
     camera : Camera
     axes : (3, 3) float
-        Rotation from the camera's frame to the ground frame (`ties.axes_of`).
+        Rotation from the camera's frame to the ground frame (`tie_rules.axes_of`).
     triangles : (F, 3, 3) float
         Corners relative to the camera, ground axes [m].
     """
@@ -147,14 +147,14 @@ class PictureBins:
 
     @property
     def extent(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Least and greatest left / depth, and up / depth, of the bins that may be touched."""
+        """Minimum and maximum of left / depth, and of up / depth, of the flagged bins."""
         hit = self._hit.reshape(CELLS, CELLS)
         ends = (np.flatnonzero(hit.any(axis=axis))[[0, -1]] for axis in (1, 0))
         (i0, i1), (j0, j1) = ((a * 2.0 / CELLS - 1.0, (b + 1) * 2.0 / CELLS - 1.0) for a, b in ends)
         return (i0 * self._wide, i1 * self._wide), (j0 * self._high, j1 * self._high)
 
     def may_hide(self, depth: Floats, left: Floats, up: Floats) -> NDArray[np.bool_]:
-        """Whether the vehicle may stand in the way of points in front of the camera, each (V,)."""
+        """Whether the vehicle may hide points in front of the camera, each (V,)."""
         u = left / (depth * self._wide)
         v = up / (depth * self._high)
         bins = self._bin(u) * CELLS + self._bin(v)
@@ -162,9 +162,9 @@ class PictureBins:
         return self._hit[bins] | outside
 
     def may_hide_in(self, low: Floats, high: Floats) -> NDArray[np.bool_]:
-        """Whether the vehicle may show in upright rectangles of the picture, corners (V, 2) [px].
+        """Whether the vehicle may be visible in rectangles of the picture, corners (V, 2) [px].
 
-        Right and down; False of those without places.
+        Corners are (right, down); False for an empty rectangle.
         """
         shown = (low <= high).all(axis=1)
         ends = np.where(shown[:, None], low, 0.0), np.where(shown[:, None], high, 0.0)
@@ -185,9 +185,9 @@ class PictureBins:
 
 
 def _bins(depth: Floats, u: Floats, v: Floats) -> tuple[Extent, Extent]:
-    """First and last bin along u and v of triangles, of corners (3, F), that may show in the map.
+    """First and last bin along u and v of triangles with corners (3, F).
 
-    Never fewer bins than a triangle touches.
+    Triangles outside the picture are left out. The range has every bin that a triangle touches.
     """
     index = np.flatnonzero(_may_be_visible(depth, u, v))
     depth = depth[:, index]
@@ -197,7 +197,7 @@ def _bins(depth: Floats, u: Floats, v: Floats) -> tuple[Extent, Extent]:
 
 
 def _may_be_visible(depth: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
-    """Whether no side of the map's pyramid has all three corners (3, F) outside."""
+    """Whether triangles (3, F) may be in the picture: no side has all three corners outside."""
     seen: NDArray[np.bool_] = corner_max(depth) > 0.0
     for w in (u, v):
         seen &= (corner_min(w - depth) <= 0.0) & (corner_max(w + depth) >= 0.0)

@@ -1,9 +1,9 @@
 """Pixel area of a cube's image, clipped to the image: exact, and vectorised over voxels.
 
-The image of a cube is the union of its visible faces, at most three, which do not overlap; so its
-area is the sum of theirs. The part of a face inside the image is found without clipping polygons:
-by Green's theorem the area is the sum over the outline's edges of the integral of y dx with x and
-y clamped to the image, and each edge's integral has a closed form.
+The image of a cube is the union of its visible faces. There are at most three, and they do not
+overlap, so the area of the cube is the sum of their areas. Polygons need not be clipped: by Green's
+theorem the area of a face inside the picture is the sum over its edges of the integral of y dx,
+with x and y clamped to the picture. The integral of each edge has a closed form.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ def clipped_pixel_area(camera: Camera, axes: Floats, offsets: Floats, side: floa
     ----------
     camera : Camera
     axes : (3, 3) float
-        Rotation from the camera's frame to the ground frame (`ties.axes_of`).
+        Rotation from the camera's frame to the ground frame (`tie_rules.axes_of`).
     offsets : (V, 3) float
-        The cubes' centres from the camera, ground axes (`ties.offsets_of`) [m].
+        The cubes' centres from the camera, ground axes (`tie_rules.offsets_of`) [m].
     side : float
     """
     depth, left, up = in_sensor_frame(axes, offsets)
@@ -47,7 +47,7 @@ def clipped_pixel_area(camera: Camera, axes: Floats, offsets: Floats, side: floa
 
 
 def in_sensor_frame(axes: Floats, offsets: Floats) -> SensorAxes:
-    """Offsets (V, 3) along ground axes as the camera sees them."""
+    """Convert offsets (V, 3) from the ground axes to the camera's axes."""
     x, y, z = (offsets[:, k] for k in range(3))
     depth, left, up = (x * a + y * b + z * c for a, b, c in axes.T)
     return depth, left, up
@@ -62,7 +62,7 @@ def frustum_distance(camera: Camera, depth: Floats, left: Floats, up: Floats) ->
 
 
 def _inside(depth: Floats, aside: Floats, focal: float, room: tuple[float, float]) -> Floats:
-    """Distance to the nearer of two sides, which are so many pixels from the axis."""
+    """Distance to the nearer of two sides, which are `room` [px] from the axis."""
     this, other = room
     if this == other:
         return np.asarray((this * depth - focal * np.abs(aside)) / np.sqrt(this**2 + focal**2))
@@ -73,7 +73,7 @@ def _inside(depth: Floats, aside: Floats, focal: float, room: tuple[float, float
 def in_view(
     camera: Camera, depth: Floats, left: Floats, up: Floats, side: float
 ) -> NDArray[np.bool_]:
-    """Whether a cube may touch the image; never false for one that does."""
+    """Whether cubes may touch the picture; true for every cube that does."""
     radius = side * np.sqrt(3.0) / 2.0
     return (depth > 0.0) & (frustum_distance(camera, depth, left, up) > -radius)
 
@@ -83,7 +83,7 @@ def _area_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) ->
     reach = half * np.abs(axes[:, 0]).sum() + IN_FRONT * side
     depth, left, up = in_sensor_frame(axes, offsets)
     area = np.zeros(len(offsets))
-    for k in range(3):  # row k of the axes: how ground axis k shows in depth, left, up
+    for k in range(3):  # row k of the axes: depth, left and up of ground axis k
         toward = -np.sign(offsets[:, k]) * half  # the face on the camera's side
         face = (depth + toward * axes[k, 0], left + toward * axes[k, 1], up + toward * axes[k, 2])
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -95,7 +95,7 @@ def _area_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) ->
 
 
 def _project(camera: Camera, face: SensorAxes, corner: Floats) -> tuple[Floats, Floats]:
-    """Image position [px], right and down, of the faces' corner that is (3,) from their centres."""
+    """Image position [px], right and down, of the faces' corner at (3,) from their centres."""
     depth, left, up = (center + along for center, along in zip(face, corner, strict=True))
     lens, safe = camera.projection, np.where(depth > 0.0, depth, 1.0)
     scale = lens.fx / safe
@@ -120,7 +120,7 @@ def clamped_integral(
     xa, xb = np.clip(x0, 0.0, width), np.clip(x1, 0.0, width)
     ya, yb = y0 + slope * (xa - x0), y0 + slope * (xb - x0)
     ca, cb = np.clip(ya, 0.0, height), np.clip(yb, 0.0, height)
-    # Between ya and yb the clamped line is a ramp with level ends: weigh each by its share of y.
+    # Between ya and yb the clamped line is a ramp with level ends, each weighted by its share of y.
     rise = yb - ya
     flat = np.abs(rise) < 1e-12
     steep = np.where(flat, 1.0, rise)

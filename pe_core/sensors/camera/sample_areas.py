@@ -1,11 +1,11 @@
 """Pixel areas of sampled voxels: a closed form where it is accurate, the exact area elsewhere.
 
-Seen from afar a face is a small flat patch: its image has the area ``f^2 |n . r| A / depth^3`` with
-n its normal, r the way to its centre and A its area. Over the faces of a cube of side s at r that
-makes ``f^2 s^2 (a + 3 s / 2) / (depth^3 - depth s^2 / 2)``, where a is the sum over the axes of
-``max(|r_k| - s / 2, 0)``: right to first order in s / depth, and to second a mean over directions.
-It misses the clipping at the image's border; voxels there, or nearer than NEAR_SIDES sides, get the
-exact area instead.
+A distant face is a small flat patch. Its image has the area ``f^2 |n . r| A / depth^3``, with its
+normal n, its area A and the vector r from the camera to its centre. The sum over the faces of a
+cube of side s at r is ``f^2 s^2 (a + 3 s / 2) / (depth^3 - depth s^2 / 2)``, where a is the sum
+over the axes of ``max(|r_k| - s / 2, 0)``. The first order in s / depth is exact; the second is a
+mean over directions. The closed form does not clip at the picture's border: voxels there, or nearer
+than NEAR_SIDES sides, get the exact area.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ most."""
 def pixel_areas(
     camera: Camera, pose: Pose, centers: Floats, side: float, seen: VisibleMesh | None
 ) -> Floats:
-    """(V,) pixels covered by each voxel; 0 where the vehicle `seen` hides its centre.
+    """(V,) pixels covered by each voxel; 0 where the vehicle hides its centre.
 
     Parameters
     ----------
@@ -92,9 +92,9 @@ ROOM_PX = 1.0
 
 
 class Sorted(NamedTuple):
-    """Of some voxels: which the closed form is good for, which may be on the border, and areas.
+    """Classified voxels: accurate in closed form (`plain`), or perhaps on the border (`edge`).
 
-    The areas are those of the closed form.
+    `area` are the areas of the closed form.
     """
 
     plain: Mask
@@ -103,7 +103,7 @@ class Sorted(NamedTuple):
 
 
 class Sorter:
-    """Sorts voxels by what a camera sees of them: nothing, all, or it has to be looked at."""
+    """Classifies voxels: out of view, accurate in closed form, or to be measured exactly."""
 
     def __init__(self, camera: Camera, side: float) -> None:
         lens = camera.projection
@@ -113,7 +113,7 @@ class Sorter:
         self._cut = self.lens.outer >= lens.edge
 
     def sort(self, depth: Array, left: Array, up: Array, distance: Array, away: Array) -> Sorted:
-        """Sort voxels by their centres as the camera sees them; `away` is a of the closed form."""
+        """Classify voxels by their centres, camera's axes; `away` is a of the closed form."""
         side = np.float32(self._side)
         far = distance > np.float32(NEAR * self._side)
         per = np.float32(1.0) / np.maximum(distance, side)
@@ -130,7 +130,7 @@ class Sorter:
         return Sorted(plain, ~plain & ~(out & far), area)
 
     def _room(self, right: Array, down: Array) -> Array:
-        """How far inside the picture places are [px]; below 0 outside."""
+        """Distance of positions from the picture's border [px]; negative outside."""
         wide, high = (np.float32(n / 2.0) for n in self._size)
         return np.minimum(wide - np.abs(right - wide), high - np.abs(down - high))
 
@@ -138,7 +138,7 @@ class Sorter:
 def bent_pixel_areas(
     camera: Camera, pose: Pose, centers: Floats, side: float, seen: VisibleMesh | None
 ) -> Floats:
-    """(V,) pixels covered by each voxel; as `points.pixel_areas`, through a lens that bends."""
+    """(V,) pixels covered by each voxel, as `pixel_areas`, through a lens with distortion."""
     axes, offsets = axes_of(pose), offsets_of(centers, pose.position, side)
     distance = np.sqrt(dot(offsets, offsets))
     away = np.maximum(np.abs(offsets) - side / 2.0, 0.0).sum(axis=1)
@@ -153,7 +153,7 @@ def bent_pixel_areas(
 
 
 def edge_areas(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:
-    """Areas (V,) by the definition, with few pieces where that is enough."""
+    """Areas (V,) by the definition; distant cubes have fewer pieces an edge."""
     area = np.empty(len(offsets))
     far = dot(offsets, offsets) > (NEAR * side) ** 2
     area[far] = bent_pixel_area(camera, axes, offsets[far], side, FAR_PIECES)

@@ -59,7 +59,7 @@ def read_lens(name: str, table: Mapping[str, Any]) -> Lens:
     Raises
     ------
     InputError
-        When a number is missing or impossible, or there is no such model.
+        When a number is missing or not possible, or there is no such model.
     """
     own = table.get("distortion", {})
     if not isinstance(own, Mapping):
@@ -89,7 +89,7 @@ def lens_table(lens: Lens) -> dict[str, Any]:
 
 
 def _focal_lengths(name: str, table: Mapping[str, Any], lens: type[Lens]) -> tuple[float, float]:
-    """`fx` and `fy`, which is `fx` unless told; of an f-theta lens both are 1 unless told."""
+    """Focal lengths: `fy` defaults to `fx`; both default to 1 for an f-theta lens."""
     fx = table.get("fx", 1.0 if lens is FTheta else None)
     return FOCAL.checked(name, "fx", fx), FOCAL.checked(name, "fy", table.get("fy", fx))
 

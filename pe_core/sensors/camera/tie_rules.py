@@ -1,16 +1,18 @@
-"""Tie rules of cameras: what a camera sees where otherwise rounding errors would decide.
+"""Tie rules of cameras: they decide where rounding errors would decide otherwise.
 
-Ties are common: cameras are placed at round numbers and angles, and vehicles have round dimensions.
-Then corners of voxels lie in the camera's plane, centres on the vehicle's surface, and rays to
-centres run exactly along its edges. The definition and all kernels follow the same rules, so that
-they agree wherever the origin of the ground frame is:
+Ties are common: designers put cameras at round numbers and angles, and vehicles have round
+dimensions. Then corners of voxels lie in the camera's plane, centres lie on the vehicle's surface,
+and rays to centres run exactly along its edges. The definition and all kernels follow the same
+rules. So they agree wherever the origin of the ground frame is:
 
-- The camera's axes are the same bits for angles a full turn apart, and zeros of them are zeros.
-- Where a voxel lies from the camera is rounded in voxels, which makes round numbers round again.
-- All corners of a voxel have to be IN_FRONT of the camera; one in the camera's plane is behind.
-- A voxel is looked at by a ray to its centre, moved a little nearer to the camera along each axis.
-  So a centre on a surface that the camera sees is in view, and where a ray would run along an edge
-  the nudge decides, not a rounding.
+- The camera's axes have the same bits for angles a full turn apart; components that are
+  mathematically zero are exactly zero.
+- The position of a voxel relative to the camera is rounded, in voxels: round numbers stay round.
+- All corners of a voxel have to be IN_FRONT of the camera. A corner in the camera's plane counts as
+  behind it.
+- The ray that tests a voxel aims at its centre, moved a little nearer to the camera along each
+  axis. So a centre on a visible surface is visible. Where a ray would run along an edge, this
+  nudge decides, not rounding.
 """
 
 from __future__ import annotations
@@ -49,14 +51,14 @@ def axes_of(pose: Pose) -> Floats:
 
 
 def offsets_of(centers: Floats, position: Sequence[float] | float, side: float) -> Floats:
-    """Centres seen from a camera, ground axes [m].
+    """Centres relative to a camera, ground axes [m].
 
-    (V, 3) from a position (3,); or those along one axis, from the position on it.
+    Either (V, 3) relative to a position (3,), or one coordinate of each.
     """
     return np.round((centers - np.asarray(position)) / side, SNAP_DECIMALS) * side
 
 
 def aims_at(offsets: Floats, side: float, nudge: Floats | float = NUDGE) -> Floats:
-    """What rays to voxels at offsets [m] aim at, (V, 3), or along the one axis of `nudge`."""
+    """Points that the rays to voxels at offsets [m] aim at: (V, 3), or one coordinate of each."""
     toward = np.where(offsets < 0.0, side, -side)
     return offsets + toward * nudge

@@ -1,4 +1,4 @@
-"""Voxels of a space that the vehicle surely occludes for a camera, and those that need a ray.
+"""Voxels of a space that the vehicle surely hides from a camera, and voxels that need a ray.
 
 The voxels of an x-plane lie in few bins of directions. The bin of a row or a height is computed
 once, and each voxel is compared with the two depths of its bin (`occlusion_map`).
@@ -15,17 +15,20 @@ from numpy.typing import NDArray
 from ...geometry.bins import FACES, CubeFace, Raster
 from ...geometry.culling import Ends, FaceLook
 from ...geometry.indexing import count_up
-from ...geometry.occlusion_map import Cover
+from ...geometry.occlusion_map import OcclusionMap
 from ...scene.vehicle import VisibleMesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-def places_of(
+def positions_of(
     axes: list[Floats], index: Ints, shape: tuple[int, ...], first: tuple[int, int]
 ) -> Floats:
-    """Places (V, 3), told axis by axis, of voxels numbered from a plane and a row on."""
+    """Positions (V, 3) of voxels from coordinates along each axis.
+
+    `index` (V,) are flat indices in an array of `shape`, which begins at the plane and row `first`.
+    """
     column, k = np.divmod(index, shape[2])
     i, j = np.divmod(column, shape[1])
     x, y, z = axes
@@ -33,7 +36,7 @@ def places_of(
 
 
 def span_of(mask: NDArray[np.bool_]) -> slice:
-    """From the first to the last that is true."""
+    """The range from the first to the last True element."""
     seen = np.flatnonzero(mask)
     return slice(int(seen[0]), int(seen[-1]) + 1) if len(seen) else slice(0, 0)
 
@@ -41,12 +44,12 @@ def span_of(mask: NDArray[np.bool_]) -> slice:
 Mask = NDArray[np.bool_]
 
 MAX_BINS, MIN_BINS = 512, 64
-"""Along a side of a face."""
+"""Bins along a side of a face."""
 VOXELS_A_BIN = 256
-"""What a bin should be worth in voxels of the space."""
+"""Number of the space's voxels for each bin."""
 ALIGNED = 1e-8
-"""A ray that passes this near (in u and v) to a corner of a triangle is cast: along it rounding
-decides which of the triangles round the corner are met, and it may be none."""
+"""A ray that passes a triangle's corner within this distance (in u and v) is cast: rounding decides
+which of the triangles at the corner it hits, and it may hit none."""
 
 
 EVERYWHERE = ((-1.0, 1.0), (-1.0, 1.0))
@@ -54,54 +57,54 @@ EVERYWHERE = ((-1.0, 1.0), (-1.0, 1.0))
 
 @dataclass(frozen=True, slots=True)
 class OcclusionFlags:
-    """Flags of voxels (..., rows, nz): surely occluded, and unsure (a ray has to decide)."""
+    """Flags of voxels (..., rows, nz): surely hidden, or unsure (a ray has to decide)."""
 
     hidden: Mask
     unsure: Mask
 
     @classmethod
     def none(cls, shape: tuple[int, ...]) -> OcclusionFlags:
-        """Nothing is hidden."""
+        """Return flags that are all False."""
         return cls(np.zeros(shape, bool), np.zeros(shape, bool))
 
     def __getitem__(self, some: int | slice | tuple[slice, slice]) -> OcclusionFlags:
         """Return a view of some of the voxels."""
         return OcclusionFlags(self.hidden[some], self.unsure[some])
 
-    def doubt(self, voxels: slice | Mask | tuple[Ints, Ints]) -> None:
-        """Have some voxels asked about."""
+    def mark_unsure(self, voxels: slice | Mask | tuple[Ints, Ints]) -> None:
+        """Flag voxels as unsure."""
         self.hidden[voxels] = False
         self.unsure[voxels] = True
 
 
 class VoxelOcclusion:
-    """A vehicle's shadow on the voxels of a space.
+    """Classifies the voxels of a space: hidden by the vehicle, visible, or unsure.
 
     Parameters
     ----------
     offsets : three (n,) float
-        Where the centres of voxels lie along each axis, from the camera, ascending [m].
+        Coordinates of the voxels' centres along each axis, from the camera, ascending [m].
     seen : VisibleMesh
         The vehicle from the camera's position.
     corners : (4, 3) float
-        Directions to the corners of the picture, or of a somewhat larger one, ground axes.
+        Directions to the corners of the picture, or of a larger one, ground axes.
     """
 
     def __init__(self, offsets: list[Floats], seen: VisibleMesh, corners: Floats) -> None:
         self._offsets, self._seen, self._corners = offsets, seen, corners
         self._highest = float(np.abs(offsets[2]).max())
         self._faces: dict[CubeFace, FaceOcclusion] = {}
-        self._making = Lock()
+        self._lock = Lock()
 
-    def judge(self, planes: slice, rows: slice) -> OcclusionFlags:
-        """Judge the voxels of planes across x, in some rows (y)."""
+    def classify(self, planes: slice, rows: slice) -> OcclusionFlags:
+        """Classify the voxels of some planes (x) and rows (y)."""
         x, y = self._offsets[0][planes], self._offsets[1][rows]
-        shade = OcclusionFlags.none((len(x), len(y), len(self._offsets[2])))
+        flags = OcclusionFlags.none((len(x), len(y), len(self._offsets[2])))
         for number, depth in enumerate(x):
-            self._judge(float(depth), rows, y, shade[number])
-        return shade
+            self._classify_plane(float(depth), rows, y, flags[number])
+        return flags
 
-    def _judge(self, x: float, rows: slice, y: Floats, shade: OcclusionFlags) -> None:
+    def _classify_plane(self, x: float, rows: slice, y: Floats, flags: OcclusionFlags) -> None:
         across = (np.abs(y) <= abs(x)) & (x != 0.0)
         for face, some in (
             (FACES[0 if x > 0.0 else 1], across),
@@ -111,14 +114,14 @@ class VoxelOcclusion:
             run = span(some)
             if run.start < run.stop:
                 first = rows.start + run.start
-                self._face(face).judge(x, slice(first, rows.start + run.stop), shade[run])
-        if abs(x) < self._highest:  # a few voxels over the camera and under it
+                self._face(face).classify(x, slice(first, rows.start + run.stop), flags[run])
+        if abs(x) < self._highest:  # a few voxels above and below the camera
             nearer = np.maximum(np.abs(y), abs(x))[:, None]
-            shade.doubt(np.abs(self._offsets[2]) > nearer)
+            flags.mark_unsure(np.abs(self._offsets[2]) > nearer)
 
     def _face(self, face: CubeFace) -> FaceOcclusion:
-        """One of the four sides; made when a voxel first lies there."""
-        with self._making:  # threads share the planes
+        """Return the occlusion on one of the four sides; made when the first voxel needs it."""
+        with self._lock:  # threads share the planes
             if face not in self._faces:
                 look = FaceLook(self._seen.seen.tree, self._seen.seen.origin, face)
                 kind = AcrossX if face.axes[0] == 0 else AlongX
@@ -127,7 +130,7 @@ class VoxelOcclusion:
 
 
 def _view(corners: Floats, face: CubeFace) -> Ends:
-    """Rectangle of a face that holds the picture; all of it where a corner is behind."""
+    """Rectangle of a face that contains the picture; the whole face where a corner is behind."""
     depth, u, v = face.split(corners.T)
     if depth.min() <= 0.0:
         return EVERYWHERE
@@ -135,18 +138,18 @@ def _view(corners: Floats, face: CubeFace) -> Ends:
     return (float(u.min()), float(u.max())), (float(v.min()), float(v.max()))
 
 
-def _cover(look: FaceLook, ends: Ends, view: Ends, offsets: list[Floats]) -> Cover | None:
-    """Where the mesh shows in the picture, in bins that suit the voxels there."""
+def _cover(look: FaceLook, ends: Ends, view: Ends, offsets: list[Floats]) -> OcclusionMap | None:
+    """Return the occlusion map of the mesh in the picture, with bins for the voxels there."""
     u, v = ((max(a[0], b[0]), min(a[1], b[1])) for a, b in zip(ends, view, strict=True))
     if u[0] >= u[1] or v[0] >= v[1]:
         return None
     voxels = _voxels_within(look.face, (u, v), offsets)
     side = 2 ** int(np.log2(np.sqrt(voxels / VOXELS_A_BIN) + 1.0))
-    return Cover(look, Raster(u, v, int(np.clip(side, MIN_BINS, MAX_BINS))))
+    return OcclusionMap(look, Raster(u, v, int(np.clip(side, MIN_BINS, MAX_BINS))))
 
 
 def _voxels_within(face: CubeFace, ends: Ends, offsets: list[Floats]) -> float:
-    """About how many voxels lie in a rectangle of a face."""
+    """Approximate number of voxels in a rectangle of a face."""
     depth = face.sign * offsets[face.axes[0]]
     depth = depth[depth > 0.0]
     count = np.ones(len(depth))
@@ -158,7 +161,7 @@ def _voxels_within(face: CubeFace, ends: Ends, offsets: list[Floats]) -> float:
 
 
 class FaceOcclusion:
-    """The shadow on voxels that are seen through one side of the cube round the camera."""
+    """The occlusion of voxels in the directions of one side of the cube round the camera."""
 
     def __init__(self, look: FaceLook, view: Ends, offsets: list[Floats]) -> None:
         self._ends, self._offsets = look.ends(), offsets
@@ -166,31 +169,33 @@ class FaceOcclusion:
         if self._cover is not None:
             self._aims, self._heights = self._corners(look)
 
-    def judge(self, x: float, rows: slice, shade: OcclusionFlags) -> None:
-        """Judge a plane's voxels, in rows that all lie on this side; `shade` is theirs."""
+    def classify(self, x: float, rows: slice, flags: OcclusionFlags) -> None:
+        """Classify a plane's voxels in rows on this side; the result is written to `flags`."""
         raise NotImplementedError
 
-    def _in_order(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Of the corners' places on the face: what a row lies at, ascending, and the height's."""
+    def _rows_and_heights(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        """Return the corners' coordinates on the face: that of rows, then that of heights."""
         raise NotImplementedError
 
     def _corners(self, look: FaceLook) -> tuple[Floats, Floats]:
         triangle, corner = look.tree.edges.first.T
         depth, u, v = look.face.split((look.tree.triangles[triangle, corner] - look.origin).T)
         some = (depth > np.abs(u)) & (depth > np.abs(v))
-        aims, heights = self._in_order(u[some] / depth[some], v[some] / depth[some])
+        aims, heights = self._rows_and_heights(u[some] / depth[some], v[some] / depth[some])
         order = np.argsort(aims)
         return aims[order], heights[order]
 
-    def _settle(self, cover: Cover, bins: Ints, depth: Floats, shade: OcclusionFlags) -> None:
+    def _settle(
+        self, cover: OcclusionMap, bins: Ints, depth: Floats, flags: OcclusionFlags
+    ) -> None:
         depth = depth.astype(np.float32)
-        np.greater(depth, cover.far[bins], out=shade.hidden)
-        np.greater_equal(depth, cover.near[bins], out=shade.unsure)
-        np.greater(shade.unsure, shade.hidden, out=shade.unsure)
+        np.greater(depth, cover.far[bins], out=flags.hidden)
+        np.greater_equal(depth, cover.near[bins], out=flags.unsure)
+        np.greater(flags.unsure, flags.hidden, out=flags.unsure)
 
-    def _doubt_aligned(self, aims: Floats, depths: Floats, shade: OcclusionFlags) -> None:
-        """Doubt voxels in line with a corner, in rows of some aims and depths, (rows,) each."""
-        if not shade.hidden.any():
+    def _mark_aligned(self, aims: Floats, depths: Floats, flags: OcclusionFlags) -> None:
+        """Flag voxels in line with a triangle's corner as unsure; `aims`, `depths` are by row."""
+        if not flags.hidden.any():
             return
         z = self._offsets[2]
         start = np.searchsorted(self._aims, aims - ALIGNED)
@@ -201,66 +206,66 @@ class FaceOcclusion:
         above = np.clip(np.searchsorted(z, height), 1, len(z) - 1) if len(z) > 1 else 0 * row
         k = np.where(height - z[above - 1] < z[above] - height, above - 1, above)
         some = np.abs(z[k] - height) <= ALIGNED * depth
-        shade.doubt((row[some], k[some]))
+        flags.mark_unsure((row[some], k[some]))
 
 
 class AcrossX(FaceOcclusion):
-    """Towards x or against it: a plane lies at one depth, a row of voxels in a row of bins."""
+    """A side across x: a plane has one depth, and a row of voxels is in a row of bins."""
 
-    def judge(self, x: float, rows: slice, shade: OcclusionFlags) -> None:
-        """Look at the bins of rows and of heights."""
+    def classify(self, x: float, rows: slice, flags: OcclusionFlags) -> None:
+        """Compare voxels with the bins of rows and heights."""
         if self._ends is None:
             return
         depth = abs(x)
         u, v = self._offsets[1][rows] / depth, self._offsets[2] / depth
-        shade[_spans(u, v, self._ends)].doubt(slice(None))
+        flags[_spans(u, v, self._ends)].mark_unsure(slice(None))
         if self._cover is None:
             return
         raster = self._cover.raster
         j, k = _spans(u, v, (raster.u, raster.v))
         bins = np.add.outer(raster.rows(u[j]) * raster.count, raster.columns(v[k]))
-        self._settle(self._cover, bins, np.full((1, 1), depth), shade[j, k])
-        self._doubt_aligned(u[j], np.full(len(u[j]), depth), shade[j])
+        self._settle(self._cover, bins, np.full((1, 1), depth), flags[j, k])
+        self._mark_aligned(u[j], np.full(len(u[j]), depth), flags[j])
 
-    def _in_order(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+    def _rows_and_heights(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
         return u, v
 
 
 class AlongX(FaceOcclusion):
-    """Towards y or against it: a row of voxels lies at one depth, in a column of bins."""
+    """A side across y: a row of voxels has one depth, and is in a column of bins."""
 
     def __init__(self, look: FaceLook, view: Ends, offsets: list[Floats]) -> None:
         super().__init__(look, view, offsets)
         _, y, z = offsets
-        u = z / np.where(y == 0.0, 1.0, np.abs(y))[:, None]  # no row beside the camera lies here
+        u = z / np.where(y == 0.0, 1.0, np.abs(y))[:, None]  # y = 0 is not on this side
         if self._ends is not None:
             self._shown = _within(u, self._ends[0])
         if self._cover is not None:
             raster = self._cover.raster
             self._inside, self._bins = _within(u, raster.u), raster.rows(u) * raster.count
 
-    def judge(self, x: float, rows: slice, shade: OcclusionFlags) -> None:
-        """Look at the bins of each row's column."""
+    def classify(self, x: float, rows: slice, flags: OcclusionFlags) -> None:
+        """Compare voxels with the bins of each row's column."""
         if self._ends is None:
             return
         depth = np.abs(self._offsets[1][rows])
         v = x / depth
         j = span(_within(v, self._ends[1]))
-        shade[j].doubt(self._shown[_moved(j, rows.start)])
+        flags[j].mark_unsure(self._shown[_moved(j, rows.start)])
         if self._cover is None:
             return
         raster = self._cover.raster
         j = span(_within(v, raster.v))
-        here, shade = _moved(j, rows.start), shade[j]
-        found = OcclusionFlags.none(shade.hidden.shape)
+        here, flags = _moved(j, rows.start), flags[j]
+        found = OcclusionFlags.none(flags.hidden.shape)
         self._settle(
             self._cover, self._bins[here] + raster.columns(v[j])[:, None], depth[j, None], found
         )
-        for mine, theirs in ((shade.hidden, found.hidden), (shade.unsure, found.unsure)):
+        for mine, theirs in ((flags.hidden, found.hidden), (flags.unsure, found.unsure)):
             np.copyto(mine, theirs, where=self._inside[here])
-        self._doubt_aligned(v[j], depth[j], shade)
+        self._mark_aligned(v[j], depth[j], flags)
 
-    def _in_order(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+    def _rows_and_heights(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
         return v, u
 
 
@@ -278,7 +283,7 @@ def _within(w: Floats, ends: tuple[float, float]) -> Mask:
 
 
 def span(mask: Mask) -> slice:
-    """From the first to the last that is true."""
+    """The range from the first to the last True element."""
     first = int(mask.argmax()) if len(mask) else 0
     if not len(mask) or not mask[first]:
         return slice(0, 0)

@@ -172,7 +172,7 @@ class _Sheet:
         self._owned: list[Ints] = []
 
     def add(self, pairs: _EdgePairs) -> None:
-        """Update the maximum depth of the triangles in their bins, and which middles are covered."""
+        """Update the triangles' maximum depth in their bins, and which middles are covered."""
         mine = np.flatnonzero(pairs.side == self._side)
         bins = pairs.bin[mine]
         np.maximum.at(self._far, bins, pairs.far[mine])

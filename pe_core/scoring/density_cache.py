@@ -55,7 +55,7 @@ def outside_masses(
     Raises
     ------
     InputError
-        When the vehicle fills everything that had any weight.
+        When no weight is left outside the vehicle.
     """
     if tops is None:
         return [float(d.ground.sum()) for d in densities]

@@ -228,7 +228,7 @@ class GridScorer:
     def _weighed(
         self, parts: Sequence[Sequence[Group]], planes: slice, *, coverage: bool
     ) -> Iterator[tuple[Floats, Floats]]:
-        """Yield the entropy and optionally the coverage of parts of a rig, weighted by the prior.
+        """Yield prior-weighted entropy, and coverage if needed, of parts of a rig.
 
         By plane: sums over height (P, 1 or 2, ny, C), and entropies (ny, nz) of the first part.
         """
@@ -244,7 +244,7 @@ class GridScorer:
                     visible = self._planes.seen(groups, i).astype(float)
                     self._over_height(visible, outside, sums[1])
             weighed *= ground
-            assert first is not None  # a rig has a part
+            assert first is not None  # every rig has at least one part
             yield weighed, first
 
     def _reduced(

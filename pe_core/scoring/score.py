@@ -40,7 +40,7 @@ class FoundClass:
         Share of its objects that get at least so many points, by number; empty without LiDARs.
     reach : mapping of str to float
         By direction, the distance up to which a lone object of the class is found with an AP of 0.5
-        [m]: 0 where it is nowhere found, `FARTHEST_M` where AP does not fall below 0.5 again.
+        [m]: 0 where no object is found, `FARTHEST_M` where AP stays at 0.5 or above.
     """
 
     objects: int
@@ -53,7 +53,7 @@ class FoundClass:
     reach: Mapping[str, float]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return it as plain JSON data."""
+        """Return the score as plain JSON data."""
         return {**asdict(self), "points": {str(n): s for n, s in self.points.items()}}
 
 
@@ -66,7 +66,7 @@ class ObjectScore:
     ap, ap_stderr : float
         Expected AP of all classes, by their weights, and its standard error.
     objects, scenes : int
-        How many there are; labelled boxes without traffic have a scene each.
+        Numbers of objects and scenes; without traffic each labelled box has its own scene.
     traffic : bool
         Whether the objects of a scene occlude each other. Reach is always that of a lone object.
     per_class : dict of FoundClass
@@ -81,12 +81,12 @@ class ObjectScore:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> ObjectScore:
-        """Return what `to_dict` has written down."""
+        """Return the score from the data of `to_dict`."""
         per_class = {name: _found(class_data) for name, class_data in data["per_class"].items()}
         return cls(**{**data, "per_class": per_class})
 
     def to_dict(self) -> dict[str, Any]:
-        """Return it as plain JSON data."""
+        """Return the score as plain JSON data."""
         per_class = {name: class_score.to_dict() for name, class_score in self.per_class.items()}
         return {**asdict(self), "per_class": per_class}
 

@@ -39,10 +39,10 @@ def front_summary(chosen: TradeOff) -> str:
     lines = [_line(head, widths)]
     for row, design in zip(rows, chosen.front, strict=True):
         lines += [_line(row, widths), *_placed(design, " " * (sum(widths[:3]) + 6))]
-    return "\n".join([*lines, "", *told(chosen)])
+    return "\n".join([*lines, "", *search_notes(chosen)])
 
 
-def told(chosen: TradeOff) -> Iterator[str]:
+def search_notes(chosen: TradeOff) -> Iterator[str]:
     """Yield sentences about the search: numbers of designs, early stop, infeasible designs."""
     count, searched = len(chosen.designs) + len(chosen.refused), chosen.searched
     more = "of more" if chosen.stopped else "of more, by local search"

@@ -31,7 +31,7 @@ class Parser(argparse.ArgumentParser):
     """A parser whose messages are printable text, and whose printing never fails."""
 
     def error(self, message: str) -> NoReturn:
-        """Say what is wrong in the usage, and exit with status 2."""
+        """Print the usage and the error, and exit with status 2."""
         super().error(one_line(message))
 
     def _print_message(self, message: str, file: Any = None) -> None:
@@ -96,7 +96,7 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
             search = replace(search, **{name: value})
     if getattr(args, "candidates", None) is not None:
         schedule = replace(search.schedule, candidates=args.candidates)
-        method = args.method or SCHEDULED_METHOD  # the one that has candidates
+        method = args.method or SCHEDULED_METHOD  # the only method with candidates
         search = replace(search, schedule=schedule, method=method)
     return replace(study, search=search)
 
@@ -124,7 +124,7 @@ def describe(name: str) -> str:
 
 
 def as_typed(prog: str, argv: Sequence[str]) -> str:
-    """Return a command line as a shell takes it: the program, and what it was given."""
+    """Return a command line quoted for a shell: the program and its arguments."""
     return " ".join([prog, *map(shlex.quote, argv)])
 
 
@@ -148,6 +148,6 @@ def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
     except MemoryError:
         tell("not enough memory: close other programs, or ask for fewer voxels (--grid-samples)")
         return BAD_INPUT
-    except BrokenPipeError as error:  # of a stream that a verb writes to itself
+    except BrokenPipeError as error:  # from a stream that a verb writes to directly
         tell(str(error))
         return BAD_INPUT

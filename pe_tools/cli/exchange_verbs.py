@@ -22,7 +22,7 @@ from .terminal import DONE, Answer, tell
 
 
 def add_rigs_verb(verbs: argparse._SubParsersAction[Any]) -> None:
-    """Add ``rigs``: the list, one of it, or a study of one."""
+    """Add ``rigs``: list known rigs, describe one, or write a study of one."""
     parser = verbs.add_parser("rigs", help="list known rigs, or write one as a study")
     parser.add_argument("name", nargs="?", metavar="NAME", help="a rig's name in the list")
     parser.add_argument("-o", "--output", metavar="STUDY", help="study to write")
@@ -35,7 +35,7 @@ def add_rigs_verb(verbs: argparse._SubParsersAction[Any]) -> None:
 
 
 def show_rigs(args: argparse.Namespace) -> Answer:
-    """List known rigs, tell of one, or write it."""
+    """List known rigs, describe one, or write a study of one."""
     if args.name is None:
         if args.output is not None:
             args.usage_error("expected NAME, a rig to write")
@@ -58,7 +58,7 @@ def write_rig(rig: KnownRig, args: argparse.Namespace) -> str:
 def study_of_rig(
     rig: KnownRig, vehicle: Vehicle | None = None, mesh: str | None = None, *, stretched: bool
 ) -> Study:
-    """Return a known rig as a study: on a vehicle stretched onto it, or as it was published."""
+    """Return a study of a known rig: scaled to a vehicle, or as it was published."""
     return Study(catalog.rig_on(rig, vehicle if stretched else None), vehicle, mesh=mesh)
 
 
@@ -89,7 +89,7 @@ def _described(rig: KnownRig) -> list[str]:
 
 
 def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return rows as lines with their cells below each other."""
+    """Return rows as lines with aligned columns."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     padded = ([cell.ljust(width) for cell, width in zip(row, widths, strict=True)] for row in rows)
     return ["  ".join(cells).rstrip() for cells in padded]
@@ -104,9 +104,10 @@ NO_GUESS = "parts named as wheels, front and rear, to guess the rear axle from"
 def add_export_options(
     parser: argparse.ArgumentParser, *, also_study: bool = False, more: Sequence[str] = ()
 ) -> None:
-    """Add the options of ``export`` to a parser; `also_study`: without a format that is written.
+    """Add the options of ``export`` to a parser.
 
-    `more` names formats of whoever asks.
+    With `also_study`, the default without a format is to write the study. `more` has additional
+    formats of the caller.
     """
     known = [*RIG_FORMATS, *SCENE_OUTPUTS, *more]
     about = f"format: {', '.join(known)}" + (" (default: a study)" if also_study else "")
@@ -165,13 +166,13 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
 
 
 def _refuse_range(args: argparse.Namespace) -> None:
-    """Raise `InputError` for a range where no field of view is drawn."""
+    """Raise `InputError` for a range with a format that has no fields of view."""
     if args.range is not None and args.to not in RANGED:
         raise InputError("--range", "option", f"one of {', '.join(RANGED)}", args.to)
 
 
 def new_study(args: argparse.Namespace) -> tuple[Path, Vehicle | None]:
-    """Return where a study is to be written, if it may be, and its vehicle if it has a mesh."""
+    """Return the path of the new study, after checks, and the vehicle if there is a mesh."""
     output = Path(args.output)
     if output.exists() and not args.replace:
         raise InputError(output, "file", "a new file (or --replace)", "one is there")
@@ -182,7 +183,7 @@ def new_study(args: argparse.Namespace) -> tuple[Path, Vehicle | None]:
 
 
 def import_study(args: argparse.Namespace) -> Answer:
-    """Write a study of a rig that another program has written."""
+    """Write a study of a rig from the files of another program."""
     output, vehicle = new_study(args)
     reference = _reference(args, None, vehicle, args.format or args.file)
     placed = None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
@@ -191,10 +192,10 @@ def import_study(args: argparse.Namespace) -> Answer:
     kept = found.passthrough
     study = Study(found.rig, vehicle, mesh=args.mesh, reference=reference, passthrough=kept)
     save_study(study, output)
-    return "\n".join(_told(found, output)), DONE
+    return "\n".join(_report_lines(found, output)), DONE
 
 
-def _told(found: ImportedRig, output: Path) -> list[str]:
+def _report_lines(found: ImportedRig, output: Path) -> list[str]:
     for line in found.lines:
         tell(line)
     count = len(found.rig)
@@ -204,7 +205,7 @@ def _told(found: ImportedRig, output: Path) -> list[str]:
 def _reference(
     args: argparse.Namespace, known: Reference | None, vehicle: Vehicle | None, asking: str
 ) -> Reference | None:
-    """Return where the axles are: as the options say, or else as the study does."""
+    """Return the axles: from the options, or else from the study."""
     if args.rear_axle is not None:
         return Reference(*args.rear_axle)
     if args.vehicle_info is not None:

@@ -33,7 +33,7 @@ class PostedCheckpoints:
     ----------
     topic, run : str
     known : tuple of EvaluatedRig
-        The journal of an earlier part of the search.
+        Journal of an earlier part of the search.
     """
 
     topic: str
@@ -228,9 +228,7 @@ class DaskWorkers:
         """Return the number of threads of all workers."""
         try:
             return sum(self._client.nthreads().values())
-        except (
-            Exception
-        ):  # whatever a connection breaks with; a scheduler that is gone, `check` tells
+        except Exception:  # any error of the connection; `check` reports a lost scheduler
             return 1
 
     def close(self) -> None:
@@ -253,7 +251,7 @@ def _client_of(address: str) -> Any:
     _hush()
     try:
         return distributed.Client(address, timeout=CONNECT_S, set_as_default=False)
-    except Exception as error:  # of an address that is none, a name or a port that nobody has
+    except Exception as error:  # an invalid address, an unknown name, or a closed port
         told = str(error).splitlines() or [type(error).__name__]
         expected = f"a scheduler that answers within {CONNECT_S:g} s"
         raise InputError(address, "scheduler", expected, told[0]) from None

@@ -1,4 +1,4 @@
-"""`pe explain` and `pe compare`: a score in words, and several studies side by side."""
+"""`pe explain` and `pe compare`: a score described in text, and several studies compared."""
 
 from __future__ import annotations
 
@@ -44,7 +44,10 @@ WIDEST = 24
 
 
 def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
-    """Return rows as lines, a column a study: the best is marked, differences are to the first."""
+    """Return rows as lines with a column for each study.
+
+    The best value is marked; differences refer to the first study.
+    """
     heads = [name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}" for name in names]
     table = [["", *heads]]
     for measure, title in TITLES.items():
@@ -169,7 +172,7 @@ def _figures(study: Study, height: float, class_name: str | None) -> advice.KeyF
 
 
 def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
-    """Return a known rig in place of the first study's, by its name; nothing without one."""
+    """Return the first study with a known rig instead of its own, by name; nothing without one."""
     if key is None:
         return {}
     known, first = catalog.known_rig(key), next(iter(studies.values()))
@@ -180,7 +183,7 @@ def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
 
 
 def named_by_file(paths: list[str]) -> dict[str, str]:
-    """Return study files by short names that tell them apart: of the file, or its folder too."""
+    """Return study files by short, different names: the file's, with its folder's if needed."""
     for depth in (1, 2):
         names = ["/".join(Path(path).with_suffix("").parts[-depth:]) for path in paths]
         if len(set(names)) == len(names):

@@ -38,7 +38,7 @@ def signals_interrupt() -> Iterator[None]:
         for number in _handled():
             if number != signal.SIGINT:
                 before[number] = signal.signal(number, handler)
-    except ValueError:  # not the main thread: someone else handles signals
+    except ValueError:  # not the main thread: the host program handles signals
         pass
     try:
         yield
@@ -83,7 +83,7 @@ def stop_at_first(stop: Callable[[], None]) -> Iterator[Received]:
     try:
         for number in _handled():
             before[number] = signal.signal(number, handler)
-    except ValueError:  # not the main thread: someone else handles signals
+    except ValueError:  # not the main thread: the host program handles signals
         yield received
         return
     try:
@@ -96,11 +96,11 @@ def stop_at_first(stop: Callable[[], None]) -> Iterator[Received]:
 def _handled() -> list[signal.Signals]:
     numbers = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
     ignored = {n for n in numbers if signal.getsignal(n) is signal.SIG_IGN}
-    return [n for n in numbers if n == signal.SIGINT or n not in ignored]  # nohup means it
+    return [n for n in numbers if n == signal.SIGINT or n not in ignored]  # as under nohup
 
 
 def _default(number: signal.Signals) -> Any:
-    """A handler that is not Python's own (inside Blender) cannot be named, and is not restored."""
+    """The default handler: one that is not Python's own (inside Blender) cannot be restored."""
     return signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
 
 

@@ -23,7 +23,7 @@ class Display(Protocol):
         """Show the progress; `new_stage` is True at the first call for a stage."""
 
     def clear(self) -> None:
-        """Leave no half line behind."""
+        """Remove an incomplete line."""
 
 
 class Reporter:
@@ -44,7 +44,7 @@ class Reporter:
         self._display.show(progress, new_stage)
 
     def clear(self) -> None:
-        """Leave no half line behind."""
+        """Remove an incomplete line."""
         self._display.clear()
 
 
@@ -90,7 +90,7 @@ class LogLines:
 
     def show(self, progress: Progress, new_stage: bool) -> None:
         """Write a line."""
-        self._stream.write(f"{_words(progress)}\n")
+        self._stream.write(f"{_text(progress)}\n")
 
     def clear(self) -> None:
         """Lines stay."""
@@ -104,10 +104,10 @@ class OneLine:
 
     def show(self, progress: Progress, new_stage: bool) -> None:
         """Overwrite the line."""
-        self._stream.write(f"\r\x1b[K{_words(progress)}")
+        self._stream.write(f"\r\x1b[K{_text(progress)}")
 
     def clear(self) -> None:
-        """Take it away."""
+        """Remove the line."""
         self._stream.write("\r\x1b[K")
 
 
@@ -115,7 +115,7 @@ class Bar:
     """A bar with the time gone and the time left, for a terminal, by tqdm."""
 
     def __init__(self, stream: Sure, tqdm: Any) -> None:
-        tqdm.tqdm.monitor_interval = 0  # no thread of its own: we tell it often enough
+        tqdm.tqdm.monitor_interval = 0  # no monitor thread: progress is reported often enough
         self._tqdm, self._stream = tqdm, stream
         self._bar: Any = None
 
@@ -134,12 +134,12 @@ class Bar:
         self._bar.refresh()
 
     def clear(self) -> None:
-        """Take it away."""
+        """Remove the line."""
         if self._bar is not None:
             self._bar.close()
             self._bar = None
 
 
-def _words(progress: Progress) -> str:
+def _text(progress: Progress) -> str:
     entropy = "" if progress.entropy is None else f"  entropy {progress.entropy:.4f}"
     return f"{progress.stage} {progress.fraction:4.0%}{entropy}"

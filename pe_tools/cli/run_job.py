@@ -232,7 +232,7 @@ def print_answer(text: str, status: int, out: TextIO | None) -> int:
     encoding = getattr(out, "encoding", None)
     shown = printable(text.removesuffix("\n"), encoding)
     error = show(f"{shown}\n", out) if text else None
-    if error is None or isinstance(error, BrokenPipeError):  # the reader has gone, as `head` does
+    if error is None or isinstance(error, BrokenPipeError):  # as `head` closes the pipe
         return status
     tell(f"output: {getattr(error, 'strerror', None) or error}; {save_to_fallback(text)}")
     return status or BAD_INPUT

@@ -13,7 +13,7 @@ MIN_SHOWN_ERROR = 1e-4
 
 
 def summary(outcome: Outcome) -> str:
-    """Return an outcome in a few lines, for people."""
+    """Return an outcome in a few lines for readers."""
     if outcome.kind == "score":
         lines = [f"entropy   {with_error(outcome.after.entropy, outcome.after.stderr)}"]
         lines.append(f"coverage  {outcome.after.coverage:.1%}")
@@ -49,7 +49,7 @@ def summary(outcome: Outcome) -> str:
 
 
 def _moves(found: Robustness | None) -> list[str]:
-    """Return how far the entropy of start and end moves under mounting errors and failures."""
+    """Describe the entropy of start and result under mounting errors and sensor failures."""
     if found is None:
         return []
     before, after = found.before, found.after
@@ -61,7 +61,7 @@ def _moves(found: Robustness | None) -> list[str]:
 
 
 def searched(outcome: Outcome) -> str:
-    """Return how a search was made: method, seed, and the voxels candidates were judged on."""
+    """Describe a search: method, seed, and the number of voxels that evaluate a candidate."""
     study, search = outcome.start, outcome.start.search
     looks = [study.looks_at(samples) for samples in search.level_samples]
     levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
@@ -76,6 +76,6 @@ def warned(outcome: Outcome) -> list[str]:
 
 
 def with_error(entropy: float, stderr: float) -> str:
-    """Return an entropy with its standard error; a grid has none, a sample never shows 0."""
+    """Return an entropy with its standard error: none for a grid, never 0 for a sample."""
     error = f" +- {max(stderr, MIN_SHOWN_ERROR):.4f}" if stderr else ""
     return f"{entropy:.4f}{error} nats"

@@ -91,7 +91,7 @@ def _refuse_folders(
 
 
 class _SweepVerb:
-    """A sweep under way: its rows, and its folder."""
+    """A running sweep: its rows and its folder."""
 
     def __init__(
         self, runs: Sequence[SweepRun], kind: str, folder: Path, places: ExitStack
@@ -114,7 +114,7 @@ class _SweepVerb:
 
     @property
     def state(self) -> str:
-        """How many runs are done, and how many searches have a checkpoint, in words."""
+        """Number of runs that are done, and of searches with a checkpoint, as text."""
         kept = f", {self._begun} begun and kept" if self._begun else ""
         return f"{self._done} of {len(self.rows)} runs are done{kept}"
 
@@ -127,12 +127,12 @@ class _SweepVerb:
         return sum(row.status == BEGUN for row in self.rows)
 
     def _unfinished(self, run: SweepRun) -> str:
-        """The status of a run that is not done: begun, where its search has a checkpoint."""
+        """Status of a run that is not done: "begun" if its search has a checkpoint."""
         searches = self._kind == "optimize"
         return BEGUN if searches and (self._folder / run.name / SEARCH).exists() else WAITING
 
     def run(self, args: argparse.Namespace, received: Received) -> None:
-        """Run what is not done yet."""
+        """Run all runs that are not done."""
         left = [row.run.name for row in self.rows if row.status != DONE]
         if self._done or self._begun:
             going_on = f"; searches that go on: {self._begun}" if self._begun else ""
@@ -155,7 +155,7 @@ class _SweepVerb:
             self._write_table()
 
     def _begin(self, run: SweepRun, place: WorkerPool) -> RunTask:
-        """Return the task of a run that goes to a worker now."""
+        """Return the task of a run, when a worker is free."""
         number = self._numbers[run.name]
         searches = self._kind == "optimize"
         self.rows[number] = replace(self.rows[number], status=BEGUN)
@@ -179,7 +179,7 @@ class _SweepVerb:
         self._tell(row, found)
 
     def _keep(self, name: str, found: Outcome) -> Outcome | InputError:
-        """Write a run's results; where that fails, below a folder among temporary files."""
+        """Write a run's results; if that fails, to the fallback folder."""
         try:
             write_outcome(found, self._folder / name)
             return found
@@ -192,7 +192,7 @@ class _SweepVerb:
             return error
 
     def _write_table(self) -> None:
-        """Write the table; where that fails, to a folder among temporary files."""
+        """Write the table; if that fails, to the fallback folder."""
         try:
             self.data = write_table(self.rows, self._kind, self._folder)
         except InputError as error:

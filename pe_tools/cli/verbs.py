@@ -34,7 +34,8 @@ from .terminal import Answer, open_missing_streams, tell
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status.
 
-    0 done; 1 bad input, or results that are elsewhere; 2 usage; 128 and its number for a signal.
+    0: done; 1: bad input, or results in a fallback folder; 2: usage; 128 plus the number of a
+    signal.
     """
     open_missing_streams()
 
@@ -97,7 +98,7 @@ def parser() -> argparse.ArgumentParser:
 def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
     """Add the verbs of a plugin, a function that takes the parser's verbs.
 
-    A plugin that fails is named, and all other verbs work.
+    A plugin that fails is reported by name; all other verbs work.
     """
     try:
         call_plugin(point, load_plugin(point), verbs)
@@ -133,7 +134,7 @@ def _run_job(args: argparse.Namespace) -> Answer:
 
 
 def _choose(study: Study, args: argparse.Namespace) -> Answer:
-    """Search for which sensors, too: the front is in the folder of results."""
+    """Search for sensors and poses; write the Pareto front to the folder of results."""
     check_not_resumed(args)
     output = None if args.output is None else Path(args.output)
     _print_boxes(study)
@@ -164,7 +165,7 @@ def _sweep(args: argparse.Namespace) -> Answer:
 
 
 def _refuse_to_replace(study: Path, output: Path) -> None:
-    """Raise `InputError` when the results would take the place of the study that is read."""
+    """Raise `InputError` when the results would replace the study that is read."""
     try:
         same = (output / STUDY).samefile(study)
     except (OSError, ValueError):

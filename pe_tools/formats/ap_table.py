@@ -16,9 +16,9 @@ COLUMNS = ("m", "ap", "n")
 
 
 def read_ap_table(path: str | Path) -> ApTable:
-    """Read a CSV with the columns m and ap, and n where the points' sizes are known.
+    """Read a CSV with the columns m and ap, and optionally n, the number of objects of each point.
 
-    Lines that begin with ``#`` are comments. Columns of other names are passed over.
+    Lines that begin with ``#`` are comments. Other columns are ignored.
 
     Raises
     ------

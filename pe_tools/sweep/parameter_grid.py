@@ -70,13 +70,13 @@ class TriedKey:
     Attributes
     ----------
     key : str
-        As it was written.
+        The key as the user wrote it.
     path : tuple of str
-        Its parts; an element of an array of tables is given by its name, or its number from 0.
+        Parts of the key; an element of an array of tables has its name, or its index from 0.
     values : tuple
-        TOML values; a text that is none is taken as a string.
+        TOML values; a text that is not TOML is a string.
     texts : tuple of str
-        The values as they were written.
+        The values as the user wrote them.
     """
 
     key: str
@@ -195,7 +195,9 @@ def _changed_studies(path: Path, settings: Sequence[TriedKey]) -> Iterator[tuple
             _set(changed, setting, setting.values[number], str(path))
             changes[setting.key] = setting.texts[number]
         study = _study(changed, path, changes)
-        vehicle = vehicles.setdefault(repr(changed.get("vehicle")), study.vehicle)  # kept once
+        vehicle = vehicles.setdefault(
+            repr(changed.get("vehicle")), study.vehicle
+        )  # read each file once
         yield changes, replace(study, vehicle=vehicle)
 
 

@@ -108,7 +108,7 @@ def run_task(task: RunTask) -> RunResult:
         outcome = _run_job(task)
     except InputError as error:
         return error
-    except Exception as error:  # some executors lose what a worker raises, and wait for ever
+    except Exception as error:  # some executors lose a worker's exception, and wait forever
         message = " ".join(f"{type(error).__name__}: {error}".split())
         return InputError("worker", "run", "to run to its end", message)
     assert outcome is not None

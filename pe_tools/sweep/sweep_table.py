@@ -32,9 +32,9 @@ class SweepRow:
     ----------
     run : SweepRun
     status : {"waiting", "begun", "done", "failed"}
-        A run that is begun may have a checkpoint of its search in its folder.
+        A run with the status "begun" may have a checkpoint of its search in its folder.
     before, entropy : float or None
-        Of the given study, and of the result [nats]; equal if there was no search.
+        Entropy of the given study, and of the result [nats]; equal if there was no search.
     coverage : float or None
     message : str
         Why the run failed.

@@ -1,4 +1,4 @@
-"""What a rig sees, place by place: the ground map, blind ground round the vehicle, reach."""
+"""Visibility by location: the ground map, blind ground round the vehicle, reach."""
 
 from .blind_ground import BlindGround, BlindSpot, shown_end, shown_start
 from .grid_regions import outlines

@@ -1,7 +1,7 @@
-"""Blind ground: where round the vehicle nothing is seen, as outlines and as distances by side.
+"""Blind ground: outlines of the ground round the vehicle that no sensor sees, and distances.
 
-Which squares of the ground are blind, `blind_squares` says. Distances are from the body's
-rectangle; they are rounded away from what is seen, so that no figure is better than it is.
+`blind_squares` finds the blind squares of the ground. Distances are from the body's rectangle. They
+are rounded to the worse side, so no figure looks better than the truth.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
 
 @dataclass(frozen=True, slots=True)
 class BlindSpot:
-    """A place that is not seen: `point` (2,) and its distance from the vehicle's body, in m."""
+    """A location on blind ground: `point` (2,) and its distance from the vehicle's body [m]."""
 
     point: tuple[float, float]
     distance: float
@@ -43,30 +43,30 @@ class BlindSpot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlindGround:
-    """Ground round the vehicle where no sensor sees anything of what stands there.
+    """Ground round the vehicle where an object is invisible to all sensors.
 
     Attributes
     ----------
     outlines : tuple of (N, 2) float
-        Closed lines round it, the blind ground on their left; the last point is the first [m].
+        Closed lines with the blind ground on their left; the last point repeats the first [m].
     area : float
         [m2]
     height : float
-        How tall it is [m].
+        Height of the object [m].
     within : float
-        How far from the body's rectangle it was looked [m].
+        Distance from the body's rectangle up to which the ground was evaluated [m].
     nearest : dict of BlindSpot or None
-        By side (front, rear, left, right): the nearest blind place in the strip that the body's
-        rectangle sweeps to that side; None where there is none.
+        By side (front, rear, left, right): the nearest blind location in the strip beside the
+        body, as wide as the body; None where there is none.
     zone : dict of float or None
-        By side: how far the blind ground that begins at the body reaches in that strip, to where
-        the whole width is seen for the first time [m]; 0 where it is at the body, None where it
-        never is.
+        By side: length of the blind ground that begins at the body, up to the first row of the
+        strip that is visible over the whole width [m]; 0 where that row is at the body, None where
+        there is no such row.
     seen_from : dict of float or None
-        By side: the distance from the body from which on that strip has no blind place any more, as
-        far as was looked [m]; None where there is one at the edge.
+        By side: the distance from the body beyond which the strip has no blind location [m]; None
+        where there is one at the edge of the evaluated ground.
     draft : bool
-        Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+        Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     """
 
     outlines: tuple[Floats, ...]
@@ -100,7 +100,7 @@ def shown_start(distance: float) -> float:
 def blind_ground(
     cells: GroundCells, blind: Flags, body: Rectangle, height: float, within: float, draft: bool
 ) -> BlindGround:
-    """Put together what is told of blind cells (NX, NY) round a body's rectangle."""
+    """Return the figures of blind cells (NX, NY) round a body's rectangle."""
     strips = {side: _Strip.of(cells, blind, body, side) for side in SIDES}
     return BlindGround(
         tuple(map(read_only, outlines(blind.astype(float), 0.5, cells.x, cells.y))),
@@ -116,10 +116,11 @@ def blind_ground(
 
 @dataclass(frozen=True, slots=True)
 class _Strip:
-    """The strip that a body's rectangle sweeps to a side: its blind cells from the body outwards.
+    """The strip beside a side of the body's rectangle, as wide as the body.
 
-    `blind` (N, W) rows away from the body, the `distance` (N,) [m] at which each begins, and where
-    its cells lie `across` (W,) [m]; the body ends at `edge` [m] along the `axis`.
+    `blind` (N, W) are the strip's blind cells, row by row from the body outwards. `distance` (N,)
+    is where each row begins, `across` (W,) where its cells are [m]. The body ends at `edge` [m]
+    along the `axis`.
     """
 
     blind: Flags
@@ -150,7 +151,7 @@ class _Strip:
         return cls(strip, distance, across[columns], edge, axis, sign)
 
     def nearest(self) -> BlindSpot | None:
-        """The nearest blind place, in the middle of the strip if there are several."""
+        """The nearest blind location; of several, the one nearest to the middle of the strip."""
         rows = np.flatnonzero(self.blind.any(axis=1))
         if not len(rows):
             return None
@@ -162,12 +163,12 @@ class _Strip:
         return BlindSpot((along, beside) if self.axis == 0 else (beside, along), distance)
 
     def zone(self) -> float | None:
-        """How far from the body the first row without a blind place is."""
+        """Distance from the body to the first row without a blind location [m]."""
         rows = np.flatnonzero(~self.blind.any(axis=1))
         return float(self.distance[rows[0]]) if len(rows) else None
 
     def seen_from(self) -> float | None:
-        """How far from the body the last blind place ends; None at the edge."""
+        """Distance from the body to the end of the last blind location [m]; None at the edge."""
         rows = np.flatnonzero(self.blind.any(axis=1))
         if not len(self.blind) or (len(rows) and rows[-1] == len(self.blind) - 1):
             return None

@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 def opened(flags: Flags, radius: float) -> Flags:
     """Union of the discs of that radius, in cells, that fit into a region (NX, NY).
 
-    Beyond the edge the region goes on as at the edge.
+    Beyond the edge, the region continues with the values at the edge.
     """
     disc = _disc(radius)
     reach = int(np.abs(disc).max())
@@ -28,15 +28,15 @@ def opened(flags: Flags, radius: float) -> Flags:
 
 
 def closed(flags: Flags, radius: float) -> Flags:
-    """Fill what no disc of that radius, in cells, fits into: the opening of what is not set."""
+    """Fill gaps that are too narrow for a disc of that radius, in cells."""
     return ~opened(~flags, radius)
 
 
 def dilated(flags: Flags, widths: list[int]) -> Flags:
-    """Set what is near anything set in a region (NX, NY).
+    """Dilate a region (NX, NY) by a symmetric shape.
 
-    `widths` is a symmetric shape by its rows: k rows away (either way) reach is `widths[k]` cells
-    to either side. What is beyond the edge is not set.
+    The shape is given by rows: k rows from its middle it extends `widths[k]` cells to either side.
+    Cells beyond the edge are not set.
     """
     near = np.zeros_like(flags)
     by_width = {width: _along(flags, width) for width in set(widths)}
@@ -48,7 +48,7 @@ def dilated(flags: Flags, widths: list[int]) -> Flags:
 
 
 def _along(flags: Flags, reach: int) -> Flags:
-    """Set what is at most `reach` cells away in the same row; twice as far with each step."""
+    """Dilate by `reach` cells within each row; each step doubles the distance."""
     near, done = flags, 0
     reach = min(reach, flags.shape[1] - 1)
     while done < reach:
@@ -61,23 +61,23 @@ def _along(flags: Flags, reach: int) -> Flags:
 
 
 def squares_within(radius: float) -> list[int]:
-    """Squares all of whose points are within a radius of all points of one square.
+    """Shape for `dilated`: squares with all points within a radius of all points of one square.
 
-    In squares, as `dilated` takes them: empty where the radius is less than a square's diagonal.
+    The radius is in squares. The shape is empty if it is less than the diagonal of a square.
     """
     rows = int(math.sqrt(max(radius**2 - 1.0, 0.0)))
     return [int(math.sqrt(radius**2 - (k + 1) ** 2)) - 1 for k in range(rows)]
 
 
 def squares_touching(radius: float) -> list[int]:
-    """Squares any of whose points are within a radius of any point of one square, as `dilated`."""
+    """Shape for `dilated`: squares with a point within a radius of a point of one square."""
     away = [max(k - 1, 0) for k in range(int(radius) + 2)]
     return [int(math.sqrt(radius**2 - k**2)) + 1 for k in away]
 
 
 def without_specks(flags: Flags, min_cells: float) -> Flags:
     """Drop connected pieces (by sides) of fewer cells than `min_cells`."""
-    width = flags.shape[1] + 1  # a cell more, so that no run goes on in the next row
+    width = flags.shape[1] + 1  # one more cell, so that no run continues in the next row
     edges = np.diff(np.pad(flags, ((0, 0), (1, 1))).astype(np.int8), axis=1).reshape(-1)
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     piece = _connected(len(starts), *_touching(starts, ends, width))
@@ -87,7 +87,7 @@ def without_specks(flags: Flags, min_cells: float) -> Flags:
 
 
 def gauss(values: Floats, sigma: float) -> Floats:
-    """Sum of values (NX, NY) under a Gauss curve of that width, in cells, cut off at twice it."""
+    """Sum values (NX, NY) with Gaussian weights; `sigma` in cells, cut off at 2 sigma."""
     steps = np.arange(-int(2.0 * sigma), int(2.0 * sigma) + 1)
     curve = [math.exp(-((k / sigma) ** 2) / 2.0) for k in steps.tolist()]
     for _ in range(2):
@@ -100,14 +100,14 @@ def gauss(values: Floats, sigma: float) -> Floats:
 
 
 def _disc(radius: float) -> Ints:
-    """(N, 2) steps from a cell to those whose middle is not farther away."""
+    """(N, 2) steps from a cell to the cells with their middle within the radius."""
     reach = int(radius)
     steps = np.indices((2 * reach + 1, 2 * reach + 1)).reshape(2, -1).T - reach
     return steps[(steps**2).sum(axis=1) <= radius**2]
 
 
 def _moved(flags: Flags, steps: Ints) -> Flags:
-    """Set all cells that are one of the steps away from a set cell."""
+    """Set every cell that one of the steps leads to from a set cell."""
     moved = np.zeros_like(flags)
     nx, ny = flags.shape
     for i, j in steps.tolist():
@@ -118,7 +118,7 @@ def _moved(flags: Flags, steps: Ints) -> Flags:
 
 
 def _touching(starts: Ints, ends: Ints, width: int) -> tuple[Ints, Ints]:
-    """Pairs of runs of cells, one in the row after the other, that share a side."""
+    """Pairs of runs of cells in neighbouring rows that share a side."""
     first = np.searchsorted(ends, starts + width, side="right")
     n = np.maximum(np.searchsorted(starts, ends + width, side="left") - first, 0)
     run = np.repeat(np.arange(len(starts)), n)
@@ -162,12 +162,12 @@ EDGE = 1e-9
 
 
 def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats, ...]:
-    """Closed outlines of where a field is above a level.
+    """Closed outlines of the region where a field is above a level.
 
     Parameters
     ----------
     values : (NX, NY) float
-        The field at the middles of cells (x, y); it ends with them.
+        The field at the middles of cells (x, y); outside of them it is below the level.
     level : float
     x : (NX,) float
     y : (NY,) float
@@ -176,7 +176,7 @@ def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats
     Returns
     -------
     tuple of (N, 2) float
-        The region lies on the left of each; the last point is the first again. Longest first.
+        The region is on the left of each outline; the last point repeats the first. Longest first.
     """
     field = np.pad(values - level, 1, constant_values=-EDGE)
     xs, ys = _widened(x), _widened(y)
@@ -193,7 +193,7 @@ def _widened(w: Floats) -> Floats:
 
 
 def _segments(field: Floats) -> tuple[Ints, Ints]:
-    """Numbers of the edges that pieces of outline begin and end at."""
+    """Numbers of the edges where each piece of an outline begins and ends."""
     inside = field > 0.0
     case = inside[:-1, :-1] + 2 * inside[1:, :-1] + 4 * inside[1:, 1:] + 8 * inside[:-1, 1:]
     middle = field[:-1, :-1] + field[1:, :-1] + field[1:, 1:] + field[:-1, 1:] > 0.0
@@ -217,7 +217,7 @@ def _edge(i: Ints, j: Ints, side: int, shape: tuple[int, ...]) -> Ints:
 
 
 def chained(starts: Ints, ends: Ints) -> list[list[int]]:
-    """Put pieces together to rings of edges; every edge is entered once and left once."""
+    """Chain pieces to rings of edges; every edge is entered once and left once."""
     following = dict(zip(starts.tolist(), ends.tolist(), strict=True))
     rings = []
     while following:
@@ -230,7 +230,7 @@ def chained(starts: Ints, ends: Ints) -> list[list[int]]:
 
 
 class _EdgePoints:
-    """Where the level is crossed along edges of the grid."""
+    """Points where a field crosses the level along edges of the grid."""
 
     def __init__(self, field: Floats, x: Floats, y: Floats) -> None:
         self._field, self._x, self._y = field, x, y

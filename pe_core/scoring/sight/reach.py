@@ -1,6 +1,6 @@
-"""Reach: how far away objects of a class are still found.
+"""Reach: the distance up to which objects of a class are found.
 
-The expected AP of a class at a place is the mean of AP (eqs. 4 to 7) over the class's height
+The expected AP of a class at a location is the mean of AP (eqs. 4 to 7) over the class's height
 profile in the prior. Along each bearing it is computed in rings of `RING_M`, as the mean of voxels
 spread over the ring's piece and the height, and then smoothed: a running mean over `SMOOTHED_M`,
 and over the neighbouring bearings with half its weight each. So neither the rings of a LiDAR nor
@@ -49,27 +49,27 @@ BEARINGS = Whole(4, 720)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reach:
-    """How far away a class is still found, by bearing.
+    """The distance up to which a class is found, by bearing.
 
     Attributes
     ----------
     class_name : str
     ap : float
-        What AP is asked for.
+        The required AP.
     bearings : (B,) float
-        From straight ahead, to the left [rad].
+        Counter-clockwise from straight ahead [rad].
     distance : (B,) float
-        From the origin: as far as the class's AP is expected to be at least `ap`, without a break
-        since it began to be [m]; 0 where it never is.
+        Distance from the origin where the longest range with an expected AP of at least `ap` ends
+        [m]; 0 where there is no such range.
     per_sensor : dict of (B,) float
         The same for each sensor alone, by name.
     limit : (B,) float
         Where the space ends [m]: a reach that equals it is "at least".
     draft : bool
-        Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+        Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     sector : float
-        Of a study on objects: each distance is that of a sector so wide round its bearing [rad],
-        and a lone object's. 0: distances are along bearings, and of the class's voxels.
+        In a study on objects: width of the sector round each bearing [rad]; distances are those of
+        lone objects. 0 in a study on voxels: distances are along bearings.
     """
 
     class_name: str
@@ -84,7 +84,7 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Spokes:
-    """Voxels along bearings: `index` (V, 3), and the `ring` (V,) each is in, of R a bearing.
+    """Voxels along bearings: `index` (V, 3), and the `ring` (V,) of each, R rings a bearing.
 
     None is in the vehicle or beyond the space. `limit` (B,) is where the space ends.
     """
@@ -120,7 +120,7 @@ class Spokes:
         return cls(read_only(angles), read_only(limit), index[inside], ring, rings)
 
     def distance(self, ap: Floats, min_ap: float) -> Floats:
-        """Return how far (B,) the AP (V,) of voxels is at least `min_ap` [m]."""
+        """Return the distance (B,) up to which the AP (V,) of voxels is at least `min_ap` [m]."""
         shape = len(self.bearings), self.rings
         weights = (ap, np.ones(len(ap)))
         by_ring = [np.bincount(self.ring, w, math.prod(shape)).reshape(shape) for w in weights]
@@ -151,14 +151,14 @@ def density_of(densities: list[ClassDensity], name: str) -> ClassDensity:
 
 
 def _turned(angles: Floats, aside: Floats, distance: Floats) -> tuple[Floats, Floats]:
-    """Points (x, y) at a distance, beside bearings (B,) by an angle of that tangent, (B, R, n)."""
+    """Points (x, y) (B, R, n) at a distance; `aside` is the tangent of the angle to a bearing."""
     ahead = distance / np.sqrt(1.0 + aside * aside)
     c, s = (np.array([f(a) for a in angles.tolist()])[:, None, None] for f in (math.cos, math.sin))
     return ahead * (c - s * aside), ahead * (s + c * aside)
 
 
 def _edge(space: PerceptionSpace, bearing: float) -> float:
-    """How far the space reaches from the origin along a bearing [m]."""
+    """Distance from the origin to the end of the space along a bearing [m]."""
     ends = []
     for component, (low, high) in ((math.cos(bearing), space.x), (math.sin(bearing), space.y)):
         if abs(component) > 1e-12:
@@ -167,9 +167,9 @@ def _edge(space: PerceptionSpace, bearing: float) -> float:
 
 
 def _end_of_longest(values: Floats, min_value: float) -> float:
-    """Where the longest run of values that are large enough ends, the first of several; else 0.
+    """End of the longest run of values of at least `min_value`, the first of several; else 0.
 
-    In rings from the first one's inner edge; between two rings' middles as a straight line has it.
+    In rings from the first ring's inner edge, interpolated linearly between the middles of rings.
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], values >= min_value, [False]])))
     if not len(edges):
@@ -201,8 +201,8 @@ class ReachLine:
 def reach_line(reach: Reach, distance: Floats) -> ReachLine:
     """Return the line of distances (B,) of a reach, of the rig or of one sensor.
 
-    Reaches along bearings are weighed with their neighbours 1 2 1: what beams leave is ragged. A
-    reach of sectors is an arc for each.
+    Reaches along bearings are smoothed with the weights 1 2 1, because beams make them ragged. A
+    reach by sectors has an arc for each sector.
     """
     at_least = ends_with_space(reach, distance)
     bearings = reach.bearings
@@ -226,7 +226,7 @@ SECTOR_RAD = 2.0 * math.pi / len(SECTORS)
 
 
 def object_reach(lone: LoneObjects, rig: Rig, class_name: str, min_ap: float) -> Reach:
-    """Return how far a class is found with at least so much AP, by the rig and by each sensor."""
+    """Return the reach of a class with an AP of at least `min_ap`: of the rig, of each sensor."""
 
     def metres(members: list[str] | None) -> np.ndarray:
         by_sector = lone.reach(class_name, lone.ap(rig, members), min_ap)

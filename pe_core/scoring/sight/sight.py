@@ -52,8 +52,8 @@ class Sight:
     model : PerceptionModel, optional
         AP curves and fusion rule; the paper's by default.
     targets : TargetRule, optional
-        What the study is scored on. On objects, `reach` is that of lone objects, as in the score;
-        on voxels, the default, that of the class's voxels.
+        Whether the study is scored on voxels (default) or objects. For objects, `reach` is that of
+        lone objects, as in the score; for voxels, that of the class's voxels.
 
     Raises
     ------
@@ -123,7 +123,7 @@ class Sight:
         step: float = STEP_M,
         draft: bool = False,
     ) -> BlindGround:
-        """Return where round the vehicle a body on the ground is visible to no sensor.
+        """Return the ground round the vehicle where a body is invisible to all sensors.
 
         The body is an upright cylinder, 0.3 m wide. All figures are conservative: no blind ground
         and no distance is too small, and edges are at most three squares too far out.
@@ -169,10 +169,10 @@ class Sight:
         bearings: int = 72,
         draft: bool = False,
     ) -> Reach:
-        """Return how far away objects of a class are still found, all round.
+        """Return the distance up to which objects of a class are found, in all directions.
 
-        In a study on objects it is how far lone objects are found, in each eighth of the circle, as
-        in the score; `bearings` and `draft` have no effect then.
+        In a study on objects, the reach is that of lone objects in each eighth of the circle, as in
+        the score; `bearings` and `draft` then have no effect.
 
         Parameters
         ----------

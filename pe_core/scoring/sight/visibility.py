@@ -38,11 +38,11 @@ class GroundSight:
     coverage : (NX, NY) float
         Share of a cell that is visible to a sensor, 0 to 1; NaN where the vehicle is.
     sensors : (NX, NY) int
-        How many sensors see a part of a cell; -1 where the vehicle is.
+        Number of sensors that see a part of a cell; -1 where the vehicle is.
     kinds : (NX, NY) int
-        How many kinds of sensors do; -1 where the vehicle is.
+        Number of kinds of sensors that see a part of a cell; -1 where the vehicle is.
     draft : bool
-        Some LiDAR's beams were stopped by a map of the vehicle's top, not by the vehicle itself.
+        Approximate preview: occlusion of a LiDAR was read from a map of the vehicle's top surface.
     """
 
     x: Floats
@@ -84,14 +84,14 @@ def ground_sight(
 
 
 def _number(flags: Mapping[str, NDArray[np.bool_]], voxels: VoxelsByCell) -> Ints:
-    """How many flags are set in each cell; -1 where the vehicle is."""
+    """Number of flags set in each cell; -1 where the vehicle is."""
     total = np.sum(list(flags.values()), axis=0, dtype=np.int64)
     return np.where(voxels.vehicle, -1, total)
 
 
 @dataclass(frozen=True, slots=True)
 class VisibleShares:
-    """Shares of the prior that are seen, 0 to 1.
+    """Visible shares of the prior, 0 to 1.
 
     Attributes
     ----------
@@ -118,9 +118,9 @@ def visible_shares(
     ----------
     sample : VoxelSample
     m : mapping of (V,) array
-        What each sensor measures, by name.
+        Measurement of each sensor, by name.
     rises : mapping of (V,) float
-        How much the entropy of each voxel rises without the sensor [nats], by name.
+        Rise of the entropy of each voxel without the sensor [nats], by name.
     """
     sees = {name: of_one > 0 for name, of_one in m.items()}
     number = np.sum(list(sees.values()), axis=0, dtype=np.int64)

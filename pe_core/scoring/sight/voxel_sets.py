@@ -233,11 +233,11 @@ class VoxelSetCache:
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion) -> None:
         self._space, self._vehicle, self._fusion = space, vehicle, fusion
         self._kernel_cache: dict[str, Any] = {}  # by kind: beams are cast once for all voxel sets
-        self._sets: dict[Hashable, Any] = {}  # the one that was used last comes last
+        self._sets: dict[Hashable, Any] = {}  # least recently used first
 
     @property
     def kernel_cache(self) -> dict[str, Any]:
-        """What kernels cache of sensors and of the vehicle, by kind, for all voxel sets."""
+        """Caches of the kernels (sensors and vehicle) by kind, shared by all voxel sets."""
         return self._kernel_cache
 
     def voxels(self, key: Hashable, choose: Callable[[], P]) -> MeasuredVoxels[P]:

@@ -1,4 +1,4 @@
-"""Objects as targets: drawn from the prior, set in scenes, and what rigs are worth on them."""
+"""Objects as targets: sampled from the prior, placed in scenes, and the score of rigs on them."""
 
 from .lone_objects import LoneObjects
 from .object_evaluator import ObjectEvaluator

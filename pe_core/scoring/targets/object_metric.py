@@ -109,8 +109,9 @@ class ObjectSums:
     def standard_error(self, entropies: Floats, groups: int, mask: Bools | None = None) -> float:
         """Standard error of the mean entropy, from the scatter of the scenes' means.
 
-        Classes are low-discrepancy samples across the scenes, so it errs high. Where all objects
-        are alike it is half of what is left to doubt by the rule of three, as for voxels.
+        Classes are low-discrepancy samples across the scenes, so this overestimates the error.
+        Where all objects have equal entropy, it is half of the bound by the rule of three, as for
+        voxels.
         """
         values = entropies if mask is None else entropies[mask]
         if np.ptp(values) <= ALIKE:
@@ -184,7 +185,7 @@ class ObjectSums:
         return float((values * weights).sum() / weights.sum())
 
     def _scatter(self, values: Floats, mask: Bools | None) -> float:
-        """Standard error of a ratio of sums over scenes: scenes are what is drawn."""
+        """Standard error of a ratio of sums over scenes: the random sample consists of scenes."""
         weights = self._weights if mask is None else self._weights * mask
         off = weights * (values - self._mean(values, mask))
         scenes = self._drawn.scenes

@@ -1,4 +1,4 @@
-"""What a study scores a rig on: the voxels of the paper, or objects."""
+"""The targets on which a study scores rigs: the voxels of the paper, or objects."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ COUNT = Whole(8, 20_000, "scenes")
 
 @dataclass(frozen=True, slots=True)
 class TargetRule:
-    """What is judged, and how.
+    """The targets of a score, and how objects are placed.
 
     Parameters
     ----------
     targets : {"voxels", "objects"}
     traffic : bool
-        Whether the objects of a scene hide each other.
+        Whether the objects of a scene occlude each other.
     scenes : int
-        How many scenes objects stand in; the expected score is their mean.
+        Number of scenes with objects; the score is their mean.
 
     Raises
     ------
     InputError
-        When a value is none of these, or voxels are to have traffic.
+        When a value is not valid, or traffic is requested for voxels.
     """
 
     targets: str = setting(
@@ -63,5 +63,5 @@ class TargetRule:
 
     @property
     def are_objects(self) -> bool:
-        """Whether objects are judged, not voxels."""
+        """Whether objects are scored, not voxels."""
         return self.targets == OBJECTS

@@ -1,4 +1,4 @@
-"""Labelled boxes from a file in one of the layouts in use; the content tells which."""
+"""Labelled boxes from a file; the content decides the layout."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ def read_boxes(path: str | Path, origin: tuple[float, float, float] | None = Non
     ----------
     path : path
     origin : (x, y, z) float, optional
-        The origin of the labels in the ground frame [m]. By default KITTI's camera stands at
-        `kitti.CAMERA`, and other labels are in the ground frame already.
+        The origin of the labels in the ground frame [m]. By default KITTI's camera is at
+        `kitti.CAMERA`, and other labels are in the ground frame.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""KITTI's labels: of the object benchmark (label_2), or of tracking, with frame and id in front.
+"""KITTI's labels: object benchmark (label_2), or tracking, which has frame and id first.
 
 A line is ``type truncated occluded alpha left top right bottom height width length x y z rotation_y
 [score]`` in the left camera's frame (x right, y down, z forward). The location is the middle of the
@@ -38,7 +38,7 @@ NUMBERS = ("the height", "the width", "the length", "x", "y", "z", "rotation_y")
 
 
 def looks_like_kitti(line: str) -> bool:
-    """Whether a line is words and numbers with blanks between: a class, then a number."""
+    """Whether a line is a class and numbers, or two numbers, a class and numbers, with blanks."""
     name, number = [*line.split(maxsplit=2), "", ""][:2]
     return _is_number(number) or bool(number and name.lower() in {*CLASSES, UNLABELLED})
 
@@ -49,7 +49,7 @@ def read_kitti(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
     Raises
     ------
     InputError
-        When a line has another number of columns than KITTI's, or a number is wrong.
+        When a line has the wrong number of columns, or a number is wrong.
     """
     labels = Labels(source)
     first = lines[0][1].split()
@@ -80,7 +80,7 @@ def _add(labels: Labels, where: str, cells: Sequence[str]) -> None:
 
 
 def _in_ground_axes(source: str, where: str, cells: Sequence[str]) -> BoxNumbers:
-    """Return a box with axes as the ground frame's, from the camera."""
+    """Return a box along the axes of the ground frame, relative to the camera."""
     texts = cells[FIRST_NUMBER : FIRST_NUMBER + len(NUMBERS)]
     height, width, length, right, down, forward, turn = (
         parse_number(source, where, what, text) for what, text in zip(NUMBERS, texts, strict=True)

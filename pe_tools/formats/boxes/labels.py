@@ -1,4 +1,4 @@
-"""What every layout of boxes is read into, and the checks they share."""
+"""The common form of boxes from all layouts, and checks that the layouts share."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ BoxNumbers = tuple[float, float, float, float, float, float, float]
 
 @dataclass(slots=True)
 class Labels:
-    """Boxes of one or more files, each with the origin its layout has by default."""
+    """Boxes of one or more files, each with the default origin of its layout."""
 
     source: str
     names: list[str] = field(default_factory=list)
@@ -34,7 +34,7 @@ class Labels:
     left_out: Counter[str] = field(default_factory=Counter)
 
     def add(self, where: str, name: str, row: BoxNumbers, origin: Origin = GROUND) -> None:
-        """Add a box; `where` is its place in the file, for messages."""
+        """Add a box; `where` is its location in the file, for messages."""
         for column, value in zip(SIZES, row[FIRST_SIZE : FIRST_SIZE + 3], strict=True):
             if not value > 0.0:
                 expected = f"a {column} above 0 m"

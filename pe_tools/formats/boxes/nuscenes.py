@@ -1,8 +1,9 @@
-"""Boxes as nuScenes writes them: a list of annotations, or a submission of results.
+"""Boxes in nuScenes' format: a list of annotations, or a submission of results.
 
 A box is a table with ``translation`` [x, y, z] of its centre, ``size`` [width, length, height],
 ``rotation`` as a quaternion [w, x, y, z], and ``category_name``, ``detection_name`` or
-``tracking_name``. nuScenes' own are in a map's frame; these have to be in the vehicle's.
+``tracking_name``. The published annotations are in a map's frame; these files have to be in the
+vehicle's frame.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def read_nuscenes(source: str, data: Any) -> Labels:
 
 
 def _boxes(source: str, data: Any) -> Iterator[tuple[str, Any]]:
-    """Yield every box and where it stands."""
+    """Yield every box and its location in the file."""
     if isinstance(data, Mapping):
         results = data.get("results")
         if not isinstance(results, Mapping):
@@ -122,5 +123,5 @@ def _is_finite(value: Any) -> bool:
         return False
     try:
         return math.isfinite(value)
-    except OverflowError:  # a whole number of hundreds of digits
+    except OverflowError:  # an integer with hundreds of digits
         return False

@@ -27,7 +27,7 @@ def looks_like_csv(line: str) -> bool:
 
 
 def read_csv(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
-    """Read boxes from numbered lines; columns stand in any order, others are passed over.
+    """Read boxes from numbered lines; columns are in any order, other columns are ignored.
 
     Raises
     ------
@@ -48,15 +48,15 @@ def read_csv(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
 
 
 def write_csv(path: Path, boxes: Boxes) -> None:
-    """Write boxes so that they are read back to the bit."""
+    """Write boxes; reading the file gives the same bits."""
     write_bytes(path, _csv_bytes(boxes))
 
 
 @lru_cache(maxsize=1)
 def _csv_bytes(boxes: Boxes) -> bytes:
-    """The file's bytes; a search writes the same ones every few seconds.
+    """The file's bytes, cached for the last boxes: a search writes them every few seconds.
 
-    Those of the last boxes are kept, by the object: boxes do not change.
+    The cache is valid because boxes do not change.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
@@ -79,7 +79,7 @@ def _header(source: str, line: tuple[int, str], separator: str) -> list[str]:
 
 
 def _without_unit(name: str) -> str:
-    # A name of ours is short; on a long one the pattern would take the square of its length.
+    # Known names are short; on a long one the pattern takes time by the square of its length.
     return UNIT.sub("", name) if len(name) <= MAX_QUOTE else name
 
 

@@ -1,4 +1,4 @@
-"""Triangle meshes from and to files, by their suffix."""
+"""Read and write files of triangle meshes, by their suffix."""
 
 from __future__ import annotations
 
@@ -50,34 +50,34 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     Parameters
     ----------
     path : str or Path
-        The suffix, in either case, says the format.
+        The suffix decides the format; case is ignored.
     axes : MeshAxes, optional
-        Which axes of the file are forward and up, a scale and a rotation. What it leaves out is
-        what the file says: .npz, and .obj with a comment like ours, are in the ground frame
-        (x forward, y left, z up), .glb has +Y up, .dae and USD say which is. Else names of parts
-        and the shape decide, or the default: the ground frame, in .glb +Z forward.
+        The file's forward and up axes, a scale and a rotation. Axes that are not given come
+        from the file: .npz, and .obj with the comment of `write_mesh`, are in the ground frame
+        (x forward, y left, z up), .glb has +Y up, .dae and USD name the up axis. Otherwise the
+        names of parts and the shape decide, or the default: the ground frame, in .glb +Z forward.
 
     Returns
     -------
     Mesh
-        Triangles (F, 3, 3) [m] in the ground frame, F at least 1, those without area among them;
-        parts in the order the file names them, their names made printable
-        (`part_names.fit_names`); in words how the axes were taken.
+        Triangles (F, 3, 3) [m] in the ground frame, F at least 1, including those of zero area;
+        parts in the file's order, with printable names (`part_names.fit_names`); and a text on
+        how the axes were determined.
 
     Raises
     ------
     InputError
-        The file is missing, of no known suffix or of one whose reader is not installed; it is
-        not what its suffix says, cut short, has an index out of range or a coordinate that is
-        not finite, has no triangles, or is more than a mesh may be (`MESH_BYTES`,
-        `MAX_TRIANGLES`) or than memory holds.
+        The file is missing, its suffix is unknown, or the reader for it is not installed. The
+        content does not match the suffix or is incomplete. An index is out of range, a coordinate
+        is not finite, or there are no triangles. The mesh is too large (`MESH_BYTES`,
+        `MAX_TRIANGLES`), or does not fit in memory.
     """
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in _READERS and not has_plugin(suffix):
-        _of_suffix(path, _READERS)  # complains
+        _of_suffix(path, _READERS)  # reports it
     data = read_bytes(path, MESH_BYTES)
-    # What overflows or is NaN is refused in the end, with its place; NumPy need not warn first.
+    # Overflow and NaN are refused later, with their location; NumPy need not warn first.
     with np.errstate(all="ignore"), report_memory_errors(path):
         if suffix in _READERS:
             mesh, said = _READERS[suffix](path, data), _SAYS.get(suffix, _unsaid)(data)
@@ -88,23 +88,23 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
 
 
 def write_mesh(path: str | Path, mesh: Mesh) -> None:
-    """Write a mesh to a .npz or .obj file from which it reads back exactly.
+    """Write a mesh to a .npz or .obj file; reading it gives the same mesh exactly.
 
-    The file is replaced in one step: it is never seen half written.
+    The file is written atomically.
 
     Parameters
     ----------
     path : str or Path
-        The suffix says the format; the folder must exist.
+        The suffix decides the format; the folder must exist.
     mesh : Mesh
         Triangles (F, 3, 3) [m], parts (F,) and their names. Parts without triangles are
-        not written, and parts of one name are written as one.
+        not written; parts with the same name are merged.
 
     Raises
     ------
     InputError
-        The suffix is another, the mesh is not one that could be read back, or the file
-        cannot be written.
+        The suffix is another one, the mesh could not be read again, or the file cannot be
+        written.
     """
     path = Path(path)
     writer = _of_suffix(path, _WRITERS)

@@ -1,7 +1,7 @@
-"""Which axes of a mesh file are forward and up: what is asked for, what the file says, a guess.
+"""The forward and up axes of a mesh file: from the study, from the file, or guessed.
 
-What a study says holds; then what the file says of itself; where neither does, names of parts and
-the shape decide, and else a default. However it was, it can be told in words.
+The axes of the study come first, then those that the file names. Without either, the names of parts
+and the shape decide; the last resort is a default. A text says how the axes were determined.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ def _across(said: SaidAxes) -> SaidAxes:
 
 
 def _turned(triangles: Floats, up: str, forward: str) -> Floats:
-    """Triangles with forward, left, up as x, y, z; corners are only exchanged and mirrored."""
+    """Triangles with forward, left, up as x, y, z; coordinates are only swapped and negated."""
     if (up, forward) == ("+z", "+x"):
         return triangles
     ahead, above = _unit(forward), _unit(up)
@@ -143,7 +143,7 @@ def _unit(name: str) -> NDArray[np.int64]:
 
 
 def _words(chosen: SaidAxes) -> str:
-    """How the axes were taken, in words; none where the file is in the ground frame."""
+    """Text on how the axes were determined; empty if the file is in the ground frame."""
     if chosen == OURS:
         return ""
     up_by, forward_by = chosen.up_by or "assumed", chosen.forward_by or "assumed"

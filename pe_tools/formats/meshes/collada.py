@@ -26,8 +26,8 @@ def check_document(source: str, root: Any) -> None:
     Raises
     ------
     InputError
-        A word or a number that is none, an accessor that reaches beyond its data, instanced nodes
-        in a circle or more than `MAX_NODES`.
+        An invalid word or number, an accessor that reaches beyond its data, nodes that instance
+        each other in a circle, or more than `MAX_NODES`.
     """
     for up in _each(root, "up_axis"):
         if (up.text or "").strip() not in UP:
@@ -64,7 +64,7 @@ def _check_accessors(source: str, root: Any) -> None:
 
 
 def _check_nodes(source: str, root: Any) -> None:
-    """Count the nodes of all scenes as their instances multiply them."""
+    """Count the nodes of all scenes, including repeated instances."""
     named = {node.get("id"): node for node in _each(root, "node") if node.get("id")}
     counts: dict[Any, int] = {}
     waiting = [(node, False) for scene in _each(root, "visual_scene") for node in _nodes(scene)]
@@ -118,14 +118,14 @@ PROLOGUE_BYTES = 1 << 16
 
 
 def read_dae(path: Path, data: bytes) -> FoundMesh:
-    """Read the scene of a Collada file: its up axis and unit are the file's, parts its nodes.
+    """Read the scene of a Collada file with its up axis and unit; each node is a part.
 
-    Skins and morphs are passed over, as are cameras and lights.
+    Skins, morphs, cameras and lights are ignored.
 
     Raises
     ------
     InputError
-        Not Collada, or something in it that pycollada does not take.
+        The file is not Collada, or pycollada cannot read it.
     """
     source = str(path)
     if b"<!DOCTYPE" in data[:PROLOGUE_BYTES] or b"<!ENTITY" in data[:PROLOGUE_BYTES]:
@@ -140,13 +140,13 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
         metres = 1.0 if asset.unitmeter is None else float(asset.unitmeter)
     except InputError:
         raise
-    except Exception as error:  # pycollada's own, XML's, and whatever odd files make of it
+    except Exception as error:  # errors of pycollada, of XML, and others that damaged files cause
         raise InputError(source, "file", "Collada", f"{type(error).__name__}: {error}") from error
     return found(source, pieces, metres, up)
 
 
 def _pieces(root: Any) -> Iterator[Piece]:
-    """Every geometry below a node, depth first, by the name of the node that holds it."""
+    """Every geometry below a node, depth first, with the name of its node."""
     waiting = [(root, np.eye(4))]
     while waiting:
         node, above = waiting.pop()

@@ -35,17 +35,18 @@ JSON_UNFOLDS = 30
 def read_glb(path: Path, data: bytes) -> Mesh:
     """Read the default scene of a binary glTF 2.0 file.
 
-    glTF is right-handed with +Y up, +Z forward and -X right, in metres; so are the corners
-    here. Each node's transforms are applied down the hierarchy; a mirroring one also reverses
-    its triangles, so that their outer sides stay outside. Parts are the names of the nodes
-    that hold a mesh, or else of the mesh. Points and lines are passed over.
+    glTF is right-handed with +Y up, +Z forward and -X right, in metres. The corners that are
+    returned have these axes, too. The transforms of all nodes down to a mesh are applied. A
+    transform that mirrors also reverses the triangles, so their outer sides stay outside. A
+    part has the name of the node with the mesh, or of the mesh. Points and lines are ignored.
 
     Raises
     ------
     InputError
-        Not binary glTF 2.0, cut short, malformed or with an index out of range; something
-        this reader has no notion of (Draco or meshopt compression, sparse accessors, skins,
-        morph weights, buffers in other files); coordinates not finite, or no triangles.
+        The file is not binary glTF 2.0, incomplete, malformed or has an index out of range. It
+        needs a feature that is not supported (Draco or meshopt compression, sparse accessors,
+        skins, morph weights, buffers in other files). A coordinate is not finite, or there are
+        no triangles.
     """
     source = str(path)
     text, binary = _chunks(source, data)
@@ -56,12 +57,12 @@ def read_glb(path: Path, data: bytes) -> Mesh:
     except InputError:
         raise
     except (TypeError, ValueError, KeyError, AttributeError, OverflowError) as error:
-        # The checks on the way name the usual faults; this is for JSON of another shape.
+        # Earlier checks report the usual errors; this one is for JSON with another structure.
         raise InputError(source, "JSON", "a well-formed glTF scene", error) from error
 
 
 def _chunks(source: str, data: bytes) -> tuple[bytes, memoryview]:
-    """The JSON chunk and the binary one (empty if there is none), the latter not copied."""
+    """The JSON chunk and the binary chunk (empty if there is none), which is not copied."""
     if data[:4] != b"glTF" or len(data) < 12:
         raise InputError(source, "header", "12 bytes beginning with 'glTF'", data[:12])
     version, length = struct.unpack_from("<II", data, 4)
@@ -110,7 +111,7 @@ def _no_number(word: str) -> None:
 
 
 def _require_known(document: Document) -> None:
-    # Of extensions only used, not required, the file holds a plain fallback.
+    # For an extension that is used but not required, the file has a fallback.
     for name in document.root.get("extensionsRequired", []):
         if not str(name).startswith(_HARMLESS):
             expected = "a file without compression or other geometry extensions"
@@ -118,11 +119,11 @@ def _require_known(document: Document) -> None:
 
 
 def _scene(document: Document) -> Mesh:
-    """All placed meshes; how many triangles they come to is known before any is made."""
+    """All placed meshes; the number of triangles is checked before any is created."""
     placed = list(placed_meshes(document))
     sizes = {index: _size(document, index) for index in dict.fromkeys(m for _, m, _ in placed)}
     require_room(document.source, sum(sizes[index] for _, index, _ in placed))
-    # Each mesh is read once, however many nodes show it.
+    # Each mesh is read once, even if several nodes use it.
     shapes = {index: _shape(document, index) for index in sizes}
     triangles = [
         triangles_of_mesh
@@ -136,7 +137,7 @@ def _scene(document: Document) -> Mesh:
 
 
 def _size(document: Document, index: int) -> int:
-    """How many triangles a mesh has, from its accessors' counts alone."""
+    """Number of triangles of a mesh, from the counts of its accessors."""
     total = 0
     for primitive in document.item("meshes", index)["primitives"]:
         if _has_faces(primitive):
@@ -193,19 +194,19 @@ def _primitive(document: Document, primitive: Item) -> Faceted:
 
 
 def _corners(mode: int, order: NDArray[Any]) -> NDArray[Any]:
-    """Which of the corners in their order make up a primitive's triangles (F, 3)."""
+    """Positions (F, 3) in the corner list of the corners of a primitive's triangles."""
     if mode == _TRIANGLES:
         return order.reshape(-1, 3)
     if mode == _FAN:
         return order[fan(np.array([len(order)]))[0]]
     first = np.arange(max(len(order) - 2, 0))
-    # Every other triangle of a strip runs the other way round.
+    # Every second triangle of a strip has the reverse order.
     odd = first % 2
     return order[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
 
 
 def _place(surfaces: list[Faceted], world: Floats) -> Iterator[Floats]:
-    """Triangles (F, 3, 3) of surfaces where a node puts them."""
+    """Triangles (F, 3, 3) of surfaces with a node's transform applied."""
     linear = world[:3, :3]
     mirrors = np.linalg.det(linear) < 0
     for points, corners in surfaces:

@@ -26,11 +26,11 @@ class Document:
     binary: memoryview
 
     def error(self, field: str, expected: str, found: str) -> InputError:
-        """An error about this file."""
+        """Return an `InputError` about this file."""
         return InputError(self.source, field, expected, found)
 
     def item(self, kind: str, index: Any) -> Item:
-        """Item `index` of the array `kind`; `InputError` if there is none."""
+        """Return item `index` of the array `kind`; raise `InputError` if there is none."""
         items = self.root.get(kind, [])
         if type(index) is not int or not 0 <= index < len(items):
             raise self.error(kind, f"an index below {len(items)}", repr(index))
@@ -40,12 +40,13 @@ class Document:
         return item
 
     def accessor(self, index: Any, kind: str) -> NDArray[Any]:
-        """The accessor's values, (N, 1) for SCALAR or (N, 3) for VEC3; not copied.
+        """Return the accessor's values, (N, 1) for SCALAR or (N, 3) for VEC3; not copied.
 
         Raises
         ------
         InputError
-            Sparse, without data, of another type, or reaching past its buffer view.
+            The accessor is sparse, has no data, has another type, or reaches beyond its buffer
+            view.
         """
         accessor = self.item("accessors", index)
         field = f"accessors[{index}]"
@@ -59,13 +60,13 @@ class Document:
         return self._elements(field, accessor, code, _WIDTHS[kind])
 
     def numbers(self, index: Any, values: NDArray[Any]) -> NDArray[np.float64]:
-        """Values out of an accessor as what they stand for: fractions, if it is normalized."""
+        """Return values of an accessor as numbers: fractions, if the accessor is normalized."""
         if self.item("accessors", index).get("normalized") and values.dtype.kind in "iu":
             return np.maximum(values / np.iinfo(values.dtype).max, -1.0)
         return values.astype(np.float64)
 
     def count(self, index: Any) -> int:
-        """How many elements an accessor says it has."""
+        """Return the number of elements that an accessor states."""
         return self._whole(f"accessors[{index}]", self.item("accessors", index), "count")
 
     def _elements(
@@ -108,12 +109,12 @@ MAX_PLACED, MAX_PRIMITIVES = 20_000, 100_000
 
 
 def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.float64]]]:
-    """Each mesh of the default scene, depth first in the file's order.
+    """Yield each mesh of the default scene, depth first in the file's order.
 
     Yields
     ------
     name : str
-        The node's name, or else the mesh's, or else "node N".
+        Name of the node, or of the mesh, or "node N".
     mesh : int
         Index of the mesh, not checked yet.
     world : (4, 4) float64
@@ -155,14 +156,14 @@ def _require_few_pieces(document: Document) -> None:
 def _roots(document: Document) -> list[Any]:
     if document.root.get("scenes"):
         return list(document.item("scenes", document.root.get("scene", 0)).get("nodes", []))
-    # Without scenes everything counts, from the nodes that are nobody's children.
+    # Without scenes all nodes count, beginning with those that have no parent.
     nodes = range(len(document.root.get("nodes", [])))
     children = {c for n in nodes for c in document.item("nodes", n).get("children", [])}
     return [n for n in nodes if n not in children]
 
 
 def _require_rigid(document: Document, field: str, node: Item, mesh: Item) -> None:
-    # These move vertices; leaving them out would read a wrong shape without a word.
+    # These move vertices; ignoring them would give a wrong shape without a message.
     if "skin" in node:
         raise document.error(field, "a mesh without a skin", "a skin")
     weights: Any = node.get("weights", mesh.get("weights", []))
@@ -191,7 +192,7 @@ def _local(document: Document, field: str, node: Item) -> NDArray[np.float64]:
 
 
 def _rotation(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rotation matrix (3, 3) of a quaternion (x, y, z, w), which need not be quite unit."""
+    """Rotation matrix (3, 3) of a quaternion (x, y, z, w), approximately of unit length."""
     x, y, z, w = quaternion / np.linalg.norm(quaternion)
     return np.array(
         [

@@ -1,4 +1,4 @@
-"""The mesh every reader returns, the checks they share, and the fan that cuts polygons."""
+"""Common parts of all readers: the checked mesh, limits, and triangulation of polygons."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequen
     Parameters
     ----------
     source : str
-        The file, as error messages should name it.
+        Name of the file for messages.
     triangles : (F, 3, 3) array_like
         Corner coordinates in metres, ground frame.
     parts : (F,) array_like of int
         Index of each triangle's part in `names`.
     names : sequence of str
-        Part names; repeated names become one part, names without triangles go.
+        Part names; parts with the same name are merged, names without triangles are dropped.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def require_room(source: str, triangles: int) -> None:
     Raises
     ------
     InputError
-        One line with how many there would be, or how much they would take.
+        One line with their number, or with the memory that they need.
     """
     if triangles > MAX_TRIANGLES:
         found = f"{triangles:,}" if triangles < 10**18 else "more than 10^18"
@@ -82,7 +82,7 @@ def fan_size(counts: NDArray[Any]) -> int:
 
 
 def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Cut polygons, their corners laid end to end, into triangle fans.
+    """Cut polygons into triangle fans; the corners of all polygons are in one list.
 
     Parameters
     ----------
@@ -92,12 +92,12 @@ def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     Returns
     -------
     corners : (T, 3) int64
-        Positions of each triangle's corners in the end-to-end list.
+        Positions of each triangle's corners in the list.
     polygons : (T,) int64
-        The polygon each triangle came from.
+        The polygon of each triangle.
     """
     sizes = counts.astype(np.int64)
-    if (sizes == 3).all():  # as nearly all files have it
+    if (sizes == 3).all():  # the usual case
         return np.arange(3 * len(sizes)).reshape(-1, 3), np.arange(len(sizes))
     triangles = np.maximum(sizes - 2, 0)
     polygons = np.repeat(np.arange(len(sizes)), triangles)
@@ -114,8 +114,8 @@ def _require_finite(source: str, corners: NDArray[np.float64]) -> None:
 
 
 def gathered(points: NDArray[np.float64], corners: NDArray[Any]) -> NDArray[np.float64]:
-    """Triangles (T, 3, 3) of points (N, 3) at indices (T, 3) that are within them."""
-    return np.take(points, corners, axis=0, mode="clip")  # "clip" does without a buffer
+    """Triangles (T, 3, 3) of points (N, 3) at valid indices (T, 3)."""
+    return np.take(points, corners, axis=0, mode="clip")  # mode="clip" needs no buffer
 
 
 def _require_within(source: str, labels: NDArray[Any], names: int) -> None:
@@ -133,6 +133,6 @@ def _tidy_parts(
     used = np.bincount(labels.astype(np.int64), minlength=len(names)) > 0
     used_names = [name for name, has_triangles in zip(names, used, strict=True) if has_triangles]
     new_index = {name: new for new, name in enumerate(dict.fromkeys(used_names))}
-    # Unused names never get looked up, so any number will do for them.
+    # Unused names are never looked up, so their number is arbitrary.
     renumber = np.array([new_index.get(name, -1) for name in names], dtype=np.int32)
     return renumber[labels], tuple(new_index)

@@ -1,7 +1,7 @@
-"""Mesh formats that take an optional library to read.
+"""Mesh formats that need an optional library.
 
-Plugins of the sort ``mesh`` read them: their name is a suffix without its dot (``mesh.dae``), and
-each is a function of the path and the file's bytes that returns a `FoundMesh`.
+Plugins of the sort ``mesh`` read them. The name of a plugin is a suffix without its dot
+(``mesh.dae``). A plugin is a function of the path and the file's bytes; it returns a `FoundMesh`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MESH_PLUGIN = "mesh"
 
 
 class FoundMesh(NamedTuple):
-    """What a reader found: triangles [m] in the file's axes, parts, names, and which axis is up."""
+    """Result of a reader: triangles [m] in the file's axes, parts, names, and the up axis."""
 
     triangles: ArrayLike
     parts: NDArray[Any]
@@ -38,12 +38,13 @@ class FoundMesh(NamedTuple):
 
 
 def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
-    """Read a mesh by the reader that is installed for its suffix.
+    """Read a mesh with the plugin for its suffix.
 
     Raises
     ------
     InputError
-        There is none, or it lacks its library, and what installs it; or what the reader raises.
+        There is no plugin, its library is missing (the message says how to install it), or the
+        plugin raises an error.
     """
     suffix = path.suffix.lower()
     hint = install_hint(MESH_PLUGIN, suffix[1:])

@@ -35,17 +35,17 @@ class Header(NamedTuple):
 
     @property
     def size(self) -> int:
-        """Bytes of its values, as a Python number: it cannot wrap round."""
+        """Bytes of its values, as a Python integer, which cannot overflow."""
         return math.prod(self.shape) * self.dtype.itemsize
 
 
 class Archive:
-    """The arrays of a mesh in an archive's bytes; `headers` has those that are there.
+    """The arrays of a mesh in an archive; `headers` has the header of each existing array.
 
     Raises
     ------
     InputError
-        An array comes twice or holds pickled objects.
+        An array is there twice, or holds pickled objects.
     """
 
     def __init__(self, source: str, data: bytes) -> None:
@@ -63,7 +63,7 @@ class Archive:
         self._zip.close()
 
     def array(self, name: str) -> NDArray[Any]:
-        """Unpack an array; it takes what its header says, if its member can be so long."""
+        """Unpack an array; its size is checked against the archive before memory is allocated."""
         info, needed = self._members[name], self.headers[name].size
         if needed > info.file_size:
             found = f"{info.file_size:,}"
@@ -103,7 +103,7 @@ def one_line_errors(source: str) -> Iterator[None]:
 
 def _read_header(file: IO[bytes]) -> Header:
     version = npy.read_magic(file)  # type: ignore[no-untyped-call]
-    if version not in VERSIONS:  # others are of structured arrays, none of ours
+    if version not in VERSIONS:  # others: structured arrays
         raise ValueError(f"version {version} of the .npy format")
     shape, _, dtype = VERSIONS[version](file)  # type: ignore[no-untyped-call]
     return Header(shape, dtype)
@@ -117,17 +117,17 @@ MAX_NAME_BYTES = 256 << 20
 def read_npz(path: Path, data: bytes) -> Mesh:
     """Read an archive of `triangles` (F, 3, 3), `parts` (F,) and `part_names` (P,).
 
-    Coordinates are metres in the ground frame, taken as they are. Without `parts` all
-    triangles are one part, called by the only part name or else by the file's stem.
+    Coordinates are metres in the ground frame. Without `parts` all triangles are one part; its
+    name is the only part name, or the file's stem.
 
     Raises
     ------
     InputError
-        Not an archive, an array missing or of the wrong shape or type, an object array
-        (never unpickled), coordinates not finite, or no triangles.
+        The file is not an archive. An array is missing, has the wrong shape or type, or holds
+        objects (they are never unpickled). A coordinate is not finite, or there are no triangles.
     """
     source = str(path)
-    # A bare .npy, or anything else NumPy would understand, is not an archive.
+    # A single .npy array, or another file that NumPy can load, is not an archive.
     if not data.startswith(b"PK"):
         raise InputError(source, "file", "a NumPy .npz archive", "some other format")
     with one_line_errors(source), Archive(source, data) as archive:
@@ -139,7 +139,7 @@ def read_npz(path: Path, data: bytes) -> Mesh:
 
 
 def dump_npz(path: Path, mesh: Mesh) -> bytes:
-    """The archive's bytes: exact float64 triangles, int32 parts, unicode part names."""
+    """Return the archive's bytes: exact float64 triangles, int32 parts, unicode part names."""
     buffer = io.BytesIO()
     np.savez_compressed(
         buffer,
@@ -151,7 +151,7 @@ def dump_npz(path: Path, mesh: Mesh) -> bytes:
 
 
 def _check(source: str, headers: Mapping[str, Header]) -> int:
-    """Refuse arrays of other shapes or types, and those too large; return the triangles' number."""
+    """Refuse wrong shapes or types and too large arrays; return the number of triangles."""
     if "triangles" not in headers:
         found = ", ".join(sorted(headers)) or "none of ours"
         raise InputError(source, "triangles", "an array of that name", found)

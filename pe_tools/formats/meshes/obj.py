@@ -19,7 +19,7 @@ from .obj_blocks import ObjContent, regular_statements
 
 @dataclass(slots=True)
 class _Statements:
-    """What the lines said: corners of all faces end to end, their vertices and lines."""
+    """Content of the lines: the corners of all faces in one list, with their vertices and lines."""
 
     points: list[float] = field(default_factory=list)
     point_lines: list[int] = field(default_factory=list)
@@ -30,17 +30,17 @@ class _Statements:
 
 
 def read_obj(path: Path, data: bytes) -> Mesh:
-    """Read the faces of an OBJ file; coordinates are metres in the ground frame, as they are.
+    """Read the faces of an OBJ file; coordinates are metres in the ground frame.
 
-    Parts are the `o` names, or the `g` names of a file that has no `o`; faces before the
-    first name belong to a part called by the file's stem. A name is the whole rest of its
-    line. Polygons are cut into fans, faces of two vertices ignored.
+    Parts are the `o` names, or the `g` names of a file without `o`. Faces before the first name
+    belong to a part with the file's stem as its name. A name is all of the rest of its line.
+    Polygons are cut into fans; faces of two vertices are ignored.
 
     Raises
     ------
     InputError
-        Not text, a malformed `v` or `f` line, an index out of range or a coordinate not
-        finite (each with its line number), or no triangles.
+        The file is not text, or has no triangles. A `v` or `f` line is malformed, an index is out
+        of range, or a coordinate is not finite; the message has the line number.
     """
     source = str(path)
     if b"\0" in data:
@@ -50,7 +50,7 @@ def read_obj(path: Path, data: bytes) -> Mesh:
 
 
 def _read_blocks(path: Path, data: bytes) -> Mesh | None:
-    """Read a file as programs write it; None for what has to be read line by line."""
+    """Read a regular file in blocks; None if it has to be read line by line."""
     content = regular_statements(data)
     if content is None or not _is_within(content.corners, len(content.points)):
         return None
@@ -71,8 +71,8 @@ def _is_within(corners: NDArray[np.int64], points: int) -> bool:
 
 
 def _labels(content: ObjContent, names: dict[str, int]) -> NDArray[np.int32]:
-    """The part of each face, by the names among the other lines; new ones are added to `names`."""
-    # Together: a single letter says how all of them are encoded.
+    """The part of each face, from the names in the other lines; `names` gets new names."""
+    # All lines together: a single letter can show how the file is encoded.
     lines = decode_text(b"".join(content.others)).split("\n")
     keyword = "o" if any(line.split(None, 1)[:1] == ["o"] for line in lines) else "g"
     labels = np.zeros(len(content.counts), np.int32)
@@ -84,7 +84,7 @@ def _labels(content: ObjContent, names: dict[str, int]) -> NDArray[np.int32]:
 
 
 def _read_lines(path: Path, data: bytes) -> Mesh:
-    """Read any file, line by line: what `_read_blocks` is held to, and what tells of errors."""
+    """Read any file line by line: the reference for `_read_blocks`, and the source of errors."""
     source = str(path)
     lines = _logical_lines(decode_text(data))
     keyword = "o" if any(line.split(None, 1)[:1] == ["o"] for line in lines) else "g"
@@ -100,17 +100,17 @@ def _read_lines(path: Path, data: bytes) -> Mesh:
 
 
 def dump_obj(path: Path, mesh: Mesh) -> bytes:
-    """The OBJ text: shared vertices, shortest exact floats, triangles in their order.
+    """Return the OBJ text: shared vertices, shortest exact floats, triangles in their order.
 
     Raises
     ------
     InputError
-        A part name that an `o` line cannot hold.
+        An `o` line cannot hold a part name.
     """
     for name in mesh.part_names:
         if not _fits_a_line(name):
             raise InputError(str(path), "part_names", "names that fit on one line", repr(name))
-    # Vertices are shared by bit pattern: as floats, 0.0 and -0.0 would become one.
+    # Vertices are compared by bits: as floats, 0.0 and -0.0 would be equal.
     index: dict[tuple[int, ...], int] = {}
     corners = np.ascontiguousarray(mesh.triangles).view(np.int64).reshape(-1, 3).tolist()
     order = [index.setdefault(tuple(corner), len(index) + 1) for corner in corners]
@@ -129,7 +129,7 @@ def dump_obj(path: Path, mesh: Mesh) -> bytes:
 
 
 def _logical_lines(text: str) -> list[str]:
-    """Lines with continuations joined; joined lines leave blanks, so numbers stay true."""
+    """Lines with continuations joined; empty lines replace the joined ones, to keep numbers."""
     lines = text.split("\n")
     if "\\" not in text:
         return lines
@@ -147,7 +147,7 @@ def _logical_lines(text: str) -> list[str]:
 
 
 def _goes_on(line: str) -> bool:
-    # A comment may end with a Windows path; it must not swallow the next line.
+    # A comment may end with a Windows path, whose backslash must not join the next line.
     return line.endswith("\\") and not line.lstrip().startswith("#")
 
 
@@ -180,14 +180,14 @@ def _scan_face(scan: _Statements, line: str) -> None:
     point_count = len(scan.points) // 3
     for word in words[1:]:
         i = int(word.partition("/")[0])
-        # Counted from 0; index 0 and those too far back come out negative.
+        # Indices from 0; index 0 and relative indices that reach too far back become negative.
         scan.corners.append(i - 1 if i > 0 else point_count + i if i < 0 else -1)
     scan.counts.append(len(words) - 1)
 
 
 def _check(source: str, lines: list[str], scan: _Statements) -> None:
     total = len(scan.point_lines)
-    # Python's own min and max: an index can be too long for any NumPy integer.
+    # Python's min and max, because an index can be too large for a NumPy integer.
     if scan.corners and not 0 <= min(scan.corners) <= max(scan.corners) < total:
         bad = next(k for k, i in enumerate(scan.corners) if not 0 <= i < total)
         number = scan.face_lines[int(np.searchsorted(np.cumsum(scan.counts), bad, side="right"))]

@@ -1,7 +1,7 @@
-"""OBJ files as programs write them, read in blocks of bytes instead of line by line.
+"""Regular OBJ files, as programs write them, read in blocks of bytes instead of line by line.
 
-Vertices are ``v`` and numbers, faces ``f`` and indices that count from 1; every line begins in its
-first column. Whatever else a file has among them, `regular_statements` leaves to who reads lines.
+In a regular file, vertices are ``v`` and numbers, faces are ``f`` and indices from 1, and every
+statement begins in the first column. `regular_statements` returns all other lines to the caller.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ for _sort, _letters in ((LETTER, b"f"), (SPACE, b" \n"), (SLASH, b"/"), (DIGIT, 
 
 
 class ObjContent(NamedTuple):
-    """What a file says: points, corners of faces end to end from 0, corners of each face.
+    """Content of a file: points, the corners of all faces in one list, the number of each face.
 
-    `others` are all other lines, `before` how many faces are before each of them.
+    Corners are indices from 0. `others` are all other lines, `before` the number of faces before
+    each of them.
     """
 
     points: NDArray[np.float64]
@@ -39,14 +40,14 @@ class ObjContent(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """The bytes of some lines, end to end, and where each line ends (its newline)."""
+    """The joined bytes of some lines, and the position of each line's newline."""
 
     text: Bytes
     ends: Offsets
 
 
 def regular_statements(data: bytes) -> ObjContent | None:
-    """Return what a file says; None for one that has to be read line by line."""
+    """Return the content of a file; None if it has to be read line by line."""
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n")
     if b"\\" in data or b"\r" in data or not data:
@@ -70,12 +71,12 @@ def regular_statements(data: bytes) -> ObjContent | None:
 
 
 def _is_hidden_statement(line: bytes) -> bool:
-    """Whether a line is a vertex or a face that does not begin as most do."""
+    """Whether a line is a vertex or a face with an unusual beginning."""
     return line.split(None, 1)[:1] in ([b"v"], [b"f"])
 
 
 def _block(text: Bytes, starts: Offsets, ends: Offsets, is_member: NDArray[np.bool_]) -> _Block:
-    """Return the lines of one sort, which stand in runs one after the other."""
+    """Return the lines of one sort, which come in runs."""
     edges = np.flatnonzero(np.diff(is_member.view(np.int8), prepend=0, append=0))
     runs = [text[starts[a] : ends[b - 1] + 1] for a, b in edges.reshape(-1, 2).tolist()]
     sizes = (ends - starts)[is_member] + 1
@@ -83,7 +84,7 @@ def _block(text: Bytes, starts: Offsets, ends: Offsets, is_member: NDArray[np.bo
 
 
 def _points(block: _Block) -> NDArray[np.float64] | None:
-    """(N, 3) of lines of as many numbers each: three, or more that are passed over."""
+    """Points (N, 3) of lines with equally many numbers: three, or more, which are ignored."""
     text, ends = block
     if not len(ends) or not POINT_LETTERS[text].all():
         return None
@@ -98,7 +99,7 @@ def _points(block: _Block) -> NDArray[np.float64] | None:
         warnings.simplefilter("error", DeprecationWarning)
         try:
             numbers = np.fromstring(blank.tobytes(), sep=" ")
-        except (DeprecationWarning, ValueError):  # something among them is no number
+        except (DeprecationWarning, ValueError):  # a word is not a number
             return None
     if len(numbers) != len(begins) or not np.isfinite(numbers).all():
         return None
@@ -106,7 +107,7 @@ def _points(block: _Block) -> NDArray[np.float64] | None:
 
 
 def _each_has(count: int, begins: Offsets, ends: Offsets) -> bool:
-    """Whether each line, which ends there, has so many of the words that begin there."""
+    """Whether each line (by `ends`) has `count` words (by `begins`)."""
     if count < 1 or len(begins) != count * len(ends):
         return False
     last, following = begins[count - 1 :: count], begins[count::count]
@@ -114,7 +115,7 @@ def _each_has(count: int, begins: Offsets, ends: Offsets) -> bool:
 
 
 def _faces(block: _Block) -> tuple[Offsets, Offsets] | None:
-    """Corners of all faces end to end, from 0, and how many each face has."""
+    """The corners of all faces in one list, from 0, and the number of corners of each face."""
     text, ends = block
     sort = FACE_LETTERS[text]
     if not len(ends) or not sort.all() or np.count_nonzero(sort == LETTER) != len(ends):
@@ -135,12 +136,12 @@ def _faces(block: _Block) -> tuple[Offsets, Offsets] | None:
 
 
 def _whole_numbers(text: Bytes, begins: Offsets, stops: Offsets) -> Offsets:
-    """The numbers whose digits are from `begins` to before `stops`."""
+    """Parse integers with the digits from `begins` to before `stops`."""
     values = np.zeros(len(begins), np.int64)
     digit_counts = (stops - begins).astype(np.int8)
     for power in range(int(digit_counts.max(initial=0))):
         digits = text[stops - (1 + power)] - np.uint8(ord("0"))
         if power >= int(digit_counts.min()):
-            digits *= digit_counts > power  # where a number is shorter, that is no digit of it
+            digits *= digit_counts > power  # beyond the end of shorter numbers
         values += np.multiply(digits, 10**power, dtype=np.int64)
     return values

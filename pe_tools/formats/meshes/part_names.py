@@ -1,4 +1,4 @@
-"""Part names out of other programs' files, made fit for messages, studies and the screen."""
+"""Part names from other programs' files, made valid for messages, studies and the screen."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ MAX_NUMBER_DIGITS = 12
 
 
 def fit_names(names: Sequence[str]) -> tuple[str, ...]:
-    """Return a name for each part, all different, printable, on one line and not too long.
+    """Return a name for each part: all different, printable, on one line and not too long.
 
-    Names that are fit stay as they are. In others `INSTEAD` replaces what cannot be printed (line
-    ends, controls, characters that turn the text round, halves of a surrogate pair), the end is
-    left out where they are too long, and a number tells those apart that become alike.
+    Valid names are unchanged. In other names `INSTEAD` replaces characters that cannot be printed
+    (line ends, controls, changes of the text direction, halves of a surrogate pair). Long names are
+    cut at the end. A number makes names different that would become equal.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ class Piece(NamedTuple):
 
 
 def cut(points: Floats, counts: NDArray[Any], corners: NDArray[Any]) -> Floats:
-    """Triangles (F, 3, 3) of polygons whose corners are listed end to end: a fan of each."""
+    """Cut polygons into fans: triangles (F, 3, 3); all corners are in one list."""
     sizes = np.asarray(counts, np.int64)
     fans = np.maximum(sizes - 2, 0)
     polygons = np.repeat(np.arange(len(sizes)), fans)
@@ -33,7 +33,7 @@ def cut(points: Floats, counts: NDArray[Any], corners: NDArray[Any]) -> Floats:
 
 
 def placed(triangles: Floats, matrix: Floats) -> Floats:
-    """Triangles transformed by a matrix (4, 4) for column vectors; mirroring keeps the outside."""
+    """Transform triangles by a matrix (4, 4) for column vectors; mirroring keeps the outside."""
     x, y, z = (triangles[..., k] for k in range(3))
     rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
     moved = np.stack(rows, axis=-1)

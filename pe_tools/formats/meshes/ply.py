@@ -32,22 +32,22 @@ _CODES = {word: code for code, words in _TYPES.items() for word in words}
 
 
 def read_ply(path: Path, data: bytes) -> Mesh:
-    """Read a PLY file's faces as one part called by the file's stem.
+    """Read a PLY file's faces as one part with the file's stem as its name.
 
-    Coordinates are metres in the ground frame, as they are. Polygons are cut into fans;
-    other elements and properties are passed over.
+    Coordinates are metres in the ground frame. Polygons are cut into fans. Other elements and
+    properties are ignored.
 
     Raises
     ------
     InputError
-        Not PLY, a malformed header, no vertex positions or face lists, a vertex index out
-        of range, data that end too soon, coordinates not finite, or no triangles.
+        The file is not PLY, or its header is malformed. Positions, faces or triangles are missing.
+        A vertex index is out of range, a coordinate is not finite, or the data end too early.
     """
     source = str(path)
     header, body = _split(source, data)
     elements, order = _parse_header(source, header)
     if not order:
-        # An ASCII body is a binary one in which everything is a double.
+        # An ASCII body is converted to a binary one in which every value is a double.
         body = _numbers(source, body).tobytes()
     columns: dict[str, dict[str, Column]] = {}
     offset = 0
@@ -61,7 +61,7 @@ def read_ply(path: Path, data: bytes) -> Mesh:
 
 
 def _corners(faces: Column) -> NDArray[np.int64]:
-    """Indices (T, 3) of the fans that faces are cut into."""
+    """Indices (T, 3) of the triangles of faces cut into fans."""
     indices = faces.values.astype(np.int64)
     if (faces.counts == 3).all():
         return indices.reshape(-1, 3)
@@ -69,8 +69,8 @@ def _corners(faces: Column) -> NDArray[np.int64]:
 
 
 def _split(source: str, data: bytes) -> tuple[list[str], bytes]:
-    # The first line's ending is that of the whole header: a binary body may start with
-    # a byte that would look like the second half of another one.
+    # All lines of the header have the ending of the first line: a binary body may start with a
+    # byte that looks like the second half of a line ending.
     ending = next((e for e in (b"\r\n", b"\n", b"\r") if data.startswith(b"ply" + e)), None)
     if ending is None:
         raise InputError(source, "header", "'ply' on the first line", repr(data[:16]))
@@ -84,7 +84,7 @@ def _split(source: str, data: bytes) -> tuple[list[str], bytes]:
 
 
 def _parse_header(source: str, lines: list[str]) -> tuple[list[Element], str]:
-    """The elements, with byte orders in their types, and the byte order: '' if ASCII."""
+    """Return the elements, with byte orders in their types, and the byte order: '' if ASCII."""
     elements: list[Element] = []
     names: set[str] = set()
     order: str | None = None
@@ -92,7 +92,7 @@ def _parse_header(source: str, lines: list[str]) -> tuple[list[Element], str]:
         match line.split():
             case ["format", kind, "1.0"] if kind in _ORDERS:
                 order = _ORDERS[kind]
-            # A longer count is beyond any file; int() itself gives up at some length.
+            # No file has a longer count, and int() refuses texts beyond some length.
             case ["element", name, count] if count.isdecimal() and len(count) < 16:
                 elements.append(Element(name, int(count)))
                 names.clear()
@@ -144,7 +144,7 @@ def _points(source: str, vertex: dict[str, Column]) -> NDArray[np.float64]:
 
 
 def _faces(source: str, face: dict[str, Column], points: int) -> Column:
-    """The face lists, every index in them checked."""
+    """Return the face lists, with every index checked."""
     faces = face.get("vertex_indices", face.get("vertex_index"))
     if faces is None:
         found = ", ".join(face) or "none"
@@ -152,7 +152,7 @@ def _faces(source: str, face: dict[str, Column], points: int) -> Column:
     values = faces.values
     if _all_within(values, points):
         return faces
-    # Asked this way round, NaN is bad too.
+    # In this form of the condition NaN is refused, too.
     bad = np.flatnonzero(~((values >= 0) & (values < points) & (values == np.floor(values))))
     if bad.size:
         row = int(np.searchsorted(np.cumsum(faces.counts), bad[0], side="right"))
@@ -162,6 +162,6 @@ def _faces(source: str, face: dict[str, Column], points: int) -> Column:
 
 
 def _all_within(values: NDArray[Any], points: int) -> bool:
-    """Whether values are whole numbers within so many points; also False for some that are."""
+    """Whether all values are surely valid indices; may be False for some that are valid."""
     whole = values.dtype.kind in "iu" and values.size > 0
     return whole and 0 <= int(values.min()) <= int(values.max()) < points

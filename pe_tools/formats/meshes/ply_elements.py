@@ -1,4 +1,4 @@
-"""The data part of a PLY file: rows of an element, lists among them, into columns."""
+"""The data part of a PLY file: rows of elements, also with lists, as columns."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WALKED_BYTES = 200
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """One value of each row, or, with a `count_type`, a list that its length precedes."""
+    """One value in each row; with a `count_type`, a list after its length."""
 
     name: str
     type: str
@@ -29,7 +29,7 @@ class Property:
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """`count` rows of the same properties."""
+    """An element: `count` rows with the same properties."""
 
     name: str
     count: int
@@ -37,7 +37,7 @@ class Element:
 
 
 class Column(NamedTuple):
-    """One property of all rows: how many values each has, and the values end to end."""
+    """One property of all rows: the number of values of each row, and all values in one list."""
 
     counts: NDArray[np.int64]
     values: NDArray[Any]
@@ -52,18 +52,18 @@ def read_element(
     -------
     columns : dict of str to Column
     offset : int
-        Where the next element begins.
+        Start of the next element.
 
     Raises
     ------
     InputError
-        The data end too soon, or a list's length is not a whole number from 0 up.
+        The data end too early, or a list's length is not an integer of at least 0.
     """
     if not element.count or not element.properties:
         nothing = Column(np.zeros(0, np.int64), np.zeros(0))
         return {item.name: nothing for item in element.properties}, offset
     _require_possible(source, element, len(data) - offset)
-    # Nearly all files have lists of one length (triangles), which NumPy reads in one go.
+    # Nearly all files have lists of equal length (triangles), which NumPy reads at once.
     rows = _even_rows(element, data, offset, _first_lengths(source, element, data, offset))
     if rows is None:
         return _walk(source, element, data, offset)
@@ -76,7 +76,7 @@ def read_element(
 
 
 def _row_bytes(element: Element, lengths: Sequence[int]) -> int:
-    """Bytes of a row whose properties have so many values each."""
+    """Bytes of a row whose properties have `lengths` values each."""
     return sum(
         np.dtype(item.type).itemsize * length
         + (np.dtype(item.count_type).itemsize if item.count_type else 0)
@@ -85,7 +85,7 @@ def _row_bytes(element: Element, lengths: Sequence[int]) -> int:
 
 
 def _require_possible(source: str, element: Element, bytes_left: int) -> None:
-    """Refuse a count of rows that would not fit even if all lists were empty."""
+    """Refuse a number of rows that does not fit even if all lists are empty."""
     min_row_bytes = _row_bytes(
         element, [0 if item.count_type else 1 for item in element.properties]
     )
@@ -103,7 +103,7 @@ def _first_lengths(source: str, element: Element, data: bytes, offset: int) -> l
 def _even_rows(
     element: Element, data: bytes, offset: int, lengths: list[int]
 ) -> NDArray[np.void] | None:
-    """All rows as one structured array, or None if a list differs in length from the first."""
+    """Read all rows as one structured array; None if lists differ in length."""
     row = _row_bytes(element, lengths)
     if row > MAX_ROW_BYTES or offset + element.count * row > len(data):
         return None
@@ -121,7 +121,7 @@ def _even_rows(
 
 
 def _walk(source: str, element: Element, data: bytes, offset: int) -> tuple[dict[str, Column], int]:
-    """Row by row: for lists of several lengths, and to find the row where the data end."""
+    """Read row by row: for lists of different lengths, and to find the row where data end."""
     require_memory(source, f"element {element.name}", _walk_bytes(element))
     counts: list[list[int]] = [[] for _ in element.properties]
     values: list[list[NDArray[Any]]] = [[] for _ in element.properties]

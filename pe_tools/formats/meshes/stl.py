@@ -19,18 +19,18 @@ _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute
 
 
 def read_stl(path: Path, data: bytes) -> Mesh:
-    """Read an STL file; coordinates are metres in the ground frame, as they are.
+    """Read an STL file; coordinates are metres in the ground frame.
 
-    ASCII parts are the solids' names, the file's stem where a solid has none; a binary
-    file is one part called by the stem. Stored normals are ignored.
+    In ASCII, parts have the solids' names, or the file's stem for a solid without a name. A
+    binary file is one part with the stem as its name. Stored normals are ignored.
 
     Raises
     ------
     InputError
-        Not STL, shorter or longer than its triangle count says, a malformed line (with its
-        number), coordinates not finite, or no triangles.
+        The file is not STL, its length does not match its number of triangles, a line is
+        malformed, a coordinate is not finite, or there are no triangles.
     """
-    # Many binary files begin with "solid" too, so the length is asked first.
+    # Many binary files begin with "solid", too, so the length is tested first.
     if len(data) != _binary_length(data) and _looks_ascii(data):
         require_memory(path, "file", len(data) * TEXT_UNFOLDS)
         return _read_ascii(path, decode_text(data).split("\n"))
@@ -71,7 +71,7 @@ def _read_ascii(path: Path, lines: list[str]) -> Mesh:
 
 @dataclass(slots=True)
 class _SolidLines:
-    """What the lines of an ASCII file said so far."""
+    """Content of the lines of an ASCII file that were read."""
 
     source: str
     stem: str

@@ -27,19 +27,19 @@ for _open, _close in ("()", "[]", "{}"):
 
 
 def check_layers(path: Path) -> None:
-    """Check a stage's root layer and all that it refers to.
+    """Check a stage's root layer and all layers that it refers to.
 
     Raises
     ------
     InputError
-        A file that is missing, no regular file, no USD or too deeply nested; references in a
-        circle; more layers or prims than the limits.
+        A file is missing, not a regular file, not USD or too deeply nested. References form a
+        circle. There are more layers or prims than the limits.
     """
     _UsdLayers(str(path)).prims_below(str(path), Sdf.Path.absoluteRootPath, ())
 
 
 class _UsdLayers:
-    """Layers that were opened, and how many prims each of their prims comes to."""
+    """Opened layers, and the number of prims below each of their prims."""
 
     def __init__(self, source: str) -> None:
         self._source = source
@@ -47,7 +47,7 @@ class _UsdLayers:
         self._counts: dict[tuple[str, Any], int] = {}
 
     def prims_below(self, name: str, path: Any, above: tuple[tuple[str, Any], ...]) -> int:
-        """How many prims a prim of a layer comes to, with all that is referred to."""
+        """Number of prims of a prim of a layer, with all references."""
         key = (name, path)
         if key in above:
             raise InputError(self._source, "references", "none in a circle", f"{name} in one")
@@ -82,7 +82,7 @@ class _UsdLayers:
         return total
 
     def _referred(self, name: str, layer: Any, spec: Any) -> Iterator[tuple[str, Any]]:
-        """The layer and prim of every reference and payload of a prim."""
+        """Yield the layer and prim of every reference and payload of a prim."""
         for references in (spec.referenceList, spec.payloadList):
             for reference in references.GetAddedOrExplicitItems():
                 layer_name = (
@@ -95,7 +95,7 @@ class _UsdLayers:
                 yield layer_name, inner
 
     def _resolved(self, layer: Any, asset: str) -> str:
-        """The path of an asset that a layer names."""
+        """Return the path of an asset that a layer names."""
         return str(layer.ComputeAbsolutePath(asset))
 
     def _layer(self, name: str) -> Any:
@@ -118,7 +118,7 @@ class _UsdLayers:
 
 
 def _check_file(source: str, path: Path) -> None:
-    """Raise `InputError` unless a layer's file is there, regular and not too deeply nested."""
+    """Raise `InputError` unless a layer's file exists, is regular and not too deeply nested."""
     if not path.exists():
         raise InputError(source, "references", "files that are there", f"none at {path}")
     if not path.is_file():
@@ -145,20 +145,20 @@ HIDDEN_PURPOSES = ("guide", "proxy")
 
 
 def read_usd(path: Path, _data: bytes) -> FoundMesh:
-    """Read the meshes of a USD stage as it opens: up axis and unit are the stage's.
+    """Read the meshes of a USD stage, with the stage's up axis and unit.
 
-    A part is called by the transform that holds its mesh, as Blender and others name objects, or
-    else by the mesh. What is invisible, a guide or a proxy is passed over; of a subdivision surface
-    the cage is taken.
+    A part has the name of the transform above its mesh, as Blender and others name objects, or
+    the mesh's name. Invisible prims, guides and proxies are ignored. A subdivision surface is
+    represented by its cage.
 
     Raises
     ------
     InputError
-        Not USD, a layer that is missing or not USD, more prims than `MAX_PRIMS`, or a mesh with
-        indices out of range.
+        The file is not USD, a layer is missing or not USD, there are more prims than `MAX_PRIMS`,
+        or a mesh has indices out of range.
     """
     source = str(path)
-    diagnostics = UsdUtils.CoalescingDiagnosticDelegate()  # while it is there, USD prints nothing
+    diagnostics = UsdUtils.CoalescingDiagnosticDelegate()  # while it exists, USD prints nothinghing
     try:
         check_layers(path)
         stage = Usd.Stage.Open(source)

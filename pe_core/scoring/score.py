@@ -120,7 +120,6 @@ def column_zones(space: PerceptionSpace) -> dict[str, NDArray[np.bool_]]:
 DECIMALS = 9
 """Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
 
-
 Watch = Callable[[float], bool]
 """Is told how much of a score is done, 0 to 1, now and then; says whether to go on."""
 

@@ -26,7 +26,6 @@ Floats = NDArray[np.float64]
 Planes = Callable[[slice], NDArray | VisibleRows]
 """m of a fusion group on n consecutive x-planes: integers (n, ny, nz), or the visible rows."""
 
-
 BLOCK_PLANES = 32
 """x-planes that a thread measures at a time."""
 

@@ -161,18 +161,8 @@ def bent_pixel_area(
     """(V,) pixels covered by cubes of side `side` [m] through a camera's lens.
 
     0 where the camera is inside the ball round a cube, or the ball reaches the direction opposite
-    to the view.
-
-    Parameters
-    ----------
-    camera : Camera
-    axes : (3, 3) float
-        Rotation from the camera's frame to the ground frame (`tie_rules.axes_of`).
-    offsets : (V, 3) float
-        The cubes' centres from the camera, ground axes (`tie_rules.offsets_of`) [m].
-    side : float
-    pieces : int
-        Pieces of an edge; fewer are enough for distant cubes.
+    to the view. Parameters are those of `clipped_pixel_area`, and `pieces` of an edge: fewer are
+    enough for distant cubes.
     """
     area = np.zeros(len(offsets))
     shown = in_reach(camera.projection, axes, offsets, side)

@@ -19,7 +19,7 @@ from .definition import cut_to_range, hidden, is_ranged
 from .model import Camera
 from .sample_areas import Sorter, edge_areas
 from .tie_rules import NUDGE, aims_at, axes_of, offsets_of
-from .voxel_occlusion import VoxelOcclusion, positions_of, span_of
+from .voxel_occlusion import VoxelOcclusion, positions_of, span
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -30,16 +30,7 @@ ALL_ROUND = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0,
 
 
 class BentPlanes:
-    """A mounted camera whose lens has distortion, ready to measure a space plane by plane.
-
-    Parameters
-    ----------
-    camera : Camera
-    pose : Pose
-    space : PerceptionSpace
-    seen : VisibleMesh, optional
-        The vehicle, seen from the camera's position.
-    """
+    """A mounted camera whose lens has distortion; parameters as of `grid_areas.CameraPlanes`."""
 
     def __init__(
         self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: VisibleMesh | None
@@ -88,7 +79,7 @@ class BentPlanes:
         far = np.max(x * x) + y * y + np.max(z * z)
         cosine = np.cos(min(self._sorter.lens.outer, np.pi))
         distance = np.sqrt(near if cosine > 0.0 else far)
-        return span_of(depth + 2.0 * ball >= cosine * distance - 2.0 * ball)
+        return span(depth + 2.0 * ball >= cosine * distance - 2.0 * ball)
 
     def _sorted(self, planes: slice, rows: slice) -> tuple[Singles, Ints]:
         """Areas by the closed form, 0 where it does not apply; and the indices of border voxels."""

@@ -26,7 +26,7 @@ from .picture import BORDER, PictureBins
 from .pixel_area import clipped_pixel_area, in_sensor_frame
 from .sample_areas import NEAR_SIDES
 from .tie_rules import MARGIN, NUDGE, aims_at, axes_of, offsets_of
-from .voxel_occlusion import VoxelOcclusion, positions_of, span_of
+from .voxel_occlusion import VoxelOcclusion, positions_of, span
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -149,7 +149,7 @@ class CameraPlanes:
         for n, least in [(self._forward, 0.0), *self._at_sides(-1.0)]:
             most = max(n[0] * x[0], n[0] * x[-1]) + max(n[2] * z[0], n[2] * z[-1])
             inside &= n[1] * y > least - most
-        return span_of(inside)
+        return span(inside)
 
     def _runs(self, planes: slice, rows: slice, half_spaces: list[HalfSpace]) -> ColumnRuns:
         """Runs of voxels that lie in all half spaces."""
@@ -179,7 +179,7 @@ class CameraPlanes:
         for plane, x_depth, x_away, first, end in zip(
             area, self._forward[0] * x, self._away_from(x), *plain, strict=True
         ):
-            some = span_of(first < end)
+            some = span(first < end)
             plane[: some.start] = 0.0
             plane[some.stop :] = 0.0
             self._flat(plane[some], held[some], (depth[some], x_depth), (away[some], x_away))

@@ -35,12 +35,6 @@ def positions_of(
     return np.stack([x[first[0] + i], y[first[1] + j], z[k]], axis=1)
 
 
-def span_of(mask: NDArray[np.bool_]) -> slice:
-    """The range from the first to the last True element."""
-    seen = np.flatnonzero(mask)
-    return slice(int(seen[0]), int(seen[-1]) + 1) if len(seen) else slice(0, 0)
-
-
 Mask = NDArray[np.bool_]
 
 MAX_BINS, MIN_BINS = 512, 64
@@ -50,7 +44,6 @@ VOXELS_A_BIN = 256
 ALIGNED = 1e-8
 """A ray that passes a triangle's corner within this distance (in u and v) is cast: rounding decides
 which of the triangles at the corner it hits, and it may hit none."""
-
 
 EVERYWHERE = ((-1.0, 1.0), (-1.0, 1.0))
 

@@ -28,6 +28,16 @@ from .scoring import (
     Score,
     SensorScore,
 )
+from .scoring.requirements import (
+    BODIES,
+    Body,
+    Criterion,
+    Requirement,
+    RequirementChecker,
+    Under,
+    Verdict,
+    Zone,
+)
 from .scoring.sight import BlindGround, GroundSight, Reach, Sight
 from .scoring.targets import ObjectEvaluator, TargetRule
 from .search import (
@@ -64,19 +74,23 @@ from .sensors import (
     measure_objects,
 )
 from .study import Search, Study, load_study, save_study, study_from_dict, study_to_dict
+from .study import presets as requirement_presets
 from .version import __version__
 
 __all__ = [
+    "BODIES",
     "METHODS",
     "ApCurve",
     "BeamField",
     "BlindGround",
+    "Body",
     "BoxReport",
     "Boxes",
     "BrownConrady",
     "Camera",
     "Choice",
     "Constraints",
+    "Criterion",
     "Evaluator",
     "FTheta",
     "Focus",
@@ -107,6 +121,8 @@ __all__ = [
     "Prior",
     "Reach",
     "Reference",
+    "Requirement",
+    "RequirementChecker",
     "Rig",
     "RigJudge",
     "Scatter",
@@ -125,7 +141,10 @@ __all__ = [
     "SurfaceMount",
     "TargetRule",
     "Tolerance",
+    "Under",
     "Vehicle",
+    "Verdict",
+    "Zone",
     "__version__",
     "beam_field",
     "catalog",
@@ -135,6 +154,7 @@ __all__ = [
     "measure",
     "measure_objects",
     "optimize",
+    "requirement_presets",
     "save_study",
     "study_from_dict",
     "study_to_dict",

@@ -180,7 +180,7 @@ def check_contents(archive: Path) -> None:
     """Make sure that engine and page are in: Blender's tool leaves files out without a word."""
     with zipfile.ZipFile(archive) as packed:
         names = set(packed.namelist())
-    presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("catalog/**/*.toml")}
+    presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("**/*.toml")}
     always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py"}
     always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("page/**/*.[cj]s*")}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}

@@ -24,6 +24,12 @@ from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference, vehicle_line
 from ..scoring import Evaluator, RigJudge
+from ..scoring.requirements import (
+    Requirement,
+    RequirementChecker,
+    Verdict,
+    checked_requirements,
+)
 from ..scoring.sampling import SAMPLES_OR_GRID
 from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
@@ -41,6 +47,7 @@ from ..search import (
     checked_axes,
     checked_bounds,
     checked_method,
+    mounted_off,
 )
 from ..sensors import PerceptionModel
 from .catalog_lookup import check_pairs, housings_of
@@ -136,6 +143,7 @@ class Study:
     export to its own format. Of `search`, what concerns the rig's sensors is kept; one that it does
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
     `rig`, and what they cost. `targets` says whether voxels or objects are judged.
+    `requirements` are what the rig is held to.
 
     Raises
     ------
@@ -163,8 +171,10 @@ class Study:
     selection: Selection = field(default_factory=Selection)
     targets: TargetRule = field(default_factory=TargetRule)
     passthrough: Passthrough | None = None
+    requirements: tuple[Requirement, ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "requirements", checked_requirements(self.requirements))
         for name, kind in FIELDS.items():
             if not isinstance(getattr(self, name), kind):
                 found = type(getattr(self, name)).__name__
@@ -222,6 +232,39 @@ class Study:
             return Sight(
                 self.space, self.prior, self.vehicle, model=self.model, targets=self.targets
             )
+
+    def checker(self) -> RequirementChecker:
+        """Return what holds rigs to the study's requirements.
+
+        Raises
+        ------
+        InputError
+            When a zone cannot be placed round the vehicle, or the rig lacks a kind of sensor.
+        """
+        checker = RequirementChecker(
+            self.requirements,
+            self.vehicle,
+            model=self.model,
+            reference=self.reference,
+            space=self.space,
+        )
+        checker.check_rig(self.rig)
+        for each in self.requirements:
+            if each.under.mounting and not self.search.tolerance.mounts_off:
+                who = f"requirement {each.name!r}"
+                raise InputError(who, "under.mounting", "errors in [optimize.tolerance]", "none")
+        return checker
+
+    def verdicts(
+        self, rig: Rig | None = None, checker: RequirementChecker | None = None
+    ) -> tuple[Verdict, ...]:
+        """Return the verdicts on a rig, the study's by default, with its mounting errors."""
+        if not self.requirements:
+            return ()
+        rig, search = self.rig if rig is None else rig, self.search
+        off = any(each.under.mounting for each in self.requirements)
+        cases = mounted_off(rig, search.tolerance, search.seed) if off else []
+        return (checker or self.checker()).check(rig, cases=cases[: search.tolerance.draws])
 
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:

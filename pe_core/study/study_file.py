@@ -29,6 +29,7 @@ from .metric_file import curves_table, read_model, read_targets, targets_table
 from .mounting_file import areas_of
 from .passthrough import passthrough_table, read_passthrough
 from .prior_file import prior_table, read_prior
+from .requirement_file import read_requirements, requirement_table
 from .search_file import in_file, read_limits, read_search, search_table
 from .selection_file import read_selection, selection_tables
 from .study import Search, Study
@@ -103,6 +104,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "reference": None if study.reference is None else settings_table(study.reference),
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
         "passthrough": passthrough_table(study.passthrough),
+        "requirement": [requirement_table(each) for each in study.requirements] or None,
         "optimize": search_table(study.search),
         **selection_tables(study.selection, _model_value),
     }
@@ -149,8 +151,11 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
         read_targets(table.table("metric")),
         read_passthrough(table.table("passthrough")) if "passthrough" in table else None,
+        read_requirements(table),
     )
     study.designs()
+    if study.requirements:
+        study.checker()  # zones that cannot be placed are bad input, too
     study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     return study
 

@@ -1,5 +1,13 @@
 """The command ``pe``, and the parts that all command lines of the project share."""
 
+from .check_verb import (
+    NOT_MET,
+    add_check_options,
+    add_requirements_verb,
+    check_study,
+    verdict_lines,
+    verdicts_csv,
+)
 from .choose_verb import check_not_resumed, choose, plots
 from .command import (
     Parser,
@@ -42,14 +50,17 @@ __all__ = [
     "BAD_INPUT",
     "DONE",
     "INTERRUPTED",
+    "NOT_MET",
     "USAGE",
     "Answer",
     "More",
     "Parser",
+    "add_check_options",
     "add_compare_options",
     "add_explain_options",
     "add_export_options",
     "add_page_option",
+    "add_requirements_verb",
     "add_rigs_verb",
     "add_run_options",
     "add_score_options",
@@ -59,6 +70,7 @@ __all__ = [
     "begun_search",
     "carry_out",
     "check_not_resumed",
+    "check_study",
     "choose",
     "chosen_models",
     "compare",
@@ -82,6 +94,8 @@ __all__ = [
     "summary",
     "sweep",
     "tell",
+    "verdict_lines",
+    "verdicts_csv",
     "with_options",
     "with_pages",
 ]

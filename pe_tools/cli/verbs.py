@@ -15,6 +15,7 @@ from pe_core.study import STUDY, Study, load_study
 from pe_core.version import __version__
 
 from ..jobs import ChoiceJob, OptimizeJob, ScoreJob, prepare_folder, result_names
+from .check_verb import add_check_options, add_requirements_verb, check
 from .choose_verb import check_not_resumed, choose
 from .command import Parser, add_run_options, add_sensors_verb, as_typed, run, with_options
 from .exchange_verbs import (
@@ -34,8 +35,8 @@ from .terminal import Answer, open_missing_streams, tell
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status.
 
-    0: done; 1: bad input, or results in a fallback folder; 2: usage; 128 plus the number of a
-    signal.
+    0: done; 1: bad input, or results in a fallback folder; 2: usage; 3: a requirement is not met;
+    128 plus the number of a signal.
     """
     open_missing_streams()
 
@@ -71,6 +72,10 @@ def parser() -> argparse.ArgumentParser:
     verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
     add_explain_options(verb)
     verb.set_defaults(function=_explain)
+    verb = verbs.add_parser("check", help="hold a study to its requirements; 3: some are not met")
+    verb.add_argument("study", metavar="STUDY", help="study file (TOML)")
+    add_check_options(verb)
+    verb.set_defaults(function=_check)
     verb = verbs.add_parser("compare", help="score several studies and put them side by side")
     verb.add_argument("studies", nargs="+", metavar="STUDY", help="study file (TOML)")
     add_compare_options(verb)
@@ -89,6 +94,7 @@ def parser() -> argparse.ArgumentParser:
     verb.set_defaults(function=_sweep)
     add_sensors_verb(verbs)
     add_rigs_verb(verbs)
+    add_requirements_verb(verbs)
     for plugin in find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)
     add_page_option(optimize)
@@ -148,6 +154,10 @@ def _print_boxes(study: Study) -> None:
 
 def _explain(args: argparse.Namespace) -> Answer:
     return explain(with_options(load_study(args.study), args), args)
+
+
+def _check(args: argparse.Namespace) -> Answer:
+    return check(args.study, args)
 
 
 def _export(args: argparse.Namespace) -> Answer:

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
+from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score, ScoreStopped
 from pe_core.search import EvaluatedRig, Robustness
 from pe_core.study.study import Study
@@ -58,6 +59,8 @@ class Outcome:
         Journal of the search, from which a stopped search resumes.
     robustness : Robustness or None
         Of a search: how the entropy of start and result changes under mounting errors and failures.
+    verdicts : tuple of Verdict
+        On the requirements of `study`, in its order.
     """
 
     kind: str
@@ -73,6 +76,7 @@ class Outcome:
     inputs: dict[str, Any] | None = None
     judged: tuple[EvaluatedRig, ...] = ()
     robustness: Robustness | None = None
+    verdicts: tuple[Verdict, ...] = ()
 
 
 T = TypeVar("T")
@@ -203,6 +207,14 @@ class Job:
             return (*self.notes, *found_warnings)
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
+
+    def _verdicts(
+        self, study: Study, waiting: Progress
+    ) -> Generator[Progress, None, tuple[Verdict, ...] | None]:
+        """Hold a study to its requirements in a thread, yielding `waiting` until it is done."""
+        if not study.requirements:
+            return ()
+        return (yield from self._beside(study.verdicts, lambda: waiting, to_the_end=True))
 
 
 def begun(work: Callable[[], T]) -> Future[T]:

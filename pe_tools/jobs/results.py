@@ -77,6 +77,7 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         },
         "mounts": mounts_table(outcome.study.rig, outcome.study.search.mounting),
         **_robustness(outcome),
+        **_requirements(outcome),
         **_search_dict(outcome),
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,
@@ -241,6 +242,12 @@ def _robustness(outcome: Outcome) -> dict[str, Any]:
     """Return the robustness of a search; empty for a score."""
     robustness = outcome.robustness
     return {} if robustness is None else {"robustness": robustness.to_dict()}
+
+
+def _requirements(outcome: Outcome) -> dict[str, Any]:
+    """Return the verdicts on the study's requirements; empty for a study without."""
+    verdicts = [each.to_dict() for each in outcome.verdicts]
+    return {"requirements": verdicts} if verdicts else {}
 
 
 def _history_dict(row: HistoryRow) -> dict[str, Any]:

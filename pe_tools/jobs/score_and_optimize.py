@@ -35,10 +35,13 @@ class ScoreJob(Job):
         warnings = yield from self._warnings(
             self.study, score, Progress("scoring", 1.0, score.entropy)
         )
-        if warnings is None:
+        verdicts = yield from self._verdicts(self.study, Progress("checking", 1.0, score.entropy))
+        if warnings is None or verdicts is None:
             return
         both = (self.study, self.study, score, score)
-        self.outcome = Outcome("score", *both, seconds=self.seconds, warnings=warnings)
+        self.outcome = Outcome(
+            "score", *both, seconds=self.seconds, warnings=warnings, verdicts=verdicts
+        )
         yield Progress("done", 1.0, score.entropy)
 
 
@@ -116,7 +119,8 @@ class OptimizeJob(Job):
         looking = Progress("scoring the result", 1.0, after.entropy, self.evaluations)
         robustness_result = yield from self._robustness(best, looking)
         warnings = yield from self._warnings(best, after, looking)
-        if warnings is None or robustness_result is None:
+        verdicts = yield from self._verdicts(best, looking)
+        if warnings is None or robustness_result is None or verdicts is None:
             return
         self.outcome = Outcome(
             "optimize",
@@ -132,6 +136,7 @@ class OptimizeJob(Job):
             self.inputs,
             self.journal.entries,
             robustness_result,
+            verdicts,
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 

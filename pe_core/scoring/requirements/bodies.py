@@ -1,0 +1,175 @@
+"""Test bodies: what stands in a zone, as upright boxes that lie wholly inside the body.
+
+A beam that meets a box inside a body also meets the body, and the image of the box lies inside
+that of the body. So a body never gets fewer beams or pixels than its box: verdicts err to the safe
+side.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import InputError, shown
+from ...base.values import A_NAME, Number
+
+Floats = NDArray[np.float64]
+
+LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
+LOW = Number(0.0, 100.0, unit="m", noun="length")
+BAND_M = 0.1
+"""Height of the bands of a body whose visible share is asked for."""
+RING_CELLS = 4
+FLAT_M = 1e-3
+"""Thickness of a patch of ground."""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A test body.
+
+    Parameters
+    ----------
+    name : str
+    size : (3,) float
+        Length along the heading, width, height [m]; of a round body twice the diameter.
+    low : float
+        Height of its lower edge above its foot [m].
+    is_round : bool
+        Whether it is an upright cylinder; then the box inside has 0.71 times its diameter.
+    is_ring : bool
+        Whether it is the rim of the cylinder that has to be seen, all round.
+    class_name : str, optional
+        Its class of objects, for criteria of AP.
+    headings : tuple of float
+        Headings at which it stands at every sample [rad].
+    source : str
+        Where its size is from.
+
+    Raises
+    ------
+    InputError
+        When a size is none.
+    """
+
+    name: str
+    size: tuple[float, float, float]
+    low: float = 0.0
+    is_round: bool = False
+    is_ring: bool = False
+    class_name: str | None = None
+    headings: tuple[float, ...] = (0.0,)
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        who = f"body {A_NAME.checked('body', 'name', self.name)!r}"
+        size = tuple(LENGTH.checked(who, "size", v) for v in self.size)
+        if len(size) != 3:
+            raise InputError(who, "size", "length, width, height", shown(self.size))
+        object.__setattr__(self, "size", size)
+        object.__setattr__(self, "low", LOW.checked(who, "low", self.low))
+
+    @property
+    def box(self) -> tuple[float, float, float]:
+        """Length, width and height [m] of the box inside the body."""
+        length, width, height = self.size
+        inside = math.sqrt(0.5) if self.is_round else 1.0
+        return length * inside, width * inside, height
+
+    @property
+    def largest(self) -> float:
+        """The longest horizontal side [m]."""
+        return max(self.size[:2])
+
+    def boxes(self, cells: bool) -> tuple[Floats, Floats]:
+        """Return centres (K, 3), from the foot, and sizes (K, 3) of the body's boxes [m].
+
+        Parameters
+        ----------
+        cells : bool
+            The cells of which a share has to be visible, instead of the one box.
+        """
+        length, width, height = self.box
+        if not cells:
+            center = [0.0, 0.0, self.low + height / 2.0]
+            return np.array([center]), np.array([[length, width, height]])
+        if self.is_ring:
+            return _rim(self.size[0], self.low, height)
+        count = max(1, math.ceil(height / BAND_M - 1e-9))
+        z = self.low + (np.arange(count) + 0.5) * height / count
+        centers = np.stack([np.zeros(count), np.zeros(count), z], axis=1)
+        return centers, np.tile([length, width, height / count], (count, 1))
+
+
+def _rim(diameter: float, low: float, height: float) -> tuple[Floats, Floats]:
+    """Return small boxes inside the rim of a ring: ahead, left, behind, right."""
+    side = min(height, diameter / 4.0)
+    # the outer corners of a box lie on the circle: (r + s/2)^2 + (s/2)^2 = (d/2)^2
+    away = math.sqrt(diameter**2 / 4.0 - side**2 / 4.0) - side / 2.0
+    turns = np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)])
+    centers = np.column_stack([away * turns, np.full(RING_CELLS, low + height / 2.0)])
+    return centers, np.tile([side, side, height], (RING_CELLS, 1))
+
+
+_ALONG = (0.0, math.pi / 2.0)
+_PRIOR = "core of the class of the road prior (docs/metric.md)"
+BODIES: Mapping[str, Body] = MappingProxyType(
+    {
+        body.name: body
+        for body in (
+            Body(
+                "cylinder",
+                (0.3, 0.3, 0.8),
+                is_round=True,
+                class_name="pedestrian",
+                source="UN R158 and FMVSS 111: 0.8 m high, 0.3 m in diameter",
+            ),
+            Body(
+                "pole_ring",
+                (0.05, 0.05, 0.01),
+                low=0.9,
+                is_round=True,
+                is_ring=True,
+                source="UN R159 Annex 3: ring of 10 mm on a pole of 50 mm, lower edge at 900 mm",
+            ),
+            Body(
+                "patch", (0.15, 0.15, FLAT_M), source="a patch of ground of 0.15 m, as in UN R158"
+            ),
+            Body(
+                "child",
+                (0.2, 0.2, 1.1),
+                class_name="pedestrian",
+                source="core of a child; the targets of tests are somewhat taller and wider "
+                "(unchecked)",
+            ),
+            Body("adult", (0.3, 0.3, 1.7), class_name="pedestrian", source=_PRIOR),
+            Body(
+                "cyclist",
+                (0.5, 0.35, 1.7),
+                class_name="cyclist",
+                headings=_ALONG,
+                source=f"the rider: {_PRIOR}",
+            ),
+            Body(
+                "motorcyclist",
+                (0.6, 0.4, 1.4),
+                class_name="cyclist",
+                headings=_ALONG,
+                source="the rider: an estimate (unchecked)",
+            ),
+            Body(
+                "car",
+                (4.1, 1.7, 1.3),
+                class_name="car",
+                headings=_ALONG,
+                source="smallest small car of Euro NCAP Low Speed Collisions v1.1, App. A",
+            ),
+        )
+    }
+)
+"""Bodies by name; sizes are those of the boxes that count, or of the cylinder."""

@@ -1,0 +1,411 @@
+"""RequirementChecker: holds rigs to requirements; a sensor that has not moved costs nothing.
+
+All bodies of all requirements are one set of objects, so a sensor that has moved is measured once,
+with the kernels of objects. What follows, for every requirement and every lost sensor, is counting.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from threading import RLock
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.grids import PerceptionSpace
+from ...metric.entropy import ap_of_entropy
+from ...scene.objects import Objects
+from ...scene.rig import Rig, Sensor
+from ...scene.vehicle import Vehicle
+from ...scene.vehicle_description import Reference
+from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
+from ..sight.blind_ground import body_rectangle
+from ..sight.blind_squares import STEP_M, BlindSearch
+from ..sight.ground_cells import GroundCells
+from ..targets.object_metric import FusedObjects
+from .bodies import Body
+from .criteria import Criterion, Requirement, checked_requirements, placed, visible_share
+from .planes import VehiclePlanes
+from .verdict import Samples, Verdict, ground_verdict, verdict
+from .zones import INSIDE_M, PlacedZone, signed_distance
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Cases = Mapping[str, Sequence[Rig]]
+"""Rigs under which a requirement has to be met, too, by name of the case."""
+
+COARSE = 2.0
+"""Factor of the step of a preview."""
+PREVIEW_SAMPLES = 400
+"""A zone of fewer samples keeps its step in a preview."""
+
+
+@dataclass(frozen=True, eq=False)
+class _BodySet:
+    """Where the boxes of one body of a requirement are among all objects."""
+
+    body: Body
+    box: slice
+    cells: slice | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """A requirement with its samples and bodies."""
+
+    requirement: Requirement
+    samples: Samples
+    bodies: tuple[_BodySet, ...]
+    search: BlindSearch | None
+
+
+class RequirementChecker:
+    """Holds rigs to requirements round one vehicle.
+
+    It is thread-safe: one thread at a time checks.
+
+    Parameters
+    ----------
+    requirements : sequence of Requirement
+    vehicle : Vehicle or None
+    model : PerceptionModel, optional
+        AP curves of objects, for criteria of AP.
+    reference : Reference, optional
+        The vehicle's axles, for zones that are anchored to them.
+    space : PerceptionSpace, optional
+        The ground on which blind ground is searched.
+
+    Raises
+    ------
+    InputError
+        When a zone cannot be placed, or two requirements have one name.
+    """
+
+    def __init__(
+        self,
+        requirements: Sequence[Requirement],
+        vehicle: Vehicle | None,
+        *,
+        model: PerceptionModel | None = None,
+        reference: Reference | None = None,
+        space: PerceptionSpace | None = None,
+    ) -> None:
+        self.requirements = checked_requirements(requirements)
+        self.vehicle, self._model = vehicle, model or PerceptionModel()
+        self._space = space or PerceptionSpace()
+        planes: dict[tuple[Any, ...], VehiclePlanes] = {}
+        self.zones: tuple[PlacedZone, ...] = tuple(
+            each.zone.placed(vehicle, reference, each.name, planes) for each in self.requirements
+        )
+        self._sets: dict[bool, _CheckedSet] = {}
+        self._lock = RLock()
+
+    def check_rig(self, rig: Rig) -> None:
+        """Raise `InputError` for a requirement on kinds of sensors that the rig lacks."""
+        for each in self.requirements:
+            each.criterion.check_rig(rig, f"requirement {each.name!r}")
+
+    def check(
+        self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = ()
+    ) -> tuple[Verdict, ...]:
+        """Return a verdict on each requirement.
+
+        Parameters
+        ----------
+        rig : Rig
+        preview : bool
+            Only samples inside the zones, with twice the step in large zones: fast, without
+            margins of zones that are met.
+        cases : sequence of Rig
+            The rig with mounting errors, for requirements that have to be met under them.
+
+        Raises
+        ------
+        InputError
+            When a requirement asks for kinds of sensors that the rig lacks.
+        """
+        self.check_rig(rig)
+        if not self.requirements:
+            return ()
+        with self._lock:
+            return self._set(preview).verdicts(rig, () if preview else cases)
+
+    def slack(self, rig: Rig) -> tuple[float, ...]:
+        """Return a number for each requirement: 0 or more where it is met, else how far it is off.
+
+        For a search: minus the share of the zone's samples, or of the blind ground, that fails.
+        """
+        with self._lock:
+            return self._set(True).slack(rig)
+
+    def _set(self, preview: bool) -> _CheckedSet:
+        if preview not in self._sets:
+            self._sets[preview] = _CheckedSet(self, preview, self._space, self._model)
+        return self._sets[preview]
+
+
+class _CheckedSet:
+    """The bodies of all requirements as objects, and the sensors measured on them."""
+
+    def __init__(
+        self,
+        checker: RequirementChecker,
+        preview: bool,
+        space: PerceptionSpace,
+        model: PerceptionModel,
+    ) -> None:
+        self._vehicle, self._preview, self._space = checker.vehicle, preview, space
+        self._kernel_cache: dict[str, Any] = {}
+        self._objects: list[Objects] = []
+        self._count = 0
+        pairs = zip(checker.requirements, checker.zones, strict=True)
+        self._parts = [self._part(requirement, zone) for requirement, zone in pairs]
+        joined = _joined(self._objects)
+        self._sensors = None if joined is None else ObjectMeasurementCache(joined, self._vehicle)
+        self._cases: dict[int, ObjectMeasurementCache] = {}
+        self._joined = joined
+        self._fused = (
+            None if joined is None else FusedObjects(joined, self._asked(len(joined)), model)
+        )
+
+    def verdicts(self, rig: Rig, cases: Sequence[Rig]) -> tuple[Verdict, ...]:
+        """Return the verdicts on a rig."""
+        m = {} if self._sensors is None else self._sensors.measure(rig)
+        others = (
+            [(case, self._case(k).measure(case)) for k, case in enumerate(cases)]
+            if any(part.requirement.under.mounting and part.bodies for part in self._parts)
+            else []
+        )
+        return tuple(self._verdict(part, rig, m, others) for part in self._parts)
+
+    def slack(self, rig: Rig) -> tuple[float, ...]:
+        """Return minus the share that fails of each requirement."""
+        m = {} if self._sensors is None else self._sensors.measure(rig)
+        values = []
+        for part in self._parts:
+            if part.search is not None:
+                blind = self._blind(part, rig)
+                area = float(np.count_nonzero(blind)) * part.search.cells.step**2
+                found = self._ground(part, blind, area)
+                values.append(0.0 if found else -area)
+                continue
+            passed = self._passed(part, rig, m, [])
+            inside = part.samples.inside
+            values.append(
+                min(0.0, float(passed[inside].mean()) - part.requirement.criterion.zone_share)
+            )
+        return tuple(values)
+
+    def _verdict(
+        self,
+        part: _Part,
+        rig: Rig,
+        m: Mapping[str, Floats],
+        others: Sequence[tuple[Rig, Mapping[str, Floats]]],
+    ) -> Verdict:
+        requirement = part.requirement
+        if part.search is not None:
+            blind = self._blind(part, rig)
+            area = float(np.count_nonzero(blind)) * part.search.cells.step**2
+            met = self._ground(part, blind, area)
+            names = [s.name for s in rig] if len(rig) > 1 and not self._preview else []
+            lost = {name: self._ground_met(part, rig, name) for name in names}
+            counts = requirement.under.one_lost
+            return ground_verdict(
+                requirement, part.samples, part.search.cells, blind, met, lost, counts
+            )
+        seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
+        whole = self._enough(part, rig, seen, m, [s.name for s in rig])
+        without = {
+            s.name: self._enough(part, rig, seen, m, [o.name for o in rig if o is not s])
+            for s in rig
+        }
+        passed = whole.copy()
+        if requirement.under.one_lost:
+            passed &= np.logical_and.reduce(list(without.values()))
+        for case, measured in others if requirement.under.mounting else ():
+            passed &= self._passed(part, case, measured, [])
+        return verdict(
+            requirement,
+            part.samples,
+            rig,
+            self._vehicle,
+            passed,
+            whole,
+            without,
+            seen,
+            self._preview,
+        )
+
+    def _passed(
+        self, part: _Part, rig: Rig, m: Mapping[str, Floats], lost: Collection[str]
+    ) -> Flags:
+        """Return the samples (N,) that pass with a rig, and with each one of its sensors lost."""
+        seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
+        names = [s.name for s in rig]
+        passed = self._enough(part, rig, seen, m, names)
+        if part.requirement.under.one_lost:
+            for name in names:
+                passed &= self._enough(part, rig, seen, m, [n for n in names if n != name])
+        return passed
+
+    def _seen(self, part: _Part, sensor: Sensor, m: Floats) -> Flags:
+        """Return the samples and bodies (N, bodies * headings) that a sensor sees."""
+        criterion, counts = part.requirement.criterion, kind_of(sensor).counts_points
+        threshold = criterion.points if counts else criterion.pixels
+        count = len(part.samples.points)
+        columns = []
+        for each in part.bodies:
+            seen = m[each.box] >= threshold
+            if each.cells is not None and criterion.share is not None:
+                cells = (m[each.cells] > 0.0).reshape(len(seen), -1)
+                seen &= visible_share(each.body, cells) >= criterion.share
+            columns.append(seen.reshape(count, -1))
+        return np.concatenate(columns, axis=1)
+
+    def _enough(
+        self,
+        part: _Part,
+        rig: Rig,
+        seen: Mapping[str, Flags],
+        m: Mapping[str, Floats],
+        members: Collection[str],
+    ) -> Flags:
+        """Return the samples (N,) at which some of the sensors see every body well enough."""
+        criterion = part.requirement.criterion
+        counts, kinds = _counted(rig, seen, criterion, members, part)
+        enough = (counts >= criterion.sensors) & (kinds >= criterion.kinds)
+        if criterion.ap is not None and self._fused is not None:
+            entropies, _ = self._fused.entropies(rig, m, members)
+            ap = ap_of_entropy(entropies)
+            columns = [ap[b.box].reshape(len(enough), -1) for b in part.bodies]
+            enough &= np.concatenate(columns, axis=1) >= criterion.ap
+        passed: Flags = enough.all(axis=1)
+        return passed
+
+    def _ground_met(self, part: _Part, rig: Rig, lost: str) -> bool:
+        assert part.search is not None
+        rest = Rig([s for s in rig if s.name != lost])
+        blind = self._blind(part, rest)
+        area = float(np.count_nonzero(blind)) * part.search.cells.step**2
+        return self._ground(part, blind, area)
+
+    def _blind(self, part: _Part, rig: Rig) -> Flags:
+        """Return the blind squares (NX, NY) in a requirement's zone."""
+        assert part.search is not None
+        blind, _ = part.search.blind(rig, self._preview)
+        return blind & part.samples.mask if part.samples.mask is not None else blind
+
+    def _ground(self, part: _Part, blind: Flags, area: float) -> bool:
+        """Whether blind squares meet a criterion of blind ground."""
+        assert part.search is not None
+        criterion = part.requirement.criterion
+        if criterion.blind_m2 is not None and area > criterion.blind_m2:
+            return False
+        if criterion.blind_out is None:
+            return True
+        return farthest_out(part.search.cells, blind, self._vehicle) <= criterion.blind_out
+
+    def _part(self, requirement: Requirement, zone: PlacedZone) -> _Part:
+        if requirement.criterion.is_of_ground:
+            return self._ground_part(requirement, zone)
+        points, distance = zone.samples(grown=not self._preview)
+        if self._preview and len(points) > PREVIEW_SAMPLES:
+            points, distance = zone.samples(COARSE, grown=False)
+        samples = Samples(zone, points, distance)
+        low, high = requirement.zone.z
+        count = 1 if high == low else int(np.ceil((high - low) / requirement.zone.step)) + 1
+        heights = np.linspace(low, high, count)
+        feet = np.column_stack([np.repeat(points, count, axis=0), np.tile(heights, len(points))])
+        bodies = tuple(self._body_set(each, feet, requirement) for each in requirement.bodies)
+        return _Part(requirement, samples, bodies, None)
+
+    def _body_set(self, body: Body, feet: Floats, requirement: Requirement) -> _BodySet:
+        box = self._added(placed(body, feet, body.headings, False))
+        with_cells = requirement.criterion.share is not None
+        cells = self._added(placed(body, feet, body.headings, True)) if with_cells else None
+        return _BodySet(body, box, cells)
+
+    def _added(self, objects: Objects) -> slice:
+        self._objects.append(objects)
+        self._count += len(objects)
+        return slice(self._count - len(objects), self._count)
+
+    def _ground_part(self, requirement: Requirement, zone: PlacedZone) -> _Part:
+        low, high = zone.bounds
+        part = tuple((float(a) - STEP_M, float(b) + STEP_M) for a, b in zip(low, high, strict=True))
+        cells = GroundCells.of(self._space, STEP_M, (part[0], part[1]))
+        middles = np.stack(np.meshgrid(cells.x, cells.y, indexing="ij"), axis=-1).reshape(-1, 2)
+        mask = (zone.distance(middles) <= INSIDE_M) & (
+            signed_distance(middles, zone.planes.outline) > 0.0
+        )
+        search = BlindSearch.of(
+            cells, requirement.criterion.blind_height, self._vehicle, self._kernel_cache
+        )
+        samples = Samples(zone, np.zeros((0, 2)), np.zeros(0), mask.reshape(cells.shape))
+        return _Part(requirement, samples, (), search)
+
+    def _case(self, number: int) -> ObjectMeasurementCache:
+        assert self._joined is not None
+        if number not in self._cases:
+            self._cases[number] = ObjectMeasurementCache(self._joined, self._vehicle)
+        return self._cases[number]
+
+    def _asked(self, count: int) -> Floats:
+        """Return weights (N,) of objects: 1 of those whose AP is asked for."""
+        weights = np.zeros(count)
+        for part in self._parts:
+            if part.requirement.criterion.ap is not None:
+                for each in part.bodies:
+                    weights[each.box] = 1.0
+        return weights
+
+
+def farthest_out(cells: GroundCells, blind: Flags, vehicle: Vehicle | None) -> float:
+    """Return how far from the vehicle's rectangle the farthest blind square ends [m]."""
+    i, j = np.nonzero(blind)
+    if not len(i):
+        return 0.0
+    (x0, x1), (y0, y1) = body_rectangle(vehicle)
+    dx = np.maximum(np.maximum(cells.x1[i] - x1, x0 - cells.x0[i]), 0.0)
+    dy = np.maximum(np.maximum(cells.y1[j] - y1, y0 - cells.y0[j]), 0.0)
+    return float(np.max(np.hypot(dx, dy)))
+
+
+def _counted(
+    rig: Rig,
+    seen: Mapping[str, Flags],
+    criterion: Criterion,
+    members: Collection[str],
+    part: _Part,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return by how many sensors and kinds each body of each sample is seen, (N, bodies)."""
+    first = next(iter(seen.values()))
+    counts, by_kind = np.zeros(first.shape, np.int64), dict[str, Flags]()
+    for sensor in rig:
+        if sensor.name not in members or (criterion.of and sensor.kind not in criterion.of):
+            continue
+        counts += seen[sensor.name]
+        none = np.zeros(first.shape, bool)
+        by_kind[sensor.kind] = by_kind.get(sensor.kind, none) | seen[sensor.name]
+    kinds = np.zeros(first.shape, np.int64)
+    for flags in by_kind.values():
+        kinds += flags
+    return counts, kinds
+
+
+def _joined(parts: Sequence[Objects]) -> Objects | None:
+    """Return all objects as one set; None without any."""
+    if not parts:
+        return None
+    names = sorted({part.class_names[0] for part in parts})
+    labels = [np.full(len(part), names.index(part.class_names[0])) for part in parts]
+    return Objects(
+        np.concatenate([part.centers for part in parts]),
+        np.concatenate([part.sizes for part in parts]),
+        np.concatenate([part.yaws for part in parts]),
+        np.concatenate(labels),
+        tuple(names),
+    )

@@ -1,0 +1,239 @@
+"""Planes of a vehicle that zones are anchored to, and lengths measured from them.
+
+A place is written as a plane and an offset: ``front + 0.8`` is 0.8 m ahead of the foremost plane.
+Offsets from an outer plane (front, rear, left, right, near, off) run outwards; those from the
+other planes run forward or to the left. ``25 %`` is that share of the vehicle's extent, from the
+rear or from the right.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import InputError, shown
+from ...base.read_only import read_only
+from ...base.values import FINITE, real
+from ...scene.orientation import is_called
+from ...scene.vehicle import Vehicle
+from ...scene.vehicle_description import Reference, guessed_reference
+
+Floats = NDArray[np.float64]
+Place = float | str
+"""A coordinate of a zone: metres in the ground frame, or a plane with an offset."""
+
+MIRRORS = ("mirror", "antenna", "aerial", "wiper")
+"""Beginnings of words in the names of parts that the planes leave out, as UN R159 does."""
+DOORS, NO_DOORS = ("door",), ("window", "windows", "handle", "mirror")
+SIDES = ("left", "right")
+OUTWARD = {"front": 1.0, "rear": -1.0, "left": 1.0, "right": -1.0}
+X_PLANES = ("front", "rear", "front_axle", "rear_axle", "door", "eyes", "center", "origin")
+Y_PLANES = ("left", "right", "near", "off", "center", "origin")
+PLACE = re.compile(r"(?:([a-z_]+)|([0-9.]+)\s*%)\s*(?:([+-])\s*([0-9.]+))?")
+MAX_SHARE = 100.0
+DECIMALS = 6
+"""Coordinates are rounded to the micrometre."""
+OCTAGON = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)], float)
+
+
+@dataclass(frozen=True, eq=False)
+class VehiclePlanes:
+    """The planes of a vehicle by name, and its outline seen from above.
+
+    Attributes
+    ----------
+    along, across : dict of float
+        x of the planes across the vehicle, y of the planes along it [m].
+    found : dict of str
+        By plane: how it was found, in words.
+    missing : dict of str
+        By plane that was not found: what would be needed.
+    outline : (K, 2) float
+        Corners of the convex outline of the body seen from above, counter-clockwise [m].
+    """
+
+    along: Mapping[str, float]
+    across: Mapping[str, float]
+    found: Mapping[str, str]
+    missing: Mapping[str, str]
+    outline: Floats
+
+    @classmethod
+    def of(
+        cls,
+        vehicle: Vehicle,
+        reference: Reference | None = None,
+        below: float | None = None,
+        near_side: str = "right",
+        eyes: float | None = None,
+    ) -> VehiclePlanes:
+        """Find the planes of a vehicle.
+
+        Parameters
+        ----------
+        vehicle : Vehicle
+        reference : Reference, optional
+            The axles; by default they are guessed from parts that are wheels by name.
+        below : float, optional
+            What is higher than this is left out [m], as UN R159 leaves out what is above 2.0 m.
+        near_side : {"left", "right"}
+            The side of the kerb.
+        eyes : float, optional
+            x of the driver's eyes [m].
+        """
+        points, how = _body_points(vehicle, below)
+        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        along = {"front": float(high[0]), "rear": float(low[0]), "origin": 0.0}
+        across = {"left": float(high[1]), "right": float(low[1]), "origin": 0.0}
+        along["center"], across["center"] = ((low + high) / 2.0).tolist()
+        across["near"], across["off"] = (
+            across[side] for side in (SIDES if near_side == "left" else SIDES[::-1])
+        )
+        found = dict.fromkeys((*OUTWARD, "near", "off", "center"), how)
+        missing = _add_axles(along, found, vehicle, reference)
+        missing |= _add_door(along, found, vehicle)
+        if eyes is None:
+            missing["eyes"] = "eyes = x of the driver's eyes"
+        else:
+            along["eyes"], found["eyes"] = eyes, "eyes"
+        rounded = ({k: round(v, DECIMALS) for k, v in own.items()} for own in (along, across))
+        x, y = (MappingProxyType(each) for each in rounded)
+        outline = read_only(convex_outline(points[:, :2]))
+        return cls(x, y, MappingProxyType(found), MappingProxyType(missing), outline)
+
+    def coordinate(self, axis: int, place: Place, near_side: str, source: str, field: str) -> float:
+        """Return a coordinate [m] of a place along x (0) or y (1), or raise `InputError`."""
+        if not isinstance(place, str):
+            return FINITE.checked(source, field, place)
+        name, share, sign, offset = parsed(axis, place, source, field)
+        planes = (self.along, self.across)[axis]
+        shift = (-1.0 if sign == "-" else 1.0) * offset
+        if name is None:
+            low, high = (planes[n] for n in (("rear", "front"), ("right", "left"))[axis])
+            return round(low + share / MAX_SHARE * (high - low) + shift, DECIMALS)
+        if name not in planes:
+            raise InputError(source, field, self.missing.get(name, "a plane of the vehicle"), name)
+        other = "left" if near_side == "right" else "right"
+        outer = {"near": near_side, "off": other}.get(name, name)
+        return round(planes[name] + OUTWARD.get(outer, 1.0) * shift, DECIMALS)
+
+
+def parsed(
+    axis: int, place: str, source: str, field: str
+) -> tuple[str | None, float, str | None, float]:
+    """Return plane (or None), share [%], sign and offset [m] of a place written as text.
+
+    Raises
+    ------
+    InputError
+        When it is no plane with an offset, or the plane is one of the other axis.
+    """
+    known = (X_PLANES, Y_PLANES)[axis]
+    match = PLACE.fullmatch(place.strip())
+    name, share, sign, offset = match.groups() if match else (None, None, None, None)
+    numbers = [real_text(share), real_text(offset)]
+    wrong = match is None or any(n != n for n in numbers) or numbers[0] > MAX_SHARE
+    if wrong or (name is not None and name not in known):
+        expected = f"metres, or a plane and an offset (front + 0.8), planes {', '.join(known)}, N %"
+        raise InputError(source, field, expected, shown(place))
+    return name, numbers[0], sign, numbers[1]
+
+
+def real_text(text: str | None) -> float:
+    """Return the number of a text, 0 of None, NaN of what is none."""
+    try:
+        return 0.0 if text is None else real(float(text))
+    except ValueError:
+        return float("nan")
+
+
+def convex_outline(points: Floats) -> Floats:
+    """Return the corners (K, 2) of the convex hull of points (N, 2), counter-clockwise.
+
+    Andrew's monotone chain; before, points inside the octagon of the extreme points are dropped.
+    """
+    extreme = points[[int(np.argmax(points @ d)) for d in OCTAGON]]
+    inside = np.ones(len(points), bool)
+    for a, b in zip(extreme, np.roll(extreme, -1, axis=0), strict=True):
+        side = (b[0] - a[0]) * (points[:, 1] - a[1]) - (b[1] - a[1]) * (points[:, 0] - a[0])
+        inside &= (side > 0.0) | bool((a == b).all())
+    kept = np.unique(np.round(np.vstack([points[~inside], extreme]), DECIMALS), axis=0)
+    ordered = [tuple(p) for p in kept.tolist()]
+    lower, upper = _chain(ordered), _chain(ordered[::-1])
+    return np.array(lower[:-1] + upper[:-1] or ordered)
+
+
+def _chain(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    chain: list[tuple[float, float]] = []
+    for x, y in points:
+        while len(chain) > 1:
+            (ax, ay), (bx, by) = chain[-2:]
+            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0:
+                break
+            chain.pop()
+        chain.append((x, y))
+    return chain
+
+
+def _body_points(vehicle: Vehicle, below: float | None) -> tuple[Floats, str]:
+    """Return corners (N, 3) of the body without mirrors, below a height, and how it was made."""
+    names = vehicle.part_names
+    left_out = [k for k, name in enumerate(names) if is_called(name, MIRRORS, ())]
+    body = vehicle.triangles[~np.isin(vehicle.parts, left_out)]
+    how = "of the mesh; no part is named a mirror"
+    if left_out and len(body):
+        how = f"of the mesh without {', '.join(names[k] for k in left_out)}"
+    body = body if len(body) else vehicle.triangles
+    if below is None:
+        return body.reshape(-1, 3), how
+    low = _below(body, below)
+    return (low, f"{how}, below {below:g} m") if len(low) else (body.reshape(-1, 3), how)
+
+
+def _below(triangles: Floats, height: float) -> Floats:
+    """Return the corners (N, 3) of what is below a height: own corners, and cuts of edges."""
+    corners = triangles.reshape(-1, 3)
+    a, b = corners, triangles[:, [1, 2, 0]].reshape(-1, 3)
+    cut = (a[:, 2] <= height) != (b[:, 2] <= height)
+    share = (height - a[cut, 2]) / (b[cut, 2] - a[cut, 2])
+    cuts = a[cut] + share[:, None] * (b[cut] - a[cut])
+    return np.vstack([corners[corners[:, 2] <= height], cuts])
+
+
+def _add_axles(
+    along: dict[str, float],
+    found: dict[str, str],
+    vehicle: Vehicle,
+    reference: Reference | None,
+) -> dict[str, str]:
+    """Add the axles to the planes; return what is missing."""
+    own = reference or guessed_reference(vehicle)
+    if own is None:
+        needed = "[reference] with the axles, or parts named wheel, tire or tyre"
+        return {"rear_axle": needed, "front_axle": needed}
+    how = "of [reference]" if reference is not None else "of the parts named wheel, tire or tyre"
+    along["rear_axle"], found["rear_axle"] = own.rear_axle_x, how
+    if own.wheelbase is None:
+        return {"front_axle": "[reference] with a wheelbase"}
+    along["front_axle"], found["front_axle"] = own.rear_axle_x + own.wheelbase, how
+    return {}
+
+
+def _add_door(along: dict[str, float], found: dict[str, str], vehicle: Vehicle) -> dict[str, str]:
+    """Add the rear edge of the foremost door to the planes; return what is missing."""
+    doors = {
+        name: (float(x.min()), float(x.max()))
+        for k, name in enumerate(vehicle.part_names)
+        if is_called(name, DOORS, NO_DOORS)
+        and (x := vehicle.triangles[vehicle.parts == k][..., 0]).size
+    }
+    if not doors:
+        return {"door": "a part whose name has the word door"}
+    foremost = max(doors, key=lambda name: sum(doors[name]))
+    along["door"], found["door"] = doors[foremost][0], f"rear edge of {foremost}"
+    return {}

@@ -1,0 +1,377 @@
+"""Zones of the ground in which a requirement has to hold, sampled at a stated step.
+
+A zone is an area, a ring of constant distance round the vehicle, a path, or single spots. Its
+signed distance (negative inside) tells how far a sample is inside the zone or outside of it: the
+margin of a verdict is a distance of this kind.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import InputError, shown
+from ...base.setting import OneOf, check_settings, setting
+from ...base.values import Number, listed, pair
+from ...scene.vehicle import Vehicle
+from ...scene.vehicle_description import Reference
+from .planes import DECIMALS, SIDES, Place, VehiclePlanes, parsed
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+PlacePair = tuple[Place, Place]
+
+STEP_M = 0.15
+"""The largest step of the grid of UN R159 Annex 3."""
+STEP = Number(0.02, 100.0, unit="m", noun="length")
+HEIGHT = Number(0.0, 100.0, unit="m", noun="length")
+RING = Number(0.0, 100.0, unit="m", noun="length")
+MAX_SAMPLES = 20_000
+"""Samples of one zone at most."""
+GROWN_M = 0.6
+"""How far round a zone samples are taken to find how far it could grow [m]."""
+INSIDE_M = 1e-6
+"""A sample this far outside of a zone is on its edge: rounding."""
+SHAPES = ("x and y", "polygon", "ring", "path", "spots")
+
+
+@dataclass(frozen=True)
+class Zone:
+    """Where a requirement has to hold. It has exactly one shape.
+
+    Parameters
+    ----------
+    x, y : (low, high), optional
+        A rectangle: places along x and y, numbers [m] or planes with offsets.
+    polygon : sequence of (x, y), optional
+        Corners of an area.
+    ring : (from, to), optional
+        All ground at these distances from the vehicle's outline [m].
+    path : sequence of (x, y), optional
+        Corners of a line along which a body moves.
+    spots : sequence of (x, y), optional
+        Single places.
+    z : (low, high)
+        Heights of the foot of the body above the ground [m]; bodies stand on the ground.
+    step : float
+        Largest distance of two samples [m].
+    below : float, optional
+        The planes leave out what of the vehicle is higher [m].
+    near_side : {"left", "right"}
+        The side of the kerb, for the planes near and off.
+    eyes : float, optional
+        x of the driver's eyes [m].
+
+    Raises
+    ------
+    InputError
+        When it has no shape or several, or a value is none.
+    """
+
+    x: PlacePair | None = None
+    y: PlacePair | None = None
+    polygon: tuple[PlacePair, ...] = ()
+    ring: tuple[float, float] | None = None
+    path: tuple[PlacePair, ...] = ()
+    spots: tuple[PlacePair, ...] = ()
+    z: tuple[float, float] = (0.0, 0.0)
+    step: float = setting(STEP_M, STEP, "Largest distance of two samples of the zone")
+    below: float | None = setting(
+        None, HEIGHT, "What of the vehicle is higher than this does not count for its planes"
+    )
+    near_side: str = setting("right", OneOf(SIDES), "The side of the kerb")
+    eyes: float | None = setting(
+        None, Number(cap=1e3, unit="m"), "x of the driver's eyes, for the plane eyes"
+    )
+    _who: str = field(default="zone", repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        check_settings(self, self._who)
+        put = object.__setattr__
+        for axis, name in enumerate("xy"):
+            if (value := getattr(self, name)) is not None:
+                put(self, name, _places((value,), (axis, axis), self._who, name)[0])
+        for name, fewest in (("polygon", 3), ("path", 2), ("spots", 1)):
+            corners = _places(getattr(self, name), (0, 1), self._who, name)
+            if corners and len(corners) < fewest:
+                raise InputError(self._who, name, f"at least {fewest} corners", len(corners))
+            put(self, name, corners)
+        if self.ring is not None:
+            put(self, "ring", pair(self._who, "ring", self.ring, RING))
+        put(self, "z", pair(self._who, "z", self.z, HEIGHT, same=True))
+        if (self.x is None) != (self.y is None):
+            raise InputError(self._who, "x, y", "both, or neither", "one of them")
+        shapes = [self.x is not None, *map(bool, (self.polygon, self.ring, self.path, self.spots))]
+        if sum(shapes) != 1:
+            expected = f"one of {', '.join(SHAPES)}"
+            found = " and ".join(s for s, has in zip(SHAPES, shapes, strict=True) if has)
+            raise InputError(self._who, "zone", expected, found or "none")
+
+    def placed(
+        self,
+        vehicle: Vehicle | None,
+        reference: Reference | None,
+        name: str,
+        planes: dict[tuple[Any, ...], VehiclePlanes] | None = None,
+    ) -> PlacedZone:
+        """Return the zone round a vehicle.
+
+        Parameters
+        ----------
+        vehicle : Vehicle or None
+        reference : Reference or None
+            The vehicle's axles.
+        name : str
+            The requirement's, for messages.
+        planes : dict, optional
+            A cache of the vehicle's planes, for several zones.
+
+        Raises
+        ------
+        InputError
+            When there is no vehicle, a plane is not found, or the zone has no extent.
+        """
+        who = f"requirement {name!r}"
+        if vehicle is None:
+            raise InputError(who, "zone", "a study with a vehicle", "no [vehicle]")
+        planes = {} if planes is None else planes
+        key = self.below, self.near_side, self.eyes
+        if key not in planes:
+            planes[key] = VehiclePlanes.of(vehicle, reference, *key)
+        return self._on(planes[key], who)
+
+    def _on(self, planes: VehiclePlanes, who: str) -> PlacedZone:
+        """Return the zone on the planes of a vehicle."""
+
+        def at(corners: tuple[PlacePair, ...], key: str) -> Floats:
+            near = self.near_side
+            return np.array(
+                [
+                    [planes.coordinate(a, c, near, who, f"zone.{key}") for a, c in enumerate(xy)]
+                    for xy in corners
+                ]
+            ).reshape(-1, 2)
+
+        corners, kind = np.zeros((0, 2)), "ring"
+        if self.x is not None and self.y is not None:
+            x, y = (
+                sorted(planes.coordinate(a, c, self.near_side, who, f"zone.{'xy'[a]}") for c in own)
+                for a, own in enumerate((self.x, self.y))
+            )
+            if min(x[1] - x[0], y[1] - y[0]) <= 0.0:
+                found = f"x = {x}, y = {y}"
+                raise InputError(who, "zone", "an area of some extent (else a path)", found)
+            corners, kind = (
+                np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])]),
+                "area",
+            )
+        for key in ("polygon", "path", "spots"):
+            if own := getattr(self, key):
+                corners, kind = at(own, key), {"polygon": "area"}.get(key, key)
+        if kind == "area" and abs(_area(corners)) < INSIDE_M:
+            raise InputError(who, "zone.polygon", "an area of some extent", corners.tolist())
+        return PlacedZone(self, planes, kind, corners, who)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedZone:
+    """A zone in the ground frame.
+
+    Attributes
+    ----------
+    zone : Zone
+    planes : VehiclePlanes
+    kind : {"area", "ring", "path", "spots"}
+    corners : (K, 2) float
+        Of the area, path or spots [m]; none of a ring.
+    """
+
+    zone: Zone
+    planes: VehiclePlanes
+    kind: str
+    corners: Floats
+    who: str
+
+    def distance(self, points: Floats) -> Floats:
+        """Return the distance (N,) of points (N, 2) to the zone, negative inside [m]."""
+        if self.kind == "spots":
+            return _nearest(points, self.corners)
+        if self.kind == "path":
+            return _to_lines(points, self.corners[:-1], self.corners[1:])
+        if self.kind == "area":
+            return signed_distance(points, self.corners)
+        low, high = self.zone.ring or (0.0, 0.0)
+        away = signed_distance(points, self.planes.outline)
+        return np.maximum(away - high, low - away)
+
+    @property
+    def outlines(self) -> tuple[Floats, ...]:
+        """Lines round the zone, (K, 2) each [m]; closed for areas and rings."""
+        if self.kind == "area":
+            return (np.vstack([self.corners, self.corners[:1]]),)
+        if self.kind != "ring":
+            return (self.corners,)
+        return tuple(_offset(self.planes.outline, d) for d in self.zone.ring or ())
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lowest and highest corner (2,) [m]."""
+        corners = self.corners if self.kind != "ring" else self.planes.outline
+        out = (self.zone.ring or (0.0, 0.0))[1] if self.kind == "ring" else 0.0
+        return corners.min(axis=0) - out, corners.max(axis=0) + out
+
+    @cached_property
+    def grow(self) -> float:
+        """How far round the zone samples are taken [m]."""
+        return max(GROWN_M, self.zone.step)
+
+    def samples(self, coarser: float = 1.0, grown: bool = True) -> tuple[Floats, Floats]:
+        """Return samples (N, 2) [m] of the zone and of the ground round it, and their distances.
+
+        Samples inside the vehicle's outline are left out: nobody stands there.
+
+        Parameters
+        ----------
+        coarser : float
+            Factor of the step, for a preview.
+        grown : bool
+            Whether the ground round the zone is sampled.
+
+        Raises
+        ------
+        InputError
+            When there are too many samples, or all of them are inside the vehicle.
+        """
+        points = self._lattice(self.zone.step * coarser, self.grow if grown else 0.0)
+        distance = self.distance(points)
+        kept = distance <= (self.grow if grown else 0.0) + INSIDE_M
+        points, distance = points[kept], distance[kept]
+        outside = signed_distance(points, self.planes.outline) > -INSIDE_M
+        points, distance = points[outside], distance[outside]
+        if not (distance <= INSIDE_M).any():
+            found = "a zone inside the vehicle's body"
+            raise InputError(self.who, "zone", "ground on which a body can stand", found)
+        return points, distance
+
+    def _lattice(self, step: float, grow: float) -> Floats:
+        """Return a grid over an area or ring and beyond; points along a path, spots."""
+        is_area = self.kind in ("area", "ring")
+        lines = self.outlines if is_area or self.kind == "path" else ()
+        own = [_along(a, b, step) for w in lines for a, b in pairwise(w)]
+        if self.kind == "spots":
+            own = [self.corners]
+        if not is_area and not grow:
+            return _unique(np.concatenate(own))
+        low, high = self.bounds
+        counts = np.maximum(np.ceil((high - low) / step - INSIDE_M), 1.0).astype(np.int64)
+        steps = np.where(high > low, (high - low) / counts, step)
+        extra = np.ceil(grow / steps - INSIDE_M).astype(np.int64)
+        if is_area and math.prod((counts + 1).tolist()) > MAX_SAMPLES:
+            found = f"{math.prod((counts + 1).tolist()):,} with a step of {step:g} m"
+            raise InputError(self.who, "zone.step", f"at most {MAX_SAMPLES:,} samples", found)
+        x, y = (
+            low[k] + (np.arange(counts[k] + 1 + 2 * extra[k]) - extra[k]) * steps[k] for k in (0, 1)
+        )
+        grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+        if self.kind == "area" and self.zone.x is not None:
+            own = []  # the grid has its edges
+        return _unique(np.concatenate([grid, *own]))
+
+
+def signed_distance(points: Floats, corners: Floats) -> Floats:
+    """Return the distance (N,) of points (N, 2) to a polygon's edge, negative inside [m].
+
+    Parameters
+    ----------
+    points : (N, 2) float
+    corners : (K, 2) float
+        Of the polygon, in either sense of rotation.
+    """
+    others = np.roll(corners, -1, axis=0)
+    away = _to_lines(points, corners, others)
+    x, y = points[:, :1], points[:, 1:]
+    (ax, ay), (bx, by) = corners.T, others.T
+    crosses = (ay <= y) != (by <= y)
+    slope = (bx - ax) / np.where(by == ay, 1.0, by - ay)
+    inside = (crosses & (x < ax + (y - ay) * slope)).sum(axis=1) % 2 == 1
+    return np.where(inside, -away, away)
+
+
+def _to_lines(points: Floats, starts: Floats, ends: Floats) -> Floats:
+    """Return the distance (N,) of points to the nearest of some line segments (K, 2)."""
+    best = np.full(len(points), np.inf)
+    for a, b in zip(starts, ends, strict=True):
+        along = b - a
+        size = float(along @ along)
+        share = np.clip(((points - a) * along).sum(axis=1) / (size or 1.0), 0.0, 1.0)
+        off = points - (a + share[:, None] * along)
+        best = np.minimum(best, np.hypot(off[:, 0], off[:, 1]))
+    return best
+
+
+def _nearest(points: Floats, spots: Floats) -> Floats:
+    return np.min([np.hypot(*(points - spot).T) for spot in spots], axis=0)
+
+
+def _along(start: Floats, end: Floats, step: float) -> Floats:
+    """Return points (N, 2) on a line, no farther apart than a step, with both ends."""
+    count = max(1, math.ceil(math.hypot(*(end - start)) / step - INSIDE_M))
+    if count > MAX_SAMPLES:
+        raise InputError("zone", "step", f"at most {MAX_SAMPLES:,} samples", f"{count:,}")
+    return start + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - start)
+
+
+def _unique(points: Floats) -> Floats:
+    return np.unique(np.round(points, DECIMALS), axis=0)
+
+
+def _offset(outline: Floats, distance: float) -> Floats:
+    """Return the closed line (K, 2) at a distance outside of a convex outline."""
+    if distance == 0.0:
+        return np.vstack([outline, outline[:1]])
+    edges = np.roll(outline, -1, axis=0) - outline
+    turn = np.arctan2(-edges[:, 0], edges[:, 1])  # outward normals of a counter-clockwise outline
+    points = []
+    for k, corner in enumerate(outline):
+        first, last = turn[k - 1], turn[k]
+        sweep = (last - first) % (2.0 * math.pi)
+        count = max(1, math.ceil(sweep / math.radians(10.0)))
+        angles = first + sweep * np.arange(count + 1) / count
+        points.append(corner + distance * np.stack([np.cos(angles), np.sin(angles)], axis=1))
+    closed = np.concatenate(points)
+    return np.vstack([closed, closed[:1]])
+
+
+def _area(corners: Floats) -> float:
+    x, y = corners.T
+    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum()) / 2.0
+
+
+def _places(
+    values: object, axes: tuple[int, int], who: str, field_name: str
+) -> tuple[PlacePair, ...]:
+    """Return checked pairs of places along two axes."""
+    rows = listed(values)
+    if rows is None:
+        raise InputError(who, field_name, "a list of pairs", shown(values))
+    checked: list[PlacePair] = []
+    for row in rows:
+        items = listed(row, 2)
+        if items is None or len(items) != 2:
+            raise InputError(who, field_name, "pairs of places", shown(row))
+        first, second = (_place(a, v, who, field_name) for a, v in zip(axes, items, strict=True))
+        checked.append((first, second))
+    return tuple(checked)
+
+
+def _place(axis: int, value: object, who: str, field_name: str) -> Place:
+    if isinstance(value, str):
+        parsed(axis, value, who, field_name)
+        return value
+    return Number(cap=1e4, unit="m").checked(who, field_name, value)

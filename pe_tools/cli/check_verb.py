@@ -1,0 +1,201 @@
+"""`pe check` and `pe requirements`: a study held to its requirements, and the presets."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pe_core.base import dump_json
+from pe_core.base.errors import InputError
+from pe_core.base.files import write_bytes
+from pe_core.base.serialization import finite
+from pe_core.scoring.requirements import Requirement, Verdict
+from pe_core.study import CONFIDENCE, Preset, Study, load_study, preset, presets
+
+from .run_job import tell_vehicle
+from .terminal import DONE, Answer
+
+NOT_MET = 3
+"""Exit status of a check with a requirement that is not met."""
+ALL = "all"
+COLUMNS = (
+    *("name", "check", "met", "margin_m", "share", "worst_x", "worst_y", "worst_body"),
+    *("seen_by", "hidden", "breaks_without", "blind_m2", "source"),
+)
+LONGEST = 34
+"""Longer names are cut in the table."""
+
+
+def add_check_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``check`` to a parser."""
+    about = "a preset besides the study's requirements (pe requirements lists them); all: each one"
+    parser.add_argument("--preset", action="append", default=[], metavar="ID", help=about)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
+
+
+def add_requirements_verb(verbs: Any) -> None:
+    """Add ``requirements``: the list of presets, or one of them in full."""
+    parser = verbs.add_parser("requirements", help="list the requirement presets, or show one")
+    parser.add_argument("id", nargs="?", metavar="ID", help="a preset")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.set_defaults(function=show_requirements)
+
+
+def show_requirements(args: argparse.Namespace) -> Answer:
+    """List the presets, or show one with its table and source."""
+    chosen = [preset(args.id, "presets", "id")] if args.id else list(presets().values())
+    if args.json:
+        return dump_json([_preset_dict(each) for each in chosen]), DONE
+    if args.id:
+        return "\n".join(_preset_lines(chosen[0])), DONE
+    width = max(len(each.id) for each in chosen)
+    lines = [f"{each.id:{width}}  {each.confidence}  {each.check}: {each.name}" for each in chosen]
+    notes = [f"{letter}: {meaning}" for letter, meaning in CONFIDENCE.items()]
+    return "\n".join([*lines, *notes]), DONE
+
+
+def check(path: str, args: argparse.Namespace) -> Answer:
+    """Hold a study file to its requirements; the exit status says whether all are met."""
+    return check_study(load_study(path), args)
+
+
+def check_study(study: Study, args: argparse.Namespace) -> Answer:
+    """Hold a study to its requirements and to the presets that are named."""
+    study, unchecked = with_presets(study, args.preset)
+    if not study.requirements:
+        expected = "[[requirement]] in the study, or --preset ID"
+        raise InputError("check", "requirements", expected, "none")
+    tell_vehicle(study)
+    verdicts = study.verdicts()
+    if args.csv:
+        write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))
+    status = DONE if all(v.met for v in verdicts) else NOT_MET
+    if args.json:
+        data = {
+            "met": sum(v.met for v in verdicts),
+            "requirements": [v.to_dict() for v in verdicts],
+            "unchecked": unchecked,
+        }
+        return dump_json(finite(data)), status
+    return "\n".join(verdict_lines(verdicts, unchecked)), status
+
+
+def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, str]]:
+    """Return a study with presets added to its requirements, and those that cannot be checked.
+
+    Of ``all`` presets those that cannot be placed round the vehicle are left out, with the reason.
+    """
+    own = {each.name for each in study.requirements}
+    added: list[Requirement] = []
+    unchecked: dict[str, str] = {}
+    for name in names:
+        for each in presets().values() if name == ALL else [preset(name, "check", "--preset")]:
+            if each.id in own:
+                continue
+            own.add(each.id)
+            requirement = each.requirement()
+            if name == ALL and (reason := _cannot(study, requirement)):
+                unchecked[each.id] = reason
+            else:
+                added.append(requirement)
+    return replace(study, requirements=(*study.requirements, *added)), unchecked
+
+
+def _cannot(study: Study, requirement: Requirement) -> str:
+    """Return why a requirement cannot be checked on a study; empty if it can."""
+    try:
+        requirement.criterion.check_rig(study.rig, requirement.name)
+        requirement.zone.placed(study.vehicle, study.reference, requirement.name)
+    except InputError as error:
+        return f"{error.field}: expected {error.expected}, found {error.found}"
+    return ""
+
+
+def verdict_lines(verdicts: Sequence[Verdict], unchecked: dict[str, str]) -> list[str]:
+    """Return verdicts as a table, with a line about each that is not met, and a summary."""
+    rows = [("", "requirement", "after", "margin", "share", "what breaks or hides it")]
+    rows += [_row(v) for v in verdicts]
+    widths = [max(len(row[k]) for row in rows) for k in range(5)]
+    lines = [
+        "  ".join([*(c.ljust(w) for c, w in zip(row, widths, strict=False)), row[5]]).rstrip()
+        for row in rows
+    ]
+    lines += [f"{name}: not checked: {reason}" for name, reason in unchecked.items()]
+    more = f", {len(unchecked)} not checked" if unchecked else ""
+    lines.append(f"{sum(v.met for v in verdicts)} of {len(verdicts)} met{more}")
+    if any(v.requirement.check for v in verdicts):
+        lines.append("geometric checks after the texts named, no approval")
+    return lines
+
+
+def _row(verdict: Verdict) -> tuple[str, str, str, str, str, str]:
+    name = verdict.name if len(verdict.name) <= LONGEST else verdict.name[: LONGEST - 3] + "..."
+    margin = f"blind {verdict.blind_m2:.2f} m2" if verdict.blind_m2 is not None else ""
+    if verdict.margin is not None:
+        margin = f"{'>= ' if verdict.at_least else ''}{verdict.margin:+.2f} m"
+    met = "met" if verdict.met else "NOT MET"
+    share = f"{verdict.share:.1%}"
+    return met, name, verdict.requirement.check, margin, share, _reason(verdict)
+
+
+def _reason(verdict: Verdict) -> str:
+    """Return what breaks a requirement that is met, or what hides the worst place of another."""
+    broken = ", ".join(verdict.breaks_without)
+    if verdict.met_whole:
+        how = "breaks without" if verdict.met else "met, but not without"
+        off = "" if verdict.met else "met, but not with mounting errors"
+        return f"{how} {broken}" if broken else off
+    if verdict.worst is None:
+        return ""
+    x, y = verdict.worst
+    hidden = ", ".join(f"{name}: {reason}" for name, reason in verdict.hidden.items())
+    what = f"{verdict.body} at " if verdict.body else ""
+    return f"{what}({x:.2f}, {y:.2f}){f'; {hidden}' if hidden else ''}"
+
+
+def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
+    """Return verdicts as CSV, a row each."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for verdict in verdicts:
+        x, y = verdict.worst or ("", "")
+        data = verdict.to_dict()
+        listed = {
+            "worst_x": x,
+            "worst_y": y,
+            "seen_by": "; ".join(verdict.seen_by),
+            "hidden": "; ".join(f"{k}: {v}" for k, v in verdict.hidden.items()),
+            "breaks_without": "; ".join(verdict.breaks_without),
+        }
+        writer.writerow(["" if (v := (data | listed)[c]) is None else v for c in COLUMNS])
+    return text.getvalue()
+
+
+def _preset_dict(each: Preset) -> dict[str, Any]:
+    return {"id": each.id, "confidence": each.confidence, **each.table}
+
+
+def _preset_lines(each: Preset) -> list[str]:
+    meaning = CONFIDENCE[each.confidence]
+    lines = [f"{each.id}: {each.check}, {each.name}"]
+    lines.append(f"confidence      {each.confidence}: {meaning}")
+    skipped = ("name", "check", "source")
+    rows = {k: v for k, v in each.table.items() if k not in skipped}
+    for key, value in rows.items():
+        lines.append(f"{key:15} {_shown(value)}")
+    return [*lines, f"source          {each.source}"]
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, dict):
+        return "; ".join(f"{key} {_shown(item)}" for key, item in value.items())
+    if isinstance(value, list):
+        return ", ".join(f"({_shown(v)})" if isinstance(v, list) else str(v) for v in value)
+    return str(value)

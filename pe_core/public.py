@@ -27,17 +27,9 @@ from .scoring import (
     Scatter,
     Score,
     SensorScore,
+    requirements,
 )
-from .scoring.requirements import (
-    BODIES,
-    Body,
-    Criterion,
-    Requirement,
-    RequirementChecker,
-    Under,
-    Verdict,
-    Zone,
-)
+from .scoring.requirements import Requirement, RequirementChecker, Verdict
 from .scoring.sight import BlindGround, GroundSight, Reach, Sight
 from .scoring.targets import ObjectEvaluator, TargetRule
 from .search import (
@@ -78,19 +70,16 @@ from .study import presets as requirement_presets
 from .version import __version__
 
 __all__ = [
-    "BODIES",
     "METHODS",
     "ApCurve",
     "BeamField",
     "BlindGround",
-    "Body",
     "BoxReport",
     "Boxes",
     "BrownConrady",
     "Camera",
     "Choice",
     "Constraints",
-    "Criterion",
     "Evaluator",
     "FTheta",
     "Focus",
@@ -141,10 +130,8 @@ __all__ = [
     "SurfaceMount",
     "TargetRule",
     "Tolerance",
-    "Under",
     "Vehicle",
     "Verdict",
-    "Zone",
     "__version__",
     "beam_field",
     "catalog",
@@ -155,6 +142,7 @@ __all__ = [
     "measure_objects",
     "optimize",
     "requirement_presets",
+    "requirements",
     "save_study",
     "study_from_dict",
     "study_to_dict",

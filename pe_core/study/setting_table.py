@@ -11,6 +11,7 @@ from ..base.setting_file import key_of
 from ..geometry.grids import PerceptionSpace
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
+from ..scoring.requirements import Criterion, Under, Zone
 from ..scoring.targets import TargetRule
 from ..search import Constraints, Schedule, Selection, Tolerance
 from ..search.tolerance import CASES, ERRORS
@@ -47,6 +48,9 @@ SECTIONS = (
     StudyTable("optimize", Tolerance, CASES),
     StudyTable("optimize.tolerance", Tolerance, ERRORS),
     StudyTable("selection", Selection),
+    StudyTable("requirement.zone", Zone),
+    StudyTable("requirement.criterion", Criterion),
+    StudyTable("requirement.under", Under),
 )
 
 

@@ -24,12 +24,7 @@ from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference, vehicle_line
 from ..scoring import Evaluator, RigJudge
-from ..scoring.requirements import (
-    Requirement,
-    RequirementChecker,
-    Verdict,
-    checked_requirements,
-)
+from ..scoring.requirements import Requirement, RequirementChecker, Verdict, checked_requirements
 from ..scoring.sampling import SAMPLES_OR_GRID
 from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
@@ -47,11 +42,11 @@ from ..search import (
     checked_axes,
     checked_bounds,
     checked_method,
-    mounted_off,
 )
 from ..sensors import PerceptionModel
 from .catalog_lookup import check_pairs, housings_of
 from .passthrough import Passthrough
+from .requirement_check import checker_of, verdicts_of
 
 DEFAULT_SEARCH_SAMPLES = 65_536
 SEED = Whole(0, 2**63 - 1)
@@ -234,37 +229,12 @@ class Study:
             )
 
     def checker(self) -> RequirementChecker:
-        """Return what holds rigs to the study's requirements.
+        """Return what holds rigs to the requirements; `InputError` where that cannot be done."""
+        return checker_of(self)
 
-        Raises
-        ------
-        InputError
-            When a zone cannot be placed round the vehicle, or the rig lacks a kind of sensor.
-        """
-        checker = RequirementChecker(
-            self.requirements,
-            self.vehicle,
-            model=self.model,
-            reference=self.reference,
-            space=self.space,
-        )
-        checker.check_rig(self.rig)
-        for each in self.requirements:
-            if each.under.mounting and not self.search.tolerance.mounts_off:
-                who = f"requirement {each.name!r}"
-                raise InputError(who, "under.mounting", "errors in [optimize.tolerance]", "none")
-        return checker
-
-    def verdicts(
-        self, rig: Rig | None = None, checker: RequirementChecker | None = None
-    ) -> tuple[Verdict, ...]:
+    def verdicts(self, rig: Rig | None = None) -> tuple[Verdict, ...]:
         """Return the verdicts on a rig, the study's by default, with its mounting errors."""
-        if not self.requirements:
-            return ()
-        rig, search = self.rig if rig is None else rig, self.search
-        off = any(each.under.mounting for each in self.requirements)
-        cases = mounted_off(rig, search.tolerance, search.seed) if off else []
-        return (checker or self.checker()).check(rig, cases=cases[: search.tolerance.draws])
+        return verdicts_of(self, self.rig if rig is None else rig)
 
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:

@@ -29,7 +29,6 @@ from .scoring import (
     SensorScore,
     requirements,
 )
-from .scoring.requirements import Requirement, RequirementChecker, Verdict
 from .scoring.sight import BlindGround, GroundSight, Reach, Sight
 from .scoring.targets import ObjectEvaluator, TargetRule
 from .search import (
@@ -66,7 +65,6 @@ from .sensors import (
     measure_objects,
 )
 from .study import Search, Study, load_study, save_study, study_from_dict, study_to_dict
-from .study import presets as requirement_presets
 from .version import __version__
 
 __all__ = [
@@ -110,8 +108,6 @@ __all__ = [
     "Prior",
     "Reach",
     "Reference",
-    "Requirement",
-    "RequirementChecker",
     "Rig",
     "RigJudge",
     "Scatter",
@@ -131,7 +127,6 @@ __all__ = [
     "TargetRule",
     "Tolerance",
     "Vehicle",
-    "Verdict",
     "__version__",
     "beam_field",
     "catalog",
@@ -141,7 +136,6 @@ __all__ = [
     "measure",
     "measure_objects",
     "optimize",
-    "requirement_presets",
     "requirements",
     "save_study",
     "study_from_dict",

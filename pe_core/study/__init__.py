@@ -4,17 +4,16 @@ from ..base.setting import REQUIRED, OneOf, Pair, Setting, Toggle, settings_of
 from ..base.setting_file import value_in_file
 from ..base.values import Angle, Number, Whole
 from ..search import METHODS, SCHEDULED_METHOD, Robustness
+from . import requirement_file
 from .catalog_lookup import mounts_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW, REVIEW_PAGE, SEARCH, STUDY
 from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
-from .requirement_file import CONFIDENCE, Preset, preset, presets
 from .setting_table import panel_default, setting_keys
 from .study import Search, Study, vehicle_digest
 from .study_file import load_study, load_study_data, save_study, study_from_dict, study_to_dict
 
 __all__ = [
     "AREAS",
-    "CONFIDENCE",
     "MESH",
     "METHODS",
     "OPTIMIZED",
@@ -29,7 +28,6 @@ __all__ = [
     "Number",
     "OneOf",
     "Pair",
-    "Preset",
     "Robustness",
     "Search",
     "Setting",
@@ -43,9 +41,8 @@ __all__ = [
     "passthrough_of_text",
     "passthrough_table",
     "passthrough_text",
-    "preset",
-    "presets",
     "read_passthrough",
+    "requirement_file",
     "save_study",
     "setting_keys",
     "settings_of",

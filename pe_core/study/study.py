@@ -112,12 +112,13 @@ class Search:
             self, "limits", ReadOnlyDict(_each(self.limits, "bounds", _checked_limits))
         )
         check_settings(self, who)
-        if not isinstance(self.schedule, Schedule):
-            raise InputError(who, "schedule", "a Schedule", type(self.schedule).__name__)
-        if not isinstance(self.mounting, Mounting):
-            raise InputError(who, "mounting", "a Mounting", type(self.mounting).__name__)
-        if not isinstance(self.tolerance, Tolerance):
-            raise InputError(who, "tolerance", "a Tolerance", type(self.tolerance).__name__)
+        for name, kind in (
+            ("schedule", Schedule),
+            ("mounting", Mounting),
+            ("tolerance", Tolerance),
+        ):
+            if not isinstance(value := getattr(self, name), kind):
+                raise InputError(who, name, f"a {kind.__name__}", type(value).__name__)
         known = checked_method(who, self.method or None, self.schedule != Schedule())
         object.__setattr__(self, "method", known)
 
@@ -137,8 +138,7 @@ class Study:
     axles are, for exports; `passthrough` is what an imported rig's file had besides the rig, for an
     export to its own format. Of `search`, what concerns the rig's sensors is kept; one that it does
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
-    `rig`, and what they cost. `targets` says whether voxels or objects are judged.
-    `requirements` are what the rig is held to.
+    `rig`, and what they cost. `targets` says what is judged, `requirements` what has to be met.
 
     Raises
     ------
@@ -171,19 +171,11 @@ class Study:
     def __post_init__(self) -> None:
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
         for name, kind in FIELDS.items():
-            if not isinstance(getattr(self, name), kind):
-                found = type(getattr(self, name)).__name__
-                raise InputError("study", name, f"a {kind.__name__}", found)
-        if self.vehicle is not None and not isinstance(self.vehicle, Vehicle):
-            raise InputError("study", "vehicle", "a Vehicle", type(self.vehicle).__name__)
+            value = getattr(self, name)
+            if not isinstance(value, kind) and (value is not None or name not in OPTIONAL):
+                raise InputError("study", name, f"a {kind.__name__}", type(value).__name__)
         if self.vehicle is not None:
             require_vehicle_size("vehicle", self.vehicle)
-        if self.reference is not None and not isinstance(self.reference, Reference):
-            found = type(self.reference).__name__
-            raise InputError("study", "reference", "a Reference", found)
-        if not isinstance(self.passthrough, Passthrough | None):
-            found = type(self.passthrough).__name__
-            raise InputError("study", "passthrough", "a Passthrough", found)
         if self.mesh is not None:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
         check_settings(self, "study")
@@ -215,11 +207,9 @@ class Study:
             return samples
         share = samples / self.search.samples if 0 < samples < self.search.samples else 1.0
         scenes = self.targets.scenes
-        return (
-            scenes
-            if samples == self.samples
-            else max(min(scenes, FEW_SCENES), round(scenes * share))
-        )
+        if samples == self.samples:
+            return scenes
+        return max(min(scenes, FEW_SCENES), round(scenes * share))
 
     def sight(self) -> Sight:
         """Return the `Sight` of this study: what its rigs see of the ground."""
@@ -281,7 +271,11 @@ FIELDS: dict[str, type] = {
     "axes": MeshAxes,
     "selection": Selection,
     "targets": TargetRule,
+    "vehicle": Vehicle,
+    "reference": Reference,
+    "passthrough": Passthrough,
 }
+OPTIONAL = ("vehicle", "reference", "passthrough")
 
 
 def vehicle_digest(vehicle: Vehicle | None) -> str | None:

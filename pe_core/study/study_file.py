@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from .. import catalog
 from ..base.errors import InputError, shown
@@ -34,6 +34,7 @@ from .search_file import in_file, read_limits, read_search, search_table
 from .selection_file import read_selection, selection_tables
 from .study import Search, Study
 
+T = TypeVar("T")
 OWN_MODEL = "own"
 """Name of an own model in a choice that has no name."""
 
@@ -141,13 +142,13 @@ def _read_study(table: Table, folder: Path) -> Study:
     study = Study(
         Rig(mounted),
         vehicle,
-        _read_space(table.table("space")),
+        _made_of(table.table("space"), PerceptionSpace),
         read_prior(table.table("prior"), folder),
         read_model(table.table("ap"), table.table("fusion")),
         read_search(search, free, limits, on, folder),
         read_settings(table, Study)["samples"],
         *file,
-        _read_reference(table),
+        _made_of(table.table("reference"), Reference) if "reference" in table else None,
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
         read_targets(table.table("metric")),
         read_passthrough(table.table("passthrough")) if "passthrough" in table else None,
@@ -160,19 +161,10 @@ def _read_study(table: Table, folder: Path) -> Study:
     return study
 
 
-def _read_space(table: Table) -> PerceptionSpace:
-    space = PerceptionSpace(**read_settings(table, PerceptionSpace))
+def _made_of(table: Table, cls: type[T]) -> T:
+    made = cls(**read_settings(table, cls))
     table.finish()
-    return space
-
-
-def _read_reference(table: Table) -> Reference | None:
-    if "reference" not in table:
-        return None
-    own = table.table("reference")
-    reference = Reference(**read_settings(own, Reference))
-    own.finish()
-    return reference
+    return made
 
 
 def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, MeshFile]:

@@ -15,9 +15,10 @@ from pe_core.base.errors import InputError
 from pe_core.base.files import write_bytes
 from pe_core.base.serialization import finite
 from pe_core.scoring.requirements import Requirement, Verdict
-from pe_core.study import CONFIDENCE, Preset, Study, load_study, preset, presets
+from pe_core.study import Study, load_study
+from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
 
-from .run_job import tell_vehicle
+from .run_job import print_vehicle
 from .terminal import DONE, Answer
 
 NOT_MET = 3
@@ -71,7 +72,7 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     if not study.requirements:
         expected = "[[requirement]] in the study, or --preset ID"
         raise InputError("check", "requirements", expected, "none")
-    tell_vehicle(study)
+    print_vehicle(study)
     verdicts = study.verdicts()
     if args.csv:
         write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))

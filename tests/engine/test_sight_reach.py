@@ -166,7 +166,7 @@ def test_expected_ap_is_the_prior_s_mean():
     index = np.indices(space.shape).reshape(3, -1).T
     m = kinds.measure(rig["roof"], space.center_of(index), space.interval)
     ap = average_precision(m, kinds.PerceptionModel().lidar).reshape(space.shape)
-    found = sight.expected_ap(space, prior, rig)
+    found = sight.Sight(space, prior).expected_ap(rig)
     for density in prior.densities(space):
         p = density.ground[:, :, None] * density.profile
         assert found[density.name] == pytest.approx((p * ap).sum() / p.sum(), abs=0.005)
@@ -176,5 +176,5 @@ def test_expected_ap_is_the_prior_s_mean():
 def test_a_rig_that_sees_nothing_expects_nothing():
     up = pe.Lidar("up", np.radians([80.0, 85.0]), 36, 60.0)
     rig = pe.Rig([pe.Sensor("up", up, pe.Pose((0.0, 0.0, 40.0)))])
-    found = sight.expected_ap(shapes.small_space(), pe.Prior.road(), rig)
+    found = sight.Sight(shapes.small_space(), pe.Prior.road()).expected_ap(rig)
     assert list(found.values()) == pytest.approx([AP_MIN] * 5)

@@ -7,7 +7,7 @@ the sensors see meets a criterion. The kernels of `checker` are held to them by 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -271,8 +271,3 @@ def placed(
         np.zeros(len(everywhere), np.int64),
         (body.class_name or body.name,),
     )
-
-
-def setting_names(cls: type) -> tuple[str, ...]:
-    """Return the names of the fields of a dataclass that are not its own."""
-    return tuple(f.name for f in fields(cls) if not f.name.startswith("_"))

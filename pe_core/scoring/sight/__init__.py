@@ -3,7 +3,7 @@
 from .blind_ground import BlindGround, BlindSpot, shown_end, shown_start
 from .grid_regions import outlines
 from .reach import Reach, ReachLine, ends_with_space, reach_line
-from .sight import Sight, expected_ap
+from .sight import Sight
 from .visibility import GroundSight, VisibleShares
 
 __all__ = [
@@ -15,7 +15,6 @@ __all__ = [
     "Sight",
     "VisibleShares",
     "ends_with_space",
-    "expected_ap",
     "outlines",
     "reach_line",
     "shown_end",

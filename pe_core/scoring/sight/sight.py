@@ -284,15 +284,3 @@ class Sight:
     @cached_property
     def _tops(self) -> Floats | None:
         return None if self.vehicle is None else self.vehicle.top(self.space)
-
-
-def expected_ap(
-    space: PerceptionSpace,
-    prior: Prior,
-    rig: Rig,
-    vehicle: Vehicle | None = None,
-    *,
-    model: PerceptionModel | None = None,
-) -> dict[str, float]:
-    """Return the expected AP of a rig by class, as `Sight.expected_ap`."""
-    return Sight(space, prior, vehicle, model=model).expected_ap(rig)

@@ -31,6 +31,7 @@ SHIPPED = {
     "library.dxf": "pe_tools.outputs.dxf:dxf_bytes",
     "library.rerun": "pe_tools.outputs.recording:recording_bytes",
     "library.feather": "pe_tools.exchange.feather",
+    "library.detector": "pe_tools.validity.own.one_run:run_one",
     "verb.reproduce": "pe_tools.reproduction.verbs:add_verbs",
     "verb.validate": "pe_tools.validity:add_verb",
     "verb.review": "pe_tools.page.cli:add_verbs",
@@ -41,6 +42,7 @@ EXTRAS = {
     "library.dxf": "cad",
     "library.rerun": "rerun",
     "library.feather": "argoverse",
+    "library.detector": "validate",
     "tqdm": "progress",
     "distributed": "cluster",
 }

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import argparse
 
-from ..cli import Answer
+from ..cli import Answer, count_up_to
 from ..reproduction.verbs import add_page_options, output_folder
 
 FOLDER, QUICK_FOLDER = "docs/validity", "validity-quick"
+OWN_FOLDER, OWN_QUICK_FOLDER = "docs/validity/own", "validity-own-quick"
+MAX_RUNS = 10_000
 
 
 def add_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -19,10 +21,21 @@ def add_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     about = "compare the scores with published results of detectors"
     parser = verbs.add_parser("validate", help=about)
     add_page_options(parser, FOLDER, QUICK_FOLDER, "on few voxels and objects, in a minute")
+    own = parser.add_argument_group("our own study")
+    about = f"train detectors at the placements of the plan (default folder {OWN_FOLDER})"
+    own.add_argument("--own", action="store_true", help=about)
+    own.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
+    about = "do at most so many runs now"
+    own.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
     parser.set_defaults(function=_validate)
 
 
 def _validate(args: argparse.Namespace) -> Answer:
+    if args.own:
+        from .own.command import validate_own
+
+        args.default_output, args.default_quick_output = OWN_FOLDER, OWN_QUICK_FOLDER
+        return validate_own(args, output_folder(args))
     from .validate import validate
 
     return validate(args, output_folder(args))

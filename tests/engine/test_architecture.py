@@ -66,6 +66,7 @@ LIBRARIES = {
     "pyarrow": {"pe_tools/exchange"},
     "ezdxf": {"pe_tools/outputs"},
     "rerun": {"pe_tools/outputs"},
+    "jax": {"pe_tools/validity"},
     "matplotlib": {"pe_tools/reproduction", "pe_tools/validity"},
 }
 """Optional libraries, and the rooms in which they are imported."""

@@ -1,0 +1,112 @@
+"""Inputs and targets of a detector, from the voxels of scenes; centres from its outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .casting import LAYERS_M, MAX_COUNT, Voxels
+from .plan import Region
+from .scenes import CLASSES
+
+Singles = NDArray[np.float32]
+Mirrors = tuple[bool, bool]
+
+LAYERS = len(LAYERS_M) - 1
+STRIDE = 2
+"""As `detector.STRIDE`, without its library."""
+LEVELS = np.minimum(np.log2(1.0 + np.arange(MAX_COUNT + 1)) / 4.0, 1.5).astype(np.float32)
+"""Input of the network for a count of points."""
+SIGMA = 1.0
+"""Standard deviation of the peak round a centre in the heat map [cells of the output]."""
+REACH = 3
+"""The peak is cut off so many cells from the centre's cell."""
+MAX_DETECTIONS = 40
+"""Detections of a class in a scene."""
+MIN_SCORE = 0.01
+
+NEITHER: Mirrors = (False, False)
+
+
+def inputs(scenes: Sequence[Voxels], region: Region, mirrors: Sequence[Mirrors]) -> Singles:
+    """Return the network's input (B, X, Y, layers), mirrored along x, y."""
+    nx, ny = region.shape
+    x = np.zeros((len(scenes), nx * ny * LAYERS), np.float32)
+    for k, voxels in enumerate(scenes):
+        x[k, voxels.cells] = LEVELS[voxels.counts]
+    x = x.reshape(-1, nx, ny, LAYERS)
+    for k, (along, across) in enumerate(mirrors):
+        x[k] = x[k, :: -1 if along else 1, :: -1 if across else 1]
+    return x
+
+
+def targets(
+    scenes: Sequence[Voxels], region: Region, mirrors: Sequence[Mirrors]
+) -> tuple[Singles, Singles, Singles]:
+    """Return heat maps (B, X, Y, C), offsets (B, X, Y, 2) and cells with centres (B, X, Y).
+
+    Objects that no beam meets are left out.
+    """
+    nx, ny = (n // STRIDE for n in region.shape)
+    heat = np.zeros((len(scenes), nx, ny, len(CLASSES)), np.float32)
+    offsets = np.zeros((len(scenes), nx, ny, 2), np.float32)
+    at = np.zeros((len(scenes), nx, ny), np.float32)
+    for k, (voxels, mirror) in enumerate(zip(scenes, mirrors, strict=True)):
+        seen = voxels.beams > 0
+        signs = np.where(mirror, -1.0, 1.0)
+        cells = _in_cells(voxels.centers[seen] * signs, region)
+        for center, label in zip(cells, voxels.labels[seen].tolist(), strict=True):
+            i, j = (
+                int(np.clip(np.floor(c), 0, n - 1)) for c, n in zip(center, (nx, ny), strict=True)
+            )
+            _add_peak(heat[k, :, :, label], i, j)
+            offsets[k, i, j] = center - (i + 0.5, j + 0.5)
+            at[k, i, j] = 1.0
+    return heat, offsets, at
+
+
+def _in_cells(centers: np.ndarray, region: Region) -> np.ndarray:
+    return (centers + np.array([region.x_m, region.y_m])) / (STRIDE * region.cell_m)
+
+
+_STEPS = np.arange(-REACH, REACH + 1)
+_PEAK = np.exp(-(_STEPS[:, None] ** 2 + _STEPS**2) / (2.0 * SIGMA**2)).astype(np.float32)
+
+
+def _add_peak(heat: Singles, i: int, j: int) -> None:
+    """Raise a class's heat map (X, Y) round a cell."""
+    x0, x1 = max(i - REACH, 0), min(i + REACH + 1, heat.shape[0])
+    y0, y1 = max(j - REACH, 0), min(j + REACH + 1, heat.shape[1])
+    peak = _PEAK[x0 - i + REACH : x1 - i + REACH, y0 - j + REACH : y1 - j + REACH]
+    np.maximum(heat[x0:x1, y0:y1], peak, out=heat[x0:x1, y0:y1])
+
+
+def detections(
+    heat: np.ndarray, offsets: np.ndarray, region: Region
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the detections of a scene, by class: scores (N,), descending, and centres (N, 2) [m].
+
+    A detection is a cell whose probability is the highest of its neighbours.
+
+    Parameters
+    ----------
+    heat : (X, Y, C) float
+    offsets : (X, Y, 2) float
+    region : Region
+    """
+    padded = np.pad(heat, ((1, 1), (1, 1), (0, 0)), constant_values=-1.0)
+    nx, ny, classes = heat.shape
+    highest = np.max([padded[i : i + nx, j : j + ny] for i in range(3) for j in range(3)], axis=0)
+    peaks = (heat == highest) & (heat >= MIN_SCORE)
+    found = []
+    for c in range(classes):
+        i, j = np.nonzero(peaks[:, :, c])
+        scores = heat[i, j, c]
+        best = np.argsort(-scores, kind="stable")[:MAX_DETECTIONS]
+        i, j = i[best], j[best]
+        cells = np.column_stack([i, j]) + 0.5 + offsets[i, j]
+        centers = cells * (STRIDE * region.cell_m) - (region.x_m, region.y_m)
+        found.append((scores[best], centers))
+    return found

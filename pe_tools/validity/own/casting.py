@@ -1,0 +1,160 @@
+"""Points of a rig in a scene: first hits of all beams, with noise; and their counts in voxels.
+
+Beams are cast by the engine's own first hits. Which beams the vehicle's own body blocks does not
+depend on the scene, so it is computed once for a placement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pe_core.geometry import rotate
+from pe_core.geometry.raycast import VisibleTriangles
+from pe_core.geometry.triangle_tree import TriangleTree
+from pe_core.sensors.lidar import Lidar
+
+from .placements import Placement, vehicle
+from .plan import SPLITS, Region, StudyPlan
+from .scenes import NOBODY, Scene, scene
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+LAYERS_M = (-0.4, 0.15, 0.35, 0.6, 0.9, 1.3, 1.8, 2.6, 4.2)
+"""Edges of the voxels' layers [m]."""
+MAX_COUNT = 255
+NOISE = 7
+"""Makes the seed of the noise another one than that of the scene."""
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Points of a scene in the ground frame.
+
+    Attributes
+    ----------
+    positions : (N, 3) float
+        With noise [m].
+    beams : (K,) int
+        Beams that end on each object that is to be found, before points are dropped.
+    """
+
+    positions: Floats
+    beams: Ints
+
+
+@dataclass(frozen=True, slots=True)
+class Voxels:
+    """Points of a scene counted in voxels, and its objects in the region.
+
+    Attributes
+    ----------
+    cells : (N,) int32
+        Flat indices of voxels with points, over (x, y, layer).
+    counts : (N,) uint8
+        Points in each of them.
+    centers : (K, 2) float32
+        Centres of the objects in the region [m].
+    labels : (K,) uint8
+        Their classes.
+    beams : (K,) int32
+        Beams that end on each.
+    """
+
+    cells: NDArray[np.int32]
+    counts: NDArray[np.uint8]
+    centers: NDArray[np.float32]
+    labels: NDArray[np.uint8]
+    beams: NDArray[np.int32]
+
+
+class FreeBeams:
+    """The beams of one LiDAR that its vehicle's body does not block.
+
+    Attributes
+    ----------
+    origin : (3,) float
+    directions : (B, 3) float
+        Unit directions, ground frame.
+    """
+
+    def __init__(self, plan: StudyPlan, placement: Placement, number: int) -> None:
+        sensor = placement.rig(plan).sensors[number]
+        model = sensor.model
+        assert isinstance(model, Lidar)
+        self.origin = np.array(sensor.pose.position)
+        directions = rotate(sensor.pose.ground_from_sensor, model.directions)
+        hits = vehicle(placement.vehicle).first_hit(sensor.pose.position, directions)
+        self.directions = directions[np.isinf(hits.distance)]
+        self.min_range, self.max_range = model.min_range, model.max_range
+
+    def first_hits(self, tree: TriangleTree, flat: bool) -> tuple[Floats, Ints]:
+        """Return distance (B,) [m], inf for a miss, and triangle (B,), -1 for ground and misses."""
+        hits = VisibleTriangles(tree, self.origin).first_hit(self.directions)
+        distance, face = hits.distance, hits.face
+        if flat:
+            down = self.directions[:, 2]
+            with np.errstate(divide="ignore"):
+                to_ground = np.where(down < 0.0, -self.origin[2] / down, np.inf)
+            face = np.where(to_ground < distance, NOBODY, face)
+            distance = np.minimum(distance, to_ground)
+        in_range = (distance >= self.min_range) & (distance <= self.max_range)
+        return np.where(in_range, distance, np.inf), np.where(in_range, face, NOBODY)
+
+
+class Caster:
+    """Casts the beams of a placement into scenes of a world."""
+
+    def __init__(self, plan: StudyPlan, placement: Placement, world: str) -> None:
+        self._plan, self._placement, self._world = plan, placement, world
+        self._beams = [FreeBeams(plan, placement, k) for k in range(placement.lidars)]
+
+    def voxels(self, split: str, number: int) -> Voxels:
+        """Return the voxels of a scene."""
+        region = self._plan.region
+        content, points = self.points(split, number)
+        inside = np.abs(content.centers) <= (region.x_m, region.y_m)
+        which = np.flatnonzero(inside.all(axis=1))
+        cells, counts = voxel_counts(points.positions, region)
+        return Voxels(
+            cells,
+            counts,
+            content.centers[which].astype(np.float32),
+            content.labels[which].astype(np.uint8),
+            points.beams[which].astype(np.int32),
+        )
+
+    def points(self, split: str, number: int) -> tuple[Scene, Points]:
+        """Return a scene, and the points of all LiDARs in it."""
+        content = scene(self._plan, self._placement.vehicle, split, self._world, number)
+        tree = TriangleTree(content.triangles)
+        rule = self._plan.scenes
+        positions, beams = [], np.zeros(len(content.labels), np.int64)
+        for k, lidar in enumerate(self._beams):
+            rng = np.random.default_rng([self._plan.seed, NOISE, SPLITS.index(split), number, k])
+            distance, face = lidar.first_hits(tree, content.flat)
+            met = np.flatnonzero(np.isfinite(distance))
+            owners = np.where(face[met] >= 0, content.owners[face[met]], NOBODY)
+            beams += np.bincount(owners[owners >= 0], minlength=len(beams))
+            noisy = distance[met] + rng.normal(0.0, rule.range_noise_m, len(met))
+            kept = rng.uniform(size=len(met)) >= rule.dropped
+            directions = lidar.directions[met[kept]]
+            positions.append(lidar.origin + noisy[kept, None] * directions)
+        return content, Points(np.concatenate(positions), beams)
+
+
+def voxel_counts(positions: Floats, region: Region) -> tuple[NDArray[np.int32], NDArray[np.uint8]]:
+    """Return flat indices (N,) of voxels with points (P, 3), ascending, and counts (N,)."""
+    x = np.floor((positions[:, 0] + region.x_m) / region.cell_m).astype(np.int64)
+    y = np.floor((positions[:, 1] + region.y_m) / region.cell_m).astype(np.int64)
+    layer = np.searchsorted(LAYERS_M, positions[:, 2], side="right") - 1
+    nx, ny = region.shape
+    layers = len(LAYERS_M) - 1
+    inside = (x >= 0) & (x < nx) & (y >= 0) & (y < ny) & (layer >= 0) & (layer < layers)
+    flat = ((x * ny + y) * layers + layer)[inside]
+    counts = np.bincount(flat, minlength=nx * ny * layers)
+    cells = np.flatnonzero(counts)
+    return cells.astype(np.int32), np.minimum(counts[cells], MAX_COUNT).astype(np.uint8)

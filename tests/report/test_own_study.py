@@ -1,0 +1,194 @@
+"""Our own study: scenes, points, targets of the detector, average precision, order of runs."""
+
+import hashlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.embree import Embree
+from pe_core import InputError
+from pe_core.geometry.raycast import VisibleTriangles
+from pe_core.geometry.triangle_tree import TriangleTree
+from pe_tools.validity.own import shapes
+from pe_tools.validity.own.batches import NEITHER, detections, inputs, targets
+from pe_tools.validity.own.cast_cache import FIELDS, cached
+from pe_tools.validity.own.casting import Caster, FreeBeams
+from pe_tools.validity.own.placements import placements
+from pe_tools.validity.own.plan import PLAIN, TOWN, full_plan, quick_plan
+from pe_tools.validity.own.precision import ClassScene, average_precision, in_ring
+from pe_tools.validity.own.runs import RunFiles, runs
+from pe_tools.validity.own.scenes import CLASSES, NOBODY, scene
+
+PLAN = full_plan()
+PLACEMENT = placements(PLAN)[0]
+SCENE = "bdedc09a393d7688"
+"""Digest of what a placement sees in a scene: results of several sessions belong together."""
+
+
+@pytest.fixture(scope="module")
+def caster():
+    return Caster(PLAN, PLACEMENT, PLAIN)
+
+
+@pytest.fixture(scope="module")
+def voxels(caster):
+    return [caster.voxels("test", number) for number in range(4)]
+
+
+def test_scenes_and_their_noise_are_the_same_in_every_session(voxels):
+    digest = hashlib.sha256(voxels[0].cells.tobytes() + voxels[0].counts.tobytes())
+    digest.update(voxels[0].beams.tobytes() + voxels[0].centers.tobytes())
+    assert digest.hexdigest()[:16] == SCENE
+
+
+def test_training_and_test_have_scenes_of_their_own():
+    centers = [scene(PLAN, "sedan", split, PLAIN, 3).centers for split in ("train", "test")]
+    assert not set(map(tuple, centers[0])) & set(map(tuple, centers[1]))
+
+
+@pytest.mark.parametrize("name", [*CLASSES, *shapes.DISTRACTORS])
+def test_shapes_fill_their_box_and_stand_on_the_ground(name):
+    mesh = shapes.placed_mesh(name, np.array([3.0, 2.0, 0.0]), np.array([4.0, 2.0, 1.5]), 0.0)
+    low, high = mesh.reshape(-1, 3).min(axis=0), mesh.reshape(-1, 3).max(axis=0)
+    assert low == pytest.approx([1.0, 1.0, 0.0]) and high == pytest.approx([5.0, 3.0, 1.5])
+    across = np.cross(mesh[:, 1] - mesh[:, 0], mesh[:, 2] - mesh[:, 0])
+    assert (across * (mesh[:, 0] - [3.0, 2.0, 0.75])).sum() > 0.0  # normals point outward
+
+
+def test_nothing_overlaps_in_a_scene():
+    content = scene(PLAN, "bus", "train", PLAIN, 5)
+    gaps = np.linalg.norm(content.centers[:, None] - content.centers[None], axis=2)
+    assert gaps[~np.eye(len(gaps), dtype=bool)].min() > 0.5
+    assert len(content.owners) == len(content.triangles) and NOBODY in content.owners
+
+
+@pytest.mark.parametrize("world", [PLAIN, TOWN])
+def test_beams_end_where_embree_says(world):
+    content = scene(PLAN, "sedan", "train", world, 1)
+    embree = Embree.of(content.triangles)
+    if embree is None:
+        pytest.skip("embreex is not installed")
+    lidar = FreeBeams(PLAN, PLACEMENT, 0)
+    hits = VisibleTriangles(TriangleTree(content.triangles), lidar.origin)
+    face = hits.first_hit(lidar.directions).face
+    expected = embree.first_hit(lidar.origin, lidar.directions)
+    owners, named = (np.where(f >= 0, content.owners[f], f) for f in (face, expected))
+    assert (owners >= 0).sum() > 500
+    assert ((owners != named) | ((face < 0) != (expected < 0))).mean() < 2e-4  # along an edge
+
+
+def test_points_on_flat_ground_lie_on_it(caster):
+    _, points = caster.points("test", 0)
+    assert np.abs(points.positions[:, 2]).min() < 0.01
+    assert points.positions[:, 2].min() > -0.1
+    assert points.beams.sum() > 0
+
+
+def test_a_cache_gives_what_was_cast(tmp_path, voxels):
+    path = tmp_path / "cast.npz"
+    first = cached(path, 4, lambda k: voxels[k])
+    again = cached(path, 4, lambda k: pytest.fail("cast again"))
+    for a, b in zip(first, again, strict=True):
+        assert all((getattr(a, name) == getattr(b, name)).all() for name in FIELDS)
+
+
+@pytest.mark.parametrize("mirror", [NEITHER, (True, False), (False, True), (True, True)])
+def test_a_perfect_heat_map_gives_the_objects_back(voxels, mirror):
+    """Targets as outputs: every object that a beam meets is found where it is, mirrored alike."""
+    heat, offsets, _ = targets(voxels, PLAN.region, [mirror] * len(voxels))
+    signs = np.where(mirror, -1.0, 1.0)
+    for k, each in enumerate(voxels):
+        for c, (_, centers) in enumerate(detections(heat[k], offsets[k], PLAN.region)):
+            objects = each.centers[(each.labels == c) & (each.beams > 0)] * signs
+            tops = centers[: len(objects)]
+            gaps = np.linalg.norm(objects[:, None] - tops[None], axis=2).min(axis=1, initial=9.0)
+            assert (gaps < 1.2).all()  # two in one cell are one peak
+            assert len(objects) == 0 or np.median(gaps) < 1e-4
+
+
+def test_a_mirrored_input_has_its_points_at_the_mirrored_places(voxels):
+    plain = inputs(voxels[:1], PLAN.region, [NEITHER])[0]
+    mirrored = inputs(voxels[:1], PLAN.region, [(True, False)])[0]
+    assert plain.sum() > 0 and (mirrored == plain[::-1]).all()
+
+
+def scenes_of(*rows):
+    """Scenes of a class, each with (scores, detected x, objects' x)."""
+    return [
+        ClassScene(np.array(s, float), on_axis(detected), on_axis(objects))
+        for s, detected, objects in rows
+    ]
+
+
+def on_axis(x):
+    return np.column_stack([x, np.zeros(len(x))]).astype(float).reshape(-1, 2)
+
+
+def test_average_precision_by_hand():
+    scenes = scenes_of(([0.9, 0.6], [10.3, 30.0], [10.0, 20.0]), ([0.8], [5.0], [5.1]))
+    # right, right, wrong; three objects: precision 1 to a recall of 2/3
+    assert average_precision(scenes, 0.5) == pytest.approx(2 / 3)
+    assert average_precision(scenes, 0.2) == pytest.approx(
+        (1 / 2) / 3
+    )  # the second of two is right
+    assert average_precision(scenes_of(([0.9], [1.0], [])), 1.0) is None
+    assert average_precision(scenes_of(([], [], [1.0])), 1.0) == 0.0
+
+
+def test_an_object_is_found_once_and_rings_cut_both():
+    twice = scenes_of(([0.9, 0.8], [10.0, 10.1], [10.0, 40.0]))
+    assert average_precision(twice, 1.0) == pytest.approx(1 / 2)
+    assert average_precision([in_ring(twice[0], 0.0, 15.0)], 1.0) == 1.0
+    assert average_precision([in_ring(twice[0], 30.0, 60.0)], 1.0) == 0.0
+
+
+def test_runs_come_seed_by_seed_and_designs_by_turns():
+    ordered = runs(PLAN)
+    assert len({run.name for run in ordered}) == len(ordered)
+    seeds = [run.seed for run in ordered if not run.name.startswith(("town", "plain"))]
+    assert seeds == sorted(seeds) and seeds.count(1) == 32 + 18 + 1
+    assert [run.name for run in ordered[:4]] == [
+        *("across-sedan-01-s1", "fixed-sedan-01-s1"),
+        *("fixed-bus-01-s1", "across-bus-01-s1"),
+    ]
+
+
+def test_files_of_another_plan_are_refused(tmp_path):
+    files = RunFiles(tmp_path, quick_plan())
+    first, second = files.all[:2]
+    files.write(first, {"ap": 0.5})
+    assert files.missing()[0] == second and files.read() == {
+        first.name: {
+            "schema": 1,
+            "plan": quick_plan().digest,
+            "run": first.name,
+            "ap": 0.5,
+        }
+    }
+    other = RunFiles(tmp_path, replace(quick_plan(), digest="other"))
+    with pytest.raises(InputError, match="plan"):
+        other.read()
+    files.write(first, {"ap": 1.5})
+    with pytest.raises(InputError, match="ap"):
+        files.read()
+
+
+def test_a_run_has_the_same_results_when_it_is_repeated():
+    pytest.importorskip("jax")
+    from pe_tools.validity.own.one_run import run_one
+
+    counts = {"train": 8, "validation": 4, "test": 8}
+    plan = quick_plan()
+    plan = replace(
+        plan,
+        scenes=replace(plan.scenes, counts=counts),
+        mixed={**plan.mixed, "scenes": 8, "test_scenes": 4},
+    )
+    for run in (runs(plan)[0], runs(plan)[-1]):
+        first, again = (run_one(plan, run, None) for _ in range(2))
+        for data in (first, again):
+            del data["seconds"], data["training"]["training_seconds"]
+        assert first == again
+        assert len(first["training"]["validation_losses"]) == 2
+    assert [p["trained_with"] for p in first["placements"].values()] == [True, True, False, False]

@@ -1,8 +1,8 @@
 """Axes and origins of other programs' frames, rotations and quaternions.
 
-Ours: x forward, y left, z up; a camera looks along its x; the origin is on the ground under the
-vehicle's centre. Optical frames (ROS REP 103, nuScenes, Argoverse, KITTI): z forward, x right,
-y down.
+Frames of this project: x forward, y left, z up; a camera looks along its x axis; the origin is on
+the ground under the vehicle's centre. Optical frames (ROS REP 103, nuScenes, Argoverse, KITTI): z
+forward, x right, y down.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def from_quaternion(source: object, field: str, values: Sequence[float]) -> Floa
 
 
 def checked_rotation(source: object, field: str, rotation: Floats) -> Floats:
-    """Return a (3, 3) rotation, or raise `InputError` for what is none, or mirrors."""
+    """Return a (3, 3) rotation; raise `InputError` if it is not a rotation, or if it mirrors."""
     off = np.abs(product(rotation, rotation.T) - np.eye(3)).max()
     if not off < PROPER_WITHIN * 100:
         raise InputError(source, field, "a rotation", f"rows off by {off:.2g} from right angles")
@@ -92,13 +92,13 @@ def checked_rotation(source: object, field: str, rotation: Floats) -> Floats:
 
 
 def pose_of(rotation: Floats, position: Sequence[float]) -> Pose:
-    """Return the pose of a (3, 3) rotation and a place."""
+    """Return the pose with a (3, 3) rotation and a position."""
     x, y, z = (float(v) for v in position)
     return Pose((x, y, z), rpy_from_matrix(rotation))
 
 
 def composed(outer: Pose, inner: Pose) -> Pose:
-    """Return where `inner`, given in the frame of `outer`, is in the frame that `outer` is in."""
+    """Return the pose of `inner` in the parent frame; `inner` is given in the frame `outer`."""
     rotation = outer.ground_from_sensor
     shift = turned(rotation, inner.position)
     position = [a + b for a, b in zip(outer.position, shift, strict=True)]
@@ -106,7 +106,7 @@ def composed(outer: Pose, inner: Pose) -> Pose:
 
 
 def seen_from(outer: Pose, inner: Pose) -> Pose:
-    """Return where `inner` is in the frame of `outer`, both given in one frame."""
+    """Return the pose of `inner` in the frame `outer`; both are given in the same frame."""
     x, y, z = (a - b for a, b in zip(inner.position, outer.position, strict=True))
     if outer.rpy == (0.0, 0.0, 0.0):
         return Pose((x, y, z), inner.rpy)
@@ -117,12 +117,12 @@ def seen_from(outer: Pose, inner: Pose) -> Pose:
 def origin_in_ground(
     origin: str, reference: Reference | None, asking: str, source: object = "study"
 ) -> tuple[float, ...]:
-    """Return where an origin is in the ground frame, (3,) [m].
+    """Return the position of an origin in the ground frame, (3,) [m].
 
     Raises
     ------
     InputError
-        When it is at the rear axle, and nobody has said where that is.
+        When the origin is at the rear axle, and the position of the axle is not known.
     """
     if origin == GROUND:
         return 0.0, 0.0, 0.0
@@ -133,7 +133,7 @@ def origin_in_ground(
 
 
 def shifted(pose: Pose, by: Sequence[float]) -> Pose:
-    """Return a pose moved without being turned."""
+    """Return a pose with another position and the same rotation."""
     x, y, z = (a + b for a, b in zip(pose.position, by, strict=True))
     return Pose((x, y, z), pose.rpy)
 
@@ -156,18 +156,18 @@ def pose_from_quaternion(
     rotation : (4,) float
         Quaternion w, x, y, z: from the sensor's axes to its parent's.
     translation : (3,) float
-        Where the sensor is in its parent [m].
+        Position of the sensor in its parent frame [m].
     optical : bool
         Whether the sensor's axes are a camera's optical ones: z forward, x right, y down.
     inverse : bool
-        Whether both are given the other way round: from the parent to the sensor.
+        Whether both are given in the other direction: from the parent to the sensor.
     within : Pose, optional
-        Where the parent is; else it is the ground frame.
+        Pose of the parent; by default the parent is the ground frame.
 
     Raises
     ------
     InputError
-        When a number is missing, or the quaternion is none.
+        When a number is missing, or the quaternion is not valid.
     """
     position: Sequence[float] = vector(ASKING, "translation", translation, 3, METRES)
     matrix = from_quaternion(ASKING, "rotation", vector(ASKING, "rotation", rotation, 4))

@@ -78,14 +78,14 @@ class PortableSensor:
     pose : Pose
         Axes are those of this project (a camera looks along x); the origin is the format's.
     kind : str or None
-        ``"camera"``, ``"lidar"``, another one that the file names, or None where nothing tells.
+        ``"camera"``, ``"lidar"``, another one that the file names, or None if unknown.
     model : str or None
-        What the file calls its model.
+        Name of its model in the file.
     picture : Picture or None
     scan : Scan or None
     fusion : str or None
     min_range, max_range : float or None
-        [m]; None where the file does not say one.
+        [m]; None if the file has none.
     told : str
         Note on how it was read; may be empty.
     entry : str
@@ -200,7 +200,7 @@ def _made_up_size(p: Picture, usual: Size | None) -> tuple[Size, str]:
     doubled = [2.0 * middle for middle in p.center]
     width, height = (round(side) for side in doubled)
     is_centred = max(abs(doubled[0] - width), abs(doubled[1] - height)) < ALIKE_PX
-    if usual is None or is_centred:  # nobody calibrates a camera to the half of a pixel
+    if usual is None or is_centred:  # calibrations do not have half pixels by chance
         return (width, height), "has its middle there"
     offset = max(abs(side / whole - 1.0) / 2.0 for side, whole in zip(doubled, usual, strict=True))
     if offset < OFF_CENTER:
@@ -237,7 +237,7 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
         return Lidar.from_directions(name, scan.directions, *ranges)
     elevations = np.linspace(scan.low, scan.high, scan.channels)
     low, high = scan.fov
-    if high - low < NO_EXTENT_RAD:  # it does not turn: its channels stand at one azimuth
+    if high - low < NO_EXTENT_RAD:  # it does not rotate: all of its channels have one azimuth
         level = np.cos(elevations)
         beams = [level * math.cos(low), level * math.sin(low), np.sin(elevations)]
         return Lidar.from_directions(name, np.stack(beams, axis=1), *ranges)

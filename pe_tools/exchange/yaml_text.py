@@ -14,8 +14,8 @@ from pe_core.base.errors import InputError, shown
 
 DEEPEST = 20
 QUOTED = r"'[^']*'|\"[^\"\\]*\""
-# Each part takes all it can and stops at a character that it cannot hold: a line takes the time of
-# one pass, however many blanks are in it. Blanks at the end of a key or a value are cut off later.
+# Each part of the pattern takes all characters that it can, and stops at the first other one. So a
+# line takes one pass, also with many blanks. Blanks after a key or a value are removed later.
 LINE = re.compile(
     rf"^(?P<blanks> *)(?P<key>(?:{QUOTED}) *|[^\s'\"#\[{{&*!|>%@-][^:#]*):(?P<rest>( .*)?)$"
 )
@@ -33,7 +33,8 @@ def parse_yaml_blocks(source: str, text: str, *, lists: bool = False) -> dict[st
     Raises
     ------
     InputError
-        When a line is not ``key: value`` or ``key:``, an indent fits no level, a key comes twice.
+        When a line is not ``key: value`` or ``key:``, an indent fits no level, or a key is there
+        twice.
     """
     root: dict[str, Any] = {}
     levels: list[tuple[int, dict[str, Any]]] = [(-1, root)]
@@ -78,7 +79,7 @@ def _parsed(source: str, number: int, line: str, lists: bool) -> tuple[int, str,
 
 
 def unquoted(text: str) -> str:
-    """Return a text without the quotes round it."""
+    """Return a text without its surrounding quotes."""
     text = text.rstrip(" ")
     return text[1:-1] if text[:1] in ("'", '"') else text
 
@@ -97,14 +98,14 @@ KeyPath = tuple[str, ...]
 
 
 def with_values(text: str, values: Mapping[KeyPath, str]) -> str:
-    """Return a text with the values at some paths replaced; other bytes stay.
+    """Return a text with the values at some paths replaced; all other bytes stay.
 
     Parameters
     ----------
     text : str
         Nested ``key: value`` lines, such as `parse_yaml_blocks` takes.
     values : mapping of path to str
-        New values by their keys from the outermost on. A path that is not there changes nothing.
+        New values by path: keys, the outermost first. A path that does not exist is ignored.
     """
     return "".join(
         _replaced(line, values[path]) if path in values else line for path, line in _lines(text)
@@ -112,7 +113,7 @@ def with_values(text: str, values: Mapping[KeyPath, str]) -> str:
 
 
 def comments_of(text: str) -> dict[KeyPath, str]:
-    """Return the comments behind keys that have no value, by their paths."""
+    """Return the comments after keys without a value, by path."""
     return {
         path: line.partition("#")[2].strip()
         for path, line in _lines(text)
@@ -121,7 +122,7 @@ def comments_of(text: str) -> dict[KeyPath, str]:
 
 
 def with_comments(text: str, comments: Mapping[KeyPath, str]) -> str:
-    """Return a text with other comments behind keys that have some; an empty one takes it away."""
+    """Return a text with other comments after keys; an empty comment removes the old one."""
     lines = []
     for path, line in _lines(text):
         if path in comments and _opens_block(line):
@@ -135,7 +136,7 @@ def with_comments(text: str, comments: Mapping[KeyPath, str]) -> str:
 
 
 def _opens_block(line: str) -> bool:
-    """Whether a line is a key without a value, and not one whose name has a hash in quotes."""
+    """Whether a line is a key without a value; a name with a quoted hash is not accepted."""
     match = LINE.match(line.rstrip())
     rest = PLAIN_REST.match(match["rest"]) if match else None
     if match is None or rest is None or "#" in match["key"]:
@@ -144,9 +145,9 @@ def _opens_block(line: str) -> bool:
 
 
 def with_added_lines(text: str, path: KeyPath, more: Sequence[str]) -> str:
-    """Return a text with further lines at the end of the block at a path.
+    """Return a text with lines added at the end of the block at a path.
 
-    `more` are indented against the block's own keys; the block is not empty.
+    The lines `more` are indented like the block's own keys; the block is not empty.
     """
     lines = list(_lines(text))
     inside = [

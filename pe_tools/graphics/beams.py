@@ -24,7 +24,7 @@ PREVIEW_BEAMS, MAX_BEAMS = 12_000, 1_500_000
 class Cast:
     """Beams of a mounted LiDAR: some of its channels, each at the same azimuths.
 
-    `rows` (R,) channels and `columns` (K,) places among the azimuths, both ascending. Beam
+    `rows` (R,) are channels and `columns` (K,) indices of azimuths, both ascending. Beam
     ``r * K + k`` has `directions` (R * K, 3) unit, ground frame; `ends` (R * K,) at the vehicle or
     the maximum range [m]; `face` (R * K,) the triangle of the vehicle that stops it, else -1.
     """
@@ -70,7 +70,7 @@ def grid(lidar: Lidar, most: int) -> tuple[Ints, Ints]:
 
 
 def around(lidar: Lidar, count: int) -> Ints:
-    """At most `count` of the azimuths, evenly spread; of a sector the first and the last, too."""
+    """At most `count` of the azimuths, evenly spread; a sector includes its first and last one."""
     azimuths = len(lidar.azimuth_steps)
     count = min(count, azimuths)
     if azimuths == lidar.azimuth_count and count:
@@ -79,7 +79,7 @@ def around(lidar: Lidar, count: int) -> Ints:
 
 
 def evenly(total: int, count: int) -> Ints:
-    """(N,) at most `count` of the numbers below a total, evenly, the first and last among them."""
+    """(N,) at most `count` evenly spread numbers below a total, including the first and the last."""
     if total <= count:
         return np.arange(total)
     return np.linspace(0, total - 1, max(count, 0)).round().astype(np.int64)
@@ -92,7 +92,7 @@ FEWEST_AZIMUTHS = 8
 
 
 class ChannelMode(enum.StrEnum):
-    """Of which channels beams are shown."""
+    """The channels whose beams are shown."""
 
     FEW = "FEW"
     ONE = "ONE"
@@ -102,7 +102,7 @@ class ChannelMode(enum.StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class BeamChoice:
-    """At most `budget` beams; of the `number`-th channel from below, or of every `number`-th."""
+    """At most `budget` beams: of the `number`-th channel from below, or of every `number`-th one."""
 
     budget: int
     channels: ChannelMode = ChannelMode.ALL
@@ -114,8 +114,8 @@ class Beams:
     """Some beams of a mounted LiDAR.
 
     `directions` (N, 3) unit, ground frame; `ends` (N,) the vehicle or the maximum range [m];
-    `stopped` (N,) whether it was the vehicle; `channel` (N,) its number; `share` the part of beams
-    that are stopped, among all those that are meant.
+    `stopped` (N,) whether the vehicle occludes the beam; `channel` (N,) its channel; `share` the
+    share of occluded beams among all beams of the choice.
     """
 
     directions: Floats
@@ -126,7 +126,7 @@ class Beams:
 
 
 def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
-    """Return at most `budget` beams of a cast, stopped ones in their true share.
+    """Return at most `budget` beams of a cast, with the true share of occluded ones.
 
     That share is the sensor's; of one channel, that channel's own.
     """
@@ -157,13 +157,13 @@ def channels_of(lidar: Lidar, choice: BeamChoice) -> Ints:
 
 
 def _a_few(elevations: Floats, count: int) -> Ints:
-    """Channels nearest to evenly spread elevations: where a sensor looks, from top to bottom."""
+    """Channels nearest to evenly spread elevations, from the highest to the lowest."""
     wanted = np.linspace(elevations.min(), elevations.max(), max(count, 1))
     return np.unique(np.abs(elevations[:, None] - wanted).argmin(axis=0))
 
 
 def _fair(found: Cast, rows: Ints, share: float, budget: int) -> Ints:
-    """Numbers within a cast: free beams in a regular pattern, and stopped ones by their share."""
+    """Indices within a cast: free beams in a regular pattern, and occluded ones by their share."""
     stopped, width = found.stopped, len(found.columns)
     columns = np.searchsorted(
         found.columns, around(lidar_of(found.sensor), budget // max(len(rows), 1))

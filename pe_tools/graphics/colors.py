@@ -1,6 +1,6 @@
 """Colours of all graphics: palettes, colours of sensors, and colour scales.
 
-The colours of beams, cameras and sensors are told apart with any kind of colour vision (Okabe and
+The colours of beams, cameras and sensors differ for any kind of colour vision (Okabe and
 Ito, "Color Universal Design", 2008). Scales rise evenly in lightness: cividis, which looks much the
 same to all eyes (Nunez, Anderton and Renslow, PLoS ONE 13(7), 2018, table of its supplement), and
 viridis (van der Walt and Smith, 2015; CC0), each at thirteen even places. Values are sRGB, most of

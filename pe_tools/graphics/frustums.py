@@ -20,7 +20,7 @@ MARK_SIDE = 0.06
 
 
 def outline(sensor: Sensor, length_m: float) -> Floats:
-    """(N, 3) points round a camera's view, `length_m` from it, ground frame [m]."""
+    """(N, 3) points on the border of a camera's view, at a distance `length_m`, ground frame [m]."""
     rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
     return rays * length_m + np.asarray(sensor.pose.position)
 
@@ -43,7 +43,7 @@ def view_faces(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
 
 
 def ground_outline(sensor: Sensor, far_m: float) -> Floats:
-    """(N, 3) outline of the ground (z = 0) that a camera looks at, as far as `far_m` [m].
+    """(N, 3) outline of the ground (z = 0) in a camera's field of view, up to `far_m` [m].
 
     What the vehicle hides is not taken away. Without points when it looks at no ground.
     """
@@ -99,7 +99,7 @@ def frustum_points(sensor: Sensor, length_m: float) -> Floats:
 
 
 def frustum_lines(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) -> Primitives:
-    """Edges of a camera's view: pyramid, picture, and a small triangle above that says: up."""
+    """Edges of a camera's view: pyramid, picture, and a small triangle above that marks up."""
     if camera_of(sensor).lens is not None:
         return view_lines(sensor, length_m, palette)
     points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
@@ -146,7 +146,7 @@ def footprint_faces(outline: Floats, color: Rgba) -> Primitives:
 
 
 def ring_lines(sensor: Sensor, radius_m: float, palette: Palette = VIEWPORT) -> Primitives:
-    """Ring around a sensor in its own level plane, and a tick where it looks ahead."""
+    """Ring around a sensor in its x-y plane, and a tick in its forward direction."""
     angles = np.linspace(0.0, 2.0 * np.pi, RING_POINTS + 1)
     ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
     tick = np.array([[1.0, 0.0, 0.0], [1.0 + TICK_SHARE, 0.0, 0.0]])
@@ -163,7 +163,7 @@ def _half_picture(sensor: Sensor) -> tuple[float, float]:
 
 
 def _inward(sensor: Sensor) -> Floats:
-    """(4, 3) normals of the pyramid's sides, ground frame: what they point to is inside."""
+    """(4, 3) normals of the pyramid's sides, ground frame, which point inwards."""
     side, up = _half_picture(sensor)
     normals = np.array([[side, -1.0, 0.0], [side, 1.0, 0.0], [up, 0.0, -1.0], [up, 0.0, 1.0]])
     return normals @ sensor.pose.ground_from_sensor.T

@@ -38,7 +38,7 @@ FADE_M = 8.0
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """Something that a ground map shows: its scale of colours from `low`, dark, to `high`, bright.
+    """A quantity of a ground map: its scale of colours from `low`, dark, to `high`, bright.
 
     Bright is good. `shares`: values are shares, 0 to 1.
     """
@@ -74,7 +74,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AsScored:
-    """A score's ground map, with the names that a `GroundSight` has; nobody has counted sensors."""
+    """A score's ground map with the attributes of a `GroundSight`, without numbers of sensors."""
 
     x: Floats
     y: Floats
@@ -144,19 +144,19 @@ def difference_map(
     name: str = "",
     bound: float | None = None,
 ) -> LayerShape:
-    """Return a map of where one rig sees better than another (blue), and where worse (orange).
+    """Return a map of where one rig is better than another (blue), and where it is worse (orange).
 
-    Places that are alike are nearly clear, so that what differs is found.
+    Locations without a difference are nearly transparent.
 
     Parameters
     ----------
     seen, before : GroundSight
-        Of the same places: what is shown, and what it is compared with.
+        The rig that is shown, and the rig that it is compared with, at the same locations.
     quantity : str
-        A key of `QUANTITIES`: differences are in nats, or shares of a place.
+        A key of `QUANTITIES`: differences are in nats, or in shares.
     opacity : float
     name : str
-        What it is compared with, for the legend.
+        Name of the compared rig, for the legend.
     bound : float, optional
         Difference at both ends of the colours; by default `fitted_bound` of what is shown.
     """
@@ -178,7 +178,7 @@ def difference_map(
 
 
 def difference(seen: GroundSight, before: GroundSight, quantity: str) -> Floats:
-    """(NX, NY) how much better a place is seen than before: positive is better, NaN unknown."""
+    """(NX, NY) improvement of each location: positive is better, NaN unknown."""
     sign = -1.0 if quantity == ENTROPY else 1.0
     return sign * (values_of(seen, quantity) - values_of(before, quantity))
 
@@ -212,7 +212,7 @@ def fitted_bounds(seen: GroundSight | AsScored, quantity: str) -> tuple[float, f
 def fitted_bound(better: Floats, quantity: str) -> float:
     """Return the difference at the ends of the colours that fits what is shown, rounded up.
 
-    Most places are as before: the percentile is that of those which are not.
+    Most locations do not differ: the percentile is that of the others.
     """
     step = STEPS[quantity]
     size = np.abs(better[np.isfinite(better)])

@@ -27,11 +27,11 @@ VIEW_SHARE = 0.62
 
 
 class Sketch(Protocol):
-    """One sensor, ready to be drawn at any length."""
+    """One sensor, prepared to be drawn at any length."""
 
     @property
     def stopped(self) -> bool:
-        """Whether the vehicle stops a beam that is shown."""
+        """Whether the vehicle occludes a beam that is shown."""
 
     def lines(self, length_m: float, palette: Palette) -> Primitives:
         """Lines, two points each."""
@@ -40,7 +40,7 @@ class Sketch(Protocol):
         """Translucent triangles."""
 
     def points(self, length_m: float) -> Floats:
-        """(N, 3) points that a picture has to hold [m]."""
+        """(N, 3) points that have to be inside a picture [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +52,11 @@ class BeamSketch:
 
     @property
     def stopped(self) -> bool:
-        """Whether the vehicle stops one of them."""
+        """Whether the vehicle occludes one of these beams."""
         return bool(self.beams.stopped.any())
 
     def lines(self, length_m: float, palette: Palette) -> Primitives:
-        """Free beams, then those that the vehicle stops."""
+        """Free beams, then occluded beams."""
         colors = np.where(self.beams.stopped[:, None], palette.stopped, palette.free)
         free = rays.free_lines(self.sensor, self.beams, length_m, colors)
         return Primitives.joined([free, rays.stopped_lines(self.sensor, self.beams, colors)])
@@ -66,7 +66,7 @@ class BeamSketch:
         return Primitives.empty()
 
     def points(self, length_m: float) -> Floats:
-        """Most of each beam."""
+        """Points that show most of each beam."""
         beams, start = self.beams, np.array(self.sensor.pose.position)
         ends = np.minimum(beams.ends, length_m)
         ends = np.minimum(ends, rays.ground_distance(self.sensor, beams.directions))
@@ -89,7 +89,7 @@ class FrustumSketch:
         return frustums.frustum_faces(self.sensor, length_m, palette)
 
     def points(self, length_m: float) -> Floats:
-        """Its corners."""
+        """The corners of the view."""
         if camera_of(self.sensor).lens is not None:
             return frustums.outline(self.sensor, length_m)
         return frustums.frustum_points(self.sensor, length_m)
@@ -103,7 +103,7 @@ class RingSketch:
     stopped = False
 
     def lines(self, length_m: float, palette: Palette) -> Primitives:
-        """A ring in the sensor's own level plane, and a tick ahead."""
+        """A ring in the sensor's x-y plane, and a tick in its forward direction."""
         return frustums.ring_lines(self.sensor, length_m, palette)
 
     def faces(self, _length_m: float, _palette: Palette) -> Primitives:
@@ -111,16 +111,16 @@ class RingSketch:
         return Primitives.empty()
 
     def points(self, length_m: float) -> Floats:
-        """All of it."""
+        """Points of the ring and the tick."""
         return self.lines(length_m, VIEWPORT).points.astype(float)
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What the review picture makes of a kind: lengths [m], and widths of lines [px].
+    """Style of a kind in the review picture: lengths [m], and widths of lines [px].
 
-    `legend` is what its lines are called, None for the kind's own name; they begin `clear_m` from
-    the sensor, so that it is not lost among them.
+    `legend` is the name of the lines, None for the kind's own name. Lines begin `clear_m` from
+    the sensor, so that the sensor stays visible.
     """
 
     legend: str | None
@@ -133,9 +133,9 @@ class Look:
 class Drawing:
     """How sensors of one kind are drawn.
 
-    `sketch` takes a sensor, the vehicle or None, and which beams are shown. `beams` tells whether
-    sensors of the kind share the budget of beams, `color` their colour in a palette; `footprint`
-    returns the outline of the ground that a sensor looks at, as far as some metres.
+    `sketch` takes a sensor, the vehicle or None, and the choice of beams. `beams` states whether
+    sensors of the kind share the budget of beams. `color` is their colour in a palette.
+    `footprint` returns the outline of the ground in the field of view, up to some metres.
     """
 
     sketch: Callable[[Sensor, Vehicle | None, BeamChoice], Sketch]
@@ -181,6 +181,6 @@ def drawing_of(kind: str) -> Drawing:
 
 
 def beam_budget(sensors: list[Sensor], most: int) -> int:
-    """Return how many beams each sensor that has some may show, at least one."""
+    """Return the number of beams that each sensor with beams may show, at least one."""
     sharing = sum(drawing_of(sensor.kind).beams for sensor in sensors)
     return max(1, most // max(1, sharing))

@@ -1,8 +1,8 @@
 """PNG files of eight bits, written with NumPy and zlib: the same pixels are the same bytes.
 
-Of the format (ISO/IEC 15948) as much as pictures and masks need: grey, colour, colour with alpha,
-and a palette. Rows of colours are filtered by the rule that the standard advises, the least sum of
-absolute differences.
+Pictures and masks need only a part of the format (ISO/IEC 15948): grey, colour, colour with alpha,
+and a palette. Rows of colours are filtered by the rule that the standard recommends, the minimum
+sum of absolute differences.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def png_bytes(pixels: Bytes, palette: Bytes | None = None) -> bytes:
     Raises
     ------
     InputError
-        When the pixels are none of these, or there are none.
+        When the pixels have another shape or type, or there are none.
     """
     rows = _checked(pixels)
     kind = TYPES[rows.shape[2]] if palette is None else INDEXED
@@ -57,7 +57,7 @@ def png_bytes(pixels: Bytes, palette: Bytes | None = None) -> bytes:
 
 
 def as_bytes(colors: ArrayLike) -> Bytes:
-    """Colours 0 to 1, of any shape, as the whole numbers of a file, 0 to 255."""
+    """Convert colours from 0 to 1, of any shape, to the integers of a file, 0 to 255."""
     return np.round(np.clip(np.asarray(colors, float), 0.0, 1.0) * 255.0).astype(np.uint8)
 
 
@@ -83,12 +83,12 @@ def _checked_palette(palette: Bytes, rows: Bytes) -> Bytes:
 
 
 def _plain(rows: Bytes) -> Bytes:
-    """Rows as they are, each behind the number of no filter."""
+    """Rows without a filter, each after the number of that filter."""
     return np.pad(rows.reshape(len(rows), -1), ((0, 0), (1, 0)))
 
 
 def _filtered(rows: Bytes) -> Bytes:
-    """Rows behind the number of the filter that suits each best."""
+    """Rows with the best filter of each, after the number of the filter."""
     tried = np.stack([line.reshape(len(rows), -1) for line in _filters(rows)])
     size = np.abs(tried.view(np.int8).astype(np.int16)).sum(axis=2, dtype=np.int64)
     best = np.argmin(size, axis=0)
@@ -106,7 +106,7 @@ def _filters(rows: Bytes) -> list[Bytes]:
 
 
 def _paeth(a: NDArray, b: NDArray, c: NDArray) -> Bytes:
-    """Of left, up and upper left the one nearest to ``a + b - c``, in this order of preference."""
+    """Of left, up and upper left, the value nearest to ``a + b - c``; the first one of a tie."""
     to_a, to_b, to_c = np.abs(b - c), np.abs(a - c), np.abs(a + b - 2 * c)
     nearest = np.where((to_a <= to_b) & (to_a <= to_c), a, np.where(to_b <= to_c, b, c))
     return nearest.astype(np.uint8)

@@ -24,20 +24,20 @@ class Primitives:
 
     @classmethod
     def empty(cls) -> Primitives:
-        """Nothing, in arrays of the right shape."""
+        """Return empty arrays of the right shape."""
         return cls(np.empty((0, 3), np.float32), np.empty((0, 4), np.float32))
 
     @classmethod
     def of(cls, points: ArrayLike, color: ArrayLike) -> Primitives:
-        """Points (..., 3) in one colour (4,), or in colours (..., 4)."""
+        """Return points (..., 3) in one colour (4,), or in colours (..., 4)."""
         flat = np.ascontiguousarray(points, np.float32).reshape(-1, 3)
-        colors = np.empty((len(flat), 4), np.float32)  # row by row, as the graphics card reads it
+        colors = np.empty((len(flat), 4), np.float32)  # row-major, for the graphics card
         colors[:] = np.asarray(color, np.float32).reshape(-1, 4)
         return cls(flat, colors)
 
     @classmethod
     def joined(cls, several: Sequence[Primitives]) -> Primitives:
-        """All of them, drawn in this order."""
+        """Return all primitives together, drawn in this order."""
         if not several:
             return cls.empty()
         points = np.concatenate([each.points for each in several])
@@ -106,10 +106,10 @@ class ColorKey:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LayerShape:
-    """What is drawn of one sensor or a whole rig in one layer.
+    """Everything that one layer draws for a sensor or for the rig.
 
-    `lines` and `faces` are hidden by what is nearer, `through` are lines that nothing hides;
-    `thin` ones are drawn as thin as lines are, whatever the layer's width.
+    `lines` and `faces` are hidden by nearer objects; `through` are lines that are never hidden.
+    `thin` lines have the minimum width, whatever the layer's width.
     """
 
     lines: Primitives = field(default_factory=Primitives.empty)

@@ -1,7 +1,7 @@
-"""Beams as lines, and the rings in which they meet the ground.
+"""Beams as lines, and the rings in which channels meet the ground.
 
-The vehicle has to stay readable: a free beam is faint where it passes over it, plain where it
-leaves the vehicle's surroundings, and fades to nothing from there.
+The vehicle has to stay visible. So a free beam is faint near the vehicle, strongest where it leaves
+the vehicle's surroundings, and fades out from there.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ RING_JUMP = 1.35
 def free_lines(
     sensor: Sensor, beams: Beams, length_m: float, colors: Floats, around: Box | None = None
 ) -> Primitives:
-    """Lines of the beams that nothing stops, two pieces each, in (N, 4) colours.
+    """Lines of the free beams, two pieces each, in (N, 4) colours.
 
-    They end at the range, the ground (z = 0) or `length_m`, and fade to nothing towards that
-    length; `around` is the box in which they are faint.
+    The lines end at the range, the ground (z = 0) or `length_m`, and fade out towards that length.
+    Inside the box `around` they are faint.
     """
     free = ~beams.stopped
     directions = beams.directions[free]
@@ -53,9 +53,9 @@ def free_lines(
 
 
 def stopped_lines(sensor: Sensor, beams: Beams, colors: Floats) -> Primitives:
-    """Lines of the beams that the vehicle stops, one piece each, in (N, 4) colours.
+    """Lines of the occluded beams, one piece each, in (N, 4) colours.
 
-    One that ends at once is drawn `STUB_M` long: it would not be seen otherwise.
+    A shorter line is drawn `STUB_M` long, because it would not be visible otherwise.
     """
     stopped = beams.stopped
     ends = np.maximum(beams.ends[stopped], STUB_M)
@@ -66,9 +66,9 @@ def stopped_lines(sensor: Sensor, beams: Beams, colors: Floats) -> Primitives:
 
 
 def ground_rings(found: Cast, rows: NDArray[np.int64], colors: Floats) -> Primitives:
-    """Where whole channels meet the ground, as far as the vehicle lets them, in (R, 4) colours.
+    """Rings where whole channels meet the ground, without occluded parts, in (R, 4) colours.
 
-    `rows` (R,) are numbers of channels; those that were not cast are left out.
+    `rows` (R,) are numbers of channels; channels that were not cast are left out.
     """
     width = len(found.columns)
     if not width:
@@ -84,7 +84,7 @@ def ground_rings(found: Cast, rows: NDArray[np.int64], colors: Floats) -> Primit
 
 
 def ground_distance(sensor: Sensor, directions: Floats) -> Floats:
-    """(N,) distance along each direction to z = 0 [m]; inf for a beam that never gets there."""
+    """(N,) distance along each direction to z = 0 [m]; inf for a beam that does not meet it."""
     height, down = sensor.pose.position[2], -directions[:, 2]
     if height <= 0.0:
         return np.full(len(directions), np.inf)
@@ -93,7 +93,7 @@ def ground_distance(sensor: Sensor, directions: Floats) -> Floats:
 
 
 def _joined(found: Cast, beams: NDArray[np.int64], far: Floats, colors: Floats) -> Primitives:
-    """Join neighbours of each ring (R, K) that are near each other; the last and first, too."""
+    """Join near neighbours of each ring (R, K), and the last point with the first."""
     circle = len(lidar_of(found.sensor).azimuth_steps) == lidar_of(found.sensor).azimuth_count
     after = np.roll(far, -1, axis=1)
     near = np.maximum(far, after) < RING_JUMP * np.minimum(far, after)

@@ -1,4 +1,4 @@
-"""Images of single sensors: the ranges of a LiDAR, and pixels of a camera that the body hides."""
+"""Images of single sensors: a LiDAR's ranges, and a camera's pixels that the body hides."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def range_share(distance: NDArray[np.float64], far_m: float) -> NDArray[np.float
 
 
 def even_angles(angles: NDArray[np.float64], pixels_per_deg: float) -> NDArray[np.int64]:
-    """(P,) for each pixel of an axis the beam that is nearest to it, of descending angles [rad]."""
+    """(P,) index of the beam nearest to each pixel of an axis; `angles` [rad] are descending."""
     degrees = np.degrees(angles)
     high, low = float(degrees[0]), float(degrees[-1])
     count = max(1, round((high - low) * pixels_per_deg))
@@ -81,10 +81,10 @@ def hidden_lines(
     sensor : Sensor
         A camera.
     vehicle : Vehicle or None
-        What glass it has, cameras see through. None: there is nothing to be seen.
+        The vehicle; cameras see through its glass. None gives no lines.
     color : (4,) float
     most : int
-        Places of the picture that are looked along.
+        Number of positions in the picture.
     """
     if vehicle is None:
         return Primitives.empty()

@@ -1,13 +1,14 @@
 """A vehicle of fewer triangles, for meshes of millions: vertex clustering on a cubic grid.
 
-Corners that fall into one cube of the grid become one, their mean (Rossignac and Borrel, 1993). A
-triangle with corners in three cubes stays, one in fewer falls flat. Where something of a part fell
-flat and nothing of that part stayed there (a thin rod, a bolt), one triangle of it is kept as it
-was, so that no part vanishes.
+All corners in one cube of the grid are replaced by their mean (Rossignac and Borrel, 1993). A
+triangle with corners in three different cubes stays. Other triangles collapse. If all triangles of
+a part collapse in a region (a thin rod, a bolt), one of its triangles is kept unchanged, so that no
+part vanishes.
 
-How far the surface moved is bounded: a point of a triangle moves with its corners, no farther than
-the farthest of them. A point of what fell flat then lies on what stayed; or, through the corners of
-a triangle that was kept, as far from that as the kept one's own corners would have moved.
+The surface error is bounded. A point of a triangle moves no farther than the corner that moves
+farthest. A point of a collapsed triangle is then on a triangle that stayed. Otherwise its distance
+from a triangle that was kept unchanged is at most the distance that the corners of that triangle
+would have moved.
 """
 
 from __future__ import annotations
@@ -52,12 +53,13 @@ def simplified(
     triangles : int
         1000 or more.
     quick : bool
-        Take the first size of cubes that leaves half as many or more: half the time, for previews.
+        Take the first size of cubes that leaves at least half as many: half the time, for previews.
 
     Returns
     -------
     vehicle : Vehicle
-        The same one where it has no more triangles. No part is lost, even if that takes more.
+        The same object if it has no more triangles. No part is lost, even if that needs more
+        triangles.
     error_m : float
         No point of either surface is farther from the other one than this [m].
 

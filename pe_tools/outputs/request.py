@@ -16,9 +16,9 @@ ODD = re.compile("[^A-Za-z0-9_-]+")
 
 
 def plain_names(names: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """Return a plain name for each of some different ones, and a line for each that changed.
+    """Return a plain name for each name, and a message for each name that changed.
 
-    Letters, digits, ``_`` and ``-``; no two alike, however they are capitalised.
+    Plain names have letters, digits, ``_`` and ``-``; they differ also without regard to case.
     """
     plain_by_name: dict[str, str] = {}
     for name in names:
@@ -43,7 +43,7 @@ NO_RANGE_M = 80.0
 
 @dataclass(frozen=True, slots=True)
 class OutputRequest:
-    """A study, and how far its sensors are drawn.
+    """A study, and the length to which fields of view are drawn.
 
     Parameters
     ----------

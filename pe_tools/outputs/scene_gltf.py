@@ -1,7 +1,8 @@
-"""The whole scene as glTF: the vehicle, sensors as nodes with their poses, what they see.
+"""The whole scene as glTF: the vehicle, sensors as nodes with their poses, fields of view.
 
-A sensor's node has its axes as glTF has them: x to where it looks, y up, z to its right; imported
-where z is up, that is x forward, y left, z up again. Cameras hang below, looking along their -z.
+The axes of a sensor's node are those of glTF: x forward, y up, z to the right. A program with z up
+imports them as x forward, y left, z up. A camera is a child of its sensor's node and looks along
+-z.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ def _camera(scene: GlbScene, portable: PortableSensor) -> list[int]:
     wide, high = picture.size[0] / picture.fx, picture.size[1] / picture.fy
     perspective: dict[str, Any] = {"yfov": 2.0 * math.atan(high / 2.0), "aspectRatio": wide / high}
     perspective |= {"znear": NEAR_M, "zfar": FAR_M}
-    # Not the sensor's own name: trimesh has a node and a camera of one name for the same thing.
+    # Not the sensor's own name: trimesh merges a node and a camera with the same name.
     name = f"{portable.name} view"
     scene.cameras.append({"name": name, "type": "perspective", "perspective": perspective})
     number = len(scene.cameras) - 1
@@ -74,7 +75,7 @@ def _camera(scene: GlbScene, portable: PortableSensor) -> list[int]:
 
 
 def _view(scene: GlbScene, request: OutputRequest, sensor: Sensor, number: int) -> list[int]:
-    """Add what a sensor sees up to the vehicle, in its own axes: its sides, and their edges."""
+    """Add a sensor's visible field of view in its own axes: the sides and their edges."""
     view = mounted_view(sensor, request.study.vehicle, request.reach(sensor, REACH_M), STEP)
     if view is None:
         return []

@@ -1,4 +1,4 @@
-"""A sensor's field of view, cast from where it is mounted, as a closed solid."""
+"""A mounted sensor's field of view as a closed solid."""
 
 from __future__ import annotations
 
@@ -79,9 +79,9 @@ def _star(name: str, view: MountedView, ends: Floats) -> Solid:
 
 
 def _without_pinches(faces: Ints, taken: Flags) -> Flags:
-    """Take more faces until no two pieces of those taken touch in a point alone.
+    """Add faces until no two pieces of the taken faces touch in a single point.
 
-    Walls over such a point would have an edge in common with four triangles.
+    Walls at such a point would have an edge that belongs to four triangles.
     """
     while True:
         starts = np.bincount(border(faces[taken])[:, 0], minlength=int(faces.max()) + 1)
@@ -102,7 +102,7 @@ class MountedView:
     Attributes
     ----------
     origin : (3,) float
-        Where the sensor is, ground frame [m].
+        Position of the sensor, ground frame [m].
     directions : (N, 3) float
         Unit, ground frame.
     faces : (F, 3) int

@@ -114,11 +114,11 @@ def ghost_sensors(
     Parameters
     ----------
     others, present : sequence of Sensor
-        The other variant's, and the scene's.
+        Sensors of the other variant, and of the scene.
     name : str
-        Of the other variant, for the legend.
+        Name of the other variant, for the legend.
     title : str
-        What the legend calls them.
+        Title of the legend.
     """
     here = {sensor.name: sensor for sensor in present}
     lines = [_ghost_outline(sensor) for sensor in others]
@@ -146,7 +146,7 @@ def _ghost_outline(
 
 
 def _link(other: pe.Sensor, here: pe.Sensor) -> graphics.Primitives:
-    """Return a line from a sensor of the variant to that of the scene; none at the same place."""
+    """Return a line from the variant's sensor to the scene's; none if the positions are equal."""
     ends = np.array([other.pose.position, here.pose.position])
     if np.abs(ends[0] - ends[1]).max() < SAME_M:
         return graphics.Primitives.empty()
@@ -154,7 +154,7 @@ def _link(other: pe.Sensor, here: pe.Sensor) -> graphics.Primitives:
 
 
 def _needs_label(sensor: pe.Sensor, here: dict[str, pe.Sensor]) -> bool:
-    """Whether a sensor is elsewhere in the scene, or missing there: it needs a label of its own."""
+    """Whether a sensor has another position in the scene, or is missing: it needs a label."""
     if sensor.name not in here:
         return True
     own, present = np.array(sensor.pose.position), np.array(here[sensor.name].pose.position)

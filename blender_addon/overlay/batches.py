@@ -20,7 +20,7 @@ EDGE_PX, EDGE = 2.0, (0.05, 0.05, 0.05, 0.35)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Batches:
-    """The batches of one shape: triangles, lines, and a sheet; None where there is nothing."""
+    """The batches of one shape: triangles, lines and a sheet; None for an empty one."""
 
     shape: graphics.LayerShape
     lines: gpu.types.GPUBatch | None
@@ -81,7 +81,7 @@ def _batch(
 
 
 def _sheet(sheet: graphics.GroundSheet) -> gpu.types.GPUBatch:
-    """Upload a sheet as triangles: a picture's colours are understood differently by versions."""
+    """Upload a sheet as triangles: versions of Blender differ in the colours of an image."""
     points, colors, triangles = sheet.mesh
     arrays = {"pos": points, "color": colors}
     return batch_for_shader(shader("SMOOTH_COLOR"), "TRIS", arrays, indices=triangles)
@@ -95,7 +95,7 @@ OFFSET_M = 0.02
 
 @contextlib.contextmanager
 def depth_offset(look: bpy.types.RegionView3D | None, wanted: bool) -> Iterator[None]:
-    """Draw nearer to the eye within, at the same place in the picture."""
+    """Context manager: draw nearer to the eye, at the same position in the picture."""
     if not wanted or look is None:
         yield
         return

@@ -1,4 +1,4 @@
-"""What is drawn on the ground: the ground map, blind ground and reach; no scene, no GPU."""
+"""Layers on the ground: the ground map, blind ground and reach; no scene, no GPU."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NOTHING_TO_COMPARE = "Difference: nothing to compare with yet"
 
 
 def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
-    """Return the ground map that is wished for, with its legend."""
+    """Return the requested ground map with its legend."""
     view = request.view
     if shows_difference(request):
         return _difference(request, cache)
@@ -45,19 +45,19 @@ def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
 
 
 def shows_difference(request: ViewRequest) -> bool:
-    """Whether differences are to be shown: there are none of the number of sensors."""
+    """Whether a difference map is shown; the number of sensors has no difference map."""
     return request.view.ground_difference and request.view.ground_quantity != graphics.SENSORS
 
 
 def scored_map(request: ViewRequest) -> pe.GroundMap | None:
-    """Return the score's own map, where that is to be shown."""
+    """Return the score's own map, if it is to be shown."""
     view = request.view
     averaged = view.ground_height is None and view.ground_quantity != graphics.SENSORS
     return request.scored if averaged and not shows_difference(request) else None
 
 
 def compared_key(request: ViewRequest) -> Hashable:
-    """Return what a difference map depends on besides the scene's own sensors; None without it."""
+    """Return a key of the compared rig; None without a difference map."""
     if not shows_difference(request):
         return None
     return request.compared_name, *(
@@ -78,7 +78,7 @@ def _ground_sight(request: ViewRequest, cache: LayerCache, rig: pe.Rig) -> sight
 
 
 def _difference(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
-    """Return the difference of both rigs, on the same voxels and by the same rules."""
+    """Return the difference map of both rigs, on the same voxels and by the same rules."""
     if not request.compared:
         return graphics.LayerShape(legend=graphics.ColorKey(NOTHING_TO_COMPARE))
     view = request.view
@@ -99,7 +99,7 @@ def _difference(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
 def _bounds(
     request: ViewRequest, cache: LayerCache, seen: sight.GroundSight
 ) -> tuple[float, float] | None:
-    """Return the values at the ends of the colours; they stay while something moves."""
+    """Return the values at the ends of the colours; they are constant while a sensor moves."""
     view = request.view
     if view.ground_quantity == graphics.SENSORS or view.ground_range == WHOLE:
         return None
@@ -183,7 +183,7 @@ def hatch(outlines: Sequence[Floats], spacing_m: float) -> Floats:
     # Along a hatching line x - y stays the same: count where edges pass each of its values.
     first, last = ((p[:, 0] - p[:, 1]) / spacing_m for p in (start, end))
     low, high = np.ceil(np.minimum(first, last)), np.ceil(np.maximum(first, last))
-    count = (high - low).astype(np.int64)  # of the whole numbers in [low, high)
+    count = (high - low).astype(np.int64)  # for the integers in [low, high)
     edge = np.repeat(np.arange(len(start)), count)
     value = low[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
     part = ((value - first[edge]) / (last - first)[edge])[:, None]
@@ -257,7 +257,7 @@ def reach_of_rig(
 
 
 def reach_of_sensors(found: sight.Reach, numbers: dict[str, int]) -> graphics.LayerShape:
-    """Return the reach of sensors one by one, in their colours; `numbers` are their places."""
+    """Return the reach of each sensor in its colour; `numbers` are their positions in the list."""
     lines, classes = [], []
     for name, number in numbers.items():
         color = (*graphics.sensor_color(number), 0.75)

@@ -1,4 +1,4 @@
-"""Where on the vehicle beams are blocked: hits per area, as tiles on its surface."""
+"""Heat map of occluded beams: hits per area, as tiles on the vehicle's surface."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MIN_DENSITY, MAX_DENSITY = 1.0, 100.0
 
 
 def hit_density(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.LayerShape:
-    """Return tiles where beams end on triangles (F, 3, 3); colours by the hits of all sensors."""
+    """Return tiles on triangles (F, 3, 3) with hits; colours by the hits of all sensors."""
     hits = [each.stopped for each in casts]
     if not any(stopped.any() for stopped in hits):
         return graphics.LayerShape()
@@ -39,7 +39,7 @@ def hit_density(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.L
     weight = np.concatenate([np.full(s.sum(), _beams_per_cast(each)) for each, s in pairs])
     normals = _facing_sensor(_normals(triangles[faces]), looks)
     tiles = _Tiles.of(points, normals, weight)
-    # Bright is good, as on the ground map: where many beams are blocked it is dark.
+    # Bright is good, as on the ground map: tiles with many hits are dark.
     shares = 1.0 - np.log(np.maximum(tiles.density, MIN_DENSITY) / MIN_DENSITY) / np.log(
         MAX_DENSITY / MIN_DENSITY
     )
@@ -63,16 +63,16 @@ LEGEND = graphics.ColorKey(
 
 
 class _Tiles:
-    """Pieces of the surface that hold hits: their mean place and normal, and hits a dm2."""
+    """Pieces of the surface with hits: mean position and normal, and hits per dm2."""
 
     def __init__(self, points: Floats, normals: Floats, density: Floats) -> None:
         self.points, self.normals, self.density = points, normals, density
 
     @classmethod
     def of(cls, points: Floats, normals: Floats, weight: Floats) -> _Tiles:
-        """Sort hits (N, 3) into squares across the axis nearest to their surface's normal.
+        """Sort hits (N, 3) into squares perpendicular to the axis nearest to the surface's normal.
 
-        `weight` (N,) is how many beams each hit represents.
+        `weight` (N,) is the number of beams that each hit represents.
         """
         axis = np.abs(normals).argmax(axis=1)
         side = np.where(np.arange(3) == axis[:, None], DEPTH_M, TILE_M)
@@ -82,14 +82,14 @@ class _Tiles:
         middle = np.stack([np.bincount(cell, points[:, i]) for i in range(3)], axis=1)
         normal = np.stack([np.bincount(cell, normals[:, i]) for i in range(3)], axis=1)
         unit = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-        # Of a square that the surface crosses at a slant, the area is larger than its own.
+        # If the surface crosses a square at an angle, its area there is larger than the square's.
         area_dm2 = (TILE_M * 10.0) ** 2 / np.maximum(np.abs(unit).max(axis=1), 0.5)
         beams = np.bincount(cell, weight)
         density = cells.with_neighbours(beams) / cells.with_neighbours(area_dm2)
         return cls(middle / count[:, None], unit, density)
 
     def corners(self) -> Floats:
-        """(T, 6, 3) two triangles a tile, in the plane of its normal."""
+        """(T, 6, 3) two triangles for each tile, perpendicular to its normal."""
         upright = np.abs(self.normals[:, 2:]) > 0.9
         helper = np.where(upright, [[1.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
         across = np.cross(helper, self.normals)
@@ -119,7 +119,7 @@ class _Cells:
         return cls(number, steps), place.reshape(-1)
 
     def with_neighbours(self, values: Floats) -> Floats:
-        """(T,) sums of values (T,) over each cell and those that touch it, seen the same way."""
+        """(T,) sums of values (T,) over each cell and its neighbours with the same axis."""
         total = np.zeros(len(values))
         for step in product((-1, 0, 1), repeat=3):
             wanted = self.number + np.dot(self.steps[1:], step)
@@ -129,7 +129,7 @@ class _Cells:
 
 
 def _beams_per_cast(found: graphics.Cast) -> float:
-    """Return how many beams of the sensor each cast one represents."""
+    """Return the number of beams of the sensor that each cast beam represents."""
     return found.sensor.model.beam_count / max(len(found.ends), 1)
 
 
@@ -139,6 +139,6 @@ def _normals(triangles: Floats) -> Floats:
 
 
 def _facing_sensor(normals: Floats, looks: Floats) -> Floats:
-    """Return normals turned to the side that the beams come from."""
+    """Return normals on the side from which the beams come."""
     away = (normals * looks).sum(axis=1, keepdims=True) > 0.0
     return np.where(away, -normals, normals)

@@ -1,4 +1,4 @@
-"""Text of the overlay: labels at places in the 3D view, legends in its lower right corner."""
+"""Text of the overlay: labels at positions in the 3D view, legends in its lower right corner."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LABEL_PLATE: graphics.Rgba = (0.08, 0.08, 0.08, 0.55)
 
 
 def draw_labels(context: bpy.types.Context, labels: Sequence[graphics.Tag]) -> None:
-    """Draw labels above their places; leave out those that would cover another one or a plate."""
+    """Draw labels above their positions, without those that would cover a label or a plate."""
     scale, taken = viewport.ui_scale(), list(viewport.plate_boxes(context.region.as_pointer()))
     pad = PADDING * scale
     for label in sorted(labels, key=lambda tag: not tag.strong):
@@ -108,7 +108,7 @@ def _draw_legend(legend: graphics.ColorKey, box: PlateBox, scale: float) -> None
 
 
 def _draw_ticks(ticks: Sequence[str], sides: tuple[float, float], y: float, size: float) -> None:
-    """Draw text evenly below a gradient, the outer ones within its ends."""
+    """Draw evenly spaced texts below a gradient, none beyond its ends."""
     left, right = sides
     for number, tick in enumerate(ticks):
         share = number / max(len(ticks) - 1, 1)
@@ -127,7 +127,7 @@ def _overlap(a: PlateBox, b: PlateBox) -> bool:
 
 
 def _sidebar_width(context: bpy.types.Context) -> float:
-    """Return how much of the region's right is under the sidebar [px]."""
+    """Return the width of the region's right part below the sidebar [px]."""
     if not context.preferences.system.use_region_overlap:
         return 0.0
     return max((r.width for r in context.area.regions if r.type == "UI" and r.width > 1), default=0)

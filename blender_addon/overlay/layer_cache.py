@@ -1,4 +1,4 @@
-"""Results that layers keep: shapes that are shown, and what is expensive to make again.
+"""Caches of the layers: shapes that are shown, and results that are expensive to compute.
 
 Plain data, no scene and no GPU. `shown` belongs to the main thread, a `LayerCache` to one thread.
 """
@@ -16,7 +16,7 @@ from .request import SceneSensor, ViewRequest
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShownLayer:
-    """A shape, and the key of what it was made from; `rough`: an approximate one."""
+    """A shape, and a key of its inputs; `rough`: it is approximate."""
 
     key: Hashable
     shape: graphics.LayerShape
@@ -34,15 +34,15 @@ class LayerStore:
         return self._items.get((scene, layer), {})
 
     def put(self, scene: str, layer: str, items: Mapping[str, ShownLayer]) -> None:
-        """Show these shapes in a layer, and no others."""
+        """Replace the shapes of a layer."""
         self._items[scene, layer] = dict(items)
 
     def drop(self, scene: str, layer: str) -> None:
-        """Show nothing in a layer."""
+        """Remove the shapes of a layer."""
         self._items.pop((scene, layer), None)
 
     def clear(self) -> None:
-        """Show nothing at all."""
+        """Remove all shapes."""
         self._items = {}
 
     def layers(self, scene: str) -> Iterator[tuple[str, Mapping[str, ShownLayer]]]:
@@ -66,7 +66,7 @@ MAX_TRIANGLES = 50_000
 
 
 class LayerCache:
-    """Keeps what is expensive to make, by plain keys; never used by two threads at once."""
+    """Caches expensive results by plain keys; never used by two threads at once."""
 
     def __init__(self) -> None:
         self._kept: dict[str, dict[Hashable, Any]] = {}
@@ -87,7 +87,7 @@ class LayerCache:
         )
 
     def sight(self, request: ViewRequest) -> sight.Sight:
-        """Return what computes the visibility of rigs."""
+        """Return the `Sight` that computes the visibility of rigs."""
         key = request.body_key, request.prior_key
         return self._keep("sight", key, lambda: self._sight(request))
 
@@ -98,7 +98,7 @@ class LayerCache:
     def fitted(
         self, key: Hashable, fit: Callable[[], tuple[float, float]], *, anew: bool
     ) -> tuple[float, float]:
-        """Return the range of colours that was fitted last; a new one where `anew`."""
+        """Return the cached range of colours; with `anew`, a newly fitted one."""
         if anew:
             self._kept.get("fitted", {}).pop(key, None)
         return self._keep("fitted", key, fit)
@@ -108,7 +108,7 @@ class LayerCache:
         return sight.Sight(request.space, request.prior, body, model=request.model, targets=targets)
 
     def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:
-        """Return what is kept under a key, or make it; what was used last is dropped last."""
+        """Return the cached value of a key, or make it; the least recently used one is dropped."""
         kept = self._kept.setdefault(sort, {})
         found = kept.pop(key, None)
         kept[key] = make() if found is None else found

@@ -27,11 +27,11 @@ FRUSTUM_M, UNSELECTED_ALPHA = 1.0, 0.6
 class Layer:
     """A layer that can be switched on.
 
-    `keys` returns from a request the names of its shapes, sensors or `WHOLE_RIG`, each with a key
-    of all that it depends on: a shape whose key has not changed is not made again. `shape` makes
-    one from request, cache and name. `rough`: it is approximate while something moves;
-    `on_ground`: it is drawn in front of the ground; `edged`: its lines have a dark edge, as they
-    lie on colours of all sorts.
+    `keys` returns the names of the layer's shapes for a request: names of sensors, or `WHOLE_RIG`.
+    Each name has a key of everything that the shape depends on; a shape with an unchanged key is
+    not made again. `shape` makes a shape from request, cache and name. `rough`: the shape is
+    approximate while something moves. `on_ground`: it is drawn in front of the ground. `edged`: its
+    lines have a dark edge, because their background has many colours.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Layer:
 
 
 def _rig_keys(*settings: str, prior: bool = True) -> Callable[[ViewRequest], dict[str, Hashable]]:
-    """Return the keys of a layer that shows the whole rig, and depends on these settings."""
+    """Return the keys of a layer of the whole rig that depends on these settings."""
 
     def keys(request: ViewRequest) -> dict[str, Hashable]:
         if not request.counted or (prior and request.prior is None):

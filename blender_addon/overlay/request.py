@@ -1,4 +1,4 @@
-"""A request: what is to be shown of a scene, as plain values that a thread may work from."""
+"""A request: a snapshot of a scene as plain values, for a worker thread."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FITTED, WHOLE, FIXED = "FITTED", "WHOLE", "FIXED"
 
 @dataclass(frozen=True, slots=True)
 class ViewSettings:
-    """Settings of what is shown, under the names that they have in the scene."""
+    """Settings of the overlay, with the names of the scene's properties."""
 
     layers: frozenset[str] = frozenset()
     ground_quantity: str = graphics.SENSORS

@@ -47,14 +47,14 @@ def is_preview(scene: str, layer: str, name: str, item: ShownLayer) -> bool:
 
 
 def schedule(*_: object) -> None:
-    """Update in a moment; several calls become one update."""
-    # Not without a window: a timer left behind makes Blender crash at its exit.
+    """Schedule an update; several calls become one update."""
+    # Not without a window: a remaining timer makes Blender crash at its exit.
     if not bpy.app.background and not bpy.app.timers.is_registered(_update_now):
         bpy.app.timers.register(_update_now, first_interval=DELAY_S)
 
 
 def on_moving() -> None:
-    """Something moves: an approximate picture now."""
+    """Something moves: request approximate layers now."""
     global _moving
     _moving = True
     update(moving=True)
@@ -67,7 +67,7 @@ def on_live_score() -> None:
 
 
 def on_idle() -> None:
-    """The scene is idle: the fine picture."""
+    """The scene is idle: request exact layers."""
     global _moving
     _moving = False
     update()
@@ -139,7 +139,7 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
 
 
 def _reusable(item: ShownLayer | None, key: Hashable, rough: bool) -> ShownLayer | None:
-    """Return the shape that is shown already, if it is still right."""
+    """Return the shape that is shown already, if it is still valid."""
     return item if item is not None and item.key == key and (rough or not item.rough) else None
 
 

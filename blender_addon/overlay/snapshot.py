@@ -31,7 +31,7 @@ SLOW_S = 0.05
 
 
 class ScoringInputs(NamedTuple):
-    """What a scene's rigs are scored with; `key` identifies it."""
+    """Everything that scores a scene's rigs; `key` identifies it."""
 
     prior: pe.Prior | None
     space: pe.PerceptionSpace | None
@@ -40,7 +40,7 @@ class ScoringInputs(NamedTuple):
 
 
 class SnapshotReader:
-    """Keeps what is expensive to read, by plain keys; it never holds a Blender object."""
+    """Caches expensive data by plain keys; it never holds a Blender object."""
 
     def __init__(self) -> None:
         self._inputs: dict[str, ScoringInputs] = {}
@@ -55,7 +55,7 @@ class SnapshotReader:
     def request(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool = False
     ) -> ViewRequest:
-        """Return the request of what is to be shown of a scene."""
+        """Return the request of a scene's layers."""
         sensors = _sensors(scene, depsgraph)
         vehicle, body_key = (
             self._vehicle(scene, depsgraph, moving) if sensors else vehicle_cache.NO_VEHICLE

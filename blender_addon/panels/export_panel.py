@@ -35,7 +35,7 @@ class PE_PT_export(Tab, bpy.types.Panel):
 
 
 def draw_axles(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw where the axles are, and what finds them."""
+    """Draw the positions of the axles, and the button that finds them."""
     row = layout.row()
     row.prop(settings, "axles_known", text="Axles")
     row.operator("pe.guess_axles", text="From Wheels", icon="VIEWZOOM")
@@ -62,13 +62,13 @@ def draw_import(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
 
 
 def register() -> None:
-    """Stand in Blender's own menus."""
+    """Add the entries to Blender's own menus."""
     bpy.types.TOPBAR_MT_file_export.append(draw_export)
     bpy.types.TOPBAR_MT_file_import.append(draw_import)
 
 
 def unregister() -> None:
-    """Leave them."""
+    """Remove the entries from Blender's own menus."""
     bpy.types.TOPBAR_MT_file_import.remove(draw_import)
     bpy.types.TOPBAR_MT_file_export.remove(draw_export)
 

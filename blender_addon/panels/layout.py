@@ -1,4 +1,4 @@
-"""What all panels share: their tab, columns, wrapped sentences, warnings and colour swatches."""
+"""Common parts of all panels: tab, columns, wrapped sentences, warnings, colour swatches."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ FONT = 0
 
 
 def letters_per_line(context: bpy.types.Context) -> int:
-    """Return about how many letters fit into a line of the sidebar."""
+    """Return the approximate number of letters in a line of the sidebar."""
     room = context.region.width / _scale(context) - BESIDE_PX - ICON_PX
     return max(MIN_LETTERS, int(room / LETTER_PX))
 
@@ -104,7 +104,7 @@ def wrapped_lines(text: str, room_px: float, size_px: float) -> tuple[str, ...]:
 
 
 def _pieces(text: str, room_px: float) -> list[str]:
-    """Cut a text where it gets too wide; a text that fits stays whole."""
+    """Cut a text into pieces that are not too wide; a text that fits is one piece."""
     pieces = []
     while len(text) > 1 and _width(text) > room_px:
         fits = bisect_left(range(1, len(text)), True, key=lambda k: _width(text[:k]) > room_px)
@@ -187,7 +187,7 @@ def pixels(color: tuple[float, float, float]) -> np.ndarray:
 
 
 def register() -> None:
-    """Make an icon of each colour."""
+    """Create an icon for each colour."""
     icons = bpy.utils.previews.new()
     for number, color in enumerate(SENSOR_COLORS):
         made = icons.new(str(number))
@@ -197,6 +197,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Leave no icon behind."""
+    """Remove the icons."""
     while _icons:
         bpy.utils.previews.remove(_icons.pop())

@@ -49,7 +49,7 @@ def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
 
 
 def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw one score: the live one; or the stored one, where it is current or Live is off."""
+    """Draw the live score; or the stored one, if it is current or Live is off."""
     settings, live = context.scene.perception_entropy, shown_score(context.scene)
     if live is not None and not live.stored:
         draw_live(layout, settings, live)
@@ -158,7 +158,7 @@ class PE_MT_add_sensor(bpy.types.Menu):
     bl_label = "Place Sensor"
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout, kind = self.layout, getattr(context, KIND, None)  # of none in particular: all
+        layout, kind = self.layout, getattr(context, KIND, None)  # no maker: all
         layout.operator_context = "INVOKE_DEFAULT"
         search = layout.operator("pe.search_sensor", text="Search...", icon="VIEWZOOM")
         search.kind = kind or ""

@@ -31,7 +31,7 @@ class PE_PT_view(bpy.types.Panel):
 
 
 def draw_layers(layout: UILayout, settings: OverlaySettings) -> None:
-    """Draw a switch for each layer, and below it what there is to choose."""
+    """Draw a switch for each layer, and its options below."""
     view = settings.view
     for name, draw_choices in LAYERS:
         layout.prop(view, f"show_{name}")
@@ -56,7 +56,7 @@ def _ground(layout: UILayout, settings: OverlaySettings) -> None:
 
 
 def _ground_colors(layout: UILayout, settings: OverlaySettings) -> None:
-    """Draw what the colours are spread over, and what the map is compared with."""
+    """Draw the range of the colours, and the compared rig."""
     view = settings.view
     if not view.ground_difference:
         row = layout.row(align=True)
@@ -146,7 +146,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take it out again."""
+    """Remove the button from the header."""
     bpy.types.VIEW3D_HT_header.remove(draw_in_header)
 
 

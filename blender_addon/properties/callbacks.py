@@ -24,7 +24,7 @@ def switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) ->
 
 
 def model_chosen(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Update callback of a sensor's model: a part of a name that is unique is completed."""
+    """Update callback of a sensor's model: a unique part of a name is completed."""
     if settings.model not in catalog.entries():
         found = catalog.matching(settings.model)
         if len(found) == 1:

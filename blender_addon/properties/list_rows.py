@@ -251,7 +251,7 @@ class PE_MountPart(bpy.types.PropertyGroup):
 
 
 class PE_MountSettings(bpy.types.PropertyGroup):
-    """A mount: where sensors may sit."""
+    """A mount: surfaces or slots for sensors."""
 
     name: StringProperty(
         name="Name",

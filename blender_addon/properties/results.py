@@ -32,7 +32,7 @@ class PE_ResultPart(bpy.types.PropertyGroup):
 
 
 class PE_Warning(bpy.types.PropertyGroup):
-    """A warning in plain words (`pe_tools.advice.Advice`)."""
+    """A stored warning (`pe_tools.advice.Advice`)."""
 
     subject: StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle")
     code: StringProperty(name="Code", description="Which warning it is")

@@ -34,9 +34,9 @@ FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
 def shown_pose(obj: bpy.types.Object) -> pe.Pose:
-    """Return where an object stands in the ground frame, rounded as a score reads it.
+    """Return the pose of an object in the ground frame, rounded as a score reads it.
 
-    One that no score takes (scaled, mirrored) is told as near as a pose can tell it.
+    A scaled or mirrored object, which cannot be scored, gets the nearest pose.
     """
     ground_from_sensor = np.array(obj.matrix_world, dtype=float)
     try:
@@ -125,7 +125,7 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
         description="Name of the sensor in the catalogue",
         default=DEFAULT_MODEL,
         search=models_of_a_kind,
-        search_options={"SUGGESTION"},  # what is typed is kept, and answered in words
+        search_options={"SUGGESTION"},  # the typed text is kept; a message reports an unknown name
         update=model_chosen,
     )
     fusion: StringProperty(

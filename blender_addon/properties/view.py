@@ -1,7 +1,7 @@
-"""What the 3D view shows of perception: one switch a layer, and how each is shown.
+"""Settings of the overlay in the 3D view: a switch for each layer, and display options.
 
-What was there before stays on the scene's own settings: `show_overlay`, `beam_limit` and
-`beam_length`, where scripts and older files have them.
+Older settings stay on the scene, where scripts and older files have them: `show_overlay`,
+`beam_limit` and `beam_length`.
 """
 
 from __future__ import annotations
@@ -50,13 +50,13 @@ COLORS = (
 def classes_of(
     _view: bpy.types.PropertyGroup, context: bpy.types.Context, _typed: str
 ) -> list[str]:
-    """Return the classes that the scene's prior knows; of boxes from a file, those of the road."""
+    """Return the classes of the scene's prior; for boxes from a file, those of the road."""
     highway = context.scene.perception_entropy.prior == "highway"
     return list((pe.Prior.highway() if highway else pe.Prior.road()).class_names)
 
 
 class PE_ViewSettings(bpy.types.PropertyGroup):
-    """What is drawn in the 3D view."""
+    """Settings of what the 3D view draws."""
 
     show_ground: BoolProperty(
         name="Ground Map",

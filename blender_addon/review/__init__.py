@@ -1,4 +1,4 @@
-"""A picture of a result for people: the vehicle, its sensors, what they see, and the figures."""
+"""The review picture of a result: vehicle, sensors, fields of view and figures."""
 
 from __future__ import annotations
 
@@ -38,18 +38,18 @@ def render_review(
 ) -> Path:
     """Render the review picture of an outcome, with Workbench; also without a window.
 
-    Everything is built in a scene of its own, which is removed: `scene` stays as it is.
+    The picture is built in a temporary scene; `scene` is not changed.
 
     Parameters
     ----------
     scene : bpy.types.Scene
-        Has the vehicle's collection in its settings; without one the study's mesh is shown.
+        Its settings name the vehicle's collection; without one the study's mesh is shown.
     study : Study
-        The rig to show, as a rule ``outcome.study``.
+        The rig to show, usually ``outcome.study``.
     outcome : Outcome
-        The figures, and where the search started.
+        The figures, and the start of the search.
     path : path
-        PNG to write; it appears when it is complete.
+        PNG to write, atomically.
     size : (width, height)
         [px].
 

@@ -1,4 +1,4 @@
-"""What the picture says: headline, legend, the table of sensors, and marks at the sensors."""
+"""Text of the picture: headline, legend, the table of sensors, and marks at the sensors."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Caption:
 
 
 def caption_of(study: pe.Study, outcome: pe.Outcome) -> Caption:
-    """Return what to say about an outcome; `study` holds the rig that is shown."""
+    """Return the caption of an outcome; `study` holds the rig that is shown."""
     before, after = outcome.before, outcome.after
     entropy, coverage = f"{after.entropy:.3f}", f"{after.coverage:.1%}"
     if outcome.kind == "optimize":
@@ -44,7 +44,7 @@ def caption_of(study: pe.Study, outcome: pe.Outcome) -> Caption:
 
 
 def position(pose: pe.Pose) -> str:
-    """Return a place in metres, to the centimetre: "-0.43, 0.00, 1.80"."""
+    """Return a position in metres, to the centimetre: "-0.43, 0.00, 1.80"."""
     return ", ".join(_number(value, 2) for value in pose.position)
 
 
@@ -54,7 +54,7 @@ def angle(degrees: float) -> str:
 
 
 def occluded_text(score: pe.SensorScore | None) -> str:
-    """Return how many beams the vehicle stops, and which parts do: "0.5 % (hood, body)"."""
+    """Return the share of occluded beams and the occluding parts: "0.5 % (hood, body)"."""
     if score is None or not score.beams:
         return "–"
     parts = sorted(score.stopped_by, key=lambda part: -score.stopped_by[part])
@@ -100,7 +100,7 @@ RING_AZIMUTHS_DEG = (-35.0, 105.0, -60.0, 130.0, -90.0, 160.0, -115.0, 170.0, -1
 
 
 def mark_sensors(pen: Lettering, rig: pe.Rig, moves: list[tuple[Floats, Floats]]) -> None:
-    """Put a dot on each sensor and its name above it, clear of other names and of the rings."""
+    """Draw a dot on each sensor and its name above, without overlaps."""
     scale = pen.view.frame.scale
     pixels = pen.view.pixels(np.array([sensor.pose.position for sensor in rig]))
     taken = [_room_of_ring(pen, start) for start, _ in moves]
@@ -119,13 +119,13 @@ def mark_sensors(pen: Lettering, rig: pe.Rig, moves: list[tuple[Floats, Floats]]
 
 
 def _room_of_ring(pen: Lettering, start: Floats) -> tuple[float, float, float]:
-    """Middle, half width and base line [px] of the room that the ring at a start takes."""
+    """Middle, half width and base line [px] of the area of the ring at a start."""
     x, y = pen.view.pixels(start[None])[0].tolist()
     return x, RING_ROOM * pen.view.frame.scale, y + RING_ROOM / 2 * pen.view.frame.scale
 
 
 def mark_moves(pen: Lettering, moves: list[tuple[Floats, Floats]]) -> None:
-    """Put a ring where each sensor started (3,) [m], with a line to where it stands now (3,)."""
+    """Draw a ring at each sensor's start (3,) [m], and a line to its present position (3,)."""
     scale = pen.view.frame.scale
     for start, end in moves:
         first, last = pen.view.pixels(np.array([start, end])).tolist()
@@ -135,7 +135,7 @@ def mark_moves(pen: Lettering, moves: list[tuple[Floats, Floats]]) -> None:
 
 
 def mark_rings(pen: Lettering, radii_m: tuple[float, ...], color: graphics.Rgba) -> None:
-    """Write a ring's distance where it can be read."""
+    """Write the distance of each ring where the text is readable."""
     frame, scale = pen.view.frame, pen.view.frame.scale
     for radius in radii_m:
         for azimuth in np.radians(RING_AZIMUTHS_DEG):
@@ -157,14 +157,14 @@ Legend = list[tuple[str, graphics.Rgba, str]]
 
 
 def frame_of(rows: int, size: tuple[int, int]) -> Frame:
-    """Return the picture's part left to the subject, above a table of that many rows."""
+    """Return the part of the picture for the subject, above a table with this number of rows."""
     scale = size[1] / DESIGN_HEIGHT
     bottom = size[1] - scale * (_strip_height(rows) + 10)
     return Frame(*size, scale * MARGIN, size[0] - scale * MARGIN, scale * HEAD_HEIGHT, bottom)
 
 
 def legend_of(rig: pe.Rig, *, stopped: bool, moved: bool) -> Legend:
-    """Return text, colour and mark ("line" or "ring") of what is in the picture."""
+    """Return text, colour and mark ("line" or "ring") of each item of the legend."""
     present = {sensor.kind for sensor in rig}
     entries: Legend = []
     for kind in kinds.KINDS.values():
@@ -216,7 +216,7 @@ def _write_legend(pen: Lettering, legend: Legend, scale: float) -> None:
 
 
 def _shortened(text: str, width: float) -> str:
-    """Return the text, or as much of it as fits a column that wide."""
+    """Return the text, cut at the end if it is wider than the column."""
     fits = int(width / (TEXT * LETTER_WIDTH)) - 1
     return text if len(text) <= fits else text[: fits - 1].rstrip() + "…"
 

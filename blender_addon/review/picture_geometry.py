@@ -1,4 +1,4 @@
-"""The review picture in numbers: the view it is taken from, and lines and faces as polygons."""
+"""Geometry of the review picture: its view, and lines and faces as polygons."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Frame:
 
     @property
     def scale(self) -> float:
-        """How much larger than designed the picture is."""
+        """Scale of the picture relative to its design size."""
         return self.height / DESIGN_HEIGHT
 
     @property
@@ -51,7 +51,7 @@ class View:
 
     @property
     def matrix(self) -> Floats:
-        """(4, 4) ground from camera, as Blender wants it."""
+        """(4, 4) matrix, ground from camera, for Blender."""
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = self.axes.T, self.position
         return matrix
@@ -61,14 +61,14 @@ class View:
         return -((points - self.position) @ self.axes[2])
 
     def pixels(self, points: Floats) -> Floats:
-        """(N, 2) places of points (N, 3) in the picture, from its top left [px]."""
+        """(N, 2) positions of points (N, 3) in the picture, from its top left [px]."""
         local = (points - self.position) @ self.axes.T
         across = local[:, :2] / -local[:, 2:] / self.frame.tangent_per_px
         return across * [1.0, -1.0] + [self.frame.width / 2, self.frame.height / 2]
 
 
 def look_at(points: Floats, frame: Frame) -> View:
-    """Return the nearest view in which all of the points (N, 3) lie in the frame's part.
+    """Return the nearest view with all points (N, 3) inside the frame.
 
     The four sides of that part are planes through the camera; each point bounds them, so the
     distance follows from the extremes without a search.
@@ -80,7 +80,7 @@ def look_at(points: Floats, frame: Frame) -> View:
     high = (np.array([frame.right, frame.height - frame.top]) - center) * frame.tangent_per_px
     across, depth = local[:, :2], -local[:, 2:]
     above, below = (across - high * depth).max(axis=0), (low * depth - across).max(axis=0)
-    far = np.max((above + below) / (high - low))  # how far the camera stands behind depth 0
+    far = np.max((above + below) / (high - low))  # distance of the camera behind depth 0
     middle = (above - high * far - (below + low * far)) / 2.0
     return View(np.array([*middle, far]) @ axes, axes, frame)
 
@@ -107,7 +107,7 @@ class Faces:
 
 
 def ribbons(lines: graphics.Primitives, view: View, width_px: float) -> Faces:
-    """Lines as strips that face the camera and look equally wide at any distance."""
+    """Lines as strips that face the camera, with the same width at any distance."""
     ends, colors = _fading_pieces(lines)
     along = ends[:, 1] - ends[:, 0]
     side = np.cross(along, ends.mean(axis=1) - view.position)
@@ -119,12 +119,12 @@ def ribbons(lines: graphics.Primitives, view: View, width_px: float) -> Faces:
         * view.depth(ends.reshape(-1, 3)).reshape(-1, 2)
     )
     half = side[:, None] * width[..., None] / 2.0
-    right, left = ends + half, ends - half  # their front, by winding, faces the camera
+    right, left = ends + half, ends - half  # the winding order makes their front face the camera
     return Faces(np.stack([right[:, 0], left[:, 0], left[:, 1], right[:, 1]], axis=1), colors)
 
 
 def starting_farther(lines: graphics.Primitives, distance_m: float) -> graphics.Primitives:
-    """Lines that begin that much farther on, at most at their ends."""
+    """Lines shortened at their start by a distance; a shorter line has length 0."""
     points = lines.points.reshape(-1, 2, 3).astype(float)
     along = points[:, 1] - points[:, 0]
     length = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)

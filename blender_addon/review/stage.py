@@ -1,4 +1,4 @@
-"""A scene of its own for one picture, and text and lines in the picture's plane.
+"""A temporary scene for one picture, and text and lines in the plane of the picture.
 
 Text, lines and plates are placed in pixels from the picture's top left. Nothing of the
 scene remains.
@@ -32,18 +32,18 @@ KINDS = (
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """The temporary scene, and ways to put things into it."""
+    """The temporary scene, and methods that add objects to it."""
 
     scene: bpy.types.Scene
 
     def add(self, name: str, data: bpy.types.ID) -> bpy.types.Object:
-        """Put data into the scene as an object."""
+        """Add data to the scene as an object."""
         thing = bpy.data.objects.new(name, data)
         self.scene.collection.objects.link(thing)
         return thing
 
     def add_faces(self, name: str, faces: Faces, facing: View | None = None) -> None:
-        """Add polygons, a material a colour; lit as if they looked straight into a view."""
+        """Add polygons with a material for each colour, lit as if they faced the view."""
         if not len(faces.corners):
             return
         count, corners = faces.corners.shape[:2]
@@ -61,7 +61,7 @@ class Stage:
         self.add(name, mesh)
 
     def set_camera(self, view: View) -> None:
-        """Take the picture from there."""
+        """Set the camera of the picture."""
         camera = bpy.data.cameras.new("Review camera")
         camera.sensor_fit, camera.angle = "HORIZONTAL", np.radians(HFOV_DEG)
         camera.clip_start, camera.clip_end = 0.05, 1000.0
@@ -72,19 +72,19 @@ class Stage:
         self.scene.render.resolution_y = view.frame.height
 
     def render(self, path: Path) -> None:
-        """Write the picture; a reader never sees half of it.
+        """Render the picture and write it atomically.
 
         Raises
         ------
         InputError
-            When it cannot be written there.
+            When the file cannot be written.
         """
         partial = path.with_name(f".{path.stem}.partial.png")
         self.scene.render.filepath = str(partial)
         try:
             bpy.ops.render.render(write_still=True, scene=self.scene.name)
             partial.replace(path)
-        except (OSError, RuntimeError) as error:  # Blender's own words end in a line break
+        except (OSError, RuntimeError) as error:  # Blender's own message ends in a line break
             found = str(error).strip().removeprefix("Error: ")
             raise pe.InputError(path, "picture", "a place to write to", found) from None
         finally:
@@ -94,7 +94,7 @@ class Stage:
 
 @contextlib.contextmanager
 def stage() -> Iterator[Stage]:
-    """Yield an empty stage; afterwards everything made meanwhile is removed."""
+    """Yield an empty stage; at the end, remove everything that was added."""
     before = {kind: set(getattr(bpy.data, kind)) for kind in KINDS}
     try:
         scene = bpy.data.scenes.new("Perception review")
@@ -106,7 +106,7 @@ def stage() -> Iterator[Stage]:
 
 
 def set_up(scene: bpy.types.Scene) -> None:
-    """Workbench, soft light, true colours, a light page."""
+    """Set Workbench, soft light, unchanged colours, and a light background."""
     render, shading = scene.render, scene.display.shading
     render.engine, render.resolution_percentage = "BLENDER_WORKBENCH", 100
     render.image_settings.file_format, render.image_settings.color_mode = "PNG", "RGB"
@@ -144,7 +144,7 @@ Color = tuple[float, float, float, float]
 
 @dataclass(slots=True)
 class Lettering:
-    """Writes on a stage as seen in a view."""
+    """Writes text and draws shapes on a stage, in the plane of the picture."""
 
     stage: Stage
     view: View
@@ -152,7 +152,7 @@ class Lettering:
 
     @classmethod
     def on(cls, stage: Stage, view: View) -> Lettering:
-        """Start with no ink made."""
+        """Return an object without materials."""
         return cls(stage, view, {})
 
     def write(
@@ -205,7 +205,7 @@ class Lettering:
         self.stage.add_faces("Review plate", Faces(points[None], np.array([color])), self.view)
 
     def _points(self, places: object, depth_m: float) -> NDArray[np.float64]:
-        """(N, 3) points in the ground frame that are seen at (N, 2) places, at that depth."""
+        """(N, 3) points in the ground frame at positions (N, 2) in the picture and a depth."""
         frame = self.view.frame
         across = np.asarray(places, float) - [frame.width / 2, frame.height / 2]
         local = np.empty((len(across), 3))

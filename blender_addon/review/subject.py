@@ -1,4 +1,4 @@
-"""What the picture shows: vehicle, ground, beams, frustums and the sensors themselves."""
+"""The subject of the picture: vehicle, ground, beams, frustums and sensors."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SHADOW: graphics.Rgba = (0.0, 0.0, 0.0, 0.05)
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """A rig on its vehicle, and where it stood at the start (None when nothing was moved)."""
+    """A rig on its vehicle, and the rig at the start (None if no sensor was moved)."""
 
     study: pe.Study
     start: pe.Rig | None
@@ -42,7 +42,7 @@ class Subject:
 
     @classmethod
     def of(cls, study: pe.Study, outcome: pe.Outcome) -> Subject:
-        """Choose the beams to be shown."""
+        """Return the subject of an outcome; the beams to be shown are chosen."""
         rig, budget = study.rig, graphics.beam_budget(list(study.rig), BEAMS)
         choice = graphics.BeamChoice(budget, graphics.ChannelMode.FEW)
         sketches = {
@@ -53,11 +53,11 @@ class Subject:
 
     @property
     def any_stopped(self) -> bool:
-        """Whether the vehicle stops a beam."""
+        """Whether the vehicle occludes a beam."""
         return any(sketch.stopped for sketch in self.sketches.values())
 
     def moves(self) -> list[tuple[Floats, Floats]]:
-        """Start and end (3,) [m] of each sensor that was moved."""
+        """Start and end position (3,) [m] of each sensor that was moved."""
         if self.start is None:
             return []
         pairs = zip(self.start, self.study.rig, strict=True)
@@ -65,7 +65,7 @@ class Subject:
         return [(a, b) for a, b in positions if not np.array_equal(a, b)]
 
     def points_in_view(self) -> Floats:
-        """(N, 3) points that the picture has to hold [m]."""
+        """(N, 3) points that have to be inside the picture [m]."""
         points = [self._positions(), *(p[None] for _, p in self.moves())]
         if self.study.vehicle is not None:
             points.append(np.array(list(product(*zip(*self.study.vehicle.bounds, strict=True)))))
@@ -74,7 +74,7 @@ class Subject:
         return np.vstack(points)
 
     def build(self, stage: Stage, view: View, scene: bpy.types.Scene) -> None:
-        """Put everything on the stage; the vehicle's objects are those of the user's scene."""
+        """Add everything to the stage; the vehicle's objects are those of the user's scene."""
         self._build_vehicle(stage, vehicle_objects(scene))
         for radius in RINGS_M:
             stage.add_faces(
@@ -97,7 +97,7 @@ class Subject:
         stage.add_faces("Shadow", picture_geometry.shadow(low, high, SHADOW, SHADOW_LAYERS))
 
     def _build_view(self, stage: Stage, view: View, sensor: pe.Sensor) -> None:
-        """What one sensor sees."""
+        """Add the field of view of a sensor."""
         sketch, look = self.sketches[sensor.name], _look(sensor)
         lines = sketch.lines(look.length_m, graphics.PAPER)
         if look.clear_m:
@@ -116,7 +116,7 @@ def _look(sensor: pe.Sensor) -> graphics.Look:
 
 
 def vehicle_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """Objects of the vehicle that count: seen, and not riding on a sensor."""
+    """Objects of the vehicle that are scored: visible, and not mounted on a sensor."""
     collection = scene.perception_entropy.vehicle
     if collection is None:
         return []

@@ -79,7 +79,7 @@ def around(lidar: Lidar, count: int) -> Ints:
 
 
 def evenly(total: int, count: int) -> Ints:
-    """(N,) at most `count` evenly spread numbers below a total, including the first and the last."""
+    """(N,) at most `count` evenly spread numbers below a total, with the first and the last."""
     if total <= count:
         return np.arange(total)
     return np.linspace(0, total - 1, max(count, 0)).round().astype(np.int64)
@@ -102,7 +102,7 @@ class ChannelMode(enum.StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class BeamChoice:
-    """At most `budget` beams: of the `number`-th channel from below, or of every `number`-th one."""
+    """At most `budget` beams: of the `number`-th channel from below, or of every such channel."""
 
     budget: int
     channels: ChannelMode = ChannelMode.ALL

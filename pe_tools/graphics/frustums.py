@@ -20,7 +20,7 @@ MARK_SIDE = 0.06
 
 
 def outline(sensor: Sensor, length_m: float) -> Floats:
-    """(N, 3) points on the border of a camera's view, at a distance `length_m`, ground frame [m]."""
+    """(N, 3) points on the border of a camera's view at a distance, ground frame [m]."""
     rays = camera_of(sensor).outline(PLACES) @ sensor.pose.ground_from_sensor.T
     return rays * length_m + np.asarray(sensor.pose.position)
 

@@ -37,9 +37,8 @@ def default_location(context: bpy.types.Context, mount: Mount) -> Vector:
         return cursor.copy() if cursor.length > 0.0 else Vector((0.0, 0.0, mount.height_m))
     depsgraph = context.evaluated_depsgraph_get()
     if cursor.length > 0.0:
-        return moved_out_of_surface(
-            cursor, mount.stand_off_m, parts_of(collection, depsgraph), depsgraph
-        )
+        parts = parts_of(collection, depsgraph) or set()
+        return moved_out_of_surface(cursor, mount.stand_off_m, parts, depsgraph)
     return Vector(roof_location(bridge.vehicle_from_collection(collection, depsgraph), mount))
 
 

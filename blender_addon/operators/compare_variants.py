@@ -123,7 +123,8 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
 
     def _task(self, context: bpy.types.Context) -> SceneJob:
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
-        pending, refused = {}, []
+        pending: dict[int, PendingVariant] = {}
+        refused: list[pe.InputError] = []
         for row in pending_variants(scene):
             try:
                 study = bridge.study_of_variant(scene, row, depsgraph)
@@ -132,8 +133,8 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
                 refused.append(error)
         if not pending:
             raise refused[0]
-        for error in refused:
-            report(self, "WARNING", str(error))
+        for problem in refused:
+            report(self, "WARNING", str(problem))
         taken = result_staleness.fingerprint(scene, depsgraph)
         rule = bridge.figure_rule(scene, next(iter(pending.values())).study.prior)
         self.figures_of = bridge.figures_signature(scene, taken)
@@ -247,7 +248,8 @@ def figure_rows(
     """Return rows of key figures, if every variant has these figures."""
     of = bridge.figures_signature(scene, result_staleness.fingerprint(scene))
     figures = {row.name: bridge.figures_of(row, of) for row in rows}
-    return () if None in figures.values() else advice.compare_figures(figures)
+    present = {name: each for name, each in figures.items() if each is not None}
+    return advice.compare_figures(present) if len(present) == len(figures) else ()
 
 
 def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: int) -> list[str]:
@@ -259,7 +261,7 @@ def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: i
 
 def columns_of(names: list[str], rows: tuple[advice.ComparedRow, ...]) -> list[list[TableCell]]:
     """Return the table by columns; the first column holds the names of the rows."""
-    columns: list[list[TableCell]] = [[("", False)], *[[(name, False)] for name in names]]
+    columns: list[list[TableCell]] = [[(name, False)] for name in ("", *names)]
     for measure, title in TITLES.items():
         if not any(row.measure == measure for row in rows):
             continue

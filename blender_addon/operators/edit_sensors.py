@@ -9,7 +9,7 @@ from mathutils import Matrix
 from .. import bridge, sensor_cache, signals
 from ..engine import pe
 from .add_sensor import select_only
-from .reports import USER_ERRORS, OperatorResult, report, report_error
+from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
 
 
 def listed_sensors(scene: bpy.types.Scene) -> list[bpy.types.Object]:
@@ -111,8 +111,8 @@ class PE_OT_mirror_sensor(bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        obj = context.scene.objects.get(self.name) if self.name else context.active_object
         try:
+            obj = chosen_sensor(context, self.name)
             made = mirrored_copy(context, obj)
         except USER_ERRORS as error:
             return report_error(self, error)
@@ -141,16 +141,14 @@ class PE_OT_unlink_mirror(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object | None) -> bpy.types.Object:
+def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.types.Object:
     """Return a copy of a sensor on the other side.
 
     Raises
     ------
     InputError
-        When it is no possible sensor, or its own mirror image.
+        When it is its own mirror image.
     """
-    if obj is None or not obj.perception_entropy.is_sensor:
-        raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
     pose = bridge.pose_of(obj, context.evaluated_depsgraph_get())
     if bridge.in_the_middle(pose):
         expected = "a sensor beside the vehicle's middle plane"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -114,7 +115,7 @@ class PE_OT_export_scene(ExportOperator, bpy.types.Operator):
     ) -> ExportSteps:
         """Make the files on a thread, then write them."""
 
-        def work() -> tuple[dict[str, bytes], list[str]]:
+        def work() -> tuple[Mapping[str, bytes], list[str]]:
             return outputs.scene_files(job.study, row.name, reach)
 
         made = yield from job.made(f"exporting {row.title}", 0.0, work)

@@ -160,8 +160,8 @@ class PE_OT_open_folder(bpy.types.Operator):
         return last is not None
 
     def execute(self, _context: bpy.types.Context) -> OperatorResult:
-        if not last.folder.is_dir():
-            report(self, "WARNING", f"The folder {last.folder} was removed")
+        if last is None or not last.folder.is_dir():
+            report(self, "WARNING", f"The folder {last.folder if last else ''} was removed")
             return {"CANCELLED"}
         return bpy.ops.wm.path_open(filepath=str(last.folder))
 
@@ -213,8 +213,9 @@ def report_files(
     operator: bpy.types.Operator, *paths: Path, lines: tuple[str, ...] = ()
 ) -> OperatorResult:
     """Report the files of an export without a job, and store their names for the panel."""
-    set_last(WrittenFiles(tuple(paths), tuple(lines)))
-    report_written(operator, last)
+    written = WrittenFiles(tuple(paths), tuple(lines))
+    set_last(written)
+    report_written(operator, written)
     return {"FINISHED"}
 
 
@@ -225,7 +226,7 @@ def set_last(written: WrittenFiles | None) -> None:
     viewport.redraw_editors()
 
 
-def _take_waiting() -> ExportJob:
+def _take_waiting() -> ExportJob | None:
     """Return the waiting job, and remove it so that no other operator runs it."""
     global _waiting
     job, _waiting = _waiting, None

@@ -44,7 +44,7 @@ _change_count = 0
 _rendering = False
 _pictures: dict[int, tuple[Hashable, sensor_pictures.InsetCamera]] = {}
 """Pictures of cameras by the region's pointer, with the key of what they were made from."""
-_requested: dict[int, tuple[Hashable, pe.Sensor, InsetSize]] = {}
+_requested: dict[int, tuple[Hashable, pe.Pose, pe.Camera, InsetSize]] = {}
 """Pictures that are to be rendered, by the region's pointer."""
 _ranges: tuple[Hashable, sensor_pictures.PixelImage] | None = None
 _requested_ranges: Hashable = None
@@ -87,8 +87,8 @@ def draw() -> None:
     sensor = shown_sensor(context)
     if sensor is None:
         _release(region)
-    elif row_of(sensor.kind).camera is not None:
-        box = _draw_camera(context, sensor)
+    elif (camera_of := row_of(sensor.kind).camera) is not None:
+        box = _draw_camera(context, sensor, camera_of(sensor.model))
     else:
         box = _draw_ranges(context, sensor)
     viewport.reserve_plate(region, PLATE_NAME, box)
@@ -146,17 +146,19 @@ def title_of(sensor: pe.Sensor) -> str:
     return f"{sensor.name}{f' (as a pinhole, {fov:.0f}°)' if bent else ''}"
 
 
-def _draw_camera(context: bpy.types.Context, sensor: pe.Sensor) -> viewport.PlateBox | None:
+def _draw_camera(
+    context: bpy.types.Context, sensor: pe.Sensor, model: pe.Camera
+) -> viewport.PlateBox | None:
     """Draw the latest picture of a camera; request a new one if anything has changed."""
     scale, region = context.preferences.system.ui_scale, context.region
-    model, pointer = row_of(sensor.kind).camera(sensor.model), region.as_pointer()
+    pointer = region.as_pointer()
     size = size_of((region.width, region.height), (model.width, model.height), scale)
     shading = context.space_data.shading
     look = (shading.type, shading.light, shading.color_type)
     made_of = (size, sensor.pose, model.name, _change_count, context.scene.name, look)
     cached = _pictures.get(pointer)
     if cached is None or cached[0] != made_of:
-        _requested[pointer] = made_of, sensor, size
+        _requested[pointer] = made_of, sensor.pose, model, size
         if not bpy.app.timers.is_registered(render_requested):
             bpy.app.timers.register(render_requested, first_interval=0.0)
     if cached is None:
@@ -168,13 +170,13 @@ def _draw_camera(context: bpy.types.Context, sensor: pe.Sensor) -> viewport.Plat
 
 def render_requested() -> None:
     """Timer: render the requested pictures of cameras; that is impossible while a view is drawn."""
-    for pointer, (made_of, sensor, size) in list(_requested.items()):
+    for pointer, (made_of, pose, model, size) in list(_requested.items()):
         del _requested[pointer]
         view = _view_of(pointer)
         if view is not None:
             cached = _pictures.get(pointer)
             camera = cached[1] if cached is not None else sensor_pictures.InsetCamera()
-            _render(view, camera, sensor, size)
+            _render(view, camera, pose, model, size)
             _pictures[pointer] = made_of, camera
     viewport.redraw_editors()
 
@@ -190,20 +192,22 @@ def _view_of(pointer: int) -> PictureView | None:
 
 
 def _render(
-    view: PictureView, camera: sensor_pictures.InsetCamera, sensor: pe.Sensor, size: InsetSize
+    view: PictureView,
+    camera: sensor_pictures.InsetCamera,
+    pose: pe.Pose,
+    model: pe.Camera,
+    size: InsetSize,
 ) -> None:
     """Render a camera's view by the viewport, without overlays."""
     global _rendering
-    turned = Matrix(sensor.pose.ground_from_sensor.tolist())
-    ground_from_sensor = Matrix.LocRotScale(sensor.pose.position, turned, None)
+    turned = Matrix(pose.ground_from_sensor.tolist())
+    ground_from_sensor = Matrix.LocRotScale(pose.position, turned, None)
     camera_from_ground = (ground_from_sensor @ bridge.CAMERA_FROM_SENSOR).inverted()
     overlay = view.space.overlay
     before, _rendering = overlay.show_overlays, True
     overlay.show_overlays = False
     try:
-        camera.render(
-            view, size, camera_from_ground, projection(row_of(sensor.kind).camera(sensor.model))
-        )
+        camera.render(view, size, camera_from_ground, projection(model))
     finally:
         overlay.show_overlays, _rendering = before, False
 
@@ -253,13 +257,13 @@ def request_ranges() -> None:
     )
 
 
-def _corner(context: bpy.types.Context, size: InsetSize) -> tuple[float, float]:
+def _corner(context: bpy.types.Context, size: tuple[int, int]) -> tuple[float, float]:
     """Return the lower left corner of a picture in the region [px]: above the other plates."""
     region, margin = context.region, viewport.MARGIN * viewport.ui_scale()
     left, pointer = viewport.beside_toolbar(context), region.as_pointer()
     viewport.reserve_plate(pointer, PLATE_NAME, None)
-    bottom = viewport.free_bottom(pointer, (left, left + size.width), margin, margin)
-    return left, min(bottom, region.height - size.height - TITLE_PX * viewport.ui_scale())
+    bottom = viewport.free_bottom(pointer, (left, left + size[0]), margin, margin)
+    return left, min(bottom, region.height - size[1] - TITLE_PX * viewport.ui_scale())
 
 
 def _release(region: int) -> None:

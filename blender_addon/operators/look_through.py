@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from typing import Any
 
 import bpy
 from bpy.props import StringProperty
@@ -17,7 +18,7 @@ from .. import bridge
 from ..engine import pe
 from ..sensor_kinds import kind_label, row_of
 from . import sensor_pictures
-from .reports import USER_ERRORS, OperatorResult, report, report_error
+from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
 
 SPACE_FIELDS = ("lens", "clip_start", "clip_end", "lock_camera")
 VIEW_FIELDS = (
@@ -103,7 +104,9 @@ def find_view(state: dict[str, object]) -> bpy.types.SpaceView3D | None:
             return area.spaces.active
     screen = bpy.data.screens.get(str(state["screen"]))
     number = int(str(state["area"]))
-    areas = [] if screen is None else list(screen.areas)[number : number + 1]
+    if screen is None:
+        return None
+    areas = list(screen.areas)[number : number + 1]
     return next((a.spaces.active for a in areas if a.type == "VIEW_3D"), None)
 
 
@@ -112,7 +115,7 @@ def _view_areas() -> Iterator[bpy.types.Area]:
         yield from (area for area in screen.areas if area.type == "VIEW_3D")
 
 
-def _json_value(value: object) -> object:
+def _json_value(value: Any) -> Any:
     """Return numbers of a vector as a list."""
     return value if isinstance(value, str | float | bool) else list(value)
 
@@ -135,9 +138,9 @@ class PE_OT_look_through(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
-        obj = scene.objects.get(self.name) if self.name else context.active_object
         try:
-            sensor = _checked_sensor(obj, context.evaluated_depsgraph_get())
+            obj = chosen_sensor(context, self.name)
+            sensor = bridge.sensor_from_object(obj, context.evaluated_depsgraph_get())
         except USER_ERRORS as error:
             return report_error(self, error)
         row = row_of(sensor.kind)
@@ -195,12 +198,6 @@ def come_back(scene: bpy.types.Scene) -> None:
     """Restore the scene's camera, size of renders, and views."""
     bridge.look_back(scene)
     restore(scene)
-
-
-def _checked_sensor(obj: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> pe.Sensor:
-    if obj is None or not obj.perception_entropy.is_sensor:
-        raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
-    return bridge.sensor_from_object(obj, depsgraph)
 
 
 def _vehicle(context: bpy.types.Context) -> pe.Vehicle | None:

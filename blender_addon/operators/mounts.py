@@ -8,8 +8,8 @@ from bpy.props import EnumProperty, StringProperty
 
 from .. import bridge, signals
 from ..choices import BY_GROUP, BY_PARTS, free_name
-from ..engine import catalog, pe, search
-from .reports import USER_ERRORS, OperatorMixin, OperatorResult, report, report_error
+from ..engine import catalog, search
+from .reports import USER_ERRORS, OperatorMixin, OperatorResult, chosen_sensor, report, report_error
 
 IN_A_BOX = "BOX"
 """The entry for no mount in the menu of a sensor's mounts."""
@@ -32,7 +32,7 @@ class PE_OT_add_mount(bpy.types.Operator):
         settings = context.scene.perception_entropy
         taken = {row.name for row in settings.mounts}
         painted = painted_group(context)
-        parts = () if painted else selected_parts(context)
+        parts = [] if painted else selected_parts(context)
         name = painted or (parts[0].name if len(parts) == 1 else "Mount")
         row = settings.mounts.add()
         row.name = free_name(name, taken)
@@ -115,8 +115,8 @@ class PE_OT_mount_sensor(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene
-        obj = scene.objects.get(self.name) if self.name else context.active_object
         try:
+            obj = chosen_sensor(context, self.name)
             if self.mount != IN_A_BOX:
                 put_on_mount(scene, context.evaluated_depsgraph_get(), obj, self.mount)
         except USER_ERRORS as error:
@@ -174,7 +174,7 @@ def _corners(obj: bpy.types.Object) -> np.ndarray:
 def put_on_mount(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph,
-    obj: bpy.types.Object | None,
+    obj: bpy.types.Object,
     name: str,
 ) -> None:
     """Put a sensor on a mount, at the nearest point to where it is.
@@ -182,10 +182,8 @@ def put_on_mount(
     Raises
     ------
     InputError
-        When it is no valid sensor, the mount has no faces or slots, or its pose is fixed.
+        When the mount has no faces or slots, or its pose is fixed.
     """
-    if obj is None or not obj.perception_entropy.is_sensor:
-        raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
     row = scene.perception_entropy.mounts[name]
     mount = bridge.mount_of_row(scene, depsgraph, row)
     vehicle = bridge.vehicle_of_scene(scene, depsgraph)

@@ -235,7 +235,7 @@ class PE_OT_live_against(bpy.types.Operator):
     def description(cls, _context: bpy.types.Context, properties: bpy.types.Operator) -> str:
         if properties.key == PINNED:
             return "Pin the sensors as they are now: compare the live score with them from now on"
-        return cls.__doc__
+        return str(cls.__doc__)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene

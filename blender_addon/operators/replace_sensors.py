@@ -39,7 +39,7 @@ class PE_OT_add_rig(bpy.types.Operator):
     def description(cls, _context: bpy.types.Context, properties: bpy.types.Operator) -> str:
         rig = catalog.known_rigs().get(properties.key)
         if rig is None:
-            return cls.__doc__
+            return str(cls.__doc__)
         return f"{len(rig.sensors)} sensors of {rig.vehicle}. {rig.note}\nSource: {rig.source}"
 
     @classmethod
@@ -55,8 +55,9 @@ class PE_OT_add_rig(bpy.types.Operator):
             rig = catalog.known_rig(self.key)
             before = bridge.records_of_scene(scene)
             vehicle = vehicle_cache.shared.read(scene, context.evaluated_depsgraph_get()).vehicle
-            fitted = self.fit and vehicle is not None and rig.size is not None
-            sensors = rig.on_vehicle(*vehicle.bounds) if fitted else rig.sensors
+            sensors, fitted = rig.sensors, False
+            if self.fit and vehicle is not None and rig.size is not None:
+                sensors, fitted = rig.on_vehicle(*vehicle.bounds), True
             note, records = note_of(rig, fitted), tuple(map(record_of, sensors))
             name = stand_as_variant(scene, rig.title, records, note, before)
         except USER_ERRORS as error:

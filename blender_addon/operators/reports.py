@@ -1,4 +1,7 @@
-"""What operators return, and report in the status bar: one line each, whatever the input was."""
+"""What operators share: what they are given, what they return, and their reports.
+
+A report is one line in the status bar, whatever the input was.
+"""
 
 from __future__ import annotations
 
@@ -38,6 +41,20 @@ def report(
     """Report one line; characters that would break or reverse it are escaped."""
     shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[:MAX_LETTERS])
     operator.report({level}, shown)
+
+
+def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
+    """Return the sensor of that name; the active one when the name is empty.
+
+    Raises
+    ------
+    InputError
+        When there is no such sensor.
+    """
+    obj = context.scene.objects.get(name) if name else context.active_object
+    if obj is None or not obj.perception_entropy.is_sensor:
+        raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
+    return obj
 
 
 def chosen_file(filepath: str) -> Path:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from typing import Any, cast
 
 import bpy
 
@@ -113,7 +114,8 @@ class RunningJob:
         points = tuple((row.evaluation, row.entropy) for row in history)
         sensors = tuple(history[-1].rig) if len(history) > 1 else ()
         sampled = bool(self.job.study.search.samples)
-        seen = search_curve.SearchProgress(points, self.job.evaluations, sensors, sampled)
+        count = cast(Any, self.job).evaluations  # a job with a history searches
+        seen = search_curve.SearchProgress(points, count, sensors, sampled)
         search_curve.note(self.scene_name, seen)
         if better:
             signals.view_changed.emit()  # the best placement is drawn as ghosts
@@ -135,10 +137,11 @@ class RunningJob:
 current: RunningJob | None = None
 
 
-def begin(context: bpy.types.Context, job: pe.Job) -> None:
+def begin(context: bpy.types.Context, job: pe.Job) -> RunningJob:
     """Have a timer step the job from now on."""
     global current
     current = RunningJob(context, job)
+    return current
 
 
 def end(context: bpy.types.Context) -> None:

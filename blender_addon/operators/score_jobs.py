@@ -5,7 +5,7 @@ Scripts and Blender without a window run the job to its end.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 from bpy.props import IntProperty
@@ -38,9 +38,12 @@ def cache_score(scene: bpy.types.Scene, outcome: pe.Outcome, signature: str) -> 
 
 
 class SceneJob(NamedTuple):
-    """A job, and the fingerprint of the scene that it was read from."""
+    """A job, and the fingerprint of the scene that it was read from.
 
-    job: pe.Job
+    The job is a `pe.Job`, or has what one has; outcomes are of different types.
+    """
+
+    job: Any
     taken: bridge.Fingerprint | None
 
 
@@ -80,10 +83,9 @@ class JobOperator(OperatorMixin):
             task = self._task(context)
         except USER_ERRORS as error:
             return report_error(self, error)
-        running_job.begin(context, task.job)
+        running_job.begin(context, task.job).show(context)
         self.taken = task.taken
         context.window_manager.modal_handler_add(self)
-        running_job.current.show(context)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
@@ -235,8 +237,10 @@ class PE_OT_cancel(bpy.types.Operator):
         return running_job.current is not None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        running_job.current.stop()
-        running_job.current.show(context)
+        job = running_job.current
+        if job is not None:
+            job.stop()
+            job.show(context)
         return {"FINISHED"}
 
 
@@ -300,7 +304,7 @@ class PE_OT_choose_sensors(JobOperator, bpy.types.Operator):
     def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> OperatorResult:
         """Keep the Pareto front as variants; undo removes them in one step."""
         trade_off = task.job.trade_off
-        if trade_off is None or scene is None:
+        if trade_off is None or scene is None or task.taken is None:
             report(self, "INFO", "Stopped before a design was complete: nothing was changed")
             return {"CANCELLED"}
         bridge.store_front(scene, trade_off, task.taken.surroundings)

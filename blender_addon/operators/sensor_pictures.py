@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 import bpy
 import gpu
@@ -34,7 +34,7 @@ class InsetCamera:
     """A picture that the viewport renders."""
 
     def __init__(self) -> None:
-        self._offscreen: gpu.types.GPUOffScreen | None = None
+        self._offscreen: Any = None  # a gpu.types.GPUOffScreen, once it has been rendered to
         self.size = (0, 0)
 
     @property
@@ -134,10 +134,16 @@ def request_image(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> None:
     """Have the picture of a sensor's kind made on a thread, and put into the sensor's image."""
     image_of(sensor.name)
     pixels = row_of(sensor.kind).pixels
+    assert pixels is not None  # asked for those kinds alone
+
+    def deliver(made: Pixels) -> None:
+        store_image(sensor.name, made)
+        show_image(sensor.name)
+
     background_worker.ask(
         RANGE_TOPIC,
         lambda: pixels(sensor, vehicle),
-        lambda made: (store_image(sensor.name, made), show_image(sensor.name)),
+        deliver,
         lambda error: print(f"perception entropy: no picture of {sensor.name}: {error}"),
     )
 
@@ -148,7 +154,7 @@ def store_image(sensor: str, pixels: Pixels) -> None:
     height, width = pixels.shape[:2]
     if tuple(image.size) != (width, height):
         image.scale(width, height)
-    image.pixels.foreach_set(np.ascontiguousarray(pixels[::-1]).ravel())
+    cast(Any, image.pixels).foreach_set(np.ascontiguousarray(pixels[::-1]).ravel())
     image.update()
     image.pack()
     viewport.redraw_editors("IMAGE_EDITOR")

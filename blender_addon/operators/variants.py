@@ -76,6 +76,8 @@ class PE_OT_update_variant(VariantOperator, bpy.types.Operator):
     def act(self, scene: bpy.types.Scene, _variant: object) -> None:
         """Overwrite the active variant; its score is removed if the sensors differ."""
         row = bridge.active_variant(scene)
+        if row is None:
+            return
         records = bridge.records_of_scene(scene)
         if not bridge.same_score(bridge.records_of(row), records):
             row.has_result, row.figures_json = False, ""

@@ -29,15 +29,12 @@ def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     view = request.view
     if shows_difference(request):
         return _difference(request, cache)
-    scored = scored_map(request)
-    if scored is not None:
-        seen = graphics.as_scored(scored, request.space, FINE_M)
-        where = graphics.AS_SCORED
+    scored, where = scored_map(request), None
+    seen: sight.GroundSight | graphics.AsScored
+    if scored is not None and request.space is not None:
+        seen, where = graphics.as_scored(scored, request.space, FINE_M), graphics.AS_SCORED
     else:
-        seen, where = (
-            _ground_sight(request, cache, pe.Rig([e.sensor for e in request.counted])),
-            None,
-        )
+        seen = _ground_sight(request, cache, pe.Rig([e.sensor for e in request.counted]))
     bounds = _bounds(request, cache, seen)
     return graphics.ground_map(
         seen, view.ground_quantity, view.ground_opacity, where=where, bounds=bounds
@@ -73,6 +70,7 @@ def step_of(space: pe.PerceptionSpace, *, moving: bool) -> float:
 
 
 def _ground_sight(request: ViewRequest, cache: LayerCache, rig: pe.Rig) -> sight.GroundSight:
+    assert request.space is not None  # the layer has no key without one
     step = step_of(request.space, moving=request.moving)
     return cache.sight(request).ground(rig, request.view.ground_height, step, draft=request.moving)
 
@@ -97,7 +95,7 @@ def _difference(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
 
 
 def _bounds(
-    request: ViewRequest, cache: LayerCache, seen: sight.GroundSight
+    request: ViewRequest, cache: LayerCache, seen: sight.GroundSight | graphics.AsScored
 ) -> tuple[float, float] | None:
     """Return the values at the ends of the colours; they are constant while a sensor moves."""
     view = request.view
@@ -150,8 +148,8 @@ def blind_ground(
         for line in found.outlines
     ]
     labels: list[graphics.Tag] = []
-    for side in SIDES if body is not None else ():
-        measure = _measure(found, body, side, palette)
+    for side in SIDES:
+        measure = None if body is None else _measure(found, body, side, palette)
         if measure is not None:
             lines.append(measure[0])
             labels.append(measure[1])
@@ -279,7 +277,7 @@ def reach_lines(found: sight.Reach, distance: Floats, color: graphics.Rgba) -> g
     closed = np.append(np.arange(len(line.points)), 0)
     points = np.column_stack([line.points, np.zeros(len(line.points))])[closed]
     cut = line.at_least[closed]
-    colors = np.tile(np.float32(color), (len(closed) - 1, 2, 1))
+    colors = np.tile(np.asarray(color, np.float32), (len(closed) - 1, 2, 1))
     colors[cut[:-1] & cut[1:], :, 3] *= CUT_ALPHA
     return graphics.Primitives.of(graphics.polyline(points), colors)
 

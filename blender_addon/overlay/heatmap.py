@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,8 +56,8 @@ def hit_density(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.L
 LEGEND = graphics.ColorKey(
     "Blocked beams per dm²",
     scale=tuple(
-        (*map(float, c), 1.0)
-        for c in graphics.on_scale(np.linspace(0.0, 1.0, 13), graphics.VIRIDIS)
+        (float(red), float(green), float(blue), 1.0)
+        for red, green, blue in graphics.on_scale(np.linspace(0.0, 1.0, 13), graphics.VIRIDIS)
     ),
     ticks=("100", "10", "1 beam"),
 )
@@ -84,7 +85,7 @@ class _Tiles:
         unit = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
         # If the surface crosses a square at an angle, its area there is larger than the square's.
         area_dm2 = (TILE_M * 10.0) ** 2 / np.maximum(np.abs(unit).max(axis=1), 0.5)
-        beams = np.bincount(cell, weight)
+        beams = np.bincount(cell, weight).astype(float)
         density = cells.with_neighbours(beams) / cells.with_neighbours(area_dm2)
         return cls(middle / count[:, None], unit, density)
 
@@ -130,7 +131,8 @@ class _Cells:
 
 def _beams_per_cast(found: graphics.Cast) -> float:
     """Return the number of beams of the sensor that each cast beam represents."""
-    return found.sensor.model.beam_count / max(len(found.ends), 1)
+    model = cast(Any, found.sensor.model)  # of a kind that has beams
+    return float(model.beam_count / max(len(found.ends), 1))
 
 
 def _normals(triangles: Floats) -> Floats:

@@ -13,6 +13,9 @@ from .. import simplified_vehicles
 from ..engine import graphics, pe, sight
 from .request import SceneSensor, ViewRequest
 
+Sight = sight.Sight  # a cache has a method `sight`
+GroundSight = sight.GroundSight
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShownLayer:
@@ -86,12 +89,12 @@ class LayerCache:
             else simplified_vehicles.shared.simplified(vehicle, MAX_TRIANGLES)[0]
         )
 
-    def sight(self, request: ViewRequest) -> sight.Sight:
+    def sight(self, request: ViewRequest) -> Sight:
         """Return the `Sight` that computes the visibility of rigs."""
         key = request.body_key, request.prior_key
         return self._keep("sight", key, lambda: self._sight(request))
 
-    def compared(self, key: Hashable, make: Callable[[], sight.GroundSight]) -> sight.GroundSight:
+    def compared(self, key: Hashable, make: Callable[[], GroundSight]) -> GroundSight:
         """Return the ground map that a difference map compares with."""
         return self._keep("compared", key, make)
 
@@ -103,9 +106,10 @@ class LayerCache:
             self._kept.get("fitted", {}).pop(key, None)
         return self._keep("fitted", key, fit)
 
-    def _sight(self, request: ViewRequest) -> sight.Sight:
+    def _sight(self, request: ViewRequest) -> Sight:
         body, targets = self.body(request), request.targets
-        return sight.Sight(request.space, request.prior, body, model=request.model, targets=targets)
+        assert request.space is not None and request.prior is not None  # no key without them
+        return Sight(request.space, request.prior, body, model=request.model, targets=targets)
 
     def _keep(self, sort: str, key: Hashable, make: Callable[[], T]) -> T:
         """Return the cached value of a key, or make it; the least recently used one is dropped."""

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import graphics, pe
-from . import annotations, ground_layers, heatmap, regions
+from . import ground_layers, heatmap, regions
+from .annotations import GHOST_PALETTE, GHOST_TITLE, axles, ghost_sensors, location_mark
 from .layer_cache import LayerCache
 from .request import ALL, BY_CHANNEL, BY_SENSOR, RIG, SceneSensor, ViewRequest, ViewSettings
 
@@ -89,6 +91,7 @@ def _reach_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
     view = request.view
+    assert request.prior is not None  # the layer has no key without one
     known = request.prior.class_names
     of = view.reach_class if view.reach_class in known else known[0]
     found = cache.sight(request).reach(
@@ -104,9 +107,8 @@ def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
     everyone = view.reach_of == ALL
     named = {e.sensor.name: e.number for e in request.counted if everyone or e.selected}
     alone = ground_layers.reach_of_sensors(found, named)
-    legend = graphics.ColorKey(
-        whole.legend.title, classes=whole.legend.classes + alone.legend.classes
-    )
+    keys = [shape.legend for shape in (whole, alone) if shape.legend is not None]
+    legend = graphics.ColorKey(keys[0].title, classes=tuple(c for k in keys for c in k.classes))
     return graphics.LayerShape(
         graphics.Primitives.joined([alone.lines, whole.lines]), labels=whole.labels, legend=legend
     )
@@ -130,7 +132,7 @@ def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.Layer
     around = None if request.vehicle is None else request.vehicle.bounds
     parts = [graphics.free_lines(of.sensor, beams, view.beam_length, colors, around)]
     if view.rings:
-        rows = graphics.channels_of(of.sensor.model, choice)
+        rows = graphics.channels_of(cast(pe.Lidar, of.sensor.model), choice)
         whole = _beam_colors(of, view, rows, np.zeros(len(rows), bool))
         whole[:, 3] = RING_ALPHA
         parts.append(graphics.ground_rings(found, rows, whole))
@@ -148,10 +150,11 @@ def _beam_colors(
     """(N, 4) colours of beams of these channels."""
     by_sensor = view.beam_colors == BY_SENSOR
     palette = graphics.sensor_palette(of.number) if by_sensor else graphics.VIEWPORT
-    free, hit = (np.float32(c) for c in (palette.free, palette.stopped))
+    free, hit = (np.asarray(c, np.float32) for c in (palette.free, palette.stopped))
     colors = np.where(stopped[:, None], hit, free)
     if view.beam_colors == BY_CHANNEL:
-        rank = np.argsort(np.argsort(of.sensor.model.elevations, kind="stable"))
+        elevations = cast(pe.Lidar, of.sensor.model).elevations
+        rank = np.argsort(np.argsort(elevations, kind="stable"))
         colors[:, :3] = graphics.on_scale(rank[channel] / max(len(rank) - 1, 1), graphics.VIRIDIS)
     return colors
 
@@ -159,7 +162,7 @@ def _beam_colors(
 def _beam_legend(view: ViewSettings) -> graphics.ColorKey:
     if view.beam_colors == BY_CHANNEL:
         row = graphics.on_scale(np.linspace(0.0, 1.0, graphics.SWATCHES), graphics.VIRIDIS)
-        swatches = tuple((*map(float, color), 1.0) for color in row)
+        swatches = tuple((float(red), float(green), float(blue), 1.0) for red, green, blue in row)
         return graphics.ColorKey("Channel", swatches, ("lowest", "highest"))
     palette = graphics.VIEWPORT
     stopped = (graphics.with_alpha(palette.stopped, 1.0), "blocked by the vehicle")
@@ -177,7 +180,9 @@ def _heat_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 def _heat(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
     found = [cache.cast(request, each) for each in request.of_beams()]
-    return heatmap.hit_density(found, cache.body(request).triangles)
+    body = cache.body(request)
+    assert body is not None  # the layer has no key without one
+    return heatmap.hit_density(found, body.triangles)
 
 
 def _view_keys(request: ViewRequest) -> dict[str, Hashable]:
@@ -227,9 +232,9 @@ def _ghost_keys(request: ViewRequest) -> dict[str, Hashable]:
 def _ghosts(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
     here, of = (
         [e.sensor for e in request.counted],
-        "Search" if request.searching else annotations.GHOST_TITLE,
+        "Search" if request.searching else GHOST_TITLE,
     )
-    shape = annotations.ghost_sensors(request.ghosts, here, request.ghosts_name, of)
+    shape = ghost_sensors(request.ghosts, here, request.ghosts_name, of)
     if request.searching:
         return shape
     if "reach" not in request.view.layers or request.prior is None:
@@ -237,7 +242,7 @@ def _ghosts(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Lay
     rig, known = pe.Rig(request.ghosts), request.prior.class_names
     of = request.view.reach_class if request.view.reach_class in known else known[0]
     line = ground_layers.rig_reach(
-        cache.sight(request), rig, of, annotations.GHOST_PALETTE, request.ghosts_name
+        cache.sight(request), rig, of, GHOST_PALETTE, request.ghosts_name
     )
     return replace(shape, lines=line.lines)
 
@@ -252,7 +257,8 @@ def _place_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 
 def _place(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
-    return annotations.location_mark(request.place, [each.sensor for each in request.counted])
+    assert request.place is not None  # the layer has no key without one
+    return location_mark(request.place, [each.sensor for each in request.counted])
 
 
 def _mount_keys(request: ViewRequest) -> dict[str, Hashable]:
@@ -274,6 +280,7 @@ def _focus_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 
 def _focus(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    assert request.space is not None  # the layer has no key without one
     return regions.focus_regions(request.focus, request.space)
 
 
@@ -283,7 +290,8 @@ def _axle_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 def _axles(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
     half = None if request.vehicle is None else float(request.vehicle.bounds[1][1])
-    return annotations.axles(request.reference, half)
+    assert request.reference is not None  # the layer has no key without one
+    return axles(request.reference, half)
 
 
 LAYERS = (

@@ -66,7 +66,7 @@ def offset_surface(triangles: Floats) -> Floats:
     count = int(corner.max()) + 1
     each = np.repeat(faces, 3, axis=0)
     normal = np.stack([np.bincount(corner, each[:, k], count) for k in range(3)], axis=1)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     away = LIFT_M * normal[corner].reshape(-1, 3, 3)
     return np.concatenate([triangles + away, triangles - away])
 

@@ -50,7 +50,9 @@ class SnapshotReader:
 
     def clear(self) -> None:
         """Drop everything: another file is opened."""
-        self.__init__()
+        for cached in (self._inputs, self._bodies, self._faces):
+            cached.clear()
+        self._took_s = 0.0
 
     def request(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool = False
@@ -94,9 +96,10 @@ class SnapshotReader:
         """Return the surfaces of the mounts; read again when they or the vehicle changed."""
         if vehicle is None:
             return ()
-        objects = (scene.objects.get(each.sensor.name) for each in sensors if each.selected)
-        chosen = {obj.perception_entropy.mount for obj in objects if obj is not None}
-        known, found, shown = self._faces.get(scene.name, {}), {}, []
+        names = [each.sensor.name for each in sensors if each.selected]
+        chosen = {scene.objects[n].perception_entropy.mount for n in names if n in scene.objects}
+        known, shown = self._faces.get(scene.name, {}), []
+        found: dict[Hashable, np.ndarray] = {}
         for row in scene.perception_entropy.mounts:
             if (said := bridge.mount_key(row)) is None:
                 continue
@@ -143,9 +146,11 @@ def view_of(scene: bpy.types.Scene) -> ViewSettings:
     view = settings.view
     on = settings.show_overlay
     layers = (each.name for each in LAYERS if on and getattr(view, f"show_{each.name}"))
-    same = ("ground_quantity", "ground_opacity", "reach_class", "reach_of", "beams_of", "channels")
-    same += ("beam_colors", "rings", "footprints", "view_range")
-    same += ("ground_range", "ground_difference")
+    same = (
+        *("ground_quantity", "ground_opacity", "ground_range", "ground_difference"),
+        *("reach_class", "reach_of", "beams_of", "channels"),
+        *("beam_colors", "rings", "footprints", "view_range"),
+    )
     return ViewSettings(
         layers=frozenset(layers),
         ground_height=_height(view.ground_height),

@@ -15,6 +15,8 @@ from .beams import Beams, Cast
 from .primitives import Primitives
 from .sensor_images import lidar_of
 
+Colors = NDArray[np.floating]
+
 Floats = NDArray[np.float64]
 Box = tuple[Floats, Floats]
 """Lowest and highest corner, (3,) each [m]."""
@@ -30,7 +32,11 @@ RING_JUMP = 1.35
 
 
 def free_lines(
-    sensor: Sensor, beams: Beams, length_m: float, colors: Floats, around: Box | None = None
+    sensor: Sensor,
+    beams: Beams,
+    length_m: float,
+    colors: Colors,
+    around: Box | None = None,
 ) -> Primitives:
     """Lines of the free beams, two pieces each, in (N, 4) colours.
 
@@ -52,7 +58,7 @@ def free_lines(
     return Primitives.of(points, shown)
 
 
-def stopped_lines(sensor: Sensor, beams: Beams, colors: Floats) -> Primitives:
+def stopped_lines(sensor: Sensor, beams: Beams, colors: Colors) -> Primitives:
     """Lines of the occluded beams, one piece each, in (N, 4) colours.
 
     A shorter line is drawn `STUB_M` long, because it would not be visible otherwise.
@@ -65,7 +71,7 @@ def stopped_lines(sensor: Sensor, beams: Beams, colors: Floats) -> Primitives:
     return Primitives.of(points, np.repeat(colors[stopped], 2, axis=0))
 
 
-def ground_rings(found: Cast, rows: NDArray[np.int64], colors: Floats) -> Primitives:
+def ground_rings(found: Cast, rows: NDArray[np.int64], colors: Colors) -> Primitives:
     """Rings where whole channels meet the ground, without occluded parts, in (R, 4) colours.
 
     `rows` (R,) are numbers of channels; channels that were not cast are left out.
@@ -92,7 +98,7 @@ def ground_distance(sensor: Sensor, directions: Floats) -> Floats:
     return np.divide(height, down, out=distance, where=down > 0.0)
 
 
-def _joined(found: Cast, beams: NDArray[np.int64], far: Floats, colors: Floats) -> Primitives:
+def _joined(found: Cast, beams: NDArray[np.int64], far: Floats, colors: Colors) -> Primitives:
     """Join near neighbours of each ring (R, K), and the last point with the first."""
     circle = len(lidar_of(found.sensor).azimuth_steps) == lidar_of(found.sensor).azimuth_count
     after = np.roll(far, -1, axis=1)

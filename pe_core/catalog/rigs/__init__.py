@@ -8,7 +8,7 @@ to another vehicle.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
@@ -59,7 +59,7 @@ class KnownRig:
     size: Sides | None
     sensors: tuple[KnownSensor, ...]
 
-    def on_vehicle(self, low: Sequence[float], high: Sequence[float]) -> tuple[KnownSensor, ...]:
+    def on_vehicle(self, low: Iterable[float], high: Iterable[float]) -> tuple[KnownSensor, ...]:
         """Return the sensors scaled to another vehicle with bounds `low` and `high`, (3,) [m].
 
         A coordinate within the bounds of the rig's vehicle keeps its share of the side; one outside

@@ -9,7 +9,8 @@ from .frames import pose_from_quaternion
 from .importing import STAND_INS, ImportedRig, import_rig
 from .lens_pictures import Picture, straight
 from .losses import MAX_RANGE, MIN_RANGE, MODEL, lost_line
-from .portable import PortableSensor, picture_of, portable_sensors, with_pictures
+from .portable import PortableSensor, with_pictures
+from .portable_kinds import picture_of, portable_sensors
 from .rig_formats import RIG_FORMATS, RigFormat, rig_format
 
 __all__ = [

@@ -5,11 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import math
+from dataclasses import replace
 from pathlib import Path
 
 from pe_core.base.errors import InputError
 from pe_core.base.values import Number, choice
-from pe_core.sensors import KINDS
 from pe_core.sensors.camera.lens_models import LENSES
 from pe_core.sensors.camera.sensor_table import FOV_DEG
 from pe_core.study.passthrough import json_entry
@@ -30,6 +30,7 @@ from .foreign_values import (
 from .lens_pictures import Picture
 from .passthrough import entry_row
 from .portable import PortableSensor
+from .portable_kinds import has_model
 
 FILE = "rig.csv"
 POSITION_KEYS, ROTATION_KEYS = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
@@ -37,6 +38,8 @@ FIGURES = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 LENS = (*FIGURES, "lens", "coefficients", "fov_deg")
 RANGES = ("min_range_m", "max_range_m")
 COLUMNS = ("name", "kind", "model", *POSITION_KEYS, *ROTATION_KEYS, "fusion", *LENS, *RANGES)
+PARAMETERS = "parameters"
+"""Column of a rig with sensors whose models have neither lens nor beams: tables as JSON."""
 HEAD = """\
 # Origin on the ground under the vehicle's centre; x forward, y left, z up; metres, degrees.
 # R = Rz(yaw) Ry(pitch) Rx(roll); positive pitch is nose down; a camera looks along its x axis.
@@ -47,32 +50,34 @@ HEAD = """\
 
 def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
     """Return the table of a rig, and no messages."""
+    rows = [
+        entry_row(sensor, lambda _: {}, (), ()) if sensor.is_left_out else _row(sensor)
+        for sensor in sensors
+    ]
+    columns = COLUMNS if not any(row.get(PARAMETERS) for row in rows) else (*COLUMNS, PARAMETERS)
     out = io.StringIO()
     out.write(HEAD)
-    table = csv.writer(out, lineterminator="\n")
-    table.writerow(COLUMNS)
-    for sensor in sensors:
-        if sensor.is_left_out:
-            row = entry_row(sensor, lambda _: {}, (), ())
-            table.writerow([row.get(key, "") for key in COLUMNS])
-            continue
-        numbers = (*sensor.pose.position, *sensor.pose.rotation_deg)
-        figures = [plain_number(v) for v in numbers]
-        table.writerow(
-            [
-                sensor.name,
-                sensor.kind,
-                sensor.known_model,
-                *figures,
-                sensor.fusion or "",
-                *_lens_cells(sensor.picture),
-                *(
-                    "" if v is None else plain_number(v)
-                    for v in (sensor.min_range, sensor.max_range)
-                ),
-            ]
-        )
+    table = csv.DictWriter(out, columns, extrasaction="ignore", lineterminator="\n")
+    table.writeheader()
+    table.writerows(rows)
     return {FILE: out.getvalue().encode()}, []
+
+
+def _row(sensor: PortableSensor) -> dict[str, str]:
+    """Return the cells of a sensor by column."""
+    numbers = (*sensor.pose.position, *sensor.pose.rotation_deg)
+    ranges = (sensor.min_range, sensor.max_range)
+    cells = (
+        sensor.name,
+        sensor.kind or "",
+        sensor.known_model or "",
+        *map(plain_number, numbers),
+        sensor.fusion or "",
+        *_lens_cells(sensor.picture),
+        *("" if v is None else plain_number(v) for v in ranges),
+        sensor.parameters,
+    )
+    return dict(zip((*COLUMNS, PARAMETERS), cells, strict=True))
 
 
 def _lens_cells(picture: Picture | None) -> list[str]:
@@ -115,11 +120,14 @@ def _read_row(path: Path, number: int, row: dict[str, str]) -> PortableSensor:
     numbers = [_number(path, number, row, key) for key in (*POSITION_KEYS, *ROTATION_KEYS)]
     pose = pose_from(path, f"row {number + 1}", numbers[:3], numbers[3:], degrees=True)
     kind, model, fusion = (row.get(key) or None for key in ("kind", "model", "fusion"))
-    entry = "" if kind is None or kind in KINDS else json_entry({k: row.get(k) for k in COLUMNS})
     nearest = _range(path, number, row, RANGES[0], MIN_RANGE)
     farthest = _range(path, number, row, RANGES[1], FARTHEST)
-    properties = kind, model, _picture(path, number, row), None, fusion
-    return PortableSensor(row["name"], pose, *properties, nearest, farthest, entry=entry)
+    properties = kind, model, _picture(path, number, row), None, fusion, nearest, farthest
+    sensor = PortableSensor(row["name"], pose, *properties, parameters=row.get(PARAMETERS) or "")
+    if kind is None or has_model(sensor):
+        return sensor
+    cells = {key: row.get(key) for key in (*COLUMNS, PARAMETERS) if key in row}
+    return replace(sensor, entry=json_entry(cells))
 
 
 def _range(path: Path, number: int, row: dict[str, str], key: str, rule: Number) -> float | None:

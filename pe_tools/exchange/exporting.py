@@ -14,7 +14,8 @@ from pe_core.study.passthrough import Passthrough
 from .frames import origin_in_ground, seen_from, shifted
 from .losses import lost_line
 from .passthrough import listed_kinds, model_text, restored
-from .portable import PortableSensor, portable_sensors, with_pictures
+from .portable import PortableSensor, with_pictures
+from .portable_kinds import portable_sensors
 from .rig_formats import RigFormat, rig_format
 
 

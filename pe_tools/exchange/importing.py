@@ -20,20 +20,19 @@ from .foreign_values import MAX_SENSORS, require_at_most
 from .frames import composed, origin_in_ground, shifted
 from .lens_pictures import alike
 from .passthrough import NO_WORD, listed_kinds, model_text, parted
-from .portable import (
-    CAMERA,
-    LIDAR,
-    PortableSensor,
+from .portable import PortableSensor, merged_lines, named_apart
+from .portable_kinds import (
+    PORTABLE_KINDS,
     camera_of,
-    lidar_of,
-    merged_lines,
-    named_apart,
+    kind_by_name,
     picture_of,
+    portable_kind,
+    stand_in_of,
     with_ranges,
 )
 from .rig_formats import RigFormat, detect_format, rig_format
 
-STAND_INS = {LIDAR: "Velodyne VLP-16 Puck", CAMERA: "nuScenes front"}
+STAND_INS = {kind: row.stand_in for kind, row in PORTABLE_KINDS.items() if row.stand_in}
 """Stand-in models by kind, for sensors whose model the file does not name."""
 CHOOSE = "choose its model"
 Modelled = tuple[PortableSensor, SensorModel, str]
@@ -199,15 +198,9 @@ def _kept(
 
 def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> Modelled:
     """Return a sensor with its kind resolved, its model, and a message about the model."""
-    sensor = replace(
-        sensor, kind=sensor.kind or (CAMERA if _sounds_like_a_camera(sensor.name) else LIDAR)
-    )
+    sensor = replace(sensor, kind=sensor.kind or kind_by_name(sensor.name))
     model, line = _model(sensor, chosen, row)
     return row.settled(replace(sensor, model=model.name)), model, line
-
-
-def _sounds_like_a_camera(name: str) -> bool:
-    return any(word in name.lower() for word in LENS_NAMES)
 
 
 def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[SensorModel, str]:
@@ -216,12 +209,10 @@ def _model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> tuple[
     if (catalogue_name := _known(sensor)) is not None:
         model, line = _known_or_own(sensor, catalog.load(catalogue_name), row)
         return with_ranges(model, sensor), line
-    if sensor.kind == CAMERA and sensor.picture is not None:
-        camera, line = camera_of(sensor.name, sensor.picture, row.usual_size)
-        return with_ranges(camera, sensor), line
-    if sensor.kind == LIDAR and sensor.scan is not None:
-        return lidar_of(sensor.name, sensor.scan), ""
-    stand_in = STAND_INS.get(sensor.kind or "", STAND_INS[LIDAR])
+    if (own := portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
+        return own
+    stand_in = stand_in_of(sensor.kind or "")
+    assert stand_in is not None, "`parted` has left it out"
     reason = (
         f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"
     )

@@ -11,15 +11,18 @@ from collections.abc import Iterator
 from pe_core import catalog
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 
-from .portable import PortableSensor, portable_sensors
+from .portable import PortableSensor
+from .portable_kinds import portable_sensors
 
 MODEL = "model"
 """The model name; properties of a catalogued model are then not lost."""
 BEAMS = "beams"
 """A LiDAR's channels, azimuths and range."""
 MIN_RANGE, MAX_RANGE = "minimum range", "maximum range"
+PARAMETERS = "parameters"
+"""The table of a model that has neither lens nor beams."""
 FUSION, CURVE = "fusion group", "AP curve"
-EVERYTHING = (BEAMS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
+EVERYTHING = (BEAMS, PARAMETERS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
 
 
 def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
@@ -55,6 +58,9 @@ def _owned(sensor: Sensor, portable: PortableSensor, holds: frozenset[str]) -> I
         yield BEAMS
         if BEAMS not in holds:
             return  # with its ranges
+    if portable.parameters:
+        yield PARAMETERS
+        return  # with its ranges
     if portable.min_range is not None:
         yield MIN_RANGE
     if portable.max_range is not None and portable.scan is None:

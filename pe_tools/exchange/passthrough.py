@@ -25,6 +25,7 @@ from pe_core.study.passthrough import Passthrough, SourceSensor, json_entry
 
 from .foreign_values import pose_from
 from .portable import PortableSensor
+from .portable_kinds import has_model
 
 ORIGIN = Pose((0.0, 0.0, 0.0))
 UNMOVED_M, UNTURNED = 2e-5, 4e-6
@@ -40,7 +41,8 @@ def restored_sensor(source: SourceSensor, sensor: PortableSensor, model: str) ->
     """Return a sensor with its imported entry, and without properties that have not changed."""
     untouched = bool(source.entry or source.is_stand_in) and same_model(source.model, model)
     if untouched:
-        sensor = replace(sensor, picture=None, scan=None, is_stand_in=source.is_stand_in)
+        sensor = replace(sensor, picture=None, scan=None, parameters="")
+        sensor = replace(sensor, is_stand_in=source.is_stand_in)
         sensor = replace(sensor, min_range=None, max_range=None)
     unmoved = source.pose is not None and same_pose(source.pose, sensor.pose)
     return replace(sensor, entry=source.entry, is_unmoved=unmoved)
@@ -135,7 +137,7 @@ def entry_row(
     if sensor.is_left_out:
         return row
     changed = [*([] if sensor.is_unmoved else pose_keys)]
-    changed += figure_keys if sensor.picture is not None or sensor.scan is not None else []
+    changed += figure_keys if sensor.has_figures else []
     current = fresh(sensor) if changed else {}
     for key in changed:
         if key in current:
@@ -182,7 +184,11 @@ def parted(
     included, left_out = [], []
     for sensor in sensors:
         kind = sensor.kind or ("" if sensor.name in chosen else _kind_in_name(sensor))
-        if not kind or kind in KINDS:
+        if (
+            not kind
+            or has_model(replace(sensor, kind=kind))
+            or (kind in KINDS and sensor.name in chosen)
+        ):
             included.append(sensor)
         else:
             entry = sensor.entry or pose_entry(sensor)
@@ -191,7 +197,7 @@ def parted(
 
 
 def _kind_in_name(sensor: PortableSensor) -> str:
-    if sensor.model is not None or sensor.picture is not None or sensor.scan is not None:
+    if sensor.model is not None or sensor.has_figures:
         return ""
     words = NO_WORD.sub(" ", sensor.name.lower()).split()
     return next((kind for kind in NAMED_KINDS if kind in words), "")

@@ -35,7 +35,7 @@ from .lens_pictures import (
     straight,
     whole,
 )
-from .losses import BEAMS, FUSION, MAX_RANGE, MIN_RANGE, MODEL
+from .losses import BEAMS, FUSION, MAX_RANGE, MIN_RANGE, MODEL, PARAMETERS
 from .portable import PortableSensor
 
 Carried = tuple[PortableSensor, ...]
@@ -101,7 +101,7 @@ _ROWS = (
         csv_table.write,
         csv_table.read,
         passes_through=True,
-        holds=frozenset({MODEL, FUSION, MIN_RANGE, MAX_RANGE}),
+        holds=frozenset({MODEL, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE}),
     ),
     RigFormat(
         "urdf",
@@ -111,7 +111,7 @@ _ROWS = (
         urdf.write,
         urdf.read,
         keeps=opencv_of_five,
-        holds=frozenset({MODEL, BEAMS, FUSION, MIN_RANGE, MAX_RANGE}),
+        holds=frozenset({MODEL, BEAMS, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE}),
         write_over=urdf.write_over,
         source=urdf.source,
         passes_through=True,

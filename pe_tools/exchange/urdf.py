@@ -15,7 +15,6 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import read_bytes
 from pe_core.geometry.poses import Pose
-from pe_core.sensors import KINDS
 from pe_tools.formats.xml_text import parse_xml
 
 from .foreign_values import (
@@ -35,6 +34,7 @@ from .frames import OPTICAL_RPY, seen_from
 from .gazebo import SensorElement, picture_in, scan_in, write_clip, write_picture, write_scan
 from .passthrough import entry_row, pose_entry, pose_of_entry
 from .portable import CAMERA, LIDAR, PortableSensor, uneven
+from .portable_kinds import has_model
 
 RANGES = ("min_range", "max_range")
 FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"
@@ -130,6 +130,7 @@ def _gazebo(robot: Element, sensor: PortableSensor) -> None:
         "fusion": sensor.fusion or "",
     }
     attributes |= {k: "" if (v := getattr(sensor, k)) is None else plain_number(v) for k in RANGES}
+    attributes["parameters"] = sensor.parameters
     attributes = {k: v for k, v in attributes.items() if v or k in ("kind", "model")}
     SubElement(block, "perception_entropy", attributes)
     if kind is None or (sensor.picture is None and sensor.scan is None):
@@ -205,7 +206,7 @@ def _origin_line(origin: str, poses: dict[str, Pose]) -> str:
 
 def _with_entry(sensor: PortableSensor, robot: Element) -> PortableSensor:
     """Return a sensor; one of unknown kind gets the Gazebo elements of its link as entry."""
-    if sensor.kind is None or sensor.kind in KINDS:
+    if sensor.kind is None or has_model(sensor):
         return sensor
     blocks = [b for b in robot.iter("gazebo") if b.get("reference") == sensor.name]
     texts = [tostring(block, "unicode").strip() for block in blocks]
@@ -283,11 +284,12 @@ def _sensor(path: Path, name: str, poses: dict[str, Pose], block: Element | None
 
 
 def _known(path: Path, name: str, project_element: Element) -> dict[str, Any]:
-    """Return a sensor's fusion group and ranges, from the element perception_entropy."""
+    """Return fusion group, ranges and parameters of a sensor, from its perception_entropy."""
     rules = dict(zip(RANGES, (MIN_RANGE, FARTHEST), strict=True))
     ranges = {
         key: figure(path, f"sensor of {name}, {key}", project_element.get(key), rule)
         for key, rule in rules.items()
         if project_element.get(key) is not None
     }
-    return {"fusion": project_element.get("fusion") or None, **ranges}
+    texts = {key: project_element.get(key, "") for key in ("fusion", "parameters")}
+    return {"fusion": texts["fusion"] or None, "parameters": texts["parameters"], **ranges}

@@ -17,7 +17,8 @@ from pe_core.scene import Sensor, rotate
 from ..exchange import Written
 from ..exchange.frames import quaternion
 from ..exchange.lens_pictures import centred
-from ..exchange.portable import PortableSensor, portable_sensors, with_pictures
+from ..exchange.portable import PortableSensor, with_pictures
+from ..exchange.portable_kinds import portable_sensors
 from ..graphics import sensor_color_on_paper
 from .glb import LINES, GlbScene, add_vehicle, view_wires, y_up
 from .request import OutputRequest

@@ -15,6 +15,7 @@ from pe_core import catalog
 from pe_core import sensors as kinds
 from pe_core.metric import entropy_of, late_fusion, precision_of
 from pe_tools.cli.verbs import main
+from pe_tools.exchange import RIG_FORMATS
 from tests.engine import shapes
 from tests.engine.toy_kind import CURVE, Ring, RingKind
 
@@ -196,3 +197,48 @@ def test_threads_may_share_a_sampled_evaluator():
     with ThreadPoolExecutor(4) as pool:
         found = list(pool.map(lambda rig: shared.score(rig).to_dict(), rigs * 5))
     assert found == expected * 5
+
+
+def test_it_goes_through_other_programs_files(ring_kind, tmp_path):
+    """By its table where a format has room for it; elsewhere a line says what is left out."""
+    away = pe.Sensor(
+        "away", Ring("long", 7.5), pe.Pose.from_degrees((2, 1, 0.5), (0, 5, 30)), "all"
+    )
+    rig = pe.Rig([away, shapes.lidar_on_roof(), shapes.camera()])
+    told = {}
+    for name in RIG_FORMATS:
+        _, told[name] = pe.export_rig(rig, name, tmp_path / name, pe.Reference(-1.3, 0.3))
+    for name in ("csv", "urdf"):
+        assert not any("parameters" in line for line in told.pop(name))
+        back = pe.import_rig(tmp_path / name, name).rig["away"]
+        assert (back.model.name, back.model.range_m, back.fusion) == ("long", 7.5, "all")
+        assert back.pose.position == pytest.approx(away.pose.position, abs=1e-9)
+    for name, lines in told.items():
+        assert any("away" in line and ("left out" in line or "no ul" in line) for line in lines), (
+            name
+        )
+
+
+def test_a_table_that_is_none_is_one_line(ring_kind, tmp_path):
+    (path,), _ = pe.export_rig(pe.Rig([ring()]), "csv", tmp_path / "rig.csv")
+    text = path.read_text()
+    for wrong, message in (('"{"', "a table of a model"), ('"{}"', "bumper|ring: kind")):
+        path.write_text(text.replace('"{""kind"":""ultrasonic"",""range_m"":4.0}"', wrong))
+        with pytest.raises(pe.InputError, match=message):
+            pe.import_rig(path)
+
+
+def test_without_its_kind_its_row_passes_through(tmp_path):
+    """Imported where the kind is unknown, or has no model: left out, and written as it came."""
+    kind = RingKind()
+    kinds.register(kind)
+    rig = pe.Rig([ring(), shapes.lidar_on_roof()])
+    try:
+        (path,), _ = pe.export_rig(rig, "csv", tmp_path / "rig.csv")
+    finally:
+        kinds.unregister(kind.name)
+    found = pe.import_rig(path)
+    assert [sensor.name for sensor in found.rig] == ["roof"]
+    options = {"passthrough": found.passthrough}
+    (again,), _ = pe.export_rig(found.rig, "csv", tmp_path / "again.csv", **options)
+    assert again.read_text().splitlines()[5] == path.read_text().splitlines()[5]

@@ -1,0 +1,232 @@
+"""How each kind of sensor goes through the exchange model: one table, a row a kind.
+
+A kind without a row goes by its table in a study, in the formats that have room for it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from pe_core import catalog
+from pe_core.base.errors import InputError
+from pe_core.scene.rig import Rig, Sensor, SensorModel
+from pe_core.sensors import KINDS
+from pe_core.sensors.camera import Camera, Lens
+from pe_core.sensors.camera.lens import fold_angle
+from pe_core.sensors.lidar import Lidar
+from pe_core.study.passthrough import json_entry
+
+from .lens_pictures import ALIKE_PX, Picture, Size
+from .portable import CAMERA, EVEN_RAD, LIDAR, PortableSensor, Scan
+
+NO_EXTENT_RAD = 1e-9
+"""A scan with a smaller horizontal field of view does not rotate [rad]."""
+OFF_CENTER = 0.06
+"""Of a picture's side, how far from the middle the principal point of a usual size may be:
+nuScenes' own cameras have it 0.046 below."""
+RANGES = {"min_range": 0.0, "max_range": math.inf}
+"""Ranges of a model, and the values that no file states [m]."""
+
+OwnModel = tuple[SensorModel, str]
+"""A model made of a file's figures, and a message on it (may be empty)."""
+
+
+@dataclass(frozen=True, slots=True)
+class PortableKind:
+    """How the exchange model expresses the sensors of a kind.
+
+    Attributes
+    ----------
+    figures : callable
+        From a model to the fields of `PortableSensor` that describe it.
+    model : callable
+        From a sensor and the usual image size of its format to the model of its figures; None for
+        a sensor without figures of the kind.
+    stand_in : str or None
+        Catalogue name of the model that stands in where a file names none.
+    name_parts : tuple of str
+        Parts of a name that identify the kind, if a file does not state it.
+    """
+
+    figures: Callable[[Any], Mapping[str, Any]]
+    model: Callable[[PortableSensor, Size | None], OwnModel | None]
+    stand_in: str | None = None
+    name_parts: tuple[str, ...] = ()
+
+
+def portable_kind(name: str | None) -> PortableKind:
+    """Return the row of a kind."""
+    return PORTABLE_KINDS.get(name or "", OTHER)
+
+
+def stand_in_of(kind: str) -> str | None:
+    """Return the catalogue name of the model that stands in for an unknown one of a kind.
+
+    It is the first of the catalogue where the kind has no row; None if there is none.
+    """
+    return portable_kind(kind).stand_in or next(iter(catalog.names(kind)), None)
+
+
+def has_model(sensor: PortableSensor) -> bool:
+    """Whether a sensor's kind is known, and the file or the catalogue has a model for it."""
+    kind = sensor.kind or ""
+    return kind in KINDS and (sensor.has_figures or stand_in_of(kind) is not None)
+
+
+def kind_by_name(name: str) -> str:
+    """Return the kind of a sensor by its name; a LiDAR where nothing in it identifies one."""
+    lowered = name.lower()
+    rows = PORTABLE_KINDS.items()
+    return next((k for k, row in rows if any(p in lowered for p in row.name_parts)), LIDAR)
+
+
+def portable_sensors(rig: Rig) -> tuple[PortableSensor, ...]:
+    """Return the sensors of a rig, in the ground frame."""
+    return tuple(_portable(sensor) for sensor in rig)
+
+
+def _portable(sensor: Sensor) -> PortableSensor:
+    model = sensor.model
+    figures = dict(portable_kind(sensor.kind).figures(model))
+    for key, default in RANGES.items():
+        if (value := getattr(model, key, default)) != default:
+            figures[key] = value
+    identity = (sensor.name, sensor.pose, sensor.kind, model.name)
+    return PortableSensor(*identity, fusion=sensor.fusion, **figures)
+
+
+def with_ranges(model: SensorModel, sensor: PortableSensor) -> SensorModel:
+    """Return a model with the minimum and maximum range of the file, if it states them."""
+    if not is_dataclass(model):
+        return model
+    stated = {key: getattr(sensor, key) for key in RANGES.keys() & {f.name for f in fields(model)}}
+    new = {k: v for k, v in stated.items() if v is not None and v != getattr(model, k)}
+    return replace(model, **new) if new else model
+
+
+def picture_of(model: object) -> Picture | None:
+    """Return a camera's intrinsics; None for a model that is no camera."""
+    if not isinstance(model, Camera):
+        return None
+    return Picture(model.projection, (model.width, model.height))
+
+
+def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera, str]:
+    """Return the camera model of intrinsics, and a message on assumptions (may be empty).
+
+    Intrinsics without an image size get the usual size of the format, if the principal point is
+    near its middle, or else the size whose middle is the principal point. If the lens folds inside
+    the image, the field of view is limited to the part before the fold.
+    """
+    if p.size is not None:
+        return _camera(name, p, p.size)
+    (width, height), reason = _made_up_size(p, usual)
+    model, _ = _camera(name, p, (width, height))
+    return model, f"{name}: no size in the file; {width} x {height} px {reason}"
+
+
+def _made_up_size(p: Picture, usual: Size | None) -> tuple[Size, str]:
+    """Return an assumed image size [px], and the reason for it."""
+    doubled = [2.0 * middle for middle in p.center]
+    width, height = (round(side) for side in doubled)
+    is_centred = max(abs(doubled[0] - width), abs(doubled[1] - height)) < ALIKE_PX
+    if usual is None or is_centred:  # calibrations do not have half pixels by chance
+        return (width, height), "has its middle there"
+    offset = max(abs(side / whole - 1.0) / 2.0 for side, whole in zip(doubled, usual, strict=True))
+    if offset < OFF_CENTER:
+        return usual, "is usual there"
+    return (width, height), "has its middle there"
+
+
+def _camera(name: str, p: Picture, size: tuple[int, int]) -> tuple[Camera, str]:
+    if replace(p, size=size).is_plain:
+        return Camera(name, *size, 2.0 * math.atan(size[0] / (2.0 * p.fx))), ""
+    try:
+        return Camera(name, *size, lens=p.lens), ""
+    except InputError:
+        if p.lens.fov is not None:
+            raise
+    unfolded = _unfolded(p.lens)
+    message = (
+        f"{name}: its lens folds inside the picture; what is farther than {{:g}} deg from the "
+    )
+    line = message.format(math.degrees(unfolded.fov or 0.0) / 2.0) + "axis is left out"
+    return Camera(name, *size, lens=unfolded), line
+
+
+def _unfolded(lens: Lens) -> Lens:
+    """Return the lens limited to the field of view where it is invertible, to 0.1 degrees."""
+    degrees = math.floor(math.degrees(2.0 * fold_angle(lens)) * 10.0) / 10.0
+    return replace(lens, fov=math.radians(max(degrees, 0.1)))
+
+
+def lidar_of(name: str, scan: Scan) -> Lidar:
+    """Return the LiDAR model of a scan, from its listed beams or else with even channels."""
+    ranges = scan.max_range, scan.min_range
+    if scan.directions is not None:
+        return Lidar.from_directions(name, scan.directions, *ranges)
+    elevations = np.linspace(scan.low, scan.high, scan.channels)
+    low, high = scan.fov
+    if high - low < NO_EXTENT_RAD:  # it does not rotate: all of its channels have one azimuth
+        level = np.cos(elevations)
+        beams = [level * math.cos(low), level * math.sin(low), np.sin(elevations)]
+        return Lidar.from_directions(name, np.stack(beams, axis=1), *ranges)
+    share = min((high - low) / (2.0 * math.pi), 1.0)
+    steps = max(round(scan.azimuths / share), 1)
+    fov = scan.fov
+    return Lidar(
+        name, elevations, steps, scan.max_range, horizontal_fov=fov, min_range=scan.min_range
+    )
+
+
+def _scan(model: Lidar) -> Scan:
+    angles = sorted(model.elevations.tolist())
+    step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
+    even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
+    offset = float(np.abs(model.azimuth_offsets).max())
+    figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
+    return Scan(*figures, model.max_range, even, None, model.min_range, model, offset)
+
+
+def _camera_model(sensor: PortableSensor, usual: Size | None) -> OwnModel | None:
+    if sensor.picture is None:
+        return None
+    model, line = camera_of(sensor.name, sensor.picture, usual)
+    return with_ranges(model, sensor), line
+
+
+def _lidar_model(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
+    return None if sensor.scan is None else (lidar_of(sensor.name, sensor.scan), "")
+
+
+def _model_by_table(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
+    if not sensor.parameters:
+        return None
+    try:
+        table = json.loads(sensor.parameters)
+    except ValueError as error:
+        raise InputError(sensor.name, "parameters", "a table of a model (JSON)", error) from None
+    return catalog.from_table(sensor.model or sensor.name, table), ""
+
+
+PORTABLE_KINDS: dict[str, PortableKind] = {
+    LIDAR: PortableKind(lambda model: {"scan": _scan(model)}, _lidar_model, "Velodyne VLP-16 Puck"),
+    CAMERA: PortableKind(
+        lambda model: {"picture": picture_of(model)},
+        _camera_model,
+        "nuScenes front",
+        ("cam", "fisheye", "rgb", "image"),
+    ),
+}
+"""Rows by kind; other kinds are expressed by `OTHER`."""
+OTHER = PortableKind(
+    lambda model: {"parameters": json_entry(catalog.to_table(model))}, _model_by_table
+)
+"""The row of a kind without one."""

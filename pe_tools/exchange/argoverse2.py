@@ -21,7 +21,8 @@ from pe_core.geometry.poses import METRES
 from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Written
 from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
 from .lens_pictures import Picture, pinhole_picture
-from .portable import CAMERA, LIDAR, PortableSensor
+from .portable import PortableSensor
+from .portable_kinds import CAMERA, LIDAR
 
 POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
 TITLE, NAME = "Argoverse 2", "sensor_name"

@@ -24,7 +24,8 @@ from .camera_info import info_files, with_info
 from .foreign_values import Written, named_numbers, plain_number, pose_from, text_of
 from .frame_tree import with_legal_frames
 from .frames import composed, seen_from
-from .portable import CAMERA, LIDAR, PortableSensor, merged_lines
+from .portable import PortableSensor, merged_lines
+from .portable_kinds import CAMERA, LIDAR
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"

@@ -43,7 +43,8 @@ from .frame_tree import with_legal_frames
 from .frames import seen_from
 from .lens_pictures import alike
 from .passthrough import is_there, is_turned_so
-from .portable import CAMERA, PortableSensor
+from .portable import PortableSensor
+from .portable_kinds import CAMERA
 
 NO_INFO = "the kit has no camera_info of it; its lens is not written"
 

@@ -21,7 +21,8 @@ from pe_tools.exchange.yaml_text import parse_yaml_blocks
 
 from .foreign_values import PIXELS, plain_number, text_of
 from .lens_pictures import Picture
-from .portable import CAMERA, PortableSensor
+from .portable import PortableSensor
+from .portable_kinds import CAMERA
 
 FOLDER = "camera_info"
 PLUMB_BOB, RATIONAL, EQUIDISTANT = "plumb_bob", "rational_polynomial", "equidistant"

@@ -31,7 +31,8 @@ from .foreign_values import (
 from .frame_tree import with_legal_frames
 from .lens_pictures import Picture, picture_of_fov
 from .passthrough import ORIGIN, entry_row
-from .portable import CAMERA, LIDAR, PortableSensor, Scan, uneven
+from .portable import PortableSensor, Scan, uneven
+from .portable_kinds import CAMERA, LIDAR
 
 FILE = "objects.json"
 TYPES = {CAMERA: "sensor.camera.rgb", LIDAR: "sensor.lidar.ray_cast"}

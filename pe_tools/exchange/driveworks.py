@@ -40,7 +40,8 @@ from .foreign_values import (
 from .frames import composed, shifted
 from .lens_pictures import Picture, pinhole_picture
 from .passthrough import ORIGIN, entry_row
-from .portable import CAMERA, LIDAR, PortableSensor
+from .portable import PortableSensor
+from .portable_kinds import CAMERA, LIDAR
 
 FILE = "rig.json"
 POSE_KEY, ROTATION_KEY, POSITION_KEY = "nominalSensor2Rig_FLU", "roll-pitch-yaw", "t"

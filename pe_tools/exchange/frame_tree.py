@@ -12,7 +12,8 @@ from pe_core.geometry.poses import Pose
 
 from .foreign_values import MAX_FRAMES, require_at_most
 from .frames import composed
-from .portable import CAMERA, PortableSensor
+from .portable import PortableSensor
+from .portable_kinds import CAMERA
 
 ORIGIN = Pose((0.0, 0.0, 0.0))
 Hung = Mapping[str, tuple[str, Pose]]

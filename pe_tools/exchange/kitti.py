@@ -18,7 +18,8 @@ from pe_core.geometry.poses import Pose
 from .foreign_values import Written, figures, spaced, text_of
 from .frames import BODY_FROM_OPTICAL, Floats, checked_rotation, pose_of, product, turned
 from .lens_pictures import pinhole_picture
-from .portable import CAMERA, LIDAR, PortableSensor, cameras, lidars
+from .portable import PortableSensor
+from .portable_kinds import CAMERA, LIDAR, cameras, lidars
 
 FILE, MAX_CAMERAS = "calib.txt", 4
 RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")

@@ -30,7 +30,8 @@ from .frames import (
 )
 from .lens_pictures import Picture, pinhole_picture, with_fourth
 from .passthrough import entry_row
-from .portable import CAMERA, LIDAR, PortableSensor
+from .portable import PortableSensor
+from .portable_kinds import CAMERA, LIDAR
 
 CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
 FIVE = ("k1", "k2", "p1", "p2", "k3")

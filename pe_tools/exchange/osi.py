@@ -39,7 +39,8 @@ from .foreign_values import (
 )
 from .lens_pictures import picture_of_fov
 from .passthrough import entry_row
-from .portable import CAMERA, LIDAR, PortableSensor, Scan
+from .portable import PortableSensor, Scan
+from .portable_kinds import CAMERA, LIDAR
 
 FILE = "sensor_view_configuration.json"
 OTHER_KINDS = ("radar", "ultrasonic")

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pe_core.geometry.poses import Pose
-from pe_core.sensors.camera import Camera
-from pe_core.sensors.lidar import Lidar
 
 from .lens_pictures import KeptPicture, Picture, lost
 
 Floats = NDArray[np.float64]
-
-CAMERA, LIDAR = Camera.kind, Lidar.kind
-
 
 EVEN_RAD = 1e-4
 """Channels nearer to even distances than this are even."""
@@ -30,8 +25,8 @@ class Scan:
 
     Angles are in radians, ranges in metres. `low` and `high` are the elevations of the outer
     channels, `fov` is the azimuth range. `even` tells whether the channels are evenly spaced.
-    `directions` (B, 3) are the beams of an imported file that lists them. `model` is the LiDAR of a
-    rig that is exported; its channels have azimuth offsets of up to `offset_rad`.
+    `directions` (B, 3) are the beams of an imported file that lists them; for a LiDAR of a rig,
+    `compute_beams` computes them. Its channels have azimuth offsets of up to `offset_rad`.
     """
 
     channels: int
@@ -43,13 +38,13 @@ class Scan:
     even: bool = True
     directions: Floats | None = None
     min_range: float = 0.0
-    model: Lidar | None = None
+    compute_beams: Callable[[], Floats] | None = None
     offset_rad: float = 0.0
 
     @property
     def beams(self) -> Floats | None:
         """(B, 3) directions of the beams, computed on access; None if unknown."""
-        return self.directions if self.model is None else self.model.directions
+        return self.directions if self.compute_beams is None else self.compute_beams()
 
     @property
     def beam_count(self) -> int:
@@ -125,16 +120,6 @@ class PortableSensor:
     def called(self, name: str) -> PortableSensor:
         """Return the sensor with another name."""
         return replace(self, name=name)
-
-
-def cameras(sensors: Iterable[PortableSensor]) -> list[PortableSensor]:
-    """Return the cameras among the sensors."""
-    return [sensor for sensor in sensors if sensor.kind == CAMERA]
-
-
-def lidars(sensors: Iterable[PortableSensor]) -> list[PortableSensor]:
-    """Return the LiDARs among the sensors."""
-    return [sensor for sensor in sensors if sensor.kind == LIDAR]
 
 
 def uneven(sensors: Iterable[PortableSensor], title: str) -> list[str]:

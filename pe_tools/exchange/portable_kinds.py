@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -24,8 +24,9 @@ from pe_core.sensors.lidar import Lidar
 from pe_core.study.passthrough import json_entry
 
 from .lens_pictures import ALIKE_PX, Picture, Size
-from .portable import CAMERA, EVEN_RAD, LIDAR, PortableSensor, Scan
+from .portable import EVEN_RAD, PortableSensor, Scan
 
+CAMERA, LIDAR = Camera.kind, Lidar.kind
 NO_EXTENT_RAD = 1e-9
 """A scan with a smaller horizontal field of view does not rotate [rad]."""
 OFF_CENTER = 0.06
@@ -100,6 +101,16 @@ def _portable(sensor: Sensor) -> PortableSensor:
             figures[key] = value
     identity = (sensor.name, sensor.pose, sensor.kind, model.name)
     return PortableSensor(*identity, fusion=sensor.fusion, **figures)
+
+
+def cameras(sensors: Iterable[PortableSensor]) -> list[PortableSensor]:
+    """Return the cameras among the sensors."""
+    return [sensor for sensor in sensors if sensor.kind == CAMERA]
+
+
+def lidars(sensors: Iterable[PortableSensor]) -> list[PortableSensor]:
+    """Return the LiDARs among the sensors."""
+    return [sensor for sensor in sensors if sensor.kind == LIDAR]
 
 
 def with_ranges(model: SensorModel, sensor: PortableSensor) -> SensorModel:
@@ -192,7 +203,10 @@ def _scan(model: Lidar) -> Scan:
     even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
     offset = float(np.abs(model.azimuth_offsets).max())
     figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
-    return Scan(*figures, model.max_range, even, None, model.min_range, model, offset)
+    ranges = {"max_range": model.max_range, "min_range": model.min_range}
+    return Scan(
+        *figures, **ranges, even=even, offset_rad=offset, compute_beams=lambda: model.directions
+    )
 
 
 def _camera_model(sensor: PortableSensor, usual: Size | None) -> OwnModel | None:

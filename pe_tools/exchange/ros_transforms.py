@@ -30,7 +30,8 @@ from .foreign_values import (
 from .frame_tree import OPTICAL, poses_from_root, with_optical_frames
 from .frames import OPTICAL_RPY, from_quaternion, pose_of
 from .passthrough import pose_of_entry
-from .portable import CAMERA, PortableSensor
+from .portable import PortableSensor
+from .portable_kinds import CAMERA
 
 FILE, ROOT = "rig.launch.xml", "base_link"
 AXES = (

@@ -33,8 +33,8 @@ from .frame_tree import OPTICAL, poses_from_root, with_optical_frames
 from .frames import OPTICAL_RPY, seen_from
 from .gazebo import SensorElement, picture_in, scan_in, write_clip, write_picture, write_scan
 from .passthrough import entry_row, pose_entry, pose_of_entry
-from .portable import CAMERA, LIDAR, PortableSensor, uneven
-from .portable_kinds import has_model
+from .portable import PortableSensor, uneven
+from .portable_kinds import CAMERA, LIDAR, has_model
 
 RANGES = ("min_range", "max_range")
 FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"

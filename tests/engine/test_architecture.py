@@ -269,11 +269,11 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
     own = ("pe_core/sensors/lidar/", "pe_core/sensors/camera/", "pe_core/sensors/__init__.py")
     tables = (
         *("pe_tools/graphics/", "pe_tools/reproduction/", "pe_tools/validity/"),
-        "pe_tools/page/pictures/sensor_views.py",
+        *("pe_tools/page/pictures/sensor_views.py", "pe_tools/exchange/portable_kinds.py"),
     )
     offenders = []
     for name, path in files(*ROOMS).items():
-        if name.startswith((*own, *tables)) or name.count("/") == 1 or name in TELLS_KINDS_APART:
+        if name.startswith((*own, *tables)) or name.count("/") == 1:
             continue
         named = {full.rsplit(".")[-1] for full in imported(path)} & {"Lidar", "Camera"}
         texts = {node.value for node in nodes(path) if isinstance(node, ast.Constant)} & {
@@ -283,12 +283,6 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
         if named | texts:
             offenders.append(name)
     assert not offenders
-
-
-TELLS_KINDS_APART = {
-    "pe_tools/exchange/portable.py",
-}
-"""Files of other programs know these two kinds alone; the paper of `reproduction`, too."""
 
 
 def taken(source):

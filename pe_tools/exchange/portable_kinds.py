@@ -203,9 +203,13 @@ def _scan(model: Lidar) -> Scan:
     even = all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles))
     offset = float(np.abs(model.azimuth_offsets).max())
     figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
-    ranges = {"max_range": model.max_range, "min_range": model.min_range}
     return Scan(
-        *figures, **ranges, even=even, offset_rad=offset, compute_beams=lambda: model.directions
+        *figures,
+        model.max_range,
+        even,
+        min_range=model.min_range,
+        compute_beams=lambda: model.directions,
+        offset_rad=offset,
     )
 
 

@@ -6,7 +6,7 @@ ARGS ?=
 ON_ALL_PROCESSORS := --numprocesses auto --dist loadscope --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
-.PHONY: demo test properties mutants bench lint extension screenshots clean help
+.PHONY: demo test properties mutants bench lint extension release screenshots clean help
 
 demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, the better .blend
 	@tools/demo.sh $(ARGS)
@@ -35,6 +35,9 @@ lint: .venv/dev.stamp  ## style, format, types
 extension: .venv/run.stamp  ## build the Blender extension, dist/perception_entropy-VERSION.zip
 	@$(PYTHON_VENV) tools/build_extension.py
 
+release: .venv/release.stamp  ## build and check all that is published, from a clean tree: dist/release-VERSION
+	@$(PYTHON_VENV) tools/release.py --install $(ARGS)
+
 screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide" for some, needs a Blender
 	@$(PYTHON_VENV) tools/screenshots.py $(ARGS)
 
@@ -45,6 +48,10 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 
 .venv/dev.stamp: .venv/run.stamp
 	@tools/make_venv.sh blender,test,report,meshes,cad,rerun,argoverse,dev
+	@touch $@
+
+.venv/release.stamp: .venv/run.stamp
+	@tools/make_venv.sh blender,release
 	@touch $@
 
 clean:  ## remove the environment and everything made

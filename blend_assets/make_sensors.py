@@ -71,7 +71,7 @@ def make_sensor(entry: pe.catalog.Entry) -> bpy.types.Object:
     obj.asset_mark()
     data = obj.asset_data
     data.catalog_id = catalog_id(path_of(entry))
-    data.author, data.license = "perception-entropy contributors", "GPL-3.0-or-later"
+    data.author, data.license = "perception-entropy contributors", "CC0-1.0"
     data.description = description(entry)
     for tag in tags(entry):
         data.tags.new(tag, skip_if_exists=True)

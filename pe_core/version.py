@@ -1,3 +1,3 @@
-"""Version of the engine; pyproject.toml and the add-on's manifest have the same."""
+"""The version: pyproject.toml takes it from here, the build of the extension checks its manifest."""
 
 __version__ = "0.1.0"

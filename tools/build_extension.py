@@ -41,19 +41,18 @@ class BuildError(Exception):
 
 
 def agreed_version() -> str:
-    """Return the version that project, engine and manifest give; they must agree."""
+    """Return the version that engine and manifest give; they must agree."""
     for needed in (MANIFEST, ENGINE / "version.py"):
         if not needed.exists():
             raise BuildError(f"{needed.relative_to(ROOT)} is missing")
     said = {
-        "pyproject.toml": tomllib.loads(read("pyproject.toml"))["project"]["version"],
         "pe_core/version.py": re.findall(r'__version__ = "(.+)"', read("pe_core/version.py"))[0],
         "blender_addon/blender_manifest.toml": tomllib.loads(read(MANIFEST))["version"],
     }
     if len(set(said.values())) > 1:
         listed = ", ".join(f"{version} in {file}" for file, version in said.items())
         raise BuildError(f"the version is to be the same everywhere: {listed}")
-    return said["pyproject.toml"]
+    return said["pe_core/version.py"]
 
 
 def read(path: str | Path) -> str:

@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+"""Build a release from a clean tree: ``dist/release-VERSION/`` with all that is published.
+
+==========================  ====================================================================
+``perception_entropy-*.zip``  the Blender extension, validated by every Blender that is found
+``*.whl``, ``*.tar.gz``       wheel and sdist, checked by twine, installed into empty environments
+``repository/``               a repository of extensions: ``index.json`` for Blender, and a page
+``NOTES.md``                  the changelog of this version
+``SHA256SUMS``                checksums of all files above
+==========================  ====================================================================
+
+Nothing is published: the folder is what a server or a release page gets.
+"""
+
+import argparse
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import build_extension
+from build_extension import ROOT, BuildError, agreed_version, bpy_tool, read
+
+WANTED_BLENDERS = ("4.2", "4.3", "5")
+"""Versions of Blender whose own tool has to validate the extension, by their beginning."""
+BPY_4_2 = "bpy==4.2.*"
+EXTRAS = ("progress", "cluster", "report", "cad", "rerun", "argoverse", "meshes")
+"""Extras of users, each of which is installed into an empty environment of its own."""
+EXAMPLE = ROOT / "blend_assets" / "experiments" / "1_pandar64.toml"
+CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "perception-entropy"
+PAGE = ROOT / "tools" / "repository_page.html"
+TIMEOUT_S = 1200
+
+
+def run(*command: str | Path, cwd: Path = ROOT, env: dict[str, str] | None = None) -> str:
+    """Run a command to its end and return what it printed; what it says is the error's text."""
+    answer = subprocess.run(
+        [str(part) for part in command],
+        cwd=cwd,
+        env={**os.environ, **(env or {})},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=TIMEOUT_S,
+    )
+    if answer.returncode != 0:
+        sys.stderr.write(answer.stdout)
+        raise BuildError(f"this command failed: {' '.join(str(part) for part in command)}")
+    return answer.stdout
+
+
+def check_tree() -> None:
+    """Refuse a tree with changes that are not committed."""
+    changed = run("git", "status", "--porcelain").splitlines()
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        raise BuildError(
+            f"the tree has changes that are not committed: {changed[0][3:]}{more};"
+            " commit them, or use --dirty for a trial"
+        )
+
+
+def notes(version: str) -> str:
+    """Return the changelog's section of a version."""
+    parts = re.split(r"^## ", read("CHANGELOG.md"), flags=re.MULTILINE)
+    for part in parts[1:]:
+        if re.match(rf"\[?{re.escape(version)}\b", part):
+            return f"# Perception Entropy {part.strip()}\n"
+    raise BuildError(f"CHANGELOG.md has no section '## {version}'")
+
+
+def tools_of_blender() -> Iterator[tuple[str, list[str]]]:
+    """Yield each Blender's version and the start of a command line of its extension tool."""
+    if tool := bpy_tool():
+        yield tool.parents[4].name, [sys.executable, str(tool)]
+    for suite in ((), ("--suite", "sid")):
+        finder = [sys.executable, str(ROOT / "tools" / "real_blender.py"), *suite]
+        found = subprocess.run(finder, capture_output=True, text=True, timeout=TIMEOUT_S)
+        if found.returncode == 0:
+            command = found.stdout.strip()
+            version = re.findall(r"Blender (\S+)", run(command, "--version"))[0]
+            yield version, [command, "--factory-startup", "--command", "extension"]
+    python = CACHE / "bpy-4.2" / "bin" / "python"
+    if python.exists():
+        code = "import importlib.util as u; print(u.find_spec('bpy').origin)"
+        origin = Path(run(python, "-c", code).strip())
+        tool = next(origin.parent.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
+        yield tool.parents[4].name, [str(python), str(tool)]
+
+
+def install_bpy_4_2() -> None:
+    """Install the oldest Blender that the extension supports, as a Python module, once."""
+    folder = CACHE / "bpy-4.2"
+    if not (folder / "bin" / "python").exists():
+        run(sys.executable, "-m", "venv", folder)
+        run(folder / "bin" / "python", "-m", "pip", "install", "-qq", BPY_4_2)
+
+
+def validate(archive: Path, every_version: bool) -> list[str]:
+    """Have each Blender that is found validate the extension; return their versions.
+
+    Raises
+    ------
+    BuildError
+        One refuses it, or one of ``WANTED_BLENDERS`` is not there.
+    """
+    versions = []
+    for version, command in tools_of_blender():
+        build_extension.run_tool(command, "validate", str(archive))
+        versions.append(version)
+    for wanted in WANTED_BLENDERS if every_version else ():
+        if not any(version.startswith(wanted) for version in versions):
+            raise BuildError(
+                f"no Blender {wanted} to validate the extension with (found:"
+                f" {', '.join(versions) or 'none'}); tools/release.py --install gets them"
+            )
+    return versions
+
+
+def build_packages(folder: Path) -> list[Path]:
+    """Build sdist, and from it the wheel; have twine check both."""
+    run(sys.executable, "-m", "build", "--outdir", folder, ROOT)
+    made = sorted([*folder.glob("*.whl"), *folder.glob("*.tar.gz")])
+    run(sys.executable, "-m", "twine", "check", "--strict", *made)
+    return made
+
+
+def try_wheel(wheel: Path, extra: str = "") -> None:
+    """Install the wheel into an empty environment and score the example with it.
+
+    Raises
+    ------
+    BuildError
+        pip, ``pe --version`` or ``pe score`` failed, or the version is another.
+    """
+    with tempfile.TemporaryDirectory(prefix="pe-wheel-") as scratch:
+        run(sys.executable, "-m", "venv", Path(scratch, "venv"))
+        binaries = Path(scratch, "venv", "bin" if os.name == "posix" else "Scripts")
+        target = f"{wheel}[{extra}]" if extra else str(wheel)
+        run(binaries / "python", "-m", "pip", "install", "-qq", target, cwd=Path(scratch))
+        said = run(binaries / "pe", "--version", cwd=Path(scratch))
+        if agreed_version() not in said:
+            raise BuildError(f"the installed command says {said.strip()!r}")
+        options = ("--samples", "4096", "-o", "scored")
+        run(binaries / "pe", "score", EXAMPLE, *options, cwd=Path(scratch))
+
+
+def build_repository(archive: Path, folder: Path) -> None:
+    """Make the folder that a server offers to Blender: the zip, ``index.json`` and a page."""
+    folder.mkdir()
+    shutil.copyfile(archive, folder / archive.name)
+    page = ("--html", f"--html-template={PAGE}")
+    build_extension.run_tool(
+        build_extension.extension_command(), "server-generate", f"--repo-dir={folder}", *page
+    )
+
+
+def write_checksums(folder: Path) -> None:
+    """Write ``SHA256SUMS`` in the form that ``sha256sum --check`` reads."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    lines = [
+        f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.relative_to(folder).as_posix()}\n"
+        for path in files
+    ]
+    (folder / "SHA256SUMS").write_text("".join(lines), "utf-8")
+
+
+def release(arguments: argparse.Namespace) -> Path:
+    """Build everything and return the folder; an earlier one of this version is replaced."""
+    if not arguments.dirty:
+        check_tree()
+    version = agreed_version()
+    text = notes(version)
+    if arguments.install:
+        install_bpy_4_2()
+    made = ROOT / "dist" / f"release-{version}"
+    (ROOT / "dist").mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".release-", dir=ROOT / "dist") as scratch:
+        folder = Path(scratch, "release")
+        folder.mkdir()
+        archive = Path(shutil.copy(build_extension.build(), folder))
+        tell(f"extension, {size_of(archive)}", validate(archive, not arguments.dirty))
+        *_, wheel = packages = build_packages(folder)
+        extras = () if arguments.quick else EXTRAS
+        for extra in ("", *extras):
+            try_wheel(wheel, extra)
+        tell("wheel and sdist", [path.name for path in packages])
+        tell("wheel installed and run", ["alone", *(f"with [{extra}]" for extra in extras)])
+        build_repository(archive, folder / "repository")
+        (folder / "NOTES.md").write_text(text, "utf-8")
+        write_checksums(folder)
+        shutil.rmtree(made, ignore_errors=True)
+        folder.rename(made)
+    return made
+
+
+def size_of(archive: Path) -> str:
+    """Return how large an archive is, packed and unpacked, as text."""
+    with zipfile.ZipFile(archive) as packed:
+        unpacked = sum(entry.file_size for entry in packed.infolist())
+    return f"{archive.stat().st_size / 1e6:.1f} MB, {unpacked / 1e6:.1f} MB unpacked"
+
+
+def tell(what: str, details: list[str]) -> None:
+    """Print one step that is done."""
+    print(f"release: {what}: {', '.join(details)}", flush=True)
+
+
+def main() -> int:
+    """Run the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    about = "a trial: allow changes that are not committed, and any versions of Blender"
+    parser.add_argument("--dirty", action="store_true", help=about)
+    parser.add_argument("--quick", action="store_true", help="try the wheel without its extras")
+    about = f"first install {BPY_4_2} to validate with (300 MB, below ~/.cache, once)"
+    parser.add_argument("--install", action="store_true", help=about)
+    try:
+        print(release(parser.parse_args()))
+    except BuildError as problem:
+        print(f"release: {problem}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,3 +1,3 @@
-"""The version: pyproject.toml takes it from here, the build of the extension checks its manifest."""
+"""The version: pyproject.toml takes it from here; the extension's manifest has the same."""
 
 __version__ = "0.1.0"

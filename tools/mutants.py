@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Mutation testing: changes a line of the engine at a time and asks whether a test fails.
 
-usage: tools/mutants.py [ROOM ...] [--most N] [--workers N] [--list]
+usage: tools/mutants.py [ROOM ...] [--most N] [--workers N] [--resume FOLDER] [--list]
 
 tests/mutants.toml has the rooms, the tests that judge each, and how many mutants are drawn; Cosmic
 Ray makes them. The same sources give the same mutants. Prints survivors and a table, and ends with
@@ -10,16 +10,14 @@ Ray makes them. The same sources give the same mutants. Prints survivors and a t
 
 import argparse
 import ast
-import compileall
 import hashlib
+import json
 import os
 import queue
-import resource
-import shutil
 import signal
-import subprocess
 import sys
 import tempfile
+import threading
 import time
 import tomllib
 from collections import Counter, defaultdict
@@ -27,21 +25,17 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from py_compile import PycInvalidationMode
 
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.plugins import get_operator, operator_names
+from mutant_bench import ROOT, Bench, Reached, by_function, function_at, recorded, write_whole
 
-ROOT = Path(__file__).resolve().parent.parent
 SETTINGS = ROOT / "tests" / "mutants.toml"
-COPIED = ("pe_core", "pe_tools", "blend_assets", "tests", "docs/objects")
 
 KILLED, SURVIVED, TIMED_OUT = "killed", "survived", "timed out"
-MIN_TIMEOUT_S, TIMEOUT_FACTOR = 20.0, 4.0
-"""A mutant that takes this many times as long as no mutant, and this at least, does not end."""
-MEMORY_BYTES = 6 << 30
-"""What a mutant may ask for: some ask for all there is."""
+UNKNOWN_TEST = (4, 5)
+"""Pytest's exit statuses when it does not find a test by its name."""
 REMOVED = "(removed)"
 
 Span = tuple[tuple[int, int], tuple[int, int]]
@@ -68,6 +62,13 @@ class Mutant:
     line: str
     becomes: str
     code: str
+    function: str | None
+    """Name of the function that is changed; None for what runs at an import."""
+
+    @property
+    def key(self) -> str:
+        """A name under which its result is stored."""
+        return hashlib.sha256(f"{self.file}:{self.code}".encode()).hexdigest()[:24]
 
     def __str__(self) -> str:
         return f"{self.file}:{self.number}: {self.line}\n    -> {self.becomes}"
@@ -129,8 +130,8 @@ def _places(file: str) -> Iterator[tuple[str, Way]]:
 def _unread(source: str) -> list[Span]:
     """Spans that make no difference.
 
-    They are annotations, which nobody evaluates; ``slots=``, which saves memory; and ``strict=`` of
-    zips whose parts are of one length.
+    They are annotations, which nobody evaluates; protocols, which nobody runs; ``slots=``, which
+    saves memory; and ``strict=`` of zips whose parts are of one length.
     """
     found: list[ast.AST | None] = []
     for node in ast.walk(ast.parse(source)):
@@ -140,8 +141,17 @@ def _unread(source: str) -> list[Span]:
             found.append(node.annotation)
         elif isinstance(node, ast.keyword) and node.arg in ("slots", "strict"):
             found.append(node.value)
-    spans = [n for n in found if isinstance(n, ast.expr)]
-    return [((n.lineno, n.col_offset), (n.end_lineno, n.end_col_offset)) for n in spans]
+        elif isinstance(node, ast.ClassDef) and "Protocol" in map(ast.unparse, node.bases):
+            found += node.body
+    spans = [n for n in found if n is not None]
+    return [
+        ((_first_line(n), n.col_offset - isinstance(n, ast.stmt)), (n.end_lineno, n.end_col_offset))
+        for n in spans
+    ]
+
+
+def _first_line(node: ast.AST) -> int:
+    return min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", ()))])
 
 
 def _made(room: str, way: Way) -> Mutant:
@@ -149,7 +159,8 @@ def _made(room: str, way: Way) -> Mutant:
     code = mutate_code(source, get_operator(way.operator)(), way.occurrence)
     old, new = source.splitlines(), code.splitlines()
     becomes = new[way.number - 1].strip() if len(old) == len(new) else REMOVED
-    return Mutant(room, way.file, way.number, old[way.number - 1].strip(), becomes, code)
+    function = function_at(source, way.number)
+    return Mutant(room, way.file, way.number, old[way.number - 1].strip(), becomes, code, function)
 
 
 def slips(table: list[dict[str, str]], rooms: list[Room]) -> list[Mutant]:
@@ -163,108 +174,130 @@ def slips(table: list[dict[str, str]], rooms: list[Room]) -> list[Mutant]:
         code = source.replace(entry["line"], entry["becomes"])
         if entry["room"] in [r.name for r in rooms]:
             told = [entry[k].strip() for k in ("line", "becomes")]
-            found.append(Mutant(entry["room"], entry["file"], number, *told, code))
+            function = function_at(source, number)
+            found.append(Mutant(entry["room"], entry["file"], number, *told, code, function))
     return found
 
 
-class Bench:
-    """A copy of the project in which mutants are tried, one after the other."""
+class Judge:
+    """Runs the tests of a room that a mutant can make fail."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        for name in COPIED:
-            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.pyc"))
-        shutil.copy(ROOT / "pyproject.toml", folder)
-        # Compiled files are checked by content: a mutant may be as old and as long as its file.
-        mode = PycInvalidationMode.CHECKED_HASH
-        compileall.compile_dir(folder / "pe_core", quiet=1, invalidation_mode=mode)
+    def __init__(self, room: Room, reached: Reached) -> None:
+        self._reached = {t: r for t, r in reached.items() if _is_wanted(t, room.tests)}
+        self._callers = by_function(self._reached)
 
-    def try_out(self, mutant: Mutant, room: Room, timeout_s: float) -> str:
-        """Run a room's tests on a mutant until one fails."""
-        path = self.folder / mutant.file
-        kept = path.read_bytes()
-        path.write_text(mutant.code, "utf-8")
-        try:
-            status = self.run(room.tests, timeout_s)
-        finally:
-            path.write_bytes(kept)
+    def stages(self, mutant: Mutant) -> list[list[str]]:
+        """Tests to run one group after the other.
+
+        First those that call the function that is changed, or anything in the file where it is no
+        function. Then, as results are cached between tests, all others of these files; those of the
+        whole room where no function is changed or none of the tests was seen to call it.
+        """
+        if mutant.function:
+            first = set(self._callers.get(f"{mutant.file}::{mutant.function}", ()))
+            files = {_file_of(test) for test in first}
+            rest = {test for test in self._reached if not first or _file_of(test) in files}
+        else:
+            inside = f"{mutant.file}::"
+            first = {t for f, own in self._callers.items() if f.startswith(inside) for t in own}
+            rest = set(self._reached)
+        return [self._ordered(tests) for tests in (first, rest - first) if tests]
+
+    def _ordered(self, tests: set[str]) -> list[str]:
+        """Quick files first, each file's tests together."""
+        seconds: dict[str, float] = defaultdict(float)
+        for test in tests:
+            seconds[_file_of(test)] += self._reached[test][0]
+        places = {test: place for place, test in enumerate(self._reached)}
+        return sorted(tests, key=lambda t: (seconds[_file_of(t)], _file_of(t), places[t]))
+
+    def run(self, bench: Bench, tests: list[str]) -> str:
+        """Run tests until one fails."""
+        status = bench.run(tests, sum(self._reached[test][0] for test in tests))
+        if status in UNKNOWN_TEST:  # a parameter of a test may have the mutant's value in its name
+            status = bench.run(list(dict.fromkeys(map(_file_of, tests))), 60.0)
         return TIMED_OUT if status is None else SURVIVED if status == 0 else KILLED
 
-    def run(self, tests: tuple[str, ...], timeout_s: float, **more: str) -> int | None:
-        """Exit status of pytest, None when the time is over."""
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
-        environment = os.environ | {
-            "PYTHONPATH": str(self.folder),
-            "PYTHONDONTWRITEBYTECODE": "1",
-            "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
-            "OMP_NUM_THREADS": "1",
-            "CI": "1",  # Hypothesis then draws the same examples every time
-            **more,
-        }
-        process = subprocess.Popen(
-            command,
-            cwd=self.folder,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-            preexec_fn=_limit_memory,
-        )
-        try:
-            return process.wait(timeout_s)
-        except subprocess.TimeoutExpired:
-            return None
-        finally:
-            _end_group(process)
-
-    def baseline(self, room: Room) -> float:
-        """Time that a room's tests take on no mutant [s]."""
-        started = time.monotonic()
-        if self.run(room.tests, 600.0, PYTHONDONTWRITEBYTECODE="") != 0:
-            raise SystemExit(f"the tests of {room.name} fail without any mutant")
-        return time.monotonic() - started
+    def try_out(self, bench: Bench, mutant: Mutant) -> str:
+        """Return what becomes of a mutant."""
+        result = SURVIVED
+        with bench.mutated(mutant.file, mutant.code):
+            for tests in self.stages(mutant):
+                if result == SURVIVED:
+                    result = self.run(bench, tests)
+        return result
 
 
-def _limit_memory() -> None:
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+def _file_of(test: str) -> str:
+    return test.partition("::")[0]
 
 
-def _end_group(process: subprocess.Popen[bytes]) -> None:
-    """End a test run and whatever it started."""
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        return
-    process.wait()
+def _is_wanted(test: str, wanted: tuple[str, ...]) -> bool:
+    return any(test == own or test.startswith((f"{own}::", f"{own}[")) for own in wanted)
 
 
-def tried(mutants: list[Mutant], rooms: list[Room], workers: int) -> list[str]:
+class Results:
+    """What became of mutants, by the text that they make of a file; stored after each of them.
+
+    A survivor is tried again when the tests have changed, whatever is killed is not.
+    """
+
+    def __init__(self, path: Path | None, tests: str) -> None:
+        self._path, self._tests = path, tests
+        self._lock = threading.Lock()
+        self._stored = json.loads(path.read_text("utf-8")) if path and path.exists() else {}
+
+    def get(self, mutant: Mutant) -> str | None:
+        """Return a stored result."""
+        result, tests = self._stored.get(mutant.key, (None, None))
+        return None if result == SURVIVED and tests != self._tests else result
+
+    def store(self, mutant: Mutant, result: str) -> None:
+        """Store a result."""
+        with self._lock:
+            self._stored[mutant.key] = (result, self._tests)
+            if self._path:
+                write_whole(self._path, json.dumps(self._stored, indent=0))
+
+
+def tried(mutants: list[Mutant], rooms: list[Room], workers: int, store: Path | None) -> list[str]:
     """Try all mutants, several at a time; what became of each."""
-    by_name = {room.name: room for room in rooms}
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        benches: queue.Queue[Bench] = queue.Queue()
-        for number in range(workers):
-            benches.put(Bench(Path(folder) / str(number)))
-        with ThreadPoolExecutor(workers) as pool:
-            tell = _teller(len(mutants))
-            first = benches.queue[0]
-            timeouts = {r.name: _timeout(first.baseline(r)) for r in rooms}
+        benches = [Bench(Path(folder) / str(number)) for number in range(workers)]
+        free: queue.Queue[Bench] = queue.Queue()
+        for bench in benches:
+            free.put(bench)
+        tell = _teller(len(mutants))
+        judges: dict[str, tuple[Judge, Results]] = {}
+        for room in rooms:
+            files = list(dict.fromkeys(map(_file_of, room.tests)))
+            reached = recorded(benches[0], files, store and store / "reached.json")
+            results = Results(store and store / f"{room.name}.json", _digest(files))
+            judges[room.name] = Judge(room, reached), results
 
-            def work(mutant: Mutant) -> str:
-                bench = benches.get()
+        def work(mutant: Mutant) -> str:
+            judge, results = judges[mutant.room]
+            result = results.get(mutant)
+            if result is None:
+                bench = free.get()
                 try:
-                    result = bench.try_out(mutant, by_name[mutant.room], timeouts[mutant.room])
+                    result = judge.try_out(bench, mutant)
                 finally:
-                    benches.put(bench)
-                tell(mutant, result)
-                return result
+                    free.put(bench)
+                results.store(mutant, result)
+            tell(mutant, result)
+            return result
 
-            return list(pool.map(work, mutants))
+        try:
+            with ThreadPoolExecutor(workers) as pool:
+                return list(pool.map(work, mutants))
+        finally:
+            for bench in benches:
+                bench.close()
 
 
-def _timeout(baseline_s: float) -> float:
-    return max(MIN_TIMEOUT_S, TIMEOUT_FACTOR * baseline_s)
+def _digest(files: list[str]) -> str:
+    return hashlib.sha256(b"".join((ROOT / file).read_bytes() for file in files)).hexdigest()[:16]
 
 
 def _teller(total: int) -> Callable[[Mutant, str], None]:
@@ -330,6 +363,7 @@ def main() -> int:
     parser.add_argument("--most", type=int, help="try the first N of each room")
     parser.add_argument("--workers", type=int, default=os.cpu_count(), help="tried at a time")
     parser.add_argument("--list", action="store_true", help="print the mutants, try none")
+    parser.add_argument("--resume", type=Path, metavar="FOLDER", help="keep results there, go on")
     args = parser.parse_args()
     settings = tomllib.loads(SETTINGS.read_text("utf-8"))
     rooms, drawing = _rooms(settings["room"], args.rooms), Drawing(settings["seed"])
@@ -340,7 +374,7 @@ def main() -> int:
         return 0
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # leave no test running
     started = time.monotonic()
-    results = tried(mutants, rooms, args.workers)
+    results = tried(mutants, rooms, args.workers, args.resume)
     known = {(e["file"], e["line"], e["becomes"]) for e in settings["same"]}
     shares = report(mutants, results, rooms, known)
     print(f"\n{len(mutants)} mutants in {(time.monotonic() - started) / 60.0:.1f} minutes")

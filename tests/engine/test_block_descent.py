@@ -1,5 +1,6 @@
 """The default method: it finds what others walk past, from afar, in slots, on several levels."""
 
+import contextlib
 import math
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
@@ -7,8 +8,11 @@ from itertools import pairwise
 import pytest
 
 import pe_core as pe
+from pe_core.scoring import Judgement
 from pe_core.search import Parametrization, pose_values
 from pe_core.search.methods import METHODS, block_descent
+from pe_core.search.methods.method import Given, Phase
+from pe_core.search.parametrization import feasible_start
 from tests.engine import mounting
 from tests.engine.mounting import can
 from tests.engine.recording import Recorder, distance_to
@@ -116,3 +120,46 @@ def test_a_schedule_and_no_method_means_the_one_that_has_schedules():
     assert pe.Search().method == "block-descent"
     assert pe.Search(schedule=pe.Schedule(candidates=3)).method == "random"
     assert pe.Search(method="cma-es", schedule=pe.Schedule(candidates=3)).method == "cma-es"
+
+
+def driven(part, landscape):
+    """Answer the questions of a part of the method; the number of placements of each question."""
+    counts = []
+    with contextlib.suppress(StopIteration):
+        question = next(part)
+        while True:
+            counts.append(len(question.candidates))
+            answers = [Judgement(landscape(c.rig), False) for c in question.candidates]
+            question = part.send(answers)
+    return counts
+
+
+def given_of(landscape, *sensors, evaluations=0):
+    rig, space = mounting.space(*sensors)
+    parametrization = Parametrization(rig, space)
+    start = feasible_start(parametrization, 0)
+    return Given(parametrization, start, landscape(start.rig), evaluations=evaluations)
+
+
+def test_a_descent_ends_where_its_last_cycle_comes_nearest_to_its_budget():
+    """All cycles are alike: 1.4 of them are 1, 1.6 are 2, and a budget of 0 evaluates nothing."""
+    landscape = distance_to({"x": 0.5, "y": 0.1})
+    cycles = []
+    for share in (0.0, 1.0, 1.4, 1.6, 3.4, 3.6):
+        given = given_of(landscape, can())
+        descent = block_descent.Descent(given, given.start, given.entropy, [1])
+        cycle = sum(driven(descent.cycle(Phase(0, 1)), landscape))
+        driven(descent.descend(Phase(0, 1), share * cycle), landscape)
+        cycles.append(descent.count / cycle - 1.0)
+    assert cycles == [0.0, 1.0, 1.0, 2.0, 3.0, 4.0]
+
+
+def test_starts_race_twice_for_a_twentieth_of_the_budget_each():
+    """Four starts, then the better two: 4 x 0.05 + 2 x 0.05 of the budget."""
+    landscape = distance_to({"x": 0.5, "y": 0.1})
+    total = 4000
+    given = given_of(landscape, can(), evaluations=total)
+    part = block_descent._raced(given, total)
+    asked = sum(driven(part, landscape))
+    corners, random_placement = 8, 1
+    assert asked - corners - random_placement == pytest.approx(0.3 * total, rel=0.05)

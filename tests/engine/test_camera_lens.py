@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.sensors.camera.lens import RINGS, field_outline, fold_angle
+from pe_core.sensors.camera.lens_lookup import BEYOND, NEAREST_RAD, QuickLens, _unevenness
 from pe_core.sensors.camera.lens_models import BrownConrady, FTheta, KannalaBrandt, Pinhole
 
 WIDE = BrownConrady(930.5, 932.25, 965.0, 530.0, k1=-0.25, k2=0.12, p1=1e-3, p2=-2e-3, k3=-0.02)
@@ -137,3 +139,72 @@ def test_listed_coefficients_are_opencv_s():
     }
     one, other = (pe.catalog.from_table("mine", t) for t in (listed, named))
     assert one.lens == other.lens
+
+
+@pytest.mark.parametrize("lens", [WIDE, RATIONAL, FISHEYE, ROUND])
+def test_the_axis_falls_on_the_principal_point(lens):
+    lens, none = pe.Camera("mine", *SIZES[lens], lens=lens).projection, np.zeros(1)
+    right, down = lens.project(np.ones(1), none, none)
+    assert (right[0], down[0]) == pytest.approx((lens.cx, lens.cy), abs=1e-9)
+    direction = lens.unproject(np.array([lens.cx]), np.array([lens.cy]))[0]
+    assert direction == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
+
+
+def test_the_outline_of_a_picture_goes_round_its_border_and_where_it_is_dark_round_the_field():
+    """A circle of 70 px in 480 x 270: corners see nothing, and have the direction of the edge."""
+    edge = math.radians(50.0)
+    lens = KannalaBrandt(70.0, 72.0, 250.0, 150.0, 2.0 * edge, -0.02, 0.001)
+    outline = field_outline(lens, 480, 270, 4)
+    share = np.arange(4) / 4
+    right = np.concatenate([share, np.ones(4), 1.0 - share, np.zeros(4)]) * 480
+    down = np.concatenate([np.zeros(4), share, np.ones(4), 1.0 - share]) * 270
+    x, y = (right - 250.0) / 70.0, (down - 150.0) / 72.0
+    away = np.hypot(x, y)
+    assert (away > lens.radius(np.array(edge))).all()
+    aside = np.stack([-x / away, -y / away], 1) * math.sin(edge)
+    np.testing.assert_allclose(outline[:, 0], math.cos(edge), atol=1e-12)
+    np.testing.assert_allclose(outline[:, 1:], aside, atol=1e-12)
+    wide = pe.Camera("mine", 1920, 1080, lens=WIDE).projection
+    whole = wide.project(*field_outline(wide, 1920, 1080, 4).T)
+    np.testing.assert_allclose(whole, (right * 4, down * 4), atol=1e-6)
+
+
+def test_a_lens_folds_where_its_radius_is_largest():
+    """r (1 + k1 r^2) is largest at r = 1 / sqrt(-3 k1); angles are tried in 1100 equal steps."""
+    lens = BrownConrady(400.0, 400.0, 320.0, 240.0, k1=-0.8)
+    step = lens.edge / RINGS
+    folds = math.atan(1.0 / math.sqrt(2.4))
+    assert fold_angle(lens) == pytest.approx(math.floor(folds / step) * step, abs=1e-12)
+    assert fold_angle(FTheta(1.0, 1.0, 320.0, 240.0, None, -300.0)) == 0.0
+    assert fold_angle(FISHEYE) == FISHEYE.edge
+
+
+@pytest.mark.parametrize("lens", [WIDE, RATIONAL, FISHEYE, ROUND])
+def test_tables_of_a_lens_are_the_lens(lens):
+    """Image and density to parts in ten thousand, without bias; the stretch bounds what is near."""
+    width, height = SIZES[lens]
+    quick = QuickLens(pe.Camera("mine", width, height, lens=lens))
+    rng = np.random.default_rng(5)
+    theta = rng.uniform(0.05, min(quick.outer, 1.2), 4000)
+    turn = rng.uniform(0, 2 * math.pi, 4000)
+    axes = np.cos(theta), np.sin(theta) * np.cos(turn), np.sin(theta) * np.sin(turn)
+    narrow = [part.astype(np.float32) for part in axes]
+    seen = quick.seen(narrow[0], *narrow, np.float32(1.0))
+    right, down = lens.project(*axes)
+    away = np.hypot(right - lens.cx, down - lens.cy)
+    np.testing.assert_allclose(seen.right, right, atol=4e-4 * away.max())
+    np.testing.assert_allclose(seen.down, down, atol=4e-4 * away.max())
+    np.testing.assert_allclose(seen.density, lens.density(*axes), rtol=4e-4)
+    found = np.hypot(seen.right - lens.cx, seen.down - lens.cy)
+    assert abs(np.mean(found / away - 1.0)) < 2e-6
+    grid = np.linspace(1e-3, min(quick.outer + BEYOND, lens.edge), 3000)
+    pixels = np.maximum(lens.radius(grid) / np.sin(grid), lens.slope(grid)) * max(lens.fx, lens.fy)
+    most = np.maximum.accumulate(pixels)
+    bound = np.interp(theta + NEAREST_RAD, grid, most)
+    assert (seen.stretch >= bound).all() and (seen.stretch <= 1.12 * bound).all()
+
+
+def test_unevenness_is_tabulated_in_the_middles_of_equal_angles():
+    theta, uneven = _unevenness(ROUND, 1.2)
+    np.testing.assert_allclose(theta, (np.arange(4096) + 0.5) * 1.2 / 4096, rtol=1e-12)
+    assert uneven.shape == theta.shape and (uneven > 0.0).all()

@@ -19,6 +19,7 @@ from pe_core.metric import (
     precision_of,
     sigma_of,
 )
+from pe_core.metric.entropy import ap_of_entropy
 from pe_core.metric.fusion import Fusion
 from pe_core.sensors.lidar.kernel_voxels import compact
 
@@ -100,3 +101,8 @@ def test_compact_counts_give_the_same_entropies(curve, kind):
 def test_impossible_curves_are_refused(a, b, field):
     with pytest.raises(pe.InputError, match=f"AP curve: {field}"):
         pe.ApCurve(a, b)
+
+
+def test_the_ap_of_an_entropy_is_the_one_it_comes_from():
+    ap = np.array([0.001, 0.5, 0.8, 0.999])
+    assert ap_of_entropy(entropy_of(sigma_of(ap) ** -2)) == pytest.approx(ap, rel=1e-9)

@@ -233,3 +233,19 @@ def test_points_within_two_hundredths_of_the_highest_are_saturated():
 
 def test_a_blind_voxel_is_h_blind():
     assert pytest.approx(H0, abs=1e-9) == H_BLIND
+
+
+def test_sums_of_a_group_hold_what_their_parts_add_up_to():
+    """Bytes add up in 16 bits, longer counts in 32, areas as they are."""
+    byte, word = np.full(2, 250, np.uint8), np.full(2, 60_000, np.uint16)
+    assert group_sum([byte, byte, byte]).tolist() == [750, 750]
+    assert group_sum([word, word]).tolist() == [120_000, 120_000]
+    assert group_sum([byte, word]).tolist() == [60_250, 60_250]
+    assert group_sum([np.array([1.5]), np.array([2])]).tolist() == [3.5]
+
+
+def test_areas_in_single_precision_count_by_eleven_binary_digits():
+    """From 64 to 128 px the eleventh digit is 1/16 px: 100.00 and 100.06 px are one number."""
+    m = np.array([100.0, 100.06, 100.0625], np.float32)
+    added = PlaneFusion(Fusion(pe.PerceptionModel()), (1, 1)).added("camera", m)
+    assert added[0] == added[1] < added[2]

@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.search import Parametrization
-from pe_core.search.domains import frame_of, standoff_point
+from pe_core.search.domains import frame_of, snap_to_mount, standoff_point
 from tests.engine import mounting, shapes
 from tests.engine.mounting import BASE, CAN, CENTER, ON_ROOF, RADIUS, TOP, can, roof
 
@@ -206,3 +206,29 @@ def test_the_model_is_known_by_its_housing():
         2 * mounting.RADIUS,
         mounting.HEIGHT,
     )
+
+
+def test_frames_of_walls_and_ceilings():
+    """Under a ceiling the shortest turn is one about x; rounding beyond -1 is -1."""
+    below = np.array([0.0, 0.0, -1.0])
+    np.testing.assert_allclose(frame_of("normal", below), np.diag([1.0, -1.0, -1.0]), atol=1e-15)
+    low = np.array([0.0, 0.0, np.nextafter(-1.0, -2.0)])
+    np.testing.assert_allclose(frame_of("facing", low)[:, 0], below, atol=1e-12)
+
+
+def test_a_sensor_is_snapped_to_its_mount():
+    """Tilted above the roof's (0.1, 0.2), heading 40 deg: level on it, or upright as it was."""
+    sensor = can((0.1, 0.2, 3.0), rotation=(5.0, 10.0, 40.0))
+    housing = pe.Housing("cylinder", (0.1, 0.1, 0.06), (0.0, 0.0, 0.0))
+    for orientation, turned in (("normal", (0.0, 0.0, 40.0)), ("upright", (5.0, 10.0, 40.0))):
+        pose = snap_to_mount(sensor, roof(0.1, orientation), mounting.car(), housing)
+        assert pose.rotation_deg == pytest.approx(turned, abs=1e-3)
+        assert pose.position[:2] == pytest.approx((0.1, 0.2), abs=0.03)
+    slots = pe.SlotMount([pe.Slot("a", pe.Pose((0, 0, 2))), pe.Slot("b", pe.Pose((0, 0.3, 3)))])
+    assert snap_to_mount(sensor, slots).position == (0.0, 0.3, 3.0)
+
+
+def test_of_two_slots_with_one_pose_the_start_is_in_the_first():
+    poses = [pe.Pose((1.0, 0.0, 1.6)), pe.Pose.from_degrees(ON_ROOF), pe.Pose.from_degrees(ON_ROOF)]
+    slots = pe.SlotMount([pe.Slot(name, pose) for name, pose in zip("abc", poses, strict=True)])
+    assert coded(can(), mount={"roof": slots}).start.vector == (0.5,)

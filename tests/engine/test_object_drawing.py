@@ -9,7 +9,13 @@ import pe_core as pe
 from pe_core.prior.classes import class_shape
 from pe_core.scoring.sampling import DIMENSIONS, scrambled_sobol
 from pe_core.scoring.targets import TargetRule, sample_objects
-from pe_core.scoring.targets.scene_layout import ground_rectangles, overlap
+from pe_core.scoring.targets.scene_layout import (
+    LabelledBoxes,
+    LaidOutBoxes,
+    ground_rectangles,
+    overlap,
+    scrambles,
+)
 from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace()
@@ -175,7 +181,7 @@ def test_a_space_too_small_for_its_objects_is_reported():
     yard = pe.PerceptionSpace(x=(-6, 6), y=(-6, 6))
     share = ROAD.objects_at_once(yard)["car"] / 8.2
     crowded = pe.Prior("road", ROAD.classes[:1], density={"car": 15 / share})
-    with pytest.raises(pe.InputError, match="in a scene, and no room for a"):
+    with pytest.raises(pe.InputError, match=r"in a scene, and no room for a car in 200 places"):
         drawn(crowded, targets=TargetRule("objects", True, 8), space=yard)
 
 
@@ -200,3 +206,18 @@ def test_which_scenes_have_one_more_of_a_class_says_nothing_of_another_class(shi
     assert len(uneven) == 4 and all(np.ptp(each) <= 1 for each in counts)
     others = np.corrcoef(uneven) - np.eye(len(uneven))
     assert np.abs(others).max() < 3.0 / math.sqrt(256.0)  # what chance leaves
+
+
+def test_boxes_need_memory_before_they_are_laid_out(monkeypatch):
+    monkeypatch.setattr("pe_core.base.memory.available_bytes", lambda: 100)
+    with pytest.raises(pe.InputError, match="prior: boxes: expected what fits in"):
+        drawn(pe.Prior.from_boxes(BOXES), targets=TargetRule("objects"))
+
+
+def test_labelled_boxes_are_sampled_nearest_first():
+    """Each of four boxes once, in the order of the sequence over the boxes by distance."""
+    x = np.array([-8.0, 1.0, 4.0, -2.0])
+    boxes = LaidOutBoxes(np.stack([x, 0.1 * x, x * 0.0], 1), np.ones((4, 3)), np.zeros(4))
+    share = scrambled_sobol(4, scrambles(0.3, 0)[:1])[:, 0]
+    expected = np.array([1.0, -2.0, 4.0, -8.0])[(4 * share).astype(int)]
+    assert LabelledBoxes(boxes, 4, 0.3).proposed(0).centers[:, 0].tolist() == expected.tolist()

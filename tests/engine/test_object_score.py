@@ -10,8 +10,9 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring import sight
-from pe_core.scoring.targets.lone_objects import SECTORS
+from pe_core.scoring.targets.lone_objects import RINGS, SECTORS, RingObjects, _mirrored
 from pe_core.scoring.targets.lone_objects import _reach as reach_of
+from pe_core.scoring.targets.lone_objects import reach as reach_by_direction
 from pe_core.scoring.targets.object_metric import ObjectSums
 from pe_core.scoring.targets.object_sampling import SampledObjects
 from pe_core.sensors import KINDS, measure_objects
@@ -299,3 +300,35 @@ def test_a_search_finds_better_places_for_objects():
         pass
     assert job.outcome.after.entropy < job.outcome.before.entropy - 0.1
     assert job.outcome.after.objects.traffic
+
+
+def test_lone_objects_in_depth_are_far_apart_in_angle():
+    assert [_mirrored(k) for k in range(8)] == [0, 4, 2, 6, 1, 5, 3, 7]
+
+
+def test_reach_by_hand():
+    """One object of each of two classes; the second in the third ring ahead, found by 0.8.
+
+    Its ring is 10 to 15 m away; the next has no object, and 0: 0.5 is 3/8 of the way there.
+    """
+    ones = np.ones((2, 3))
+    objects = pe.Objects(ones, ones, np.zeros(2), [0, 1], ["car", "cone"], [0, 0])
+    rings = RingObjects(objects, np.array([0, (8 + 0) * RINGS + 2]))
+    found = reach_by_direction(rings, 1, np.array([0.9, 0.8]))
+    assert found == {name: 0.0 for name in SECTORS} | {"front": 5.0 * (2.5 + 0.3 / 0.8)}
+
+
+def test_a_class_without_objects_hides_no_other():
+    """Between cars and trucks no pedestrian and no cyclist is sampled; trucks are found."""
+    few = pe.Prior("road", ROAD.classes, density={"pedestrian": 0, "cyclist": 0})
+    score = judge(few).score(rig())
+    assert list(score.objects.per_class) == ["car", "truck", "cone"]
+    assert score.objects.per_class["truck"].reach["front"] > 5.0
+    assert (score.per_sensor["roof"].beams, score.per_sensor["roof"].stopped) == (0, 0)
+
+
+def test_one_scene_has_no_scatter():
+    ones = np.ones((2, 3))
+    objects = pe.Objects(ones, ones, np.zeros(2), [0, 0], ["car"], [0, 0])
+    sums = ObjectSums(SampledObjects(objects, np.array([0.5, 0.5]), 1))
+    assert sums.standard_error(np.array([1.0, 3.0]), 1) == pytest.approx(0.0, abs=1e-12)

@@ -61,3 +61,12 @@ def test_a_study_holds_it():
     assert study_to_dict(study)["sensor"][0]["ap"] == {"a": 0.2, "b": 0.8}
     with pytest.raises(pe.InputError, match=r"ap\.b"):
         study_from_dict({"sensor": [sensor | {"ap": {"a": 0.2}}]})
+
+
+def test_curves_of_objects_are_by_kind_and_class():
+    model = pe.PerceptionModel(objects={"lidar": {"tram": BETTER}})
+    assert model.object_curve("lidar", "tram") == BETTER
+    with pytest.raises(pe.InputError, match=r"\[ap.lidar.objects.bus\]: expected a and b of 'bus'"):
+        model.object_curve("lidar", "bus")
+    with pytest.raises(pe.InputError, match=r"lidar.objects.tram: expected an ApCurve, found 5"):
+        pe.PerceptionModel(objects={"lidar": {"tram": 5}})

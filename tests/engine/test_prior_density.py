@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.prior.classes import sampled_positions
 
 SPACE = pe.PerceptionSpace((-60.0, 60.0), (-30.0, 30.0), (0.0, 5.0), 0.5)
 FINE = 4000
@@ -86,3 +87,24 @@ def test_focus_regions_are_where_they_are_said():
     (density,) = pe.Prior.uniform([on_centres]).densities(space)
     factor = density.ground[:, 0] / density.ground[0, 0]
     assert factor.tolist() == pytest.approx([1, 1, 1, 3, 1, 1, 1, 1])
+
+
+def test_sampled_positions_reach_both_ends_of_the_space():
+    """The lowest and the highest number below 1 are the space's corners, 1/2 its middle in x."""
+    u = np.array([0.0, 0.5, np.nextafter(1.0, 0.0)])
+    x, y = sampled_positions(pe.Prior.road().classes[0], SPACE, u, u)
+    assert x == pytest.approx([-60.0, 0.0, 60.0], abs=1e-6)
+    assert y[[0, 2]] == pytest.approx([-30.0, 30.0], abs=1e-6)
+
+
+def test_focus_regions_at_positions_are_those_on_the_grid():
+    """One position inside, one beyond each of the four edges, and one on an edge."""
+    focus = pe.Focus(3.0, (1.0, 2.5), (-1.5, -0.5))
+    x = np.array([2.0, 0.5, 3.0, 2.0, 2.0, 2.5])
+    y = np.array([-1.0, -1.0, -1.0, -2.0, 0.0, -1.0])
+    assert pe.Prior.uniform([focus]).focus_at("any", x, y).tolist() == [3, 1, 1, 1, 1, 1]
+
+
+def test_densities_are_of_classes_that_the_prior_has():
+    with pytest.raises(pe.InputError, match=r"prior: density: expected one of car.*found 'bus'"):
+        pe.Prior("road", pe.Prior.road().classes, density={"bus": 1.0})

@@ -8,11 +8,13 @@ import pkgutil
 import pe_core
 import pe_tools
 
+WITH_LIBRARIES = "pe_tools.validity.own"
+"""Imports libraries that a user need not have."""
 MODULES = [
     importlib.import_module(found.name)
     for package in (pe_core, pe_tools)
     for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
-    if not found.name.endswith("__main__")
+    if not found.name.endswith("__main__") and not found.name.startswith(WITH_LIBRARIES)
 ]
 CLASSES = {
     f"{module.__name__}.{name}": cls

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
@@ -16,6 +16,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..base.errors import InputError, shown
+from ..base.setting import settings_of
 from ..base.setting_file import read_settings, settings_table
 from ..base.table_reader import Table
 from ..base.values import A_NAME, listed
@@ -162,7 +163,7 @@ def _read(table: Table, identifier: str | None) -> Requirement:
     zone = _read_zone(table.table("zone"))
     criterion = _read_criterion(table.table("criterion"))
     own = table.table("under")
-    under = Under(**read_settings(own, Under), _who=own.path)
+    under = Under(**read_settings(own, Under))
     own.finish()
     headings = table.raw("headings", None)
     bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table))
@@ -190,7 +191,7 @@ def _read_zone(table: Table) -> Zone:
     values["z"] = table.numbers("z", 2, (0.0, 0.0))
     table.finish()
     try:
-        return Zone(**values, _who=table.source)
+        return Zone(**values)
     except InputError as error:
         raise table.error(error.field, error.expected, error.found) from None
 
@@ -200,7 +201,7 @@ def _read_criterion(table: Table) -> Criterion:
     kinds = table.texts("of", ())
     table.finish()
     try:
-        return Criterion(**values, of=kinds, _who=table.source)
+        return Criterion(**values, of=kinds)
     except InputError as error:
         raise table.error(error.field, error.expected, error.found) from None
 
@@ -220,6 +221,8 @@ def _read_body(value: Any, table: Table) -> Body:
         return BODIES[value]
     own = Table(value, table.source, table.field("body"))
     name = own.text("name", CUSTOM, rule=A_NAME)
+    if own.names == ["name"]:
+        return _read_body(name, table)
     is_round = "diameter" in own
     if is_round:
         diameter = own.number("diameter")
@@ -259,7 +262,7 @@ def _full_table(requirement: Requirement) -> dict[str, Any]:
         "preset": requirement.preset,
         "check": requirement.check or None,
         "source": requirement.source or None,
-        "body": [_body_value(b) for b in requirement.bodies] or None,
+        "body": _bodies_value(requirement.bodies) or None,
         "headings": _headings(requirement),
         "zone": {
             **{k: list(v) for k in ("x", "y", "ring") if (v := getattr(zone, k)) is not None},
@@ -282,21 +285,23 @@ def _full_table(requirement: Requirement) -> dict[str, Any]:
 
 def _changed(instance: Any, cls: type) -> dict[str, Any]:
     """Return the settings that differ from their defaults."""
-    from ..base.setting import settings_of
-
     table = settings_table(instance)
     return {k: table[k] for k, s in settings_of(cls).items() if getattr(instance, k) != s.default}
 
 
-def _body_value(body: Body) -> Any:
+def _bodies_value(bodies: Sequence[Body]) -> list[Any]:
+    """Return bodies by name; as tables where one of them is none of `BODIES`."""
+    values = [_body_table(body) for body in bodies]
+    return [v["name"] for v in values] if all(len(v) == 1 for v in values) else values
+
+
+def _body_table(body: Body) -> dict[str, Any]:
     known = BODIES.get(body.name)
     if known is not None and replace(body, headings=known.headings) == known:
-        return body.name
-    sizes = (
-        {"diameter": body.size[0], "height": body.size[2]}
-        if body.is_round
-        else {"size": list(body.size)}
-    )
+        return {"name": body.name}
+    sizes: dict[str, Any] = {"size": list(body.size)}
+    if body.is_round:
+        sizes = {"diameter": body.size[0], "height": body.size[2]}
     more = {"low": body.low or None, "class": body.class_name}
     return {"name": body.name, **sizes} | {k: v for k, v in more.items() if v is not None}
 

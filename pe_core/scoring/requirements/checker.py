@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import ap_of_entropy
 from ...scene.objects import Objects
@@ -99,6 +100,8 @@ class RequirementChecker:
         self.zones: tuple[PlacedZone, ...] = tuple(
             each.zone.placed(vehicle, reference, each.name, planes) for each in self.requirements
         )
+        for requirement, zone in zip(self.requirements, self.zones, strict=True):
+            _check_extent(requirement, zone, self._space)
         self._sets: dict[bool, _CheckedSet] = {}
         self._lock = RLock()
 
@@ -361,6 +364,20 @@ class _CheckedSet:
                 for each in part.bodies:
                     weights[each.box] = 1.0
         return weights
+
+
+def _check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionSpace) -> None:
+    """Raise `InputError` for a zone outside of the space, or narrower than a body."""
+    who = f"requirement {requirement.name!r}"
+    low, high = zone.bounds
+    (x0, y0), (x1, y1) = low.tolist(), high.tolist()
+    if x1 < space.x[0] or x0 > space.x[1] or y1 < space.y[0] or y0 > space.y[1]:
+        expected = f"a zone in the space, x = {list(space.x)}, y = {list(space.y)}"
+        raise InputError(who, "zone", expected, f"x = {[x0, x1]}, y = {[y0, y1]}")
+    for body in requirement.bodies:
+        if zone.kind == "area" and min(body.size[:2]) > min(x1 - x0, y1 - y0) + INSIDE_M:
+            found = f"{body.name}, {min(body.size[:2]):g} m, in {x1 - x0:g} x {y1 - y0:g} m"
+            raise InputError(who, "body", "a body that is not larger than the zone", found)
 
 
 def farthest_out(cells: GroundCells, blind: Flags, vehicle: Vehicle | None) -> float:

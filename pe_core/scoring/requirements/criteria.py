@@ -88,12 +88,11 @@ class Criterion:
         None, DISTANCE, "Blind ground in the zone is at most this far from the vehicle"
     )
     blind_height: float = setting(0.0, DISTANCE, "Blind ground is that of what is so tall")
-    _who: str = field(default="criterion", repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        check_settings(self, self._who)
+        check_settings(self, "criterion")
         for kind in self.of:
-            kind_named(kind, self._who, "of")
+            kind_named(kind, "criterion", "of")
         object.__setattr__(self, "of", tuple(self.of))
         if self.kinds > self.sensors:
             object.__setattr__(self, "sensors", self.kinds)
@@ -130,10 +129,9 @@ class Under:
 
     one_lost: bool = setting(False, FLAG, "Also with any one sensor lost")
     mounting: bool = setting(False, FLAG, "Also with the mounting errors of the tolerance")
-    _who: str = field(default="under", repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        check_settings(self, self._who)
+        check_settings(self, "under")
 
 
 @dataclass(frozen=True)

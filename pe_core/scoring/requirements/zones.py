@@ -8,7 +8,7 @@ margin of a verdict is a distance of this kind.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -38,6 +38,7 @@ GROWN_M = 0.6
 """How far round a zone samples are taken to find how far it could grow [m]."""
 INSIDE_M = 1e-6
 """A sample this far outside of a zone is on its edge: rounding."""
+WHO = "zone"
 SHAPES = ("x and y", "polygon", "ring", "path", "spots")
 
 
@@ -89,29 +90,28 @@ class Zone:
     eyes: float | None = setting(
         None, Number(cap=1e3, unit="m"), "x of the driver's eyes, for the plane eyes"
     )
-    _who: str = field(default="zone", repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        check_settings(self, self._who)
+        check_settings(self, WHO)
         put = object.__setattr__
         for axis, name in enumerate("xy"):
             if (value := getattr(self, name)) is not None:
-                put(self, name, _places((value,), (axis, axis), self._who, name)[0])
+                put(self, name, _places((value,), (axis, axis), WHO, name)[0])
         for name, fewest in (("polygon", 3), ("path", 2), ("spots", 1)):
-            corners = _places(getattr(self, name), (0, 1), self._who, name)
+            corners = _places(getattr(self, name), (0, 1), WHO, name)
             if corners and len(corners) < fewest:
-                raise InputError(self._who, name, f"at least {fewest} corners", len(corners))
+                raise InputError(WHO, name, f"at least {fewest} corners", len(corners))
             put(self, name, corners)
         if self.ring is not None:
-            put(self, "ring", pair(self._who, "ring", self.ring, RING))
-        put(self, "z", pair(self._who, "z", self.z, HEIGHT, same=True))
+            put(self, "ring", pair(WHO, "ring", self.ring, RING))
+        put(self, "z", pair(WHO, "z", self.z, HEIGHT, same=True))
         if (self.x is None) != (self.y is None):
-            raise InputError(self._who, "x, y", "both, or neither", "one of them")
+            raise InputError(WHO, "x, y", "both, or neither", "one of them")
         shapes = [self.x is not None, *map(bool, (self.polygon, self.ring, self.path, self.spots))]
         if sum(shapes) != 1:
             expected = f"one of {', '.join(SHAPES)}"
             found = " and ".join(s for s, has in zip(SHAPES, shapes, strict=True) if has)
-            raise InputError(self._who, "zone", expected, found or "none")
+            raise InputError(WHO, "zone", expected, found or "none")
 
     def placed(
         self,
@@ -252,7 +252,7 @@ class PlacedZone:
         distance = self.distance(points)
         kept = distance <= (self.grow if grown else 0.0) + INSIDE_M
         points, distance = points[kept], distance[kept]
-        outside = signed_distance(points, self.planes.outline) > -INSIDE_M
+        outside = signed_distance(points, self.planes.outline) > INSIDE_M
         points, distance = points[outside], distance[outside]
         if not (distance <= INSIDE_M).any():
             found = "a zone inside the vehicle's body"

@@ -1,0 +1,92 @@
+"""`pe check` and `pe requirements`: tables, JSON, CSV, and the exit status."""
+
+import csv
+import json
+
+import pytest
+
+import pe_core as pe
+from pe_core.study.requirement_file import presets
+from pe_tools.cli.check_verb import COLUMNS, NOT_MET
+from pe_tools.cli.verbs import main
+from tests.engine import shapes
+
+STUDY = """
+samples = 4096
+
+[vehicle]
+mesh = "car.npz"
+
+[[sensor]]
+name = "roof"
+model = "Pandar64"
+position = [0.0, 0.0, 1.9]
+
+[[requirement]]
+name = "adult ahead"
+body = "adult"
+zone = { x = ["front + 3", "front + 5"], y = [-1, 1], step = 0.5 }
+"""
+SMALL = """
+[[requirement]]
+name = "bump"
+body = { diameter = 0.1, height = 0.05 }
+zone = { ring = [0.2, 0.5] }
+"""
+
+
+@pytest.fixture
+def study(tmp_path):
+    car = shapes.box_car()
+    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    return path
+
+
+def test_the_exit_status_says_whether_all_are_met(study, capsys):
+    assert main(["check", str(study)]) == 0
+    assert "1 of 1 met" in capsys.readouterr().out
+    study.write_text(STUDY + SMALL)
+    assert main(["check", str(study), "--json"]) == NOT_MET == 3
+    found = json.loads(capsys.readouterr().out)
+    assert [row["met"] for row in found["requirements"]] == [True, False]
+    assert found["met"] == 1 and found["requirements"][1]["margin_m"] < 0.0
+    study.write_text(STUDY.split("[[requirement]]")[0])
+    assert main(["check", str(study)]) == 1
+    assert "[[requirement]] in the study" in capsys.readouterr().err
+
+
+def test_all_presets_are_checked_or_said_why_not(study, tmp_path, capsys):
+    """The CSV has a row for each that was checked; no text claims that a rule is complied with."""
+    table = tmp_path / "table.csv"
+    status = main(["check", str(study), "--preset", "all", "--csv", str(table)])
+    text = capsys.readouterr().out
+    rows = list(csv.DictReader(table.open()))
+    assert status == NOT_MET and tuple(rows[0]) == COLUMNS
+    named = {row["name"] for row in rows} - {"adult ahead"}
+    skipped = {line.split(":")[0] for line in text.splitlines() if ": not checked: " in line}
+    assert named | skipped == set(presets()) and not named & skipped
+    assert "r46_class_I" in skipped and "r159_crossing" in named
+    assert "compl" not in text.lower() and "no approval" in text
+
+
+def test_the_list_of_presets_names_standard_and_confidence(capsys):
+    assert main(["requirements"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines[: len(presets())]] == list(presets())
+    assert main(["requirements", "r158_camera"]) == 0
+    shown = capsys.readouterr().out
+    assert "rear + 0.3" in shown and "secondary" in shown
+    assert main(["requirements", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)) == len(presets())
+    assert main(["requirements", "r000"]) == 1
+
+
+def test_a_score_has_the_verdicts_in_its_result(study, tmp_path, capsys):
+    assert main(["score", str(study), "-o", str(tmp_path / "out"), "--json"]) == 0
+    found = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert [row["name"] for row in found["requirements"]] == ["adult ahead"]
+    assert main(["check", str(tmp_path / "out" / "study.toml"), "--json"]) == 0
+    again = json.loads(capsys.readouterr().out.split("\n{\n")[-1].join(["{\n", ""]))
+    assert again["requirements"] == found["requirements"]

@@ -31,24 +31,37 @@ def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties.add_pointers()
+    panels.register()
+    start()
+
+
+def start() -> None:
+    """Add handlers, listeners, keys and commands: what works on classes that are registered."""
     wiring.register()
     operators.register()
     live.register()
     search_curve.register()
     overlay.register()
-    panels.register()
     commands.register()
     library.register()
 
 
 def unregister() -> None:
     """Called by Blender when the add-on is disabled: what runs ends first, then all is removed."""
+    stop()
+    panels.unregister()
+    properties.remove_pointers()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
+
+
+def stop() -> None:
+    """End what runs, remove what `start` added, and drop what is kept between two calls."""
     operators.unregister()
     worker.unregister()
     wiring.unregister()
     library.unregister()
     commands.unregister()
-    panels.unregister()
     overlay.unregister()
     search_curve.unregister()
     live.unregister()
@@ -58,6 +71,3 @@ def unregister() -> None:
     consistency.unregister()
     vehicle_cache.clear()
     sensor_cache.invalidate()
-    properties.remove_pointers()
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)

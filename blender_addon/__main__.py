@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, TextIO
 
 import bpy
 
@@ -25,11 +25,16 @@ def main(argv: list[str]) -> int:
     bpy.ops.wm.read_factory_settings(use_empty=True)  # nothing of a user's own takes part
     register()
     try:
-        status = app.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG, out)
+        status = run_on_file(argv, out)
         commands.flush(out)
         return status
     finally:
         unregister()
+
+
+def run_on_file(argv: list[str], out: TextIO) -> int:
+    """Open the file with the add-on registered, run the command, and return its exit status."""
+    return app.run(lambda: open_file(argv[0])) or commands.main(argv[1:], PROG, out)
 
 
 def open_file(name: str) -> app.Answer:
@@ -51,4 +56,5 @@ def leave(status: int) -> NoReturn:
     app.leave(status, at_once=True)
 
 
-leave(main(sys.argv[1:]))
+if __name__ == "__main__":
+    leave(main(sys.argv[1:]))

@@ -24,19 +24,47 @@ def blender_s_own_words():
     ctypes.CDLL(None).fflush(None)
 
 
-@pytest.fixture
-def addon():
-    """Return the add-on, registered in an empty scene, and take it away again."""
+@pytest.fixture(scope="session")
+def registered():
+    """Return the add-on with its classes registered, once for all tests; nothing of it runs yet."""
     import bpy
 
     import blender_addon
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     blender_addon.register()
+    blender_addon.stop()
+    yield blender_addon
+    blender_addon.start()
+    blender_addon.unregister()
+
+
+@pytest.fixture
+def addon(registered):
+    """Return the add-on, started in an empty scene, and stop it in the end."""
+    import bpy
+
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    registered.start()
     try:
-        yield blender_addon
+        yield registered
     finally:
-        blender_addon.unregister()
+        registered.stop()
+
+
+@pytest.fixture
+def unregistered(registered):
+    """Return the add-on for tests that register its classes themselves."""
+    import bpy
+
+    registered.start()
+    registered.unregister()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    try:
+        yield registered
+    finally:
+        registered.register()
+        registered.stop()
 
 
 @pytest.fixture

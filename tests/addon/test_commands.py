@@ -5,34 +5,25 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import bpy
 import pytest
 
+from blender_addon.__main__ import main
 from blender_addon.engine import jobs
 from tests.addon import scenes
-
-ROOT = Path(__file__).resolve().parents[2]
-TIMEOUT_S = 120
-FAST = ("--grid-samples", "4096", "--samples", "4096", "--candidates", "2", "--seed", "3")
-
-
-def command(*arguments) -> list[str]:
-    return [sys.executable, "-m", *map(str, arguments)]
-
-
-def run(*arguments) -> subprocess.CompletedProcess[str]:
-    # The bpy of this process has set OCIO; another one would tell of it on stdout.
-    env = {key: value for key, value in os.environ.items() if key != "OCIO"}
-    return subprocess.run(
-        command(*arguments), cwd=ROOT, env=env, capture_output=True, text=True, timeout=TIMEOUT_S
-    )
-
-
-def complaints(answer) -> list[str]:
-    return [line for line in answer.stderr.splitlines() if line.startswith("pe: ")]
+from tests.addon.command_line import (
+    FAST,
+    ROOT,
+    TIMEOUT_S,
+    command,
+    complaints,
+    pe_here,
+    run_alone,
+    run_here,
+    wait_for,
+)
 
 
 def without_run(path: Path) -> dict:
@@ -50,7 +41,7 @@ def blend(car, tmp_path) -> Path:
 
 
 def test_explain_says_what_it_says_without_blender(blend, tmp_path):
-    assert run("blender_addon", blend, "export", "-o", tmp_path / "study").returncode == 0
+    assert run_here(blend, "export", "-o", tmp_path / "study").returncode == 0
     study = tmp_path / "study" / "study.toml"
     for asked in (
         ("--grid-samples", "4096"),
@@ -58,15 +49,15 @@ def test_explain_says_what_it_says_without_blender(blend, tmp_path):
         ("--at", "8", "2", "1", "--json"),
     ):
         inside, outside = (
-            run("blender_addon", blend, "explain", *asked),
-            run("pe_core", "explain", study, *asked),
+            run_here(blend, "explain", *asked),
+            pe_here("explain", study, *asked),
         )
         assert inside.stdout == outside.stdout and inside.stdout, inside.stderr
         assert inside.returncode == outside.returncode == 0
 
 
 def test_places_that_are_none_are_one_line(blend):
-    answer = run("blender_addon", blend, "explain", "--at", "99", "0")
+    answer = run_here(blend, "explain", "--at", "99", "0")
     assert (answer.returncode, answer.stdout) == (1, "")
     expected = ["pe: place: x: expected -80 to 80 m, inside the space, found 99"]
     assert complaints(answer) == expected
@@ -76,35 +67,24 @@ def test_a_search_that_cannot_place_is_refused_before_it_begins(car, tmp_path):
     car.objects["roof"].keyframe_insert("location", frame=1)
     path = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    answer = run("blender_addon", path, "optimize", *FAST, "-o", tmp_path / "out")
+    answer = run_here(path, "optimize", *FAST, "-o", tmp_path / "out")
     assert answer.returncode == 1
     (line,) = complaints(answer)
     assert "sensor 'roof': placement: expected an object that can be placed" in line
     assert str(path) in line and not (tmp_path / "out").exists()
-    assert run("blender_addon", path, "score", *FAST[:2], "--no-render").returncode == 0
+    assert run_here(path, "score", *FAST[:2], "--no-render").returncode == 0
 
 
 def test_optimize_and_export_agree_with_the_engine(blend, tmp_path):
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     before = blend.read_bytes()
-    answer = run(
-        *(
-            "blender_addon",
-            blend,
-            "optimize",
-            "--no-review",
-            *FAST,
-            "-o",
-            inside,
-            "--no-render",
-            "--json",
-        )
-    )
+    options = ("--no-review", *FAST, "-o", inside, "--no-render", "--json")
+    answer = run_alone(blend, "optimize", *options)
     assert answer.returncode == 0, answer.stderr
     assert json.loads(answer.stdout)["run"]["versions"]["blender"] == bpy.app.version_string
     assert blend.read_bytes() == before
-    assert run("blender_addon", blend, "export", "-o", study).returncode == 0
-    answer = run("pe_core", "optimize", "--no-review", study / "study.toml", *FAST, "-o", outside)
+    assert run_here(blend, "export", "-o", study).returncode == 0
+    answer = pe_here("optimize", "--no-review", study / "study.toml", *FAST, "-o", outside)
     assert answer.returncode == 0, answer.stderr
     assert without_run(inside / "result.json") == without_run(outside / "result.json")
     for name in ("history.csv", "study.toml"):
@@ -125,10 +105,10 @@ def test_focus_and_prior_of_the_scene_agree_with_the_engine(car, tmp_path, prior
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     samples = FAST[:2]
-    answer = run("blender_addon", blend, "score", *samples, "-o", inside, "--no-render")
+    answer = run_here(blend, "score", *samples, "-o", inside, "--no-render")
     assert answer.returncode == 0, answer.stderr
-    assert run("blender_addon", blend, "export", "-o", study).returncode == 0
-    answer = run("pe_core", "score", study / "study.toml", *samples, "-o", outside)
+    assert run_here(blend, "export", "-o", study).returncode == 0
+    answer = pe_here("score", study / "study.toml", *samples, "-o", outside)
     assert answer.returncode == 0, answer.stderr
     result = without_run(inside / "result.json")
     assert result == without_run(outside / "result.json")
@@ -140,9 +120,7 @@ def check_resumed(blend: Path, folder: Path) -> None:
     whole, begun = without_run(folder / "result.json"), jobs.read_search(folder)
     state = jobs.SearchState(begun.study, begun.inputs)
     state.save(folder, begun.study, begun.judged[:5])
-    answer = run(
-        "blender_addon", blend, "optimize", "--no-review", *FAST, "--resume", folder, "--no-render"
-    )
+    answer = run_here(blend, "optimize", "--no-review", *FAST, "--resume", folder, "--no-render")
     assert answer.returncode == 0, answer.stderr
     assert complaints(answer) == ["pe: going on after 5 placements"]
     assert without_run(folder / "result.json") == whole
@@ -169,7 +147,7 @@ def check_optimized_scene(folder: Path) -> None:
 def test_bad_file_is_one_line_and_status_1(addon, tmp_path, name, found):
     (tmp_path / "text.blend").write_text("no blend file")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "plain.blend"))
-    answer = run("blender_addon", tmp_path / name, "score")
+    answer = run_here(tmp_path / name, "score")
     assert answer.returncode == 1
     (line,) = complaints(answer)
     assert line.startswith(f"pe: {tmp_path / name}: ") and found in line
@@ -180,20 +158,20 @@ def test_error_in_the_scene_names_the_file(car, tmp_path):
     car.objects["roof"].scale = (2.0, 2.0, 2.0)
     path = tmp_path / "scaled.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    answer = run("blender_addon", path, "score")
+    answer = run_here(path, "score")
     assert answer.returncode == 1
     assert complaints(answer)[0].startswith(f"pe: {path}: sensor 'roof': scale: expected 1")
 
 
 def test_usage(blend):
-    assert run("blender_addon", blend, "score", "--no-such-option").returncode == 2
-    assert run("blender_addon").returncode == 2
+    assert run_here(blend, "score", "--no-such-option").returncode == 2
+    assert main([]) == 2
 
 
 def test_sensors(blend):
-    listed = run("blender_addon", blend, "sensors")
+    listed = run_here(blend, "sensors")
     assert listed.returncode == 0 and "lidar   Pandar64" in listed.stdout
-    assert listed.stdout == run("pe_core", "sensors").stdout
+    assert listed.stdout == pe_here("sensors").stdout
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process on Windows")
@@ -202,7 +180,7 @@ def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
     arguments = (*FAST[:4], "--candidates", 100_000, "-o", folder, "--no-render")
     with (tmp_path / "log").open("w+") as log:
         process = subprocess.Popen(
-            command("blender_addon", blend, "optimize", "--no-review", *arguments),
+            command(blend, "optimize", "--no-review", *arguments),
             cwd=ROOT,
             stdout=subprocess.DEVNULL,
             stderr=log,
@@ -216,13 +194,6 @@ def test_interrupt_keeps_the_best_so_far(blend, tmp_path):
     result = without_run(folder / "result.json")
     assert result["entropy"] <= result["before"]["entropy"]
     assert (folder / "optimized.blend").exists()
-
-
-def wait_for(text: str, log: Path) -> None:
-    deadline = time.monotonic() + TIMEOUT_S
-    while text not in log.read_text():
-        assert time.monotonic() < deadline, log.read_text()
-        time.sleep(0.1)
 
 
 DRIVE = """
@@ -242,6 +213,6 @@ def test_the_process_ends_though_the_file_has_a_driver_in_python(blend):
         [sys.executable, "-c", DRIVE, str(blend)], capture_output=True, timeout=TIMEOUT_S
     )
     assert made.returncode == 0, made.stderr
-    answer = run("blender_addon", blend, "score", *FAST[:2], "--json")
+    answer = run_alone(blend, "score", *FAST[:2], "--json")
     assert answer.returncode == 0, answer.stderr
     assert json.loads(answer.stdout)["after"]["entropy"] > 0.0

@@ -11,7 +11,7 @@ from blender_addon.engine import exchange, pe
 from blender_addon.overlay import annotations
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
-from tests.addon.test_commands import run
+from tests.addon.command_line import run_here
 from tests.engine.test_passthrough import CARLA
 
 AXLE = pe.Reference(-1.31, 0.33, 2.8)
@@ -114,7 +114,7 @@ def test_axles_are_drawn_across_the_body_and_axes_on_the_ground():
 def test_the_command_in_blender_writes_a_rig(axled, tmp_path):
     path = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    answer = run("blender_addon", path, "export", "--to", "autoware", "-o", tmp_path / "kit")
+    answer = run_here(path, "export", "--to", "autoware", "-o", tmp_path / "kit")
     assert answer.returncode == 0, answer.stderr
     bpy.ops.pe.export_rig(filepath=str(tmp_path / "panel"), format="autoware")
     for name in exchange.rig_format("autoware").files:

@@ -9,6 +9,7 @@ import pytest
 from blender_addon import bridge, diagnostics, location_query, panels
 from blender_addon.engine import advice, pe
 from tests.addon import scenes
+from tests.addon.command_line import run_here
 from tests.addon.layouts import Layout, Window
 
 
@@ -223,10 +224,8 @@ def test_a_lost_library_is_reported_by_name_and_marks_the_result(car, tmp_path):
 
 
 def test_a_lost_library_is_reported_without_a_window(car, tmp_path):
-    from tests.addon.test_commands import run
-
     path, _ = lost_roof(tmp_path)
-    answer = run("blender_addon", path, "score", "--grid-samples", "4096")
+    answer = run_here(path, "score", "--grid-samples", "4096")
     assert answer.returncode == 0
     assert "cabin is missing" in answer.stdout + answer.stderr
 

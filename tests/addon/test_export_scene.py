@@ -7,7 +7,7 @@ from mathutils import Vector
 
 from blender_addon.engine import outputs
 from tests.addon import scenes
-from tests.addon.test_commands import run
+from tests.addon.command_line import run_here
 
 NEED_LIBRARIES = ("footprints-dxf", "rerun")
 
@@ -36,7 +36,7 @@ def test_every_output_of_the_panel_is_that_of_the_engine(seen, tmp_path, name):
 
 def test_blender_imports_sensors_where_they_stood(seen, tmp_path):
     path, rig = exported(tmp_path, "gltf"), scenes.study().rig
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     bpy.ops.import_scene.gltf(filepath=str(path))
     bpy.context.view_layer.update()
     for sensor in rig:
@@ -55,7 +55,7 @@ def test_blender_imports_sensors_where_they_stood(seen, tmp_path):
 
 def test_blender_imports_the_vehicle_and_the_solids_where_they_were(seen, tmp_path):
     folder, vehicle = exported(tmp_path, "solids", range_m=6.0), scenes.study().vehicle
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     bpy.ops.import_scene.gltf(filepath=str(folder / "solids.glb"))
     names = {each.name for each in bpy.data.objects if each.type == "MESH"}
     assert {"roof_free", "eye_free", "blind_volume"} <= names
@@ -75,7 +75,7 @@ def test_blender_imports_an_stl_as_one_closed_solid_where_it_was(seen, tmp_path)
     import bmesh  # there once bpy is
 
     path = exported(tmp_path, "solids", range_m=6.0) / "roof_field.stl"
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     bpy.ops.wm.stl_import(filepath=str(path))
     (solid,) = bpy.context.selected_objects
     mesh = bmesh.new()
@@ -98,6 +98,6 @@ def test_the_command_in_blender_writes_the_same(seen, tmp_path):
     path, blend = exported(tmp_path, "gltf", range_m=5.0), tmp_path / "car.blend"
     again = tmp_path / "again.glb"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    answer = run("blender_addon", blend, "export", "--to", "gltf", "--range", "5", "-o", again)
+    answer = run_here(blend, "export", "--to", "gltf", "--range", "5", "-o", again)
     assert answer.returncode == 0, answer.stderr
     assert again.read_bytes() == path.read_bytes()

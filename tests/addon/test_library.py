@@ -109,9 +109,8 @@ def libraries():
 
 
 @pytest.fixture
-def enabled():
+def enabled(unregistered):
     """Register as Blender does it for an extension: with an entry in its preferences."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
     before = libraries()
     entry = bpy.context.preferences.addons.new()
     entry.module = blender_addon.__name__

@@ -61,7 +61,7 @@ def test_all_that_a_scene_says_of_its_search_comes_back(car, tmp_path):
     study = scenes.study()
     path = tmp_path / "study.toml"
     pe.export_study(study, path)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert bpy.ops.pe.import_study(filepath=str(path)) == {"FINISHED"}
     again, saved = scenes.study(), pe.load_study(path)
     assert bridge.load_into(bpy.context.scene, saved) == []

@@ -13,7 +13,15 @@ import pytest
 from blender_addon.commands import open_file
 from blender_addon.engine import jobs, pe
 from tests.addon import scenes
-from tests.addon.test_commands import FAST, ROOT, TIMEOUT_S, command, complaints, run, wait_for
+from tests.addon.command_line import (
+    FAST,
+    ROOT,
+    TIMEOUT_S,
+    command,
+    complaints,
+    run_here,
+    wait_for,
+)
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals and files")
 
@@ -34,7 +42,7 @@ def test_a_users_own_file_is_refused_before_the_work(blend, tmp_path, name):
     out = tmp_path / "out"
     out.mkdir()
     (out / name).write_text("mine")
-    answer = run("blender_addon", blend, "optimize", *FAST, "-o", out)
+    answer = run_here(blend, "optimize", *FAST, "-o", out)
     assert answer.returncode == 1
     (line,) = complaints(answer)
     assert line.startswith(f"pe: {out / name}: output: ") and "scoring" not in answer.stderr
@@ -44,7 +52,7 @@ def test_a_users_own_file_is_refused_before_the_work(blend, tmp_path, name):
 def test_the_same_folder_again_is_one_set(blend, tmp_path):
     out = tmp_path / "out"
     for seed, *options in (("3", "--no-review"), ("4",)):
-        answer = run("blender_addon", blend, "optimize", *FAST[:-1], seed, *options, "-o", out)
+        answer = run_here(blend, "optimize", *FAST[:-1], seed, *options, "-o", out)
         assert answer.returncode == 0, answer.stderr
     named = json.loads((out / "result.json").read_text())["run"]["files"]
     expected = (
@@ -60,7 +68,7 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     arguments = (*FAST[:4], "--candidates", 100_000, "-o", out, "--no-render")
     with log.open("w") as stderr:
         process = subprocess.Popen(
-            command("blender_addon", blend, "optimize", "--no-review", *arguments),
+            command(blend, "optimize", "--no-review", *arguments),
             cwd=ROOT,
             stdout=subprocess.DEVNULL,
             stderr=stderr,
@@ -78,7 +86,7 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
 
 def test_a_full_stderr_ends_nothing(blend, tmp_path):
     out = tmp_path / "out"
-    arguments = command("blender_addon", blend, "score", *FAST[:2], "-o", out, "--no-render")
+    arguments = command(blend, "score", *FAST[:2], "-o", out, "--no-render")
     with open("/dev/full", "w") as full:
         answer = subprocess.run(
             arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=full, timeout=TIMEOUT_S
@@ -93,8 +101,8 @@ def test_a_scene_that_does_not_fit_on_the_disk_sets_the_old_one_aside(blend, tmp
 
     out, elsewhere = tmp_path / "out", tmp_path / "tmp"
     elsewhere.mkdir()
-    optimize = ("blender_addon", blend, "optimize", "--no-review", *FAST, "-o", out, "--no-render")
-    assert run(*optimize).returncode == 0
+    optimize = (blend, "optimize", "--no-review", *FAST, "-o", out, "--no-render")
+    assert run_here(*optimize).returncode == 0
     before = (out / "optimized.blend").read_bytes()
     assert len(before) > 50_000 > len((out / "result.json").read_bytes())
     answer = subprocess.run(
@@ -141,9 +149,9 @@ def test_the_export_of_the_panel_replaces_the_chosen_file_and_no_other(car, tmp_
 def test_the_verb_export_replaces_what_it_wrote_and_no_other(blend, tmp_path):
     out = tmp_path / "out"
     for _ in range(2):
-        assert run("blender_addon", blend, "export", "-o", out).returncode == 0
+        assert run_here(blend, "export", "-o", out).returncode == 0
     (out / "study.toml").write_text("mine now")
-    answer = run("blender_addon", blend, "export", "-o", out)
+    answer = run_here(blend, "export", "-o", out)
     assert answer.returncode == 1
     assert complaints(answer)[0].startswith(f"pe: {out / 'study.toml'}: output: ")
     assert (out / "study.toml").read_text() == "mine now"

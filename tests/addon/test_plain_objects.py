@@ -9,7 +9,7 @@ import pytest
 from blender_addon import bridge
 from blender_addon.engine import catalog, exchange, pe
 from tests.addon import scenes
-from tests.addon.test_commands import run
+from tests.addon.command_line import run_here
 
 QUARTER = math.pi / 2.0
 
@@ -200,7 +200,7 @@ def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys
     assert "eye: Blender's camera has no distortion" in capsys.readouterr().err
     with pytest.raises(pe.InputError, match="one is there"):
         args.function(args)
-    answer = run("blender_addon", out, "import", "-o", tmp_path / "back.toml")
+    answer = run_here(out, "import", "-o", tmp_path / "back.toml")
     assert answer.returncode == 0, answer.stderr
     back, before = pe.load_study(tmp_path / "back.toml"), scenes.study()
     assert {s.name for s in back.rig} == {s.name for s in before.rig}

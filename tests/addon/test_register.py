@@ -22,8 +22,9 @@ from blender_addon.live import readout, state
 from blender_addon.operators import running_job
 from blender_addon.overlay import draw_handler, scheduler
 from tests.addon.scenes import depsgraph
+from tests.thorough import tries
 
-ROUNDS = 100
+ROUNDS = tries(10, 100)
 
 
 SIGNALS = (
@@ -51,8 +52,7 @@ def traces() -> dict[str, list[str]]:
     }
 
 
-def test_register_unregister_register_leaves_nothing_behind():
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+def test_register_unregister_register_leaves_nothing_behind(unregistered):
     before = traces()
     assert not any(before.values())
     blender_addon.register()
@@ -106,8 +106,7 @@ def workers(monkeypatch):
     return worker.background_worker, worker.interactive_worker
 
 
-def test_a_hundred_rounds_leave_no_thread_timer_or_read_out_behind(monkeypatch, workers):
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+def test_rounds_leave_no_thread_timer_or_read_out_behind(unregistered, monkeypatch, workers):
     monkeypatch.setattr(readout, "VIEW", View3D)
     threads, drawn = threading.active_count(), len(View3D.handles)
     for _ in range(ROUNDS):
@@ -124,8 +123,7 @@ def test_a_hundred_rounds_leave_no_thread_timer_or_read_out_behind(monkeypatch, 
         assert not any(each.busy() for each in workers) and not state.live_state("Scene").note
 
 
-def test_a_hundred_rounds_leave_nothing_behind(view3d):
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+def test_rounds_leave_nothing_behind(unregistered, view3d):
     before, kept = traces(), None
     assert not any(before.values())
     for _ in range(ROUNDS):

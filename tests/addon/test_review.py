@@ -8,7 +8,6 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
-import blender_addon  # noqa: E402
 import pe_core as pe  # noqa: E402
 from blender_addon import bridge  # noqa: E402
 from blender_addon.review import captions, render_review  # noqa: E402
@@ -19,10 +18,8 @@ SIZE = (800, 450)
 
 
 @pytest.fixture
-def scene():
+def scene(addon):
     """A box for a car, a LiDAR on its roof and a camera at its front."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    blender_addon.register()
     found = bpy.context.scene
     collection = bpy.data.collections.new("Car")
     found.collection.children.link(collection)
@@ -35,8 +32,7 @@ def scene():
     add_sensor(found, "roof", "Pandar40", (0.0, 0.0, 1.8))
     add_sensor(found, "front", "Camera 60 deg", (2.3, 0.0, 1.2))
     bpy.context.view_layer.update()
-    yield found
-    blender_addon.unregister()
+    return found
 
 
 def add_sensor(scene, name, model, location):

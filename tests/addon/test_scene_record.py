@@ -195,7 +195,7 @@ def test_an_imported_study_becomes_the_record_of_the_scene_that_holds_it(rich, t
     study = pe.load_study(tmp_path / "study.toml")
     assert differences(exported, study) == []
     imported = bridge.study_of(bridge.record_of_study(study))
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert bridge.load_into(bpy.context.scene, study) == []
     of_files = [  # names of files, and of an area's parts in them
         *("study.mesh", "study.mesh.len"),

@@ -7,7 +7,7 @@ import pytest
 
 from blender_addon.engine import pe
 from tests.addon import scenes
-from tests.addon.test_commands import complaints, run
+from tests.addon.command_line import complaints, run_here
 
 FEW = ("--grid-samples", "4096")
 
@@ -29,49 +29,53 @@ def blend(car, tmp_path):
 
 
 def test_variants_are_listed(blend):
-    answer = run("blender_addon", blend, "variants")
+    answer = run_here(blend, "variants")
     assert answer.returncode == 0, answer.stderr
     entropy = bpy.context.scene.perception_entropy.variants["Low"].entropy
     assert answer.stdout.splitlines() == [f"  Low  {entropy:.4f} nats", "* High  not scored"]
-    listed = json.loads(run("blender_addon", blend, "variants", "--json").stdout)
+    listed = json.loads(run_here(blend, "variants", "--json").stdout)
     assert [row["name"] for row in listed] == ["Low", "High"]
     assert [row["active"] for row in listed] == [False, True]
     assert listed[0]["sensors"] == ["roof"] and listed[1]["entropy"] is None
 
 
+def variant(name):
+    """Return a variant of the file that is open."""
+    return bpy.context.scene.perception_entropy.variants[name]
+
+
 def test_a_variant_is_scored_and_exported_as_the_window_would(blend, tmp_path):
     before = blend.read_bytes()
     wanted = ("--variant", "Low")
-    answer = run("blender_addon", blend, "score", *FEW, *wanted, "--json")
+    answer = run_here(blend, "score", *FEW, *wanted, "--json")
     assert answer.returncode == 0, answer.stderr
-    row = bpy.context.scene.perception_entropy.variants["Low"]
-    kept = json.loads(row.score_json)
+    kept = json.loads(variant("Low").score_json)
     del kept["scatter"]  # for the error of a difference: no part of result.json
     assert json.loads(answer.stdout)["after"] == {
         **kept,
         "per_sensor": json.loads(answer.stdout)["after"]["per_sensor"],
     }
-    assert run("blender_addon", blend, "export", *wanted, "-o", tmp_path / "out").returncode == 0
+    assert run_here(blend, "export", *wanted, "-o", tmp_path / "out").returncode == 0
     study = pe.load_study(tmp_path / "out" / "study.toml")
-    bpy.ops.pe.switch_variant(key=row.key)
+    bpy.ops.pe.switch_variant(key=variant("Low").key)
     assert [s.pose for s in study.rig] == [s.pose for s in scenes.study().rig]
     assert blend.read_bytes() == before
 
 
 def test_variants_are_compared(blend):
-    answer = run("blender_addon", blend, "compare", *FEW, "--json")
+    answer = run_here(blend, "compare", *FEW, "--json")
     assert answer.returncode == 0, answer.stderr
     data = json.loads(answer.stdout)
     assert list(data["scores"]) == ["Low", "High"]
     stored = bpy.context.scene.perception_entropy.variants["Low"].entropy
     assert data["scores"]["Low"]["entropy"] == pytest.approx(stored, abs=1e-6)
-    assert run("blender_addon", blend, "compare", "High", *FEW).returncode == 0
+    assert run_here(blend, "compare", "High", *FEW).returncode == 0
 
 
 def test_an_unknown_variant_is_reported(blend):
     for verb in ("score", "export", "explain"):
         folder = ("-o", blend.parent / "x") if verb == "export" else ()
-        answer = run("blender_addon", blend, verb, *folder, "--variant", "Middle")
+        answer = run_here(blend, verb, *folder, "--variant", "Middle")
         assert answer.returncode == 1
         expected = f"pe: {blend}: variant: expected one of Low, High, found 'Middle'"
         assert complaints(answer) == [expected]
@@ -80,7 +84,7 @@ def test_an_unknown_variant_is_reported(blend):
 def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blend, tmp_path):
     fast = (*FEW, "--samples", "4096", "--candidates", "2")
     out = tmp_path / "out"
-    answer = run("blender_addon", blend, "optimize", "--no-review", *fast, "--no-render", "-o", out)
+    answer = run_here(blend, "optimize", "--no-review", *fast, "--no-render", "-o", out)
     assert answer.returncode == 0, answer.stderr
     bpy.ops.wm.open_mainfile(filepath=str(out / "optimized.blend"))
     rows = bpy.context.scene.perception_entropy.variants
@@ -91,7 +95,7 @@ def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blen
 def test_variants_are_swept_with_changes(blend, tmp_path):
     out = tmp_path / "out"
     sweep = ("sweep", "Low", "--set", "sensor.roof.model=HDL-64E,Pandar64", *FEW, "--json")
-    answer = run("blender_addon", blend, *sweep, "-o", out)
+    answer = run_here(blend, *sweep, "-o", out)
     assert answer.returncode == 0, answer.stderr
     rows = {row["changes"]["sensor.roof.model"]: row for row in json.loads(answer.stdout)["runs"]}
     study = pe.load_study(out / rows["Pandar64"]["run"] / "study.toml")

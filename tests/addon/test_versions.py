@@ -9,7 +9,7 @@ import pytest
 from blender_addon import bridge, choices
 from blender_addon.bridge.versions import STEPS, Stored, migrated
 from tests.addon import scenes
-from tests.addon.test_commands import run
+from tests.addon.command_line import run_here
 
 OLD = Path(__file__).parent / "files" / "version_0.blend"
 """Written by the add-on before there were versions: a car, two sensors, the result of a search."""
@@ -65,7 +65,7 @@ def test_a_newer_file_is_reported_in_one_line_and_keeps_its_version(car, tmp_pat
     scene = bpy.context.scene
     assert scene.perception_entropy.version == choices.VERSION + 6
     assert "newer version" in bridge.newer_version_message(scene)
-    answer = run("blender_addon", path, "score", "--grid-samples", "4096")
+    answer = run_here(path, "score", "--grid-samples", "4096")
     assert answer.returncode == 0
     told = [line for line in answer.stderr.splitlines() if "newer version" in line]
     assert len(told) == 1 and answer.stdout

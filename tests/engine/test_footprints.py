@@ -101,3 +101,16 @@ def test_what_is_drawn_is_what_was_found(drawing):
     assert area(loops(layer(drawing, "Vehicle"))) == pytest.approx(4.6 * 1.8, rel=0.01)
     texts = [text.text for text in drawing.iter(f"{SVG}text")]
     assert "front/eye (camera, Camera), 1.50 m high, to 20 m" in texts
+
+
+def test_the_sheet_holds_the_plan_and_a_legend_and_is_30_m_wide():
+    """A picture of 3.4 by 6 m round (1, 1.9), 2 m of margin: y from -4 to 7, and 3.5 lines above."""
+    down = camera(90.0, position=(1.0, 1.9, 3.0), rotation=(0.0, 90.0, 0.0))
+    files, _ = scene_files(pe.Study(pe.Rig([down])), "footprints", RANGE)
+    drawing = ElementTree.fromstring(files["footprints.svg"])
+    x, y, width, height = map(float, drawing.get("viewBox").split())
+    assert (x, y) == pytest.approx((-15.0, -7.0 - 3.5 * 1.1))
+    assert (width, height) == pytest.approx((30.0, 11.0 + 3.5 * 1.1))
+    legend = layer(drawing, "Legend")
+    assert float(legend.find(f"{SVG}rect").get("x")) == -14.0
+    assert float(legend.find(f"{SVG}text").get("x")) == -12.5

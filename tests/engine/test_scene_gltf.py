@@ -8,6 +8,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools.outputs import scene_files
+from pe_tools.outputs.colors import linear
 
 from .shapes import box_car, camera, lidar_on_roof, small_lidar
 
@@ -113,3 +114,15 @@ def test_what_gltf_cannot_say_is_reported():
     lines = scene_files(pe.Study(rig), "gltf")[1]
     assert lines[0] == "no vehicle: sensors alone"
     assert "distortion" in lines[1] and "principal point" in lines[2] and len(lines) == 3
+
+
+def test_meshes_have_the_material_that_they_are_made_of(scene):
+    document, _ = scene
+    names = [material["name"] for material in document["materials"]]
+    used = {m["name"]: names[m["primitives"][0]["material"]] for m in document["meshes"]}
+    assert (used["body"], used["cabin"]) == ("body", "body")
+
+
+def test_colours_are_in_linear_light():
+    """IEC 61966-2-1: a straight line up to 0.04045, then a power."""
+    assert linear((0.0, 0.04, 0.5)) == pytest.approx([0.0, 0.04 / 12.92, 0.21404114])

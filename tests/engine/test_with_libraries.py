@@ -57,6 +57,9 @@ def test_the_dxf_has_what_the_svg_has_in_millimetres(drawing):
     assert area(body) == pytest.approx(4.6e3 * 1.8e3, rel=0.01)
     sensors = drawing.modelspace().query('CIRCLE[layer=="SENSOR_eye"]')
     assert tuple(sensors[0].dxf.center) == pytest.approx((1000.0, 500.0, 1200.0))
+    (name,) = drawing.modelspace().query('TEXT[text=="eye"]')
+    assert tuple(name.get_placement()[1]) == pytest.approx((1120.0, 620.0, 0.0))
+    assert drawing.layers.get("BLIND_GROUND").rgb == (191, 31, 31)  # of 0.75, 0.12, 0.12
     ring = sum(area(line) for line in outlines(drawing, "SENSOR_roof_top"))
     assert 0.8 < ring / (math.pi * 20e3**2) < 1.0
 

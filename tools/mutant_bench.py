@@ -233,6 +233,7 @@ def _child(request: dict) -> int:
     import pytest
 
     os.setsid()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     cpu_s = int(request["cpu_s"]) + 1
     resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s + 5))

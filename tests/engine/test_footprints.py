@@ -104,7 +104,7 @@ def test_what_is_drawn_is_what_was_found(drawing):
 
 
 def test_the_sheet_holds_the_plan_and_a_legend_and_is_30_m_wide():
-    """A picture of 3.4 by 6 m round (1, 1.9), 2 m of margin: y from -4 to 7, and 3.5 lines above."""
+    """A picture of 3.4 by 6 m round (1, 1.9), 2 m of margin: y from -4 to 7, 3.5 lines above."""
     down = camera(90.0, position=(1.0, 1.9, 3.0), rotation=(0.0, 90.0, 0.0))
     files, _ = scene_files(pe.Study(pe.Rig([down])), "footprints", RANGE)
     drawing = ElementTree.fromstring(files["footprints.svg"])

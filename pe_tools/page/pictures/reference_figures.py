@@ -38,17 +38,21 @@ PaintedParts = tuple[tuple[Floats, Paint], ...]
 
 @dataclass(frozen=True, slots=True)
 class ReferenceFigure:
-    """A person or a car (`name`) at a `distance` [m]; `top` is the point that is labelled [m]."""
+    """A person or a car (`name`) at a `distance` [m]; `top` is the point that is labelled [m].
+
+    The label is the `text`, or else the distance.
+    """
 
     name: str
     distance: float
     top: tuple[float, float, float]
     painted: PaintedMesh
+    text: str = ""
 
     @property
     def label(self) -> str:
-        """The distance as text."""
-        return f"{self.distance:g} m"
+        """The text at the figure."""
+        return self.text or f"{self.distance:g} m"
 
 
 def reference_figures(

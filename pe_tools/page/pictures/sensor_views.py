@@ -51,6 +51,9 @@ SMALL_BOX = scene.Housing("box", (0.05, 0.06, 0.05), (0.025, 0.0, 0.025))
 """About the size of a camera module."""
 
 
+Picture = Callable[[pe.Sensor, "pe.Vehicle | None", list[ReferenceFigure]], LabelledPicture]
+
+
 @dataclass(frozen=True, slots=True)
 class SensorView:
     """How the page shows the sensors of one kind.
@@ -59,6 +62,8 @@ class SensorView:
     ----------
     figure : callable
         Takes a sensor and the vehicle or None; returns a figure of what the sensor sees.
+    picture : callable or None
+        Takes a sensor, the vehicle or None and figures; returns the picture with these in it.
     housing : Housing
         Drawn for models whose size the catalogue does not know.
     image_field : callable
@@ -66,6 +71,7 @@ class SensorView:
     """
 
     figure: Callable[[pe.Sensor, pe.Vehicle | None], Markup]
+    picture: Picture | None = None
     housing: scene.Housing = SMALL_BOX
     image_field: Callable[[Any], tuple[float, float] | None] = lambda _model: None
 
@@ -106,17 +112,24 @@ def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
     return figure(Markup(drawing), caption)
 
 
-def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:
-    """Return the image of a camera on a vehicle, with persons and cars in front of it.
+def camera_picture(
+    sensor: pe.Sensor,
+    vehicle: pe.Vehicle | None,
+    figures: list[ReferenceFigure] | None = None,
+) -> LabelledPicture:
+    """Return the image of a camera on a vehicle, with figures in front of it.
 
     Parameters
     ----------
     sensor : Sensor
         A camera.
     vehicle : Vehicle or None
+    figures : list of ReferenceFigure, optional
+        Without them: persons and cars of known size.
     """
     rays, scale = ray_camera(sensor)
-    figures = reference_figures(sensor, _camera_of(sensor).hfov / 2.0, vehicle)
+    if figures is None:
+        figures = reference_figures(sensor, _camera_of(sensor).hfov / 2.0, vehicle)
     solids = [] if vehicle is None else [painted_vehicle(vehicle)]
     road = RayScene([*solids, *(target.painted for target in figures)], vehicle is not None)
     image = render(rays, road, _road_environment(sensor))
@@ -198,18 +211,25 @@ def _road_environment(sensor: pe.Sensor) -> Environment:
     return Environment(ground, sky, sun, haze)
 
 
-def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:
-    """Return the range image of a LiDAR on a vehicle, with persons and cars in front of it.
+def lidar_picture(
+    sensor: pe.Sensor,
+    vehicle: pe.Vehicle | None,
+    figures: list[ReferenceFigure] | None = None,
+) -> LabelledPicture:
+    """Return the range image of a LiDAR on a vehicle, with figures in front of it.
 
     Parameters
     ----------
     sensor : Sensor
         A LiDAR.
     vehicle : Vehicle or None
+    figures : list of ReferenceFigure, optional
+        Without them: persons and cars of known size.
     """
     lidar = _lidar_of(sensor)
-    half = min(FIGURES_RAD, (lidar.horizontal_fov[1] - lidar.horizontal_fov[0]) / 2.0)
-    figures = reference_figures(sensor, half, vehicle)
+    if figures is None:
+        half = min(FIGURES_RAD, (lidar.horizontal_fov[1] - lidar.horizontal_fov[0]) / 2.0)
+        figures = reference_figures(sensor, half, vehicle)
     ranges = kinds.range_picture(sensor, vehicle, _joint_mesh(figures))
     columns = _pixel_azimuths(ranges)
     channels = len(ranges.elevations)
@@ -308,9 +328,11 @@ def range_key(far_m: float) -> Markup:
 
 SENSOR_VIEWS = {
     "lidar": SensorView(
-        lidar_figure, housing=scene.Housing("cylinder", (0.11, 0.11, 0.08), (0.0, 0.0, 0.04))
+        lidar_figure,
+        lidar_picture,
+        housing=scene.Housing("cylinder", (0.11, 0.11, 0.08), (0.0, 0.0, 0.04)),
     ),
-    "camera": SensorView(camera_figure, image_field=camera_field),
+    "camera": SensorView(camera_figure, camera_picture, image_field=camera_field),
 }
 """A row for each kind of sensor, by its name."""
 OTHER_KIND = SensorView(_parameter_figure)

@@ -1,0 +1,131 @@
+"""Plans of requirements: each zone from above, filled where it is met, hatched where it is not."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+import pe_core as pe
+from pe_core.scoring import requirements, sight
+
+from ... import graphics
+from ..markup import Markup, number
+from .ground_plan import PlanBounds, PlanDrawing
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+MET, NOT_MET, INK = "#1a7f4b", "#c4320a", "#1b1f24"
+MET_RGBA, NOT_MET_RGBA = (26, 127, 75, 90), (196, 50, 10, 235)
+BETWEEN_RGBA = (196, 50, 10, 70)
+"""Between the lines of the hatching."""
+PLAN_WIDTH, PIXELS = 330.0, 760
+"""Width of the drawing, and pixels along the longer side of its zone."""
+HATCH_PX = 4
+AROUND_M = 1.0
+"""Ground that is shown round vehicle and zone."""
+CONTOUR_CELLS = 220
+SPOT_M = 0.3
+"""Size at which samples of paths and single spots are drawn at least."""
+
+
+def requirement_plan(verdict: requirements.Verdict, vehicle: pe.Vehicle | None, alt: str) -> Markup:
+    """Return a plan of a requirement's zone with its verdict.
+
+    Samples that pass are green, samples that fail are hatched in red. A dashed line is the zone
+    grown, or shrunk, by the margin. A cross marks the worst sample.
+    """
+    zone = verdict.samples.zone
+    bounds = _bounds(zone, vehicle)
+    plan = PlanDrawing(bounds, alt, width=PLAN_WIDTH)
+    plan.cells(_sample_png(verdict, bounds))
+    color = MET if verdict.met else NOT_MET
+    closed = zone.kind in ("area", "ring")
+    if zone.kind != "spots":
+        lines = [plan.points(line) for line in zone.outlines]
+        plan.canvas.path(lines, closed, fill="none", stroke=color, stroke_width=1.4)
+    _draw_margin(plan, verdict, bounds)
+    plan.vehicle(vehicle)
+    if verdict.worst is not None and not verdict.met:
+        _draw_worst(plan, verdict.worst)
+    plan.frame()
+    return plan.canvas.svg()
+
+
+def _bounds(zone: requirements.PlacedZone, vehicle: pe.Vehicle | None) -> PlanBounds:
+    low, high = zone.bounds
+    if vehicle is not None:
+        low = np.minimum(low, vehicle.bounds[0][:2])
+        high = np.maximum(high, vehicle.bounds[1][:2])
+    (x0, y0), (x1, y1) = (low - AROUND_M).tolist(), (high + AROUND_M).tolist()
+    return (x0, x1), (y0, y1)
+
+
+def _sample_png(verdict: requirements.Verdict, bounds: PlanBounds) -> bytes:
+    """Return all samples as a picture of the plan: a block of pixels for each sample."""
+    (x0, x1), (y0, y1) = bounds
+    scale = PIXELS / max(x1 - x0, y1 - y0)
+    shape = math.ceil((y1 - y0) * scale), math.ceil((x1 - x0) * scale)
+    passed, failed, size = _marked(verdict)
+    met, missed = (_blocks(p - [x0, y0], size, scale, shape) for p in (passed, failed))
+    rows, columns = np.indices(shape)
+    line = (rows + columns) % (2 * HATCH_PX) < HATCH_PX
+    pixels = np.zeros((*shape, 4), np.uint8)
+    pixels[met] = MET_RGBA
+    pixels[missed & ~line], pixels[missed & line] = BETWEEN_RGBA, NOT_MET_RGBA
+    return graphics.png_bytes(pixels[::-1])
+
+
+def _marked(verdict: requirements.Verdict) -> tuple[Floats, Floats, float]:
+    """Return the places that pass (N, 2), those that fail (M, 2), and the size of one [m]."""
+    samples = verdict.samples
+    if verdict.blind is not None and verdict.cells is not None:
+        cells, mask = verdict.cells, samples.mask
+        places = np.stack(np.meshgrid(cells.x, cells.y, indexing="ij"), axis=-1)
+        inside = np.ones(verdict.blind.shape, bool) if mask is None else mask
+        return places[inside & ~verdict.blind], places[inside & verdict.blind], cells.step
+    inside, ok = samples.inside, verdict.passed
+    size = samples.zone.zone.step
+    if samples.zone.kind in ("path", "spots"):
+        size = max(size, SPOT_M)
+    return samples.points[inside & ok], samples.points[inside & ~ok], size
+
+
+def _blocks(points: Floats, size: float, scale: float, shape: tuple[int, int]) -> Flags:
+    """Return an image (H, W) in which a square of `size` [m] is set round each point (N, 2)."""
+    image = np.zeros(shape, bool)
+    first = np.floor((points - size / 2.0) * scale).astype(np.int64)
+    side = max(1, math.ceil(size * scale))
+    for down in range(side):
+        for across in range(side):
+            column, row = first[:, 0] + across, first[:, 1] + down
+            inside = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
+            image[row[inside], column[inside]] = True
+    return image
+
+
+def _draw_margin(plan: PlanDrawing, verdict: requirements.Verdict, bounds: PlanBounds) -> None:
+    """Draw the zone grown or shrunk by the margin, as a dashed line, with the margin's text."""
+    if verdict.margin is None or abs(verdict.margin) < 0.01:
+        return
+    axes = [np.linspace(low, high, CONTOUR_CELLS) for low, high in bounds]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    away = verdict.samples.zone.distance(places.reshape(-1, 2)).reshape(places.shape[:2])
+    lines = [plan.points(line) for line in sight.outlines(-away, -verdict.margin, *axes)]
+    if not lines:
+        return
+    plan.canvas.path(lines, fill="none", stroke=INK, stroke_width=1.0, stroke_dasharray="4 3")
+    x, y = max(np.concatenate(lines).tolist(), key=lambda point: point[0] - point[1])
+    sign = "\N{GREATER-THAN OR EQUAL TO} " if verdict.at_least else ""
+    text = f"{sign}{number(verdict.margin)} m"
+    plan.canvas.text(x - 4.0, max(y - 5.0, 20.0), text, text_anchor="end", css="strong halo")
+
+
+def _draw_worst(plan: PlanDrawing, worst: tuple[float, float]) -> None:
+    """Mark the worst sample by a cross in a ring."""
+    x, y = plan.point(*worst)
+    plan.canvas.add("circle", cx=x, cy=y, r=6.0, fill="#fff", stroke=INK, stroke_width=1.4)
+    cross = f"M{x - 3:.1f} {y - 3:.1f}l6 6m0 -6l-6 6"
+    plan.canvas.add("path", d=cross, fill="none", stroke=INK, stroke_width=1.4)

@@ -1,0 +1,118 @@
+"""Requirements on the page: a row each, a plan with what passes and fails, bodies in pictures."""
+
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.scoring import requirements
+from pe_tools.page import ReportContext, page_bytes
+from pe_tools.page.pictures.requirement_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
+from pe_tools.page.pictures.test_bodies import worst_bodies
+from pe_tools.page.sections.requirement_verdicts import CSS, reasons_text, requirement_verdicts
+from tests.review.conftest import NAMES, outcome_of, small_study
+from tests.review.test_maps import pixels_of
+
+AHEAD = requirements.Requirement(
+    "an adult <b>ahead</b>",
+    requirements.Zone(x=("front + 3", "front + 6"), y=(-1.0, 1.0), step=0.5),
+    (requirements.BODIES["adult"],),
+)
+BESIDE = requirements.Requirement(
+    "the ground beside",
+    requirements.Zone(x=(-1.0, 1.0), y=("left + 0.1", "left + 1")),
+    (),
+    requirements.Criterion(blind_m2=0.0, blind_height=0.5),
+)
+BEHIND = requirements.Requirement(
+    "two kinds behind",
+    requirements.Zone(x=("rear + 1", "rear + 2"), y=(-1.0, 1.0), step=0.5),
+    (requirements.BODIES["child"],),
+    requirements.Criterion(kinds=2),
+)
+
+
+@pytest.fixture(scope="module")
+def context():
+    """The small study, held to three requirements."""
+    study = dataclasses.replace(small_study(), requirements=(AHEAD, BESIDE, BEHIND))
+    return ReportContext("held", outcome_of(pe.ScoreJob(study)))
+
+
+@pytest.fixture(scope="module")
+def html(context):
+    return requirement_verdicts(context).html
+
+
+def test_each_requirement_has_its_row_and_plan_with_the_verdict_of_the_engine(context, html):
+    verdicts = context.outcome.verdicts
+    assert [v.met for v in verdicts] == [True, False, False]
+    rows = re.findall(r'<th scope="row">\d ([^<]*)</th><td><span class="tag ([^"]*)"', html)
+    assert rows == [
+        ("an adult &lt;b&gt;ahead&lt;/b&gt;", "met"),
+        ("the ground beside", "not-met"),
+        ("two kinds behind", "not-met"),
+    ]
+    assert "<b>1 of 3 requirements are met.</b>" in html
+    assert html.count('<svg class="drawn"') >= 3
+    for verdict in verdicts:
+        shown = verdict.margin_text.removeprefix("margin ").replace("m2", "m²").split(" blind")[0]
+        assert shown.removeprefix("blind ") in html
+
+
+def test_a_study_without_requirements_has_no_section(scored):
+    assert requirement_verdicts(scored).html == ""
+    assert b'id="requirements"' not in page_bytes([scored])
+
+
+def test_the_page_holds_the_section(context):
+    assert b'id="requirements"' in page_bytes([context])
+
+
+@pytest.mark.parametrize("number, color", [(0, MET_RGBA), (2, NOT_MET_RGBA)])
+def test_a_plan_is_filled_by_the_verdict_where_the_zone_is(context, number, color):
+    """All samples of either zone have one verdict; elsewhere the plan is empty."""
+    verdict = context.outcome.verdicts[number]
+    pixels = pixels_of(requirement_plan(verdict, context.vehicle, "alt"))
+    filled = pixels[..., 3] > 0
+    others = {MET_RGBA, NOT_MET_RGBA} - {color}
+    assert (pixels == color).all(axis=-1).any()
+    assert not any((pixels == other).all(axis=-1).any() for other in others)
+    rows, columns = np.nonzero(filled)
+    ahead = columns.mean() > pixels.shape[1] / 2
+    assert ahead == (number == 0)
+    shown = filled.mean() * pixels.shape[0] * pixels.shape[1]
+    assert shown == pytest.approx(np.ptp(rows) * np.ptp(columns), rel=0.1), "one rectangle"
+
+
+def test_blind_ground_is_drawn_where_the_engine_has_it(context):
+    verdict = context.outcome.verdicts[1]
+    pixels = pixels_of(requirement_plan(verdict, context.vehicle, "alt"))
+    assert (pixels == NOT_MET_RGBA).all(axis=-1).any()
+    assert verdict.blind.any() and f"{verdict.blind_m2:.2f}" in requirement_verdicts(context).html
+
+
+def test_bodies_have_the_points_that_the_engine_counts(context):
+    """The body at the worst place, measured by the plain kernels of objects, once more."""
+    ahead, behind = worst_bodies(context.outcome.verdicts, context.rig, context.vehicle)
+    assert (ahead.number, behind.number) == (1, 3)
+    assert ahead.counts[NAMES[1]] > 100.0 and behind.counts[NAMES[1]] == 0.0
+    figure = ahead.figure(context.rig[NAMES[1]])
+    assert figure.label == f"1: {int(ahead.counts[NAMES[1]]):,} px"
+    low, high = figure.painted.mesh.bounds
+    box = requirements.BODIES["adult"]
+    assert low[2] == 0.0 and high[2] == pytest.approx(box.low + box.size[2])
+    assert np.allclose((low[:2] + high[:2]) / 2.0, ahead.verdict.worst, atol=1e-6)
+
+
+def test_reasons_are_grouped():
+    said = reasons_text({"a": "roof", "b": "out of view", "c": "roof"})
+    assert said == "roof (a, c); out of view (b)"
+
+
+def test_colours_are_those_of_the_tags():
+    for rgba, name in ((MET_RGBA, "met"), (NOT_MET_RGBA, "not-met")):
+        found = re.search(rf"\.tag\.{name} {{ background: (#\w+)", CSS)
+        assert found[1] == "#" + "".join(f"{value:02x}" for value in rgba[:3])

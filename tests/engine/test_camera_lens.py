@@ -9,6 +9,7 @@ import pe_core as pe
 from pe_core.sensors.camera.lens import RINGS, field_outline, fold_angle
 from pe_core.sensors.camera.lens_lookup import BEYOND, NEAREST_RAD, QuickLens, _unevenness
 from pe_core.sensors.camera.lens_models import BrownConrady, FTheta, KannalaBrandt, Pinhole
+from pe_core.sensors.camera.pixel_area import frustum_distance
 
 WIDE = BrownConrady(930.5, 932.25, 965.0, 530.0, k1=-0.25, k2=0.12, p1=1e-3, p2=-2e-3, k3=-0.02)
 RATIONAL = BrownConrady(
@@ -87,6 +88,7 @@ def test_a_pinhole_of_an_ideal_camera_is_that_camera():
 KEYS = {"kind": "camera", "width": 640, "height": 480, "fx": 400, "cx": 320, "cy": 240}
 BENT = {"model": "brown-conrady"}
 REFUSED = [
+    ({"cx": -0.5}, "cx: expected a place in the picture, 0 to 640, found -0.5"),
     ({"cx": -5}, "cx: expected a place in the picture, 0 to 640, found -5"),
     ({"cy": 481.5}, "cy: expected a place in the picture, 0 to 480, found 481.5"),
     ({"fx": -400}, "fx: expected a focal length >= 1e-06 pixels, found -400"),
@@ -208,3 +210,28 @@ def test_unevenness_is_tabulated_in_the_middles_of_equal_angles():
     theta, uneven = _unevenness(ROUND, 1.2)
     np.testing.assert_allclose(theta, (np.arange(4096) + 0.5) * 1.2 / 4096, rtol=1e-12)
     assert uneven.shape == theta.shape and (uneven > 0.0).all()
+
+
+OFF_CENTRE = Pinhole(400.0, 400.0, 300.0, 200.0)
+
+
+def test_an_off_centre_picture_s_fields_of_view_are_sums_of_two_angles():
+    camera = pe.Camera("mine", 640, 480, lens=OFF_CENTRE)
+    assert camera.hfov == pytest.approx(math.atan(300 / 400) + math.atan(340 / 400), abs=1e-12)
+    assert camera.vfov == pytest.approx(math.atan(200 / 400) + math.atan(280 / 400), abs=1e-12)
+
+
+def test_distances_to_the_sides_of_an_off_centre_frustum():
+    """4 m ahead, in the middle, to the left, to the right, and below; at each the nearest side."""
+    camera = pe.Camera("mine", 640, 480, lens=OFF_CENTRE)
+    left, up = np.array([0.0, 2.0, -3.0, 0.0]), np.array([0.0, 0.0, 0.0, -2.0])
+    found = frustum_distance(camera, np.full(4, 4.0), left, up)
+    top = 200 * 4 / math.hypot(200, 400)
+    bottom = (280 * 4 - 400 * 2) / math.hypot(280, 400)
+    sides = (300 * 4 - 400 * 2) / 500, (340 * 4 - 400 * 3) / math.hypot(340, 400)
+    assert found == pytest.approx([top, *sides, bottom])
+
+
+def test_an_ideal_camera_s_field_of_view_is_below_half_a_turn():
+    with pytest.raises(pe.InputError, match=r"hfov_deg: expected an angle .*below.* 180"):
+        pe.catalog.from_table("mine", {"kind": "camera", "width": 9, "height": 9, "hfov_deg": 180})

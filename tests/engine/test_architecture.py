@@ -6,6 +6,7 @@ import importlib
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -376,3 +377,20 @@ def test_sections_of_the_page_are_found_by_their_table_alone():
         if full in above or full.rpartition(".")[0] in above
     ]
     assert not offenders
+
+
+def test_the_settings_of_mutants_name_files_tests_and_lines_that_there_are():
+    """Whoever renames or moves a line mends tests/mutants.toml, or drops its entry."""
+    settings = tomllib.loads((CHECKOUT / "tests/mutants.toml").read_text("utf-8"))
+    missing = []
+    for name, room in settings["room"].items():
+        missing += [(name, file) for file in room["files"] if not list(CHECKOUT.glob(file))]
+        tests = [f"tests/engine/{test.partition('::')[0]}.py" for test in room["tests"]]
+        missing += [(name, test) for test in tests if not (CHECKOUT / test).exists()]
+    for entry in settings["same"]:
+        lines = [line.strip() for line in (CHECKOUT / entry["file"]).read_text("utf-8").split("\n")]
+        missing += [(entry["file"], entry["line"])] * (entry["line"] not in lines)
+    for entry in settings["slip"]:
+        count = (CHECKOUT / entry["file"]).read_text("utf-8").count(entry["line"])
+        missing += [(entry["file"], entry["line"])] * (count != 1)
+    assert not missing

@@ -113,6 +113,15 @@ def test_a_speck_along_the_body_is_no_blind_ground_to_a_side(rows, zone):
     assert (found.nearest["front"] is None) == (zone == 0.0)
 
 
+def test_of_two_nearest_places_the_one_nearer_to_the_middle_is_told():
+    """Four columns before a body that is 4 m wide: 0.5 m beside its middle, not 1.5 m."""
+    cells = GroundCells.of(pe.PerceptionSpace((-4, 4), (-4, 4), (0, 1), 1.0), 1.0)
+    blind = np.zeros((8, 8), bool)
+    blind[5, [2, 4]] = True  # centres at y = -1.5 and 0.5
+    found = blind_ground(cells, blind, ((-1.0, 1.0), (-2.0, 2.0)), 0.5, 15.0, False)
+    assert found.nearest["front"].point == (1.0, 0.5)
+
+
 def test_the_vehicle_s_own_footprint_is_not_blind():
     """A ring of LiDARs round the box sees everything up to its skin."""
     places = ((2.3, 0.0), (-2.3, 0.0), (0.0, 0.8), (0.0, -0.8), (2.3, 0.8), (-2.3, -0.8))

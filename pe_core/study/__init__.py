@@ -4,7 +4,7 @@ from ..base.setting import REQUIRED, OneOf, Pair, Setting, Toggle, settings_of
 from ..base.setting_file import value_in_file
 from ..base.values import Angle, Number, Whole
 from ..search import METHODS, SCHEDULED_METHOD, Robustness
-from . import requirement_file
+from . import requirement_file, requirement_search
 from .catalog_lookup import mounts_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW, REVIEW_PAGE, SEARCH, STUDY
 from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
@@ -43,6 +43,7 @@ __all__ = [
     "passthrough_text",
     "read_passthrough",
     "requirement_file",
+    "requirement_search",
     "save_study",
     "setting_keys",
     "settings_of",

@@ -14,7 +14,7 @@ from typing import Any
 
 from ..base.errors import InputError, shown
 from ..base.read_only import ReadOnlyDict
-from ..base.setting import Panel, check_settings, setting
+from ..base.setting import OneOf, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
 from ..prior.prior import Prior
@@ -78,6 +78,8 @@ class Search:
         Placements judged at most; 0: as many as the method takes.
     tolerance : Tolerance
         Mounting errors and failures that a candidate is judged with; none by default.
+    requirements : {"keep"}, optional
+        Placements that meet the study's requirements are better than all that do not.
 
     Raises
     ------
@@ -104,6 +106,9 @@ class Search:
         Panel("evaluations", "Budget", soft_max=10_000),
     )
     tolerance: Tolerance = field(default_factory=Tolerance)
+    requirements: str | None = setting(
+        None, OneOf(("keep",)), "Placements that meet the study's requirements come first"
+    )
 
     def __post_init__(self) -> None:
         who = "optimize"

@@ -5,7 +5,7 @@ Nothing here computes a score; results of `pe_core` are checked, compared and de
 
 from pe_tools.advice.number_text import joined, percent
 
-from .advice import FRAGILE, Advice, fragile, off_by
+from .advice import FRAGILE, UNMET, Advice, fragile, off_by, unmet
 from .hidden_sensors import HiddenSensor, hidden_sensors, hidden_words
 from .key_figures import (
     SENSOR_COLUMNS,
@@ -38,6 +38,7 @@ __all__ = [
     "FRAGILE",
     "SENSOR_COLUMNS",
     "SHORT_ZONES",
+    "UNMET",
     "WHERE",
     "Advice",
     "AskedPlace",
@@ -71,6 +72,7 @@ __all__ = [
     "sensor_words",
     "stopped_shares",
     "stopped_words",
+    "unmet",
     "warnings",
     "win_words",
     "words",

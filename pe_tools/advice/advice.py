@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -10,6 +11,8 @@ from pe_tools.advice.number_text import metres
 
 FRAGILE = "fragile"
 """Code of the warning that concerns the placement of all sensors."""
+UNMET = "requirement"
+"""Code of the warning about a requirement that a search could not keep."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +46,7 @@ class Advice:
     @property
     def line(self) -> str:
         """The sentence after the name of its subject."""
-        whole = "placement" if self.code == FRAGILE else "vehicle"
+        whole = "placement" if self.code in (FRAGILE, UNMET) else "vehicle"
         return f"{self.subject or whole}: {self.text}"
 
     def to_dict(self) -> dict[str, Any]:
@@ -81,6 +84,23 @@ def fragile(
     advice = "" if tolerant else "; a search with a tolerance looks for one that is less fragile"
     text = f"{off_by(position, angle)} (1 sigma) it is {rise:.2f} nats worse on average{advice}"
     return (Advice(None, FRAGILE, text),)
+
+
+def unmet(conflicts: Mapping[str, tuple[str, ...] | None]) -> tuple[Advice, ...]:
+    """Return a warning for each requirement that a search could not keep.
+
+    `conflicts` has the requirements that stand against each; None: it was met nowhere.
+    """
+    return tuple(Advice(None, UNMET, _unmet_text(*each)) for each in conflicts.items())
+
+
+def _unmet_text(name: str, against: tuple[str, ...] | None) -> str:
+    text = f"{name} is not met; no placement was found that keeps all requirements"
+    if against is None:
+        return f"{text}, and none that meets this one alone"
+    if not against:
+        return f"{text}, though none stands against it: a longer search may"
+    return f"{text}: against it stands {', '.join(against)}"
 
 
 def off_by(position: float, angle: float) -> str:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from pe_core.scoring import RigJudge
+from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import (
     Journal,
@@ -19,9 +20,10 @@ from pe_core.search import (
     optimize,
     robustness,
 )
+from pe_core.study.requirement_search import conflicts, feasible_first, is_infeasible
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
-from ..advice import Advice, fragile
+from ..advice import Advice, fragile, unmet
 from .job import HistoryRow, Job, Outcome, Progress, begun
 
 
@@ -90,8 +92,10 @@ class OptimizeJob(Job):
     def _objectives(self) -> list[Objective]:
         """Objectives that evaluate candidates, one for each level of the search method."""
         search = self.study.search
+        checker = self.study.checker() if search.requirements and self.study.requirements else None
         return [
-            objective_of(evaluator, search.tolerance, search.seed) for evaluator in self._evaluators
+            feasible_first(self.study, objective_of(each, search.tolerance, search.seed), checker)
+            for each in self._evaluators
         ]
 
     @cached_property
@@ -120,8 +124,10 @@ class OptimizeJob(Job):
         robustness_result = yield from self._robustness(best, looking)
         warnings = yield from self._warnings(best, after, looking)
         verdicts = yield from self._verdicts(best, looking)
-        if warnings is None or robustness_result is None or verdicts is None:
+        unmet_warnings = yield from self._unmet(best, verdicts or (), looking)
+        if None in (warnings, robustness_result, verdicts, unmet_warnings):
             return
+        assert warnings is not None and robustness_result is not None
         self.outcome = Outcome(
             "optimize",
             self.study,
@@ -132,11 +138,11 @@ class OptimizeJob(Job):
             self.evaluations,
             stopped,
             self.seconds,
-            (*warnings, *_fragile(best, robustness_result)),
+            (*warnings, *_fragile(best, robustness_result), *(unmet_warnings or ())),
             self.inputs,
             self.journal.entries,
             robustness_result,
-            verdicts,
+            verdicts or (),
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 
@@ -171,14 +177,27 @@ class OptimizeJob(Job):
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
 
+    def _unmet(
+        self, best: Study, verdicts: tuple[Verdict, ...], waiting: Progress
+    ) -> Generator[Progress, None, tuple[Advice, ...] | None]:
+        """Find in a thread what stands against requirements that were to be kept and are not."""
+        if not best.search.requirements or all(verdict.met for verdict in verdicts):
+            return ()
+        work = partial(conflicts, best, best.rig)
+        found = yield from self._beside(work, lambda: waiting, to_the_end=True)
+        return None if found is None else unmet(found)
+
     @property
     def _start_may_stay(self) -> bool:
         """Whether the start may be the result if the search finds nothing with a better score.
 
-        It may not if it violates a constraint of the search. It may not either if the search had a
-        tolerance: the scores ignore mounting errors and failures, which the search minimized.
+        It may not if it violates a constraint of the search or breaks a requirement to be kept. It
+        may not either if the search had a tolerance: the scores ignore mounting errors and
+        failures, which the search minimized.
         """
-        return self.history[0].rig is self.study.rig and not self.study.search.tolerance.is_on
+        start = self.history[0]
+        kept = start.rig is self.study.rig and not is_infeasible(start.entropy)
+        return kept and not self.study.search.tolerance.is_on
 
     def _search(self) -> Iterator[Progress]:
         """Search step by step in a thread: one candidate may take longer than a window can wait."""

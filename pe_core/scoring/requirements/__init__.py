@@ -4,6 +4,7 @@ from .bodies import BODIES, Body
 from .checker import RequirementChecker
 from .criteria import Criterion, Requirement, Under, body_met, checked_requirements, sees
 from .planes import VehiclePlanes
+from .redundancy import Redundancy, RedundancyMap
 from .verdict import Samples, Verdict, margin_of
 from .zones import PlacedZone, Zone, signed_distance
 
@@ -12,6 +13,8 @@ __all__ = [
     "Body",
     "Criterion",
     "PlacedZone",
+    "Redundancy",
+    "RedundancyMap",
     "Requirement",
     "RequirementChecker",
     "Samples",

@@ -22,21 +22,18 @@ from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
-from ..sight.blind_ground import body_rectangle
-from ..sight.blind_squares import STEP_M, BlindSearch
-from ..sight.ground_cells import GroundCells
 from ..targets.object_metric import FusedObjects
 from .bodies import Body
 from .criteria import Criterion, Requirement, checked_requirements, placed, visible_share
+from .ground import GroundCheck
 from .planes import VehiclePlanes
-from .verdict import Samples, Verdict, ground_verdict, verdict
-from .zones import INSIDE_M, PlacedZone, signed_distance
+from .verdict import Samples, Verdict, verdict
+from .zones import INSIDE_M, PlacedZone
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Cases = Mapping[str, Sequence[Rig]]
-"""Rigs under which a requirement has to be met, too, by name of the case."""
-
+FULL, INSIDE, PREVIEW = "full", "inside", "preview"
+"""Sets of samples: of the zones and the ground round them, of the zones alone, of fewer."""
 COARSE = 2.0
 """Factor of the step of a preview."""
 PREVIEW_SAMPLES = 400
@@ -59,7 +56,7 @@ class _Part:
     requirement: Requirement
     samples: Samples
     bodies: tuple[_BodySet, ...]
-    search: BlindSearch | None
+    ground: GroundCheck | None = None
 
 
 class RequirementChecker:
@@ -95,15 +92,22 @@ class RequirementChecker:
     ) -> None:
         self.requirements = checked_requirements(requirements)
         self.vehicle, self._model = vehicle, model or PerceptionModel()
-        self._space = space or PerceptionSpace()
+        self._reference, self._space = reference, space or PerceptionSpace()
         planes: dict[tuple[Any, ...], VehiclePlanes] = {}
         self.zones: tuple[PlacedZone, ...] = tuple(
             each.zone.placed(vehicle, reference, each.name, planes) for each in self.requirements
         )
         for requirement, zone in zip(self.requirements, self.zones, strict=True):
             _check_extent(requirement, zone, self._space)
-        self._sets: dict[bool, _CheckedSet] = {}
+        self._sets: dict[str, _CheckedSet] = {}
         self._lock = RLock()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the arguments: another process makes a checker of its own from them."""
+        return _checker_again, (
+            *(self.requirements, self.vehicle, self._model),
+            *(self._reference, self._space),
+        )
 
     def check_rig(self, rig: Rig) -> None:
         """Raise `InputError` for a requirement on kinds of sensors that the rig lacks."""
@@ -133,20 +137,33 @@ class RequirementChecker:
         if not self.requirements:
             return ()
         with self._lock:
-            return self._set(preview).verdicts(rig, () if preview else cases)
+            samples = self._set(PREVIEW if preview else FULL)
+            return samples.verdicts(rig, () if preview else cases)
 
-    def slack(self, rig: Rig) -> tuple[float, ...]:
-        """Return a number for each requirement: 0 or more where it is met, else how far it is off.
+    def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
+        """Return for each requirement 0 where it is met, else how far it is off, above 0 to 1.
 
-        For a search: minus the share of the zone's samples, or of the blind ground, that fails.
+        For a search: exactly 0 where `check` says met. Half of the number is the share of the
+        samples that lacks, half how many sensors and kinds lack at the samples on average.
         """
         with self._lock:
-            return self._set(True).slack(rig)
+            return self._set(INSIDE).shortfalls(rig, cases) if self.requirements else ()
 
-    def _set(self, preview: bool) -> _CheckedSet:
-        if preview not in self._sets:
-            self._sets[preview] = _CheckedSet(self, preview, self._space, self._model)
-        return self._sets[preview]
+    def _set(self, name: str) -> _CheckedSet:
+        if name not in self._sets:
+            self._sets[name] = _CheckedSet(self, name, self._space, self._model)
+        return self._sets[name]
+
+
+def _checker_again(
+    requirements: Sequence[Requirement],
+    vehicle: Vehicle | None,
+    model: PerceptionModel,
+    reference: Reference | None,
+    space: PerceptionSpace,
+) -> RequirementChecker:
+    """Make a checker from its pickled arguments."""
+    return RequirementChecker(requirements, vehicle, model=model, reference=reference, space=space)
 
 
 class _CheckedSet:
@@ -155,12 +172,12 @@ class _CheckedSet:
     def __init__(
         self,
         checker: RequirementChecker,
-        preview: bool,
+        which: str,
         space: PerceptionSpace,
         model: PerceptionModel,
     ) -> None:
-        self._vehicle, self._preview, self._space = checker.vehicle, preview, space
-        self._kernel_cache: dict[str, Any] = {}
+        self._vehicle, self._which, self._space = checker.vehicle, which, space
+        self._ground_caches: dict[str, dict[str, Any]] = {}
         self._objects: list[Objects] = []
         self._count = 0
         pairs = zip(checker.requirements, checker.zones, strict=True)
@@ -175,31 +192,51 @@ class _CheckedSet:
 
     def verdicts(self, rig: Rig, cases: Sequence[Rig]) -> tuple[Verdict, ...]:
         """Return the verdicts on a rig."""
-        m = {} if self._sensors is None else self._sensors.measure(rig)
-        others = (
-            [(case, self._case(k).measure(case)) for k, case in enumerate(cases)]
-            if any(part.requirement.under.mounting and part.bodies for part in self._parts)
-            else []
-        )
+        m = self._measured(rig)
+        others = self._measured_cases(cases)
         return tuple(self._verdict(part, rig, m, others) for part in self._parts)
 
-    def slack(self, rig: Rig) -> tuple[float, ...]:
-        """Return minus the share that fails of each requirement."""
-        m = {} if self._sensors is None else self._sensors.measure(rig)
-        values = []
-        for part in self._parts:
-            if part.search is not None:
-                blind = self._blind(part, rig)
-                area = float(np.count_nonzero(blind)) * part.search.cells.step**2
-                found = self._ground(part, blind, area)
-                values.append(0.0 if found else -area)
-                continue
-            passed = self._passed(part, rig, m, [])
-            inside = part.samples.inside
-            values.append(
-                min(0.0, float(passed[inside].mean()) - part.requirement.criterion.zone_share)
-            )
-        return tuple(values)
+    def shortfalls(self, rig: Rig, cases: Sequence[Rig]) -> tuple[float, ...]:
+        """Return how far a rig is off each requirement, 0 where it is met."""
+        m = self._measured(rig)
+        others = self._measured_cases(cases)
+        return tuple(
+            self._shortfall(part, rig, m, others)
+            if part.ground is None
+            else part.ground.shortfall(rig)
+            for part in self._parts
+        )
+
+    def _measured(self, rig: Rig) -> Mapping[str, Floats]:
+        return {} if self._sensors is None else self._sensors.measure(rig)
+
+    def _measured_cases(self, cases: Sequence[Rig]) -> list[tuple[Rig, Mapping[str, Floats]]]:
+        """Return the cases with m of their sensors, where any requirement has to survive them."""
+        needed = any(p.requirement.under.mounting and p.bodies for p in self._parts)
+        return [(c, self._case(k).measure(c)) for k, c in enumerate(cases)] if needed else []
+
+    def _shortfall(
+        self,
+        part: _Part,
+        rig: Rig,
+        m: Mapping[str, Floats],
+        others: Sequence[tuple[Rig, Mapping[str, Floats]]],
+    ) -> float:
+        """Return how far a requirement on bodies is off: see `RequirementChecker.shortfalls`."""
+        criterion = part.requirement.criterion
+        passed = self._passed(part, rig, m)
+        for case, measured in others if part.requirement.under.mounting else ():
+            passed &= self._passed(part, case, measured)
+        share = float(passed[part.samples.inside].mean())
+        if share >= criterion.zone_share:
+            return 0.0
+        seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
+        counts, kinds = _counted(rig, seen, criterion, [s.name for s in rig])
+        spare = int(part.requirement.under.one_lost)
+        wanted = criterion.sensors + spare + criterion.kinds
+        has = np.minimum(counts, criterion.sensors + spare) + np.minimum(kinds, criterion.kinds)
+        lacks = 1.0 - float(has.mean()) / wanted
+        return 0.5 * (1.0 - share / criterion.zone_share) + 0.5 * lacks
 
     def _verdict(
         self,
@@ -209,16 +246,9 @@ class _CheckedSet:
         others: Sequence[tuple[Rig, Mapping[str, Floats]]],
     ) -> Verdict:
         requirement = part.requirement
-        if part.search is not None:
-            blind = self._blind(part, rig)
-            area = float(np.count_nonzero(blind)) * part.search.cells.step**2
-            met = self._ground(part, blind, area)
-            names = [s.name for s in rig] if len(rig) > 1 and not self._preview else []
-            lost = {name: self._ground_met(part, rig, name) for name in names}
-            counts = requirement.under.one_lost
-            return ground_verdict(
-                requirement, part.samples, part.search.cells, blind, met, lost, counts
-            )
+        preview = self._which == PREVIEW
+        if part.ground is not None:
+            return part.ground.verdict(rig, preview)
         seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
         whole = self._enough(part, rig, seen, m, [s.name for s in rig])
         without = {
@@ -229,7 +259,7 @@ class _CheckedSet:
         if requirement.under.one_lost:
             passed &= np.logical_and.reduce(list(without.values()))
         for case, measured in others if requirement.under.mounting else ():
-            passed &= self._passed(part, case, measured, [])
+            passed &= self._passed(part, case, measured)
         return verdict(
             requirement,
             part.samples,
@@ -239,12 +269,10 @@ class _CheckedSet:
             whole,
             without,
             seen,
-            self._preview,
+            preview,
         )
 
-    def _passed(
-        self, part: _Part, rig: Rig, m: Mapping[str, Floats], lost: Collection[str]
-    ) -> Flags:
+    def _passed(self, part: _Part, rig: Rig, m: Mapping[str, Floats]) -> Flags:
         """Return the samples (N,) that pass with a rig, and with each one of its sensors lost."""
         seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
         names = [s.name for s in rig]
@@ -278,7 +306,7 @@ class _CheckedSet:
     ) -> Flags:
         """Return the samples (N,) at which some of the sensors see every body well enough."""
         criterion = part.requirement.criterion
-        counts, kinds = _counted(rig, seen, criterion, members, part)
+        counts, kinds = _counted(rig, seen, criterion, members)
         enough = (counts >= criterion.sensors) & (kinds >= criterion.kinds)
         if criterion.ap is not None and self._fused is not None:
             entropies, _ = self._fused.entropies(rig, m, members)
@@ -288,34 +316,13 @@ class _CheckedSet:
         passed: Flags = enough.all(axis=1)
         return passed
 
-    def _ground_met(self, part: _Part, rig: Rig, lost: str) -> bool:
-        assert part.search is not None
-        rest = Rig([s for s in rig if s.name != lost])
-        blind = self._blind(part, rest)
-        area = float(np.count_nonzero(blind)) * part.search.cells.step**2
-        return self._ground(part, blind, area)
-
-    def _blind(self, part: _Part, rig: Rig) -> Flags:
-        """Return the blind squares (NX, NY) in a requirement's zone."""
-        assert part.search is not None
-        blind, _ = part.search.blind(rig, self._preview)
-        return blind & part.samples.mask if part.samples.mask is not None else blind
-
-    def _ground(self, part: _Part, blind: Flags, area: float) -> bool:
-        """Whether blind squares meet a criterion of blind ground."""
-        assert part.search is not None
-        criterion = part.requirement.criterion
-        if criterion.blind_m2 is not None and area > criterion.blind_m2:
-            return False
-        if criterion.blind_out is None:
-            return True
-        return farthest_out(part.search.cells, blind, self._vehicle) <= criterion.blind_out
-
     def _part(self, requirement: Requirement, zone: PlacedZone) -> _Part:
         if requirement.criterion.is_of_ground:
-            return self._ground_part(requirement, zone)
-        points, distance = zone.samples(grown=not self._preview)
-        if self._preview and len(points) > PREVIEW_SAMPLES:
+            empty = Samples(zone, np.zeros((0, 2)), np.zeros(0))
+            ground = GroundCheck(requirement, zone, self._space, self._vehicle, self._ground_caches)
+            return _Part(requirement, empty, (), ground)
+        points, distance = zone.samples(grown=self._which == FULL)
+        if self._which == PREVIEW and len(points) > PREVIEW_SAMPLES:
             points, distance = zone.samples(COARSE, grown=False)
         samples = Samples(zone, points, distance)
         low, high = requirement.zone.z
@@ -323,7 +330,7 @@ class _CheckedSet:
         heights = np.linspace(low, high, count)
         feet = np.column_stack([np.repeat(points, count, axis=0), np.tile(heights, len(points))])
         bodies = tuple(self._body_set(each, feet, requirement) for each in requirement.bodies)
-        return _Part(requirement, samples, bodies, None)
+        return _Part(requirement, samples, bodies)
 
     def _body_set(self, body: Body, feet: Floats, requirement: Requirement) -> _BodySet:
         box = self._added(placed(body, feet, body.headings, False))
@@ -335,20 +342,6 @@ class _CheckedSet:
         self._objects.append(objects)
         self._count += len(objects)
         return slice(self._count - len(objects), self._count)
-
-    def _ground_part(self, requirement: Requirement, zone: PlacedZone) -> _Part:
-        low, high = zone.bounds
-        part = tuple((float(a) - STEP_M, float(b) + STEP_M) for a, b in zip(low, high, strict=True))
-        cells = GroundCells.of(self._space, STEP_M, (part[0], part[1]))
-        middles = np.stack(np.meshgrid(cells.x, cells.y, indexing="ij"), axis=-1).reshape(-1, 2)
-        mask = (zone.distance(middles) <= INSIDE_M) & (
-            signed_distance(middles, zone.planes.outline) > 0.0
-        )
-        search = BlindSearch.of(
-            cells, requirement.criterion.blind_height, self._vehicle, self._kernel_cache
-        )
-        samples = Samples(zone, np.zeros((0, 2)), np.zeros(0), mask.reshape(cells.shape))
-        return _Part(requirement, samples, (), search)
 
     def _case(self, number: int) -> ObjectMeasurementCache:
         assert self._joined is not None
@@ -380,23 +373,11 @@ def _check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionS
             raise InputError(who, "body", "a body that is not larger than the zone", found)
 
 
-def farthest_out(cells: GroundCells, blind: Flags, vehicle: Vehicle | None) -> float:
-    """Return how far from the vehicle's rectangle the farthest blind square ends [m]."""
-    i, j = np.nonzero(blind)
-    if not len(i):
-        return 0.0
-    (x0, x1), (y0, y1) = body_rectangle(vehicle)
-    dx = np.maximum(np.maximum(cells.x1[i] - x1, x0 - cells.x0[i]), 0.0)
-    dy = np.maximum(np.maximum(cells.y1[j] - y1, y0 - cells.y0[j]), 0.0)
-    return float(np.max(np.hypot(dx, dy)))
-
-
 def _counted(
     rig: Rig,
     seen: Mapping[str, Flags],
     criterion: Criterion,
     members: Collection[str],
-    part: _Part,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return by how many sensors and kinds each body of each sample is seen, (N, bodies)."""
     first = next(iter(seen.values()))

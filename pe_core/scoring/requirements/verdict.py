@@ -238,6 +238,7 @@ def ground_verdict(
     met: bool,
     without: Mapping[str, bool],
     lost_counts: bool,
+    preview: bool,
 ) -> Verdict:
     """Return the verdict on a requirement of blind ground, from its blind squares (NX, NY).
 
@@ -269,6 +270,7 @@ def ground_verdict(
         np.zeros(0, bool),
         blind_m2=math.ceil(area * 100.0 - 1e-6) / 100.0,
         met_whole=met,
+        preview=preview,
         blind=blind,
         cells=cells,
     )

@@ -88,7 +88,7 @@ class Zone:
     )
     near_side: str = setting("right", OneOf(SIDES), "The side of the kerb")
     eyes: float | None = setting(
-        None, Number(cap=1e3, unit="m"), "x of the driver's eyes, for the plane eyes"
+        None, Number(cap=1e3, unit="m"), "The x of the driver's eyes, for the plane eyes"
     )
 
     def __post_init__(self) -> None:

@@ -1,0 +1,152 @@
+"""Searches that keep requirements, what stands against one that is not met, and redundancy maps."""
+
+import math
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.scoring.requirements import (
+    BODIES,
+    Body,
+    Criterion,
+    Redundancy,
+    Requirement,
+    RequirementChecker,
+    Under,
+    Zone,
+    sees,
+)
+from pe_core.study.requirement_search import INFEASIBLE, conflicts, feasible_first
+from tests.engine import shapes
+
+BEHIND = Zone(x=("rear + 0.6", "rear + 1.6"), y=(-0.6, 0.6), step=0.3)
+AHEAD = replace(BEHIND, x=("front + 0.6", "front + 1.6"))
+LEFT = Zone(x=(-1, 1), y=("left + 0.7", "left + 1.6"), step=0.3)
+
+
+def study(**search):
+    """A van whose cameras look up: two of its three requirements are broken."""
+    triangles = shapes.box((-2.5, -1.0, 0.25), (2.5, 1.0, 2.4))
+    cameras = (
+        ("front", (2.53, 0.0, 0.93), 20.0, 0.0),
+        ("rear", (-2.53, 0.0, 1.5), -20.0, 180.0),
+        ("left", (0.0, 1.03, 1.5), -20.0, 90.0),
+    )
+    sensors = [shapes.lidar_on_roof(shapes.small_lidar(16, 180), (0.0, 0.0, 2.63), name="top")]
+    sensors += [shapes.camera(100.0, at, (0.0, p, y), name) for name, at, p, y in cameras]
+    zones = {"ahead": AHEAD, "behind": BEHIND, "left": LEFT}
+    requirements = [Requirement(n, zone, (BODIES["child"],)) for n, zone in zones.items()]
+    return pe.Study(
+        pe.Rig(sensors),
+        pe.Vehicle(triangles, clearance=0.0),
+        pe.PerceptionSpace((-16, 16), (-16, 16), (0, 3), 0.2),
+        requirements=requirements,
+        samples=2048,
+        search=pe.Search(
+            free={name: ("z", "pitch") for name in ("front", "rear", "left")} | {"top": ()},
+            samples=2048,
+            requirements="keep",
+            **search,
+        ),
+    )
+
+
+def finished(job):
+    for _ in job:
+        pass
+    return job.outcome
+
+
+def test_a_search_that_starts_with_two_requirements_broken_ends_with_none():
+    start = study(evaluations=400)
+    assert [v.met for v in start.verdicts()] == [True, False, False]
+    outcome = finished(pe.OptimizeJob(start, workers=1))
+    assert [v.met for v in outcome.verdicts] == [True, True, True]
+    values = [row.entropy for row in outcome.history]
+    assert values[0] > INFEASIBLE > values[-1] and values == sorted(values, reverse=True)
+    assert values[-1] == pytest.approx(outcome.after.entropy, abs=0.5)
+    assert not [w for w in outcome.warnings if w.code == "requirement"]
+
+
+def test_a_requirement_that_cannot_be_kept_is_told_with_what_stands_against_it():
+    """A fixed LiDAR sees no patch beside a wheel; a rear camera cannot look down and far up."""
+    hopeless = Requirement("under", AHEAD, (BODIES["patch"],), Criterion(of=("lidar",)))
+    start = study(evaluations=60)
+    outcome = finished(
+        pe.OptimizeJob(replace(start, requirements=(*start.requirements, hopeless)), workers=1)
+    )
+    told = [w.line for w in outcome.warnings if w.code == "requirement"]
+    assert any("under is not met" in line and "alone" in line for line in told)
+    down = shapes.camera(40.0, (-2.53, 0.0, 1.5), (0.0, 60.0, 180.0), "rear")
+    near = Requirement("near", Zone(spots=(("rear + 0.8", 0.0),)), (BODIES["patch"],))
+    far = Requirement(
+        "far", Zone(spots=(("rear + 12", 0.0),)), (Body("lamp", (0.3, 0.3, 0.3), low=3.0),)
+    )
+    both = replace(
+        start,
+        rig=pe.Rig([start.rig["front"], down]),
+        requirements=(near, far),
+        search=replace(start.search, free={"front": (), "rear": ("pitch",)}, limits={}),
+    )
+    assert [v.met for v in both.verdicts()] == [True, False]
+    assert conflicts(both, both.rig) == {"far": ("near",)}
+
+
+def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
+    """And a placement that meets all has its entropy as its value, whichever others there are."""
+    own = study()
+    strict = (
+        Requirement("two", AHEAD, (BODIES["child"],), Criterion(kinds=2), Under(one_lost=True)),
+        Requirement("ground", AHEAD, (), Criterion(blind_m2=0.3, blind_height=0.5), Under(True)),
+        Requirement("most", BEHIND, (BODIES["cyclist"],), Criterion(zone_share=0.4)),
+    )
+    checker = RequirementChecker((*own.requirements, *strict), own.vehicle, space=own.space)
+    rng, found = np.random.default_rng(3), []
+    for _ in range(6):
+        poses = [
+            pe.Pose(s.pose.position, (0.0, float(rng.uniform(-0.6, 0.9)), s.pose.rpy[2]))
+            for s in own.rig
+        ]
+        moved = own.rig.with_poses(poses)
+        offs = checker.shortfalls(moved)
+        assert [off == 0.0 for off in offs] == [v.met for v in checker.check(moved)]
+        assert all(0.0 <= off <= 1.0 for off in offs)
+        found += [off == 0.0 for off in offs]
+    assert True in found and False in found
+    again = pickle.loads(pickle.dumps(checker))
+    assert again.shortfalls(moved) == offs
+    evaluator = own.evaluator()
+    objective = feasible_first(own, evaluator)
+    kept = feasible_first(replace(own, search=replace(own.search, requirements=None)), evaluator)
+    assert kept is evaluator and objective.entropy(own.rig) > INFEASIBLE
+
+
+def test_redundancy_is_what_each_sensor_sees_alone():
+    """Counts by the definition at every place; what is left is the fewest without any one."""
+    own = study()
+    places = Redundancy(own.vehicle, own.space, height=0.8, within=3.0, step=1.0)
+    found = places.map(own.rig)
+    body = Body("body", (0.3, 0.3, 0.8), is_round=True)
+    wrong = []
+    for i, x in enumerate(found.cells.x):
+        for j, y in enumerate(found.cells.y):
+            if found.sensors[i, j] < 0:
+                continue
+            seen = [s for s in own.rig if sees(s, body, (x, y, 0.0), 0.0, own.vehicle, Criterion())]
+            left = [[o for o in seen if o is not s] for s in own.rig]
+            truth = (
+                *(len(seen), len({s.kind for s in seen})),
+                *(min(map(len, left)), min(len({s.kind for s in rest}) for rest in left)),
+            )
+            maps = (found.sensors, found.kinds, found.sensors_left, found.kinds_left)
+            if truth != tuple(int(each[i, j]) for each in maps):
+                wrong.append((x, y, truth))
+    assert not wrong
+    assert (found.sensors < 0).any() and (found.sensors_left < found.sensors).any()
+    assert found.share(1) >= found.share(2) and found.share(1) >= found.share(one_lost=True)
+    assert math.isclose(found.to_dict()["sensors"]["1"], found.share(1), abs_tol=1e-6)
+    with pytest.raises(pe.InputError, match="height"):
+        Redundancy(own.vehicle, own.space, height=-1.0)

@@ -16,10 +16,9 @@ import bpy
 from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, pe, search, studies
 from .apply_variant import apply_records
-from .model_options import write_options
 from .prior import write_prior
 from .rig import place_at, view_layer_of
-from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene
+from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene, write_options
 from .scene_settings import write_settings, write_values
 from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
 from .vehicle import make_body, paint_area, same_body

@@ -14,9 +14,8 @@ import numpy as np
 
 from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, ON_SLOTS, ON_SURFACE
 from ..engine import pe, search, studies
-from .float32 import as_typed
 from .rig import pose_of
-from .scene_settings import values_of
+from .scene_settings import as_typed, values_of
 from .sensor_records import SensorRecord, bounds_by_axis
 from .transform_constraints import free_axes, limit_constraints, search_bounds
 from .vehicle import drawn_meshes, placed_triangles, triangles_of

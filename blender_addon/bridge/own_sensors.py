@@ -13,8 +13,8 @@ import bpy
 
 from ..choices import free_name
 from ..engine import catalog, pe
-from .float32 import as_typed, pair_as_typed
 from .rig import sensor_objects
+from .scene_settings import as_typed, pair_as_typed
 
 _added: dict[str, dict[str, Any]] = {}
 """Tables that this add-on has added to the catalogue, by name."""

@@ -10,7 +10,7 @@ import bpy
 
 from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, FocusArea
 from ..engine import pe
-from .float32 import as_typed
+from .scene_settings import as_typed
 
 MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.uniform}
 

@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..engine import catalog, geometry, pe, search
-from .float32 import as_typed
+from .scene_settings import as_typed
 
 SCALE_TOLERANCE = 1e-4
 """How far a sensor's axes may be from unit length and from right angles."""

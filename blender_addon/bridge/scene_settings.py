@@ -14,10 +14,24 @@ import bpy
 
 from ..choices import OBJECTS
 from ..engine import exchange, kinds, pe, studies
-from .float32 import as_typed, pair_as_typed
 
 if TYPE_CHECKING:
     from .scene_record import SceneRecord
+from collections.abc import Sequence
+
+import numpy as np
+
+
+def as_typed(value: float) -> float:
+    """Return the shortest decimal number that a property of single precision stands for."""
+    return float(str(np.float32(value)))
+
+
+def pair_as_typed(values: Sequence[float]) -> tuple[float, float]:
+    """Return the shortest decimal numbers of a pair of values."""
+    low, high = map(as_typed, values)
+    return low, high
+
 
 LARGEST_INT = 2**31 - 1
 """A property holds no larger whole number."""

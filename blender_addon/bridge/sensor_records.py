@@ -15,7 +15,6 @@ import bpy
 import numpy as np
 
 from ..engine import catalog, pe, search
-from .float32 import as_typed, pair_as_typed
 from .rig import (
     curve_of,
     last_written_pose,
@@ -26,6 +25,7 @@ from .rig import (
     sensor_objects,
     view_layer_of,
 )
+from .scene_settings import as_typed, pair_as_typed
 from .transform_constraints import AxisLimit, limit_constraints, locked_axes
 
 NO_BOUNDS, ZEROS = (False,) * len(search.AXES), (0.0,) * len(search.AXES)

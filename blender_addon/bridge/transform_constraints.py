@@ -12,7 +12,7 @@ from typing import NamedTuple, cast
 import bpy
 
 from ..engine import pe, search
-from .float32 import as_typed
+from .scene_settings import as_typed
 
 LOCATION, ROTATION = "LIMIT_LOCATION", "LIMIT_ROTATION"
 AXIS_LABELS = dict(zip(search.AXES, ("X", "Y", "Z", "Roll", "Pitch", "Yaw"), strict=True))

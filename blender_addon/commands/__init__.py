@@ -5,6 +5,7 @@ Options, progress, files and exit statuses are those of the command ``pe``.
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import shlex
 from collections.abc import Sequence
@@ -13,9 +14,19 @@ from typing import TextIO
 
 import bpy
 
-from ..engine import app
-from .parser import parser
-from .streams import flush, take_over_process
+from ..engine import app, page, pe
+from .open_file import REVIEW, flush, take_over_process
+from .scene_verbs import (
+    OBJECTS,
+    add_objects_options,
+    compare_variants,
+    explain_study,
+    export_study,
+    list_variants,
+    review_scene,
+    run_job,
+    sweep_scene,
+)
 
 __all__ = ["flush", "in_blender", "main", "register", "take_over_process", "unregister"]
 
@@ -54,3 +65,60 @@ def register() -> None:
 def unregister() -> None:
     """Take it back."""
     bpy.utils.unregister_cli_command(_registered.pop())
+
+
+def parser(prog: str) -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    top = app.Parser(prog=prog, description="Perception entropy of vehicle sensors.")
+    top.add_argument("--version", action="version", version=f"pe {pe.__version__}")
+    verbs = top.add_subparsers(required=True, metavar="VERB")
+    score = verbs.add_parser("score", help="score the sensors of the scene")
+    optimize = verbs.add_parser("optimize", help="search for better places for the sensors")
+    for verb, job in ((score, pe.ScoreJob), (optimize, pe.OptimizeJob)):
+        app.add_run_options(verb, search=job is pe.OptimizeJob)
+        verb.add_argument("--no-render", action="store_false", dest="render", help=f"no {REVIEW}")
+        add_variant_option(verb)
+        verb.set_defaults(function=run_job, job=job, kind=verb.prog.split()[-1])
+    page.add_page()
+    app.add_page_option(optimize)
+    about = "write the scene as a study with its mesh, or its rig for another program"
+    export = verbs.add_parser("export", help=about)
+    app.add_export_options(export, also_study=True, more=[OBJECTS])
+    add_variant_option(export)
+    export.set_defaults(function=export_study)
+    about = "write a study of the scene, with its own cameras and empties as the sensors"
+    add_objects_options(verbs.add_parser("import", help=about))
+    explain = verbs.add_parser("explain", help="the score in words, or one place of it")
+    app.add_explain_options(explain)
+    add_variant_option(explain)
+    explain.set_defaults(function=explain_study)
+    listing = verbs.add_parser("variants", help="list the variants in the file")
+    listing.add_argument("--json", action="store_true", help="print JSON")
+    listing.set_defaults(function=list_variants)
+    compare = verbs.add_parser("compare", help="score variants and put them side by side")
+    compare.add_argument("variants", nargs="*", metavar="NAME", help="of these (default: all)")
+    app.add_compare_options(compare)
+    compare.set_defaults(function=compare_variants)
+    about = "write a page to hand on: what the sensors see"
+    review = verbs.add_parser("review", help=about)
+    about = "variants side by side (default: what stands in the scene)"
+    review.add_argument("variants", nargs="*", metavar="NAME", help=about)
+    page.add_review_options(review)
+    app.add_score_options(review)
+    review.add_argument(
+        "--no-render", action="store_false", dest="render", help="no rendered picture"
+    )
+    review.set_defaults(function=review_scene)
+    sweep = verbs.add_parser("sweep", help="run the scene, or variants, with many changes")
+    sweep.add_argument("variants", nargs="*", metavar="NAME", help="variants (default: the scene)")
+    app.add_sweep_options(sweep)
+    sweep.set_defaults(function=sweep_scene)
+    app.add_sensors_verb(verbs)
+    app.add_rigs_verb(verbs)
+    return top
+
+
+def add_variant_option(verb: argparse.ArgumentParser) -> None:
+    """Add the option that puts a variant in place of what stands in the scene."""
+    about = "this variant in place of what stands in the scene"
+    verb.add_argument("--variant", metavar="NAME", help=about)

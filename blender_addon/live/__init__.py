@@ -1,7 +1,7 @@
 """The live score: it follows every move of a sensor.
 
-`state` holds what is known of each scene, `session` requests scores, `evaluation` makes them,
-`baseline` says what a score is compared with, `background_figures` computes the figures below it,
+`state` holds what is known of each scene, `session` requests scores and says what they are compared
+with, `evaluation` makes them, `background_figures` computes the figures below it,
 `readout_text` puts all of it into text, and `readout` draws that in a corner of the 3D view.
 """
 

@@ -5,18 +5,123 @@ Nothing is read, cast or computed here: a redraw takes what is ready.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import bpy
 import gpu
+from gpu_extras.batch import batch_for_shader
+from mathutils import Matrix
 
 from .. import viewport
 from ..engine import graphics
+from ..viewport import shader
 from . import labels, scheduler
-from .batches import Batches, depth_offset
 from .layer_cache import shown
 from .layers import LAYERS, WHOLE_RIG, Layer
+
+THIN_PX = 1.0
+EDGE_PX, EDGE = 2.0, (0.05, 0.05, 0.05, 0.35)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Batches:
+    """The batches of one shape: triangles, lines and a sheet; None for an empty one."""
+
+    shape: graphics.LayerShape
+    lines: gpu.types.GPUBatch | None
+    through: gpu.types.GPUBatch | None
+    thin: gpu.types.GPUBatch | None
+    faces: gpu.types.GPUBatch | None
+    sheet: gpu.types.GPUBatch | None
+
+    @classmethod
+    def of(cls, shape: graphics.LayerShape) -> Batches:
+        """Upload a shape."""
+        wide = shader("POLYLINE_SMOOTH_COLOR")
+        sorts = (shape.lines, shape.through, shape.thin)
+        lines, through, thin = (_batch(wide, "LINES", primitives) for primitives in sorts)
+        faces = _batch(shader("SMOOTH_COLOR"), "TRIS", shape.faces)
+        sheet = None if shape.sheet is None else _sheet(shape.sheet)
+        return cls(shape, lines, through, thin, faces, sheet)
+
+    def draw_areas(self) -> None:
+        """Draw sheet and triangles."""
+        for batch in (self.sheet, self.faces):
+            if batch is not None:
+                batch.draw(shader("SMOOTH_COLOR"))
+
+    def draw_lines(self, region: bpy.types.Region, width_px: float, *, edged: bool) -> None:
+        """Draw the lines in that width on the screen; with a dark edge where `edged`."""
+        if self.through is not None:
+            gpu.state.depth_test_set("NONE")
+            self.through.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, width_px))
+            gpu.state.depth_test_set("LESS_EQUAL")
+        if self.thin is not None:
+            self.thin.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, THIN_PX))
+        if self.lines is None:
+            return
+        if edged:
+            dark = _line_shader("POLYLINE_UNIFORM_COLOR", region, width_px + EDGE_PX)
+            dark.uniform_float("color", EDGE)
+            self.lines.draw(dark)
+        self.lines.draw(_line_shader("POLYLINE_SMOOTH_COLOR", region, width_px))
+
+
+def _line_shader(name: str, region: bpy.types.Region, width_px: float) -> gpu.types.GPUShader:
+    """Return a shader of lines, bound, for a width in a region."""
+    wide = shader(name)
+    wide.bind()
+    wide.uniform_float("viewportSize", (region.width, region.height))
+    wide.uniform_float("lineWidth", width_px * bpy.context.preferences.system.pixel_size)
+    return wide
+
+
+def _batch(
+    of: gpu.types.GPUShader, kind: str, primitives: graphics.Primitives
+) -> gpu.types.GPUBatch | None:
+    if not len(primitives.points):
+        return None
+    arrays = {"pos": primitives.points, "color": primitives.colors}
+    return batch_for_shader(of, kind, arrays)
+
+
+def _sheet(sheet: graphics.GroundSheet) -> gpu.types.GPUBatch:
+    """Upload a sheet as triangles: versions of Blender differ in the colours of an image."""
+    points, colors, triangles = sheet.mesh
+    arrays = {"pos": points, "color": colors}
+    return batch_for_shader(shader("SMOOTH_COLOR"), "TRIS", arrays, indices=triangles)
+
+
+OFFSET_SHARE = 0.002
+"""Share of its distance from the eye by which a thing is drawn nearer."""
+OFFSET_M = 0.02
+"""The same in a view without perspective, which has no eye [m]."""
+
+
+@contextlib.contextmanager
+def depth_offset(look: bpy.types.RegionView3D | None, wanted: bool) -> Iterator[None]:
+    """Context manager: draw nearer to the eye, at the same position in the picture."""
+    if not wanted or look is None:
+        yield
+        return
+    gpu.matrix.push()
+    try:
+        gpu.matrix.multiply_matrix(offset_matrix(look.view_matrix, look.is_perspective))
+        yield
+    finally:
+        gpu.matrix.pop()
+
+
+def offset_matrix(view_from_world: Matrix, perspective: bool) -> Matrix:
+    """Return the matrix, world to world: towards the eye, or towards the viewer without an eye."""
+    world_from_view = view_from_world.inverted()
+    if not perspective:
+        return Matrix.Translation(world_from_view.col[2].to_3d() * OFFSET_M)
+    eye = world_from_view.translation
+    return Matrix.Translation(eye) @ Matrix.Scale(1.0 - OFFSET_SHARE, 4) @ Matrix.Translation(-eye)
+
 
 VIEW = bpy.types.SpaceView3D
 

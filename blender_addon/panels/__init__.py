@@ -4,7 +4,6 @@ Panels appear in the order of CLASSES; a parent is registered before its childre
 """
 
 from . import (
-    export_panel,
     layout,
     main,
     overlay_popover,
@@ -25,7 +24,7 @@ CLASSES = (
     *search_panels.CLASSES,
     *scoring_panels.ADVANCED_CLASSES,
     *overlay_popover.CLASSES,
-    *export_panel.CLASSES,
+    *main.EXPORT_CLASSES,
 )
 
 
@@ -33,11 +32,11 @@ def register() -> None:
     """Add icons, and entries in Blender's own headers and menus."""
     layout.register()
     overlay_popover.register()
-    export_panel.register()
+    main.register()
 
 
 def unregister() -> None:
     """Remove them."""
-    export_panel.unregister()
+    main.unregister()
     overlay_popover.unregister()
     layout.unregister()

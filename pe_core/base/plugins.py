@@ -34,7 +34,7 @@ SHIPPED = {
     "library.detector": "pe_tools.validity.own.one_run:run_one",
     "verb.reproduce": "pe_tools.reproduction.verbs:add_verbs",
     "verb.validate": "pe_tools.validity:add_verb",
-    "verb.review": "pe_tools.page.cli:add_verbs",
+    "verb.review": "pe_tools.page:add_verbs",
 }
 """Plugins of this distribution: module and attribute, by the plugin's name."""
 EXTRAS = {

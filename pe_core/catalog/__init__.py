@@ -23,12 +23,11 @@ from ..scene.housing import Housing
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..sensors import kind_named, kind_of
-from .housings import read_housing
+from .housings import read_housing, scan_above_base
 from .rigs import KnownRig as KnownRig
 from .rigs import KnownSensor as KnownSensor
 from .rigs import known_rig as known_rig
 from .rigs import known_rigs as known_rigs
-from .scan_offsets import scan_above_base
 
 __all__ = [
     "Entry",

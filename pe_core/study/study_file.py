@@ -30,8 +30,14 @@ from .mounting_file import areas_of
 from .passthrough import passthrough_table, read_passthrough
 from .prior_file import prior_table, read_prior
 from .requirement_file import read_requirements, requirement_table
-from .search_file import in_file, read_limits, read_search, search_table
-from .selection_file import read_selection, selection_tables
+from .search_file import (
+    in_file,
+    read_limits,
+    read_search,
+    read_selection,
+    search_table,
+    selection_tables,
+)
 from .study import Search, Study
 
 T = TypeVar("T")

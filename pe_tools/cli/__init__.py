@@ -30,8 +30,16 @@ from .explain_verbs import (
     scored,
 )
 from .interrupts import leave, noted_when_interrupted
-from .job_options import add_page_option, begun_search, job_and_folder, pages, with_pages
-from .run_job import More, carry_out, drive
+from .run_job import (
+    More,
+    add_page_option,
+    begun_search,
+    carry_out,
+    drive,
+    job_and_folder,
+    pages,
+    with_pages,
+)
 from .summary import summary
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import (

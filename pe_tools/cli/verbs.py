@@ -26,8 +26,7 @@ from .exchange_verbs import (
     import_study,
 )
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
-from .job_options import add_page_option, begun_search, job_and_folder, with_pages
-from .run_job import carry_out
+from .run_job import add_page_option, begun_search, carry_out, job_and_folder, with_pages
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
 

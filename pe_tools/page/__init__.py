@@ -7,12 +7,15 @@ Names are imported at first use: the other verbs of `pe` start without the page.
 
 from __future__ import annotations
 
+import argparse
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .cli import add_page, add_review_options
-
 if TYPE_CHECKING:
+    from pe_core import Outcome
+
+    from ..cli import Answer
     from .build import review_studies
     from .document import PAGE, page_bytes, write_page
     from .report_context import About, ReportContext, Section, keyed_contexts
@@ -46,3 +49,52 @@ def __getattr__(name: str) -> Any:
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f".{_MODULES[name]}", __name__), name)
+
+
+def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb ``review`` to the parser of ``pe``, and the page to the files of a search."""
+    from .. import cli as app
+
+    review = verbs.add_parser(
+        "review", help="write an HTML page that shows a rig and what its sensors see"
+    )
+    about = "study file (TOML), or a folder of results"
+    review.add_argument("studies", nargs="+", metavar="STUDY", help=about)
+    add_review_options(review)
+    app.add_score_options(review)
+    review.set_defaults(function=_review)
+    add_page()
+
+
+def add_review_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``review``, without the studies themselves."""
+    parser.add_argument("-o", "--output", required=True, metavar="DIR", help="folder for the page")
+    parser.add_argument("--replace", action="store_true", help="replace an existing page")
+    about = "title of the page, in place of the studies' names"
+    parser.add_argument("--title", default="", metavar="TEXT", help=about)
+    parser.add_argument("--author", default="", metavar="TEXT", help="who made it")
+    about = "date on the page, any text; 'today' is the day of the run (none without it)"
+    parser.add_argument("--date", default="", metavar="TEXT", help=about)
+    parser.add_argument("--revision", default="", metavar="TEXT", help="revision of the page")
+
+
+def add_page() -> None:
+    """Write a page beside the results of every search from now on."""
+    from pe_core import study as studies
+
+    from .. import cli as app
+
+    if not any(studies.REVIEW_PAGE in artifact.names for artifact in app.pages):
+        app.pages.append(app.More([studies.REVIEW_PAGE], _write_search_page))
+
+
+def _review(args: argparse.Namespace) -> Answer:
+    from .build import review
+
+    return review(args)
+
+
+def _write_search_page(outcome: Outcome, data: dict[str, Any], folder: Path) -> None:
+    from .build import write_search_page
+
+    write_search_page(outcome, data, folder)

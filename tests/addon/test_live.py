@@ -18,15 +18,7 @@ from blender_addon import (
 )
 from blender_addon.choices import BEFORE_MOVE, PINNED
 from blender_addon.engine import advice, catalog, pe
-from blender_addon.live import (
-    background_figures,
-    baseline,
-    evaluation,
-    readout,
-    readout_text,
-    session,
-    state,
-)
+from blender_addon.live import background_figures, evaluation, readout, readout_text, session, state
 from blender_addon.live.background_figures import ShownFigures
 from tests.addon import scenes
 
@@ -187,7 +179,7 @@ def test_pinned_sensors_stay_what_it_is_compared_with(live):
         assert reading(live).before == start or reading(live).before is None
         rest()
         assert told(reading(live).before) == told(start)
-        assert reading(live).baseline.label == baseline.PINNED_LABEL
+        assert reading(live).baseline.label == session.PINNED_LABEL
     live.perception_entropy.prior = "uniform"
     rest()
     moved = reading(live).rig

@@ -191,7 +191,7 @@ def test_what_objects_cannot_hold_is_said_in_one_line(scene):
 
 
 def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys):
-    from blender_addon.commands.parser import parser
+    from blender_addon.commands import parser
 
     out = tmp_path / "objects.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))

@@ -11,7 +11,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.base.values import MAX_NAME
-from pe_tools.formats.meshes.part_names import fit_names
+from pe_tools.formats.meshes.mesh import fit_names
 from tests.engine.mesh_files import BOX, glb_file, gltf, npz_bytes, read, stl_ascii
 
 LONG = "x" * 300

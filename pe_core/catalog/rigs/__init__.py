@@ -17,7 +17,7 @@ from typing import Any
 
 from ...base.errors import InputError, shown
 from ...geometry.poses import Pose
-from ..scan_offsets import scan_above_base
+from ..housings import scan_above_base
 
 Sides = tuple[float, float, float]
 PAPER = "paper_"

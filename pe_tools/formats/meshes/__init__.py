@@ -16,11 +16,9 @@ from pe_core.scene.mesh import AS_SAID, Mesh, MeshAxes
 
 from .axes import GLTF, OURS, UNSAID, SaidAxes, oriented, said_in_comments
 from .glb import read_glb
-from .mesh import make_mesh
-from .mesh_plugins import FoundMesh, has_plugin, read_with_plugin
+from .mesh import FoundMesh, fit_names, has_plugin, make_mesh, read_with_plugin
 from .npz import dump_npz, read_npz
 from .obj import dump_obj, read_obj
-from .part_names import fit_names
 from .ply import read_ply
 from .stl import read_stl
 

@@ -13,7 +13,7 @@ import numpy as np
 from pe_core.base.errors import InputError, shown
 
 from .. import FoundMesh
-from .pieces import Piece, cut, found, placed
+from .mesh import Piece, cut, found, placed
 
 UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 MAX_NODES = 200_000

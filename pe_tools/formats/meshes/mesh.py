@@ -1,16 +1,28 @@
-"""Common parts of all readers: the checked mesh, limits, and triangulation of polygons."""
+"""Common parts of all readers: the checked mesh, limits, polygons as triangles, pieces, names."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, shown
 from pe_core.base.memory import require_memory
+from pe_core.base.plugins import (
+    call_plugin,
+    find_plugin,
+    install_hint,
+    plugin_name,
+    required_plugin,
+)
+from pe_core.base.values import A_NAME, MAX_NAME
 from pe_core.scene.mesh import Mesh
+
+from .axes import SaidAxes
 
 MAX_TRIANGLES = 25_000_000
 """The most of one mesh: cars are of some millions at most."""
@@ -136,3 +148,124 @@ def _tidy_parts(
     # Unused names are never looked up, so their number is arbitrary.
     renumber = np.array([new_index.get(name, -1) for name in names], dtype=np.int32)
     return renumber[labels], tuple(new_index)
+
+
+INSTEAD = "?"
+"""What stands for a character that cannot be printed, and for a name without any that can."""
+MAX_NUMBER_DIGITS = 12
+"""Characters kept free for a number behind a name."""
+
+
+def fit_names(names: Sequence[str]) -> tuple[str, ...]:
+    """Return a name for each part: all different, printable, on one line and not too long.
+
+    Valid names are unchanged. In other names `INSTEAD` replaces characters that cannot be printed
+    (line ends, controls, changes of the text direction, halves of a surrogate pair). Long names are
+    cut at the end. A number makes names different that would become equal.
+
+    Parameters
+    ----------
+    names : sequence of str
+        All different.
+    """
+    taken = {name for name in names if _is_fit(name)}
+    used: Counter[str] = Counter()
+    return tuple(name if name in taken else _new_name(name, taken, used) for name in names)
+
+
+def _is_fit(name: str) -> bool:
+    try:
+        A_NAME.checked("mesh", "part", name)
+    except InputError:
+        return False
+    return True
+
+
+def _new_name(name: str, taken: set[str], used: Counter[str]) -> str:
+    start = name[: MAX_NAME - MAX_NUMBER_DIGITS]
+    base = "".join(c if c.isprintable() else INSTEAD for c in start).strip() or INSTEAD
+    fit = base
+    while not used[base] or fit in taken:
+        used[base] += 1
+        fit = base if used[base] == 1 else f"{base} ({used[base]})"
+    taken.add(fit)
+    return fit
+
+
+Floats = NDArray[np.float64]
+
+
+class Piece(NamedTuple):
+    """Triangles (F, 3, 3) of one part, in the file's axes and units."""
+
+    name: str
+    triangles: Floats
+
+
+def cut(points: Floats, counts: NDArray[Any], corners: NDArray[Any]) -> Floats:
+    """Cut polygons into fans: triangles (F, 3, 3); all corners are in one list."""
+    sizes = np.asarray(counts, np.int64)
+    fans = np.maximum(sizes - 2, 0)
+    polygons = np.repeat(np.arange(len(sizes)), fans)
+    step = np.arange(len(polygons)) - np.repeat(np.cumsum(fans) - fans, fans)
+    first = (np.cumsum(sizes) - sizes)[polygons]
+    order = np.stack([first, first + step + 1, first + step + 2], axis=1)
+    return points[np.asarray(corners, np.int64)[order]]
+
+
+def placed(triangles: Floats, matrix: Floats) -> Floats:
+    """Transform triangles by a matrix (4, 4) for column vectors; mirroring keeps the outside."""
+    x, y, z = (triangles[..., k] for k in range(3))
+    rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
+    moved = np.stack(rows, axis=-1)
+    return moved[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else moved
+
+
+def found(source: str, pieces: list[Piece], metres: float, up: str) -> FoundMesh:
+    """Join pieces into one mesh; `metres` is the file's unit [m], `up` its up axis."""
+    if not (np.isfinite(metres) and metres > 0.0):
+        raise InputError(source, "unit", "a length in metres", metres)
+    sizes = [len(piece.triangles) for piece in pieces]
+    triangles = np.concatenate([np.zeros((0, 3, 3)), *(piece.triangles for piece in pieces)])
+    if metres != 1.0:
+        triangles = triangles * metres
+    parts = np.repeat(np.arange(len(pieces), dtype=np.int32), sizes)
+    return FoundMesh(triangles, parts, [piece.name for piece in pieces], up)
+
+
+MESH_PLUGIN = "mesh"
+
+
+class FoundMesh(NamedTuple):
+    """Result of a reader: triangles [m] in the file's axes, parts, names, and the up axis."""
+
+    triangles: ArrayLike
+    parts: NDArray[Any]
+    part_names: Sequence[str]
+    up: str
+
+
+def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
+    """Read a mesh with the plugin for its suffix.
+
+    Raises
+    ------
+    InputError
+        There is no plugin, its library is missing (the message says how to install it), or the
+        plugin raises an error.
+    """
+    suffix = path.suffix.lower()
+    hint = install_hint(MESH_PLUGIN, suffix[1:])
+    expected = f"a reader for it ({hint}), or the mesh imported into Blender"
+    point, reader = required_plugin(MESH_PLUGIN, suffix[1:], str(path), "suffix", expected)
+    found = call_plugin(point, reader, path, data)
+    if not isinstance(found, FoundMesh):
+        raise InputError(plugin_name(point), "result", "a FoundMesh", shown(found))
+    mesh = make_mesh(str(path), found.triangles, found.parts, found.part_names)
+    forward = "+x" if found.up != "+x" else "+z"
+    return mesh, SaidAxes(found.up, "file", forward, "")
+
+
+def has_plugin(suffix: str) -> bool:
+    """Whether a plugin reads files of a suffix."""
+    return find_plugin(MESH_PLUGIN, suffix[1:]) is not None

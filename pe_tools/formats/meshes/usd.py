@@ -12,7 +12,7 @@ from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
 from pe_core.base.errors import InputError
 
 from .. import MESH_BYTES, FoundMesh
-from .pieces import Piece, cut, found, placed
+from .mesh import Piece, cut, found, placed
 
 MAX_LAYERS = 1_000
 MAX_PRIMS = 200_000

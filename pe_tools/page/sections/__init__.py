@@ -7,13 +7,12 @@ from collections.abc import Callable
 from ..report_context import ReportContext, Section
 from ..scene3d import view3d
 from .bill_of_materials import bill_of_materials
-from .breakdown import by_class_and_zone, objects
+from .breakdown import by_class_and_zone, objects, sensor_loss
 from .comparison import comparison
 from .overview import overview, warnings_and_text
 from .requirement_verdicts import requirement_verdicts
 from .search_history import search_history
 from .sensor_details import dimensions, sensor_details
-from .sensor_loss import sensor_loss
 from .traceability import assumptions, rerun
 from .visibility import visibility
 

@@ -10,11 +10,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..scene.rig import Rig
 from ..scoring.protocol import Judgement, Objective
 from ..scoring.requirements import RequirementChecker
 from ..scoring.score import rounded
 from ..search import Tolerance, mounted_off, optimize
+from ..search.methods.method import sampled_candidate
 from .requirement_check import checker_of
 
 if TYPE_CHECKING:
@@ -115,6 +118,22 @@ class _OneFirst:
         return Judgement(self.entropy(rig), False)
 
 
+def _best_for(objective: _OneFirst, study: Study) -> Rig:
+    """Return the best of random placements, and of a short search from there."""
+    coding, rng = study.coding(), np.random.default_rng(study.search.seed)
+
+    def sample() -> list[float]:
+        return [float(rng.uniform(v.low, v.high)) for v in coding.variables]
+
+    sampled = [sampled_candidate(coding, sample) for _ in range(CONFLICT_TRIES // 2)]
+    rigs = [study.rig, *(each.rig for each in sampled if each is not None)]
+    best = min(rigs, key=objective.entropy)
+    space, seed = study.with_rig(best).search_space(), study.search.seed
+    for step in optimize(objective, best, space, seed, evaluations=CONFLICT_TRIES // 2):
+        best = step.best
+    return best
+
+
 def conflicts(
     study: Study, rig: Rig, checker: RequirementChecker | None = None
 ) -> dict[str, tuple[str, ...] | None]:
@@ -135,16 +154,7 @@ def conflicts(
     before = checker.shortfalls(rig)
     found: dict[str, tuple[str, ...] | None] = {}
     for number in [k for k, off in enumerate(before) if off][:MAX_CONFLICTS]:
-        steps = optimize(
-            _OneFirst(checker, number),
-            rig,
-            study.with_rig(rig).search_space(),
-            study.search.seed,
-            evaluations=CONFLICT_TRIES,
-        )
-        best = rig
-        for step in steps:
-            best = step.best
+        best = _best_for(_OneFirst(checker, number), study.with_rig(rig))
         after = checker.shortfalls(best)
         broken = tuple(n for n, was, now in zip(names, before, after, strict=True) if now > was)
         found[names[number]] = None if after[number] else broken

@@ -89,7 +89,11 @@ def test_a_requirement_that_cannot_be_kept_is_told_with_what_stands_against_it()
         start,
         rig=pe.Rig([start.rig["front"], down]),
         requirements=(near, far),
-        search=replace(start.search, free={"front": (), "rear": ("pitch",)}, limits={}),
+        search=replace(
+            start.search,
+            free={"front": (), "rear": ("pitch",)},
+            limits={"rear": {"pitch": (math.radians(-20.0), math.radians(80.0))}},
+        ),
     )
     assert [v.met for v in both.verdicts()] == [True, False]
     assert conflicts(both, both.rig) == {"far": ("near",)}

@@ -6,6 +6,7 @@ with the kernels of objects. What follows, for every requirement and every lost 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from threading import RLock
@@ -143,8 +144,10 @@ class RequirementChecker:
     def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
         """Return for each requirement 0 where it is met, else how far it is off, above 0 to 1.
 
-        For a search: exactly 0 where `check` says met. Half of the number is the share of the
-        samples that lacks, half how many sensors and kinds lack at the samples on average.
+        For a search: exactly 0 where `check` says met. The number is the share of the samples that
+        lacks (weight 0.45), how many sensors and kinds lack at the samples on average (0.45), and
+        how far the nearest boresight is turned away from those that fail (0.1): it leads a search
+        in where no sensor sees anything yet.
         """
         with self._lock:
             return self._set(INSIDE).shortfalls(rig, cases) if self.requirements else ()
@@ -236,7 +239,8 @@ class _CheckedSet:
         wanted = criterion.sensors + spare + criterion.kinds
         has = np.minimum(counts, criterion.sensors + spare) + np.minimum(kinds, criterion.kinds)
         lacks = 1.0 - float(has.mean()) / wanted
-        return 0.5 * (1.0 - share / criterion.zone_share) + 0.5 * lacks
+        away = _turned_away(part, rig, ~passed & part.samples.inside)
+        return 0.45 * (1.0 - share / criterion.zone_share) + 0.45 * lacks + 0.1 * away
 
     def _verdict(
         self,
@@ -371,6 +375,29 @@ def _check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionS
         if zone.kind == "area" and min(body.size[:2]) > min(x1 - x0, y1 - y0) + INSIDE_M:
             found = f"{body.name}, {min(body.size[:2]):g} m, in {x1 - x0:g} x {y1 - y0:g} m"
             raise InputError(who, "body", "a body that is not larger than the zone", found)
+
+
+def _turned_away(part: _Part, rig: Rig, failing: Flags) -> float:
+    """Return the mean angle between failing samples and the nearest boresight, 1 for 180 deg."""
+    kinds = part.requirement.criterion.of
+    sensors = [s for s in rig if not kinds or s.kind in kinds]
+    if not sensors or not failing.any():
+        return 1.0
+    body = part.bodies[0].body
+    points = np.column_stack(
+        [part.samples.points[failing], np.full(int(failing.sum()), body.low + body.size[2] / 2.0)]
+    )
+    cosines = []
+    for sensor in sensors:
+        offset = points - np.asarray(sensor.pose.position)
+        ahead = sensor.pose.ground_from_sensor[:, 0]
+        x, y, z = offset.T
+        length = np.sqrt(x * x + y * y + z * z)
+        along = ahead[0] * x + ahead[1] * y + ahead[2] * z
+        cosines.append(along / np.maximum(length, INSIDE_M))
+    nearest = np.clip(np.max(cosines, axis=0), -1.0, 1.0)
+    angles = [math.acos(c) for c in nearest.tolist()]  # the same bits in all builds
+    return sum(angles) / len(angles) / math.pi
 
 
 def _counted(

@@ -33,7 +33,7 @@ from mutant_bench import ROOT, Bench, Reached, by_function, function_at, recorde
 
 SETTINGS = ROOT / "tests" / "mutants.toml"
 
-KILLED, SURVIVED, TIMED_OUT = "killed", "survived", "timed out"
+KILLED, SURVIVED, TIMED_OUT, SAME = "killed", "survived", "timed out", "equivalent"
 UNKNOWN_TEST = (4, 5)
 """Pytest's exit statuses when it does not find a test by its name."""
 REMOVED = "(removed)"
@@ -314,20 +314,24 @@ def _teller(total: int) -> Callable[[Mutant, str], None]:
 def report(
     mutants: list[Mutant], results: list[str], rooms: list[Room], known: set[tuple[str, ...]]
 ) -> dict[str, float]:
-    """Print survivors and the table; the share killed by room."""
-    survivors = [m for m, r in zip(mutants, results, strict=True) if r == SURVIVED]
-    for mutant in survivors:
-        named = (mutant.file, mutant.line, mutant.becomes) in known
-        print(f"{'named' if named else 'SURVIVED'}: {mutant}")
-    print("\n| room | mutants | killed | of them timed out | survived | share killed |")
-    print("| --- | --- | --- | --- | --- | --- |")
+    """Print survivors and the table; the share killed by room, of those that are not equivalent."""
+    fates: dict[str, Counter[str]] = {room.name: Counter() for room in rooms}
+    for mutant, result in zip(mutants, results, strict=True):
+        fate = result
+        if result == SURVIVED:
+            fate = SAME if (mutant.file, mutant.line, mutant.becomes) in known else SURVIVED
+            print(f"{'equivalent' if fate == SAME else 'SURVIVED'}: {mutant}")
+        fates[mutant.room][fate] += 1
+    print(
+        "\n| room | mutants | killed | of them timed out | equivalent | survived | share killed |"
+    )
+    print("| --- | --- | --- | --- | --- | --- | --- |")
     shares = {}
-    for room in rooms:
-        own = [r for m, r in zip(mutants, results, strict=True) if m.room == room.name]
-        lived, late = own.count(SURVIVED), own.count(TIMED_OUT)
-        shares[room.name] = 1.0 - lived / max(1, len(own))
-        figures = (len(own), len(own) - lived, late, lived, f"{shares[room.name]:.1%}")
-        print(f"| {room.name} | {' | '.join(map(str, figures))} |")
+    for name, fate in fates.items():
+        killed = fate[KILLED] + fate[TIMED_OUT]
+        shares[name] = killed / max(1, killed + fate[SURVIVED])
+        counts = (fate.total(), killed, fate[TIMED_OUT], fate[SAME], fate[SURVIVED])
+        print(f"| {name} | {' | '.join(map(str, counts))} | {shares[name]:.1%} |")
     return shares
 
 

@@ -10,7 +10,7 @@ import pytest
 import pe_core as pe
 from pe_core.scoring.scatter import Scatter
 from pe_tools import advice
-from pe_tools.advice.score_comparison import difference_errors, sure_factor
+from pe_tools.advice.score_comparison import ComparedRow, difference_errors, sure_factor
 from tests.engine import shapes
 
 ENTROPY, COVERAGE = ("rig", "", "entropy"), ("rig", "", "coverage")
@@ -203,3 +203,19 @@ def test_objects_are_paired_by_scene():
     own = a.scatter.error(ENTROPY)
     assert a.scatter.batches == 24 and own == pytest.approx(a.stderr, rel=0.35)
     assert difference_errors([a, b], ENTROPY)[0][1] < 0.9 * math.hypot(own, own)
+
+
+def test_key_figures_side_by_side():
+    """Without an error, and no AP is the best: what chance it has is not known."""
+    figures = {
+        "a": advice.KeyFigures(3.0, 0.6, 10.0, "car", 40.0, False, 0.5),
+        "b": advice.KeyFigures(2.0, 0.6, 10.0, "car", 50.0, False, 0.75),
+    }
+    none = ((0.0, 0.0), (0.0, 0.0))
+    text = "0.6 m tall, within 10 m"
+    assert advice.compare_figures(figures) == (
+        ComparedRow("rig", text, "blind", (3.0, 2.0), (0.0, -1.0), (False, True), none, 0.0),
+        ComparedRow("class", "car", "reach", (40.0, 50.0), (0.0, 10.0), (False, True), none, 0.0),
+        ComparedRow("class", "car", "ap", (0.5, 0.75), (0.0, 0.25), (False, False), none, 0.0),
+    )
+    assert advice.compare_figures({}) == ()

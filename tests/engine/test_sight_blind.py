@@ -8,7 +8,13 @@ import pytest
 import pe_core as pe
 from pe_core.geometry.grids import GroundGrid
 from pe_core.scoring.sight import Sight
-from pe_core.scoring.sight.blind_ground import NARROW_M, SIDES, blind_ground
+from pe_core.scoring.sight.blind_ground import (
+    NARROW_M,
+    SIDES,
+    blind_ground,
+    shown_end,
+    shown_start,
+)
 from pe_core.scoring.sight.blind_squares import BODY_M, TOO_FAR_M
 from pe_core.scoring.sight.ground_cells import GroundCells
 from pe_core.sensors import CAMERA, GroundView
@@ -202,3 +208,8 @@ def test_a_lens_that_bends_and_a_definition_alone_see_the_same_ground():
     defined = DefinedGround(CAMERA.measure, view).mark(pe.Sensor("eye", wide, pose), False).marked
     first = one[1::2, 1::2]  # where nothing is at an edge, every other square is asked about
     assert np.mean(first != defined[1::2, 1::2]) < 0.03
+
+
+def test_shown_distances_are_rounded_to_the_worse_side():
+    assert [shown_start(d) for d in (0.0, 1.29, 1.3)] == [0.0, 1.2, 1.3]
+    assert [shown_end(d) for d in (0.0, 1.21, 1.3)] == [0.0, 1.3, 1.3]

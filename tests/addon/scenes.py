@@ -90,7 +90,8 @@ def seen_rig(car) -> bpy.types.Scene:
     """Return a car with a LiDAR, and now a camera at its front, all layers shown."""
     add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
     add_mount(car, "cabin", bpy.data.objects["cabin"])
-    view = car.perception_entropy.view
+    settings, view = car.perception_entropy, car.perception_entropy.view
+    settings.space_x, settings.space_y = (-30.0, 30.0), (-15.0, 15.0)
     for layer in LAYERS:
         setattr(view, f"show_{layer.name}", True)
     view.beams_of = "ALL"

@@ -15,7 +15,7 @@ NEED_LIBRARIES = ("footprints-dxf", "rerun")
 @pytest.fixture
 def seen(car):
     place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.1, 0.2, -2.0)}
-    scenes.add_sensor("eye", "Front 120 deg 8 MP", **place)
+    scenes.add_sensor("eye", "Autoware sample kit", **place)
     return car
 
 

@@ -169,7 +169,7 @@ def test_placements_out_of_this_world(small, tmp_path, name, field, place):
         *(("render_review", file) for file in ("", "file/below")),  # a picture takes a while
     ],
 )
-def test_files_that_cannot_be_written(small, tmp_path, operator, file):
+def test_files_that_cannot_be_written(small, tmp_path, small_pictures, operator, file):
     (tmp_path / "file").touch()
     line = said_by(getattr(bpy.ops.pe, operator), filepath=str(tmp_path / file) if file else "")
     assert line is not None and "expected" in line

@@ -17,7 +17,7 @@ def load(study):
 
 
 def history(study):
-    job = pe.OptimizeJob(study)
+    job = pe.OptimizeJob(study, 1)
     list(job)
     rows = [(row.entropy, [s.pose for s in row.rig]) for row in job.history]
     return rows, job.outcome.after.entropy

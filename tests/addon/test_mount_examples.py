@@ -17,7 +17,10 @@ from tests.addon import scenes
 
 BASE_M, MODEL = 0.04, "Pandar64"
 CORNERS = scenes.ASSETS / "examples" / "four_corners"
-FAST = ("--grid-samples", "1024", "--samples", "1024", "--method", "random", "--candidates", "1")
+FAST = (
+    *("--grid-samples", "1024", "--samples", "1024", "--method", "random", "--candidates", "1"),
+    *("--workers", "1"),
+)
 
 
 def test_the_sedan_s_roof_lidar_optimized_on_the_painted_roof_stands_on_it(addon):

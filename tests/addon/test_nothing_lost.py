@@ -49,7 +49,7 @@ def test_a_users_own_file_is_refused_before_the_work(blend, tmp_path, name):
     assert contents(out) == {name: b"mine"}
 
 
-def test_the_same_folder_again_is_one_set(blend, tmp_path):
+def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
     out = tmp_path / "out"
     for seed, *options in (("3", "--no-review"), ("4",)):
         answer = run_here(blend, "optimize", *FAST[:-1], seed, *options, "-o", out)

@@ -280,7 +280,7 @@ def test_the_map_is_of_the_scene_s_own_space(rig):
     show_alone(view, "ground")
     rig.perception_entropy.space_x = (-20.0, 30.0)
     sheet = scenes.drawn(rig)["ground"][""].sheet
-    assert (sheet.low, sheet.high) == ((-20.0, -40.0), (30.0, 40.0))
+    assert (sheet.low, sheet.high) == ((-20.0, -15.0), (30.0, 15.0))
     rig.perception_entropy.space_x, rig.perception_entropy.space_y = (-2000.0, 2000.0), (-8.0, 8.0)
     assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * ground_layers.MAX_CELLS
     rig.perception_entropy.space_x = (30.0, -20.0)  # a mistake: a score says which

@@ -1,23 +1,20 @@
 """The page to hand on, from the panel and from headless Blender: the engine's, with a picture."""
 
 import base64
-import functools
 import io
 import re
 
 import bpy
 
 import pe_core as pe
-from blender_addon import commands, review
+from blender_addon import commands
 from blender_addon.engine import page
 from tests.addon import scenes
 
 PICTURE = re.compile(r'src="data:image/png;base64,([^"]+)" alt="The vehicle with 1 LiDAR')
 
 
-def test_the_panel_s_page_has_blender_s_picture(car, tmp_path, monkeypatch):
-    small = functools.partial(review.render_review, size=(320, 180))
-    monkeypatch.setattr(review, "render_review", small)
+def test_the_panel_s_page_has_blender_s_picture(car, tmp_path, small_pictures):
     car.perception_entropy.score_samples = 1024
     path = tmp_path / "for <all>.html"
     path.write_text("mine")  # the file dialog has asked
@@ -40,7 +37,7 @@ def test_a_page_that_cannot_be_written_is_one_line(car, tmp_path):
         raise AssertionError("it was written")
 
 
-def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path):
+def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path, small_pictures):
     scenes.add_sensor("front", model="Camera 60 deg")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "study.blend"))
     bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml"))

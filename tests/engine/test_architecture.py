@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import pe_core
+from tests.engine.source_trees import modules_of, tree_of
 
 CHECKOUT = Path(pe_core.__file__).parent.parent
 ROOMS = {
@@ -90,20 +91,20 @@ def files(*packages):
     return {
         path.relative_to(CHECKOUT).as_posix(): path
         for package in packages
-        for path in sorted((CHECKOUT / package).rglob("*.py"))
+        for path in modules_of(CHECKOUT / package)
         if "_vendor" not in path.parts
     }
 
 
 def nodes(path):
     """Every node of a file's syntax tree."""
-    return nodes_of(path.read_text("utf-8"))
+    return nodes_of(tree_of(path))
 
 
 @functools.cache
-def nodes_of(source):
-    """Every node of a source's syntax tree; parsed once however many tests ask."""
-    return tuple(ast.walk(ast.parse(source)))
+def nodes_of(tree):
+    """Every node of a syntax tree; walked once however many tests ask."""
+    return tuple(ast.walk(tree))
 
 
 def imported(path, root=CHECKOUT):
@@ -207,7 +208,7 @@ def import_graph(package):
     for module, path in modules.items():
         parts = module.split(".")
         own = parts if path.name == "__init__.py" else parts[:-1]
-        for node in top_imports(ast.parse(path.read_text("utf-8")).body):
+        for node in top_imports(tree_of(path).body):
             if isinstance(node, ast.Import):
                 graph[module] |= {a.name for a in node.names} & set(modules)
                 continue
@@ -289,9 +290,9 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
     assert not offenders
 
 
-def taken(source):
+def taken(tree):
     """(module, name) of all that a source takes from the engine; "" for a bare import."""
-    for node in nodes_of(source):
+    for node in nodes_of(tree):
         if isinstance(node, ast.Import):
             pairs = [(alias.name, "") for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and not node.level:
@@ -314,7 +315,7 @@ def test_programs_outside_import_public_faces_only():
     offenders = [
         f"{name}: {module} {wanted}"
         for name, path in files(*FACES_ONLY).items()
-        for module, wanted in taken(path.read_text("utf-8"))
+        for module, wanted in taken(tree_of(path))
         if not is_public(module, wanted)
     ]
     assert not offenders
@@ -334,7 +335,7 @@ def test_programs_outside_import_public_faces_only():
     ],
 )
 def test_the_rule_catches_what_goes_deeper(line):
-    found = list(taken(line))
+    found = list(taken(ast.parse(line)))
     assert found and not all(is_public(module, name) for module, name in found)
 
 

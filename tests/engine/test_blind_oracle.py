@@ -18,10 +18,11 @@ from pe_core.scoring.sight.grid_regions import dilated, squares_touching
 from pe_core.scoring.sight.ground_cells import GroundCells, widened
 from pe_tools.graphics import simplified
 from tests.engine import oracle, shapes
+from tests.thorough import THOROUGH
 
 ASSETS = Path(__file__).parents[2] / "blend_assets"
 SPACE = pe.PerceptionSpace((-12, 12), (-10, 10), (0, 3), 0.1)
-WITHIN_M = 4.0
+WITHIN_M = 4.0 if THOROUGH else 2.5
 RADIUS = 0.15
 SURE_RADIUS = 0.07
 """What is blind lies within `FAR_M` of a hole in which nothing is seen, at least so large."""

@@ -11,18 +11,13 @@ from tests.engine.hostile_files import all_cases
 
 GUARD_S = 300
 """Nothing is measured by this: it ends a reader that hangs, so that the test can say which."""
-CASES = all_cases()
 
 
-@pytest.fixture(scope="module")
-def outcomes(tmp_path_factory):
+def outcomes_of(cases, new_folder):
     """How each file went, read in another process with little memory."""
-    places = {}
-    for name, (_, make, _) in CASES.items():
-        places[name] = make(tmp_path_factory.mktemp("hostile"))
-    cases = [(name, CASES[name][0], str(path)) for name, path in places.items()]
-    listed = tmp_path_factory.mktemp("list") / "cases.json"
-    listed.write_text(json.dumps(cases))
+    places = {name: make(new_folder("hostile")) for name, (_, make, _) in cases.items()}
+    listed = new_folder("list") / "cases.json"
+    listed.write_text(json.dumps([(name, cases[name][0], str(places[name])) for name in cases]))
     command = [sys.executable, "-m", "tests.engine.hostile_reader", str(listed)]
     with subprocess.Popen(
         command, cwd=Path(__file__).parents[2], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE
@@ -35,14 +30,42 @@ def outcomes(tmp_path_factory):
     return {(told := json.loads(line))["name"]: told for line in out.splitlines()}
 
 
+def fault_of(told, words):
+    """What is wrong with how a file went; None where it went as its case says."""
+    if told is None:
+        return "it hung, or took the process with it"
+    if told["how"] != ("read" if words is None else "refused"):
+        return f"{told['how']}: {told['line']}"
+    if told["warnings"]:
+        return f"it warned: {told['warnings']}"
+    line = told["line"]
+    if words is not None and not (words in line and line.isprintable() and len(line) < 600):
+        return f"expected one line with {words!r}, found {line!r}"
+    return None
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="limits memory and asks for it as Linux does")
-@pytest.mark.parametrize("name", CASES)
-def test_a_hostile_file_is_refused_in_one_line(outcomes, name):
+def test_hostile_files_are_refused_in_one_line(tmp_path_factory):
     """One printable line that says what is wrong; files that are only odd are read."""
-    assert name in outcomes, "it hung, or took the process with it"
-    told, words = outcomes[name], CASES[name][2]
-    assert told["how"] == ("read" if words is None else "refused"), told["line"]
-    assert not told["warnings"]
-    if words is not None:
-        assert words in told["line"]
-        assert told["line"].isprintable() and len(told["line"]) < 600
+    cases = all_cases()
+    assert len(cases) > 100
+    outcomes = outcomes_of(cases, tmp_path_factory.mktemp)
+    faults = {name: fault_of(outcomes.get(name), words) for name, (_, _, words) in cases.items()}
+    assert {name: fault for name, fault in faults.items() if fault} == {}
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        None,
+        {"how": "failed", "line": "Traceback", "warnings": []},
+        {"how": "read", "line": "", "warnings": []},
+        {"how": "refused", "line": "expected more", "warnings": ["overflow"]},
+        {"how": "refused", "line": "another line", "warnings": []},
+        {"how": "refused", "line": "expected more\nand more", "warnings": []},
+        {"how": "refused", "line": "expected more" + "x" * 600, "warnings": []},
+    ],
+)
+def test_each_fault_is_seen(told):
+    assert fault_of(told, "expected more")
+    assert fault_of({"how": "refused", "line": "expected more", "warnings": []}, "expected") is None

@@ -14,7 +14,7 @@ import pe_core as pe
 from pe_tools import jobs
 from tests.engine import shapes
 from tests.engine.processes import GUARD_S, ROOT, Command
-from tests.thorough import pairs
+from tests.thorough import THOROUGH, pairs
 
 if sys.platform == "win32":
     pytest.skip("POSIX signals and files", allow_module_level=True)
@@ -77,7 +77,7 @@ def test_the_first_signal_judges_and_keeps_the_best(study, out, signum):
     assert data["stopped"] and data["after"]["entropy"] <= data["before"]["entropy"]
 
 
-@pytest.mark.parametrize("signum", SIGNALS)
+@pytest.mark.parametrize("signum", SIGNALS if THOROUGH else [signal.SIGTERM])
 def test_the_second_signal_ends_at_once_with_the_best_kept(study, out, signum):
     with Command("optimize", "--no-review", study, "-o", out, *ENDLESS, hang_in_score=2) as command:
         command.wait_for_better()
@@ -278,7 +278,7 @@ def test_a_file_that_appears_meanwhile_is_not_written_over(study, out, elsewhere
     assert result(folder)["stopped"]
 
 
-@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("signum", SIGNALS if THOROUGH else [signal.SIGHUP])
 def test_a_page_that_is_not_written_is_said(study, out, signum):
     with Command("review", study, "-o", out, hang_in_score=1) as command:
         command.wait_for_stage("scoring")

@@ -2,11 +2,11 @@
 
 import ast
 from collections import defaultdict
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.engine.source_trees import ROOT, modules_of, text_of, tree_of
+
 PACKAGES = ("pe_core", "pe_tools", "blender_addon", "benchmarks")
 
 
@@ -38,12 +38,9 @@ def several_meanings(trees):
 
 
 def test_every_type_has_a_word_of_its_own():
-    files = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
+    files = [path for package in PACKAGES for path in modules_of(ROOT / package)]
     assert len(files) > 100
-    assert (
-        several_meanings((p.relative_to(ROOT), ast.parse(p.read_text("utf-8"))) for p in files)
-        == {}
-    )
+    assert several_meanings((p.relative_to(ROOT), tree_of(p)) for p in files) == {}
 
 
 @pytest.mark.parametrize(
@@ -66,11 +63,13 @@ def test_the_check_sees_what_it_should(first, second, clash):
 def test_what_builds_an_object_is_the_only_thing_called_of():
     """`of` is a class method that returns its own class, or None, wherever there is one."""
     for package in PACKAGES:
-        for path in sorted((ROOT / package).rglob("*.py")):
-            tree = ast.parse(path.read_text("utf-8"))
-            classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+        for path in modules_of(ROOT / package):
+            if "def of(" not in text_of(path):
+                continue
+            nodes = list(ast.walk(tree_of(path)))
+            classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
             builders = {id(f): c for c in classes for f in c.body if isinstance(f, ast.FunctionDef)}
-            for node in ast.walk(tree):
+            for node in nodes:
                 if isinstance(node, ast.FunctionDef) and node.name == "of":
                     owner = builders.get(id(node))
                     assert owner is not None, path

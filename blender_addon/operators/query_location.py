@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import bpy
 from bpy.props import FloatVectorProperty
-from bpy_extras import view3d_utils
 from mathutils import Vector
 
 from .. import bridge, location_query
 from .reports import OperatorResult, report
+from .surface_pose import ViewUnderMouse, ray_of, view_under
 
 OFF_SURFACE_M = 0.05
 """How far outside a surface the query is: half a voxel, as the inside does not count."""
@@ -50,11 +50,10 @@ class PE_OT_ask_place(bpy.types.Operator):
             return {"FINISHED"}
         if event.type != "LEFTMOUSE" or event.value != "PRESS":
             return {"PASS_THROUGH"}
-        window = view_under(context, event.mouse_x, event.mouse_y)
-        if window is None:
+        view = view_under(context, event)
+        if view is None:
             return {"PASS_THROUGH"}  # another part of the screen: its buttons go on working
-        area, region = window
-        location = location_under(context, area, region, event.mouse_x, event.mouse_y)
+        location = location_under(context, view)
         if location is None:
             report(self, "WARNING", "There is no ground or surface under the mouse")
         else:
@@ -92,27 +91,11 @@ def answer(scene: bpy.types.Scene) -> tuple[str, ...] | None:
     return None if result is None else result.lines
 
 
-def view_under(
-    context: bpy.types.Context, x: int, y: int
-) -> tuple[bpy.types.Area, bpy.types.Region] | None:
-    """Return the 3D view and its main region under the mouse; None over anything else."""
-    for area in context.window.screen.areas:
-        inside = [r for r in area.regions if _contains(r, x, y)]
-        window = [r for r in inside if r.type == "WINDOW"]
-        # Sidebar, header and toolbar lie over the main region, and take their clicks themselves.
-        if area.type == "VIEW_3D" and window and len(inside) == len(window):
-            return area, window[0]
-    return None
-
-
 def location_under(
-    context: bpy.types.Context, area: bpy.types.Area, region: bpy.types.Region, x: int, y: int
+    context: bpy.types.Context, view: ViewUnderMouse
 ) -> tuple[float, float, float] | None:
     """Return the location under the mouse: just off a surface, or on the ground, z = 0."""
-    view = _region_3d(area, region)
-    at = (x - region.x, y - region.y)
-    origin = view3d_utils.region_2d_to_origin_3d(region, view, at)
-    direction = view3d_utils.region_2d_to_vector_3d(region, view, at)
+    origin, direction = ray_of(view)
     depsgraph = context.evaluated_depsgraph_get()
     hit, location, normal, *_ = context.scene.ray_cast(depsgraph, origin, direction)
     ground = _on_ground(origin, direction)
@@ -129,20 +112,6 @@ def _on_ground(origin: Vector, direction: Vector) -> Vector | None:
     location = origin - direction * (origin.z / direction.z)
     location.z = 0.0
     return location
-
-
-def _region_3d(area: bpy.types.Area, region: bpy.types.Region) -> bpy.types.RegionView3D:
-    """Return the view of a region; in a quad view, that of its quarter."""
-    space = area.spaces.active
-    quarters = [r for r in area.regions if r.type == "WINDOW"]
-    if len(space.region_quadviews) == len(quarters) > 1:
-        return space.region_quadviews[quarters.index(region)]
-    return space.region_3d
-
-
-def _contains(region: bpy.types.Region, x: int, y: int) -> bool:
-    across = region.x <= x < region.x + region.width
-    return across and region.y <= y < region.y + region.height
 
 
 CLASSES = (

@@ -37,7 +37,7 @@ def draw_labels(context: bpy.types.Context, labels: Sequence[graphics.Tag]) -> N
         width, height = viewport.text_size(label.text, size)
         x, y = place.x - width / 2.0, place.y + RISE * scale
         box = (x - pad, y - pad, x + width + pad, y + height + pad)
-        if any(_overlap(box, other) for other in taken):
+        if any(graphics.boxes_overlap(box, other) for other in taken):
             continue
         taken.append(box)
         viewport.fill_box(box, LABEL_PLATE)
@@ -120,10 +120,6 @@ def _is_fixed_quad_view(context: bpy.types.Context) -> bool:
     """Whether a view is one of four, and not the one that can be turned."""
     space = context.space_data
     return bool(len(space.region_quadviews)) and context.region_data != space.region_3d
-
-
-def _overlap(a: PlateBox, b: PlateBox) -> bool:
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
 def _sidebar_width(context: bpy.types.Context) -> float:

@@ -1,4 +1,4 @@
-"""`InputError`: the one exception for wrong input, with a message of one line.
+"""`InputError`, the one exception for wrong input, and texts of values and counts in messages.
 
 A message may quote any input, so a quote is cut short and kept on one line, with control characters
 escaped.
@@ -55,6 +55,13 @@ class InputError(ValueError):
 def shown(value: object) -> str:
     """Return a value as messages quote it: like `repr`, but short, and it never fails."""
     return _cut(_SHORT.repr(value), MAX_FOUND_LENGTH)
+
+
+def plural(count: float, noun: str) -> str:
+    """Return "1 beam", "7 beams", "1,310 pixels"; small fractions have two significant digits."""
+    many = "" if count == 1 else "s"
+    number = f"{count:,.0f}" if float(count).is_integer() or count >= 100.0 else f"{count:.2g}"
+    return f"{number} {noun}{many}"
 
 
 def visible(text: str) -> str:

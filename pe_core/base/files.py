@@ -50,7 +50,7 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
     except InputError:
         raise
     except (OSError, ValueError) as error:  # ValueError: no path may hold a NUL
-        raise InputError(str(path), "file", "a readable file", _reason(error)) from error
+        raise InputError(str(path), "file", "a readable file", reason_of(error)) from error
 
 
 def write_bytes(path: Path, data: bytes) -> None:
@@ -101,7 +101,7 @@ def _writing(path: Path) -> Iterator[None]:
     except InputError:
         raise
     except (OSError, ValueError) as error:
-        raise InputError(str(path), "file", "a place to write to", _reason(error)) from error
+        raise InputError(str(path), "file", "a place to write to", reason_of(error)) from error
 
 
 def decode_text(data: bytes) -> str:
@@ -151,7 +151,8 @@ def _require_size(path: Path, size: int, max_bytes: int) -> None:
         raise InputError(str(path), "size", expected, found)
 
 
-def _reason(error: OSError | ValueError) -> str:
+def reason_of(error: OSError | ValueError) -> str:
+    """Return why a file cannot be read or written, in a few words of the system's."""
     return str(getattr(error, "strerror", None) or error).lower()
 
 

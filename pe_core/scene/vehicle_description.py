@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.errors import plural
 from ..base.setting import Panel, check_settings, required_setting, setting
 from ..base.values import Number
 from ..geometry.poses import METRES
@@ -125,8 +126,8 @@ def vehicle_line(vehicle: Vehicle, faces: str = "") -> str:
     """
     low, high = vehicle.bounds
     size = size_words(tuple((high - low).tolist()))
-    triangles = _count(len(vehicle.triangles), "triangle")
-    parts = _count(len(vehicle.part_names), "part")
+    triangles = plural(len(vehicle.triangles), "triangle")
+    parts = plural(len(vehicle.part_names), "part")
     texts = (size, faces or _facing(vehicle), triangles, parts)
     return ", ".join(text for text in texts if text)
 
@@ -138,7 +139,3 @@ def _facing(vehicle: Vehicle) -> str:
         return f"faces {'+' if forward[1] > 0 else '-'}{'xyz'[forward[0]]}"
     axis = along(shape, UP)
     return "" if axis is None else f"lies along {'xyz'[axis]}"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, plural
 from pe_core.base.values import listed, vector
 from pe_core.geometry.grids import PerceptionSpace
 from pe_core.geometry.poses import METRES
@@ -23,7 +23,7 @@ from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.scenarios import fused_early
 from pe_core.scoring.score import rounded
 from pe_core.sensors import PerceptionModel, kind_named, kind_of, measure
-from pe_tools.advice.number_text import plural, times
+from pe_tools.advice.number_text import times
 
 Floats = NDArray[np.float64]
 

@@ -27,13 +27,6 @@ def metres(length: float) -> str:
     return f"{length:.2f} m" if abs(length) < 9.995 else f"{length:.0f} m"
 
 
-def plural(count: float, noun: str) -> str:
-    """Return "1 beam", "7 beams", "1,310 pixels"; small fractions have two significant digits."""
-    many = "" if count == 1 else "s"
-    number = f"{count:,.0f}" if float(count).is_integer() or count >= 100.0 else f"{count:.2g}"
-    return f"{number} {noun}{many}"
-
-
 def times(factor: float) -> str:
     """Return a factor as "12 times" or "0.31 times"."""
     return f"{factor:.0f} times" if factor >= 9.5 else f"{factor:.2g} times"

@@ -58,7 +58,16 @@ from .ground import (
 )
 from .kinds import DRAWINGS, Look, Sketch, beam_budget, drawing_of
 from .png import as_bytes, png_bytes
-from .primitives import ColorKey, GroundSheet, LayerShape, Primitives, Tag, fan, polyline
+from .primitives import (
+    ColorKey,
+    GroundSheet,
+    LayerShape,
+    Primitives,
+    Tag,
+    boxes_overlap,
+    fan,
+    polyline,
+)
 from .rays import RING_FAR_M, free_lines, ground_distance, ground_rings, stopped_lines
 from .sensor_images import (
     BODY_NEAR,
@@ -110,6 +119,7 @@ __all__ = [
     "as_bytes",
     "as_scored",
     "beam_budget",
+    "boxes_overlap",
     "cast",
     "channels_of",
     "difference_map",

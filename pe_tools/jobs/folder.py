@@ -18,7 +18,7 @@ from types import TracebackType
 from typing import Any
 
 from pe_core.base.errors import InputError
-from pe_core.base.files import read_bytes, write_bytes
+from pe_core.base.files import read_bytes, reason_of, write_bytes
 from pe_core.base.serialization import dump_json
 
 try:
@@ -68,7 +68,7 @@ def prepare_folder(folder: str | Path, names: Iterable[str] = ()) -> Path:
             probe.unlink(missing_ok=True)
     except OSError as error:
         expected = "a folder that can be written"
-        raise InputError(folder, "output", expected, _reason(error)) from None
+        raise InputError(folder, "output", expected, reason_of(error)) from None
     check_files(folder, names)
     return folder
 
@@ -140,7 +140,7 @@ class FileSet:
         except InputError as error:
             raise error.at(path) from None
         except (OSError, ValueError) as error:
-            raise InputError(path, "file", "a place to write to", _reason(error)) from None
+            raise InputError(path, "file", "a place to write to", reason_of(error)) from None
         digest = sha256_of(temporary)
         if not digest:  # Blender may fail to write without an error
             raise InputError(path, "file", "a place to write to", "that nothing was written")
@@ -162,7 +162,7 @@ class FileSet:
                     self._put()
         except OSError as failed:
             raise InputError(
-                self._folder, "output", "a folder that can be written", _reason(failed)
+                self._folder, "output", "a folder that can be written", reason_of(failed)
             ) from None
         finally:
             for temporary, _ in self._made.values():
@@ -246,7 +246,3 @@ def _listed(folder: Path) -> Listed:
 def _unlink(path: Path) -> None:
     with suppress(OSError):  # the folder is gone, or may no longer be written
         path.unlink(missing_ok=True)
-
-
-def _reason(error: OSError | ValueError) -> str:
-    return str(getattr(error, "strerror", None) or error).lower()

@@ -110,11 +110,6 @@ def triple(values: Sequence[float], digits: int = 2) -> str:
     return ", ".join(number(v, digits) for v in values)
 
 
-def count(value: int, noun: str) -> str:
-    """Return "1 sensor", "15,904 triangles"."""
-    return f"{value:,} {noun}{'' if value == 1 else 's'}"
-
-
 def capitalized(text: str) -> str:
     """Return a text with its first letter in upper case."""
     return text[:1].upper() + text[1:]

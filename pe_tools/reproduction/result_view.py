@@ -10,6 +10,7 @@ from pe_core.metric import H_BLIND
 
 from .paper import HALF_LENGTH_M, HALF_WIDTH_M, PRIORS, ROOF_M, ROW, Position, study_of
 from .plan import best_search, effort_from_dict
+from .results_file import CompleteResults
 from .wording import ABOUT_M, APART_DEG, APART_M, MOUNT_M
 
 MIN_SECONDS = 1e-3
@@ -20,35 +21,17 @@ ROOF_ROWS, CORNER_ROWS = ("1_pandar64", "1_hdl64e"), ("3_default", "3_front")
 PositionBySensor = Mapping[str, Position]
 
 
-class ReproductionResults:
-    """Complete results of ``pe reproduce``.
-
-    Parameters
-    ----------
-    data : mapping
-        The content of results.json.
-
-    Attributes
-    ----------
-    verdicts : dict
-        Every verdict that the page has drawn from the results, by name.
-    """
+class ReproductionResults(CompleteResults):
+    """Complete results of ``pe reproduce``."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        self.made: Mapping[str, Any] = data["made"]
+        super().__init__(data)
         self.claims: Sequence[Mapping[str, Any]] = data["claims"]
         self.values = {name: entry["value"] for name, entry in data["results"].items()}
-        self.seconds = {name: entry["seconds"] for name, entry in data["results"].items()}
-        self.verdicts: dict[str, str] = {}
         self.effort = effort_from_dict(self.made["effort"])
 
     def __getitem__(self, name: str) -> Any:
         return self.values[name]
-
-    def verdict(self, name: str, text: str) -> str:
-        """Note a verdict by name, and return its text."""
-        self.verdicts[name] = text
-        return text
 
     def with_prefix(self, prefix: str) -> dict[str, Any]:
         """Return the values whose task name begins with a prefix, by the rest of the name."""

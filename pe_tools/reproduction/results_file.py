@@ -13,7 +13,7 @@ import os
 import platform
 import re
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -275,3 +275,30 @@ def _processor() -> str:
         return next(x.split(":")[1].strip() for x in lines if x.startswith("model name"))
     except (OSError, StopIteration):
         return platform.processor() or platform.machine()
+
+
+class CompleteResults:
+    """Complete results, and the verdicts that a page draws from them.
+
+    Parameters
+    ----------
+    data : mapping
+        The content of results.json.
+
+    Attributes
+    ----------
+    seconds : dict
+        Durations by task.
+    verdicts : dict
+        Every verdict that the page has drawn from the results, by name.
+    """
+
+    def __init__(self, data: Mapping[str, Any]) -> None:
+        self.made: Mapping[str, Any] = data["made"]
+        self.seconds = {name: entry["seconds"] for name, entry in data["results"].items()}
+        self.verdicts: dict[str, str] = {}
+
+    def verdict(self, name: str, text: str) -> str:
+        """Note a verdict by name, and return its text."""
+        self.verdicts[name] = text
+        return text

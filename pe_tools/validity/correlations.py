@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..reproduction.results_file import CompleteResults
 from ..reproduction.task_runner import Values
 from .published import CLEAN, READINGS, Paper, papers
 from .ranks import Floats, agreement, exact_p, exact_p_of_mean, holm, spearman, under_chance
@@ -213,32 +214,14 @@ def _over_both(
     return record
 
 
-class ValidityResults:
-    """Complete results of ``pe validate``, as the page asks for them.
-
-    Parameters
-    ----------
-    data : mapping
-        The content of results.json.
-
-    Attributes
-    ----------
-    verdicts : dict
-        Every verdict that the page has drawn from the results, by name.
-    """
+class ValidityResults(CompleteResults):
+    """Complete results of ``pe validate``, as the page asks for them."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        self.made: Mapping[str, Any] = data["made"]
+        super().__init__(data)
         self.effort = ValidityEffort(**self.made["effort"])
         self.correlations: list[Record] = data["correlations"]
         self.tests: list[Record] = data["over_papers"]
-        self.seconds = {name: entry["seconds"] for name, entry in data["results"].items()}
-        self.verdicts: dict[str, str] = {}
-
-    def verdict(self, name: str, text: str) -> str:
-        """Note a verdict by name, and return its text."""
-        self.verdicts[name] = text
-        return text
 
     @cached_property
     def treatments(self) -> list[tuple[str, str]]:

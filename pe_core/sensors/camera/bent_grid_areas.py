@@ -19,7 +19,7 @@ from .definition import cut_to_range, hidden, is_ranged
 from .model import Camera
 from .sample_areas import Sorter, edge_areas
 from .tie_rules import NUDGE, aims_at, axes_of, offsets_of
-from .voxel_occlusion import VoxelOcclusion, positions_of, span
+from .voxel_occlusion import VoxelOcclusion, distance_along, positions_of, span
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -45,7 +45,9 @@ class BentPlanes:
             np.add.outer(axis[1] * y, axis[2] * z).astype(np.float32) for axis in self._axes.T
         ]
         self._square = np.add.outer(y * y, z * z).astype(np.float32)
-        self._away = np.add.outer(self._away_from(y), self._away_from(z)).astype(np.float32)
+        self._away = np.add.outer(distance_along(y, side), distance_along(z, side)).astype(
+            np.float32
+        )
         self._cover = None if seen is None else VoxelOcclusion(self._aims, seen, ALL_ROUND)
 
     def areas(self, planes: slice) -> VisibleRows:
@@ -61,10 +63,6 @@ class BentPlanes:
         if self._cover is not None:
             self._settle_hidden(area, first)
         return VisibleRows(rows, area)
-
-    def _away_from(self, offset: Floats) -> Floats:
-        """Distance from the camera to a voxel along one axis; 0 beside the voxel [m]."""
-        return np.maximum(np.abs(offset) - self._space.interval / 2.0, 0.0)
 
     def _rows_in_view(self, planes: slice) -> slice:
         """Rows (y) with a voxel that may touch the field, on any of the planes.
@@ -92,7 +90,9 @@ class BentPlanes:
                 for yz, axis in zip(self._seen_yz, self._axes.T, strict=True)
             )
             distance = np.sqrt(self._square[rows] + np.float32(here * here))
-            away = self._away[rows] + np.float32(self._away_from(np.array(here)))
+            away = self._away[rows] + np.float32(
+                distance_along(np.array(here), self._space.interval)
+            )
             found = self._sorter.sort(depth, left, up, distance, away)
             np.multiply(found.area, found.plain, out=plane)
             edges.append(np.flatnonzero(found.edge) + number * plane.size)

@@ -26,7 +26,7 @@ from .picture import BORDER, PictureBins
 from .pixel_area import clipped_pixel_area, in_sensor_frame
 from .sample_areas import NEAR_SIDES
 from .tie_rules import MARGIN, NUDGE, aims_at, axes_of, offsets_of
-from .voxel_occlusion import VoxelOcclusion, positions_of, span
+from .voxel_occlusion import VoxelOcclusion, distance_along, positions_of, span
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -87,7 +87,9 @@ class CameraPlanes:
         self._sides = _sides(self._axes, wide, high)
         _, y, z = self._offsets
         self._depth = np.add.outer(self._forward[1] * y, self._forward[2] * z).astype(np.float32)
-        self._away = np.add.outer(self._away_from(y), self._away_from(z)).astype(np.float32)
+        self._away = np.add.outer(distance_along(y, side), distance_along(z, side)).astype(
+            np.float32
+        )
         below = np.tri(len(z) + 1, len(z), -1, dtype=np.int32)  # row k: 1 for heights below k
         self._keep_below, self._keep_from = -below, below - 1  # masks: all bits set, or none
         self._shadow = self._cover = None
@@ -129,10 +131,6 @@ class CameraPlanes:
         forward, left, up = self._axes.T
         ends = [(i * BORDER * wide, j * BORDER * high) for i in (-1.0, 1.0) for j in (-1.0, 1.0)]
         return np.array([forward + a * left + b * up for a, b in ends])
-
-    def _away_from(self, offset: Floats) -> Floats:
-        """Distance from the camera to a voxel along one axis; 0 beside the voxel [m]."""
-        return np.maximum(np.abs(offset) - self._space.interval / 2.0, 0.0)
 
     def _at_sides(self, radii: float) -> list[HalfSpace]:
         """Half spaces of voxels inside the frustum's sides by a number of the voxels' radii."""
@@ -177,7 +175,7 @@ class CameraPlanes:
         area = np.empty((len(x), *depth.shape), np.float32)
         held = np.empty_like(depth)
         for plane, x_depth, x_away, first, end in zip(
-            area, self._forward[0] * x, self._away_from(x), *plain, strict=True
+            area, self._forward[0] * x, distance_along(x, self._space.interval), *plain, strict=True
         ):
             some = span(first < end)
             plane[: some.start] = 0.0

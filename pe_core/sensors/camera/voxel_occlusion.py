@@ -35,6 +35,11 @@ def positions_of(
     return np.stack([x[first[0] + i], y[first[1] + j], z[k]], axis=1)
 
 
+def distance_along(offset: Floats, side: float) -> Floats:
+    """Distance from the camera to voxels along one axis; 0 beside a voxel [m]."""
+    return np.maximum(np.abs(offset) - side / 2.0, 0.0)
+
+
 Mask = NDArray[np.bool_]
 
 MAX_BINS, MIN_BINS = 512, 64

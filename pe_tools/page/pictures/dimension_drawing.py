@@ -241,7 +241,8 @@ class _DimensionDrawing:
         spots = [(x + 6.0, y - 5.0), (left, y - 5.0), (x + 6.0, y + 13.0)]
         spots += [(left, y + 13.0), (middle, y - 9.0), (middle, y + 17.0)]
         boxes = [(right, down - 9.0, right + width, down) for right, down in spots]
-        free = (box for box in boxes if not any(_overlap(box, other) for other in taken))
+        overlap = graphics.boxes_overlap
+        free = (box for box in boxes if not any(overlap(box, other) for other in taken))
         box = next(free, boxes[0])
         self._text(box[0], box[3], text, "start", "strong halo")
         return box
@@ -257,7 +258,3 @@ class _DimensionDrawing:
 def _ticks(*positions: tuple[float, float]) -> str:
     """Return strokes across the ends of a dimension line."""
     return "".join(f"M{x - 4:.1f} {y + 4:.1f}l8 -8" for x, y in positions)
-
-
-def _overlap(one: LabelBox, other: LabelBox) -> bool:
-    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]

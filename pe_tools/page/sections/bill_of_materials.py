@@ -9,8 +9,9 @@ from collections.abc import Iterator, Sequence
 
 import pe_core as pe
 from pe_core import sensors as kinds
+from pe_core.base.errors import plural
 
-from ..markup import Markup, count, escaped, joined, table
+from ..markup import Markup, escaped, joined, table
 from ..report_context import ReportContext, Section
 
 NO_PRICE = "no price"
@@ -118,7 +119,7 @@ def _price_note(contexts: Sequence[ReportContext]) -> str:
     if not models:
         return f'<p class="note">{source}</p>'
     names = joined([f"<b>{escaped(model)}</b>" for model in models])
-    missing = f"No price is known for {count(len(models), 'model')}: {names}."
+    missing = f"No price is known for {plural(len(models), 'model')}: {names}."
     return f'<p class="note">{missing} {source}</p>'
 
 

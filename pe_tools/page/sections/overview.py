@@ -11,6 +11,7 @@ from dataclasses import replace
 import pe_core as pe
 from pe_core import metric
 from pe_core import sensors as kinds
+from pe_core.base.errors import plural
 from pe_core.scoring import sight
 
 from ... import advice
@@ -18,7 +19,6 @@ from ..markup import (
     ARROW,
     Markup,
     capitalized,
-    count,
     escaped,
     joined,
     number,
@@ -77,7 +77,7 @@ def answer(context: ReportContext) -> Markup:
         return Markup(f"No placement better than {number(after.entropy)} nats was found.{ends}")
     moved = sum(a.pose != b.pose for a, b in zip(context.start.rig, context.rig, strict=True))
     return Markup(
-        f"Moving {count(moved, 'sensor')} lowers perception entropy by {number(gain)} nats to "
+        f"Moving {plural(moved, 'sensor')} lowers perception entropy by {number(gain)} nats to "
         f"{number(after.entropy)} (lower is better); {percent(after.coverage, 1)} of the expected "
         f"objects are seen, {percent_points(after.coverage - before.coverage)}.{ends}"
     )
@@ -135,7 +135,7 @@ def _worst_loss_line(context: ReportContext) -> str:
 def _warning_link(context: ReportContext) -> str:
     if not context.warnings:
         return ""
-    return f'<a href="#advice">{count(len(context.warnings), "warning")}</a>'
+    return f'<a href="#advice">{plural(len(context.warnings), "warning")}</a>'
 
 
 def _sensor_counts(context: ReportContext) -> str:

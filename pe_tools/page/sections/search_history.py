@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator, Sequence
 
 import pe_core as pe
 from pe_core import scene, search
+from pe_core.base.errors import plural
 
 from ... import advice
-from ..markup import ARROW, Markup, capitalized, count, escaped, number, signed, table, triple
+from ..markup import ARROW, Markup, capitalized, escaped, number, signed, table, triple
 from ..report_context import ReportContext, Section
 
 WIDTH, HEIGHT = 720, 260
@@ -38,7 +39,7 @@ def _method_text(context: ReportContext) -> str:
     stopped = " It was stopped early." if context.outcome.stopped else ""
     return (
         f"Method {escaped(settings.method)}, seed {settings.seed}: "
-        f"{count(context.outcome.evaluations, 'placement')} evaluated on {', then '.join(levels)} "
+        f"{plural(context.outcome.evaluations, 'placement')} evaluated on {', then '.join(levels)} "
         f"{what}.{stopped}"
     )
 

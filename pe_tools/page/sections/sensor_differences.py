@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import pe_core as pe
 from pe_core import catalog
+from pe_core.base.errors import plural
 
-from ..markup import Markup, count, escaped, joined, number, signed, table
+from ..markup import Markup, escaped, joined, number, signed, table
 from ..report_context import ReportContext
 from .bill_of_materials import currency_of, price_of, price_text
 
@@ -83,7 +84,7 @@ def _summary_sentence(names: Sequence[str], differing: Sequence[str]) -> str:
     text = joined(listed) if more <= 0 else f"{', '.join(listed)} and {more} more"
     if len(names) == 1:
         return f"The only sensor differs: {text}."
-    whole = "All" if len(differing) == len(names) else f"Of {count(len(names), 'sensor')}"
+    whole = "All" if len(differing) == len(names) else f"Of {plural(len(names), 'sensor')}"
     return f"{whole} {len(differing)} differ: {text}."
 
 

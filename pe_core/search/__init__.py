@@ -11,7 +11,7 @@ from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, optimize
 from .parametrization import Candidate, Parametrization, feasible_start
-from .processes import LazyProcesses, Processes, end_with_parent, start_processes
+from .processes import LazyProcesses, Processes, start_processes
 from .robustness import RigRobustness, Robustness, RobustObjective, objective_of, robustness
 from .search_space import (
     PAPER_FREE,
@@ -70,7 +70,6 @@ __all__ = [
     "checked_bounds",
     "checked_method",
     "default_bounds",
-    "end_with_parent",
     "evaluate_all",
     "feasible_start",
     "mirrored",

@@ -56,10 +56,6 @@ class Payload:
     objects : iterable
         They must not change.
 
-    Attributes
-    ----------
-    packed : PackedPayload
-
     Raises
     ------
     Unreadable
@@ -89,21 +85,16 @@ def send_payload(executor: Executor, objects: Iterable[object]) -> SentPayload:
     Unreadable
         When an object cannot be pickled.
     """
-    sent, needed = _SENT.get(executor), list({id(part): part for part in objects}.values())
-    if sent is None or not sent.payload.covers(needed):
+    sent, needed = _SENT.get(executor), {id(part): part for part in objects}
+    if sent is None or not sent.payload.covers(needed.values()):
         earlier = () if sent is None else sent.payload.objects
-        payload = Payload(_joined(earlier, needed))
-        sent = _SENT[executor] = SentPayload(payload, _sent(executor, payload.packed))
+        both = {id(part): part for part in earlier} | needed  # levels of a search take turns
+        payload = Payload((both if len(both) <= MAX_OBJECTS else needed).values())
+        sent = _SENT[executor] = SentPayload(payload, _argument(executor, payload.packed))
     return sent
 
 
-def _joined(earlier: Iterable[object], needed: list[object]) -> list[object]:
-    """Keep what the executor has: a search with levels evaluates by several objectives in turn."""
-    joined = list({id(part): part for part in (*earlier, *needed)}.values())
-    return joined if len(joined) <= MAX_OBJECTS else needed
-
-
-def _sent(executor: Any, packed: PackedPayload) -> Any:
+def _argument(executor: Any, packed: PackedPayload) -> Any:
     """Send a payload in the way of the executor; return the argument that refers to it."""
     if hasattr(executor, "start_with"):  # `Processes`
         executor.start_with(packed.key, packed.data)

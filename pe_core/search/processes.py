@@ -162,11 +162,6 @@ class LazyProcesses:
 def begin_worker(key: str = "", data: bytes = b"") -> None:
     """In a worker: keep the payload, leave signals to the parent process, and end with it."""
     receive(key, data)
-    end_with_parent()
-
-
-def end_with_parent() -> None:
-    """In a worker: leave signals to the parent process, and end when it ends, however it ends."""
     for name in TERMINAL_SIGNALS:
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)

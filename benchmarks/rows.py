@@ -30,6 +30,7 @@ from .problems import (
     two_lidars,
     two_lidars_two_cameras,
 )
+from .requirement_rows import nine_presets, nine_presets_preview, redundancy_map
 from .search_rows import candidate, candidates_in_processes
 from .sight_rows import blind_ground, fine_map, live_map, reach, simplify
 from .timing import Timing, Work, best, best_in_turn, peak_mb
@@ -235,6 +236,9 @@ ROWS: dict[str, Callable[[], Timing]] = {
         fine_map,
         blind_ground,
         reach,
+        nine_presets_preview,
+        nine_presets,
+        redundancy_map,
         simplify,
         candidate,
         candidates_in_processes,

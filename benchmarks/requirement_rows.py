@@ -1,0 +1,58 @@
+"""Requirements after a sensor moved: against a score of 262,144 samples after the same move."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+import pe_core as pe
+from pe_core.study import requirement_file
+
+from .problems import four_on_car, moved_a_little
+from .timing import Timing, best_of_processor, peak_mb
+
+SAMPLES = 262_144
+NINE = (
+    *("r159_crossing", "r159_longitudinal", "r159_annex3", "r151_moving", "r158_camera"),
+    *("r158_detection", "ncap26_forward_child", "ncap26_reverse_static", "perceptor_ground"),
+)
+
+
+def nine_presets_preview() -> Timing:
+    """Verdicts that follow a drag."""
+    return _after_a_move("nine presets, preview", _checked(preview=True), draft=True)
+
+
+def nine_presets() -> Timing:
+    """Verdicts with margins when the hand rests."""
+    return _after_a_move("nine presets with margins", _checked(preview=False))
+
+
+def redundancy_map() -> Timing:
+    """By how many sensors each place is seen, for what is 0.8 m tall, within 10 m."""
+    study = four_on_car()
+    places = pe.requirements.Redundancy(study.vehicle, study.space)
+    count = int((places.map(study.rig).sensors >= 0).sum())
+    return _after_a_move(f"redundancy map of {count:,} places", places.map)
+
+
+def _checked(preview: bool) -> Callable[[pe.Rig], object]:
+    study, presets = four_on_car(), requirement_file.presets()
+    requirements = [presets[name].requirement() for name in NINE]
+    checker = pe.requirements.RequirementChecker(requirements, study.vehicle, space=study.space)
+    return lambda rig: checker.check(rig, preview=preview)
+
+
+def _after_a_move(label: str, look: Callable[[pe.Rig], object], draft: bool = False) -> Timing:
+    """Look again after one Pandar64 of four sensors moved."""
+    study = four_on_car()
+    evaluator = study.evaluator(SAMPLES)
+    look(study.rig)
+    evaluator.entropy(study.rig, draft=draft)
+    rigs = [moved_a_little(study.rig, along) for along in np.linspace(0.004, 0.05, 12)]
+    ours, theirs = iter(rigs), iter(rigs)
+    mine = best_of_processor(lambda: look(next(ours)), len(rigs))
+    yardstick = best_of_processor(lambda: evaluator.entropy(next(theirs), draft=draft), len(rigs))
+    work = f"{label}, one Pandar64 of four sensors moved, processor time"
+    return Timing(work, mine, peak_mb(), f"score of {SAMPLES:,} samples", yardstick)

@@ -10,7 +10,13 @@ import pytest
 import pe_core as pe
 from pe_core.scoring.scatter import Scatter
 from pe_tools import advice
-from pe_tools.advice.score_comparison import ComparedRow, difference_errors, sure_factor
+from pe_tools.advice.score_comparison import (
+    BLOCKS,
+    ComparedRow,
+    degrees_of,
+    difference_errors,
+    sure_factor,
+)
 from tests.engine import shapes
 
 ENTROPY, COVERAGE = ("rig", "", "entropy"), ("rig", "", "coverage")
@@ -219,3 +225,23 @@ def test_key_figures_side_by_side():
         ComparedRow("class", "car", "ap", (0.5, 0.75), (0.0, 0.25), (False, False), none, 0.0),
     )
     assert advice.compare_figures({}) == ()
+
+
+def test_degrees_of_freedom_are_those_of_the_score_with_fewest_batches():
+    noisy, exact = score(2.0, own=NOISE[0]), score(2.0)
+    assert degrees_of([noisy, exact]) == len(NOISE[0]) - 1
+    assert degrees_of([exact]) == degrees_of([]) == BLOCKS - 1
+
+
+def test_errors_of_objects_that_are_not_paired_are_their_own():
+    """Of two samples: AP of all classes, AP and entropy of one, by the errors that a score has."""
+    rule, prior = pe.TargetRule("objects", scenes=24), pe.Prior.road()
+    evaluator = pe.ObjectEvaluator(shapes.small_space(), prior, targets=rule)
+    one = dataclasses.replace(evaluator.score(PAIR[0]), scatter=None)
+    car = one.objects.per_class["car"]
+    for figure, error in (
+        (("rig", "", "ap"), one.objects.ap_stderr),
+        (("class", "car", "ap"), car.ap_stderr),
+        (("class", "car", "entropy"), car.stderr),
+    ):
+        assert difference_errors([one, one], figure)[0][1] == pytest.approx(math.sqrt(2.0) * error)

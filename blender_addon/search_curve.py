@@ -17,7 +17,6 @@ from .viewport import FAINT, INK, PLATE, SMALL, Color
 if TYPE_CHECKING:
     from .engine import pe
 
-VIEW = bpy.types.SpaceView3D
 MIN_SPAN = 0.01
 """The entropy's axis covers at least this [nats]: noise is not to look like progress."""
 TITLE = 13.0
@@ -114,20 +113,18 @@ class PlotAxes(NamedTuple):
         return self.x + across * self.width, self.y + up * self.height
 
 
-_handles: list[object] = []
+_handlers = viewport.DrawHandlers()
 
 
 def register() -> None:
     """Start drawing."""
-    if not _handles:
-        _handles.append(VIEW.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL"))
+    _handlers.show((draw, "POST_PIXEL"))
 
 
 def unregister() -> None:
     """Stop drawing, and drop all searches."""
     searches.clear()
-    while _handles:
-        VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
+    _handlers.hide()
     viewport.release_plate(PLATE_NAME)
     viewport.redraw_editors()
 

@@ -1,4 +1,4 @@
-"""What all drawers in 3D views share: text and plates, their places in the corners, and redraw.
+"""What all drawers in 3D views share: handlers, text and plates in corners, redraw.
 
 The live score, the search curve, the inset picture, legends and labels are written by the functions
 of this module, in pixels of a region. A drawer reserves the box of its plate at each redraw, or
@@ -9,7 +9,7 @@ by region; no object of Blender's is held.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import blf
 import bpy
@@ -20,6 +20,7 @@ Color = tuple[float, float, float, float]
 PlateBox = tuple[float, float, float, float]
 """Left, bottom, right, top in the region [px]."""
 
+VIEW = bpy.types.SpaceView3D
 FONT = 0
 SMALL = 11.0
 """Size of most text, in pixels of an interface at scale 1; so are all lengths of drawers."""
@@ -144,6 +145,30 @@ def _in_box(box: PlateBox) -> Iterator[None]:
         gpu.matrix.translate((left, bottom, 0.0))
         gpu.matrix.scale((right - left, top - bottom, 1.0))
         yield
+
+
+class DrawHandlers:
+    """Functions that draw in all 3D views while they are shown: the one owner of their handles."""
+
+    def __init__(self) -> None:
+        self._handles: list[object] = []
+
+    @property
+    def shown(self) -> bool:
+        """Whether the functions draw."""
+        return bool(self._handles)
+
+    def show(self, *functions: tuple[Callable[[], None], str]) -> None:
+        """Start drawing with functions, each at "POST_VIEW" (in space) or "POST_PIXEL"."""
+        if not self._handles:
+            for function, when in functions:
+                handle = VIEW.draw_handler_add(function, (), "WINDOW", when)
+                self._handles.append(handle)
+
+    def hide(self) -> None:
+        """Stop drawing; do nothing if it has stopped."""
+        while self._handles:
+            VIEW.draw_handler_remove(self._handles.pop(), "WINDOW")
 
 
 def ui_scale() -> float:

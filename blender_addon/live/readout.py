@@ -18,7 +18,6 @@ from . import background_figures
 from .readout_text import BETTER, WORSE, figure_lines, known_rig_line, readout_of
 from .state import LiveScore, ShownScore, live_state, shown_score
 
-VIEW = bpy.types.SpaceView3D
 LARGE = 17.0
 """Size of the headline, in pixels of an interface at scale 1; so are all lengths below."""
 ROW, PAD = 17.0, 10.0
@@ -41,19 +40,17 @@ class TextRow(NamedTuple):
     words: tuple[tuple[str, Color], ...]
 
 
-_handles: list[object] = []
+_handlers = viewport.DrawHandlers()
 
 
 def register() -> None:
     """Start drawing."""
-    if not _handles:
-        _handles.append(VIEW.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL"))
+    _handlers.show((draw, "POST_PIXEL"))
 
 
 def unregister() -> None:
     """Stop drawing."""
-    while _handles:
-        VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
+    _handlers.hide()
     viewport.release_plate(PLATE_NAME)
     viewport.redraw_editors()
 

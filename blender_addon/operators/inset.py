@@ -23,7 +23,6 @@ from ..worker import background_worker
 from . import sensor_pictures
 from .sensor_pictures import PictureView
 
-VIEWS = bpy.types.SpaceView3D
 PLATE_NAME, TOPIC = "inset", "inset ranges"
 WIDTH_SHARE, MAX_HEIGHT_SHARE, MAX_WIDTH_PX = 0.3, 0.4, 380.0
 """Largest share of the view's width and height, and largest width at a scale of 1."""
@@ -38,7 +37,7 @@ class InsetSize(NamedTuple):
     height: int
 
 
-_handles: list[object] = []
+_handlers = viewport.DrawHandlers()
 _change_count = 0
 """How often a scene has changed: earlier pictures are out of date."""
 _rendering = False
@@ -52,15 +51,14 @@ _requested_ranges: Hashable = None
 
 def register() -> None:
     """Start drawing, where there is a window."""
-    if not _handles and not bpy.app.background:
-        _handles.append(VIEWS.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL"))
+    if not bpy.app.background:
+        _handlers.show((draw, "POST_PIXEL"))
 
 
 def unregister() -> None:
     """Stop drawing, and release all pictures."""
     global _ranges, _requested_ranges
-    while _handles:
-        VIEWS.draw_handler_remove(_handles.pop(), "WINDOW")
+    _handlers.hide()
     for timer in (request_ranges, render_requested):
         if not bpy.app.background and bpy.app.timers.is_registered(timer):
             bpy.app.timers.unregister(timer)

@@ -17,7 +17,6 @@ from .. import viewport
 from ..engine import graphics, pe
 from ..worker import interactive_worker
 
-VIEW = bpy.types.SpaceView3D
 LINE_PX = 1.5
 TEXT_PX, TEXT_GAP, PAD_PX = 12, 1.5, 6
 TEXT_AT = (26, -12)
@@ -29,21 +28,18 @@ class HeldPreview:
     """A held sensor: lines and faces in all 3D views, text in the view under the mouse."""
 
     def __init__(self) -> None:
-        self._handles: list[object] = []
+        self._handlers = viewport.DrawHandlers()
         self._lines = self._faces = graphics.Primitives.empty()
         self._text: tuple[str, ...] = ()
         self._mouse, self._region = (0, 0), 0
 
     def begin(self) -> None:
         """Start drawing."""
-        if not self._handles:
-            for function, when in ((self._draw, "POST_VIEW"), (self._draw_text, "POST_PIXEL")):
-                self._handles.append(VIEW.draw_handler_add(function, (), "WINDOW", when))
+        self._handlers.show((self._draw, "POST_VIEW"), (self._draw_text, "POST_PIXEL"))
 
     def end(self) -> None:
         """Stop drawing; do nothing if it has ended."""
-        while self._handles:
-            VIEW.draw_handler_remove(self._handles.pop(), "WINDOW")
+        self._handlers.hide()
 
     def at(self, region: bpy.types.Region, mouse: tuple[int, int]) -> None:
         """Set the view and the mouse position beside which the text is written."""

@@ -123,27 +123,23 @@ def offset_matrix(view_from_world: Matrix, perspective: bool) -> Matrix:
     return Matrix.Translation(eye) @ Matrix.Scale(1.0 - OFFSET_SHARE, 4) @ Matrix.Translation(-eye)
 
 
-VIEW = bpy.types.SpaceView3D
-
 _batches: dict[tuple[str, str, str], Batches] = {}
 """By scene, layer and sensor."""
-_handles: list[object] = []
+_handlers = viewport.DrawHandlers()
 
 
 def register() -> None:
     """Start drawing; Blender draws every view once an add-on has been registered."""
-    if not _handles:
-        _handles.append(VIEW.draw_handler_add(draw, (), "WINDOW", "POST_VIEW"))
-        _handles.append(VIEW.draw_handler_add(draw_text, (), "WINDOW", "POST_PIXEL"))
+    if not _handlers.shown:
+        _handlers.show((draw, "POST_VIEW"), (draw_text, "POST_PIXEL"))
         scheduler.register()
 
 
 def unregister() -> None:
     """Stop drawing, and release everything."""
-    if _handles:
+    if _handlers.shown:
         scheduler.unregister()
-    while _handles:
-        VIEW.draw_handler_remove(_handles.pop(), "WINDOW")
+    _handlers.hide()
     clear()
     viewport.release_gpu()
 

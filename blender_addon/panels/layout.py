@@ -48,6 +48,26 @@ def draw_with_zero(
         row.label(text=zero)
 
 
+def draw_list(
+    layout: bpy.types.UILayout,
+    kind: type[bpy.types.UIList],
+    settings: bpy.types.PropertyGroup,
+    names: tuple[str, str],
+    buttons: tuple[str, str],
+    rows: int = 3,
+) -> bpy.types.UILayout:
+    """Draw a list with the buttons Add and Remove beside it; return the column of buttons.
+
+    `names` are the properties of the rows and of the selected row's index, `buttons` the operators.
+    """
+    row = layout.row()
+    row.template_list(kind.__name__, "", settings, names[0], settings, names[1], rows=rows)
+    column = row.column(align=True)
+    for operator, icon in zip(buttons, ("ADD", "REMOVE"), strict=True):
+        column.operator(operator, text="", icon=icon)
+    return column
+
+
 def draw_stale_mark(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw a mark above figures of a result that is out of date."""
     if settings.result_stale:

@@ -6,7 +6,7 @@ import bpy
 
 from ..choices import CUSTOM, FROM_BOXES, OBJECTS, REGIONS
 from ..operators import kind_label, own_fields
-from .layout import Tab, columns, draw_properties, draw_sentence, draw_with_zero
+from .layout import Tab, columns, draw_list, draw_properties, draw_sentence, draw_with_zero
 
 
 class PE_PT_prior(Tab, bpy.types.Panel):
@@ -83,13 +83,8 @@ class PE_PT_focus(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
-        row = layout.row()
-        row.template_list(
-            PE_UL_focus.__name__, "", settings, "focus", settings, "focus_index", rows=3
-        )
-        buttons = row.column(align=True)
-        buttons.operator("pe.add_focus", text="", icon="ADD")
-        buttons.operator("pe.remove_focus", text="", icon="REMOVE")
+        names, buttons = ("focus", "focus_index"), ("pe.add_focus", "pe.remove_focus")
+        draw_list(layout, PE_UL_focus, settings, names, buttons)
         if settings.focus_index < len(settings.focus):
             draw_focus(layout, settings.focus[settings.focus_index])
 

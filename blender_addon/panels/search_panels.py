@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, OBJECTS, ON_SLOTS
-from .layout import Tab, columns, draw_properties, draw_with_zero
+from .layout import Tab, columns, draw_list, draw_properties, draw_with_zero
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
 SLOTS_ICON = "OUTLINER_COLLECTION"
@@ -74,13 +74,8 @@ class PE_PT_mounts(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
-        row = layout.row()
-        row.template_list(
-            PE_UL_mounts.__name__, "", settings, "mounts", settings, "mount_index", rows=3
-        )
-        buttons = row.column(align=True)
-        buttons.operator("pe.add_mount", text="", icon="ADD")
-        buttons.operator("pe.remove_mount", text="", icon="REMOVE")
+        names, buttons = ("mounts", "mount_index"), ("pe.add_mount", "pe.remove_mount")
+        draw_list(layout, PE_UL_mounts, settings, names, buttons)
         if settings.mount_index < len(settings.mounts):
             draw_mount(layout, settings.mounts[settings.mount_index])
 

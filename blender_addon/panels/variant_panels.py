@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..operators import known_rigs
-from .layout import Tab, columns, draw_properties, draw_with_zero
+from .layout import Tab, columns, draw_list, draw_properties, draw_with_zero
 
 
 class PE_UL_variants(bpy.types.UIList):
@@ -55,7 +55,7 @@ class PE_PT_variants(Tab, bpy.types.Panel):
             layout.operator("pe.save_variant", icon="ADD")
             layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
             return
-        draw_list(layout, settings)
+        draw_variants(layout, settings)
         draw_state(layout, settings)
         draw_note(layout, context)
 
@@ -82,15 +82,10 @@ def draw_note(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.prop(row, "note", text="", icon="TEXT", placeholder="Note")
 
 
-def draw_list(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_variants(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw the list with its buttons beside it."""
-    row = layout.row()
-    row.template_list(
-        PE_UL_variants.__name__, "", settings, "variants", settings, "variant_index", rows=4
-    )
-    buttons = row.column(align=True)
-    buttons.operator("pe.save_variant", text="", icon="ADD")
-    buttons.operator("pe.delete_variant", text="", icon="REMOVE")
+    names, operators = ("variants", "variant_index"), ("pe.save_variant", "pe.delete_variant")
+    buttons = draw_list(layout, PE_UL_variants, settings, names, operators, rows=4)
     buttons.separator()
     buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
 

@@ -407,7 +407,7 @@ def test_the_extension_disabled_in_the_middle_of_a_drag(live):
     blender_addon.unregister()
     try:
         assert not state.states
-        assert not session._evaluators._kept and not readout._handles
+        assert not session._evaluators._kept and not readout._handlers.shown
         assert session.follow_update not in bpy.app.handlers.depsgraph_update_post
         assert session.on_idle not in signals.idle.listeners
         assert threading.active_count() <= before

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon import bridge, operators
+from blender_addon import bridge, operators, viewport
 from blender_addon.engine import catalog, graphics, pe
-from blender_addon.operators import place_sensor, placement, placement_preview, surface_pose
+from blender_addon.operators import place_sensor, placement, surface_pose
 from blender_addon.operators.surface_pose import SurfaceSpot
 from tests.addon import scenes
 
@@ -38,7 +38,7 @@ ROOF = SurfaceSpot(Vector((-0.3, 0.0, 1.5)), Vector((0.0, 0.0, 1.0)), "cabin")
 @pytest.fixture
 def held(car, monkeypatch):
     """Return a camera that is held, as it is when the button was pressed."""
-    monkeypatch.setattr(placement_preview, "VIEW", View3D)
+    monkeypatch.setattr(viewport, "VIEW", View3D)
     told = []
     workspace = SimpleNamespace(name="none", status_text_set=told.append)
     context = SimpleNamespace(
@@ -121,7 +121,7 @@ def test_it_is_drawn_where_it_stands_and_as_it_is_turned(held):
 
 
 def test_a_scene_without_a_score_says_why(car, monkeypatch):
-    monkeypatch.setattr(placement_preview, "VIEW", View3D)
+    monkeypatch.setattr(viewport, "VIEW", View3D)
     car.perception_entropy.vehicle = None
     workspace = SimpleNamespace(name="none", status_text_set=print)
     context = SimpleNamespace(

@@ -18,7 +18,7 @@ from blender_addon import (
     worker,
 )
 from blender_addon.engine import pe
-from blender_addon.live import readout, state
+from blender_addon.live import state
 from blender_addon.operators import running_job
 from blender_addon.overlay import draw_handler, scheduler
 from tests.addon.scenes import depsgraph
@@ -94,7 +94,7 @@ class View3D:
 @pytest.fixture
 def view3d(monkeypatch):
     """Return a stand-in for the 3D views: Blender does not tell what is drawn into its own."""
-    monkeypatch.setattr(draw_handler, "VIEW", View3D)
+    monkeypatch.setattr(viewport, "VIEW", View3D)
     return View3D
 
 
@@ -107,11 +107,12 @@ def workers(monkeypatch):
 
 
 def test_rounds_leave_no_thread_timer_or_read_out_behind(unregistered, monkeypatch, workers):
-    monkeypatch.setattr(readout, "VIEW", View3D)
+    monkeypatch.setattr(viewport, "VIEW", View3D)
     threads, drawn = threading.active_count(), len(View3D.handles)
     for _ in range(ROUNDS):
         blender_addon.register()
-        assert len(View3D.handles) == drawn + 1
+        # two of the overlay, one of the read-out and of the search curve
+        assert len(View3D.handles) == drawn + 4
         for each in workers:  # asked a moment before it is switched off
             each.ask("work", lambda: None, lambda _: None, lambda _: None)
             assert bpy.app.timers.is_registered(each._timer)
@@ -128,7 +129,7 @@ def test_rounds_leave_nothing_behind(unregistered, view3d):
     assert not any(before.values())
     for _ in range(ROUNDS):
         blender_addon.register()
-        assert len(view3d.handles) == 2
+        assert len(view3d.handles) == 4
         for timer in TIMERS:  # a change just before it is switched off
             bpy.app.timers.register(timer)
         blender_addon.operators.listed_sensors(bpy.context.scene)
@@ -140,7 +141,7 @@ def test_rounds_leave_nothing_behind(unregistered, view3d):
     assert all(kept[each] for each in ("classes", "handlers", "properties", "listeners", "timers"))
     assert running_job.current is None and not commands._registered and not sensor_cache._cache
     assert not extended_menus()
-    assert not draw_handler._handles and not draw_handler._batches and not viewport._shaders
+    assert not draw_handler._handlers.shown and not draw_handler._batches and not viewport._shaders
 
 
 @pytest.fixture

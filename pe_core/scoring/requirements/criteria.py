@@ -6,6 +6,7 @@ the sensors see meets a criterion. The kernels of `checker` are held to them by 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -257,7 +258,7 @@ def placed(
     """
     centers, sizes = body.boxes(cells)
     at = np.asarray(feet, dtype=float).reshape(-1, 1, 1, 3)
-    turns = [(np.cos(h), np.sin(h)) for h in headings]
+    turns = [(math.cos(h), math.sin(h)) for h in headings]
     x, y, z = centers.T
     rotated = np.stack([np.stack([c * x - s * y, s * x + c * y, z], axis=1) for c, s in turns])
     everywhere = (at + rotated[None]).reshape(-1, 3)

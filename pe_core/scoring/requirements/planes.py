@@ -117,7 +117,7 @@ class VehiclePlanes:
             low, high = (planes[n] for n in (("rear", "front"), ("right", "left"))[axis])
             return round(low + share / MAX_SHARE * (high - low) + shift, DECIMALS)
         if name not in planes:
-            raise InputError(source, field, self.missing.get(name, "a plane of the vehicle"), name)
+            raise InputError(source, field, f"{self.missing[name]}, for the plane {name}", "none")
         other = "left" if near_side == "right" else "right"
         outer = {"near": near_side, "off": other}.get(name, name)
         return round(planes[name] + OUTWARD.get(outer, 1.0) * shift, DECIMALS)

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.raycast import Hits
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
@@ -25,8 +24,9 @@ Flags = NDArray[np.bool_]
 
 DECIMALS = 2
 """Margins are rounded to the centimetre, to the safe side."""
-SEEN = "seen"
+TOO_FEW = "too few on it"
 CUBE_M = 0.1
+"""Side of the cubes by which it is told why a sensor does not see a body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -337,15 +337,24 @@ def _columns(requirement: Requirement) -> list[Body]:
 
 
 def why_not(sensor: Sensor, body: Body, foot: tuple[float, ...], vehicle: Vehicle | None) -> str:
-    """Return what hides a body's middle from a sensor: a part of the vehicle, or another reason."""
+    """Return why a sensor does not see a body: a part of the vehicle, or another reason.
+
+    Cubes in the middle, at the top and at the foot of the body are asked for. The first that the
+    sensor would see without the vehicle decides: by the part that most of its rays end on.
+    """
     kind = kind_of(sensor)
-    center = np.array([foot[0], foot[1], foot[2] + body.low + body.size[2] / 2.0])
-    directions, lengths = kind.rays_to(sensor, center, CUBE_M)
-    if len(directions) and vehicle is not None:
+    x, y, z = foot
+    heights = (0.5 * body.size[2], max(body.size[2] - CUBE_M / 2.0, 0.0), CUBE_M / 2.0)
+    centers = np.array([[x, y, z + body.low + height] for height in heights])
+    in_view = kind.measure(sensor, centers, CUBE_M, None) > 0.0
+    for center in centers[in_view]:
+        directions, lengths = kind.rays_to(sensor, center, CUBE_M)
+        if vehicle is None or not len(directions):
+            continue
         glass = sensor.model.sees_through_glass
-        hits: Hits = vehicle.first_hit(sensor.pose.position, directions, glass)
-        blocked = np.flatnonzero(hits.distance < lengths)
-        if len(blocked):
-            return str(vehicle.part_names[int(vehicle.parts[hits.face[blocked[0]]])])
-    m = kind.measure(sensor, center[None], CUBE_M, None)
-    return kind.missed(sensor, center, CUBE_M) if m[0] <= 0.0 else "too few on it"
+        hits = vehicle.first_hit(sensor.pose.position, directions, glass)
+        parts = vehicle.parts[hits.face[hits.distance < lengths]]
+        if len(parts):
+            return str(vehicle.part_names[int(np.bincount(parts).argmax())])
+        return TOO_FEW
+    return TOO_FEW if in_view.any() else kind.missed(sensor, centers[0], CUBE_M)

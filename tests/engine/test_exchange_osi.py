@@ -128,3 +128,14 @@ def test_radars_are_left_out_by_name_and_come_again(tmp_path):
     (row,) = json.loads(again.read_text())["radar_sensor_view_configuration"]
     assert row["emitter_frequency"] == 77e9 and row["rx_antenna_diagram"] == [{}]
     assert row["sensor_id"] == {"value": "7"}, "as it came"
+
+
+def test_ids_are_any_numbers_of_64_bits(tmp_path):
+    files, _ = rig_files(RIG, "osi", AXLE)
+    text = files["sensor_view_configuration.json"].decode()
+    document = json.loads(text)
+    document["lidar_sensor_view_configuration"][0]["sensor_id"]["value"] = 2**64 - 1
+    path = tmp_path / "sensor_view_configuration.json"
+    path.write_text(json.dumps(document))
+    names = [s.name for s in pe.import_rig(path, reference=AXLE).rig]
+    assert names == ["lidar_1", "camera_2", f"lidar_{2**64 - 1}"]

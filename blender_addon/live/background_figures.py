@@ -17,7 +17,7 @@ import bpy
 from .. import bridge, signals, worker
 from ..choices import NO_ANCHOR
 from ..engine import advice, catalog, pe, sight
-from .evaluation import EvaluatorCache, Problem, ScoreRequest, simplified
+from .evaluation import EvaluatorCache, Problem, ScoreRequest
 from .state import Baseline, KnownRigScore, LiveScore, live_state, rig_key, states
 
 MAX_RIGS = 24
@@ -64,8 +64,7 @@ class SightCache:
         """Return what computes it; made again for another problem."""
         if self._sight is None or self._key != problem.key:
             self._sight = None  # two of them need not fit in memory
-            vehicle, _ = simplified(problem.vehicle)
-            place = problem.space, problem.prior, vehicle
+            place = problem.space, problem.prior, problem.vehicle
             self._sight = sight.Sight(*place, model=problem.model)
             self._key = problem.key
         return self._sight
@@ -186,7 +185,7 @@ def _request_known_rig(name: str, problem: Problem, chosen: str) -> None:
 def _score_known_rig(problem: Problem, known_rig: catalog.KnownRig) -> pe.Glance:
     """On the worker's thread: score a known rig, by an evaluator of its own."""
     rig = catalog.rig_on(known_rig, problem.vehicle)
-    return EvaluatorCache().summary("", ScoreRequest(problem, rig, draft=False))[0]
+    return EvaluatorCache().summary("", ScoreRequest(problem, rig, draft=False))
 
 
 def _deliver_known_rig(name: str, key: Hashable, summary: pe.Glance) -> None:

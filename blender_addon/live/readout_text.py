@@ -42,7 +42,7 @@ def readout_of(score: LiveScore, shown: ShownScore) -> ReadoutText:
     coverage = f"{what} {shown.coverage:.1%}{coverage_change(now, before)}"
     return ReadoutText(
         f"{shown.entropy:.3f} nats",
-        state_of(shown, score.moved_m),
+        state_of(shown),
         change,
         sense,
         f"compared with {shortened(score.baseline.label)}" if score.baseline and before else "",
@@ -50,11 +50,9 @@ def readout_of(score: LiveScore, shown: ShownScore) -> ReadoutText:
     )
 
 
-def state_of(shown: ShownScore, moved_m: float) -> str:
+def state_of(shown: ShownScore) -> str:
     """Return a score's error, and what it is of: the idle scene, a preview, a stored result."""
     state = "as scored" if shown.stored else "exact" if shown.exact else "preview"
-    if moved_m and not shown.stored:
-        state += f", vehicle simplified to {1000.0 * moved_m:.0f} mm"
     if shown.view_outdated:
         state += ", beams and maps follow"
     whole = shown.stored and not shown.stderr

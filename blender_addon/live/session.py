@@ -95,10 +95,10 @@ def score_in_thread(
     """On the worker's thread: score, and store the score where the next redraw reads it."""
     exact = not request.draft
     if exact and baseline is not None and baseline.summary is None and baseline.rig is not None:
-        baseline.summary, _ = _evaluators.summary(name, replace(request, rig=baseline.rig))
-    summary, moved_m = _evaluators.summary(name, request)
+        baseline.summary = _evaluators.summary(name, replace(request, rig=baseline.rig))
+    summary = _evaluators.summary(name, request)
     if generation == _generation:
-        scored = request.rig, moved_m, number, request.problem.key
+        scored = request.rig, number, request.problem.key
         live_state(name).put(LiveScore(summary, baseline, exact, *scored))
 
 

@@ -74,9 +74,6 @@ class LiveScore:
         the last bit.
     rig : Rig
         What was scored.
-    moved_m : float
-        How far the surface of a vehicle of very many triangles moved when it was simplified, at
-        most [m]; 0 as a rule.
     number : int
         The number of the scene's request that it answers.
     problem : Hashable
@@ -87,7 +84,6 @@ class LiveScore:
     baseline: Baseline | None
     exact: bool
     rig: pe.Rig
-    moved_m: float = 0.0
     number: int = 0
     problem: Hashable = None
 

@@ -64,8 +64,6 @@ T = TypeVar("T")
 
 MAX_KEPT = {"casts": 24, "compared": 2}
 """How many results of a sort are kept, those used last; otherwise one."""
-MAX_TRIANGLES = 50_000
-"""A vehicle of more is simplified for drawing: a picture shows no more detail."""
 
 
 class LayerCache:
@@ -83,11 +81,7 @@ class LayerCache:
     def body(self, request: ViewRequest) -> pe.Vehicle | None:
         """Return the vehicle, simplified where it has very many triangles."""
         vehicle = request.vehicle
-        return (
-            None
-            if vehicle is None
-            else simplified_vehicles.shared.simplified(vehicle, MAX_TRIANGLES)[0]
-        )
+        return None if vehicle is None else simplified_vehicles.shared.simplified(vehicle)
 
     def sight(self, request: ViewRequest) -> Sight:
         """Return the `Sight` that computes the visibility of rigs."""

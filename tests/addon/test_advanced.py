@@ -196,6 +196,6 @@ def test_the_live_score_is_of_the_same_study(full):
     assert (problem.space, problem.model) == (study.space, study.model)
     assert problem.vehicle.clearance == 0.05
     own = study.evaluator(samples=evaluation.SAMPLES)
-    assert evaluation.EvaluatorCache().summary("it", wish)[0].entropy == own.entropy(study.rig)
+    assert evaluation.EvaluatorCache().summary("it", wish).entropy == own.entropy(study.rig)
     full.perception_entropy.space_x = (-20.0, 30.0)
     assert evaluation.read_request(full, scenes.depsgraph(), draft=False).problem.key != problem.key

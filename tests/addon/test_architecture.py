@@ -54,7 +54,6 @@ ALLOWED = {
         "engine",
         "sensor_cache",
         "signals",
-        "simplified_vehicles",
         "vehicle_cache",
         "viewport",
         "worker",

@@ -452,25 +452,7 @@ def test_the_score_s_ground_map_is_kept_in_memory_for_the_views(car):
     assert state.live_state(bpy.context.scene.name).finished is None
 
 
-def test_a_heavy_body_is_made_simpler_once_and_told(live, monkeypatch):
-    made = []
-
-    def simplified(vehicle, most, *, quick):
-        made.append((len(vehicle.triangles), most))
-        return vehicle, 0.02
-
-    monkeypatch.setattr(evaluation, "MAX_TRIANGLES", 3)
-    monkeypatch.setattr(simplified_vehicles.graphics, "simplified", simplified)
-    session.clear()
-    session._evaluators.clear()
-    rest()
-    drag(live.objects["roof"])
-    rest()
-    assert len(made) == 1 and made[0][0] > made[0][1] == 3
-    assert reading(live).moved_m == 0.02
-
-
-def test_a_simple_body_is_made_once_and_a_smaller_one_of_it(monkeypatch):
+def test_a_simple_body_is_made_once(monkeypatch):
     whole = pe.Vehicle(np.random.default_rng(1).random((9000, 3, 3)))
     made, simplified = [], simplified_vehicles.graphics.simplified
 
@@ -480,13 +462,10 @@ def test_a_simple_body_is_made_once_and_a_smaller_one_of_it(monkeypatch):
 
     monkeypatch.setattr(simplified_vehicles.graphics, "simplified", watched)
     bodies = simplified_vehicles.SimplifiedVehicles()
-    assert bodies.simplified(whole, 10_000) == (whole, 0.0) and not made
-    first, moved = bodies.simplified(whole, 4000)
-    second, more = bodies.simplified(whole, 1500)
-    assert (
-        bodies.simplified(whole, 4000)[0] is first and bodies.simplified(whole, 1500)[0] is second
-    )
-    assert made == [9000, len(first.triangles)] and more > moved > 0.0
-    assert len(second.triangles) <= 1500 < len(first.triangles) <= 4000
+    assert bodies.simplified(whole) is whole and not made
+    monkeypatch.setattr(simplified_vehicles, "MAX_TRIANGLES", 4000)
+    first = bodies.simplified(whole)
+    assert bodies.simplified(whole) is first and made == [9000]
+    assert len(first.triangles) <= 4000
     bodies.clear()
-    assert bodies.simplified(whole, 1500)[0] is not second
+    assert bodies.simplified(whole) is not first

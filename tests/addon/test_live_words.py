@@ -21,9 +21,9 @@ def score_of(now, exact=True, stored=False):
     return ShownScore(now.entropy, now.coverage, now.stderr, exact, stored)
 
 
-def reading_of(now, before=None, moved_m=0.0, label="before this move"):
+def reading_of(now, before=None, label="before this move"):
     reference = None if before is None else Baseline(label, None, before)
-    return state.LiveScore(now, reference, True, None, moved_m)
+    return state.LiveScore(now, reference, True, None)
 
 
 def test_the_first_reading_has_nothing_to_compare_with():
@@ -46,7 +46,7 @@ def test_a_draft_says_so():
     ],
 )
 def test_what_a_score_is_of_is_said(told, line):
-    assert readout_text.state_of(score_of(glance())._replace(**told), 0.0) == line
+    assert readout_text.state_of(score_of(glance())._replace(**told)) == line
 
 
 def test_what_it_is_compared_with_is_said_also_where_nothing_changed():
@@ -117,13 +117,6 @@ def test_better_and_worse_differ_by_arrow_and_colour():
     (better, blue), (worse, orange) = lines
     assert better.startswith("\N{DOWNWARDS ARROW}") and worse.startswith("\N{UPWARDS ARROW}")
     assert blue[2] > blue[0] and orange[0] > orange[2]
-
-
-def test_a_body_that_was_made_simpler_is_reported():
-    assert (
-        readout_text.readout_of(reading_of(glance(), moved_m=0.0204), score_of(glance())).error
-        == "± 0.022  exact, vehicle simplified to 20 mm"
-    )
 
 
 def figures(**changed):

@@ -3,10 +3,9 @@
 Nothing here computes a score; results of `pe_core` are checked, compared and described.
 """
 
-from pe_tools.advice.number_text import joined, percent
+from pe_tools.advice.advice import joined, percent
 
 from .advice import FRAGILE, UNMET, Advice, fragile, off_by, unmet
-from .hidden_sensors import HiddenSensor, hidden_sensors, hidden_words
 from .key_figures import (
     SENSOR_COLUMNS,
     SHORT_ZONES,
@@ -31,7 +30,7 @@ from .summary import (
     outlook,
 )
 from .summary_text import WHERE, rig_words, sensor_words, stopped_words, words
-from .warnings import warnings
+from .warnings import HiddenSensor, hidden_sensors, hidden_words, warnings
 
 __all__ = [
     "BLIND_TO_M",

@@ -23,7 +23,7 @@ from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.scenarios import fused_early
 from pe_core.scoring.score import rounded
 from pe_core.sensors import PerceptionModel, kind_named, kind_of, measure
-from pe_tools.advice.number_text import times
+from pe_tools.advice.advice import times
 
 Floats = NDArray[np.float64]
 

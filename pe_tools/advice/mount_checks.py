@@ -20,7 +20,7 @@ from pe_core.scene.rig import Sensor
 from pe_core.scene.vehicle import Vehicle, closest_points
 from pe_core.scoring.score import SensorScore
 from pe_core.sensors import kind_of
-from pe_tools.advice.number_text import metres, percent
+from pe_tools.advice.advice import metres, percent
 
 from .advice import Advice
 from .vehicle_checks import Bodywork

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from pe_tools.advice.number_text import joined
+from pe_tools.advice.advice import joined
 
 from .score_comparison import AP, COVERAGE, ENTROPY, ComparedRow
 from .summary_text import WHERE

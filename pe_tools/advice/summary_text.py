@@ -8,12 +8,12 @@ from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, PartScore, Score, SensorScore
 from pe_core.sensors import kind_of
-from pe_tools.advice.number_text import percent
+from pe_tools.advice.advice import percent
 
 from .advice import Advice
-from .hidden_sensors import hidden_sensors, hidden_words
 from .mount_checks import stopped_shares
 from .summary import Outlook, object_words, objects_looked_at, outlook_words
+from .warnings import hidden_sensors, hidden_words
 
 WHERE = {
     "front": "ahead",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pe_core.scene.body_shape import USUAL_SECOND_M, BodyShape, car_factor, fitting_units, is_usual
 from pe_core.scene.orientation import LONGER, across, front_by_names, wheel_center
 from pe_core.scene.vehicle import Vehicle
-from pe_tools.advice.number_text import metres
+from pe_tools.advice.advice import metres
 
 from .advice import Advice
 

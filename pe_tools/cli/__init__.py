@@ -40,7 +40,6 @@ from .run_job import (
     pages,
     with_pages,
 )
-from .summary import summary
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import (
     BAD_INPUT,
@@ -51,6 +50,7 @@ from .terminal import (
     open_missing_streams,
     printable,
     show,
+    summary,
     tell,
 )
 

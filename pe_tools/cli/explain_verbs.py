@@ -20,8 +20,7 @@ from ..jobs import Outcome, ScoreJob
 from .command import add_score_options
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
-from .summary import warned, with_error
-from .terminal import DONE, Answer
+from .terminal import DONE, Answer, warned, with_error
 
 BEST = "*"
 TITLES = {

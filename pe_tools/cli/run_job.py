@@ -32,8 +32,7 @@ from ..jobs import (
 )
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
-from .summary import summary
-from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, tell
+from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, summary, tell
 
 PREFIX = "perception-entropy-"
 """Prefix of the name of a fallback folder."""

@@ -1,4 +1,4 @@
-"""Output of the command line: safe printing, messages on stderr, exit statuses."""
+"""Output of the command line: safe printing, messages, exit statuses, an outcome in a few lines."""
 
 from __future__ import annotations
 
@@ -7,6 +7,12 @@ import sys
 import unicodedata
 from contextlib import suppress
 from typing import TextIO
+
+from pe_core.sensors import kind_of
+from pe_core.study import Robustness
+
+from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
+from ..jobs import Outcome
 
 DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
 Answer = tuple[str, int]
@@ -98,3 +104,76 @@ def _escape(character: str) -> str:
     """Return a character as JSON writes it: beyond 16 bits as two."""
     units = character.encode("utf-16-be", "surrogatepass")
     return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))
+
+
+MIN_SHOWN_ERROR = 1e-4
+"""Smallest standard error that is printed [nats]: one unit of the last digit."""
+
+
+def summary(outcome: Outcome) -> str:
+    """Return an outcome in a few lines for readers."""
+    if outcome.kind == "score":
+        lines = [f"entropy   {with_error(outcome.after.entropy, outcome.after.stderr)}"]
+        lines.append(f"coverage  {outcome.after.coverage:.1%}")
+    else:
+        before, after = outcome.before, outcome.after
+        lines = [
+            f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats",
+            f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
+            *_moves(outcome.robustness),
+        ]
+    if outcome.after.objects is not None:
+        found = outcome.after.objects
+        lines += [*object_words(found), f"on {objects_looked_at(found)}"]
+    scores = outcome.after.per_sensor
+    rig = outcome.study.rig
+    hidden = hidden_sensors(rig, outcome.after, outcome.warnings)
+    lines += [f"ATTENTION: {line}" for line in hidden_words(hidden)]
+    for sensor in rig:
+        x, y, z = sensor.pose.position
+        roll, pitch, yaw = sensor.pose.rotation_deg
+        own = scores[sensor.name]
+        what = kind_of(sensor).occlusion_text
+        stopped = f", {own.stopped / own.beams:.1%} of its {what}" if own.stopped else ""
+        lines.append(
+            f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
+            f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"
+        )
+    if outcome.kind == "optimize":
+        lines.append(searched(outcome))
+    if outcome.stopped:
+        lines.append("stopped early: this is the best placement found so far")
+    return "\n".join([*lines, *warned(outcome)])
+
+
+def _moves(found: Robustness | None) -> list[str]:
+    """Describe the entropy of start and result under mounting errors and sensor failures."""
+    if found is None:
+        return []
+    before, after = found.before, found.after
+    off = off_by(found.errors.position, found.errors.angle)
+    lines = [f"{off} (1 sigma)  {before.rise:+.4f} -> {after.rise:+.4f} nats on average"]
+    if before.loss is not None and after.loss is not None:
+        lines.append(f"one sensor lost  {before.loss:+.4f} -> {after.loss:+.4f} nats on average")
+    return lines
+
+
+def searched(outcome: Outcome) -> str:
+    """Describe a search: method, seed, and the number of voxels that evaluate a candidate."""
+    study, search = outcome.start, outcome.start.search
+    looks = [study.looks_at(samples) for samples in search.level_samples]
+    levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
+    what = "scenes of objects" if study.targets.are_objects else "voxels"
+    count = f"{outcome.evaluations:,} placements"
+    return f"searched by {search.method}, seed {search.seed}: {count} judged on {levels} {what}"
+
+
+def warned(outcome: Outcome) -> list[str]:
+    """Return the warnings of an outcome, one line each."""
+    return [f"warning: {each.line}" for each in outcome.warnings]
+
+
+def with_error(entropy: float, stderr: float) -> str:
+    """Return an entropy with its standard error: none for a grid, never 0 for a sample."""
+    error = f" +- {max(stderr, MIN_SHOWN_ERROR):.4f}" if stderr else ""
+    return f"{entropy:.4f}{error} nats"

@@ -2,8 +2,7 @@
 
 from pe_core.base.files import MESH_BYTES
 
-from .ap_fit import SATURATION, ApTable, CurveFit, fit_ap_curve, study_snippet
-from .ap_table import read_ap_table
+from .ap_fit import SATURATION, ApTable, CurveFit, fit_ap_curve, read_ap_table, study_snippet
 from .boxes import read_boxes, write_boxes
 from .meshes import FoundMesh, Mesh, MeshAxes, read_mesh, write_mesh
 

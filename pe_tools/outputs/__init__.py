@@ -1,11 +1,10 @@
 """Export of the scene: solids, footprints, glTF, recordings and ego masks (no import)."""
 
 from .blind_volume import blind_volume
-from .colors import BLIND, BODY, GLASS, Rgb, hex_color
 from .footprints import GroundFootprint, GroundPlan
 from .glb import view_wires
 from .output_formats import SCENE_OUTPUTS, SceneOutput, export_scene, scene_files, scene_output
-from .request import OutputRequest, plain_names
+from .request import BLIND, BODY, GLASS, OutputRequest, Rgb, hex_color, plain_names
 from .solid import Solid, mounted_view
 
 __all__ = [

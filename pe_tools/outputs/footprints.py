@@ -18,8 +18,7 @@ from pe_core.sensors import kind_of
 
 from ..graphics import sensor_color_on_paper
 from .blind_volume import level_outlines
-from .colors import Rgb
-from .request import OutputRequest, plain_names
+from .request import OutputRequest, Rgb, plain_names
 from .solid import Floats, free_solid, mounted_view
 
 STEP = math.radians(0.5)

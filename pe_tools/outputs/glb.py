@@ -14,7 +14,7 @@ from pe_core.scene import Reference, Vehicle
 from pe_core.scoring.sight.grid_regions import chained
 from pe_core.version import __version__
 
-from .colors import BODY, GLASS, Rgb, linear
+from .request import BODY, GLASS, Rgb, linear
 from .solid import MountedView, border
 
 Floats = NDArray[np.float64]

@@ -12,9 +12,8 @@ from pe_core.sensors import kind_of
 from ..exchange import Written
 from ..graphics import sensor_color_on_paper
 from .blind_volume import blind_volume
-from .colors import BLIND, HIDDEN, Rgb
 from .glb import GlbScene, add_vehicle
-from .request import NO_RANGE_M, OutputRequest, plain_names
+from .request import BLIND, HIDDEN, NO_RANGE_M, OutputRequest, Rgb, plain_names
 from .solid import Solid, free_solid, hidden_solid, mounted_view, whole_solid
 
 FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

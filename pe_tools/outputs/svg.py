@@ -9,9 +9,8 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from ..exchange import Written
-from .colors import BLIND, BODY, hex_color
 from .footprints import ClosedLines, GroundFootprint, GroundPlan, ground_plan
-from .request import OutputRequest
+from .request import BLIND, BODY, OutputRequest, hex_color
 
 FILE = "footprints.svg"
 SCALE = 100

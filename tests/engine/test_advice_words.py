@@ -5,7 +5,7 @@ import pytest
 import pe_core as pe
 from pe_core.base.errors import plural
 from pe_tools import advice
-from pe_tools.advice.number_text import metres, percent, times
+from pe_tools.advice.advice import metres, percent, times
 from tests.engine import shapes
 
 

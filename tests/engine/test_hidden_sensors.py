@@ -6,7 +6,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools import advice
-from pe_tools.cli.summary import summary
+from pe_tools.cli.terminal import summary
 from tests.engine import shapes
 
 INSIDE, SIDE = "camera in the boot", "side"

@@ -9,7 +9,7 @@ from pe_core.scoring import FoundClass
 from pe_core.scoring.targets.lone_objects import SECTORS
 from pe_tools import advice
 from pe_tools.cli.explain_verbs import comparison
-from pe_tools.cli.summary import summary
+from pe_tools.cli.terminal import summary
 from tests.engine import shapes
 
 REACH = {way: 0.0 for way in SECTORS} | {"front": 25.6, "left": 12.2}

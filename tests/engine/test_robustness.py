@@ -11,7 +11,7 @@ import pe_core as pe
 from pe_core.search import mounted_off, robustness
 from pe_core.search.tolerance import FRESH
 from pe_tools import advice
-from pe_tools.cli.summary import summary
+from pe_tools.cli.terminal import summary
 from tests.engine import shapes
 
 OFF = pe.Tolerance(0.02, math.radians(0.5), 4)

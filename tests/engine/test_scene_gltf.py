@@ -8,7 +8,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools.outputs import scene_files
-from pe_tools.outputs.colors import linear
+from pe_tools.outputs.request import linear
 
 from .shapes import box_car, camera, lidar_on_roof, small_lidar
 

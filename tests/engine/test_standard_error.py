@@ -9,7 +9,7 @@ import pytest
 import pe_core as pe
 from pe_core.metric import POINTPILLARS, entropy_of, precision_of
 from pe_core.scoring import draw
-from pe_tools.cli.summary import summary, with_error
+from pe_tools.cli.terminal import summary, with_error
 from tests.engine import shapes
 
 SPACE = shapes.small_space()

@@ -11,7 +11,7 @@ import pe_core as pe
 from pe_core.catalog import load
 from pe_core.sensors import Camera, KannalaBrandt, range_picture
 from pe_tools import graphics
-from pe_tools.advice.number_text import percent
+from pe_tools.advice.advice import percent
 from pe_tools.page.pictures import sensor_views
 from pe_tools.page.pictures.reference_figures import (
     CAR_M,

@@ -7,16 +7,22 @@ render it with three.js, which is vendored: the page loads nothing from elsewher
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+import pe_core as pe
+from pe_core import sensors as kinds
+
 from ... import graphics
 from ..markup import escaped, percent, png_figure
+from ..pictures.sensor_views import sensor_view
 from ..pictures.vehicle_picture import labelled_picture_of
 from ..report_context import ReportContext, Section
-from .packed_data import css_color, maps_data, vehicle_data
-from .sensor_layers import sensor_data
+from .packed_data import css_color, housing_data, maps_data, packed_primitives, vehicle_data
 
 HERE = Path(__file__).parent
 THREE = HERE / "_vendor" / "three.min.js"
@@ -197,3 +203,91 @@ def _key(data: Mapping[str, Any]) -> str:
         f'<li><i class="dashed" style="--tint:{occluded}"></i>occluded by the vehicle</li>'
     )
     return f'<ul class="v3-key">{rows}<li>Grid of 1 m, darker every 5 m.</li></ul>'
+
+
+MAX_BEAMS = 60_000
+"""Beams that are cast of one sensor; a selection of them is drawn."""
+BEAMS_EACH, BEAM_M, VIEW_M, FOOT_M = 180, 7.0, 2.5, 20.0
+"""Beams drawn of a sensor and their length; length of a field of view; reach of its footprint."""
+MAX_RINGS = 10
+PALETTE = graphics.PAPER
+OCCLUDED = graphics.with_alpha(PALETTE.stopped, 0.9)
+BEAM, RING, EDGE, SIDE = 0.5, 0.8, 0.9, 0.12
+"""Opacity of a sensor's colour in beams, rings, and edges and sides of its field of view."""
+NOTHING = graphics.Primitives.empty()
+
+
+def sensor_data(
+    number: int, sensor: pe.Sensor, score: Any, vehicle: pe.Vehicle | None
+) -> dict[str, Any]:
+    """Return a sensor by its number in the rig; `score` is its `SensorScore` or None."""
+    drawing = graphics.drawing_of(sensor.kind)
+    color = graphics.sensor_color_on_paper(number)
+    layers = _beam_layers if drawing.beams else _view_layers
+    field = sensor_view(sensor.kind).image_field(sensor.model)
+    return {
+        "name": sensor.name,
+        "kind": kinds.kind_of(sensor.model).label,
+        "model": sensor.model.name,
+        "color": css_color(graphics.with_alpha(color, 1.0)),
+        "at": list(sensor.pose.position),
+        "turned": list(sensor.pose.rotation_deg),
+        "axes": sensor.pose.ground_from_sensor.tolist(),
+        "field": None if field is None else list(field),
+        "drawn_as": "beams" if drawing.beams else "view",
+        "share": score.stopped / score.beams if score and score.beams else None,
+        "housing": housing_data(sensor.model.name),
+        "layers": layers(sensor, vehicle, color),
+    }
+
+
+def _beam_layers(
+    sensor: pe.Sensor, vehicle: pe.Vehicle | None, color: tuple[float, ...]
+) -> dict[str, Any]:
+    """Return free beams, occluded beams, and rings where channels meet the ground."""
+    beams_cast = graphics.cast(sensor, vehicle, MAX_BEAMS)
+    choice = graphics.BeamChoice(BEAMS_EACH, graphics.ChannelMode.FEW)
+    beams = graphics.shown_beams(beams_cast, choice)
+    colors = np.where(beams.stopped[:, None], OCCLUDED, graphics.with_alpha(color, BEAM))
+    around = None if vehicle is None else vehicle.bounds
+    rows = _rings(beams_cast)
+    ring_colors = np.tile(graphics.with_alpha(color, RING), (len(rows), 1))
+    rings = graphics.ground_rings(beams_cast, rows, ring_colors)
+    return {
+        "fov": _layer(graphics.free_lines(sensor, beams, BEAM_M, colors, around)),
+        "occluded": _layer(graphics.stopped_lines(sensor, beams, colors)),
+        "ground": _layer(rings),
+    }
+
+
+def _view_layers(
+    sensor: pe.Sensor, vehicle: pe.Vehicle | None, color: tuple[float, ...]
+) -> dict[str, Any]:
+    """Return the field of view, what the vehicle occludes of it, and its footprint."""
+    drawing = graphics.drawing_of(sensor.kind)
+    sketch = drawing.sketch(sensor, vehicle, graphics.BeamChoice(1))
+    edge, side = graphics.with_alpha(color, EDGE), graphics.with_alpha(color, SIDE)
+    palette = replace(PALETTE, camera=edge, camera_face=side, other=edge)
+    layers = {"fov": _layer(sketch.lines(VIEW_M, palette), sketch.faces(VIEW_M, palette))}
+    if drawing.footprint is None:
+        return layers
+    outline = drawing.footprint(sensor, FOOT_M)
+    around = graphics.footprint_lines(outline, edge)
+    layers["occluded"] = _layer(graphics.hidden_lines(sensor, vehicle, OCCLUDED))
+    layers["ground"] = _layer(around, graphics.footprint_faces(outline, side))
+    return layers
+
+
+def _rings(beams: graphics.Cast) -> np.ndarray:
+    """Return an even selection of the channels that meet the ground near enough to be drawn."""
+    near = graphics.ground_distance(beams.sensor, beams.directions) < graphics.RING_FAR_M
+    meets = near.reshape(len(beams.rows), -1).any(axis=1)
+    rows = beams.rows[meets]
+    return rows[np.unique(np.linspace(0, len(rows) - 1, min(MAX_RINGS, len(rows))).astype(int))]
+
+
+def _layer(lines: graphics.Primitives, faces: graphics.Primitives = NOTHING) -> dict[str, Any]:
+    return {
+        **({"lines": packed_primitives(lines)} if len(lines.points) else {}),
+        **({"faces": packed_primitives(faces)} if len(faces.points) else {}),
+    }

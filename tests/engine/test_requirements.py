@@ -24,6 +24,7 @@ from pe_core.scoring.requirements import (
     sees,
     signed_distance,
 )
+from pe_core.scoring.requirements.criteria import largest_solid_angle
 from pe_core.scoring.sight import Sight
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study.requirement_file import presets, read_requirement, requirement_table
@@ -149,6 +150,7 @@ def test_verdicts_are_those_of_the_definition():
         Requirement("kinds", AHEAD, bodies[:1], Criterion(kinds=2, points=4, pixels=4000.0)),
         Requirement("share", AHEAD, (BODIES["cylinder"],), Criterion(share=0.6)),
         Requirement("ring", AHEAD, bodies[2:], Criterion(share=1.0, of=("camera",))),
+        Requirement("fine", AHEAD, bodies[:1], Criterion(per_degree=16.5)),
     ]
     vehicle, whole = van(), rig()
     some = 0
@@ -169,6 +171,28 @@ def test_verdicts_are_those_of_the_definition():
         assert verdict.met == all(np.array(passed)[verdict.samples.inside])
         some += 0 < sum(passed) < len(passed)
     assert some >= 2
+
+
+def test_the_solid_angle_of_a_box_is_never_too_small():
+    """Against rays over the sphere; far away, where the bound is tight, it is exact to 3 %."""
+    rng = np.random.default_rng(5)
+    way = rng.normal(size=(400_000, 3))
+    way /= np.linalg.norm(way, axis=1)[:, None]
+    ratios = []
+    for _ in range(12):
+        size, yaw = rng.uniform(0.2, 1.5, 3), float(rng.uniform(-3.0, 3.0))
+        start = rng.uniform(1.2, 3.0) * way[len(ratios)]
+        one = pe.Objects(np.zeros((1, 3)), size[None], [yaw], [0], ["box"])
+        own = (way @ oracle.rotation(0.0, 0.0, yaw)), (start @ oracle.rotation(0.0, 0.0, yaw))
+        with np.errstate(divide="ignore"):
+            t = np.sort([(s * size / 2.0 - own[1]) / own[0] for s in (-1.0, 1.0)], axis=0)
+        met = np.maximum(t[0].max(axis=1), 0.0) < t[1].min(axis=1)
+        truth = met.mean() * 4.0 * math.pi * (180.0 / math.pi) ** 2
+        ratios.append(largest_solid_angle(one, start)[0] / truth)
+    assert min(ratios) > 0.97 and max(ratios) < 6.0  # 3 %: the scatter of the rays
+    small = pe.Objects(np.zeros((1, 3)), [[0.3, 0.3, 0.3]], [0.0], [0], ["box"])
+    far = largest_solid_angle(small, (20.0, 0.0, 0.0))[0]
+    assert far == pytest.approx((0.3 / 20.0) ** 2 * (180.0 / math.pi) ** 2, rel=0.03)
 
 
 def cylinder_hits(start, way, foot, radius, low, high):

@@ -25,7 +25,14 @@ from ...scene.vehicle_description import Reference
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from ..targets.object_metric import FusedObjects
 from .bodies import Body
-from .criteria import Criterion, Requirement, checked_requirements, placed, visible_share
+from .criteria import (
+    Criterion,
+    Requirement,
+    checked_requirements,
+    largest_solid_angle,
+    placed,
+    visible_share,
+)
 from .ground import GroundCheck
 from .planes import VehiclePlanes
 from .verdict import Samples, Verdict, verdict
@@ -43,9 +50,10 @@ PREVIEW_SAMPLES = 400
 
 @dataclass(frozen=True, eq=False)
 class _BodySet:
-    """Where the boxes of one body of a requirement are among all objects."""
+    """One body of a requirement: the number of its objects, and where these are among all."""
 
     body: Body
+    number: int
     box: slice
     cells: slice | None
 
@@ -294,6 +302,9 @@ class _CheckedSet:
         columns = []
         for each in part.bodies:
             seen = m[each.box] >= threshold
+            if criterion.per_degree is not None:
+                angles = largest_solid_angle(self._objects[each.number], sensor.pose.position)
+                seen &= m[each.box] >= criterion.per_degree**2 * angles
             if each.cells is not None and criterion.share is not None:
                 cells = (m[each.cells] > 0.0).reshape(len(seen), -1)
                 seen &= visible_share(each.body, cells) >= criterion.share
@@ -337,10 +348,11 @@ class _CheckedSet:
         return _Part(requirement, samples, bodies)
 
     def _body_set(self, body: Body, feet: Floats, requirement: Requirement) -> _BodySet:
+        number = len(self._objects)
         box = self._added(placed(body, feet, body.headings, False))
         with_cells = requirement.criterion.share is not None
         cells = self._added(placed(body, feet, body.headings, True)) if with_cells else None
-        return _BodySet(body, box, cells)
+        return _BodySet(body, number, box, cells)
 
     def _added(self, objects: Objects) -> slice:
         self._objects.append(objects)

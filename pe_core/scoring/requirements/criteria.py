@@ -20,6 +20,7 @@ from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_named, kind_of
+from ...sensors.object_kernel import PlacedBoxes
 from .bodies import Body
 from .zones import Zone
 
@@ -27,6 +28,7 @@ Floats = NDArray[np.float64]
 COUNT = Whole(1, 1000)
 POSITIVE_SHARE = Number(0.0, 1.0, above=True)
 AREA = Number(0.0, 1e6, unit="m2", noun="area")
+NEAREST_M = 1e-3
 DISTANCE = Number(0.0, 100.0, unit="m", noun="length")
 
 
@@ -45,6 +47,9 @@ class Criterion:
         Only these kinds of sensors count; all by default.
     points, pixels : float
         At least so many beams end on the body, or so many pixels show it.
+    per_degree : float, optional
+        At least so many beams or pixels on a degree, on average over the body's box: the square
+        root of m over its solid angle, which errs high.
     share : float, optional
         At least this share of the body's cells (bands of 0.1 m) is visible.
     ap : float, optional
@@ -72,6 +77,11 @@ class Criterion:
         1.0,
         Number(1e-6, 1e9, unit="px"),
         "A camera sees a body with at least so many pixels of it",
+    )
+    per_degree: float | None = setting(
+        None,
+        Number(0.0, 1e4, above=True),
+        "A sensor sees a body with at least so many beams or pixels on a degree",
     )
     share: float | None = setting(
         None, POSITIVE_SHARE, "At least this share of the body's height is visible"
@@ -223,13 +233,38 @@ def sees(
     that is not are left out: they may be seen in part.
     """
     measure, counts = kind_of(sensor).measure_objects, kind_of(sensor).counts_points
-    m = measure(sensor, placed(body, [foot], [heading], False), vehicle, False)
+    objects = placed(body, [foot], [heading], False)
+    m = measure(sensor, objects, vehicle, False)
     if m[0] < (criterion.points if counts else criterion.pixels):
         return False
+    if criterion.per_degree is not None:
+        angle = largest_solid_angle(objects, sensor.pose.position)[0]
+        if m[0] < criterion.per_degree**2 * angle:
+            return False
     if criterion.share is None:
         return True
     cells = measure(sensor, placed(body, [foot], [heading], True), vehicle, False) > 0.0
     return bool(visible_share(body, cells[None])[0] >= criterion.share)
+
+
+def largest_solid_angle(objects: Objects, position: Sequence[float]) -> Floats:
+    """Return an upper bound (N,) of the solid angle of boxes from a position [deg2].
+
+    The solid angle of a face is the integral of h / r^3 over its area, with the distance h from its
+    plane: at most area times h over the cube of the distance to its nearest point. The position is
+    outside of the boxes.
+    """
+    boxes = PlacedBoxes.of(objects, position)
+    low, high = boxes.offsets - boxes.halves, boxes.offsets + boxes.halves
+    gap = np.maximum(np.maximum(low, -high), 0.0)  # to the nearest point of the box, by axis
+    total = np.zeros(len(gap))
+    for axis in range(3):
+        others = [k for k in range(3) if k != axis]
+        height = gap[:, axis]
+        area = 4.0 * boxes.halves[:, others[0]] * boxes.halves[:, others[1]]
+        nearest = np.sqrt(height**2 + gap[:, others[0]] ** 2 + gap[:, others[1]] ** 2)
+        total += area * height / np.maximum(nearest, NEAREST_M) ** 3
+    return np.minimum(total, 4.0 * math.pi) * (180.0 / math.pi) ** 2
 
 
 def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:

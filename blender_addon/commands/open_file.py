@@ -99,7 +99,7 @@ def save_copy(path: Path) -> None:
     try:
         bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
     except RuntimeError as error:
-        raise pe.InputError(path, "file", "a place to write to", error) from None
+        raise pe.InputError(path, "file", "a path that can be written", error) from None
     check_complete(path)
 
 
@@ -112,7 +112,7 @@ def check_complete(path: Path) -> None:
     end = next((end for begin, end in FILE_ENDINGS.items() if data.startswith(begin)), b"")
     if not data or not data.endswith(end):
         found = f"that {len(data)} bytes of it could be written"
-        raise pe.InputError(path, "file", "room to write to", found)
+        raise pe.InputError(path, "file", "enough space on the disk", found)
 
 
 @contextlib.contextmanager

@@ -39,7 +39,7 @@ def import_objects(args: argparse.Namespace) -> app.Answer:
     """Write a study of the scene's vehicle, with its cameras and empties as the sensors."""
     scene, output = bpy.context.scene, Path(args.output)
     if output.exists() and not args.replace:
-        raise pe.InputError(output, "file", "a new file (or --replace)", "one is there")
+        raise pe.InputError(output, "file", "a new file (or --replace)", "an existing file")
     with from_file():
         models = app.chosen_models(args.model)
         for model in models.values():
@@ -64,7 +64,7 @@ def export_objects(study: pe.Study, args: argparse.Namespace) -> app.Answer:
     """Save the scene to another file, with a camera or an empty for each sensor."""
     path = Path(args.output)
     if path.exists() and not args.replace:
-        raise pe.InputError(path, "file", "a new file (or --replace)", "one is there")
+        raise pe.InputError(path, "file", "a new file (or --replace)", "an existing file")
     _, lines = bridge.put_objects(bpy.context.scene, study.rig)
     save_copy(path)
     for line in lines:

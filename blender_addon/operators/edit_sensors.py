@@ -64,7 +64,7 @@ class PE_OT_select_part(bpy.types.Operator):
 
 
 class PE_OT_toggle_sensor(bpy.types.Operator):
-    """Show or hide this sensor: a hidden sensor is not scored. The Outliner's eye does the same"""
+    """Show or hide this sensor, like the Outliner's eye. A hidden sensor is not scored"""
 
     bl_idname = "pe.toggle_sensor"
     bl_label = "Show or Hide Sensor"
@@ -92,7 +92,7 @@ class PE_OT_toggle_sensor(bpy.types.Operator):
 
 
 class PE_OT_mirror_sensor(bpy.types.Operator):
-    """Put a copy of this sensor on the other side of the vehicle, across its middle plane"""
+    """Add a mirrored copy of this sensor on the other side of the vehicle"""
 
     bl_idname = "pe.mirror_sensor"
     bl_label = "Mirror"
@@ -100,7 +100,7 @@ class PE_OT_mirror_sensor(bpy.types.Operator):
 
     name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
     linked: BoolProperty(
-        name="Linked", description="Stay mirror images: when one of the two is moved, both are"
+        name="Linked", description="The two stay mirror images: a move of one moves the other"
     )
 
     @classmethod
@@ -163,7 +163,7 @@ def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.type
 
 
 class PE_OT_apply_scale(bpy.types.Operator):
-    """Remove scale and mirroring from this sensor; its position and direction stay"""
+    """Remove scale and mirroring from this sensor; its position and direction do not change"""
 
     bl_idname = "pe.apply_scale"
     bl_label = "Apply Scale"

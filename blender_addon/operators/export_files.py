@@ -76,17 +76,17 @@ _OUTPUT_ITEMS = tuple(
 
 
 class PE_OT_export_scene(ExportOperator, bpy.types.Operator):
-    """Write vehicle, sensors and what they see for CAD, viewers and other programs"""
+    """Write vehicle, sensors and fields of view for CAD, viewers and other programs"""
 
     bl_idname = "pe.export_scene"
     bl_label = "Export Scene"
 
     filename_ext = ""
     check_extension = None
-    output: EnumProperty(items=_OUTPUT_ITEMS, name="Output", description="What is to be written")
+    output: EnumProperty(items=_OUTPUT_ITEMS, name="Output", description="What to write")
     range_m: FloatProperty(
         name="Range",
-        description="How far fields of view are drawn; 0: the default of the output",
+        description="Length of the drawn fields of view; 0: the default of the output",
         default=0.0,
         min=0.0,
         subtype="DISTANCE",
@@ -148,7 +148,7 @@ def headless_command(path: Path, render: bool, about: page.About) -> str:
 
 
 class PE_OT_render_review(ExportOperator, bpy.types.Operator):
-    """Score the sensors as they are now and render a picture of what they see (.png)"""
+    """Score the present sensors and render a picture of the rig (.png)"""
 
     bl_idname = "pe.render_review"
     bl_label = "Render Review"
@@ -178,7 +178,7 @@ class PE_OT_render_review(ExportOperator, bpy.types.Operator):
 
 
 class PE_OT_export_review(ExportOperator, bpy.types.Operator):
-    """Score the sensors as they are now and write a page of the results (.html)"""
+    """Score the present sensors and write a page of the results (.html)"""
 
     bl_idname = "pe.export_review"
     bl_label = "Export Review"
@@ -190,12 +190,12 @@ class PE_OT_export_review(ExportOperator, bpy.types.Operator):
         description="Have Blender render the picture at the top of the page",
         default=True,
     )
-    title: StringProperty(name="Title", description="Of the page, in place of the file's name")
-    author: StringProperty(name="Author", description="Who made it")
+    title: StringProperty(name="Title", description="Title of the page instead of the file's name")
+    author: StringProperty(name="Author", description="Author of the page")
     date: StringProperty(
         name="Date", description='Any text; "today" is the day of the export. Empty: none'
     )
-    revision: StringProperty(name="Revision", description="Of the page")
+    revision: StringProperty(name="Revision", description="Revision of the page")
 
     def job(self, context: bpy.types.Context) -> ExportJob:
         """Read the scene; score, render and write the page step by step."""

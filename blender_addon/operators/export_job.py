@@ -149,7 +149,7 @@ class PE_OT_run_export(JobOperator, bpy.types.Operator):
 
 
 class PE_OT_open_folder(bpy.types.Operator):
-    """Open the folder that the last export wrote to"""
+    """Open the folder of the last export"""
 
     bl_idname = "pe.open_folder"
     bl_label = "Open Folder"

@@ -30,19 +30,19 @@ FIX_LABELS = {
 
 
 class PE_OT_mend(bpy.types.Operator):
-    """Mend what this warning tells of. Sensors on the vehicle go with it"""
+    """Fix the cause of this warning. Sensors on the vehicle move with the vehicle"""
 
     bl_idname = "pe.mend"
-    bl_label = "Mend"
+    bl_label = "Fix"
     bl_options = {"REGISTER", "UNDO"}
 
     fix: EnumProperty(
         items=[(key, label, label) for key, label in FIX_LABELS.items()],
         name="Fix",
-        description="What is done",
+        description="The correction",
     )
     subject: StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle")
-    amount: FloatVectorProperty(name="Amount", description="How much of it", size=3)
+    amount: FloatVectorProperty(name="Amount", description="Amount of the correction", size=3)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -56,7 +56,7 @@ class MountRow(OperatorMixin):
 
 
 class PE_OT_remove_mount(MountRow, bpy.types.Operator):
-    """Remove the mount that is selected in the list; sensors on it move in boxes again"""
+    """Remove the selected mount; a search then moves its sensors in boxes again"""
 
     bl_idname = "pe.remove_mount"
     bl_label = "Remove Mount"
@@ -77,7 +77,7 @@ class PE_OT_remove_mount(MountRow, bpy.types.Operator):
 
 
 class PE_OT_mount_parts(MountRow, bpy.types.Operator):
-    """Make this mount of all faces of the selected objects of the vehicle"""
+    """Use all faces of the vehicle's selected objects for this mount"""
 
     bl_idname = "pe.mount_parts"
     bl_label = "Take Selected"
@@ -110,7 +110,7 @@ class PE_OT_mount_sensor(bpy.types.Operator):
     bl_label = "Mount Sensor"
     bl_options = {"REGISTER", "UNDO"}
 
-    mount: EnumProperty(name="Mount", description="Where it may sit", items=_menu_items)
+    mount: EnumProperty(name="Mount", description="Mount of the sensor", items=_menu_items)
     name: StringProperty(name="Name", description="Name of the sensor; the active one when empty")
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

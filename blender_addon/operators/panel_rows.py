@@ -27,7 +27,7 @@ class PE_OT_add_focus(bpy.types.Operator):
     region: EnumProperty(
         items=REGION_ITEMS,
         name="Region",
-        description="The part of the ground",
+        description="Region of the ground",
         default=DEFAULT_REGION,
     )
 
@@ -81,13 +81,13 @@ BOUND_REACH = (0.5, 10.0)
 
 
 class PE_OT_add_own_sensor(bpy.types.Operator):
-    """Define a sensor of your own: a LiDAR by channels, view and range, a camera by its pixels"""
+    """Define your own sensor: a LiDAR by channels, view and range, or a camera by its pixels"""
 
     bl_idname = "pe.add_own_sensor"
     bl_label = "Add Own Sensor"
     bl_options = {"REGISTER", "UNDO"}
 
-    kind: EnumProperty(items=own_kinds, name="Kind", description="What it is")
+    kind: EnumProperty(items=own_kinds, name="Kind", description="Kind of the sensor")
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
@@ -105,7 +105,7 @@ def own_fields(kind: str) -> tuple[str, ...]:
 
 
 class PE_OT_remove_own_sensor(bpy.types.Operator):
-    """Remove this own sensor; sensors of this model are refused then"""
+    """Remove this own sensor; sensors of this model can then no longer be scored"""
 
     bl_idname = "pe.remove_own_sensor"
     bl_label = "Remove Own Sensor"
@@ -125,7 +125,7 @@ class PE_OT_remove_own_sensor(bpy.types.Operator):
 
 
 class PE_OT_own_curves(bpy.types.Operator):
-    """Set the AP curves by hand; they start as those of each kind"""
+    """Set your own AP curves; they start as the curves of each kind"""
 
     bl_idname = "pe.own_curves"
     bl_label = "Own AP Curves"
@@ -166,7 +166,7 @@ class PE_OT_bound_axis(bpy.types.Operator):
 
 
 class PE_OT_guess_axles(bpy.types.Operator):
-    """Find the axles by the vehicle's parts whose names say wheel, tire or tyre"""
+    """Find the axles from the vehicle's parts with wheel, tire or tyre in their names"""
 
     bl_idname = "pe.guess_axles"
     bl_label = "From Wheels"
@@ -196,7 +196,7 @@ RANGES = {"ENTROPY": "entropy_range", "COVERAGE": "coverage_range"}
 
 
 class PE_OT_fix_colors(bpy.types.Operator):
-    """Keep the range of the ground map's colours as the legend shows it now"""
+    """Keep the present range of the ground map's colours"""
 
     bl_idname = "pe.fix_colors"
     bl_label = "Fix Colors"
@@ -218,7 +218,7 @@ REFERENCE_LABELS = {BEFORE_MOVE: "Before the Last Move", PINNED: "Pinned Sensors
 
 
 class PE_OT_live_against(bpy.types.Operator):
-    """Compare the live score with this from now on"""
+    """Compare the live score with this reference"""
 
     bl_idname = "pe.live_against"
     bl_label = "Compare Live With"
@@ -226,8 +226,8 @@ class PE_OT_live_against(bpy.types.Operator):
 
     key: IntProperty(
         name="Key",
-        description="0: the sensors before the last move; -1: pin those of the scene as it is now; "
-        "else: the variant of that key",
+        description="0: the sensors before the last move; -1: pin the scene's present sensors; "
+        "otherwise the key of a variant",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 

@@ -43,7 +43,7 @@ VIEW = ("NUMPAD_", "MIDDLEMOUSE", "WHEEL", "TRACKPAD", "MOUSE", "NDOF", "TIMER",
 
 
 class PE_OT_place_sensor(bpy.types.Operator):
-    """Place a sensor by pointing at the vehicle: click places it, Esc leaves"""
+    """Place a sensor by pointing at the vehicle. Click: place, Esc: cancel"""
 
     bl_idname = "pe.place_sensor"
     bl_label = "Place Sensor"
@@ -57,7 +57,7 @@ class PE_OT_place_sensor(bpy.types.Operator):
         search_options=set(),
     )
     location: FloatVectorProperty(
-        name="Location", description="Point of the surface that it stands on", subtype="XYZ"
+        name="Location", description="Point of the surface below the sensor", subtype="XYZ"
     )
     normal: FloatVectorProperty(
         name="Normal",
@@ -66,23 +66,25 @@ class PE_OT_place_sensor(bpy.types.Operator):
         default=(0.0, 0.0, 1.0),
     )
     along_normal: BoolProperty(
-        name="Along the Normal", description="Stand along the surface's normal, not upright"
+        name="Along the Normal",
+        description="Align the sensor with the surface's normal instead of upright",
     )
     stand_off: FloatProperty(
         name="Stand-off",
-        description="Distance of its origin from the surface; negative: as usual for its kind",
+        description="Distance of the sensor's origin from the surface; negative: the default of its"
+        " kind",
         default=BY_KIND,
         unit="LENGTH",
     )
 
     yaw: FloatProperty(
         name="Yaw",
-        description="Turned from there about its z axis; positive is to the left",
+        description="Rotation about the sensor's z axis; positive is to the left",
         subtype="ANGLE",
     )
     pitch: FloatProperty(
         name="Pitch",
-        description="Turned from there about its y axis; positive is nose down",
+        description="Rotation about the sensor's y axis; positive is nose down",
         subtype="ANGLE",
     )
 

@@ -21,13 +21,13 @@ from .variants import stand_as_variant
 class PE_OT_add_rig(bpy.types.Operator):
     """Replace the sensors of the scene by those of a known rig, as a variant.
 
-    Sensors of the scene that are no variant yet are kept as one"""
+    Present sensors that are no variant yet are saved as one"""
 
     bl_idname = "pe.add_rig"
     bl_label = "Add Known Rig"
     bl_options = {"REGISTER", "UNDO"}
 
-    key: StringProperty(name="Rig", description="Which one", options={"HIDDEN"})
+    key: StringProperty(name="Rig", description="Name of the known rig", options={"HIDDEN"})
     fit: BoolProperty(
         name="Fit to Vehicle",
         description="Scale its positions from its own vehicle's box to this one's; otherwise they "
@@ -157,7 +157,7 @@ class PE_OT_sensors_from_objects(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     selected: BoolProperty(
-        name="Selected Only", description="Take the selected cameras and empties only"
+        name="Selected Only", description="Use only the selected cameras and empties"
     )
     model: StringProperty(
         name="Empties' Model",

@@ -59,7 +59,7 @@ class PE_OT_export_rig(ExportHelper, bpy.types.Operator):
 class PE_OT_import_rig(ImportHelper, bpy.types.Operator):
     """Replace the sensors of the scene by those of another program's file, as a variant.
 
-    Sensors of the scene that are no variant yet are kept as one"""
+    Present sensors that are no variant yet are saved as one"""
 
     bl_idname = "pe.import_rig"
     bl_label = "Import Rig"
@@ -69,7 +69,8 @@ class PE_OT_import_rig(ImportHelper, bpy.types.Operator):
     format: EnumProperty(items=(*_FORMAT_ITEMS, BY_NAME), name="Format", default="TOLD")
     ask: BoolProperty(
         name="Ask for Models",
-        description="Ask for models that the file does not name; otherwise usual ones are taken",
+        description="Ask for the models that the file does not name; otherwise default models are "
+        "used",
         default=True,
     )
 
@@ -104,7 +105,7 @@ class PE_ModelChoice(bpy.types.PropertyGroup):
 
 
 class PE_OT_choose_models(bpy.types.Operator):
-    """Choose the models of sensors whose file does not name them"""
+    """Choose the models of imported sensors, because the file does not name them"""
 
     bl_idname = "pe.choose_models"
     bl_label = "Choose Models"

@@ -155,7 +155,7 @@ class JobOperator(OperatorMixin):
 
 
 class PE_OT_score(JobOperator, bpy.types.Operator):
-    """Score the sensors where they are now"""
+    """Score the sensors at their present poses"""
 
     bl_idname = "pe.score"
     bl_label = "Score"
@@ -259,7 +259,7 @@ class OptionOperator(OperatorMixin):
 
 
 class PE_OT_add_option(OptionOperator, bpy.types.Operator):
-    """Add a model that may be chosen for this sensor: first its own, then others of your choice"""
+    """Add a model to the choices for this sensor: first its own model, then others"""
 
     bl_idname = "pe.add_option"
     bl_label = "Add Model"
@@ -278,7 +278,7 @@ class PE_OT_remove_option(OptionOperator, bpy.types.Operator):
     bl_idname = "pe.remove_option"
     bl_label = "Remove Model"
 
-    index: IntProperty(name="Index", description="Which of the models", min=0)
+    index: IntProperty(name="Index", description="Position of the model in the list", min=0)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         options = context.active_object.perception_entropy.options

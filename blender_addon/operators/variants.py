@@ -22,7 +22,7 @@ class VariantOperator(OperatorMixin):
     least = 1
 
     key: IntProperty(
-        name="Key", description="Which variant; 0: the selected one", options={"HIDDEN"}
+        name="Key", description="Key of the variant; 0: the selected one", options={"HIDDEN"}
     )
 
     @classmethod
@@ -48,7 +48,7 @@ class VariantOperator(OperatorMixin):
 
 
 class PE_OT_save_variant(VariantOperator, bpy.types.Operator):
-    """Keep the sensors as they are now, as a new variant"""
+    """Save the present sensors as a new variant"""
 
     bl_idname = "pe.save_variant"
     bl_label = "Save Variant"
@@ -61,7 +61,7 @@ class PE_OT_save_variant(VariantOperator, bpy.types.Operator):
 
 
 class PE_OT_update_variant(VariantOperator, bpy.types.Operator):
-    """Store the sensors as they are now in the variant that was put here"""
+    """Overwrite the active variant with the present sensors"""
 
     bl_idname = "pe.update_variant"
     bl_label = "Update Variant"
@@ -87,9 +87,9 @@ class PE_OT_update_variant(VariantOperator, bpy.types.Operator):
 
 
 class PE_OT_switch_variant(VariantOperator, bpy.types.Operator):
-    """Put this variant's sensors in place of those that stand here.
+    """Replace the scene's sensors by those of this variant.
 
-    What stands here and is no variant yet is kept as one: nothing is lost"""
+    If the present sensors are no variant yet, they are saved as one: nothing is lost"""
 
     bl_idname = "pe.switch_variant"
     bl_label = "Switch to Variant"
@@ -122,7 +122,7 @@ class PE_OT_duplicate_variant(VariantOperator, bpy.types.Operator):
 
 
 class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
-    """Delete the selected variant. The sensors that stand in the scene stay"""
+    """Delete the selected variant. The sensors in the scene stay"""
 
     bl_idname = "pe.delete_variant"
     bl_label = "Delete Variant"
@@ -143,7 +143,7 @@ class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
 
 
 class PE_OT_ghost_variant(VariantOperator, bpy.types.Operator):
-    """Show this variant's sensors in the 3D view beside those that stand there, or no longer"""
+    """Show or hide this variant's sensors in the 3D view beside the present ones"""
 
     bl_idname = "pe.ghost_variant"
     bl_label = "Show Ghost"

@@ -97,7 +97,7 @@ def _beams(layout: UILayout, settings: OverlaySettings) -> None:
     layout.prop(view, "beam_colors", text="")
     row = layout.row(align=True)
     row.prop(settings, "beam_length", text="Length")
-    row.prop(settings, "beam_limit", text="Most")
+    row.prop(settings, "beam_limit", text="Maximum")
     layout.prop(view, "rings")
 
 

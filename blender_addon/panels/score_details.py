@@ -45,7 +45,7 @@ class PE_PT_live(Tab, bpy.types.Panel):
         menu.menu(PE_MT_live_against.bl_idname, text=label, translate=False)
         live = context.scene.perception_entropy.live
         name, field = columns(self.layout, 0.4)
-        name.label(text="Beside")
+        name.label(text="Known Rig")
         field.prop(live, "anchor", text="")
         self.layout.prop(live, "figures")
         for line in live_lines(context.scene):

@@ -38,7 +38,7 @@ class PE_FocusSettings(bpy.types.PropertyGroup):
 
     factor: FloatProperty(
         name="Factor",
-        description="How many times as much it counts: 2 doubles it, 0 leaves it out. Where "
+        description="Factor of the weight: 2 doubles the weight, 0 leaves the objects out. Where "
         "several regions overlap, their factors multiply",
         default=DEFAULT_FOCUS,
         min=0.0,
@@ -48,13 +48,13 @@ class PE_FocusSettings(bpy.types.PropertyGroup):
     region: EnumProperty(
         items=REGION_ITEMS,
         name="Region",
-        description="Which part of the ground",
+        description="Region of the ground",
         default=DEFAULT_REGION,
         update=changed,
     )
     x_range: FloatVectorProperty(
         name="X",
-        description="From and to, ahead of the origin; negative is behind it",
+        description="Begin and end ahead of the origin; negative is behind it",
         size=2,
         default=pe.PerceptionSpace().x,
         unit="LENGTH",
@@ -63,7 +63,7 @@ class PE_FocusSettings(bpy.types.PropertyGroup):
     )
     y_range: FloatVectorProperty(
         name="Y",
-        description="From and to, on the left of the origin; negative is on its right",
+        description="Begin and end to the left of the origin; negative is to the right",
         size=2,
         default=pe.PerceptionSpace().y,
         unit="LENGTH",
@@ -73,7 +73,7 @@ class PE_FocusSettings(bpy.types.PropertyGroup):
     classes: EnumProperty(
         items=OBJECT_CLASSES,
         name="Classes",
-        description="Which kinds of objects. Shift-click for several",
+        description="Classes of objects. Shift-click for several",
         options={"ENUM_FLAG"},
         default={name for name, *_ in OBJECT_CLASSES},
         update=changed,
@@ -84,7 +84,9 @@ class PE_CurveSettings(bpy.types.PropertyGroup):
     """The AP curve of a kind of sensor: AP = a ln m + b. The row has the name of the kind."""
 
     own: BoolProperty(
-        name="Own", description="Use these numbers, as pe fit finds them", update=changed
+        name="Own",
+        description="Use these numbers, for example from pe fit, instead of the default curve",
+        update=changed,
     )
     a: FloatProperty(
         name="a", description="AP = a ln m + b: slope", precision=4, min=1e-12, update=changed
@@ -97,7 +99,9 @@ class PE_CurveSettings(bpy.types.PropertyGroup):
 class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     """A sensor of the user's own; the row has the name of its model."""
 
-    kind: EnumProperty(items=own_kinds, name="Kind", description="What it is", update=changed)
+    kind: EnumProperty(
+        items=own_kinds, name="Kind", description="Kind of the sensor", update=changed
+    )
     channels: IntProperty(
         name="Channels",
         description="Number of channels, evenly spread over the field of view",
@@ -117,7 +121,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     )
     azimuths: FloatVectorProperty(
         name="Azimuth °",
-        description="From and to in degrees, positive is left",
+        description="Begin and end in degrees; positive is left",
         size=2,
         default=(-180.0, 180.0),
         min=-360.0,
@@ -126,7 +130,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     )
     azimuth_step: FloatProperty(
         name="Azimuth Step °",
-        description="Degrees from beam to beam of a channel",
+        description="Angle between two beams of a channel in degrees",
         default=0.2,
         min=0.001,
         max=360.0,
@@ -135,7 +139,7 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     )
     max_range: FloatProperty(
         name="Range",
-        description="Farthest distance at which a beam counts",
+        description="Maximum distance at which a beam counts",
         default=200.0,
         min=0.01,
         unit="LENGTH",
@@ -143,17 +147,17 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     )
     min_range: FloatProperty(
         name="From",
-        description="Nearest distance at which a beam counts",
+        description="Minimum distance at which a beam counts",
         default=0.0,
         min=0.0,
         unit="LENGTH",
         update=changed,
     )
     width: IntProperty(
-        name="Width", description="Pixels across", default=1920, min=1, update=changed
+        name="Width", description="Horizontal number of pixels", default=1920, min=1, update=changed
     )
     height: IntProperty(
-        name="Height", description="Pixels down", default=1080, min=1, update=changed
+        name="Height", description="Vertical number of pixels", default=1080, min=1, update=changed
     )
     hfov: FloatProperty(
         name="Field of View °",
@@ -165,17 +169,20 @@ class PE_OwnSensorSettings(bpy.types.PropertyGroup):
     )
     lens: StringProperty(
         name="Lens",
-        description="In place of the field of view, as in a study: fx = 930, cx = 965, cy = 530, "
-        'distortion = { model = "brown-conrady", k1 = -0.16 }. Also min_range_m and max_range_m',
+        description="Instead of the field of view, with the keys of a study: fx = 930, cx = 965, cy"
+        ' = 530, distortion = { model = "brown-conrady", k1 = -0.16 }. Also min_range_m'
+        " and max_range_m",
         update=changed,
     )
     keys: StringProperty(
         name="Keys",
-        description="Of a kind without fields of its own: its table's keys, as in a study",
+        description="For a kind without fields in the panel: the keys of its table in a study",
         update=changed,
     )
-    problem: StringProperty(name="Problem", description="Why it cannot be used, if so")
-    known_as: StringProperty(name="Known As", description="Its name when last looked at")
+    problem: StringProperty(
+        name="Problem", description="Why the sensor cannot be used; empty if it can"
+    )
+    known_as: StringProperty(name="Known As", description="Last known name")
 
 
 class PE_SensorOption(bpy.types.PropertyGroup):
@@ -189,7 +196,7 @@ class PE_SensorOption(bpy.types.PropertyGroup):
     )
     price: FloatProperty(
         name="Price",
-        description="What one of it costs, as you know it: the catalogue has no prices",
+        description="Price of one sensor. The catalogue has no prices",
         min=0.0,
         soft_max=100_000.0,
         precision=2,
@@ -259,21 +266,26 @@ class PE_MountSettings(bpy.types.PropertyGroup):
         maxlen=MAX_NAME_LENGTH,
         update=_keep_apart,
     )
-    known_as: StringProperty(name="Known As", description="Its name when last looked at")
-    kind: EnumProperty(items=KINDS, name="Kind", description="What it is", update=redraw)
+    known_as: StringProperty(name="Known As", description="Last known name")
+    kind: EnumProperty(items=KINDS, name="Kind", description="Surface or slots", update=redraw)
     faces: EnumProperty(
-        items=FACES, name="Faces", description="Which faces of the vehicle", update=redraw
+        items=FACES,
+        name="Faces",
+        description="How the faces of the vehicle are chosen",
+        update=redraw,
     )
-    parts: CollectionProperty(type=PE_MountPart, name="Parts", description="Whose faces it is")
+    parts: CollectionProperty(
+        type=PE_MountPart, name="Parts", description="Objects whose faces belong to the mount"
+    )
     material: PointerProperty(
         type=bpy.types.Material,
         name="Material",
-        description="Faces of the vehicle that have it",
+        description="Faces of the vehicle with this material",
         update=redraw,
     )
     group: StringProperty(
         name="Vertex Group",
-        description="Painted in Weight Paint: faces whose corners all weigh more than a half",
+        description="Faces with a weight above 0.5 at all corners, painted in Weight Paint",
         search=groups_of_vehicle,
         search_options={"SUGGESTION"},
         update=redraw,
@@ -289,11 +301,11 @@ class PE_MountSettings(bpy.types.PropertyGroup):
         unit="LENGTH",
     )
     orientation: EnumProperty(
-        items=ORIENTATIONS, name="Orientation", description="What the sensor's angles are to"
+        items=ORIENTATIONS, name="Orientation", description="Reference of the sensor's angles"
     )
     slots: PointerProperty(
         type=bpy.types.Collection,
         name="Slots",
-        description="Each empty of the collection is a slot, with its place and angles",
+        description="Each empty of the collection is a slot with a position and angles",
         update=redraw,
     )

@@ -21,13 +21,18 @@ class PE_ResultPart(bpy.types.PropertyGroup):
     """A zone of the ground or a class of objects, with its label in the table as its name."""
 
     is_class: BoolProperty(name="Is a Class", description="A class of objects, not a zone")
-    entropy: FloatProperty(name="Entropy", description="Perception entropy in it [nats]")
-    coverage: FloatProperty(
-        name="Coverage", description="Share of where its objects are that is seen, 0 to 1"
+    entropy: FloatProperty(
+        name="Entropy", description="Perception entropy in the zone or of the class [nats]"
     )
-    ap: StringProperty(name="Expected AP", description="Of a class, where objects were scored")
+    coverage: FloatProperty(
+        name="Coverage",
+        description="Visible share of the prior in the zone or of the class, 0 to 1",
+    )
+    ap: StringProperty(
+        name="Expected AP", description="Expected AP of a class, if objects were scored"
+    )
     reach: StringProperty(
-        name="Reach", description="How far ahead a class is found with an AP of 0.5"
+        name="Reach", description="Distance ahead up to which a class is found with an AP of 0.5"
     )
 
 
@@ -35,21 +40,22 @@ class PE_Warning(bpy.types.PropertyGroup):
     """A stored warning (`pe_tools.advice.Advice`)."""
 
     subject: StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle")
-    code: StringProperty(name="Code", description="Which warning it is")
-    text: StringProperty(name="Text", description="What is odd, in a sentence")
-    part: StringProperty(name="Part", description="Part of the vehicle that causes it")
-    fix: StringProperty(name="Fix", description="What would mend it, if that is known")
+    code: StringProperty(name="Code", description="Code of the warning")
+    text: StringProperty(name="Text", description="The warning in a sentence")
+    part: StringProperty(name="Part", description="Part of the vehicle that causes the warning")
+    fix: StringProperty(name="Fix", description="The correction, if one is known")
     amount: FloatVectorProperty(
-        name="Amount", description="How much of the fix: degrees, a factor, metres", size=3
+        name="Amount", description="Amount of the correction: degrees, a factor, metres", size=3
     )
-    amounts: IntProperty(name="Amounts", description="How many of these numbers count", max=3)
+    amounts: IntProperty(name="Amounts", description="Number of these numbers that are used", max=3)
 
 
 class PE_StoppingPart(bpy.types.PropertyGroup):
     """A part of the vehicle that blocks a sensor; the row has the name of the part."""
 
     share: FloatProperty(
-        name="Share", description="Share of what the sensor sees that this part stops, 0 to 1"
+        name="Share",
+        description="Share of the sensor's beams or pixels that this part occludes, 0 to 1",
     )
 
 
@@ -70,8 +76,8 @@ class PE_VariantSensor(bpy.types.PropertyGroup):
 
     name: StringProperty(name="Name", description="Name of the sensor's object")
     model: StringProperty(name="Model", description="Name of the sensor in the catalogue")
-    fusion: StringProperty(name="Fusion", description="Its group, empty for the usual one")
-    own_curve: BoolProperty(name="Own AP Curve", description="It does not take its kind's")
+    fusion: StringProperty(name="Fusion", description="Fusion group; empty for the default")
+    own_curve: BoolProperty(name="Own AP Curve", description="The sensor has its own AP curve")
     curve_a: FloatProperty(name="a", description="AP = a ln m + b: slope")
     curve_b: FloatProperty(name="b", description="AP = a ln m + b: value at one point")
     pose: FloatVectorProperty(
@@ -80,23 +86,27 @@ class PE_VariantSensor(bpy.types.PropertyGroup):
         size=len(search.AXES),
     )
     free: BoolVectorProperty(
-        name="Free Axes", description="What the search may change", size=len(search.AXES)
+        name="Free Axes", description="Axes that the search may change", size=len(search.AXES)
     )
     bounded: BoolVectorProperty(
-        name="Bounded", description="Axes that have bounds of their own", size=len(search.AXES)
+        name="Bounded", description="Axes with their own bounds", size=len(search.AXES)
     )
     bounds_low: FloatVectorProperty(
-        name="Low Bounds", description="Of these axes [m or deg]", size=len(search.AXES)
+        name="Low Bounds", description="Bounds of these axes [m or deg]", size=len(search.AXES)
     )
     bounds_high: FloatVectorProperty(
-        name="High Bounds", description="Of these axes [m or deg]", size=len(search.AXES)
+        name="High Bounds", description="Bounds of these axes [m or deg]", size=len(search.AXES)
     )
-    mirror_of: StringProperty(name="Mirror Of", description="The sensor it is linked to")
-    mount: StringProperty(name="Mount", description="Where the search may put it")
-    rack: StringProperty(name="Rack", description="What it moves with")
-    visible: BoolProperty(name="Visible", description="It is seen, and so it counts", default=True)
-    display: StringProperty(name="Display", description="How its empty is drawn", default="ARROWS")
-    size: FloatProperty(name="Size", description="How large its empty is drawn", default=0.25)
+    mirror_of: StringProperty(name="Mirror Of", description="Linked mirror image")
+    mount: StringProperty(name="Mount", description="Mount of the sensor in a search")
+    rack: StringProperty(name="Rack", description="Rack that moves as one")
+    visible: BoolProperty(
+        name="Visible", description="The sensor is visible, so it is scored", default=True
+    )
+    display: StringProperty(
+        name="Display", description="Display type of the sensor's empty", default="ARROWS"
+    )
+    size: FloatProperty(name="Size", description="Display size of the sensor's empty", default=0.25)
 
 
 class PE_Variant(bpy.types.PropertyGroup):
@@ -108,43 +118,47 @@ class PE_Variant(bpy.types.PropertyGroup):
         maxlen=MAX_NAME_LENGTH,
         update=_keep_apart,
     )
-    key: IntProperty(name="Key", description="Tells it from the others, whatever its name")
-    note: StringProperty(name="Note", description="What is to be remembered of it")
+    key: IntProperty(
+        name="Key", description="Identifies the variant, also after a change of its name"
+    )
+    note: StringProperty(name="Note", description="Note about the variant")
     holds_ties: BoolProperty(
         name="Holds Ties",
-        description="It knows its sensors' mirror links, mounts and racks; older ones do not",
+        description="The variant stores mirror links, mounts and racks; variants of older versions "
+        "do not",
         options={"HIDDEN"},
     )
     sensors: CollectionProperty(
-        type=PE_VariantSensor, name="Sensors", description="Where each sensor stands"
+        type=PE_VariantSensor, name="Sensors", description="Pose of each sensor"
     )
 
-    has_result: BoolProperty(name="Has Result", description="It has been scored")
+    has_result: BoolProperty(name="Has Result", description="The variant has a score")
     entropy: FloatProperty(name="Entropy", description="Perception entropy in nats, for display")
-    coverage: FloatProperty(name="Coverage", description="Share of the prior that is seen, 0 to 1")
-    stderr: FloatProperty(name="Standard Error", description="Of the perception entropy")
-    voxels: IntProperty(name="Voxels", description="Voxels that were looked at", subtype="UNSIGNED")
-    score_json: StringProperty(
-        name="Score", description="The score in full: zones, classes, sensors"
+    coverage: FloatProperty(name="Coverage", description="Visible share of the prior, 0 to 1")
+    stderr: FloatProperty(
+        name="Standard Error", description="Standard error of the perception entropy"
     )
+    voxels: IntProperty(name="Voxels", description="Number of evaluated voxels", subtype="UNSIGNED")
+    score_json: StringProperty(name="Score", description="The full score: zones, classes, sensors")
     figures_json: StringProperty(
         name="Figures", description="Blind ground, reach ahead and expected AP"
     )
     figures_of: StringProperty(
         name="Figures Of",
-        description="Vehicle, prior, settings, height and class that the figures are of",
+        description="Vehicle, prior, settings, height and class of the figures",
     )
     signature: StringProperty(
-        name="Signature", description="Vehicle, prior and settings it was scored with"
+        name="Signature", description="Vehicle, prior and settings of the score"
     )
     stale: BoolProperty(
-        name="Stale", description="Vehicle, prior or settings have changed since it was scored"
+        name="Stale",
+        description="Vehicle, prior or settings have changed since the variant was scored",
     )
 
 
 class PE_FrontRow(bpy.types.PropertyGroup):
     """A design of the Pareto front of price and entropy, with the key of its variant."""
 
-    price: FloatProperty(name="Price", description="Of all sensors that were chosen")
+    price: FloatProperty(name="Price", description="Price of all chosen sensors")
     entropy: FloatProperty(name="Entropy", description="Perception entropy in nats, for display")
-    key: IntProperty(name="Key", description="Of its variant")
+    key: IntProperty(name="Key", description="Key of the design's variant")

@@ -101,7 +101,7 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
 
     version: IntProperty(
         name="Version",
-        description="Of what is stored here; 0 is before there were versions, or not saved yet",
+        description="Version of the stored settings; 0: older than versions, or not saved yet",
         min=0,
     )
     vehicle: PointerProperty(
@@ -114,7 +114,7 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     prior: EnumProperty(
         items=PRIORS,
         name="Prior",
-        description="Where objects are to be expected",
+        description="Where objects are expected",
         update=changed,
     )
     boxes: StringProperty(
@@ -133,22 +133,26 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     focus: CollectionProperty(
         type=PE_FocusSettings,
         name="Focus",
-        description="What counts more than the prior says, or less",
+        description="Regions and classes with a higher or lower weight than in the prior",
     )
     focus_index: IntProperty(
         name="Selected Focus", description="Row of the list whose settings are shown", min=0
     )
     curves: CollectionProperty(
-        type=PE_CurveSettings, name="AP Curves", description="What measurements are worth, by kind"
+        type=PE_CurveSettings,
+        name="AP Curves",
+        description="AP by measurement, for each kind of sensor",
     )
     own_sensors: CollectionProperty(
-        type=PE_OwnSensorSettings, name="Own Sensors", description="Models of this file's own"
+        type=PE_OwnSensorSettings,
+        name="Own Sensors",
+        description="Sensor models that only this file has",
     )
     own_index: IntProperty(
         name="Selected Own Sensor", description="Row of the list whose figures are shown", min=0
     )
     mounts: CollectionProperty(
-        type=PE_MountSettings, name="Mounts", description="Where sensors may sit"
+        type=PE_MountSettings, name="Mounts", description="Surfaces or slots for sensors"
     )
     mount_index: IntProperty(
         name="Selected Mount", description="Row of the list whose settings are shown", min=0
@@ -156,34 +160,36 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     method: EnumProperty(
         items=METHODS,
         name="Method",
-        description="How the search looks for better placements",
+        description="Method of the search",
         default=search.DEFAULT_METHOD,
     )
     mounting_errors: BoolProperty(
         name="Mounting Errors",
-        description="Judge each candidate by its mean over small errors of mounting, so that what "
-        "is found can be bolted on. A candidate takes about eight times as long",
+        description="Evaluate each candidate by its mean over small mounting errors, so the result "
+        "is not sensitive to them. A candidate takes about eight times as long",
     )
     currency: StringProperty(
-        name="Currency", description="What prices are told in", default="", maxlen=12
+        name="Currency", description="Currency of prices", default="", maxlen=12
     )
 
     passthrough: StringProperty(
         name="Kept of the Imported File",
-        description="What the file of an imported rig had besides the rig: an export to its own "
-        "format has it again",
+        description="Content of an imported file besides the rig: an export to the same format "
+        "writes it again",
         options={"HIDDEN"},
     )
 
     axles_known: BoolProperty(
         name="Axles",
-        description="Say where the axles are: the origin of Autoware, nuScenes, ASAM OSI and "
-        "DriveWorks is the rear one",
+        description="Set the positions of the axles: the rear axle is the origin of Autoware, "
+        "nuScenes, ASAM OSI and DriveWorks",
         update=redraw,
     )
 
     live: PointerProperty(
-        type=PE_LiveSettings, name="Live", description="The score that follows the hand"
+        type=PE_LiveSettings,
+        name="Live",
+        description="The score that is updated while a sensor moves",
     )
 
     show_overlay: BoolProperty(
@@ -193,8 +199,8 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         update=redraw,
     )
     beam_limit: IntProperty(
-        name="Most Beams",
-        description="Draw no more beams than this, evenly chosen; more make the view slow",
+        name="Maximum Beams",
+        description="Maximum number of drawn beams, evenly chosen; more beams make the view slow",
         default=DEFAULT_BEAM_LIMIT,
         min=1,
         soft_max=200_000,
@@ -202,7 +208,7 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     )
     beam_length: FloatProperty(
         name="Beam Length",
-        description="How far beams are drawn that meet nothing",
+        description="Drawn length of beams that hit nothing",
         default=DEFAULT_BEAM_LENGTH_M,
         min=0.1,
         soft_max=200.0,
@@ -211,9 +217,7 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         update=redraw,
     )
 
-    view: PointerProperty(
-        type=PE_ViewSettings, name="View", description="What the 3D view shows of perception"
-    )
+    view: PointerProperty(type=PE_ViewSettings, name="View", description="Overlay of the 3D view")
     before_look: StringProperty(
         name="Before Looking",
         description="Camera and size of pictures before a sensor was looked through, as JSON",
@@ -230,19 +234,21 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         name="Perception Entropy", description="In nats; lower is better. Rounded for display"
     )
     result_before: FloatProperty(
-        name="Before", description="Perception entropy of the placement the search started from"
+        name="Before", description="Perception entropy at the start of the search"
     )
     result_coverage: FloatProperty(
-        name="Coverage", description="Share of the prior that some sensor sees, 0 to 1"
+        name="Coverage", description="Share of the prior that is visible to a sensor, 0 to 1"
     )
     result_stderr: FloatProperty(
-        name="Standard Error", description="Of the perception entropy; 0 when all voxels count"
+        name="Standard Error",
+        description="Standard error of the perception entropy; 0 if all voxels were evaluated",
     )
     result_json: StringProperty(
         name="Result", description="The last result in full, as result.json holds it"
     )
     result_signature: StringProperty(
-        name="Signature", description="What was scored, to tell whether it still stands"
+        name="Signature",
+        description="Identifies the scored scene, to find out whether the result is still valid",
     )
     result_parts: CollectionProperty(
         type=PE_ResultPart, name="Parts", description="The last result by zone and by class"
@@ -252,45 +258,50 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     )
 
     result_words: StringProperty(
-        name="In Words", description="The last result in words, a line each"
+        name="In Words", description="Sentences about the last result, one line each"
     )
     result_missing: StringProperty(
-        name="Missing", description="What was missing when it was scored, a line each"
+        name="Missing", description="Data that was missing when the scene was scored, one line each"
     )
     vehicle_line: StringProperty(
-        name="Vehicle in a Line", description="Its size, which way it faces, triangles and parts"
+        name="Vehicle in a Line",
+        description="Size, forward direction, triangles and parts of the vehicle",
     )
     result_warnings: CollectionProperty(
-        type=PE_Warning, name="Warnings", description="What the last score found odd"
+        type=PE_Warning, name="Warnings", description="Warnings about the sensors and the vehicle"
     )
     result_ap: StringProperty(
-        name="Expected AP", description="Of all objects, by their weights, and its standard error"
+        name="Expected AP", description="Weighted mean over all objects, and its standard error"
     )
     result_mounted_off: StringProperty(
         name="Mounted Off",
-        description="What mounting errors add to the entropy on average, before and after",
+        description="Mean rise of the entropy by mounting errors, before and after",
     )
     result_sensor_lost: StringProperty(
         name="Sensor Lost",
-        description="What the loss of one sensor adds to the entropy on average, before and after",
+        description="Mean rise of the entropy by the loss of one sensor, before and after",
     )
     result_fragile: StringProperty(
-        name="Fragile", description="Why what was found cannot be mounted exactly enough, if so"
+        name="Fragile", description="Warning if the result is too sensitive to mounting errors"
     )
     front: CollectionProperty(
-        type=PE_FrontRow, name="Front", description="Designs that no other beats, cheapest first"
+        type=PE_FrontRow,
+        name="Front",
+        description="Designs that no other design beats in price and entropy, cheapest first",
     )
-    front_told: StringProperty(name="Told", description="How many designs were looked at, and how")
+    front_told: StringProperty(
+        name="Search", description="How many designs were evaluated, and how"
+    )
 
     variants: CollectionProperty(
-        type=PE_Variant, name="Variants", description="Ideas for this vehicle, to come back to"
+        type=PE_Variant, name="Variants", description="Saved sets of sensors for this vehicle"
     )
     variant_index: IntProperty(
-        name="Selected Variant", description="Row of the list that is selected", min=0
+        name="Selected Variant", description="Selected row of the list", min=0
     )
     variant_key: IntProperty(
-        name="Active Variant", description="Key of the variant that stands in the scene; 0: none"
+        name="Active Variant", description="Key of the scene's active variant; 0: none"
     )
     variant_changed: BoolProperty(
-        name="Changed", description="The scene differs from the variant that was put there"
+        name="Changed", description="The scene differs from its active variant"
     )

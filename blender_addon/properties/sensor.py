@@ -75,7 +75,7 @@ class GroundPose:
 
     ground_position: FloatVectorProperty(
         name="Position",
-        description="Optical centre in the ground frame: ahead, left, and over the ground",
+        description="Optical centre in the ground frame: forward, left, up",
         size=3,
         subtype="XYZ",
         unit="LENGTH",
@@ -117,7 +117,7 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
 
     is_sensor: BoolProperty(
         name="Is a Sensor",
-        description="This object is a sensor: its x axis looks ahead, z is up",
+        description="This object is a sensor: its x axis is forward, z is up",
         update=changed,
     )
     model: StringProperty(
@@ -130,14 +130,14 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
     )
     fusion: StringProperty(
         name="Fusion",
-        description="Sensors of one group count their beams or pixels together. When empty, all "
-        "LiDARs are one group and each camera stands alone",
+        description="The beams or pixels of all sensors of a group are summed. If empty, all LiDARs"
+        " are one group and each camera is a group of its own",
         update=changed,
     )
     own_curve: BoolProperty(
         name="Own AP Curve",
-        description="Take the numbers below for this sensor, not its kind's. Sensors of one fusion "
-        "group have one curve",
+        description="Use the numbers below for this sensor instead of those of its kind. Sensors of"
+        " one fusion group have the same curve",
         update=own_curve_switched,
     )
     curve_a: FloatProperty(
@@ -148,13 +148,14 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
     )
     free: BoolVectorProperty(
         name="Free Axes",
-        description="What the search may change",
+        description="Axes that the search may change",
         size=len(search.AXES),
         default=FREE_BY_DEFAULT,
     )
     bounded: BoolVectorProperty(
         name="Bounded",
-        description="The search keeps within bounds of its own here; else the vehicle's outline",
+        description="The axis has its own bounds in a search; otherwise those of the vehicle's "
+        "outline",
         size=len(search.AXES),
     )
     bounds_low: FloatVectorProperty(
@@ -171,14 +172,14 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
     )
     mount: StringProperty(
         name="Mount",
-        description="Where the search may put this sensor; empty: in a box of coordinates",
+        description="Mount of this sensor in a search; empty: a box of coordinates",
         search=mounts_of_scene,
         search_options={"SUGGESTION"},
         update=redraw,
     )
     rack: StringProperty(
         name="Rack",
-        description="Sensors on one rack move as one in a search; the first by name leads",
+        description="Sensors with the same rack move as one in a search; the first by name leads",
         search=racks_of_scene,
         search_options={"SUGGESTION"},
     )
@@ -188,14 +189,16 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
     )
     is_no_go: BoolProperty(
         name="No-Go Area",
-        description="No part of a sensor may be in the box round this object",
+        description="In a search, no part of a sensor may be in the box round this object",
         update=redraw,
     )
     options: CollectionProperty(
-        type=PE_SensorOption, name="Models", description="Models that may take this place"
+        type=PE_SensorOption,
+        name="Models",
+        description="Models that a search may choose for this sensor",
     )
     may_be_left_out: BoolProperty(
-        name="May Be Left Out", description="A design may do without this sensor"
+        name="May Be Left Out", description="A search may choose a design without this sensor"
     )
     show: BoolProperty(
         name="Show Beams",
@@ -216,26 +219,25 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
         options={"HIDDEN"},
     )
     is_parked: BoolProperty(
-        name="Is Parked",
-        description="A sensor that is set aside, as it belongs to another variant",
+        name="Is Inactive",
+        description="This sensor is inactive, because only other variants have it",
         options={"HIDDEN"},
     )
     parked_from: StringProperty(
-        name="Parked From",
-        description="Collections it was taken out of, as it belongs to another variant",
+        name="Inactive From",
+        description="Collections of an inactive sensor before it became inactive",
     )
 
     mirror_of: StringProperty(
         name="Mirror Of", description="Name of the sensor that is linked as its mirror image"
     )
 
-    has_result: BoolProperty(name="Has Result", description="The last result knows this sensor")
+    has_result: BoolProperty(name="Has Result", description="The last result includes this sensor")
     result_of: StringProperty(
-        name="Result Of", description="Name of the sensor that the result is of: a copy brings it"
+        name="Result Of",
+        description="Name of the scored sensor: a copy of the sensor has the same value",
     )
-    result_run: StringProperty(
-        name="Result Run", description="Signature of the scene's result that it came with"
-    )
+    result_run: StringProperty(name="Result Run", description="Signature of the scene's result")
     entropy: FloatProperty(
         name="Alone", description="Perception entropy if this were the only sensor [nats]"
     )
@@ -243,33 +245,36 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
         name="Coverage", description="Share of the prior that this sensor sees, 0 to 1"
     )
     beams: IntProperty(
-        name="Beams", description="Beams of one revolution; places of a camera's picture"
+        name="Beams", description="Beams of one revolution, or positions in a camera's picture"
     )
     stopped: IntProperty(
-        name="Stopped", description="Beams, or places of the picture, that the vehicle itself stops"
+        name="Stopped", description="Beams, or positions in the picture, that the vehicle occludes"
     )
     stopped_text: StringProperty(
-        name="Stopped By", description="Which parts of the vehicle stop how many beams"
+        name="Stopped By",
+        description="Parts of the vehicle with the number of beams that they occlude",
     )
 
     loss_text: StringProperty(
-        name="Loss", description="How much the rig's entropy rises when this sensor fails [nats]"
+        name="Loss", description="Rise of the rig's entropy when this sensor fails [nats]"
     )
     loss_where: StringProperty(
-        name="Costs Most", description="Where it rises most, and how much there [nats]"
+        name="Costs Most", description="Zone of the largest rise, and the rise there [nats]"
     )
     words: StringProperty(
-        name="In Words", description="What the last result says of this sensor, a line each"
+        name="In Words", description="Sentences of the last result about this sensor, one line each"
     )
     stopped_parts: CollectionProperty(
-        type=PE_StoppingPart, name="Stopped By", description="Parts of the vehicle in its way"
+        type=PE_StoppingPart,
+        name="Stopped By",
+        description="Parts of the vehicle that occlude the sensor",
     )
     is_view: BoolProperty(
-        name="Is a View", description="This camera shows what the sensor sees that it rides on"
+        name="Is a View", description="This camera shows the view of its parent sensor"
     )
 
     see_through: BoolProperty(
         name="Cameras See Through",
-        description="Glass: cameras see through this object; LiDAR beams are stopped all the same",
+        description="Glass: cameras see through this object; it occludes LiDAR beams",
         update=changed,
     )

@@ -37,7 +37,7 @@ TALL = (
 )
 AVERAGED = ("AVERAGE", "Average", "All heights, by how likely an object is there: as scored", 0)
 COLORS = (
-    ("STATE", "Free or Stopped", "Blue beams go free, orange ones end on the vehicle"),
+    ("STATE", "Free or Occluded", "Blue beams are free, orange beams end on the vehicle"),
     (
         "SENSOR",
         "Sensor",
@@ -60,30 +60,30 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
 
     show_ground: BoolProperty(
         name="Ground Map",
-        description="Colour the ground by how well it is seen",
+        description="Colour the ground by how well sensors see it",
         default=True,
         update=redraw,
     )
     ground_quantity: EnumProperty(
         items=(
-            ("SENSORS", "Sensors", "How many sensors see a place: nobody, 1, 2, 3 or more"),
-            ("COVERAGE", "Coverage", "What share of a place some sensor sees"),
-            ("ENTROPY", "Entropy", "How uncertain a detector is there, in nats; lower is better"),
+            ("SENSORS", "Sensors", "Number of sensors that see a location: none, 1, 2, 3 or more"),
+            ("COVERAGE", "Coverage", "Share of a location that is visible to a sensor"),
+            ("ENTROPY", "Entropy", "Uncertainty of a detector in nats; lower is better"),
         ),
         name="Show",
-        description="What the colours of the ground tell",
+        description="Quantity that the colours of the ground show",
         default="ENTROPY",
         update=redraw,
     )
     ground_height: EnumProperty(
         items=(AVERAGED, *HEIGHTS),
         name="Height",
-        description="How high above the ground to look",
+        description="Height above the ground that is evaluated",
         update=redraw,
     )
     ground_opacity: FloatProperty(
         name="Opacity",
-        description="How much of what lies below the map's colours hide",
+        description="Opacity of the map's colours",
         default=0.35,
         min=0.05,
         max=1.0,
@@ -105,15 +105,15 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
                 "From what nobody sees to what is seen best: the same colours in "
                 "every scene, and on review pages",
             ),
-            ("FIXED", "Fixed", "Between values of your own"),
+            ("FIXED", "Fixed", "Between two values that you set"),
         ),
         name="Range",
-        description="What the colours of the ground map are spread over; the bright end is good",
+        description="Range of values of the ground map's colours; the bright end is good",
         update=redraw,
     )
     entropy_range: FloatVectorProperty(
         name="Entropy",
-        description="Entropy of the dark and of the bright end [nats]",
+        description="Entropy at the dark and at the bright end [nats]",
         size=2,
         default=(16.7, -11.0),
         precision=1,
@@ -121,7 +121,7 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
     )
     coverage_range: FloatVectorProperty(
         name="Coverage",
-        description="Coverage of the dark and of the bright end, 0 to 1",
+        description="Coverage at the dark and at the bright end, 0 to 1",
         size=2,
         default=(0.0, 1.0),
         min=0.0,
@@ -131,15 +131,15 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
     )
     ground_difference: BoolProperty(
         name="Difference",
-        description="Show where it is better (blue) and where worse (orange) than what Live is "
-        "compared with: before the last move, pinned sensors, or a variant",
+        description="Show where the rig is better (blue) or worse (orange) than the rig that Live "
+        "is compared with: before the last move, pinned sensors, or a variant",
         update=redraw,
     )
 
     show_axles: BoolProperty(
         name="Axles",
-        description="Show the axles, where they are known, and the rear one's axes on the ground: "
-        "the origin of other programs",
+        description="Show the axles, if they are known, and the axes on the ground under the rear "
+        "axle: the origin of other programs",
         default=True,
         update=redraw,
     )
@@ -154,48 +154,48 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
     )
     show_place: BoolProperty(
         name="Queried Location",
-        description="Mark the place that was asked about",
+        description="Mark the queried location",
         default=True,
         update=redraw,
     )
 
     show_focus: BoolProperty(
         name="Focus",
-        description="Outline the regions that count more or less than the prior says",
+        description="Outline the regions with a higher or lower weight than in the prior",
         default=True,
         update=redraw,
     )
     show_mounts: BoolProperty(
         name="Mounts",
-        description="Tint the surfaces that sensors may sit on; no-go areas and bounds are boxes",
+        description="Tint the surfaces of mounts; no-go areas and bounds are boxes",
         default=True,
         update=redraw,
     )
     show_blind: BoolProperty(
         name="Blind Ground",
-        description="Outline the ground round the vehicle that no sensor sees, and say how far it "
-        "goes to each side",
+        description="Outline the ground round the vehicle that no sensor sees, with its extent on "
+        "each side",
         default=True,
         update=redraw,
     )
     blind_height: EnumProperty(
         items=TALL,
         name="Height",
-        description="How tall it is, standing on the ground, that nobody sees any of",
+        description="Height of an object on the ground; ground where it is invisible is blind",
         default="H50",
         update=redraw,
     )
 
     show_reach: BoolProperty(
         name="Reach",
-        description="Draw how far away objects of a class are still found: average precision of "
-        "at least 0.5",
+        description="Draw the distance up to which objects of a class are found: average precision "
+        "of at least 0.5",
         default=False,
         update=redraw,
     )
     reach_class: StringProperty(
         name="Class",
-        description="What is to be found",
+        description="Class of the objects",
         default=DEFAULT_CLASS,
         search=classes_of,
         search_options=set(),
@@ -208,25 +208,25 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
             ("ALL", "All", "All together, and each sensor alone"),
         ),
         name="Of",
-        description="Whose reach is drawn",
+        description="Sensors whose reach is drawn",
         update=redraw,
     )
 
     show_frustums: BoolProperty(
         name="Camera Views",
-        description="Draw what cameras look at: their frustum, true to lens and pitch",
+        description="Draw the cameras' fields of view, true to lens and pitch",
         default=True,
         update=redraw,
     )
     footprints: BoolProperty(
         name="On the Ground",
-        description="Draw the ground that a camera looks at, as far as the range or the horizon",
+        description="Draw the ground in a camera's field of view, up to the range or the horizon",
         default=True,
         update=redraw,
     )
     view_range: FloatProperty(
         name="Range",
-        description="How far on the ground a camera's view is drawn",
+        description="Drawn length of a camera's view on the ground",
         default=12.0,
         min=0.5,
         soft_max=100.0,
@@ -237,8 +237,8 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
 
     show_beams: BoolProperty(
         name="Beams",
-        description="Draw a fair sample of LiDAR beams: as many of a hundred end on the vehicle as "
-        "of all",
+        description="Draw a sample of LiDAR beams, with the true share of beams that end on the "
+        "vehicle",
         default=True,
         update=redraw,
     )
@@ -248,7 +248,7 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
             ("ALL", "All", "Beams of all sensors"),
         ),
         name="Of",
-        description="Whose beams are drawn",
+        description="Sensors whose beams are drawn",
         update=redraw,
     )
     channels: EnumProperty(
@@ -259,11 +259,15 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
             ("ALL", "All", "All channels"),
         ),
         name="Channels",
-        description="Of which channels beams are drawn",
+        description="Channels whose beams are drawn",
         update=redraw,
     )
     channel: IntProperty(
-        name="Channel", description="Counted from the lowest, 1", default=1, min=1, update=redraw
+        name="Channel",
+        description="Number of the channel; the lowest is 1",
+        default=1,
+        min=1,
+        update=redraw,
     )
     every: IntProperty(
         name="Every", description="2: every second channel", default=4, min=1, update=redraw
@@ -271,7 +275,7 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
     beam_colors: EnumProperty(
         items=COLORS,
         name="Color By",
-        description="What the colours of beams tell",
+        description="Quantity that the colours of beams show",
         default="SENSOR",
         update=redraw,
     )
@@ -284,13 +288,13 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
 
     show_heat: BoolProperty(
         name="Blocked Beams",
-        description="Colour the vehicle where it stops beams, by how many end there",
+        description="Colour the vehicle where it occludes beams, by their number",
         default=False,
         update=redraw,
     )
     show_labels: BoolProperty(
         name="Names",
-        description="Write the names of sensors beside them",
+        description="Write each sensor's name beside it",
         default=True,
         update=redraw,
     )
@@ -301,7 +305,7 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
     )
     show_legend: BoolProperty(
         name="Legend",
-        description="Say in the lower right corner what the colours mean",
+        description="Explain the colours in the lower right corner",
         default=True,
         update=redraw,
     )
@@ -327,30 +331,30 @@ class PE_LiveSettings(bpy.types.PropertyGroup):
 
     on: BoolProperty(
         name="Live",
-        description="A score follows while a sensor is moved: a draft at once, exact when it "
-        "rests, on a sample of voxels. Score gives that of all voxels",
+        description="Update a score while a sensor moves: a preview at once, an exact score when "
+        "the scene is idle, on a sample of voxels. Score evaluates all voxels",
         update=switched,
     )
     against: IntProperty(
         name="Compared With",
-        description="What the live score is compared with: 0, the sensors before the last move; "
-        "-1, those that were pinned; else the key of a variant",
+        description="Reference of the live score: 0, the sensors before the last move; -1, the "
+        "pinned sensors; otherwise the key of a variant",
         default=BEFORE_MOVE,
         min=PINNED,
         update=switched,
     )
     figures: BoolProperty(
         name="Blind Ground, Reach, AP",
-        description="Tell also how much ground is blind, how far ahead a class is found, and with "
-        "which AP, once things rest: for the height and the class that the 3D view shows",
+        description="Add blind ground, reach ahead and AP when the scene is idle, for the height "
+        "and the class that the 3D view shows",
         default=True,
         update=switched,
     )
     anchor: EnumProperty(
         items=ANCHORS,
-        name="Beside",
-        description="A known rig, stretched onto this vehicle and scored under the same prior, to "
-        "have something to go by. It is scored once, in the background",
+        name="Known Rig",
+        description="A known rig, scaled to this vehicle and scored under the same prior, for "
+        "comparison. It is scored once, in the background",
         default=NO_ANCHOR,
         update=switched,
     )

@@ -86,7 +86,7 @@ class Stage:
             partial.replace(path)
         except (OSError, RuntimeError) as error:  # Blender's own message ends in a line break
             found = str(error).strip().removeprefix("Error: ")
-            raise pe.InputError(path, "picture", "a place to write to", found) from None
+            raise pe.InputError(path, "picture", "a path that can be written", found) from None
         finally:
             with contextlib.suppress(OSError):
                 partial.unlink()

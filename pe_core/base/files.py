@@ -82,7 +82,7 @@ def write_all_bytes(files: Mapping[Path, bytes]) -> None:
         for path, data in files.items():
             with _writing(path):
                 if path.exists():
-                    _require_regular(path, os.stat(path), "a place to write to")
+                    _require_regular(path, os.stat(path), "a path that can be written")
                 temporaries[path].write_bytes(data)
         for path, temporary in temporaries.items():
             with _writing(path):
@@ -101,7 +101,9 @@ def _writing(path: Path) -> Iterator[None]:
     except InputError:
         raise
     except (OSError, ValueError) as error:
-        raise InputError(str(path), "file", "a place to write to", reason_of(error)) from error
+        raise InputError(
+            str(path), "file", "a path that can be written", reason_of(error)
+        ) from error
 
 
 def decode_text(data: bytes) -> str:

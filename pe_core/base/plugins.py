@@ -119,7 +119,7 @@ def call_plugin(point: EntryPoint, function: Any, *arguments: Any) -> Any:
     """
     if not callable(function):
         raise InputError(plugin_name(point), "entry point", "a function", type(function).__name__)
-    return _guarded(point, "to run to its end", lambda: function(*arguments), InputError)
+    return _guarded(point, "to complete", lambda: function(*arguments), InputError)
 
 
 def required_plugin(sort: str, name: str, source: str, field: str, expected: str) -> Any:

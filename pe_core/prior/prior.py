@@ -217,7 +217,9 @@ class Prior:
             When there is no number for a class, or the prior has no classes.
         """
         if self.model == UNIFORM:
-            raise InputError("prior", "model", "one with classes, to have objects", UNIFORM)
+            raise InputError(
+                "prior", "model", "a prior with classes, because objects need them", UNIFORM
+            )
         counts = {name: density_of(name, self.density) for name in self.class_names}
         shares = {c.name: share_in(c, space) for c in self.classes}
         return {name: count * shares.get(name, 1.0) for name, count in counts.items()}

@@ -88,7 +88,9 @@ class SearchSpace:
             given = limits.get(sensor.name, {})
             default = default_bounds(sensor, vehicle)
             if given and (reason := mounting.unbounded(sensor.name)):
-                raise InputError(f"sensor {sensor.name!r}", "bounds", f"none for {reason}", "some")
+                raise InputError(
+                    f"sensor {sensor.name!r}", "bounds", f"no bounds for {reason}", "bounds"
+                )
             bounded = _bounded_axes(sensor.name, axes, given, mounting)
             bounds[sensor.name] = {a: given.get(a, default[a]) for a in bounded}
         return cls(bounds, mounting, vehicle, housings or {}).checked(rig)

@@ -217,7 +217,7 @@ def _check_sensor(
     if any(name in site.sensors for site in before):
         raise InputError(who, "sensor", "one choice for each sensor", f"two for {name!r}")
     if optional and any(name == group[0] for group in mounting.groups):
-        expected = "false for the sensor that leads a group"
+        expected = "false for the leading sensor of a group"
         raise InputError(who, "optional", expected, f"true for {name!r}")
 
 

@@ -183,7 +183,7 @@ def _read_choice(table: Table, model: Read) -> Choice:
 def _read_option(table: Table, model: Read) -> Option:
     chosen = _made(table, lambda: model(table))
     if "price" not in table:
-        raise table.error("price", "what a sensor of this model costs", "nothing")
+        raise table.error("price", "the price of a sensor of this model", "nothing")
     price = table.number("price")
     table.finish()
     return _made(table, lambda: Option(chosen, price))

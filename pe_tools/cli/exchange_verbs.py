@@ -175,7 +175,7 @@ def new_study(args: argparse.Namespace) -> tuple[Path, Vehicle | None]:
     """Return the path of the new study, after checks, and the vehicle if there is a mesh."""
     output = Path(args.output)
     if output.exists() and not args.replace:
-        raise InputError(output, "file", "a new file (or --replace)", "one is there")
+        raise InputError(output, "file", "a new file (or --replace)", "an existing file")
     if args.mesh is None:
         return output, None
     mesh = read_mesh(output.parent / args.mesh)

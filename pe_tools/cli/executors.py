@@ -213,7 +213,9 @@ class DaskWorkers:
         self._saved.save()
         if self._client.status == "closed":
             found = "that it is gone; what is done is kept"
-            raise InputError(self._address, "scheduler", "one that stays until the end", found)
+            raise InputError(
+                self._address, "scheduler", "a scheduler that runs until the end", found
+            )
         alone = self._client.status == "running" and not self._count()
         if alone and not self._alone:
             need = "they need this version of perception-entropy"
@@ -240,7 +242,7 @@ def _client_of(address: str) -> Any:
     distributed = optional_package("distributed")
     if distributed is None:
         expected = f'distributed: pip install "perception-entropy[{EXTRAS["distributed"]}]"'
-        raise InputError("command line", "scheduler", expected, "that it is not installed")
+        raise InputError("command line", "scheduler", expected, "it is not installed")
     if not ADDRESS.fullmatch(address):
         raise InputError(
             "command line",

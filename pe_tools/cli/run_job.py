@@ -51,7 +51,7 @@ def fallback_folder() -> Iterator[Path]:
         folder = Path(tempfile.mkdtemp(prefix=PREFIX))
     except OSError as error:
         where = "folder for temporary files"
-        raise InputError("system", where, "one that can be written", error) from None
+        raise InputError("system", where, "a folder that can be written", error) from None
     try:
         yield folder
     finally:

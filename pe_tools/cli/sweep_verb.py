@@ -86,7 +86,9 @@ def _refuse_folders(
         at = folder / run.name
         study = Path(files[run.study_name])
         if (at / STUDY).exists() and (at / STUDY).samefile(study):
-            raise InputError(study, "output", "another folder than that of the study", "its own")
+            raise InputError(
+                study, "output", "another folder than the study's folder", "the study's folder"
+            )
         check_files(at, result_names(run.study, kind))
 
 

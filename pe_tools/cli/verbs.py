@@ -181,4 +181,6 @@ def _refuse_to_replace(study: Path, output: Path) -> None:
         return
     if same:
         expected = "another folder than that of the study"
-        raise InputError(study, "output", expected, f"its own: {STUDY} would be written over")
+        raise InputError(
+            study, "output", expected, f"the study's folder: {STUDY} would be overwritten"
+        )

@@ -167,7 +167,7 @@ def write_files(
         paths = {output: files[first]} | {folder / file: files[file] for file in remaining}
     for path in paths:
         if path.exists() and not replace:
-            raise InputError(path, "file", "a new file, or --replace", "one is there")
+            raise InputError(path, "file", "a new file, or --replace", "an existing file")
     for folder in {path.parent for path in paths}:
         _make_folder(folder)
     write_all_bytes(paths)
@@ -178,4 +178,4 @@ def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(folder, "folder", "a place to write to", error) from None
+        raise InputError(folder, "folder", "a path that can be written", error) from None

@@ -59,7 +59,9 @@ def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) 
             poses[name] = composed(poses[parent], pose)
     if len(poses) < len(frames):
         unreached = next(name for name in hung if name not in poses)
-        raise InputError(path, f"{noun} {unreached}", "a way to the root", "a circle")
+        raise InputError(
+            path, f"{noun} {unreached}", "a chain of parents that ends at the root", "a circle"
+        )
     return poses
 
 

@@ -87,7 +87,7 @@ def checked_rotation(source: object, field: str, rotation: Floats) -> Floats:
     if not off < PROPER_WITHIN * 100:
         raise InputError(source, field, "a rotation", f"rows off by {off:.2g} from right angles")
     if np.linalg.det(rotation) < 0.0:
-        raise InputError(source, field, "a right-handed rotation", "one that mirrors")
+        raise InputError(source, field, "a right-handed rotation", "a rotation that mirrors")
     return rotation
 
 

@@ -91,7 +91,9 @@ def import_rig(
     """
     path = Path(path)
     if not path.exists():
-        raise InputError(path, "file", "an existing file or folder", "nothing of that name")
+        raise InputError(
+            path, "file", "an existing file or folder", "no file or folder of that name"
+        )
     row = detect_format(path) if name is None else rig_format(name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
     with _in_file(path), report_memory_errors(path):

@@ -290,7 +290,7 @@ def _as_in_schema(source: str, path: str, data: Any) -> Any:
         name = CAPITAL.sub(r"_\1", key).lower()
         if name in fields:
             field = f"{path}.{name}" if path else name
-            raise InputError(source, field, "a field once", "it twice, in both ways of writing")
+            raise InputError(source, field, "a field once", "both snake_case and camelCase")
         if value is not None:
             fields[name] = value
     return fields

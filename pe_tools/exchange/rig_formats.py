@@ -232,5 +232,5 @@ def detect_format(path: Path) -> RigFormat:
     ending[".txt"] = "kitti"
     if path.suffix.lower() in ending:
         return RIG_FORMATS[ending[path.suffix.lower()]]
-    expected = f"a name that tells its format, or the format said: {', '.join(RIG_FORMATS)}"
+    expected = f"a file name of a known format, or the name of a format: {', '.join(RIG_FORMATS)}"
     raise InputError(path, "format", expected, path.name)

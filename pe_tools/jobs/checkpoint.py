@@ -141,7 +141,7 @@ def read_search(folder: str | Path) -> BegunSearch:
     entries = _entries_of(path, data["judged"])
     study = study_from_dict(load_toml(path, "study", data["study"]), str(path), path.parent)
     if fingerprint(study) != data["study_sha256"]:
-        raise InputError(path, "study", "the files beside it as they were", "that they changed")
+        raise InputError(path, "study", "unchanged files beside the study", "changed files")
     return BegunSearch(path, study, data["inputs"], entries)
 
 
@@ -162,7 +162,9 @@ def _entries_of(path: Path, rows: Any) -> tuple[EvaluatedRig, ...]:
     for number, row in enumerate(rows):
         kinds = [type(value) for value in row] if isinstance(row, list) else []
         if kinds != [float, bool, str]:
-            raise InputError(path, f"judged[{number}]", "an entropy, a truth, a mark", shown(row))
+            raise InputError(
+                path, f"judged[{number}]", "an entropy, a truth value, a digest", shown(row)
+            )
     return tuple(EvaluatedRig(*row) for row in rows)
 
 

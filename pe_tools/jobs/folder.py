@@ -140,10 +140,10 @@ class FileSet:
         except InputError as error:
             raise error.at(path) from None
         except (OSError, ValueError) as error:
-            raise InputError(path, "file", "a place to write to", reason_of(error)) from None
+            raise InputError(path, "file", "a path that can be written", reason_of(error)) from None
         digest = sha256_of(temporary)
         if not digest:  # Blender may fail to write without an error
-            raise InputError(path, "file", "a place to write to", "that nothing was written")
+            raise InputError(path, "file", "a path that can be written", "nothing was written")
         self._made[name] = (temporary, digest)
         return digest
 

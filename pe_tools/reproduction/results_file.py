@@ -250,7 +250,7 @@ def _rename(path: Path, name: Path) -> None:
     try:
         path.rename(name)
     except OSError as error:
-        raise InputError(name, "file", "a place to write to", error.strerror) from None
+        raise InputError(name, "file", "a path that can be written", error.strerror) from None
 
 
 def _commit() -> str:

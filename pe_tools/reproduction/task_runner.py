@@ -111,7 +111,7 @@ def _run_all(
         for name, result in chain.from_iterable(batches):
             if isinstance(result, WorkerDied):
                 found = f"two that were killed with {name}; the finished tasks are kept"
-                raise InputError("workers", "process", "one that runs to its end", found)
+                raise InputError("workers", "process", "a process that completes", found)
             results.add(name, *result)
             add_ready()
             done = len(results.entries)

@@ -97,7 +97,7 @@ def read_settings(texts: Sequence[str]) -> tuple[TriedKey, ...]:
     keys = [setting.path for setting in settings]
     for setting in settings:
         if keys.count(setting.path) > 1:
-            raise InputError(SOURCE, setting.key, "each key once", "two of it")
+            raise InputError(SOURCE, setting.key, "each key once", "the key twice")
     return settings
 
 

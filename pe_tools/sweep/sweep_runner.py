@@ -110,7 +110,7 @@ def run_task(task: RunTask) -> RunResult:
         return error
     except Exception as error:  # some executors lose a worker's exception, and wait forever
         message = " ".join(f"{type(error).__name__}: {error}".split())
-        return InputError("worker", "run", "to run to its end", message)
+        return InputError("worker", "run", "to complete", message)
     assert outcome is not None
     return outcome
 

@@ -96,7 +96,9 @@ def read_results(path: Path) -> dict[str, Any]:
     entries = checked_entries(table, check_value)
     different = set(names(effort)) ^ set(entries)
     if different:
-        raise InputError(path, "results", "those of a complete run", f"not so: {min(different)}")
+        raise InputError(
+            path, "results", "results of a complete run", f"a different {min(different)}"
+        )
     values = {name: entry["value"] for name, entry in entries.items()}
     for key, value in conclusions(values, effort).items():
         if table.raw(key) != json.loads(dump_json(value)):

@@ -89,7 +89,7 @@ def test_blender_imports_an_stl_as_one_closed_solid_where_it_was(seen, tmp_path)
 
 def test_a_folder_is_replaced_when_that_is_asked_for(seen, tmp_path):
     exported(tmp_path, "solids", range_m=3.0)
-    with pytest.raises(RuntimeError, match="one is there"):
+    with pytest.raises(RuntimeError, match="an existing file"):
         exported(tmp_path, "solids", range_m=3.0)
     exported(tmp_path, "solids", range_m=3.0, replace=True)
 

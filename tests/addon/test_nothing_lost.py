@@ -130,7 +130,7 @@ def test_half_a_file_is_reported(addon, tmp_path, name):
     path.write_bytes(
         {"cut.blend": b"\x28\xb5\x2f\xfdhalf", "cut.png": b"\x89PNGhalf"}.get(name, b"")
     )
-    with pytest.raises(pe.InputError, match="expected room to write to"):
+    with pytest.raises(pe.InputError, match="expected enough space on the disk"):
         open_file.check_complete(path)
 
 

@@ -198,7 +198,7 @@ def test_the_command_takes_objects_in_and_puts_them_out(rigged, tmp_path, capsys
     args = parser("pe").parse_args(["export", "--to", "blender", "-o", str(out)])
     assert args.function(args) == (f"wrote {out}", 0)
     assert "eye: Blender's camera has no distortion" in capsys.readouterr().err
-    with pytest.raises(pe.InputError, match="one is there"):
+    with pytest.raises(pe.InputError, match="an existing file"):
         args.function(args)
     answer = run_here(out, "import", "-o", tmp_path / "back.toml")
     assert answer.returncode == 0, answer.stderr

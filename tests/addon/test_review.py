@@ -134,7 +134,7 @@ def test_picture_without_the_vehicles_collection(scene, outcome, tmp_path):
 def test_a_picture_that_fails_leaves_nothing(scene, outcome, tmp_path):
     before = state_of(scene)
     (tmp_path / "file").touch()
-    with pytest.raises(pe.InputError, match="picture: expected a place to write to"):
+    with pytest.raises(pe.InputError, match="picture: expected a path that can be written"):
         render_review(scene, outcome.study, outcome, tmp_path / "file" / "review.png", SIZE)
     assert state_of(scene) == before
 

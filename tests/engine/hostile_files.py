@@ -202,7 +202,7 @@ def glbs() -> dict[str, Case]:
         "too many nodes": (scene(nodes=[{}] * 200_001), "at most 200,000, found 200,001"),
         "too many with a mesh": (scene(nodes=[{"mesh": 0}] * 20_001), "at most 20,000 with a mesh"),
         "20,000 deep": (scene(nodes=chain(20_000, {"mesh": 0})), None),
-        "a long loop": (scene(nodes=chain(1000, {"children": [0]})), "a second one or a loop"),
+        "a long loop": (scene(nodes=chain(1000, {"children": [0]})), "a second parent or a loop"),
         "2^60 vertices": (scene(accessors=huge), "elements of 12 bytes within the 96"),
         "all at one place": (scene(bufferViews=still), "8 from 0, 0 apart"),
         "brackets": (glb_file(b'{"a":' + b"[" * 100_000, b""), "valid JSON"),

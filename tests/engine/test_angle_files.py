@@ -239,7 +239,7 @@ def test_the_file_is_beside_the_study(write):
     [
         ("", "file: expected channel angles, found an empty file"),
         (" \r\n\n", "file: expected channel angles, found an empty file"),
-        ("# nothing\n", "file: expected channel angles, found comments alone"),
+        ("# nothing\n", "file: expected channel angles, found only comments"),
         ("elevation,azimuth\n", "file: expected at least one channel, found a header alone"),
         ("hello\n", "line 1: expected a column named elevation, .*found 'hello'"),
         ("azimuth\n1\n", "line 1: expected a column named elevation, .*found 'azimuth'"),

@@ -206,7 +206,7 @@ def changed(text, old, new):
     [
         ("", "file: expected boxes as KITTI's label_2, .*, found an empty file"),
         (" \r\n", "file: expected boxes as KITTI's label_2, .*, found an empty file"),
-        ("# nothing\n", "file: .*found comments alone"),
+        ("# nothing\n", "file: .*found only comments"),
         (b"\x89PNG\r\n\x1a\n\0\0\0", "file: .*found binary data"),
         ("samples = 0\n[space]\n", "line 1: .*label_2.*found 'samples = 0'"),
         ("[space]\nx = [-80, 80]\n", "line 1: expected JSON, found expecting value in column 2"),

@@ -298,7 +298,7 @@ BAD = [
     (
         "rig.urdf",
         f"<robot>{LINKS}{JOINT.format('b', 'c')}{JOINT.format('c', 'b')}</robot>",
-        "a way to the root, found a circle",
+        "a chain of parents that ends at the root, found a circle",
     ),
     (
         "rig.urdf",
@@ -324,7 +324,7 @@ BAD = [
         "R0_rect: 1 0 0 0 1 0 0 0 1\nTr_velo_to_cam: 0 1 0 0 1 0 0 0 0 0 1 0\n",
         "a right-handed rotation, found one that mirrors",
     ),
-    ("something.bin", "", "a name that tells its format"),
+    ("something.bin", "", "a file name of a known format"),
 ]
 
 
@@ -388,4 +388,4 @@ def test_the_command_writes_and_reads(tmp_path, capsys, monkeypatch):
     back = pe.load_study("back.toml")
     assert back.reference == AXLE and len(back.rig) == len(MIXED)
     assert main(command) == 1, "a study is there"
-    assert "one is there" in capsys.readouterr().err
+    assert "an existing file" in capsys.readouterr().err

@@ -74,7 +74,9 @@ def test_only_files_are_written_over(tmp_path, kind):
         case "a device":
             path.symlink_to("/dev/null")
     before = os.lstat(path).st_mode
-    with pytest.raises(InputError, match=f"out: file: expected a place to write to, found {kind}"):
+    with pytest.raises(
+        InputError, match=f"out: file: expected a path that can be written, found {kind}"
+    ):
         write_bytes(path, b"data")
     assert os.lstat(path).st_mode == before
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
@@ -144,7 +146,7 @@ def test_several_files_are_written_together_or_not_at_all(tmp_path):
     (tmp_path / "first").write_bytes(b"old")
     (tmp_path / "second").mkdir()
     new = {tmp_path / name: b"new" for name in ("first", "second")}
-    with pytest.raises(InputError, match="second: file: expected a place to write to"):
+    with pytest.raises(InputError, match="second: file: expected a path that can be written"):
         write_all_bytes(new)
     assert (tmp_path / "first").read_bytes() == b"old"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["first", "second"]

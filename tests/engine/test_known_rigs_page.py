@@ -80,7 +80,7 @@ def test_the_command_lists_tells_and_stretches(tmp_path, capsys):
     study = pe.load_study(tmp_path / "study.toml")
     top = study.vehicle.bounds[1][2]
     assert study.rig["LIDAR_TOP"].pose.position[2] == pytest.approx(top + 1.8402 - 1.562, abs=1e-4)
-    assert main(command) == 1 and "one is there" in capsys.readouterr().err
+    assert main(command) == 1 and "an existing file" in capsys.readouterr().err
     assert main([*command, "--replace", "--as-published"]) == 0
     rig = pe.load_study(tmp_path / "study.toml").rig
     assert rig["LIDAR_TOP"].pose.position == (-0.4363, 0.0, 1.8402)

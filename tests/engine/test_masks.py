@@ -146,7 +146,7 @@ def test_the_command_writes_them_and_replaces_nothing_unasked(tmp_path, capsys):
     assert main(line) == 0 and (tmp_path / "out" / "top_mask.png").is_file()
     assert "no vehicle" in capsys.readouterr().err
     (tmp_path / "out" / "top_mask.png").write_text("mine")
-    assert main(line) == 1 and "one is there" in capsys.readouterr().err
+    assert main(line) == 1 and "an existing file" in capsys.readouterr().err
     assert (tmp_path / "out" / "top_mask.png").read_text() == "mine"
     assert main([*line, "--replace"]) == 0
     (tmp_path / "file").write_text("")

@@ -82,8 +82,8 @@ def finds_nothing(path, data):
 @pytest.mark.parametrize(
     ("function", "words"),
     [
-        ("fails", "plugin: expected to run to its end, found KeyError"),
-        ("gives_up", "plugin: expected to run to its end, found SystemExit: 3"),
+        ("fails", "plugin: expected to complete, found KeyError"),
+        ("gives_up", "plugin: expected to complete, found SystemExit: 3"),
         ("finds_nothing", "result: expected a FoundMesh, found None"),
         ("no_such_function", "plugin: expected to load, found AttributeError"),
         ("DAE", "entry point: expected a function, found str"),
@@ -151,7 +151,7 @@ def instanced(levels, innermost='<instance_geometry url="#g"/>'):
         (DAE.replace("<vcount>4<", "<vcount>3<"), "geometry: expected the 3 corners it counts"),
         (DAE.replace("0 1 2 3</p>", "0 1 2</p>"), "geometry: expected the 4 corners it counts"),
         (instanced(8), "nodes: expected at most 200,000, found more"),
-        (instanced(2, '<instance_node url="#k1"/>'), "Node #k1 not found|none in a circle"),
+        (instanced(2, '<instance_node url="#k1"/>'), "Node #k1 not found|no cycle"),
     ],
 )
 def test_bad_collada_is_one_line(monkeypatch, tmp_path, text, words):

@@ -52,7 +52,7 @@ BAD = {
     ),
     "a circle": (
         lambda folder: layer(folder, "main", MESH + reference("main.usda")),
-        "main.usda: references: expected none in a circle",
+        "main.usda: references: expected no cycle",
     ),
     "nested": (nested, "layer6.usda: prims: expected at most 200,000, found more"),
     "instanced": (

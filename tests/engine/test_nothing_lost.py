@@ -342,7 +342,7 @@ def test_a_file_that_fails_after_the_result_sets_that_of_an_older_run_aside(
 
     def write(outcome, data, folder):
         if fails and folder == tmp_path / "out":
-            raise pe.InputError(folder / names[0], "file", "room to write to", "none")
+            raise pe.InputError(folder / names[0], "file", "enough space on the disk", "none")
         jobs.add_to_result(data, folder, {names[0]: b"scene"})
 
     job = pe.ScoreJob(pe.load_study(study))

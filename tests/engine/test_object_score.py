@@ -277,7 +277,7 @@ def test_a_search_s_coarser_levels_have_fewer_scenes():
     ("metric", "told"),
     [
         ({"targets": "boxes"}, r"metric\.targets: expected one of voxels, objects"),
-        ({"traffic": True}, r"metric\.traffic: expected targets = 'objects' beside it"),
+        ({"traffic": True}, r"metric\.traffic: expected targets = 'objects' with it"),
         ({"targets": "objects", "traffic": 1}, r"metric\.traffic: expected true or false"),
         ({"scenes": 2}, r"metric\.scenes: expected a whole number of scenes >= 8|metric"),
         ({"objects": 2}, r"metric\.objects: expected one of scenes, targets, traffic"),

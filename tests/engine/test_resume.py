@@ -210,9 +210,9 @@ def begun_in(folder, **changes):
         ({"study_sha256": "0"}, "study: expected the files beside it as they were, found that"),
         (
             {"judged": [[1.0, False, "a"], [1, 2]]},
-            "judged[1]: expected an entropy, a truth, a mark",
+            "judged[1]: expected an entropy, a truth value, a digest",
         ),
-        ({"judged": None}, "judged[0]: expected an entropy, a truth, a mark, found None"),
+        ({"judged": None}, "judged[0]: expected an entropy, a truth value, a digest, found None"),
     ],
 )
 def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, capsys):

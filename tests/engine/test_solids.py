@@ -217,7 +217,7 @@ def test_a_range_that_is_none_is_refused_in_a_line(range_m):
 def test_nothing_is_replaced_unasked(name, tmp_path):
     study = a_study(camera(), vehicle=box_car())
     paths, _ = export_scene(study, name, tmp_path / "out", 5.0)
-    with pytest.raises(pe.InputError, match="one is there"):
+    with pytest.raises(pe.InputError, match="an existing file"):
         export_scene(study, name, tmp_path / "out", 5.0)
     assert export_scene(study, name, tmp_path / "out", 5.0, replace=True)[0] == paths
 
@@ -233,8 +233,8 @@ def test_the_check_for_closed_surfaces_sees_a_hole_a_fold_and_a_turned_triangle(
     ("options", "words"),
     [
         (["--to", "solids", "--range", "0"], "export: range: expected a length above 0 m"),
-        (["--to", "solids", "-o", "taken"], "taken: folder: expected a place to write to"),
-        (["--to", "gltf", "-o", "taken/scene.glb"], "expected a place to write to"),
+        (["--to", "solids", "-o", "taken"], "taken: folder: expected a path that can be written"),
+        (["--to", "gltf", "-o", "taken/scene.glb"], "expected a path that can be written"),
         (["--to", "gltf", "-o", "taken"], "taken: file: expected a new file"),
         (["--to", "csv", "--range", "5"], "--range: option: expected one of solids"),
     ],

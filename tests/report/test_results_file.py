@@ -213,7 +213,7 @@ def test_a_folder_in_the_place_of_a_file_is_one_line(tmp_path, name):
     (tmp_path / name).mkdir()
     run = pe("reproduce", "--page-only", "--output", tmp_path)
     assert run.returncode == 1 and not run.stdout and run.stderr.count("\n") == 1
-    assert f"{tmp_path / name}: file: expected a place to write to" in run.stderr
+    assert f"{tmp_path / name}: file: expected a path that can be written" in run.stderr
 
 
 def test_a_page_of_the_users_own_is_not_written_over(tmp_path):

@@ -107,6 +107,6 @@ def test_a_task_that_loses_two_workers_ends_the_run_in_one_line(tmp_path):
     assert killed(process)[0] not in workers
     _, error = process.communicate(timeout=120)
     assert process.returncode == 1 and error.count("\n") == 1
-    assert error.startswith("pe: workers: process: expected one that runs to its end, found two ")
+    assert error.startswith("pe: workers: process: expected a process that completes, found two ")
     assert "2_60deg" in error
     assert ResultsFile(tmp_path, QUICK, check_value).loaded == 1

@@ -59,7 +59,7 @@ class TargetRule:
     def __post_init__(self) -> None:
         check_settings(self, "metric")
         if self.traffic and not self.are_objects:
-            raise InputError("metric", "traffic", f"targets = {OBJECTS!r} beside it", self.targets)
+            raise InputError("metric", "traffic", f"targets = {OBJECTS!r} with it", self.targets)
 
     @property
     def are_objects(self) -> bool:

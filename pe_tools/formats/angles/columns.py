@@ -137,7 +137,7 @@ def read_columns(source: str, text: str) -> list[Channel]:
     """
     rows = _rows(text)
     if not rows:
-        raise InputError(source, "file", "channel angles", "comments alone")
+        raise InputError(source, "file", "channel angles", "only comments")
     if any(_is_number(cell) for cell in rows[0].cells):
         layout = _without_header(source, rows)
     else:

@@ -103,7 +103,7 @@ def _yaml_items(source: str, text: str) -> tuple[list[YamlItem], int | None]:
             key, _, value = (part.strip() for part in body.partition(":"))
             inside = key == "lasers"
             if inside and value:
-                raise InputError(source, where, "lasers in lines of their own", quoted(value))
+                raise InputError(source, where, "each laser on its own line", quoted(value))
             count = parse_id(source, where, value) if key == "num_lasers" else count
         elif inside and (body == "-" or body.startswith("- ")):
             items.append((number, [body[1:].strip()]))

@@ -86,7 +86,7 @@ def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
         return read_nuscenes(source, _parsed(source, text))
     lines = [(n, line) for n, line in enumerate(text.split("\n"), 1) if _has_content(line)]
     if not lines:
-        raise InputError(source, "file", LAYOUTS, "comments alone")
+        raise InputError(source, "file", LAYOUTS, "only comments")
     first = lines[0][1]
     if looks_like_csv(first):
         return read_csv(source, lines)

@@ -79,7 +79,7 @@ def _check_nodes(source: str, root: Any) -> None:
                 found = "more, counted with all instances"
                 raise InputError(source, "nodes", f"at most {MAX_NODES:,}", found)
         elif node in open_nodes:
-            raise InputError(source, "nodes", "none in a circle", f"{node.get('id')!r} in one")
+            raise InputError(source, "nodes", "no cycle", f"a cycle with {node.get('id')!r}")
         elif node not in counts:
             open_nodes.add(node)
             waiting.append((node, True))

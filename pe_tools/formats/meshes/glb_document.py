@@ -131,7 +131,7 @@ def placed_meshes(document: Document) -> Iterator[tuple[str, Any, NDArray[np.flo
         node = document.item("nodes", index)
         field = f"nodes[{index}]"
         if index in seen:
-            raise document.error(field, "one parent to a node", "a second one or a loop")
+            raise document.error(field, "one parent to a node", "a second parent or a loop")
         seen.add(index)
         world = above @ _local(document, field, node)
         waiting += [(child, world) for child in reversed(node.get("children", []))]

@@ -129,7 +129,7 @@ def read_npz(path: Path, data: bytes) -> Mesh:
     source = str(path)
     # A single .npy array, or another file that NumPy can load, is not an archive.
     if not data.startswith(b"PK"):
-        raise InputError(source, "file", "a NumPy .npz archive", "some other format")
+        raise InputError(source, "file", "a NumPy .npz archive", "another format")
     with one_line_errors(source), Archive(source, data) as archive:
         faces = _check(source, archive.headers)
         arrays = {name: archive.array(name) for name in archive.headers}

@@ -50,7 +50,7 @@ class _UsdLayers:
         """Number of prims of a prim of a layer, with all references."""
         key = (name, path)
         if key in above:
-            raise InputError(self._source, "references", "none in a circle", f"{name} in one")
+            raise InputError(self._source, "references", "no cycle", f"a cycle with {name}")
         if key not in self._counts:
             if len(above) > MAX_DEPTH:
                 raise InputError(self._source, "references", f"at most {MAX_DEPTH} deep", "more")
@@ -120,7 +120,7 @@ class _UsdLayers:
 def _check_file(source: str, path: Path) -> None:
     """Raise `InputError` unless a layer's file exists, is regular and not too deeply nested."""
     if not path.exists():
-        raise InputError(source, "references", "files that are there", f"none at {path}")
+        raise InputError(source, "references", "existing files", f"no file at {path}")
     if not path.is_file():
         raise InputError(path, "file", "a regular file", "something else")
     if path.stat().st_size > MESH_BYTES:

@@ -45,7 +45,7 @@ def do_runs(args: argparse.Namespace, folder: Path) -> RunFiles:
         return files
     if done and not args.resume:
         found = f"{done} of {len(files.all)} runs; pass --resume to go on"
-        raise InputError(folder, "folder", "one without results", found)
+        raise InputError(folder, "folder", "a folder without results", found)
     run_one = _run_one()
     note = f"{folder} keeps the finished runs; --resume goes on from them"
     with noted_when_interrupted(note):

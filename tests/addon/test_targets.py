@@ -63,5 +63,7 @@ def test_the_live_score_follows_on_the_same_targets(settings):
 
 def test_a_prior_without_objects_is_reported_in_a_line(settings):
     settings.prior = "uniform"
-    with pytest.raises(RuntimeError, match="one with classes, to have objects, found uniform"):
+    with pytest.raises(
+        RuntimeError, match="a prior with classes, because objects need them, found uniform"
+    ):
         bpy.ops.pe.score()

@@ -272,7 +272,7 @@ def test_the_file_is_beside_the_study(write):
         (HESAI.replace("\n3,", "\nbeef,"), "line 4: expected a whole number .*found 'beef'"),
         ("Laser id,Elevation,Azimuth\n" + "a" * 64, "file: expected at least one channel"),
         ("lasers:\n", "lasers: expected at least one laser, found none"),
-        ("lasers: [1]\n", r"line 1: expected lasers in lines of their own, found '\[1\]'"),
+        ("lasers: [1]\n", r"line 1: expected each laser on its own line, found '\[1\]'"),
         ("lasers:\n  x: 1\n", "line 2: expected a laser, after a dash, found 'x: 1'"),
         (FLOW.replace(".0}\n- ", ".0\n- "), "line 2: expected a laser between { and }"),
         (FLOW.replace("laser_id: 0,", ""), "line 2: expected a value of laser_id, found none"),

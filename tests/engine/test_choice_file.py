@@ -52,7 +52,7 @@ REFUSED = [
     ({"choice": [{"sensor": "roof"}]}, "choice[0].option: expected at least one model"),
     (
         {"choice": [{"sensor": "roof", "option": [{"model": "Pandar64"}]}]},
-        "choice[0].option[0].price: expected what a sensor of this model costs, found nothing",
+        "choice[0].option[0].price: expected the price of a sensor of this model, found nothing",
     ),
     ({"choice": [option("Pandar64", -1)]}, "option[0].price: expected a price >= 0, found -1.0"),
     ({"choice": [option("Pandar65", 1)]}, "choice[0].option[0].model: expected a name such as"),
@@ -105,7 +105,7 @@ def test_limits_that_leave_nothing_together_are_named_together():
 
 def test_what_leads_a_group_stays():
     group = {"group": [{"sensors": ["roof", "eye"]}]}
-    with pytest.raises(pe.InputError, match="optional: expected false for the sensor that leads"):
+    with pytest.raises(pe.InputError, match="optional: expected false for the leading sensor"):
         pe.study_from_dict(data(choice=[{**ROOF, "optional": True}], optimize=group))
 
 

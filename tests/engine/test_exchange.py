@@ -322,7 +322,7 @@ BAD = [
     (
         "calib.txt",
         "R0_rect: 1 0 0 0 1 0 0 0 1\nTr_velo_to_cam: 0 1 0 0 1 0 0 0 0 0 1 0\n",
-        "a right-handed rotation, found one that mirrors",
+        "a right-handed rotation, found a rotation that mirrors",
     ),
     ("something.bin", "", "a file name of a known format"),
 ]

@@ -48,7 +48,7 @@ BAD = {
     "a pipe": (pipe, "pipe.usda: file: expected a regular file"),
     "missing": (
         lambda folder: layer(folder, "main", MESH + reference("none.usda")),
-        "main.usda: references: expected files that are there, found none at ",
+        "main.usda: references: expected existing files, found no file at ",
     ),
     "a circle": (
         lambda folder: layer(folder, "main", MESH + reference("main.usda")),

@@ -255,7 +255,7 @@ BAD = {
     "a follower with bounds": (
         [LEFT, RIGHT | {"bounds": {"x": [-1, 1]}}],
         PAIR,
-        "sensor 'right': bounds: expected none for a sensor that follows another, found some",
+        "sensor 'right': bounds: expected no bounds for a sensor that follows another, found bounds",
     ),
     "a follower on a mount": (
         [LEFT, sensor("right", SLOT["position"], mount="rack")],
@@ -265,7 +265,7 @@ BAD = {
     "bounds in a slot": (
         [sensor("a", SLOT["position"], mount="rack", bounds={"x": [-1, 1]})],
         {"mount": [RACK]},
-        "sensor 'a': bounds: expected none for a sensor on a list of slots, found some",
+        "sensor 'a': bounds: expected no bounds for a sensor on a list of slots, found bounds",
     ),
 }
 

@@ -162,7 +162,10 @@ def test_scenes_of_labelled_boxes_are_drawn_from_them():
 @pytest.mark.parametrize(
     ("prior", "told"),
     [
-        (pe.Prior.uniform(), "prior: model: expected one with classes, to have objects"),
+        (
+            pe.Prior.uniform(),
+            "prior: model: expected a prior with classes, because objects need them",
+        ),
         ({"car": 3000}, "prior: density: expected objects that find room in the space without"),
         (dict.fromkeys(ROAD.class_names, 0.0), "expected at least one object in a scene"),
         ({"car": 1e6}, "metric: scenes: expected what fits in the .* of memory"),

@@ -101,8 +101,8 @@ def test_the_folder_of_the_study_is_refused(tmp_path, capsys, monkeypatch, no_wo
     assert optimize("study.toml", ".") == 1
     line = one_line(capsys)
     assert line == (
-        "pe: study.toml: output: expected another folder than that of the study, "
-        "found its own: study.toml would be written over"
+        "pe: study.toml: output: expected another folder than the study's folder, "
+        "found the study's folder: study.toml would be overwritten"
     )
     assert contents(tmp_path) == before
 

@@ -207,7 +207,7 @@ def begun_in(folder, **changes):
         ({"perception-entropy": "other"}, "file: expected the state of a search, as this program"),
         ({"study": 3}, "file: expected the state of a search"),
         ({"study": "a = 1"}, "sensor: expected at least one [[sensor]], found none"),
-        ({"study_sha256": "0"}, "study: expected the files beside it as they were, found that"),
+        ({"study_sha256": "0"}, "study: expected unchanged files beside the study, found"),
         (
             {"judged": [[1.0, False, "a"], [1, 2]]},
             "judged[1]: expected an entropy, a truth value, a digest",
@@ -240,7 +240,7 @@ def test_a_mesh_that_changed_is_refused(out, capsys):
     moved = pe.Mesh(body.triangles + 0.5, body.parts, body.part_names)
     pe.write_mesh(out / "vehicle.npz", moved)
     assert main(["optimize", "--resume", str(out)]) == 1
-    assert "study: expected the files beside it as they were" in capsys.readouterr().err
+    assert "study: expected unchanged files beside the study" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

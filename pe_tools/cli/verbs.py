@@ -180,7 +180,7 @@ def _refuse_to_replace(study: Path, output: Path) -> None:
     except (OSError, ValueError):
         return
     if same:
-        expected = "another folder than that of the study"
+        expected = "another folder than the study's folder"
         raise InputError(
             study, "output", expected, f"the study's folder: {STUDY} would be overwritten"
         )

@@ -276,7 +276,7 @@ def test_without_the_rear_axle_its_formats_are_refused(name, tmp_path):
 def test_nothing_is_replaced_without_being_asked(tmp_path):
     pe.export_rig(MIXED, "csv", tmp_path / "rig.csv")
     old = (tmp_path / "rig.csv").read_bytes()
-    with pytest.raises(pe.InputError, match=r"rig\.csv: file: .*one is there"):
+    with pytest.raises(pe.InputError, match=r"rig\.csv: file: .*an existing file"):
         pe.export_rig(ONE_WAY, "csv", tmp_path / "rig.csv")
     assert (tmp_path / "rig.csv").read_bytes() == old
     pe.export_rig(ONE_WAY, "csv", tmp_path / "rig.csv", replace=True)

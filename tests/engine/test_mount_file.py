@@ -255,7 +255,7 @@ BAD = {
     "a follower with bounds": (
         [LEFT, RIGHT | {"bounds": {"x": [-1, 1]}}],
         PAIR,
-        "sensor 'right': bounds: expected no bounds for a sensor that follows another, found bounds",
+        "sensor 'right': bounds: expected no bounds for a sensor that follows another, found",
     ),
     "a follower on a mount": (
         [LEFT, sensor("right", SLOT["position"], mount="rack")],

@@ -36,21 +36,8 @@ PRIORS = (
 """In the form of a Blender menu; a .blend file holds the numbers."""
 
 
-VOXELS, OBJECTS = "voxels", "objects"
-TARGETS = (
-    (
-        VOXELS,
-        "Voxels",
-        "How well each voxel is measured: perception entropy, as in the paper",
-        0,
-    ),
-    (
-        OBJECTS,
-        "Objects",
-        "How well objects of the prior are detected: expected AP, and range",
-        1,
-    ),
-)
+OBJECTS = "objects"
+"""The targets of a score that panels treat in another way; all are declared by the engine."""
 
 
 @dataclass(frozen=True)

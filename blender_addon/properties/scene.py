@@ -18,8 +18,8 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..choices import PRIORS, TARGETS
-from ..engine import pe, search, studies
+from ..choices import PRIORS
+from ..engine import search, studies
 from .callbacks import changed, redraw
 from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
 from .results import PE_FrontRow, PE_ResultPart, PE_Variant, PE_Warning
@@ -44,6 +44,8 @@ def property_of(key: str, setting: studies.Setting) -> Any:
         "step": panel.step,
         "update": changed if setting.scored else redraw if key.startswith(DRAWN) else None,
     }
+    if isinstance(rule, studies.OneOf):
+        return _made(EnumProperty, {**options, "items": _menu(rule, panel)})
     if isinstance(rule, studies.Toggle):
         return _made(BoolProperty, options)
     if isinstance(rule, studies.Pair):
@@ -57,6 +59,12 @@ def property_of(key: str, setting: studies.Setting) -> Any:
         return _made(IntProperty, {**options, "min": low, "max": high})
     ends = {"min": low, "max": high if math.isfinite(high) else None}
     return _made(FloatProperty, {**options, **ends, "unit": _unit(rule)})
+
+
+def _menu(rule: studies.OneOf, panel: studies.Panel) -> tuple[tuple[str, str, str, int], ...]:
+    """Return the texts of a rule in the form of a Blender menu."""
+    rows = zip(rule.among, panel.menu, strict=True)
+    return tuple((text, *about, number) for number, (text, about) in enumerate(rows))
 
 
 def _unit(rule: Any) -> str:
@@ -76,7 +84,7 @@ StudySettings: Any = type(
         "__annotations__": {
             setting.panel.property: property_of(key, setting)
             for key, setting in studies.setting_keys()
-            if setting.panel is not None and not isinstance(setting.rule, studies.OneOf)
+            if setting.panel is not None
         },
     },
 )
@@ -122,12 +130,6 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         description="File of labelled boxes: KITTI's labels, nuScenes' JSON or CSV",
         subtype="FILE_PATH",
         options=PATH_OPTIONS,
-        update=changed,
-    )
-    targets: EnumProperty(
-        items=TARGETS,
-        name="Targets",
-        description=studies.settings_of(pe.TargetRule)["targets"].text,
         update=changed,
     )
     focus: CollectionProperty(

@@ -81,6 +81,9 @@ class Panel:
         Text of the field at 0, for a setting that may be absent (None) in a file.
     precision, step : optional
         As in `bpy.props`.
+    menu : tuple of (label, meaning)
+        Of a rule `OneOf`: how a menu shows each of its texts, in their order. The order never
+        changes, and new ones go last: .blend files store numbers.
     """
 
     property: str
@@ -92,6 +95,7 @@ class Panel:
     zero: str = ""
     precision: int | None = None
     step: float | None = None
+    menu: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

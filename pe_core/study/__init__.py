@@ -1,6 +1,6 @@
 """Studies: everything a run needs, and their files."""
 
-from ..base.setting import REQUIRED, OneOf, Pair, Setting, Toggle, settings_of
+from ..base.setting import REQUIRED, OneOf, Pair, Panel, Setting, Toggle, settings_of
 from ..base.setting_file import value_in_file
 from ..base.values import Angle, Number, Whole
 from ..search import METHODS, SCHEDULED_METHOD, Robustness
@@ -28,6 +28,7 @@ __all__ = [
     "Number",
     "OneOf",
     "Pair",
+    "Panel",
     "Robustness",
     "Search",
     "Setting",

@@ -10,6 +10,11 @@ from ...base.values import Whole
 
 VOXELS, OBJECTS = "voxels", "objects"
 TARGETS = (VOXELS, OBJECTS)
+MENU = (
+    ("Voxels", "How well each voxel is measured: perception entropy, as in the paper"),
+    ("Objects", "How well objects of the prior are detected: expected AP, and range"),
+)
+"""How Blender's panel shows `TARGETS`."""
 SCENES = 256
 """The default; it gives a standard error of about 0.1 nats on the road."""
 COUNT = Whole(8, 20_000, "scenes")
@@ -38,7 +43,7 @@ class TargetRule:
         VOXELS,
         OneOf(TARGETS),
         "What a rig is scored on: all voxels, or objects of the prior",
-        Panel("targets", "Targets"),
+        Panel("targets", "Targets", menu=MENU),
         scored=True,
     )
     traffic: bool = setting(

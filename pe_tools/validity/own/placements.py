@@ -91,8 +91,16 @@ def vehicle(name: str) -> pe.Vehicle:
 
 def placements(plan: StudyPlan) -> list[Placement]:
     """Return all placements of the plan, design by design, vehicle by vehicle."""
-    designs = (_fixed, _across, _mixed)
-    return [p for of_design in designs for name in plan.vehicles for p in of_design(plan, name)]
+    parts = plan.fixed, plan.mixed, plan.hardware
+    key = plan.seed, plan.vehicles, plan.placements, plan.across, *(tuple(p.items()) for p in parts)
+    if key not in _drawn:
+        designs = (_fixed, _across, _mixed)
+        _drawn[key] = [p for d in designs for name in plan.vehicles for p in d(plan, name)]
+    return list(_drawn[key])
+
+
+_drawn: dict[tuple[object, ...], list[Placement]] = {}
+"""Placements that were drawn, by what they depend on: drawing takes seconds."""
 
 
 def _fixed(plan: StudyPlan, name: str) -> list[Placement]:

@@ -1,0 +1,343 @@
+"""What the results of the runs say: correlations by design, pairs across hardware, statements.
+
+A statement has a verdict only when every run that it rests on is done; until then its figures are
+those so far, and marked as such.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..ranks import holm
+from .placements import Placement, placements
+from .plan import ACROSS, FIXED, GRID, MIXED, PLAIN, StudyPlan
+from .rank_tests import (
+    Resample,
+    Samples,
+    better_half,
+    interval,
+    ordered_share,
+    partial_rho,
+    permutation_p,
+    pooled_noise,
+    rho_within,
+)
+from .runs import Run, runs
+from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY, ComparedScore
+
+Json = dict[str, Any]
+Floats = NDArray[np.float64]
+
+HOLDS, REFUTED, UNDECIDED, OPEN = "holds", "refuted", "not decided", "open"
+FRESH = "mixed, fresh"
+"""The mixed detector at placements that it was never trained with."""
+MIN_SO_FAR = 6
+"""Fewer placements give no figures at all."""
+MOSTLY_RIGHT = 2.0 / 3.0
+"""Share of pairs from which a score may be trusted across hardware."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """The finished part of a design.
+
+    Attributes
+    ----------
+    name : str
+    chosen : list of Placement
+        Those with a result.
+    samples : Samples
+        Their AP, of the seeds that all of them have.
+    done, planned : int
+        Runs.
+    """
+
+    name: str
+    chosen: list[Placement]
+    samples: Samples
+    done: int
+    planned: int
+
+    @property
+    def complete(self) -> bool:
+        """Whether all runs are done."""
+        return self.done == self.planned
+
+    @property
+    def has_figures(self) -> bool:
+        """Whether there are enough placements for a figure."""
+        return len(self.chosen) >= MIN_SO_FAR and bool(self.samples.members)
+
+
+def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Json]) -> Json:
+    """Return all that follows from the results of the runs, as JSON data.
+
+    Parameters
+    ----------
+    plan : StudyPlan
+    results : mapping
+        Results by the name of the run.
+    scores : mapping
+        Scores by the name of the placement, of all placements with results.
+    """
+    designs = [_design(plan, FIXED, results), _design(plan, ACROSS, results)]
+    designs += [_mixed(plan, results, name) for name in (MIXED, FRESH)]
+    tables = {d.name: _table(plan, d, scores) for d in designs}
+    pairs = _pairs(plan, results, scores)
+    return {
+        "runs": {"done": len(results), "planned": len(runs(plan))},
+        "designs": tables,
+        "pairs": pairs,
+        "steps": _steps(plan, results, scores),
+        "statements": _statements(plan, tables, pairs),
+    }
+
+
+def _design(
+    plan: StudyPlan, name: str, results: Mapping[str, Json], step: tuple[str, str] = (PLAIN, GRID)
+) -> Design:
+    """Return the finished part of a design with a detector a placement."""
+    wanted = [
+        r
+        for r in runs(plan)
+        if r.placement is not None and (r.world, r.detector) == step and r.design == name
+    ]
+    return _of_runs(name, wanted, results)
+
+
+def _of_runs(name: str, wanted: Sequence[Run], results: Mapping[str, Json]) -> Design:
+    aps: dict[Placement, list[float]] = {}
+    for run in wanted:
+        if run.name in results and run.placement is not None:
+            aps.setdefault(run.placement, []).append(results[run.name]["ap"])
+    done = sum(map(len, aps.values()))
+    return Design(name, list(aps), _samples(aps), done, len(wanted))
+
+
+def _mixed(plan: StudyPlan, results: Mapping[str, Json], name: str) -> Design:
+    """Return the placements at which the mixed detector was tested; only fresh ones for `FRESH`."""
+    by_name = {p.name: p for p in placements(plan)}
+    wanted = [run for run in runs(plan) if run.placement is None]
+    aps: dict[Placement, list[float]] = {}
+    done = [run for run in wanted if run.name in results]
+    for run in done:
+        for placement, found in results[run.name]["placements"].items():
+            if name == MIXED or not found["trained_with"]:
+                aps.setdefault(by_name[placement], []).append(found["ap"])
+    return Design(name, list(aps), _samples(aps), len(done), len(wanted))
+
+
+def _samples(aps: Mapping[Placement, Sequence[float]]) -> Samples:
+    """Return samples with the seeds that all placements have."""
+    count = min(map(len, aps.values()), default=0)
+    values = np.array([list(row)[:count] for row in aps.values()]).reshape(len(aps), count)
+    groups = np.array([p.vehicle for p in aps])
+    return Samples(values, groups, np.array([f"{p.lidars} x {p.channels}" for p in aps]))
+
+
+def _values(
+    score: ComparedScore, chosen: Sequence[Placement], scores: Mapping[str, Json]
+) -> Floats:
+    return np.array([score.value(p, scores[p.name]) for p in chosen])
+
+
+def _of_design(name: str) -> list[ComparedScore]:
+    return [s for s in COMPARED if name == ACROSS or not s.across_only]
+
+
+def _table(plan: StudyPlan, design: Design, scores: Mapping[str, Json]) -> Json:
+    """Return the correlations of a design with each score."""
+    head = {"done": design.done, "planned": design.planned, "placements": len(design.chosen)}
+    if not design.has_figures:
+        return {**head, "scores": {}}
+    rows = {s.name: _row(plan, design, s, scores) for s in _of_design(design.name)}
+    primary = design.name == FIXED
+    corrected = [name for name in rows if not (primary and name == PRIMARY)]
+    for name, p in zip(corrected, holm([rows[n]["p"] for n in corrected]), strict=True):
+        rows[name]["holm"] = p
+    ap = design.samples.ap
+    return {
+        **head,
+        "seeds": design.samples.aps.shape[1],
+        "ap": [_rounded(float(v)) for v in (ap.min(), np.median(ap), ap.max())],
+        "noise": _rounded(pooled_noise(design.samples)),
+        "scores": rows,
+    }
+
+
+def _row(plan: StudyPlan, design: Design, score: ComparedScore, scores: Mapping[str, Json]) -> Json:
+    values, samples = _values(score, design.chosen, scores), design.samples
+    heights = np.array([p.mean_height for p in design.chosen])
+    members = samples.members
+
+    def rho(resample: Resample) -> Floats:
+        return rho_within(values[resample.index], resample.ap, members)
+
+    row: Json = {
+        "rho": _rounded(float(rho_within(values, samples.ap, members))),
+        "interval": _interval(plan, samples, rho),
+        "p": permutation_p(values, samples, plan.statistics, plan.seed),
+    }
+    if score.name != HEIGHT:
+        row["given_height"] = _partial(plan, samples, values, heights)
+        row["height_given"] = _partial(plan, samples, heights, values)
+    if samples.aps.shape[1] > 1:
+        row["better_half"] = _better_half(plan, samples, values)
+    return row
+
+
+def _partial(plan: StudyPlan, samples: Samples, values: Floats, given: Floats) -> Json:
+    members = samples.members
+
+    def partial(resample: Resample) -> Floats:
+        index = resample.index
+        return partial_rho(values[index], resample.ap, given[index], members)
+
+    return {
+        "rho": _rounded(float(partial_rho(values, samples.ap, given, members))),
+        "interval": _interval(plan, samples, partial),
+    }
+
+
+def _better_half(plan: StudyPlan, samples: Samples, values: Floats) -> Json | None:
+    index, half = better_half(samples)
+    members = half.members
+    if not members:
+        return None
+    of_half = values[index]
+
+    def rho(resample: Resample) -> Floats:
+        return rho_within(of_half[resample.index], resample.ap, members)
+
+    return {
+        "rho": _rounded(float(rho_within(of_half, half.ap, members))),
+        "interval": _interval(plan, half, rho),
+    }
+
+
+def _interval(
+    plan: StudyPlan, samples: Samples, statistic: Callable[[Resample], Floats]
+) -> list[float | None]:
+    return [_rounded(v) for v in interval(samples, plan.statistics, plan.seed, statistic)]
+
+
+def _pairs(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Json]) -> Json:
+    """Return how many pairs of placements with different hardware each score orders rightly."""
+    parts = [_design(plan, name, results) for name in (FIXED, ACROSS)]
+    both = [
+        run
+        for run in runs(plan)
+        if run.placement is not None and (run.world, run.detector) == (PLAIN, GRID)
+    ]
+    design = _of_runs("pairs", both, results)
+    head = {"done": sum(p.done for p in parts), "planned": sum(p.planned for p in parts)}
+    if not all(part.has_figures for part in parts):
+        return {**head, "scores": {}}
+    samples, tie = design.samples, plan.statistics.tie_ap
+    values = {s.name: _values(s, design.chosen, scores) for s in COMPARED}
+
+    def share(name: str) -> Callable[[Resample], Floats]:
+        def statistic(resample: Resample) -> Floats:
+            found = [
+                ordered_share(values[name][i], ap, samples.hardware[i], samples.groups[i], tie)
+                for i, ap in zip(resample.index, resample.ap, strict=True)
+            ]
+            return np.array(found)
+
+        return statistic
+
+    def of_all(name: str) -> float:
+        return ordered_share(values[name], samples.ap, samples.hardware, samples.groups, tie)
+
+    rows = {
+        name: {"share": _rounded(of_all(name)), "interval": _interval(plan, samples, share(name))}
+        for name in values
+    }
+    difference = {
+        "share": _rounded(of_all(EXPECTED_AP) - of_all(PRIMARY)),
+        "interval": _interval(plan, samples, lambda r: share(EXPECTED_AP)(r) - share(PRIMARY)(r)),
+    }
+    return {**head, "scores": rows, "expected_ap_minus_primary": difference}
+
+
+def _steps(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Json]) -> list[Json]:
+    """Return rho of each score in the steps, and of the same placements in the plain world."""
+    found = []
+    for step in plan.steps:
+        wanted = [r for r in runs(plan) if (r.world, r.detector) == (step.world, step.detector)]
+        for name in (FIXED, ACROSS):
+            design = _of_runs(name, [r for r in wanted if r.design == name], results)
+            entry: Json = {"world": step.world, "detector": step.detector, "design": name}
+            entry |= {"done": design.done, "planned": design.planned, "scores": {}}
+            plain = _design(plan, name, results)
+            if design.has_figures and set(design.chosen) <= set(plain.chosen):
+                index = np.array([plain.chosen.index(p) for p in design.chosen])
+                same = plain.samples.subset(index)
+                for score in _of_design(name):
+                    values = _values(score, design.chosen, scores)
+                    rhos = (rho_within(values, s.ap, s.members) for s in (design.samples, same))
+                    here, there = (_rounded(float(r)) for r in rhos)
+                    entry["scores"][score.name] = {"rho": here, "plain": there}
+            found.append(entry)
+    return found
+
+
+def _statements(plan: StudyPlan, tables: Mapping[str, Json], pairs: Json) -> list[Json]:
+    """Return the statements of the plan, each with its figures and its verdict."""
+    rule, fixed = plan.statistics, tables[FIXED]
+    primary = fixed["scores"].get(PRIMARY, {})
+    half = primary.get("better_half") or {}
+    given = primary.get("given_height") or {}
+    share = pairs["scores"].get(PRIMARY, {})
+    difference = pairs.get("expected_ap_minus_primary", {})
+    significant = bool(primary) and primary["p"] < rule.alpha and primary["rho"] > 0.0
+    first = HOLDS if significant else REFUTED
+    rows: list[tuple[str, Json, str, Json]] = [
+        ("Within one rig, a lower entropy goes with more found objects", primary, first, fixed),
+        (
+            "It is a useful ranking within one rig",
+            primary,
+            _beside(primary, rule.useful_rho),
+            fixed,
+        ),
+        ("It still ranks among good placements", half, _above(half), fixed),
+        ("It says more than height", given, _above(given), fixed),
+        ("It may be compared across hardware", share, _beside(share, MOSTLY_RIGHT), pairs),
+        (
+            "Expected AP in traffic is better across hardware",
+            difference,
+            _beside(difference, 0.0),
+            pairs,
+        ),
+    ]
+    return [
+        {
+            "statement": text,
+            "figures": {k: figures[k] for k in ("rho", "share", "interval", "p") if k in figures},
+            "verdict": verdict if figures and part["done"] == part["planned"] else OPEN,
+        }
+        for text, figures, verdict, part in rows
+    ]
+
+
+def _beside(figures: Json, edge: float) -> str:
+    """Return `HOLDS` if the interval is above an edge, `REFUTED` if it is below."""
+    low, high = figures.get("interval", (None, None))
+    if low is None or high is None:
+        return UNDECIDED
+    return HOLDS if low > edge else REFUTED if high < edge else UNDECIDED
+
+
+def _above(figures: Json) -> str:
+    """Return `HOLDS` if the interval is above 0, else `REFUTED`."""
+    return HOLDS if _beside(figures, 0.0) == HOLDS else REFUTED
+
+
+def _rounded(value: float) -> float | None:
+    return None if math.isnan(value) else round(value, 4)

@@ -1,6 +1,7 @@
 """Our own study: scenes, points, targets of the detector, average precision, order of runs."""
 
 import hashlib
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +20,9 @@ from pe_tools.validity.own.plan import PLAIN, TOWN, full_plan, quick_plan
 from pe_tools.validity.own.precision import ClassScene, average_precision, in_ring
 from pe_tools.validity.own.runs import RunFiles, runs
 from pe_tools.validity.own.scenes import CLASSES, NOBODY, scene
+from pe_tools.validity.own.segmentation import section
+from pe_tools.validity.own.study_page import page
+from tests.report.conftest import ROOT, pe
 
 PLAN = full_plan()
 PLACEMENT = placements(PLAN)[0]
@@ -185,10 +189,30 @@ def test_a_run_has_the_same_results_when_it_is_repeated():
         scenes=replace(plan.scenes, counts=counts),
         mixed={**plan.mixed, "scenes": 8, "test_scenes": 4},
     )
-    for run in (runs(plan)[0], runs(plan)[-1]):
-        first, again = (run_one(plan, run, None) for _ in range(2))
-        for data in (first, again):
-            del data["seconds"], data["training"]["training_seconds"]
-        assert first == again
-        assert len(first["training"]["validation_losses"]) == 2
+    mixed = runs(plan)[-1]
+    first, again = (run_one(plan, mixed, None) for _ in range(2))
+    for data in (first, again):
+        del data["seconds"], data["training"]["training_seconds"]
+    assert first == again
+    assert len(first["training"]["validation_losses"]) == 2
     assert [p["trained_with"] for p in first["placements"].values()] == [True, True, False, False]
+
+
+def test_the_page_is_that_of_the_saved_results():
+    folder = ROOT / "docs" / "validity" / "own"
+    done = RunFiles(folder, PLAN).read()
+    saved = json.loads((folder / "results.json").read_text("utf-8"))
+    assert saved["runs"]["done"] == len(done) == len(list((folder / "runs").iterdir()))
+    outside = section(
+        json.loads((folder / "segmentation.json").read_text("utf-8")), PLAN.statistics, PLAN.seed
+    )
+    assert (folder / "README.md").read_text("utf-8") == page(PLAN, saved, done, outside)
+
+
+def test_the_command_refuses_to_mix_results_and_says_what_is_missing(tmp_path):
+    """Results that are there are gone on with by --resume alone."""
+    plan = quick_plan()
+    files = RunFiles(tmp_path, plan)
+    files.write(files.all[0], {"ap": 0.5})
+    run = pe("validate", "--own", "--quick", "--output", tmp_path)
+    assert run.returncode == 1 and "1 of 4 runs; pass --resume" in run.stderr

@@ -86,9 +86,7 @@ def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, 
     scores : mapping
         Scores by the name of the placement, of all placements with results.
     """
-    designs = [_design(plan, FIXED, results), _design(plan, ACROSS, results)]
-    designs += [_mixed(plan, results, name) for name in (MIXED, FRESH)]
-    tables = {d.name: _table(plan, d, scores) for d in designs}
+    tables = {d.name: _table(plan, d, scores) for d in designs_of(plan, results)}
     pairs = _pairs(plan, results, scores)
     return {
         "runs": {"done": len(results), "planned": len(runs(plan))},
@@ -97,6 +95,12 @@ def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, 
         "steps": _steps(plan, results, scores),
         "statements": _statements(plan, tables, pairs),
     }
+
+
+def designs_of(plan: StudyPlan, results: Mapping[str, Json]) -> list[Design]:
+    """Return the finished parts of all designs."""
+    own = [_design(plan, name, results) for name in (FIXED, ACROSS)]
+    return own + [_mixed(plan, results, name) for name in (MIXED, FRESH)]
 
 
 def _design(

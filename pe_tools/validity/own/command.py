@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from pe_core import InputError, prepare_folder
+from pe_core.base import dump_json, write_bytes
 from pe_core.base.plugins import install_hint, required_plugin
 
-from ...cli import DONE, Answer, noted_when_interrupted
+from ...cli import DONE, Answer, noted_when_interrupted, tell
+from ...reproduction.plotting import EXTRA, has_matplotlib
 from ...reproduction.task_runner import print_progress
-from .plan import full_plan, quick_plan
-from .runs import RunFiles
+from ...reproduction.wording import PAGE, check_page
+from .analysis import analysis, designs_of
+from .placements import Placement, placements
+from .plan import StudyPlan, full_plan, quick_plan
+from .runs import RunFiles, runs
+from .scores import placement_scores
+from .segmentation import section, segmentation_scores
+from .study_page import TITLE, page, plot_name
 
+CONCLUSIONS = "results.json"
+"""What follows from the runs."""
 CAST = "cast"
 """Folder of the scenes that were cast; it may be deleted."""
 ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
@@ -23,8 +34,48 @@ ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 
 def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
     """Run the verb."""
+    check_page(folder, TITLE, "pe validate --own")
     files = do_runs(args, folder)
-    return f"{len(files.all) - len(files.missing())} of {len(files.all)} runs are done", DONE
+    plan, results = files.plan, files.read()
+    scores = placement_scores(plan, _scored(plan, results), folder, print_progress)
+    outside = "" if args.quick else _from_outside(plan, folder)
+    found = analysis(plan, results, scores)
+    write_bytes(folder / CONCLUSIONS, dump_json(found).encode())
+    write_bytes(folder / PAGE, page(plan, found, results, outside).encode())
+    if has_matplotlib():
+        _draw(plan, results, scores, folder)
+    else:
+        tell(f"no plots, as matplotlib is missing: {EXTRA}")
+    return dump_json(found) if args.json else _summary(found), DONE
+
+
+def _from_outside(plan: StudyPlan, folder: Path) -> str:
+    scores = segmentation_scores(folder, print_progress)
+    return section(scores, plan.statistics, plan.seed)
+
+
+def _scored(plan: StudyPlan, results: Mapping[str, Any]) -> list[Placement]:
+    """Return the placements that have a result."""
+    named = {p for run in results.values() for p in run.get("placements", ())}
+    tried = {run.placement.name for run in runs(plan) if run.placement and run.name in results}
+    return [p for p in placements(plan) if p.name in named | tried]
+
+
+def _draw(
+    plan: StudyPlan, results: Mapping[str, Any], scores: Mapping[str, Any], folder: Path
+) -> None:
+    from .study_plots import ap_against_scores
+
+    for design in designs_of(plan, results):
+        if design.has_figures:
+            ap_against_scores(folder / plot_name(design.name), plan, design, scores)
+
+
+def _summary(found: Mapping[str, Any]) -> str:
+    """Return the statements and their verdicts, for people."""
+    done, planned = found["runs"]["done"], found["runs"]["planned"]
+    lines = [f"{row['verdict']:12} {row['statement']}" for row in found["statements"]]
+    return "\n".join([f"{done} of {planned} runs are done", *lines])
 
 
 def do_runs(args: argparse.Namespace, folder: Path) -> RunFiles:

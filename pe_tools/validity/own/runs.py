@@ -118,10 +118,15 @@ class RunFiles:
     folder : Path
         The folder of the study.
     plan : StudyPlan
+
+    Attributes
+    ----------
+    all : list of Run
+        The runs of the plan in their order.
     """
 
     def __init__(self, folder: Path, plan: StudyPlan) -> None:
-        self._folder, self._plan = folder / RUNS, plan
+        self._folder, self.plan = folder / RUNS, plan
         self.all = runs(plan)
 
     def path(self, run: Run) -> Path:
@@ -135,7 +140,7 @@ class RunFiles:
     def write(self, run: Run, data: Json) -> None:
         """Write a run's results atomically."""
         self._folder.mkdir(parents=True, exist_ok=True)
-        head = {"schema": SCHEMA, "plan": self._plan.digest, "run": run.name}
+        head = {"schema": SCHEMA, "plan": self.plan.digest, "run": run.name}
         write_bytes(self.path(run), dump_json({**head, **data}).encode())
 
     def read(self) -> dict[str, Json]:
@@ -152,7 +157,7 @@ class RunFiles:
     def _checked(self, path: Path, name: str) -> Json:
         data = read_json(path)
         table = Table(data, str(path))
-        for key, expected in (("schema", SCHEMA), ("plan", self._plan.digest), ("run", name)):
+        for key, expected in (("schema", SCHEMA), ("plan", self.plan.digest), ("run", name)):
             if table.raw(key) != expected:
                 raise InputError(path, key, str(expected), table.raw(key))
         parts = table.table("placements") if name.startswith(MIXED) else None

@@ -64,7 +64,7 @@ def placement_scores(
     plan: StudyPlan,
     needed: Iterable[Placement],
     folder: Path,
-    report: Callable[[str], None] | None,
+    report: Callable[[str], None],
 ) -> dict[str, Json]:
     """Return the scores of placements by name; those that scores.json does not have are computed.
 
@@ -74,13 +74,13 @@ def placement_scores(
     needed : iterable of Placement
     folder : Path
         Folder of scores.json.
-    report : callable or None
-        Takes a line for each placement that is scored; None: nothing may be computed.
+    report : callable
+        Takes a line for each placement that is scored.
 
     Raises
     ------
     InputError
-        When the file is of another plan, or scores are missing and may not be computed.
+        When the file is of another plan.
     """
     path = folder / SCORES
     scores: dict[str, Json] = {}
@@ -90,13 +90,10 @@ def placement_scores(
             raise InputError(path, "plan", plan.digest, str(data.get("plan")))
         scores = data["scores"]
     missing = [p for p in needed if p.name not in scores]
-    if missing and report is None:
-        raise InputError(path, "scores", "those of all runs", f"none of {missing[0].name}")
     for placement in missing:
         scores[placement.name] = _scores(plan, placement)
         data = {"plan": plan.digest, "scores": dict(sorted(scores.items()))}
         write_bytes(path, dump_json(data).encode())
-        assert report is not None
         report(f"scored {placement.name}")
     return scores
 

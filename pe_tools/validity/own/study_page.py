@@ -1,0 +1,265 @@
+"""The page of our own study, from its saved results alone; verdicts are computed, none is written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ...reproduction.wording import joined, table, wrapped
+from ..findings import p_text, rho_text
+from .analysis import FRESH, HOLDS, OPEN, REFUTED, UNDECIDED
+from .plan import ACROSS, FIXED, MIXED, StudyPlan
+from .scores import PRIMARY
+
+Json = Mapping[str, Any]
+
+TITLE = "# Does a better score find more? Our own study"
+DESIGNS = {
+    FIXED: "One rig: two LiDARs of 16 channels, a detector a placement",
+    ACROSS: "Across hardware: one, two or four LiDARs, a detector a placement",
+    MIXED: "One detector for many placements",
+    FRESH: "The same detector at placements that it never met",
+}
+SO_FAR = "so far"
+
+
+def page(plan: StudyPlan, results: Json, runs: Mapping[str, Json], outside: str) -> str:
+    """Return the page as Markdown.
+
+    Parameters
+    ----------
+    plan : StudyPlan
+    results : mapping
+        The analysis.
+    runs : mapping
+        Results by the name of the run.
+    outside : str
+        The section on results of others.
+    """
+    sections = [
+        _head(plan, results),
+        _statements(results),
+        *(_design(name, results["designs"][name]) for name in DESIGNS),
+        _pairs(plan, results["pairs"]),
+        _steps(results["steps"]),
+        outside,
+        _runs(runs),
+        _again(),
+    ]
+    return wrapped(section for section in sections if section)
+
+
+def _head(plan: StudyPlan, results: Json) -> str:
+    done, planned = results["runs"]["done"], results["runs"]["planned"]
+    quick = (
+        "These are the results of `--quick`: they show that everything runs, and nothing else.\n\n"
+        if plan.digest.startswith("quick")
+        else ""
+    )
+    return f"""
+{TITLE}
+
+{quick}**What is unreal.** Still scenes without motion, rain or intensity; objects at positions that do not depend
+on each other; shapes of a few solids; a small detector, trained with hundreds of scenes, that is asked for centres and
+not for sizes. In the plain world the ground is flat and there are no houses, which favours height. Absolute AP is
+no prediction for a product.
+
+**The answer.** {_answer(results)}
+
+{done} of {planned} runs are done. The study was fixed before the first of them: [plan](plan.md). `pe validate --own
+--resume` does the next ones and writes this page; every figure is computed from the files in the folder `runs`.
+"""
+
+
+def _answer(results: Json) -> str:
+    """Return the answer in three sentences; each has a verdict only when its runs are done."""
+    verdicts = [row["verdict"] for row in results["statements"]]
+    return f"{_within(verdicts[0])} {_good(verdicts[2:4])} {_across(verdicts[4:])}"
+
+
+def _within(verdict: str) -> str:
+    return {
+        HOLDS: "Within one rig, placements with a lower perception entropy find more.",
+        REFUTED: "Within one rig, perception entropy does not say which placement finds more.",
+        OPEN: "Whether placements of one rig with a lower perception entropy find more is open: "
+        "not all runs of this design are done.",
+    }[verdict]
+
+
+def _good(verdicts: Sequence[str]) -> str:
+    if OPEN in verdicts:
+        return "Whether it still does among good placements, and beyond height, is open, too."
+    texts = [
+        f"{'still ranks' if verdicts[0] == HOLDS else 'was not shown to rank'} good placements",
+        f"{'says' if verdicts[1] == HOLDS else 'was not shown to say'} more than their height",
+    ]
+    return f"It {joined(texts)}."
+
+
+def _across(verdicts: Sequence[str]) -> str:
+    if OPEN in verdicts:
+        return "Whether it may be compared across hardware is open."
+    first = {
+        HOLDS: "Across hardware it may be compared",
+        REFUTED: "Across hardware it misleads",
+        UNDECIDED: "Whether it may be compared across hardware is not decided",
+    }[verdicts[0]]
+    second = {
+        HOLDS: "expected AP in traffic is better there",
+        REFUTED: "expected AP in traffic is worse there",
+        UNDECIDED: "no difference from expected AP in traffic was shown",
+    }[verdicts[1]]
+    return f"{first}; {second}."
+
+
+def _statements(results: Json) -> str:
+    lines = [
+        [row["statement"], _figures(row["figures"]), row["verdict"]]
+        for row in results["statements"]
+    ]
+    return f"""
+## The statements of the plan
+
+The plan says when each holds and when it is refuted. *Open*: runs are missing, and figures are those so far.
+
+{table(["statement", "figures", "verdict"], lines)}
+"""
+
+
+def _figures(figures: Json) -> str:
+    if not figures:
+        return "-"
+    is_share = "share" in figures
+    value = figures["share"] if is_share else figures["rho"]
+    text = (
+        f"{'share' if is_share else 'rho'} {_value(value, is_share)} {_interval(figures, is_share)}"
+    )
+    return f"{text}, p {p_text(figures['p'])}" if "p" in figures else text
+
+
+def _value(value: float | None, is_share: bool = False) -> str:
+    if is_share:
+        return "-" if value is None else f"{value:.2f}"
+    return rho_text(value)
+
+
+def _interval(figures: Json | None, is_share: bool = False) -> str:
+    if not figures:
+        return "-"
+    low, high = figures["interval"]
+    return f"({_value(low, is_share)} to {_value(high, is_share)})"
+
+
+def _design(name: str, found: Json) -> str:
+    state = f"{found['done']} of {found['planned']} runs, {found['placements']} placements"
+    head = f"## {DESIGNS[name]}\n\n"
+    if not found["scores"]:
+        return f"{head}{state}: too few for figures."
+    done = found["done"] == found["planned"]
+    lowest, middle, highest = found["ap"]
+    noise = found["noise"]
+    of_noise = "" if noise is None else f" The standard deviation over the seeds is {noise:.4f}."
+    lines = [_line(score, row) for score, row in found["scores"].items()]
+    titles = [
+        "score",
+        "rho (95 %)",
+        "p",
+        "p after Holm",
+        "given height",
+        "height given it",
+        "better half",
+    ]
+    return f"""
+{head}{state}{"" if done else f"; figures {SO_FAR}"}. AP from {lowest:.3f} by {middle:.3f} (median) to {highest:.3f}, seeds
+averaged: {found["seeds"]}.{of_noise}
+
+{table(titles, lines)}
+
+![AP against scores]({plot_name(name)})
+"""
+
+
+def _line(score: str, row: Json) -> list[str]:
+    given, height, half = (row.get(k) for k in ("given_height", "height_given", "better_half"))
+    holm = row.get("holm")
+    return [
+        f"**{score}**" if score == PRIMARY else score,
+        f"{rho_text(row['rho'])} {_interval(row)}",
+        p_text(row["p"]),
+        "-" if holm is None else p_text(holm),
+        *(
+            f"{rho_text(part['rho'])} {_interval(part)}" if part else "-"
+            for part in (given, height, half)
+        ),
+    ]
+
+
+def plot_name(design: str) -> str:
+    """Return the file name of a design's plot."""
+    return f"{design.replace(', ', '_')}.png"
+
+
+def _pairs(plan: StudyPlan, pairs: Json) -> str:
+    head = "## Pairs of placements with different hardware\n\n"
+    state = f"{pairs['done']} of {pairs['planned']} runs"
+    if not pairs["scores"]:
+        return f"{head}{state}: too few for figures."
+    lines = [
+        [score, f"{_value(row['share'], True)} {_interval(row, True)}"]
+        for score, row in pairs["scores"].items()
+    ]
+    so_far = "" if pairs["done"] == pairs["planned"] else f"; figures {SO_FAR}"
+    return f"""
+{head}{state}{so_far}. Pairs on one vehicle that differ in AP by at least {plan.statistics.tie_ap:g}: the
+share that a score orders rightly. Chance: 0.50.
+
+{table(["score", "share (95 %)"], lines)}
+"""
+
+
+def _steps(steps: Sequence[Json]) -> str:
+    parts = []
+    for step in steps:
+        title = f"{step['world']} world, {step['detector']} detector, {step['design']}"
+        state = f"{step['done']} of {step['planned']} runs"
+        if not step["scores"]:
+            parts.append(f"- {title}: {state}.")
+            continue
+        lines = [
+            [score, rho_text(row["rho"]), rho_text(row["plain"]), _sign(row)]
+            for score, row in step["scores"].items()
+        ]
+        titles = ["score", "rho", "the same placements, plain and grid", ""]
+        parts.append(f"### {title}\n\n{state}.\n\n{table(titles, lines)}")
+    body = "\n\n".join(parts) if any(s["scores"] for s in steps) else "\n".join(parts)
+    return f"## Steps towards reality\n\n{body}" if steps else ""
+
+
+def _sign(row: Json) -> str:
+    return "sign changes" if (row["rho"] or 0.0) * (row["plain"] or 0.0) < 0.0 else ""
+
+
+def _runs(runs: Mapping[str, Json]) -> str:
+    trainings = [run["training"] for run in runs.values()]
+    if not trainings:
+        return ""
+    epochs = [t["epochs"] for t in trainings]
+    unfinished = sum(not t["converged"] for t in trainings)
+    hours = sum(run["seconds"] for run in runs.values()) / 3600.0
+    commits = sorted({run["made"]["commit"] for run in runs.values()})
+    return f"""
+## The runs
+
+{min(epochs)} to {max(epochs)} epochs; {unfinished} of {len(trainings)} runs had not converged at the last epoch that the
+plan allows. {hours:.1f} processor hours in all. Commit: {joined(commits)}.
+"""
+
+
+def _again() -> str:
+    return """
+## Again
+
+`pip install 'perception-entropy[validate]'`, then `pe validate --own --output FOLDER`: all runs, in the order of the
+plan. Delete the file of a run, and `--resume` does it again. `--runs N` does the next N; `--page-only` writes
+the page; `--quick` shows with three placements that everything runs.
+"""

@@ -1,0 +1,52 @@
+"""The plots of our own study: AP against scores, drawn from saved results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+
+from ...reproduction.plotting import BLUE, ORANGE, remove_frame, save_plot, styled
+from .analysis import Design
+from .plan import StudyPlan
+from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
+
+SHOWN = (PRIMARY, EXPECTED_AP, HEIGHT)
+LABELS = ("perception entropy [nats]", "expected AP in traffic", "mean height [m]")
+COLORS = (BLUE, ORANGE)
+
+
+@styled
+def ap_against_scores(
+    path: Path, plan: StudyPlan, design: Design, scores: Mapping[str, dict[str, Any]]
+) -> None:
+    """Draw AP against three scores: a dot a placement, a bar from lowest to highest seed."""
+    figure, axes = plt.subplots(1, 3, figsize=(9.4, 3.3), sharey=True, layout="constrained")
+    chosen = {s.name: s for s in COMPARED}
+    for panel, name, label in zip(axes, SHOWN, LABELS, strict=True):
+        sign = -1.0 if name == PRIMARY else 1.0
+        values = [sign * chosen[name].value(p, scores[p.name]) for p in design.chosen]
+        _panel(panel, plan, design, np.array(values))
+        panel.set_xlabel(label)
+    axes[0].invert_xaxis()  # the better, the further right, as in the other panels
+    axes[0].set_ylabel("mean AP of five classes")
+    axes[0].legend(loc="upper left", frameon=False, handletextpad=0.1)
+    save_plot(figure, path)
+
+
+def _panel(panel: Axes, plan: StudyPlan, design: Design, values: np.ndarray) -> None:
+    aps, mean = design.samples.aps, design.samples.ap
+    for vehicle, color in zip(plan.vehicles, COLORS, strict=False):
+        index = np.flatnonzero(design.samples.groups == vehicle)
+        low, high = aps[index].min(axis=1), aps[index].max(axis=1)
+        panel.vlines(values[index], low, high, color=color, lw=1.0, alpha=0.5)
+        panel.plot(values[index], mean[index], "o", color=color, ms=4.5, label=vehicle)
+    remove_frame(panel)

@@ -17,6 +17,7 @@ from pe_core.base.serialization import finite
 from pe_core.scoring.requirements import Requirement, Verdict
 from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
+from pe_core.study.requirement_search import Suggestion, suggestions
 
 from .run_job import print_vehicle
 from .terminal import DONE, Answer
@@ -37,6 +38,8 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
     about = "a preset besides the study's requirements (pe requirements lists them); all: each one"
     parser.add_argument("--preset", action="append", default=[], metavar="ID", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
+    about = "say which small change of one sensor would meet what is not met"
+    parser.add_argument("--suggest", action="store_true", help=about)
     parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
 
 
@@ -77,14 +80,26 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     if args.csv:
         write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))
     status = DONE if all(v.met for v in verdicts) else NOT_MET
+    wanted = args.suggest and status != DONE
+    suggested = suggestions(study) if wanted else {}
     if args.json:
         data = {
             "met": sum(v.met for v in verdicts),
             "requirements": [v.to_dict() for v in verdicts],
             "unchecked": unchecked,
+            "suggestions": {name: own and own.text for name, own in suggested.items()},
         }
         return dump_json(finite(data)), status
-    return "\n".join(verdict_lines(verdicts, unchecked)), status
+    lines = [*verdict_lines(verdicts, unchecked), *_suggested(suggested)]
+    return "\n".join(lines), status
+
+
+def _suggested(found: dict[str, Suggestion | None]) -> list[str]:
+    """Return a line for each requirement: what would meet it."""
+    none = "no change of one sensor that was tried is enough"
+    return [
+        f"{name}: met with {own.text}" if own else f"{name}: {none}" for name, own in found.items()
+    ]
 
 
 def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, str]]:

@@ -61,7 +61,7 @@ MAX_CHAIN_LENGTH = 30
 MAX_LINES = 26_000
 LINES_OF_REQUIREMENTS = {
     "pe_core/scoring/requirements/": 2_500,
-    "pe_core/study/requirement_": 600,
+    "pe_core/study/requirement_": 650,
 }
 """Lines of requirements, and of their file and their search, beside `MAX_LINES` of all others."""
 LIBRARIES = {

@@ -19,7 +19,12 @@ from pe_core.scoring.requirements import (
     Zone,
     sees,
 )
-from pe_core.study.requirement_search import INFEASIBLE, conflicts, feasible_first
+from pe_core.study.requirement_search import (
+    INFEASIBLE,
+    conflicts,
+    feasible_first,
+    suggestions,
+)
 from tests.engine import shapes
 
 BEHIND = Zone(x=("rear + 0.6", "rear + 1.6"), y=(-0.6, 0.6), step=0.3)
@@ -97,6 +102,25 @@ def test_a_requirement_that_cannot_be_kept_is_told_with_what_stands_against_it()
     )
     assert [v.met for v in both.verdicts()] == [True, False]
     assert conflicts(both, both.rig) == {"far": ("near",)}
+
+
+def test_the_nearest_change_of_one_sensor_is_suggested():
+    """It meets the requirement, moves one sensor, and no shorter step of any variable does."""
+    start = study()
+    found = suggestions(start)
+    assert set(found) == {"behind", "left"}
+    for name, own in found.items():
+        assert own is not None and len(own.moved) == 1 and own.moved[0] in own.text
+        met = {v.name: v.met for v in start.verdicts(own.rig)}
+        assert met[name] and set(own.breaks) == {n for n in met if not met[n]} - {"behind", "left"}
+    half = [
+        pe.Pose(*((np.array([new, old]).mean(axis=0)).tolist() for new, old in pairs))
+        for pairs in (
+            ((moved.pose.position, s.pose.position), (moved.pose.rpy, s.pose.rpy))
+            for moved, s in zip(found["behind"].rig, start.rig, strict=True)
+        )
+    ]
+    assert not {v.name: v.met for v in start.verdicts(start.rig.with_poses(half))}["behind"]
 
 
 def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():

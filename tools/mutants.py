@@ -34,6 +34,7 @@ from mutant_bench import ROOT, Bench, Reached, by_function, function_at, recorde
 SETTINGS = ROOT / "tests" / "mutants.toml"
 
 KILLED, SURVIVED, TIMED_OUT, SAME = "killed", "survived", "timed out", "equivalent"
+QUICK_FILES = 2
 UNKNOWN_TEST = (4, 5)
 """Pytest's exit statuses when it does not find a test by its name."""
 REMOVED = "(removed)"
@@ -201,7 +202,13 @@ class Judge:
             inside = f"{mutant.file}::"
             first = {t for f, own in self._callers.items() if f.startswith(inside) for t in own}
             rest = set(self._reached)
-        return [self._ordered(tests) for tests in (first, rest - first) if tests]
+        quick = self._quickest(first)
+        return [self._ordered(part) for part in (quick, first - quick, rest - first) if part]
+
+    def _quickest(self, tests: set[str]) -> set[str]:
+        """Tests of the quickest two files: most mutants need no other file to be collected."""
+        files = list(dict.fromkeys(map(_file_of, self._ordered(tests))))[:QUICK_FILES]
+        return {test for test in tests if _file_of(test) in files}
 
     def _ordered(self, tests: set[str]) -> list[str]:
         """Quick files first, each file's tests together."""

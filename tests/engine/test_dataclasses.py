@@ -1,6 +1,7 @@
 """Dataclasses of the engine and its tools: what others hold can't be changed once it is made."""
 
 import dataclasses
+import functools
 import importlib
 import inspect
 import pkgutil
@@ -10,18 +11,7 @@ import pe_tools
 
 WITH_LIBRARIES = "pe_tools.validity.own"
 """Imports libraries that a user need not have."""
-MODULES = [
-    importlib.import_module(found.name)
-    for package in (pe_core, pe_tools)
-    for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
-    if not found.name.endswith("__main__") and not found.name.startswith(WITH_LIBRARIES)
-]
-CLASSES = {
-    f"{module.__name__}.{name}": cls
-    for module in MODULES
-    for name, cls in inspect.getmembers(module, inspect.isclass)
-    if dataclasses.is_dataclass(cls) and cls.__module__ == module.__name__ and name[0] != "_"
-}
+
 BUILT_UP = {
     "pe_tools.formats.boxes.labels.Labels",
     "pe_tools.cli.interrupts.Received",
@@ -30,13 +20,30 @@ BUILT_UP = {
 """Filled while a file is read, signals come or a picture is drawn; so are some that are private."""
 
 
+@functools.cache
+def classes():
+    """Public dataclasses by module and name."""
+    modules = [
+        importlib.import_module(found.name)
+        for package in (pe_core, pe_tools)
+        for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+        if not found.name.endswith("__main__") and not found.name.startswith(WITH_LIBRARIES)
+    ]
+    return {
+        f"{module.__name__}.{name}": cls
+        for module in modules
+        for name, cls in inspect.getmembers(module, inspect.isclass)
+        if dataclasses.is_dataclass(cls) and cls.__module__ == module.__name__ and name[0] != "_"
+    }
+
+
 def test_there_are_dataclasses_in_most_rooms():
-    rooms = {name.split(".")[1] for name in CLASSES}
+    rooms = {name.split(".")[1] for name in classes()}
     assert (
-        len(CLASSES) > 40 and {"scene", "metric", "prior", "sensors", "scoring", "study"} <= rooms
+        len(classes()) > 40 and {"scene", "metric", "prior", "sensors", "scoring", "study"} <= rooms
     )
 
 
 def test_dataclasses_are_frozen():
-    thawed = {name for name, cls in CLASSES.items() if not cls.__dataclass_params__.frozen}
+    thawed = {name for name, cls in classes().items() if not cls.__dataclass_params__.frozen}
     assert thawed == BUILT_UP

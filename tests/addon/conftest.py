@@ -7,6 +7,9 @@ import os
 
 import pytest
 
+from tests.few_errors import all_errors, few_errors
+
+__all__ = ["all_errors", "few_errors"]
 HAVE_BPY = importlib.util.find_spec("bpy") is not None
 # There is no bpy for every Python; where CI runs there is.
 collect_ignore_glob = [] if HAVE_BPY or os.environ.get("CI") == "true" else ["test_*.py"]
@@ -69,8 +72,8 @@ def unregistered(registered):
 
 
 @pytest.fixture
-def scene(addon):
-    """Return the empty scene, set to score fast: few voxels, few candidates."""
+def scene(addon, few_errors):
+    """Return the empty scene, set to score fast: few voxels, candidates and mounting errors."""
     import bpy
 
     settings = bpy.context.scene.perception_entropy

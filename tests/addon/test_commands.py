@@ -75,7 +75,7 @@ def test_a_search_that_cannot_place_is_refused_before_it_begins(car, tmp_path):
     assert run_here(path, "score", *FAST[:2], "--no-render").returncode == 0
 
 
-def test_optimize_and_export_agree_with_the_engine(blend, tmp_path):
+def test_optimize_and_export_agree_with_the_engine(blend, tmp_path, all_errors):
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     before = blend.read_bytes()
     options = ("--no-review", *FAST, "-o", inside, "--no-render", "--json")

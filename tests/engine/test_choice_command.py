@@ -9,6 +9,8 @@ from pe_tools.cli import choose_verb, verbs
 from tests.engine import mounting
 from tests.engine.test_choice_job import options, study
 
+pytestmark = pytest.mark.usefixtures("few_errors")
+
 
 @pytest.fixture
 def file(tmp_path):

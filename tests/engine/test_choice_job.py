@@ -12,6 +12,7 @@ from pe_tools.cli.choose_verb import front_summary
 from pe_tools.jobs import choice_job, design_study, front_dict, write_front
 from tests.engine import mounting
 
+pytestmark = pytest.mark.usefixtures("few_errors")
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 3), 0.5)
 PRICES = {"Pandar64": 9.0, "Pandar40": 7.0, "Velodyne VLP-16 Puck": 2.0}
 

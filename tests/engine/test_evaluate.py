@@ -10,6 +10,7 @@ import pytest
 import pe_core as pe
 from pe_core.metric import average_precision, entropy_of, late_fusion, sigma_of
 from tests.engine import shapes
+from tests.thorough import THOROUGH
 
 SPACE = shapes.small_space()
 ROAD = pe.Prior.road()
@@ -30,7 +31,7 @@ def rig_of_all_kinds():
 def defined(request):
     """A vehicle or none, a space, its voxels, and m of the rig of all kinds by the definition."""
     vehicle = shapes.box_car() if request.param else None
-    space = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 4), 0.5)
+    space = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 4), 0.5 if THOROUGH else 1.0)
     index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
     centers, rig = space.center_of(index), rig_of_all_kinds()
     measured = {s.name: pe.measure(s, centers, space.interval, vehicle) for s in rig}

@@ -49,7 +49,7 @@ def counted(sensor, index, vehicle=None, enough=None):
 def test_it_equals_the_definition(place, yaw):
     rng = np.random.default_rng([list(PLACES).index(place), int(yaw * 10) % 3600])
     sensor = pe.Sensor("s", PANDAR64, pe.Pose.from_degrees(PLACES[place], (0.0, 0.0, yaw)))
-    index = voxels_round(PLACES[place], rng, 150)
+    index = voxels_round(PLACES[place], rng, tries(60, 150))
     defined = pe.measure(sensor, SPACE.center_of(index), SPACE.interval)
     assert counted(sensor, index).tolist() == defined.tolist()
     few = np.minimum(counted(sensor, index, enough=10), 10)
@@ -62,7 +62,7 @@ def test_it_equals_the_definition_on_a_vehicle(seed):
     place = rng.uniform((-2.5, -1.0, 0.5), (2.5, 1.0, 2.2)).round(2)
     yaw = float(rng.choice([0.0, rng.uniform(-180, 180)]))
     sensor = pe.Sensor("s", PANDAR64, pe.Pose.from_degrees(place, (0.0, 0.0, yaw)))
-    index = voxels_round(place, rng, 150)
+    index = voxels_round(place, rng, tries(60, 150))
     defined = pe.measure(sensor, SPACE.center_of(index), SPACE.interval, shapes.box_car())
     assert counted(sensor, index, shapes.box_car()).tolist() == defined.tolist()
 
@@ -83,7 +83,7 @@ def test_every_kind_of_lidar(model):
     rng = np.random.default_rng(3)
     place = (0.5, -0.3, 1.7)
     sensor = pe.Sensor("s", model, pe.Pose.from_degrees(place, (0.0, 0.0, 45.0)))
-    index = voxels_round(place, rng, 300)
+    index = voxels_round(place, rng, tries(120, 300))
     defined = pe.measure(sensor, SPACE.center_of(index), SPACE.interval)
     assert counted(sensor, index).tolist() == defined.tolist()
 

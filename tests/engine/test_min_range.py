@@ -6,9 +6,9 @@ import pytest
 import pe_core as pe
 from pe_core.sensors import Voxels, kind_of
 from tests.engine import shapes
-from tests.thorough import pairs
+from tests.thorough import THOROUGH, pairs
 
-SPACE = pe.PerceptionSpace((-3, 4), (-3, 3), (0, 2.5), 0.25)
+SPACE = pe.PerceptionSpace((-3, 4), (-3, 3), (0, 2.5), 0.25 if THOROUGH else 0.5)
 INDEX = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
 PATTERN = np.random.default_rng(2).normal(size=(700, 3))
 

@@ -12,7 +12,7 @@ SPACE = shapes.small_space()
 
 
 def evaluator():
-    return pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=4096)
+    return pe.Evaluator(SPACE, pe.Prior.road(), shapes.box_car(), samples=1024)
 
 
 def start(**options):

@@ -20,6 +20,7 @@ from tests.engine import shapes
 from tests.engine.processes import GUARD_S, ROOT
 from tests.engine.recording import Recorder, distance_to
 
+pytestmark = pytest.mark.usefixtures("few_errors")
 CANDIDATES = 12
 MOMENTS = (1, 17, 40, 70)
 """Candidates after which a search is broken off: in the first round, and later ones."""

@@ -16,12 +16,15 @@ def tries(by_default: int, in_ci: int) -> int:
 
 
 def pairs(first: Iterable, second: Iterable) -> list[tuple]:
-    """Return combinations of two parameters: all in CI, by default each value at least once.
+    """Return combinations of two parameters: by default each value once, in CI three times or more.
 
-    The default is a diagonal: as many combinations as the longer parameter has values.
+    The default is a diagonal: as many combinations as the longer parameter has values. In CI there
+    are three, each a step beside the one before; of at most three columns or rows these are all.
     """
     rows, columns = list(first), list(second)
-    if THOROUGH:
-        return [(row, column) for row in rows for column in columns]
-    count = max(len(rows), len(columns))
-    return [(rows[k % len(rows)], columns[k % len(columns)]) for k in range(count)]
+    if len(rows) < len(columns):
+        return [(row, column) for column, row in pairs(columns, rows)]
+    beside = range(min(3, len(columns)) if THOROUGH else 1)
+    return [
+        (row, columns[(k + step) % len(columns)]) for k, row in enumerate(rows) for step in beside
+    ]

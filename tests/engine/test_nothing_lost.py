@@ -301,7 +301,7 @@ def test_a_signal_between_two_scores_is_a_line(study):
     assert (run.stdout, run.stderr) == ("143 True\n", "pe: interrupted\n")
 
 
-@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGHUP])
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGHUP] if THOROUGH else [signal.SIGINT])
 def test_a_signal_to_the_whole_group_is_the_parent_s_affair(signum):
     """As of a terminal: workers, which may still be starting, and all other helpers ignore it."""
     code = (

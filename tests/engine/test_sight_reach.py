@@ -115,7 +115,7 @@ def test_a_rig_reaches_no_less_than_its_sensors():
     front = shapes.lidar_on_roof(shapes.small_lidar(64, 720), (1.0, 0.0, 1.6), name="front")
     rear = shapes.lidar_on_roof(shapes.small_lidar(64, 720), (-1.0, 0.0, 1.6), name="rear")
     rig = pe.Rig([front, rear, shapes.camera()])
-    space = pe.PerceptionSpace(interval=0.25)
+    space = pe.PerceptionSpace(interval=0.5)
     reach = sight.Sight(space, pe.Prior.road(), shapes.box_car()).reach(rig, "car")
     assert list(reach.per_sensor) == ["front", "rear", "camera"]
     assert (reach.distance >= np.max(list(reach.per_sensor.values()), axis=0)).all()

@@ -30,6 +30,9 @@ from pe_tools.sweep import (
 from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
 from tests.engine import shapes
 from tests.engine.processes import GUARD_S, Command
+from tests.thorough import THOROUGH
+
+pytestmark = pytest.mark.usefixtures("few_errors")
 
 SEEDS = f"optimize.seed={','.join(map(str, range(10_001)))}"
 
@@ -248,8 +251,11 @@ def test_a_run_continues_the_search_in_its_folder(study, out, noted):
     assert run_task(other).after.entropy and len(noted) > 5, "another study's are not taken"
 
 
+ENDINGS = [signal.SIGTERM, signal.SIGKILL, *([signal.SIGHUP] if THOROUGH else [])]
+
+
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-@pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+@pytest.mark.parametrize("ending", ENDINGS)
 def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsys, noted):
     argv = ["sweep", str(study), "--optimize", "--set", "optimize.seed=3,4", "--workers", "1"]
     first = out / "car,optimize.seed=3"

@@ -1,20 +1,39 @@
-"""One quick reproduction for all tests that look at it."""
+"""The command in this process, and one quick reproduction for all tests that look at it."""
 
+import contextlib
+import io
 import json
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from pe_tools.cli.verbs import main
+
 ROOT = Path(__file__).parents[2]
 
 
-def pe(*arguments, cwd=ROOT):
-    """Run the command."""
+def pe(*arguments):
+    """Run the command in this process: what it would print, warnings too, and its status."""
+    out, err = io.StringIO(), io.StringIO()
+    streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
+    with streams[0], streams[1], warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("default")
+        try:
+            status = main([str(argument) for argument in arguments])
+        except SystemExit as ended:  # wrong usage
+            status = ended.code
+    said = "".join(f"{each.category.__name__}: {each.message}\n" for each in warned)
+    return SimpleNamespace(returncode=status, stdout=out.getvalue(), stderr=err.getvalue() + said)
+
+
+def pe_in_a_process(*arguments):
+    """Run the command in a process of its own: where nothing of this one's may take part."""
     command = [sys.executable, "-m", "pe_core", *map(str, arguments)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=600)
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=600)
 
 
 def pe_without_matplotlib(*arguments):

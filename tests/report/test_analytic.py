@@ -15,6 +15,7 @@ from pe_tools.reproduction.analytic import (
     min_entropy,
 )
 from pe_tools.reproduction.paper import ROW
+from tests.thorough import pairs
 
 SIDE = 0.1
 
@@ -61,8 +62,7 @@ def test_the_printed_figure_needs_near_voxels_and_a_wide_view():
     assert share * 16.6512 + (1 - share) * best == pytest.approx(printed, abs=1e-3)
 
 
-@pytest.mark.parametrize("name", ["Pandar64", "HDL-64E"])
-@pytest.mark.parametrize("distance", [8.0, 25.0])
+@pytest.mark.parametrize(("name", "distance"), pairs(("Pandar64", "HDL-64E"), (8.0, 25.0)))
 def test_expected_counts_are_the_mean_of_whole_ones(name, distance):
     """Voxels all over a piece of the scene, where channels are evenly spread."""
     rng = np.random.default_rng(1)

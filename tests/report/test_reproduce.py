@@ -1,5 +1,6 @@
 """``pe reproduce --quick``: the orderings, the page, the plots, and going on where it stopped."""
 
+import copy
 import json
 import re
 import signal
@@ -8,8 +9,9 @@ import sys
 
 import pytest
 
+from pe_tools.reproduction import plots
 from pe_tools.reproduction.plan import QUICK, plan
-from tests.report.conftest import ROOT, numbers, pe
+from tests.report.conftest import ROOT, numbers, pe, pe_in_a_process
 
 KEYS = ("1", "2", "3 default", "3 front", "4")
 
@@ -74,7 +76,8 @@ def test_every_picture_of_the_page_is_there(quick):
         assert (quick.folder / name).read_bytes().startswith(b"\x89PNG"), name
 
 
-def test_a_second_run_computes_nothing_and_prints_the_json(quick):
+def test_a_second_run_computes_nothing_and_prints_the_json(quick, monkeypatch):
+    monkeypatch.setattr(plots, "draw_all", lambda *_: None)  # another test draws a second time
     before = (quick.folder / "results.json").read_bytes()
     run = pe("reproduce", "--quick", "--json", "--output", quick.folder)
     assert run.returncode == 0
@@ -84,18 +87,24 @@ def test_a_second_run_computes_nothing_and_prints_the_json(quick):
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
-def test_what_is_done_is_kept_when_it_is_interrupted(tmp_path, name):
+def test_what_is_done_is_kept_when_it_is_interrupted(quick, tmp_path, name):
+    """A run that goes on with the pitch figure alone ends between two of its scores."""
+    data = copy.deepcopy(quick.data)
+    to_do = {task for task in data["results"] if task.startswith("pitch/")}
+    data["results"] = {task: e for task, e in data["results"].items() if task not in to_do}
+    (tmp_path / "results.json").write_text(json.dumps(data), "utf-8")
     command = [sys.executable, "-m", "pe_core", "reproduce", "--quick", "--output", str(tmp_path)]
     process = subprocess.Popen(
         command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    first = process.stderr.readline()
-    assert first.startswith("[1/")
+    assert "going on from" in process.stderr.readline()
+    assert "] pitch/" in process.stderr.readline()
     process.send_signal(getattr(signal, name))
     _, error = process.communicate(timeout=120)
     assert process.returncode == 128 + getattr(signal, name)
     assert "interrupted" in error and "Traceback" not in error
-    assert json.loads((tmp_path / "results.json").read_text("utf-8"))["results"]
+    kept = json.loads((tmp_path / "results.json").read_text("utf-8"))["results"]
+    assert data["results"].keys() < kept.keys() < quick.data["results"].keys()
 
 
 @pytest.mark.parametrize(("text", "found"), [("{", "valid JSON"), ("[]", "a JSON object")])
@@ -106,8 +115,10 @@ def test_a_broken_results_file_is_one_line(tmp_path, text, found):
 
 
 def test_the_page_is_written_again_from_the_results_alone(quick, tmp_path):
+    """By another process, and over a picture of an earlier run."""
     (tmp_path / "results.json").write_bytes((quick.folder / "results.json").read_bytes())
-    run = pe("reproduce", "--page-only", "--output", tmp_path)
+    (tmp_path / "priors.png").write_bytes((quick.folder / "rows.png").read_bytes())
+    run = pe_in_a_process("reproduce", "--page-only", "--output", tmp_path)
     assert run.returncode == 0 and not run.stderr
     for path in quick.folder.iterdir():
         assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name

@@ -106,7 +106,7 @@ def samples_on_car() -> Timing:
 
 def samples_on_car_draft() -> Timing:
     """The same as a draft, as while a sensor is dragged."""
-    return _after_a_move(car(), "vehicle, draft", draft=True)
+    return _after_a_move(car(), "vehicle, preview", draft=True)
 
 
 def _after_a_move(vehicle: pe.Vehicle | None, label: str, draft: bool = False) -> Timing:

@@ -18,7 +18,7 @@ SAMPLES = 262_144
 def live_map() -> Timing:
     """The map that follows a drag."""
     return _after_a_move(
-        "ground map of 1 m, draft", lambda view, rig: view.ground(rig, draft=True), draft=True
+        "ground map of 1 m, preview", lambda view, rig: view.ground(rig, draft=True), draft=True
     )
 
 

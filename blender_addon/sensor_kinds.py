@@ -57,19 +57,19 @@ class KindRow:
     typical_housing : callable
         From a model to a housing for the asset library, where no size of the model is known.
     mount_for : callable
-        From a model and `mount` to how a sensor of the model is added.
+        Function of a model and `mount` that returns the `Mount` of the model's sensors.
     own_about : str
-        What an own sensor of the kind is, for a menu.
+        Description of an own sensor of the kind, for a menu.
     own_fields : tuple of str
         Properties of an own sensor that the panel shows.
     has_lens : bool
         Whether a housing is drawn with a lens, not with a window.
     camera : callable or None
-        From a model to the camera that Blender's view shows it by; None where it shows none.
+        Function of a model that returns the camera for Blender's view; None without a view.
     pixels : callable or None
-        From a sensor and its vehicle to a picture; None where there is none. It runs on a thread.
+        Function of a sensor and its vehicle that returns a picture, called on a thread; or None.
     legend : str
-        What the colours of that picture are.
+        Legend of the picture's colours.
     """
 
     mount: Mount

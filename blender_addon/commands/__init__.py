@@ -36,8 +36,8 @@ IN_BLENDER = "blender -b FILE.blend --command pe"
 def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
     """Run the command on the file that is open; results go to `out`, all else to stderr.
 
-    Returns the exit status: 0 done; 1 bad input, or results that are elsewhere; 2 usage; 128 and
-    its number for a signal.
+    Returns the exit status. 0: done; 1: bad input, or results in a fallback folder; 2: usage; 128
+    plus the number of a signal.
     """
     try:
         with contextlib.redirect_stdout(out):
@@ -58,12 +58,12 @@ _registered: list[object] = []
 
 
 def register() -> None:
-    """Make ``--command pe`` known."""
+    """Register ``--command pe``."""
     _registered.append(bpy.utils.register_cli_command("pe", in_blender))
 
 
 def unregister() -> None:
-    """Take it back."""
+    """Unregister the command."""
     bpy.utils.unregister_cli_command(_registered.pop())
 
 

@@ -156,7 +156,7 @@ def take_over_process() -> TextIO:
 
 
 def flush(stream: TextIO | None) -> None:
-    """Hand on what a stream still holds, where it goes anywhere."""
+    """Flush a stream if it is open; ignore errors."""
     if stream is not None:
         with contextlib.suppress(OSError, ValueError):
             stream.flush()

@@ -73,7 +73,7 @@ def export_objects(study: pe.Study, args: argparse.Namespace) -> app.Answer:
 
 
 def run_job(args: argparse.Namespace) -> app.Answer:
-    """Score or optimize, and leave the results in the output folder."""
+    """Score or optimize, and write the results to the output folder."""
     study, kind = app.with_options(opened_study(args.variant), args), args.kind
     if kind == "optimize" and study.selection.choices:
         return choose_sensors(study, args)
@@ -132,7 +132,7 @@ def export_study(args: argparse.Namespace) -> app.Answer:
 
 
 def explain_study(args: argparse.Namespace) -> app.Answer:
-    """Tell the scene's score in words, or ask a place."""
+    """Describe the scene's score as text, or query a location."""
     return app.explain(app.with_options(opened_study(args.variant), args), args)
 
 

@@ -21,7 +21,7 @@ BEFORE = "Before this move: "
 
 
 class ReadoutText(NamedTuple):
-    """The text of a score: headline, its error, how it changed compared with what, and lines."""
+    """The text of a score: headline, error, change, reference of the change, and further lines."""
 
     headline: str
     error: str

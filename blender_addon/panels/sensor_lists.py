@@ -108,7 +108,7 @@ HEADER = ("Sensor", "Loss", "Most in", "Occluded by")
 
 def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw loss, where it is largest, and what occludes each sensor of the last result."""
-    layout.label(text="Loss: entropy without the sensor, nats worse")
+    layout.label(text="Loss: rise of entropy without it, nats")
     table = layout.box().column(align=True)
     table.active = not context.scene.perception_entropy.result_stale
     wide = letters_per_line(context) >= WIDE_LETTERS

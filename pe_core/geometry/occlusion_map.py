@@ -113,7 +113,7 @@ def _in_bins(targets: Targets, look: FaceLook, raster: Raster) -> Iterator[_Edge
 
 
 class _Depths:
-    """Depths of triangles over bins."""
+    """Minimum and maximum depth of triangles in bins of directions."""
 
     def __init__(self, targets: Targets, look: FaceLook, raster: Raster) -> None:
         self._window = raster

@@ -171,14 +171,14 @@ class Constraints:
     Parameters
     ----------
     max_height : float, optional
-        Greatest height of a sensor's housing above the ground [m].
+        Maximum height of a sensor's housing above the ground [m].
     max_width : float, optional
-        Greatest overall width: no housing is farther than half of it from y = 0 [m].
+        Maximum overall width: no housing is farther than half of it from y = 0 [m].
     min_distance : float
-        Least distance between any two sensors' origins [m].
+        Minimum distance between any two sensors' origins [m].
     clear_housings : bool
-        Housings are inside neither the body nor another sensor's. It goes without saying for a
-        sensor on a surface.
+        Housings are inside neither the body nor another sensor's housing. Sensors on a surface are
+        not checked against the body.
     no_go : sequence of NoGo
     """
 

@@ -171,7 +171,7 @@ def scan_in(sensor: SensorElement) -> Scan | None:
     Raises
     ------
     InputError
-        When a number is none or impossible, or angles end before they begin.
+        When a number is not valid or not possible, or angles end before they begin.
     """
     azimuths = sensor.whole("horizontal/samples", STEPS)
     across = sensor.numbers(tuple(f"horizontal/{end}" for end in ENDS), AZIMUTH)

@@ -122,12 +122,12 @@ def with_alpha(color: tuple[float, ...], alpha: float) -> Rgba:
 
 
 def sensor_color(number: int) -> Rgb:
-    """Return the colour of a rig's sensor by its place, for a dark ground."""
+    """Return the colour of a sensor by its position in the rig, for a dark background."""
     return SENSOR_COLORS[number % len(SENSOR_COLORS)]
 
 
 def sensor_color_on_paper(number: int) -> Rgb:
-    """Return the colour of a rig's sensor by its place, for a light ground."""
+    """Return the colour of a sensor by its position in the rig, for a light background."""
     return SENSOR_COLORS_ON_PAPER[number % len(SENSOR_COLORS_ON_PAPER)]
 
 

@@ -179,7 +179,7 @@ class FileSet:
             _unlink(self._folder / name)
 
     def _list(self, new: Collection[str]) -> None:
-        """List the new digests before renaming: if the process is killed, both are ours."""
+        """List the new digests before renaming, so that both are known if the process is killed."""
         listed = _listed(self._folder)
         for name in new:
             listed.setdefault(name, []).append(self._made[name][1])

@@ -35,9 +35,9 @@ class Paper:
     notes : tuple of str
         What is uncertain about the figures.
     classes : mapping
-        The paper's names of our classes.
+        The paper's names of the classes.
     lidar : mapping
-        The LiDAR; all of a placement are equal.
+        The LiDAR model; all LiDARs of a placement are equal.
     placements : mapping
         Sensors by the name of the placement.
     ap : mapping

@@ -110,8 +110,8 @@ class ObjectSums:
         """Standard error of the mean entropy, from the scatter of the scenes' means.
 
         Classes are low-discrepancy samples across the scenes, so this overestimates the error.
-        Where all objects have equal entropy, it is half of the bound by the rule of three, as for
-        voxels.
+        If all objects have equal entropy, it is half of the bound of `SampledScorer`, which follows
+        from the rule of three.
         """
         values = entropies if mask is None else entropies[mask]
         if np.ptp(values) <= ALIKE:

@@ -38,7 +38,7 @@ class SlotTurn:
 
     @property
     def spread(self) -> float:
-        """0 where a turn evaluates all slots: another turn then finds nothing new."""
+        """Spread of the candidates: 0 if a turn evaluates all slots; repeating it is useless."""
         return 0.0 if self._count <= MAX_SLOTS else 1.0
 
     def evaluate(self, base: Candidate, phase: Phase) -> MethodPart[Evaluated]:

@@ -124,7 +124,8 @@ def _count_traffic(
 ) -> Ints:
     """Count where the boxes of a scene occlude each other.
 
-    Scenes with hits `below_sensor`, of boxes that the sensor is not beside, are compared by beam.
+    `below_sensor` are hits of boxes above or below the sensor. Their scenes are compared beam by
+    beam.
     """
     counts = np.zeros(len(scenes), np.int64)
     hits, unsorted_scenes = [below_sensor], np.unique(scenes[~planar.beside])

@@ -53,7 +53,7 @@ YAW_TOLERANCE = 1e-9
 class Cubes:
     """Lower and upper faces of cubes along each ground axis, seen from the sensor, in sides.
 
-    Exact to the last digit, however near: ties are decided by the offset of a face.
+    Offsets are exact to the last digit, because the offset of a face decides ties.
     """
 
     x0: Singles

@@ -15,6 +15,7 @@ from importlib import resources
 from types import MappingProxyType
 from typing import Any
 
+from ..base.degrees import as_in_file, degrees_in_file
 from ..base.errors import InputError, shown
 from ..base.setting import settings_of
 from ..base.setting_file import read_settings, settings_table
@@ -251,7 +252,7 @@ def _with_headings(body: Body, headings: Any, table: Table) -> Body:
     )
     if not good:
         raise table.error("headings", "1 to 72 angles within +-360 degrees", shown(headings))
-    return replace(body, headings=tuple(math.radians(v) for v in items or ()))
+    return replace(body, headings=tuple(as_in_file(math.radians(v)) for v in items or ()))
 
 
 def _full_table(requirement: Requirement) -> dict[str, Any]:
@@ -311,5 +312,5 @@ def _headings(requirement: Requirement) -> list[float] | None:
     for body in requirement.bodies:
         own = BODIES[body.name].headings if body.name in BODIES else (0.0,)
         if body.headings != own:
-            return [round(math.degrees(h), 9) for h in body.headings]
+            return [degrees_in_file(h) for h in body.headings]
     return None

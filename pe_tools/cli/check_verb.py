@@ -14,7 +14,7 @@ from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.files import write_bytes
 from pe_core.base.serialization import finite
-from pe_core.scoring.requirements import Requirement, Verdict
+from pe_core.scoring.requirements import Redundancy, RedundancyMap, Requirement, Verdict
 from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
 from pe_core.study.requirement_search import Suggestion, suggestions
@@ -40,6 +40,8 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print JSON")
     about = "say which small change of one sensor would meet what is not met"
     parser.add_argument("--suggest", action="store_true", help=about)
+    about = "also by how many sensors each place within 10 m is seen, for what is so tall [m]"
+    parser.add_argument("--redundancy", type=float, metavar="M", help=about)
     parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
 
 
@@ -72,8 +74,8 @@ def check(path: str, args: argparse.Namespace) -> Answer:
 def check_study(study: Study, args: argparse.Namespace) -> Answer:
     """Hold a study to its requirements and to the presets that are named."""
     study, unchecked = with_presets(study, args.preset)
-    if not study.requirements:
-        expected = "[[requirement]] in the study, or --preset ID"
+    if not study.requirements and args.redundancy is None:
+        expected = "[[requirement]] in the study, --preset ID, or --redundancy M"
         raise InputError("check", "requirements", expected, "none")
     print_vehicle(study)
     verdicts = study.verdicts()
@@ -82,15 +84,20 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     status = DONE if all(v.met for v in verdicts) else NOT_MET
     wanted = args.suggest and status != DONE
     suggested = suggestions(study) if wanted else {}
+    seen = None
+    if args.redundancy is not None:
+        seen = Redundancy(study.vehicle, study.space, args.redundancy).map(study.rig)
     if args.json:
         data = {
             "met": sum(v.met for v in verdicts),
             "requirements": [v.to_dict() for v in verdicts],
             "unchecked": unchecked,
             "suggestions": {name: own and own.text for name, own in suggested.items()},
+            "redundancy": None if seen is None else seen.to_dict(),
         }
         return dump_json(finite(data)), status
-    lines = [*verdict_lines(verdicts, unchecked), *_suggested(suggested)]
+    lines = [*verdict_lines(verdicts, unchecked), *_suggested(suggested)] if verdicts else []
+    lines += [] if seen is None else redundancy_lines(seen)
     return "\n".join(lines), status
 
 
@@ -99,6 +106,18 @@ def _suggested(found: dict[str, Suggestion | None]) -> list[str]:
     none = "no change of one sensor that was tried is enough"
     return [
         f"{name}: met with {own.text}" if own else f"{name}: {none}" for name, own in found.items()
+    ]
+
+
+def redundancy_lines(seen: RedundancyMap) -> list[str]:
+    """Return in lines by how many sensors the ground within 10 m is seen."""
+    data = seen.to_dict()
+    shares = [f"{share:.1%} by {n} or more" for n, share in data["sensors"].items()]
+    of_kinds = [f"{share:.1%} by {n} kinds" for n, share in data["kinds"].items() if n != "1"]
+    return [
+        f"seen of {data['ground_m2']:.0f} m2, of what is {seen.height:g} m tall: "
+        + ", ".join([*shares, *of_kinds]),
+        f"with any one sensor lost {data['seen_with_one_lost']:.1%} is still seen",
     ]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.base.degrees import as_in_file
 from pe_core.base.serialization import dumps
 from pe_core.base.table_reader import Table
 from pe_core.scoring.requirements import (
@@ -385,6 +386,9 @@ def test_a_requirement_of_ones_own_comes_back_from_a_file_the_same():
         Under(one_lost=True),
     )
     study = pe.Study(rig(), van(), requirements=(own, replace(own, name="two", zone=AHEAD)))
+    odd = replace(BODIES["child"], headings=(as_in_file(math.radians(33.3)), as_in_file(-1.234567)))
+    table = requirement_table(Requirement("odd", AHEAD, (odd,)))
+    assert read_requirement(Table(table, "file")).bodies == (odd,)
     data = study_to_dict(study)
     assert [read_requirement(Table(each, "f")) for each in data["requirement"]] == list(
         study.requirements

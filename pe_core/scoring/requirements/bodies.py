@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.errors import InputError, shown
-from ...base.values import A_NAME, Number
+from ...base.values import A_NAME, Angle, Number
 
 Floats = NDArray[np.float64]
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
+HEADING = Angle(-360.0, 360.0)
 LOW = Number(0.0, 100.0, unit="m", noun="length")
 BAND_M = 0.1
 """Height of the bands of a body whose visible share is asked for."""
@@ -73,6 +74,8 @@ class Body:
             raise InputError(who, "size", "length, width, height", shown(self.size))
         object.__setattr__(self, "size", size)
         object.__setattr__(self, "low", LOW.checked(who, "low", self.low))
+        headings = tuple(HEADING.checked(who, "headings", h) for h in self.headings)
+        object.__setattr__(self, "headings", headings)
 
     @property
     def box(self) -> tuple[float, float, float]:

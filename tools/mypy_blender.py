@@ -23,6 +23,7 @@ from mypy.types import (
     AnyType,
     CallableType,
     FunctionLike,
+    Instance,
     LiteralType,
     NoneType,
     Type,
@@ -33,12 +34,12 @@ from mypy.types import (
 )
 
 BLENDER = "bpy.types."
-WITH_SETTINGS = {f"{BLENDER}{name}" for name in ("Scene", "Object", "ID")}
+WITH_SETTINGS = {f"{BLENDER}{name}" for name in ("Scene", "Object")}
 """Classes that have the add-on's settings, as ``properties.add_pointers`` adds them."""
 SUBCLASSED = {
     f"{BLENDER}{name}"
     for name in (
-        *("AddonPreferences", "Attribute", "Curve", "ID", "NodeSocket", "Operator"),
+        *("AddonPreferences", "Attribute", "Curve", "NodeSocket", "Operator"),
         *("OperatorProperties", "Property", "PropertyGroup", "Space"),
     )
 }
@@ -71,6 +72,8 @@ class BlenderPlugin(Plugin):
 
 def _plain(context: AttributeContext) -> Type:
     kind = get_proper_type(context.default_attr_type)
+    if isinstance(kind, UnionType) and any(_is_id(item) for item in kind.items):
+        return AnyType(TypeOfAny.special_form)
     if context.is_lvalue and _is_choice(kind):
         return context.api.named_generic_type("builtins.str", [])
     if context.is_lvalue or not isinstance(kind, UnionType):
@@ -93,6 +96,12 @@ def _is_choice(kind: Type) -> bool:
     """Whether a type lists names: of icons, say, which differ between Blender's versions."""
     items = flatten_nested_unions([kind])
     return any(isinstance(get_proper_type(item), LiteralType) for item in items)
+
+
+def _is_id(kind: Type) -> bool:
+    """Whether a type is that of any data-block: which it is, only the add-on knows."""
+    proper = get_proper_type(kind)
+    return isinstance(proper, Instance) and proper.type.fullname == f"{BLENDER}ID"
 
 
 def _add_attributes(context: ClassDefContext) -> None:

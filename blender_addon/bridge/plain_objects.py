@@ -130,7 +130,11 @@ def _picture(scene: bpy.types.Scene, camera: bpy.types.Camera) -> tuple[int, int
         int(render.resolution_y * share),
     ]
     aspect = render.pixel_aspect_y / render.pixel_aspect_x
-    return int(size[0]), int(size[1]), float(camera.get(ASPECT, 1.0 if SIZE in camera else aspect))
+    return (
+        int(size[0]),
+        int(size[1]),
+        float(camera.get(ASPECT, 1.0 if camera.get(SIZE) else aspect)),
+    )
 
 
 def _is_of(picture: exchange.Picture, table: Mapping[str, object]) -> bool:

@@ -7,6 +7,7 @@ its sensors.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import Any
 
 import bpy
 
@@ -77,7 +78,7 @@ def _scored_data(
 
 
 def _failed_drivers(
-    blocks: Iterable[bpy.types.ID], sensors: Collection[bpy.types.Object]
+    blocks: Iterable[Any], sensors: Collection[bpy.types.Object]
 ) -> Iterator[pe.Advice]:
     """Yield a warning for each object with a driver that did not run."""
     for block in blocks:

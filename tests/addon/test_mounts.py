@@ -152,6 +152,14 @@ def test_a_collection_without_empties_is_no_list_of_slots(car):
     assert not bpy.data.objects["roof"].perception_entropy.mount
 
 
+@pytest.mark.parametrize("mount", ["rack", "BOX"])
+def test_what_is_no_sensor_is_put_on_no_mount(car, mount):
+    scenes.add_mount(car, "rack", kind="SLOTS")
+    with pytest.raises(RuntimeError, match="active object: expected a sensor, found cabin"):
+        bpy.ops.pe.mount_sensor(name="cabin", mount=mount)
+    assert not bpy.data.objects["cabin"].perception_entropy.mount
+
+
 def test_a_renamed_mount_keeps_its_sensors_and_a_removed_one_lets_them_go(roof):
     row, sensor = roof.perception_entropy.mounts[0], bpy.data.objects["roof"]
     row.name = "top"

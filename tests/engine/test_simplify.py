@@ -6,7 +6,7 @@ import pytest
 import pe_core as pe
 from pe_core.scene.vehicle import closest_points
 from pe_tools.graphics import simplify
-from pe_tools.graphics.simplify import simplified
+from pe_tools.graphics.simplify import _Kept, simplified
 from tests.engine import shapes
 
 
@@ -143,3 +143,7 @@ def test_quick_takes_one_look_and_tells_its_error_all_the_same(monkeypatch):
     assert len(looks) == 1 and 1250 <= len(small.triangles) <= 2500
     points = surface_points(whole.triangles, 60)
     assert 0.0 < farthest(points, small.triangles) <= error + 1e-9
+
+
+def test_triangles_that_stay_and_that_are_kept_are_counted():
+    assert _Kept(np.arange(2), np.arange(3)).count == 5

@@ -182,3 +182,10 @@ def test_toml_text_reads_back_as_it_was():
 def test_a_study_from_plain_data_names_its_source():
     with pytest.raises(pe.InputError, match=r"^scene: document: expected a table, found list"):
         study_from_dict([], "scene")
+
+
+def test_models_of_the_catalogue_are_written_by_their_names():
+    names = list(pe.catalog.entries())
+    sensors = [pe.Sensor(f"s{k}", pe.catalog.load(name)) for k, name in enumerate(names)]
+    written = study_to_dict(pe.Study(pe.Rig(sensors)))["sensor"]
+    assert [sensor["model"] for sensor in written] == names

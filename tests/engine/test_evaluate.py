@@ -1,6 +1,7 @@
 """Scores: grid against definition, sample against grid, and what must hold for any rig."""
 
 import gc
+import math
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -232,3 +233,13 @@ def test_a_second_sample_of_a_study_is_made_from_what_the_first_knows(monkeypatc
     gc.collect()
     pe.Evaluator(space, prior, car, samples=1024)
     assert len(made) == 3
+
+
+def test_rigs_together_are_their_mean_unless_the_worst_is_asked_for():
+    evaluator = pe.Evaluator(SPACE, ROAD, samples=256)
+    rigs = [pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(n, 90))]) for n in (2, 16)]
+    entropies = evaluator.entropies(rigs)
+    assert entropies[0] != entropies[1]
+    mean = evaluator.judge_together(rigs, math.inf).entropy
+    worst = evaluator.judge_together(rigs, math.inf, worst=True).entropy
+    assert (mean, worst) == (pytest.approx(sum(entropies) / 2, abs=1e-8), max(entropies))

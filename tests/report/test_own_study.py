@@ -14,11 +14,11 @@ from pe_core.geometry.triangle_tree import TriangleTree
 from pe_tools.validity.own import shapes
 from pe_tools.validity.own.batches import NEITHER, detections, inputs, targets
 from pe_tools.validity.own.cast_cache import FIELDS, cached
-from pe_tools.validity.own.casting import Caster, FreeBeams
+from pe_tools.validity.own.casting import GROUND_M, MAX_POINTS, Caster, FreeBeams
 from pe_tools.validity.own.placements import placements
-from pe_tools.validity.own.plan import PLAIN, TOWN, full_plan, quick_plan
+from pe_tools.validity.own.plan import PLAIN, POINTS, TOWN, full_plan, quick_plan
 from pe_tools.validity.own.precision import ClassScene, average_precision, in_ring
-from pe_tools.validity.own.runs import RunFiles, runs
+from pe_tools.validity.own.runs import Run, RunFiles, runs
 from pe_tools.validity.own.scenes import CLASSES, NOBODY, scene
 from pe_tools.validity.own.segmentation import section
 from pe_tools.validity.own.study_page import page
@@ -117,6 +117,24 @@ def test_a_mirrored_input_has_its_points_at_the_mirrored_places(voxels):
     assert plain.sum() > 0 and (mirrored == plain[::-1]).all()
 
 
+def test_points_are_in_their_pillars_and_those_of_objects_come_first(caster):
+    cloud = caster.cloud("test", 0)
+    assert len(cloud.points) == MAX_POINTS
+    heights = cloud.points[:, 2] > GROUND_M
+    assert heights.any() and (heights == np.sort(heights)[::-1]).all()
+    (features, pillars), (mirrored, others) = (
+        inputs([cloud], PLAN.region, [mirror]) for mirror in (NEITHER, (True, False))
+    )
+    nx, ny = PLAN.region.shape
+    i, j = np.divmod(pillars[0], ny)
+    x = (i + 0.5 + features[0, :, 0]) * PLAN.region.cell_m - PLAN.region.x_m
+    y = (j + 0.5 + features[0, :, 1]) * PLAN.region.cell_m - PLAN.region.y_m
+    assert np.abs(np.stack([x, y], axis=1) - cloud.points[:, :2]).max() < 1e-4
+    same = (nx - 1 - others[0] // ny == i) & (others[0] % ny == j)
+    assert same.mean() > 0.999  # but for points on an edge
+    assert np.abs(mirrored[0, same, 1:] - features[0, same, 1:]).max() == 0.0
+
+
 def scenes_of(*rows):
     """Scenes of a class, each with (scores, detected x, objects' x)."""
     return [
@@ -196,6 +214,17 @@ def test_a_run_has_the_same_results_when_it_is_repeated():
     assert first == again
     assert len(first["training"]["validation_losses"]) == 2
     assert [p["trained_with"] for p in first["placements"].values()] == [True, True, False, False]
+
+
+def test_the_steps_run_with_their_world_and_detector():
+    pytest.importorskip("jax")
+    from pe_tools.validity.own.one_run import run_one
+
+    plan = quick_plan()
+    counts = {"train": 4, "validation": 4, "test": 4}
+    plan = replace(plan, scenes=replace(plan.scenes, counts=counts))
+    data = run_one(plan, Run(placements(plan)[0], TOWN, POINTS, 1), None)
+    assert data["training"]["epochs"] == 2 and 0.0 <= data["ap"] <= 1.0
 
 
 def test_the_page_is_that_of_the_saved_results():

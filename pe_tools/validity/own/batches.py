@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .casting import LAYERS_M, MAX_COUNT, Voxels
+from .casting import LAYERS_M, MAX_COUNT, MAX_POINTS, Cloud, RegionObjects, Voxels
 from .plan import Region
 from .scenes import CLASSES
 
@@ -30,8 +30,40 @@ MIN_SCORE = 0.01
 NEITHER: Mirrors = (False, False)
 
 
-def inputs(scenes: Sequence[Voxels], region: Region, mirrors: Sequence[Mirrors]) -> Singles:
-    """Return the network's input (B, X, Y, layers), mirrored along x, y."""
+Inputs = Singles | tuple[Singles, NDArray[np.int32]]
+"""Of the network *grid*, or features of points and their pillars for the network *points*."""
+FEATURES = 4
+
+
+def inputs(scenes: Sequence[RegionObjects], region: Region, mirrors: Sequence[Mirrors]) -> Inputs:
+    """Return the input of the network for scenes of its kind, mirrored along x, y."""
+    if clouds := [scene for scene in scenes if isinstance(scene, Cloud)]:
+        return point_inputs(clouds, region, mirrors)
+    return voxel_inputs([s for s in scenes if isinstance(s, Voxels)], region, mirrors)
+
+
+def point_inputs(
+    scenes: Sequence[Cloud], region: Region, mirrors: Sequence[Mirrors]
+) -> tuple[Singles, NDArray[np.int32]]:
+    """Return features (B, N, 4) of points, and their pillars (B, N): X * Y for no point.
+
+    Features: x and y from the middle of the pillar [cells], height [m], distance [100 m].
+    """
+    nx, ny = region.shape
+    features = np.zeros((len(scenes), MAX_POINTS, FEATURES), np.float32)
+    pillars = np.full((len(scenes), MAX_POINTS), nx * ny, np.int32)
+    for k, (scene, mirror) in enumerate(zip(scenes, mirrors, strict=True)):
+        x, y, z = (scene.points * np.array([*np.where(mirror, -1.0, 1.0), 1.0])).T
+        cells = np.stack([x + region.x_m, y + region.y_m]) / region.cell_m
+        i, j = (np.clip(np.floor(c), 0, n - 1) for c, n in zip(cells, (nx, ny), strict=True))
+        values = cells[0] - i - 0.5, cells[1] - j - 0.5, z, np.hypot(x, y) / 100.0
+        features[k, : len(x)] = np.stack(values, axis=1)
+        pillars[k, : len(x)] = i * ny + j
+    return features, pillars
+
+
+def voxel_inputs(scenes: Sequence[Voxels], region: Region, mirrors: Sequence[Mirrors]) -> Singles:
+    """Return the input of the network *grid*, (B, X, Y, layers)."""
     nx, ny = region.shape
     x = np.zeros((len(scenes), nx * ny * LAYERS), np.float32)
     for k, voxels in enumerate(scenes):
@@ -43,7 +75,7 @@ def inputs(scenes: Sequence[Voxels], region: Region, mirrors: Sequence[Mirrors])
 
 
 def targets(
-    scenes: Sequence[Voxels], region: Region, mirrors: Sequence[Mirrors]
+    scenes: Sequence[RegionObjects], region: Region, mirrors: Sequence[Mirrors]
 ) -> tuple[Singles, Singles, Singles]:
     """Return heat maps (B, X, Y, C), offsets (B, X, Y, 2) and cells with centres (B, X, Y).
 

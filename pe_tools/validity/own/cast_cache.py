@@ -58,4 +58,4 @@ def _unpacked(path: Path) -> list[Voxels]:
             ]
     except (ValueError, KeyError, OSError, EOFError) as error:
         raise InputError(path, "file", "scenes that were cast (delete it)", error) from None
-    return [Voxels(*arrays) for arrays in zip(*parts, strict=True)]
+    return [Voxels(**dict(zip(FIELDS, arrays, strict=True))) for arrays in zip(*parts, strict=True)]

@@ -26,6 +26,10 @@ Ints = NDArray[np.int64]
 LAYERS_M = (-0.4, 0.15, 0.35, 0.6, 0.9, 1.3, 1.8, 2.6, 4.2)
 """Edges of the voxels' layers [m]."""
 MAX_COUNT = 255
+MAX_POINTS = 12_288
+"""Points of a scene that the detector *points* takes; of more, some are drawn at random."""
+GROUND_M = 0.15
+"""Points up to this height are taken last: most of them are of the ground."""
 NOISE = 7
 """Makes the seed of the noise another one than that of the scene."""
 
@@ -47,8 +51,27 @@ class Points:
 
 
 @dataclass(frozen=True, slots=True)
-class Voxels:
-    """Points of a scene counted in voxels, and its objects in the region.
+class RegionObjects:
+    """The objects of a scene in the region.
+
+    Attributes
+    ----------
+    centers : (K, 2) float32
+        Centres [m].
+    labels : (K,) uint8
+        Their classes.
+    beams : (K,) int32
+        Beams that end on each.
+    """
+
+    centers: NDArray[np.float32]
+    labels: NDArray[np.uint8]
+    beams: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
+class Voxels(RegionObjects):
+    """Points of a scene counted in voxels: the input of the detector *grid*.
 
     Attributes
     ----------
@@ -56,19 +79,23 @@ class Voxels:
         Flat indices of voxels with points, over (x, y, layer).
     counts : (N,) uint8
         Points in each of them.
-    centers : (K, 2) float32
-        Centres of the objects in the region [m].
-    labels : (K,) uint8
-        Their classes.
-    beams : (K,) int32
-        Beams that end on each.
     """
 
     cells: NDArray[np.int32]
     counts: NDArray[np.uint8]
-    centers: NDArray[np.float32]
-    labels: NDArray[np.uint8]
-    beams: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
+class Cloud(RegionObjects):
+    """Points of a scene in the region: the input of the detector *points*.
+
+    Attributes
+    ----------
+    points : (N, 3) float32
+        At most `MAX_POINTS`, those above the ground first [m].
+    """
+
+    points: NDArray[np.float32]
 
 
 class FreeBeams:
@@ -114,14 +141,25 @@ class Caster:
 
     def voxels(self, split: str, number: int) -> Voxels:
         """Return the voxels of a scene."""
-        region = self._plan.region
         content, points = self.points(split, number)
+        return Voxels(
+            *self._objects(content, points), *voxel_counts(points.positions, self._plan.region)
+        )
+
+    def cloud(self, split: str, number: int) -> Cloud:
+        """Return the points of a scene in the region."""
+        content, points = self.points(split, number)
+        chosen = chosen_points(points.positions, self._plan.region, number)
+        return Cloud(*self._objects(content, points), chosen.astype(np.float32))
+
+    def _objects(
+        self, content: Scene, points: Points
+    ) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.int32]]:
+        """Return centres, classes and beams of the objects in the region."""
+        region = self._plan.region
         inside = np.abs(content.centers) <= (region.x_m, region.y_m)
         which = np.flatnonzero(inside.all(axis=1))
-        cells, counts = voxel_counts(points.positions, region)
-        return Voxels(
-            cells,
-            counts,
+        return (
             content.centers[which].astype(np.float32),
             content.labels[which].astype(np.uint8),
             points.beams[which].astype(np.int32),
@@ -158,3 +196,13 @@ def voxel_counts(positions: Floats, region: Region) -> tuple[NDArray[np.int32], 
     counts = np.bincount(flat, minlength=nx * ny * layers)
     cells = np.flatnonzero(counts)
     return cells.astype(np.int32), np.minimum(counts[cells], MAX_COUNT).astype(np.uint8)
+
+
+def chosen_points(positions: Floats, region: Region, seed: int) -> Floats:
+    """Return at most `MAX_POINTS` points in the region, (N, 3), those above the ground first."""
+    x, y, z = positions.T
+    inside = (np.abs(x) < region.x_m) & (np.abs(y) < region.y_m)
+    inside &= (z >= LAYERS_M[0]) & (z < LAYERS_M[-1])
+    points = positions[inside]
+    shuffled = points[np.random.default_rng([seed, NOISE]).permutation(len(points))]
+    return shuffled[np.argsort(shuffled[:, 2] <= GROUND_M, kind="stable")][:MAX_POINTS]

@@ -61,6 +61,43 @@ def grid_network(layers: int, classes: int) -> Network:
     return Network(weights, outputs)
 
 
+def points_network(features: int, region: tuple[int, int], classes: int) -> Network:
+    """Return the network *points*: learned features of points, their maximum in each pillar.
+
+    Parameters
+    ----------
+    features : int
+        Of a point.
+    region : (X, Y) int
+        Pillars along x and y.
+    classes : int
+    """
+    nx, ny = region
+    entry = WIDTH * STRIDE * STRIDE
+
+    def weights(key: Array) -> Weights:
+        shapes = {
+            "point_1": (features, WIDTH),
+            "point_2": (WIDTH, WIDTH),
+            "entry": (1, 1, entry, WIDTH),
+            **_trunk_shapes(WIDTH, classes),
+        }
+        return _first_weights(key, shapes)
+
+    def pillar_maxima(values: Array, pillars: Array) -> Array:
+        empty = jnp.zeros((nx * ny + 1, WIDTH), jnp.float32)  # the last one is for no point
+        return empty.at[pillars].max(values)[:-1].reshape(nx, ny, WIDTH)
+
+    def outputs(w: Weights, x: Array) -> Array:
+        values, pillars = x
+        for name in ("point_1", "point_2"):
+            values = jax.nn.relu(values @ w[name] + w[f"{name}_bias"])
+        grid = jax.vmap(pillar_maxima)(values, pillars)
+        return _trunk(w, jax.nn.relu(_conv(_space_to_depth(grid), w, "entry")))
+
+    return Network(weights, outputs)
+
+
 def _trunk_shapes(width: int, classes: int) -> dict[str, tuple[int, ...]]:
     return {
         "down": (3, 3, width, DEEP_WIDTH),

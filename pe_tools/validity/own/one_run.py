@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ...reproduction.results_file import made_by
-from .batches import LAYERS
+from .batches import FEATURES, LAYERS
 from .cast_cache import cached
-from .casting import Caster, Voxels
-from .detector import Detector, grid_network, versions
+from .casting import Caster, RegionObjects, Voxels
+from .detector import Detector, Network, grid_network, points_network, versions
 from .placements import Placement, placements
-from .plan import FIXED, MIXED, SPLITS, StudyPlan
+from .plan import FIXED, MIXED, POINTS, SPLITS, StudyPlan
 from .runs import Run
 from .scenes import CLASSES
 from .training import results, test_scenes, timed_training
@@ -42,9 +43,7 @@ def run_one(plan: StudyPlan, run: Run, cache: Path | None) -> Json:
         Folder in which scenes that were cast are kept for other seeds.
     """
     started = time.process_time()
-    detector = Detector(
-        grid_network(LAYERS, len(CLASSES)), plan.training.rate, plan.training.average
-    )
+    detector = Detector(_network(plan, run.detector), plan.training.rate, plan.training.average)
     compute = _mixed if run.placement is None else _of_placement
     data = compute(plan, run, detector, cache)
     data["seconds"] = round(time.process_time() - started, 1)
@@ -52,11 +51,22 @@ def run_one(plan: StudyPlan, run: Run, cache: Path | None) -> Json:
     return {**data, "made": {**made, **versions()}}
 
 
+def _network(plan: StudyPlan, name: str) -> Network:
+    if name == POINTS:
+        return points_network(FEATURES, plan.region.shape, len(CLASSES))
+    return grid_network(LAYERS, len(CLASSES))
+
+
 def _of_placement(plan: StudyPlan, run: Run, detector: Detector, cache: Path | None) -> Json:
     """Train and test a detector with one placement's points."""
     assert run.placement is not None
     placement, counts = run.placement, plan.scenes.counts
-    scenes = {s: _cast(plan, placement, run.world, s, counts[s], cache) for s in SPLITS}
+    scenes: dict[str, Sequence[RegionObjects]]
+    if run.detector == POINTS:
+        caster = Caster(plan, placement, run.world)
+        scenes = {s: [caster.cloud(s, k) for k in range(counts[s])] for s in SPLITS}
+    else:
+        scenes = {s: _cast(plan, placement, run.world, s, counts[s], cache) for s in SPLITS}
     trained, training = timed_training(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
     tested = test_scenes(detector, trained.weights, plan, scenes[TEST])
     return {**results(plan, scenes[TEST], tested), "training": training}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .batches import NEITHER, Mirrors, detections, inputs, targets
-from .casting import Voxels
+from .casting import RegionObjects
 from .detector import Detector, TrainingState, Weights
 from .plan import Region, StudyPlan, TrainingRule
 from .precision import ClassScene, average_precision, in_ring
@@ -43,8 +43,8 @@ def train(
     detector: Detector,
     rule: TrainingRule,
     region: Region,
-    scenes: Sequence[Voxels],
-    validation: Sequence[Voxels],
+    scenes: Sequence[RegionObjects],
+    validation: Sequence[RegionObjects],
     seed: int,
 ) -> Trained:
     """Train a detector; the seed sets first weights, the order of scenes and the mirroring."""
@@ -74,7 +74,7 @@ def _epoch(
     state: TrainingState,
     rule: TrainingRule,
     region: Region,
-    scenes: Sequence[Voxels],
+    scenes: Sequence[RegionObjects],
     rng: np.random.Generator,
 ) -> None:
     order = rng.permutation(len(scenes))
@@ -86,7 +86,9 @@ def _epoch(
         detector.train(state, inputs(batch, region, mirrors), targets(batch, region, mirrors))
 
 
-def _batches(scenes: Sequence[Voxels], size: int) -> Iterator[tuple[list[Voxels], int]]:
+def _batches(
+    scenes: Sequence[RegionObjects], size: int
+) -> Iterator[tuple[list[RegionObjects], int]]:
     """Yield batches of one size, and how many of each count: the last is filled by repetition."""
     for first in range(0, len(scenes), size):
         batch = list(scenes[first : first + size])
@@ -94,7 +96,7 @@ def _batches(scenes: Sequence[Voxels], size: int) -> Iterator[tuple[list[Voxels]
 
 
 def _mean_loss(
-    detector: Detector, weights: Weights, size: int, region: Region, scenes: Sequence[Voxels]
+    detector: Detector, weights: Weights, size: int, region: Region, scenes: Sequence[RegionObjects]
 ) -> float:
     mirrors = [NEITHER] * size
     losses = [
@@ -105,7 +107,7 @@ def _mean_loss(
 
 
 def test_scenes(
-    detector: Detector, weights: Weights, plan: StudyPlan, scenes: Sequence[Voxels]
+    detector: Detector, weights: Weights, plan: StudyPlan, scenes: Sequence[RegionObjects]
 ) -> list[list[ClassScene]]:
     """Return detections and objects of the test's scenes, by class."""
     by_class: list[list[ClassScene]] = [[] for _ in CLASSES]
@@ -119,7 +121,9 @@ def test_scenes(
     return by_class
 
 
-def results(plan: StudyPlan, scenes: Sequence[Voxels], tested: list[list[ClassScene]]) -> Json:
+def results(
+    plan: StudyPlan, scenes: Sequence[RegionObjects], tested: list[list[ClassScene]]
+) -> Json:
     """Return the results of a test: AP of all classes, by class, by ring, of objects with beams."""
     rings = plan.precision.rings_m
     by_ring = {
@@ -168,8 +172,8 @@ def _mean(by_class: dict[str, float | None]) -> float:
 def timed_training(
     detector: Detector,
     plan: StudyPlan,
-    scenes: Sequence[Voxels],
-    validation: Sequence[Voxels],
+    scenes: Sequence[RegionObjects],
+    validation: Sequence[RegionObjects],
     seed: int,
 ) -> tuple[Trained, Json]:
     """Train a detector, and return with it how that went, as JSON data."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from pe_core.base.errors import InputError
 from pe_core.search import Call, WorkerDied, run_tasks
@@ -20,6 +20,8 @@ from ..jobs import Checkpoint, OptimizeJob, Outcome, ScoreJob, read_search
 WAIT_S = 0.2
 """How often it is checked whether the sweep continues, while no result arrives."""
 RunResult = Outcome | InputError
+Batch = list[tuple[str, Any]]
+"""Names of runs with their results, which arrive together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,10 +184,22 @@ def run_all(
 
     with closing(run_tasks(pool.executor, deque(names), call_of, pool.width, WAIT_S)) as batches:
         pool.check()
-        while should_continue() and (batch := next(batches, None)) is not None:
+        while should_continue() and (batch := _next_batch(batches, pool)) is not None:
             for name, result in batch:
                 if isinstance(result, WorkerDied):
                     expected, found = "a worker that survives its task", "two that died"
                     result = InputError(name, "worker", expected, f"{found} ({result.reason})")
                 on_result(name, result)
             pool.check()
+
+
+def _next_batch(batches: Iterator[Batch], pool: WorkerPool) -> Batch | None:
+    """Return the next results; None at the end.
+
+    An executor that is gone refuses tasks with an error of its own: `check` says it in one line.
+    """
+    try:
+        return next(batches, None)
+    except Exception:
+        pool.check()
+        raise

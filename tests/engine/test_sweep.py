@@ -7,7 +7,7 @@ import os
 import signal
 import sys
 import time
-from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
@@ -384,6 +384,23 @@ def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, 
         expected = "a worker that survives its task, found two that died (BrokenExecutor)"
         assert line == f"run2: worker: expected {expected}"
     assert executor.given == [1, 2, 3, 1, 2], "what may be guilty is tried again, alone"
+
+
+def test_an_executor_that_refuses_tasks_because_it_is_gone_is_said_so(study, monkeypatch):
+    """A closed client of Dask raises an error of its own, which no user can read."""
+    place, tasks = Place(ThreadPoolExecutor(1), 1), {"run": RunTask(pe.load_study(study), False, 1)}
+    error = Exception("Client is closed. Can't send update-graph message.")
+
+    def refuse(*_):
+        monkeypatch.setattr(place, "check", say_gone)
+        raise error
+
+    def say_gone():
+        raise pe.InputError("tcp://head:8786", "scheduler", "one that stays", "that it is gone")
+
+    monkeypatch.setattr(place.executor, "submit", refuse)
+    with pytest.raises(pe.InputError, match="head:8786: scheduler: expected one that stays"):
+        run_all(list(tasks), tasks.get, place, print)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")

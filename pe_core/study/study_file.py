@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from .. import catalog
 from ..base.errors import InputError, shown
@@ -14,17 +14,17 @@ from ..base.plugins import shipped
 from ..base.serialization import dumps, load_toml
 from ..base.setting_file import read_settings, settings_table
 from ..base.table_reader import Table
-from ..base.values import A_NAME, A_PATH
+from ..base.values import A_NAME, A_PATH, ANY
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose
 from ..metric.entropy import ApCurve
 from ..scene.body_shape import require_vehicle_size
+from ..scene.mesh import MeshAxes
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
 from ..search import PAPER_FREE, checked_axes
 from .catalog_lookup import same_model
-from .mesh_file import AXES_KEYS, MeshFile, axes_table, read_axes
 from .metric_file import curves_table, read_model, read_targets, targets_table
 from .mounting_file import areas_of
 from .passthrough import passthrough_table, read_passthrough
@@ -279,3 +279,32 @@ def _without_none(value: Any) -> Any:
     if isinstance(value, list):
         return [_without_none(v) for v in value]
     return value
+
+
+AXES_KEYS = ("scale", "rotation", "up", "forward")
+
+
+class MeshFile(NamedTuple):
+    """A vehicle's mesh file, its axes by the study, and the axes that were used, in words."""
+
+    mesh: str | None = None
+    axes: MeshAxes = MeshAxes()
+    faces: str = ""
+
+
+def read_axes(table: Table) -> MeshAxes:
+    """Return the axes of the mesh file, from [vehicle]."""
+    up, forward = table.text("up", None), table.text("forward", None)
+    scale = table.number("scale", 1.0, rule=ANY)
+    rotation = table.numbers("rotation", 3, None)
+    try:
+        return MeshAxes(up, forward, scale, rotation)  # type: ignore[arg-type]  # three of them
+    except InputError as error:
+        raise table.error(error.field, error.expected, error.found) from None
+
+
+def axes_table(axes: MeshAxes) -> dict[str, Any]:
+    """Return the keys of [vehicle] for the axes of the mesh file."""
+    rotation = None if axes.rotation_deg is None else list(axes.rotation_deg)
+    scale = None if axes.scale == 1.0 else axes.scale
+    return {"scale": scale, "rotation": rotation, "up": axes.up, "forward": axes.forward}

@@ -103,7 +103,7 @@ class HeldSensor:
         return round(math.degrees(yaw), 1) + 0.0, round(math.degrees(pitch), 1) + 0.0
 
     @property
-    def told(self) -> str:
+    def standoff_text(self) -> str:
         """Return the stand-off as text: the typed text, or the present value."""
         return f"{self._typed or format(self.stance.stand_off_m, 'g')} m"
 
@@ -157,7 +157,7 @@ class HeldSensor:
             where += ", yaw {:g}°, pitch {:g}°".format(*self.angles)
         self._preview.write(self.model.name, where, self.score)
 
-    def _told(self, score: str) -> None:
+    def _show_gain(self, score: str) -> None:
         self.score = score
         self._write()
         self._preview.redraw()
@@ -169,7 +169,7 @@ class HeldSensor:
         try:
             rig = pe.Rig([*sensors, pe.Sensor(name, self.model)])
             study = bridge.study_of_rig(scene, depsgraph, rig)
-            return GainPreview(study, name, self._told)
+            return GainPreview(study, name, self._show_gain)
         except (pe.InputError, MemoryError) as error:
             self.score = f"no score: {error}"
             return None
@@ -242,7 +242,7 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
         (("EVENT_SHIFT", "MOUSE_LMB"), "Place More"),
         (("EVENT_RETURN",), "On the Roof"),
         (("EVENT_N",), other),
-        (("MOUSE_MMB",), f"Wheel, [ ], Digits: Stand-off {current.told}"),
+        (("MOUSE_MMB",), f"Wheel, [ ], Digits: Stand-off {current.standoff_text}"),
         (("DRIVER_ROTATIONAL_DIFFERENCE",), f"Arrows (Shift: 1°): {angles}"),
         (("EVENT_ESC",), "   Leave"),
     )

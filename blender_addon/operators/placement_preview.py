@@ -126,12 +126,12 @@ class GainPreview:
     ----------
     study : pe.Study
         Its rig holds the sensor that is placed, under `name`.
-    tell : callable
+    on_result : callable
         Called with a line of text on the main thread when a score is complete.
     """
 
-    def __init__(self, study: pe.Study, name: str, tell: Callable[[str], None]) -> None:
-        self._study, self._name, self._tell = study, name, tell
+    def __init__(self, study: pe.Study, name: str, on_result: Callable[[str], None]) -> None:
+        self._study, self._name, self._on_result = study, name, on_result
         self._others = [each for each in study.rig if each.name != name]
         self._evaluator: pe.RigJudge | None = None
         self._before: float | None = None
@@ -156,9 +156,9 @@ class GainPreview:
         interactive_worker.drop(TOPIC)
 
     def _show(self, gain: Gain) -> None:
-        self._tell(str(gain))
+        self._on_result(str(gain))
 
     def _fail(self, error: Exception) -> None:
         if not isinstance(error, pe.InputError | MemoryError):
             raise error
-        self._tell(f"no score: {error}")
+        self._on_result(f"no score: {error}")

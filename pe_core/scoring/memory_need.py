@@ -21,19 +21,19 @@ Grouped = Sequence[Sequence[Sensor]]
 """Sensors whose measurements are summed, and kept, together."""
 
 FACTOR = 2.0
-"""How far an estimate may be off, either way."""
+"""Maximum ratio of an estimate and the measured memory, either way."""
 COLUMN_BYTES = 10
-"""Of a column of the ground and a class: the density, a copy, and what is made of it."""
+"""Memory of a column and a class: the density, a copy, and arrays made of it."""
 TREE_BYTES = 300
-"""Of a triangle of the vehicle, once rays are cast (measured)."""
+"""Memory of a triangle of the vehicle, once rays are cast (measured)."""
 PLANE_BYTES = 24
-"""Of a voxel of the planes that a thread works on: counts, sums, precision, entropy, weights."""
+"""Memory of a voxel of a thread's planes: counts, sums, precision, entropy, weights."""
 SAMPLES = 262_144
-"""The voxels that are offered in place of the grid."""
+"""Number of samples that a message suggests instead of the grid."""
 SAMPLE_BYTES = 600
-"""Of a sampled voxel (measured: 270 to 420 while they are drawn, 590 with 32 sensors)."""
+"""Memory of a sampled voxel (measured: 270 to 420 while sampling, 590 with 32 sensors)."""
 COARSER = (2, 4, 5, 10, 20)
-"""How many times as coarse a grid is offered."""
+"""Factors of the voxel's side that a message suggests."""
 
 
 def grid_bytes(

@@ -40,7 +40,7 @@ a primitive polynomial as a number, and first direction numbers m (Joe and Kuo 2
 DIMENSIONS = 1 + len(PRIMITIVE)
 MASKS = ((0x55555555, 1), (0x33333333, 2), (0x0F0F0F0F, 4), (0x00FF00FF, 8), (0x0000FFFF, 16))
 ODDS = (0x9E3779B9, 0x85EBCA6B, 0xC2B2AE35)
-"""Tell the dimensions' seeds apart; and mix them (the last two are MurmurHash3's)."""
+"""Constants that separate the seeds of the dimensions, and mix them (the last two: MurmurHash3)."""
 
 
 def scrambled_sobol(count: int, shift: Sequence[float]) -> Floats:
@@ -106,12 +106,12 @@ def _reversed(words: Words) -> Words:
 Ints = NDArray[np.int64]
 
 AZIMUTH, HEIGHT, RING = range(3)
-"""What the Sobol' sequence's dimensions draw: its first two, which fill the plane best, the azimuth
-and the height, in which beams are spaced; the third the distance."""
+"""Use of the Sobol' sequence's dimensions. The first two fill the plane best: they sample azimuth
+and height, in which beams are spaced. The third one samples the distance."""
 BLOCKS = 16
-"""The sample is judged in this many runs of the sequence, each a lattice of its own."""
+"""Number of runs of the sequence for the standard error; each run is a lattice."""
 MIN_SAMPLES, MAX_SAMPLES = 1024, 2**24
-"""Fewer say nothing; more than 16.8 million need more memory than a grid score."""
+"""Fewer samples are useless; more than 16.8 million need more memory than a grid score."""
 SAMPLES = Whole(MIN_SAMPLES, MAX_SAMPLES, "voxels")
 CENTERED = (0.5, 0.5, 0.5)
 AT_ONCE = 1 << 16

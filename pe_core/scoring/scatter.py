@@ -27,7 +27,7 @@ FigureKey = tuple[str, str, str]
 ALIKE = 10.0**-DECIMALS
 """Entropies no farther apart than this do not differ [nats]."""
 RULE_OF_THREE = 3.0
-"""Of n draws that are all alike, fewer than 3 / n of the rest are not, 95 times in 100."""
+"""Rule of three: if n draws are equal, at most 3 / n of all others differ, with 95 % certainty."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from .scatter import Scatter
 
 FARTHEST_M = 80.0
-"""How far away lone objects are looked for: a reach that equals it is "at least"."""
+"""Maximum distance of lone objects: a reach of this value means "at least"."""
 POINTS = (1, 5, 20)
-"""Objects are counted that get at least so many points of all LiDARs together."""
+"""Numbers of points of all LiDARs together by which objects are counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ DECIMALS = 9
 """Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
 
 Watch = Callable[[float], bool]
-"""Is told how much of a score is done, 0 to 1, now and then; says whether to go on."""
+"""Called repeatedly with the completed share of a score, 0 to 1; returns whether to continue."""
 
 
 class ScoreStopped(Exception):

@@ -18,7 +18,7 @@ from ..base.values import A_NAME
 from ..geometry.poses import Pose
 
 FILE_NAME = re.compile(r"(camera_info/)?[^/\\\x00-\x1f]+")
-"""Files that are written beside others: none goes out of its folder."""
+"""Rule for names of files: a file must not be outside its folder."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,9 +19,9 @@ from .file_names import BOXES
 
 DEFAULT_MODEL = "road"
 OF_OBJECTS = dict.fromkeys(("length_spread", "width_spread", "any_heading"), 0.0)
-"""What of a class matters to objects alone; told where it is not this."""
+"""Settings of a class that matter only for objects, with defaults that a file leaves out."""
 OPTIONAL = {"lanes": (0.0,), "share": 1.0, **OF_OBJECTS}
-"""What a class of one's own need not say."""
+"""Optional keys of an own class."""
 
 
 def read_prior(table: Table, folder: Path) -> Prior:

@@ -178,7 +178,7 @@ class _SweepVerb:
             found = self._keep(name, found)
         row = self.rows[number] = row_of(run, found)
         self._write_table()
-        self._tell(row, found)
+        self._print_row(row, found)
 
     def _keep(self, name: str, found: Outcome) -> Outcome | InputError:
         """Write a run's results; if that fails, to the fallback folder."""
@@ -218,7 +218,7 @@ class _SweepVerb:
         self._reporter.clear()
         tell(str(what) if not name else f"{name}: {what}")
 
-    def _tell(self, row: SweepRow, found: Outcome | InputError) -> None:
+    def _print_row(self, row: SweepRow, found: Outcome | InputError) -> None:
         name = row.run.name
         if isinstance(found, InputError):
             self._print_failure("" if found.source == name else name, found)

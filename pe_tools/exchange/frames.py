@@ -22,15 +22,15 @@ Floats = NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
 
 BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-"""A camera's optical frame in ours: rpy (-90, 0, -90) degrees."""
+"""A camera's optical frame in the sensor frame: rpy (-90, 0, -90) degrees."""
 OPTICAL_RPY = (-math.pi / 2.0, 0.0, -math.pi / 2.0)
 BODY_FROM_RIGHT_FORWARD = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-"""A LiDAR's frame with x right, y forward, z up (nuScenes), in ours."""
+"""A LiDAR's frame with x right, y forward, z up (nuScenes), in the sensor frame."""
 
 GROUND, REAR_AXLE_GROUND, REAR_AXLE = "ground", "rear axle on the ground", "rear axle"
-"""Origins: ours; the middle of the rear axle projected to the ground; its middle itself."""
+"""Origins: of the ground frame; the middle of the rear axle on the ground; the middle itself."""
 PROPER_WITHIN = 1e-6
-"""How far a matrix may be from a rotation."""
+"""Maximum deviation of a matrix from a rotation."""
 
 
 def product(a: Floats, b: Floats) -> Floats:

@@ -29,8 +29,8 @@ from .portable_kinds import has_model
 
 ORIGIN = Pose((0.0, 0.0, 0.0))
 UNMOVED_M, UNTURNED = 2e-5, 4e-6
-"""A pose nearer than this to the one that came in is that one: .blend files and studies round to
-0.01 mm and 0.0001 degrees. The second is a difference of rotation matrices."""
+"""A pose nearer than this to the imported one is unchanged: .blend files and studies round to
+0.01 mm and 0.0001 degrees. The second number is a difference of rotation matrices."""
 FIGURES_ALIKE = 1e-6
 """Figures of a model that differ by less are the same: .blend files hold single precision."""
 MAX_MODEL_LENGTH = 50_000

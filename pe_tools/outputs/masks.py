@@ -45,7 +45,7 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
         files[f"{file}.png"] = png_bytes(mask.sees_out.astype(np.uint8) * np.uint8(255))
         if mask.azimuths is not None:
             files[f"{file}.csv"] = _table(mask)
-        summaries.append(_told(sensor, mask, vehicle, f"{file}.png"))
+        summaries.append(_shares(sensor, mask, vehicle, f"{file}.png"))
     return {
         SUMMARY: dump_json({"masks": summaries}).encode(),
         BY_PART: _by_part(summaries),
@@ -53,7 +53,7 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
     }, lines
 
 
-def _told(sensor: Sensor, mask: EgoMask, vehicle: Vehicle | None, file: str) -> dict[str, Any]:
+def _shares(sensor: Sensor, mask: EgoMask, vehicle: Vehicle | None, file: str) -> dict[str, Any]:
     """Return the occluded shares of a sensor as plain data."""
     count = mask.parts.size
     names = () if vehicle is None else tuple(vehicle.part_names)

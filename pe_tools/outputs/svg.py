@@ -118,7 +118,7 @@ def _grid(box: OnPaper) -> list[str]:
 
 
 def _legend(plan: GroundPlan, x: float, top: float) -> list[str]:
-    rows = [(hex_color(f.color), _words(f)) for f in plan.footprints]
+    rows = [(hex_color(f.color), _legend_text(f)) for f in plan.footprints]
     rows += [(hex_color(BLIND), BLIND_TEXT)] if plan.blind else []
     parts = []
     for number, (color, text) in enumerate(rows, 1):
@@ -129,7 +129,7 @@ def _legend(plan: GroundPlan, x: float, top: float) -> list[str]:
     return parts
 
 
-def _words(footprint: GroundFootprint) -> str:
+def _legend_text(footprint: GroundFootprint) -> str:
     reach_text = f"to {footprint.reach:g} m" if footprint.outlines else "sees no ground"
     height = f"{footprint.pose.position[2]:.2f} m high"
     return f"{footprint.name} ({footprint.model}), {height}, {reach_text}"

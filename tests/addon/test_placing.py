@@ -76,9 +76,9 @@ def test_a_stand_off_is_typed_stepped_and_taken_back(held):
     held._stand(ROOF)
     for letter in "0.25":
         held.typed(letter)
-    assert held.told == "0.25 m" and held.matrix.translation.z == pytest.approx(1.75)
+    assert held.standoff_text == "0.25 m" and held.matrix.translation.z == pytest.approx(1.75)
     held.typed("")
-    assert held.told == "0.2 m" and held.matrix.translation.z == pytest.approx(1.7)
+    assert held.standoff_text == "0.2 m" and held.matrix.translation.z == pytest.approx(1.7)
     held.step(0.01)
     assert held.stance.stand_off_m == 0.21
     held.typed(".")  # no number yet

@@ -23,14 +23,14 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 NARROW_M = 0.1
-"""A strip of blind ground along the body that is narrower than this is none, to a side: less than
-what edges may be too far out."""
+"""A narrower strip of blind ground along the body does not count, on a side: edges may be this much
+too far out."""
 NO_BODY_M = 1.0
-"""Half the side of the square that stands for the body where there is no vehicle."""
+"""Half the side of the square that replaces the body without a vehicle."""
 DECIMALS = 6
 """Distances are rounded to the micrometre."""
 SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
-"""By side: the axis that leads there, and which way."""
+"""By side: the axis towards it, and the sign of the direction."""
 
 
 @dataclass(frozen=True, slots=True)

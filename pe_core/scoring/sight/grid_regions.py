@@ -158,7 +158,7 @@ APART = {5: ((BOTTOM, LEFT), (TOP, RIGHT)), 10: ((RIGHT, BOTTOM), (LEFT, TOP))}
 JOINED = {5: ((BOTTOM, RIGHT), (TOP, LEFT)), 10: ((LEFT, BOTTOM), (RIGHT, TOP))}
 """As seen with x to the right and y up."""
 EDGE = 1e-9
-"""What a field is below its level where it ends: an outline that leaves it runs along the end."""
+"""Difference below the level outside of a field: outlines follow its border there."""
 
 
 def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats, ...]:

@@ -40,7 +40,7 @@ BESIDE_RAD = math.radians(10.0)
 VOXELS = 32
 """Voxels of a ring's piece."""
 FEW = 0.25
-"""Where less than this share of them is in the space and outside the vehicle, nothing is found."""
+"""With a smaller share of voxels in the space and outside the vehicle, AP counts as 0."""
 DECIMALS = 6
 """Reaches are rounded to the micrometre."""
 AP = Number(0.0, 1.0, above=True, below=True)
@@ -185,7 +185,7 @@ def _end_of_longest(values: Floats, min_value: float) -> float:
 Flags = NDArray[np.bool_]
 
 AT_LEAST_M = 0.5
-"""A reach nearer than this to where was looked ends there: it is at least that far."""
+"""A reach this near to the end of the evaluated range counts as its end: it is "at least"."""
 ARC_STEPS = 12
 """Points along the arc of a sector."""
 

@@ -26,13 +26,13 @@ from .pixel_area import QUAD, ROUNDING_PX, clamped_integral
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 ImagedFaces = tuple[Ints, Floats, ImagePoints]
-"""Boxes (P,), the area (P,) of a face of each, and places (P, K) that its image is held by [px]."""
+"""Boxes (P,), the area (P,) of a face of each, and points (P, K) that bound its image [px]."""
 
 NEAREST_M = 1e-3
-"""A face is cut so far in front of the camera's plane [m]."""
+"""Distance in front of the camera's plane at which a face is cut [m]."""
 PIECES = ((3.0, 32), (12.0, 8), (np.inf, 3))
-"""Straight pieces that an edge is taken for through a lens that bends: up to so many half diagonals
-away, and farther."""
+"""Straight pieces of an edge through a lens with distortion: up to a distance in half
+diagonals, and farther away."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,14 +32,14 @@ Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
 HalfSpace = tuple[Floats, float]
-"""A direction, and how far along it from the camera a voxel's centre has to be [m]."""
+"""A direction, and the minimum distance of a voxel's centre from the camera along it [m]."""
 
 MANY_RAYS = 50_000
-"""Rays in a run of planes from about which on a map of what the vehicle covers saves time."""
+"""Number of rays in consecutive planes above which an occlusion map is faster."""
 ASKED = 16
-"""Of so many voxels one is asked, to tell how many the vehicle may hide."""
+"""One of this many voxels is tested, to estimate how many the vehicle may hide."""
 LEVEL = 1e-12
-"""Least slope along z of a side of the frustum, so that it can be divided by."""
+"""Minimum slope along z of a side of the frustum, which is a divisor."""
 
 
 class ColumnRuns(NamedTuple):

@@ -24,10 +24,10 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 BLOCK_M = 0.125
-"""Side of a block of squares: what finds room between its middles is too narrow to count."""
+"""Side of a block of squares: gaps between the middles of blocks are too narrow to count."""
 
 ROOM_M = 1e-3
-"""Balls round posts are taken this much larger."""
+"""Balls round posts are enlarged by this."""
 
 
 class CameraGround(GroundKernel):

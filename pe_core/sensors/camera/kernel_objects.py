@@ -23,9 +23,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 MARGIN_M = 1e-3
-"""Balls round boxes are taken this much larger."""
+"""Balls round boxes are enlarged by this."""
 APART_RAD = 1e-6
-"""Seen from above, balls this much farther apart hide nothing of each other [rad]."""
+"""Margin between the directions of balls, seen from above, that do not hide each other [rad]."""
 
 
 class CameraObjects(ObjectKernel):

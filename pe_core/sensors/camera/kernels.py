@@ -23,7 +23,7 @@ from .picture import picture_occlusion
 from .sample_areas import bent_pixel_areas, pixel_areas
 
 SEEN_BYTES = 2
-"""Of a voxel, seen or not: single precision where it is (measured)."""
+"""Memory of a voxel, averaged over visible and invisible ones (measured)."""
 
 
 class ReadyCamera(NamedTuple):

@@ -27,15 +27,15 @@ FOV = Angle(0.001, 220.0)
 COEFFICIENT = Number(cap=1e6, noun="coefficient")
 
 DEFAULT_EDGE = math.radians(100.0)
-"""How far from the axis a lens sees that bends wider than a plane can hold, unless told."""
+"""Default angle from the axis of the edge of a lens with a field of view beyond a plane's."""
 TABLE = 4096
-"""Angles at which a radius is tabulated, to be looked up backwards."""
+"""Number of angles of the table that inverts a radius."""
 MIN_SLOPE = 1e-9
 """At its fold a radius has none."""
 ROUNDS = 5
-"""Of Newton's method after the look-up: each doubles the digits, and four are there."""
+"""Steps of Newton's method after the look-up: each doubles the digits, of which four are exact."""
 SHIFT_ROUNDS = 15
-"""Of taking off the shift found before: each adds a digit or two."""
+"""Iterations that subtract the shift: each adds one or two digits."""
 
 
 @dataclass(frozen=True)
@@ -172,9 +172,9 @@ def around_axis(depth: Floats, left: Floats, up: Floats) -> tuple[Floats, Floats
 
 
 RINGS, SPOKES = 1100, 32
-"""Directions at which a lens is tried: so many angles from the axis, each so often round it."""
+"""Directions in which a lens is checked: number of angles from the axis, and number round it."""
 ROOM_PX = 1e-6
-"""A corner this far beyond the edge of the field is on it."""
+"""A corner beyond the edge of the field by at most this counts as on the edge."""
 
 
 def reaching(lens: Own, name: str, width: int, height: int) -> Own:

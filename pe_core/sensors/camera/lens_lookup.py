@@ -21,15 +21,15 @@ Array = NDArray[np.floating]
 
 ENTRIES = 1 << 15
 BEYOND = 0.12
-"""How far past what the picture shows a lens is tabulated [rad]."""
+"""Angle beyond the picture up to which a lens is tabulated [rad]."""
 NEAREST_RAD = 0.06
-"""A voxel that the tables are asked about reaches no farther round its centre."""
+"""Maximum angular radius of a voxel for the tables."""
 MEAN_OFF = 0.07
-"""A cube's image has so much of s^2 / r^2 for a fourth of its places' mean squared distance."""
+"""A quarter of the mean squared distance of points in a cube's image, as a share of s^2 / r^2."""
 ANGLES = 4096
-"""Angles at which it is found how uneven the density is."""
+"""Number of angles at which the unevenness of the density is computed."""
 BORDER_PLACES = 33
-"""Places along each side of the picture, to find what is farthest from the axis in it."""
+"""Points on each side of the picture, to find the maximum angle from the axis."""
 
 
 class Imaged(NamedTuple):

@@ -20,7 +20,7 @@ from .lens import Lens, around_axis
 Floats = NDArray[np.float64]
 
 ALMOST_A_PLANE = math.radians(89.9)
-"""What is farther from the axis falls beyond any picture."""
+"""Directions farther from the axis are outside any picture."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Pinhole(Lens):
 
 
 WIDEST = math.radians(89.0)
-"""From the axis: the model's r is the tangent of the angle."""
+"""Maximum angle from the axis, because r is the tangent of the angle."""
 
 
 @dataclass(frozen=True)
@@ -179,4 +179,4 @@ class FTheta(Lens):
 LENSES: dict[str, type[Lens]] = {
     each.model: each for each in (Pinhole, BrownConrady, KannalaBrandt, FTheta)
 }
-"""By the name that studies have."""
+"""Lens models by their name in studies."""

@@ -33,10 +33,10 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 RAYS, TURN = 144, 89
-"""Neighbours in Fibonacci's row: place i is at i / RAYS across, and at i * TURN / RAYS down."""
+"""Neighbouring Fibonacci numbers: point i is at i / RAYS across, and at i * TURN / RAYS down."""
 BOXES_AT_ONCE = 512
 SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).reshape(-1, 2)
-"""Where rays to a side of a box that no other ray meets go, edges and corners too, in halves."""
+"""Points on a side of a box, in half sides, that rays aim at if no lattice ray hits the box."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,7 +60,7 @@ def picture_patch(camera: Camera, step: float) -> ViewPatch:
 
 
 PICTURE_RAYS = 16_384
-"""Places of the picture that are looked at: a share is good to about a thousandth."""
+"""Number of tested positions in the picture: shares are accurate to about a thousandth."""
 
 
 def picture_occlusion(sensor: Sensor, vehicle: Vehicle | None) -> Occlusion:
@@ -107,13 +107,13 @@ Extent = tuple[Ints, Ints]
 """First and last bin of triangles along one coordinate."""
 
 CELLS = 64
-"""Bins along a side of the map."""
+"""Number of bins along a side."""
 MAP = Raster((-1.0, 1.0), (-1.0, 1.0), CELLS)
 
 ROOM_PX = 1e-3
-"""Rectangles are taken this much larger, against rounding."""
+"""Rectangles are enlarged by this, against rounding errors."""
 BORDER = 1.05
-"""The map reaches this far beyond the picture's edges, for voxels that only touch the picture."""
+"""Bins extend beyond the picture by this, for voxels that only touch the picture."""
 
 
 class PictureBins:

@@ -21,7 +21,7 @@ SensorAxes = tuple[Floats, Floats, Floats]
 QUAD = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 """Corners of a face, in order, in half sides along its two axes."""
 ROUNDING_PX = 1e-6
-"""Areas are sums of terms as large as the picture: less than this is nothing but their rounding."""
+"""Areas are sums of terms as large as the picture: a smaller result is only rounding."""
 
 
 def clipped_pixel_area(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Floats:

@@ -27,8 +27,8 @@ from .tie_rules import MARGIN, aims_at, axes_of, offsets_of
 Floats = NDArray[np.float64]
 
 NEAR_SIDES = 15.0
-"""Depth in voxel sides below which the exact area is taken: the closed form is then 0.3 % off at
-most."""
+"""Depth in voxel sides below which the exact area is used: the error of the closed form is then at
+most 0.3 %."""
 
 
 def pixel_areas(
@@ -81,13 +81,13 @@ Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 FAR_PIECES = 4
-"""Straight pieces for an edge of a far voxel: it takes 4 degrees at most, a piece of it 1."""
+"""Straight pieces of an edge of a far voxel: the edge covers at most 4 degrees, a piece 1."""
 NEAR = NEAR_SIDES + MARGIN
 UNEVEN = 0.003
-"""Where pixels a steradian change by more over a voxel, as near the fold of a lens, the closed form
-is not good: it takes those of the middle."""
+"""Maximum relative change of pixels per steradian over a voxel for the closed form, which uses the
+value in the middle; near the fold of a lens the change is larger."""
 ROOM = 1.02
-"""Times a voxel's radius: single precision's rounding, and a ball seen at a slant."""
+"""Factor on a voxel's radius: rounding in single precision, and the oblique view of a ball."""
 ROOM_PX = 1.0
 
 

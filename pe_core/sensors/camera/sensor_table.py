@@ -49,7 +49,7 @@ def write(model: Camera) -> dict[str, Any]:
 
 FOV_DEG = Number(LENS_FOV.minimum, LENS_FOV.maximum, unit="degrees", noun="angle")
 LISTED = "coefficients"
-"""In place of coefficients by their names: a list, in the order of OpenCV and ROS."""
+"""Key of a list of coefficients in the order of OpenCV and ROS, instead of names."""
 LENGTHS = {"brown-conrady": (4, 5, 8), "kannala-brandt": (4,), "f-theta": (1, 2, 3, 4, 5, 6)}
 
 

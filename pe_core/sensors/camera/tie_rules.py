@@ -29,18 +29,18 @@ Floats = NDArray[np.float64]
 
 TURN_DEG = 360.0
 ANGLE_DECIMALS = 11
-"""Of degrees: ten turns leave so many."""
+"""Decimals of degrees: what double precision leaves of ten turns."""
 AXES_DECIMALS = 15
-"""Of the axes' components: what is less is the rounding of a sine."""
+"""Components of axes below this are zero: they are rounding errors of a sine."""
 SNAP_DECIMALS = 11
-"""Of places in voxels: of some thousand, rounding leaves so many."""
+"""Decimals of positions in voxels that rounding leaves for some thousand voxels."""
 IN_FRONT = 1e-6
-"""In sides; nearer ones would show so large that rounding is all that is left of their area."""
+"""In sides; the image of a nearer corner is so large that its area is only rounding errors."""
 NUDGE = np.sqrt([5.0, 11.0, 26.0]) * 1e-8
-"""In sides: nanometres. In no ratio of whole numbers: directions to centres are in such ratios, and
-a nudge along the ray decides nothing."""
+"""In sides: nanometres. Their ratios are not ratios of integers, unlike directions to centres: a
+nudge along the ray would decide nothing."""
 MARGIN = 1e-6
-"""Voxels are taken this much larger, in sides, where forms of their area meet."""
+"""Voxels are enlarged by this, in sides, where the forms of their area meet."""
 
 
 def axes_of(pose: Pose) -> Floats:

@@ -29,7 +29,7 @@ CLASSES = {
     "person": "pedestrian",
     "cyclist": "cyclist",
 }
-"""Trams and Misc (trailers and the like) are none of ours."""
+"""KITTI's classes by name; trams and Misc (trailers and similar) are left out."""
 UNLABELLED = "dontcare"
 
 COLUMNS = 15

@@ -38,7 +38,7 @@ _SAYS: dict[str, Callable[[bytes], SaidAxes]] = {
     ".obj": said_in_comments,
     ".glb": lambda _: GLTF,
 }
-"""What the files of a format say about their axes; of others it is unsaid."""
+"""Axes that the files of a format define; other formats define none."""
 _WRITERS: dict[str, Callable[[Path, Mesh], bytes]] = {".npz": dump_npz, ".obj": dump_obj}
 
 

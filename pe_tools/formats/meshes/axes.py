@@ -21,9 +21,9 @@ from pe_core.scene.orientation import along, front_by_names, hood_end, up_of
 Floats = NDArray[np.float64]
 
 BLENDER_S_FRONT = "-y"
-"""Where z is up and a body lies along y: what Blender shows from the front looks this way."""
+"""Forward axis if z is up and the body is along y: Blender's front view shows the front so."""
 COMMENT_BYTES = 4096
-"""How far comments that say the axes of a text file are looked for."""
+"""Maximum position in a text file of the comments that name its axes."""
 _COMMENT = re.compile(
     rb"^#.*?([+-]?)([xyz])[ -]*(forward|up)\b(?:.*?([+-]?)([xyz])[ -]*(up)\b)?",
     re.IGNORECASE | re.MULTILINE,
@@ -41,7 +41,7 @@ class SaidAxes(NamedTuple):
 
 OURS = SaidAxes("+z", "file", "+x", "file")
 GLTF = SaidAxes("+y", "format", "+z", "")
-"""glTF says +Z forward, too, but many exporters leave a body as it was: its shape counts more."""
+"""glTF also defines +Z forward, but many exporters do not rotate the body: its shape decides."""
 UNSAID = SaidAxes("+z", "", "+x", "")
 
 
@@ -70,7 +70,7 @@ def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
     if any(axes.rotation_deg or ()):
         turn = Pose.from_degrees((0, 0, 0), axes.rotation_deg or ())
         triangles = rotate(turn.ground_from_sensor, triangles)
-    return Mesh(triangles, mesh.parts, mesh.part_names, _words(chosen))
+    return Mesh(triangles, mesh.parts, mesh.part_names, _text(chosen))
 
 
 def _chosen(mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> SaidAxes:
@@ -142,7 +142,7 @@ def _unit(name: str) -> NDArray[np.int64]:
     return axis
 
 
-def _words(chosen: SaidAxes) -> str:
+def _text(chosen: SaidAxes) -> str:
     """Text on how the axes were determined; empty if the file is in the ground frame."""
     if chosen == OURS:
         return ""

@@ -17,7 +17,7 @@ from .mesh import Piece, cut, found, placed
 
 UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 MAX_NODES = 200_000
-"""Of a scene, instanced nodes counted each time."""
+"""Maximum nodes of a scene; repeated instances count each time."""
 
 
 def check_document(source: str, root: Any) -> None:

@@ -29,7 +29,7 @@ _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "K
 MAX_CHUNKS = 100
 MAX_JSON_BYTES = 32 << 20
 JSON_UNFOLDS = 30
-"""The longest scene, and what a byte of it takes once read, at most (measured)."""
+"""Maximum size of the JSON scene, and memory of one of its bytes after reading (measured)."""
 
 
 def read_glb(path: Path, data: bytes) -> Mesh:

@@ -25,11 +25,11 @@ from pe_core.scene.mesh import Mesh
 from .axes import SaidAxes
 
 MAX_TRIANGLES = 25_000_000
-"""The most of one mesh: cars are of some millions at most."""
+"""Maximum triangles of a mesh: cars have up to some millions."""
 TRIANGLE_BYTES = 320
-"""What one triangle takes while it is read, at most (measured): corners, copies, indices."""
+"""Maximum memory of a triangle while it is read (measured): corners, copies, indices."""
 TEXT_UNFOLDS = 20
-"""What a byte of a mesh in text takes once read (measured on files as programs write them)."""
+"""Memory of a byte of a text mesh after reading (measured on files of other programs)."""
 
 
 def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequence[str]) -> Mesh:
@@ -151,7 +151,7 @@ def _tidy_parts(
 
 
 INSTEAD = "?"
-"""What stands for a character that cannot be printed, and for a name without any that can."""
+"""Replacement of an unprintable character, and of a name without a printable one."""
 MAX_NUMBER_DIGITS = 12
 """Characters kept free for a number behind a name."""
 

@@ -23,7 +23,7 @@ from .mesh import make_mesh, require_labels, require_room
 ARRAYS = ("triangles", "parts", "part_names")
 MAX_ARRAYS = 1000
 MEMBER = b"PK\x01\x02"
-"""How each member's entry in the directory begins."""
+"""First bytes of a member's entry in the directory."""
 VERSIONS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 
 
@@ -111,7 +111,7 @@ def _read_header(file: IO[bytes]) -> Header:
 
 MAX_PARTS = 1_000_000
 MAX_NAME_BYTES = 256 << 20
-"""The most names of parts, and what they may take side by side, all as long as the longest."""
+"""Maximum number of part names, and maximum memory of all names, padded to the longest one."""
 
 
 def read_npz(path: Path, data: bytes) -> Mesh:

@@ -17,7 +17,7 @@ Offsets = NDArray[np.int64]
 
 NEWLINE, BLANK = b"\n"[0], b" "[0]
 MAX_INDEX_DIGITS = 18
-"""Digits of an index that 64 bits hold whatever they are."""
+"""Maximum digits of an index that always fit in 64 bits."""
 POINT_LETTERS = np.isin(np.arange(256), list(b"v 0123456789+-.eE\n"))
 LETTER, SPACE, SLASH, DIGIT = 1, 2, 3, 4
 FACE_LETTERS = np.zeros(256, np.uint8)

@@ -13,9 +13,9 @@ from pe_core.base.errors import InputError
 from pe_core.base.memory import require_memory
 
 MAX_ROW_BYTES = 2**31 - 1
-"""Bytes of a row that NumPy can read in one go."""
+"""Maximum bytes of a row that NumPy can read at once."""
 WALKED_BYTES = 200
-"""What a value or list takes that is read by itself (measured)."""
+"""Memory of a value or list that is read individually (measured)."""
 
 
 @dataclass(frozen=True, slots=True)

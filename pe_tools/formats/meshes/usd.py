@@ -16,9 +16,9 @@ from .mesh import Piece, cut, found, placed
 
 MAX_LAYERS = 1_000
 MAX_PRIMS = 200_000
-"""Of a stage, instances counted each time."""
+"""Maximum prims of a stage; repeated instances count each time."""
 MAX_DEPTH = 1_000
-"""Brackets of a text layer inside each other."""
+"""Maximum nesting of brackets in a text layer."""
 TEXT_MAGIC = b"#usda"
 CHUNK_BYTES = 1 << 24
 STEPS = np.zeros(256, np.int8)

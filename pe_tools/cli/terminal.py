@@ -125,6 +125,7 @@ def summary(outcome: Outcome) -> str:
     if outcome.after.objects is not None:
         found = outcome.after.objects
         lines += [*object_words(found), f"on {objects_looked_at(found)}"]
+    lines += _requirements(outcome)
     scores = outcome.after.per_sensor
     rig = outcome.study.rig
     hidden = hidden_sensors(rig, outcome.after, outcome.warnings)
@@ -144,6 +145,16 @@ def summary(outcome: Outcome) -> str:
     if outcome.stopped:
         lines.append("stopped early: this is the best placement found so far")
     return "\n".join([*lines, *warned(outcome)])
+
+
+def _requirements(outcome: Outcome) -> list[str]:
+    """Return how many requirements are met, and which are not."""
+    broken = [each for each in outcome.verdicts if not each.met]
+    if not outcome.verdicts:
+        return []
+    count = len(outcome.verdicts)
+    lines = [f"requirements  {count - len(broken)} of {count} met"]
+    return lines + [f"not met: {each.name}, {each.margin_text}" for each in broken]
 
 
 def _moves(found: Robustness | None) -> list[str]:

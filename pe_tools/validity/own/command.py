@@ -22,7 +22,7 @@ from .plan import StudyPlan, full_plan, quick_plan
 from .runs import RunFiles, runs
 from .scores import placement_scores
 from .segmentation import section, segmentation_scores
-from .study_page import TITLE, page, plot_name
+from .study_page import TITLE, page, pairs_plot_name, plot_name
 
 CONCLUSIONS = "results.json"
 """What follows from the runs."""
@@ -64,11 +64,12 @@ def _scored(plan: StudyPlan, results: Mapping[str, Any]) -> list[Placement]:
 def _draw(
     plan: StudyPlan, results: Mapping[str, Any], scores: Mapping[str, Any], folder: Path
 ) -> None:
-    from .study_plots import ap_against_scores
+    from .study_plots import ap_against_scores, pairs_by_distance
 
     for design in designs_of(plan, results):
         if design.has_figures:
             ap_against_scores(folder / plot_name(design.name), plan, design, scores)
+            pairs_by_distance(folder / pairs_plot_name(design.name), design, scores)
 
 
 def _summary(found: Mapping[str, Any]) -> str:

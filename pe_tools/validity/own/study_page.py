@@ -176,6 +176,12 @@ averaged: {found["seeds"]}.{of_noise}
 {table(titles, lines)}
 
 ![AP against scores]({plot_name(name)})
+
+*A dot is a placement; a bar reaches from its lowest to its highest seed.*
+
+![Pairs ordered rightly by their difference]({pairs_plot_name(name)})
+
+*Pairs of placements on one vehicle: the share that a score orders as AP does.*
 """
 
 
@@ -197,6 +203,11 @@ def _line(score: str, row: Json) -> list[str]:
 def plot_name(design: str) -> str:
     """Return the file name of a design's plot."""
     return f"{design.replace(', ', '_')}.png"
+
+
+def pairs_plot_name(design: str) -> str:
+    """Return the file name of the plot of a design's pairs."""
+    return f"pairs_{plot_name(design)}"
 
 
 def _pairs(plan: StudyPlan, pairs: Json) -> str:
@@ -246,12 +257,13 @@ def _runs(runs: Mapping[str, Json]) -> str:
     epochs = [t["epochs"] for t in trainings]
     unfinished = sum(not t["converged"] for t in trainings)
     hours = sum(run["seconds"] for run in runs.values()) / 3600.0
+    middle = sorted(run["seconds"] for run in runs.values())[len(runs) // 2] / 60.0
     commits = sorted({run["made"]["commit"] for run in runs.values()})
     return f"""
 ## The runs
 
 {min(epochs)} to {max(epochs)} epochs; {unfinished} of {len(trainings)} runs had not converged at the last epoch that the
-plan allows. {hours:.1f} processor hours in all. Commit: {joined(commits)}.
+plan allows. {hours:.1f} processor hours in all, {middle:.1f} minutes a run (median). Commit: {joined(commits)}.
 """
 
 

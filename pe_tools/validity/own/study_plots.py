@@ -14,13 +14,17 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from ...reproduction.plotting import BLUE, ORANGE, remove_frame, save_plot, styled
+from ...reproduction.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
 from .analysis import Design
 from .plan import StudyPlan
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
 
+DISTANCE_BINS = 6
+"""Bins of pairs by how much they differ in AP, with about as many pairs each."""
+PAIR_COLORS = (BLUE, ORANGE, GREY)
 SHOWN = (PRIMARY, EXPECTED_AP, HEIGHT)
 LABELS = ("perception entropy [nats]", "expected AP in traffic", "mean height [m]")
+PAIR_LABELS = ("perception entropy", "expected AP in traffic", "mean height")
 COLORS = (BLUE, ORANGE)
 
 
@@ -50,3 +54,30 @@ def _panel(panel: Axes, plan: StudyPlan, design: Design, values: np.ndarray) -> 
         panel.vlines(values[index], low, high, color=color, lw=1.0, alpha=0.5)
         panel.plot(values[index], mean[index], "o", color=color, ms=4.5, label=vehicle)
     remove_frame(panel)
+
+
+@styled
+def pairs_by_distance(path: Path, design: Design, scores: Mapping[str, dict[str, Any]]) -> None:
+    """Draw the share of pairs on one vehicle that a score orders rightly, by their distance."""
+    first, second = np.triu_indices(len(design.chosen), 1)
+    same = design.samples.groups[first] == design.samples.groups[second]
+    first, second = first[same], second[same]
+    distance = design.samples.ap[first] - design.samples.ap[second]
+    edges = np.quantile(np.abs(distance), np.linspace(0.0, 1.0, DISTANCE_BINS + 1))
+    bins = np.clip(np.searchsorted(edges, np.abs(distance), side="right") - 1, 0, DISTANCE_BINS - 1)
+    figure, axes = plt.subplots(figsize=(5.6, 3.3), layout="constrained")
+    axes.axhline(0.5, color=GREY, lw=0.8, ls="--")
+    chosen = {s.name: s for s in COMPARED}
+    for name, label, color in zip(SHOWN, PAIR_LABELS, PAIR_COLORS, strict=True):
+        values = np.array([chosen[name].value(p, scores[p.name]) for p in design.chosen])
+        right = (values[first] - values[second]) * distance > 0.0
+        filled = [k for k in range(DISTANCE_BINS) if (bins == k).any()]
+        middles = [np.median(np.abs(distance)[bins == k]) for k in filled]
+        shares = [right[bins == k].mean() for k in filled]
+        axes.plot(middles, shares, "o-", color=color, ms=4.5, lw=1.2, label=label)
+    axes.set_ylim(0.0, 1.05)
+    axes.set_xlabel("difference of the pair in mean AP")
+    axes.set_ylabel("share of pairs ordered rightly")
+    axes.legend(loc="lower right", frameon=False)
+    remove_frame(axes)
+    save_plot(figure, path)

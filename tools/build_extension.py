@@ -29,7 +29,7 @@ FROM_PACKED = re.compile(r"^(\s*)from ((?:pe_core|pe_tools)\b[\w.]*) import", re
 PACKED_AS = re.compile(r"^(\s*)import ((?:pe_core|pe_tools)(?: as \w+)?)$", re.MULTILINE)
 
 # Of no use inside Blender, or in the way of the same bytes again.
-LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.pyc", "tests", "test_*.py", ".*", "*.blend1")
+LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.pyc", "tests", ".*", "*.blend1")
 
 TOOL_TIMEOUT_S = 300
 ZIP_TIME = (1980, 1, 1, 0, 0, 0)  # the earliest a zip can say

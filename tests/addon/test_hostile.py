@@ -10,6 +10,7 @@ from blender_addon.engine import pe
 from blender_addon.operators import reports
 from blender_addon.overlay import layers
 from tests.addon import scenes
+from tests.thorough import pairs
 
 GREATEST, LEAST = 2**31 - 1, -(2**31)
 """Whole numbers that a property can hold."""
@@ -25,6 +26,7 @@ NAMES = {
     "way out": "../../etc/passwd",
     "as long as it gets": "x" * 63,
 }
+FIELDS = ("location", "scale", "rotation_euler")
 MUST_BE_REFUSED = ("line break", "colour of a terminal", "turned text")
 
 
@@ -125,8 +127,9 @@ def test_bounds_of_a_focus(small, tmp_path, bounds):
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("kind", NAMES)
-@pytest.mark.parametrize("what", ["sensor", "part", "fusion", "model", "focus", "boxes"])
+@pytest.mark.parametrize(
+    ("kind", "what"), pairs(NAMES, ["sensor", "part", "fusion", "model", "focus", "boxes"])
+)
 def test_names(small, tmp_path, what, kind):
     """Names that a terminal or a page would act on are refused, in a line that shows them."""
     sensor, name = small.objects["roof"], NAMES[kind]
@@ -150,10 +153,15 @@ def test_names(small, tmp_path, what, kind):
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("place", [1e30, FLOAT_MAX, math.nan, 1e5, -1e5])
-@pytest.mark.parametrize("name", ["roof", "body"])
-@pytest.mark.parametrize("field", ["location", "scale", "rotation_euler"])
-def test_placements_out_of_this_world(small, tmp_path, name, field, place):
+@pytest.mark.parametrize(
+    ("of", "place"),
+    pairs(
+        [(name, field) for name in ("roof", "body") for field in FIELDS],
+        [1e30, FLOAT_MAX, math.nan, 1e5, -1e5],
+    ),
+)
+def test_placements_out_of_this_world(small, tmp_path, of, place):
+    name, field = of
     setattr(small.objects[name], field, (place,) * 3)
     bpy.context.view_layer.update()
     said = score_and_export(tmp_path)

@@ -9,6 +9,7 @@ import pe_core as pe
 from pe_core import sensors as kinds
 from tests.engine import object_oracle, shapes
 from tests.engine.test_oracle import LIDARS, azimuths_of, random_pose
+from tests.thorough import pairs
 
 SIZES = np.array([(4.6, 1.9, 1.7), (0.8, 0.7, 1.75), (1.76, 0.65, 1.74), (7.5, 2.55, 3.0)])
 VIEWS = {
@@ -30,8 +31,7 @@ def random_objects(rng, count=12, per_scene=6, nearest=7.2, farthest=14.0):
     return pe.Objects(centers, sizes, yaws, labels, tuple("abcd"), rng.permutation(scenes))
 
 
-@pytest.mark.parametrize("view", VIEWS)
-@pytest.mark.parametrize("kind", LIDARS)
+@pytest.mark.parametrize(("kind", "view"), pairs(LIDARS, VIEWS))
 def test_beams_equal_brute_force(kind, view):
     rng = np.random.default_rng([sorted(LIDARS).index(kind), sorted(VIEWS).index(view)])
     on_car, traffic = VIEWS[view]
@@ -71,8 +71,7 @@ def rays_of(camera):
     return object_oracle.equidistant_rays(camera.lens, math.radians(100.0))
 
 
-@pytest.mark.parametrize("view", VIEWS)
-@pytest.mark.parametrize("name", CAMERAS)
+@pytest.mark.parametrize(("name", "view"), pairs(CAMERAS, VIEWS))
 def test_pixels_are_those_of_dense_rays(name, view):
     """Within what counting pixels leaves open, and 4 % of what would be seen if nothing hid it."""
     rng = np.random.default_rng([sorted(CAMERAS).index(name), sorted(VIEWS).index(view)])

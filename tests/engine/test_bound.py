@@ -67,7 +67,7 @@ def test_a_search_finds_the_same_with_bounds_and_without():
 
     rig = sensors(np.random.default_rng(7))
     space = SearchSpace.on_vehicle(rig, VEHICLE)
-    schedule = pe.Schedule(candidates=5)
+    schedule = pe.Schedule(candidates=tries(2, 5))
     found = []
     for kind in (pe.Evaluator, Plain):
         evaluator = kind(SPACE, pe.Prior.road(), VEHICLE, samples=4096)

@@ -40,7 +40,10 @@ def directions_of(points):
     return points[size > 0] / size[size > 0, None]
 
 
-def rays_at(triangles, rng, count=600):
+RAYS = tries(300, 600)
+
+
+def rays_at(triangles, rng, count=RAYS):
     """All round; to corners, along edges, to their middles, and into the triangles."""
     some = triangles[rng.choice(len(triangles), min(count, len(triangles)), replace=False)]
     corner, ahead = some[:, 0], some[:, 1]

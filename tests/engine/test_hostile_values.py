@@ -11,7 +11,7 @@ import pe_core as pe
 from pe_core.base.serialization import dumps
 from pe_core.study.study_file import study_from_dict
 from tests.engine import shapes
-from tests.thorough import pairs
+from tests.thorough import pairs, tries
 
 MAX_LINE_LENGTH = 300
 
@@ -237,8 +237,9 @@ def test_every_key_takes_a_hostile_value_or_refuses_it_in_one_line(folder):
     assert len(ALL) > 100
     tried = {
         (".".join(map(str, path)), name): complaint_about(path, value, folder)
-        for path in ALL
-        for name, value in VALUES.items()
+        for row, path in enumerate(ALL)
+        for column, (name, value) in enumerate(VALUES.items())
+        if (row + column) % STEP == 0
     }
     assert {where: fault for where, fault in tried.items() if fault} == {}
 
@@ -252,6 +253,8 @@ def test_a_fault_of_a_hostile_value_is_seen(folder, monkeypatch):
     assert complaint_about(place, "x", folder).startswith("ZeroDivisionError")
 
 
+STEP = tries(3, 1)
+"""By default every key is given every third value, each key others than the one before it."""
 BOX_PATHS = {("prior", "boxes"), ("prior", "origin")}
 
 

@@ -10,6 +10,7 @@ from pe_core import sensors as kinds
 from pe_core.metric.entropy import AP_MIN, ap_of_entropy, average_precision, entropy_of, sigma_of
 from pe_core.scoring import sight
 from tests.engine import shapes
+from tests.thorough import tries
 
 SPACE = pe.PerceptionSpace((-60, 60), (-20, 20), (1, 2), 0.5)
 UNIFORM = pe.Prior.uniform()
@@ -82,7 +83,7 @@ def test_a_reach_is_that_of_every_voxel_in_the_sector():
     found = sight.Sight(space, prior, car).reach(rig, "pedestrian", ap=0.5)
     density = prior.densities(space)[1]
     x, y = space.centers(0)[:, None], space.centers(1)
-    for bearing in (0, 2, 36, 70):
+    for bearing in (2, 36, 0, 70)[: tries(2, 4)]:
         angle = found.bearings[bearing]
         aside = np.abs(np.remainder(np.arctan2(y, x) - angle + np.pi, 2.0 * np.pi) - np.pi)
         steps = np.floor(np.degrees(aside) / 5.0 + 0.5)

@@ -1,17 +1,19 @@
 """The bridge: the only package that converts Blender's data to the engine's, and back."""
 
 from .apply_variant import apply_records, sensors_collection, shown_collection
-from .duplicates import SENSORS, drop_foreign_results, unlink_duplicates
 from .fingerprint import Fingerprint, fingerprint, signature
 from .loading import load_into, record_of_study
 from .mirroring import (
+    SENSORS,
     clear_mirrors,
+    drop_foreign_results,
     follow_mirrors,
     in_the_middle,
     link_mirror,
     mirror_of,
     mirrored_name,
     mirrored_pose,
+    unlink_duplicates,
     unlink_mirror,
 )
 from .mounting import LimitBox, bounds_box, mount_faces, mount_key, mount_of_row, no_go_boxes

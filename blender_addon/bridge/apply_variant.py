@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 import bpy
 
-from .duplicates import SENSORS
+from .mirroring import SENSORS
 from .rig import place_poses, put_curve, sensor_objects, view_layer_of
 from .sensor_records import SensorRecord
 

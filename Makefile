@@ -19,7 +19,7 @@ test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
 properties: .venv/dev.stamp  ## what must hold for any rig, on 1,000 random ones: four minutes
 	@PE_PROPERTY_RIGS=1000 $(PYTHON_VENV) -m pytest $(or $(ARGS),tests/engine/test_properties.py)
 
-mutants: .venv/dev.stamp  ## change the engine line by line: does a test fail? half an hour
+mutants: .venv/dev.stamp  ## change the engine line by line: does a test fail? an hour
 	@$(PYTHON_VENV) tools/mutants.py $(ARGS)
 
 bench: .venv/dev.stamp  ## measure speed

@@ -91,7 +91,7 @@ class RigRobustness:
 
     @property
     def loss(self) -> float | None:
-        """How much a failed sensor raises it on average [nats]; None for a single sensor."""
+        """Mean rise of the entropy when a sensor fails [nats]; None for a single sensor."""
         return None if self.failed is None else rounded(self.failed - self.entropy)
 
 

@@ -104,7 +104,7 @@ class _TaskRun(Generic[TaskKey]):
     def completed(
         self, waiting: deque[TaskKey], width: Callable[[], int], wait_s: float | None
     ) -> Iterator[list[tuple[TaskKey, Any]]]:
-        """Submit the waiting tasks; yield the results that arrive at a time, perhaps none."""
+        """Submit the waiting tasks; yield lists of results as they arrive, which may be empty."""
         while waiting or self.running:
             while waiting and len(self.running) < width():
                 self._submit(waiting.popleft())

@@ -29,7 +29,7 @@ Floats = NDArray[np.float64]
 
 SEES, HIDDEN = "sees", "hidden"
 """Reason of a sensor that measures the location, and of one whose view of it the vehicle blocks.
-The other reasons are those of the sensor's kind (`SensorKind.missed`)."""
+The other reasons are those of the sensor's kind (`Kind.missed`)."""
 WAYS = (("ahead", "behind"), ("left", "right"), ("up", "down"))
 """Names of the positive and the negative direction of each axis."""
 

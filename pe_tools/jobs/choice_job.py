@@ -96,8 +96,8 @@ class ChoiceJob(Job):
 
     Up to `ALL_SEARCHED_UP_TO` designs are searched one by one with `OptimizeJob`. More designs are
     screened first with fewer candidates, and those within `MARGIN` of the front are searched. Of
-    more than `pareto.ALL_UP_TO` designs, only those that a local search visits are screened. The
-    search of a design does not depend on the other designs.
+    more than `design_space.ALL_UP_TO` designs, only those that a local search visits are screened.
+    The search of a design does not depend on the other designs.
 
     Attributes
     ----------

@@ -110,7 +110,7 @@ class Criterion:
 
     @property
     def is_of_ground(self) -> bool:
-        """Whether blind ground is asked for, instead of bodies."""
+        """Whether the criterion is on blind ground, not on test bodies."""
         return self.blind_m2 is not None or self.blind_out is not None
 
     def check_rig(self, rig: Rig, who: str) -> None:

@@ -1,4 +1,6 @@
 """``pe validate --own``: our own study of placements and detectors.
 
-`plan` has what was fixed beforehand, `placements` the rigs.
+`plan` has what was fixed beforehand, `placements` the rigs; `scenes` and `casting` give points,
+`detector`, `training` and `precision` are a run, `runs` keeps the results; `rank_tests` and
+`analysis` are the statistics, `study_page` and `study_plots` show them.
 """

@@ -259,11 +259,12 @@ def _runs(runs: Mapping[str, Json]) -> str:
     hours = sum(run["seconds"] for run in runs.values()) / 3600.0
     middle = sorted(run["seconds"] for run in runs.values())[len(runs) // 2] / 60.0
     commits = sorted({run["made"]["commit"] for run in runs.values()})
+    libraries = sorted({f"JAX {run['made']['jax']}" for run in runs.values()})
     return f"""
 ## The runs
 
 {min(epochs)} to {max(epochs)} epochs; {unfinished} of {len(trainings)} runs had not converged at the last epoch that the
-plan allows. {hours:.1f} processor hours in all, {middle:.1f} minutes a run (median). Commit: {joined(commits)}.
+plan allows. {hours:.1f} processor hours in all, {middle:.1f} minutes a run (median). Commit: {joined(commits)}; {joined(libraries)}.
 """
 
 

@@ -10,7 +10,7 @@ from pe_core import catalog, scoring, search
 from pe_core import scene as geometry
 from pe_core import sensors as kinds
 from pe_core import study as studies
-from pe_core.scoring import sight
+from pe_core.scoring import requirements, sight
 from pe_tools import advice, exchange, graphics, jobs, outputs, page
 from pe_tools import cli as app
 
@@ -26,6 +26,7 @@ __all__ = [
     "outputs",
     "page",
     "pe",
+    "requirements",
     "scoring",
     "search",
     "sight",

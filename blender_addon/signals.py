@@ -48,6 +48,9 @@ moving = Signal()
 idle = Signal()
 """Nothing has moved for a moment: emitted once after the last move."""
 
+requirement_chosen = Signal()
+"""Another requirement is selected in the list."""
+
 live_toggled = Signal()
 """The live score was switched on or off."""
 live_score_changed = Signal()

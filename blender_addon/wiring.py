@@ -27,7 +27,7 @@ from . import (
     viewport,
 )
 from .live import session
-from .operators import inset, look_through, upright
+from .operators import inset, look_through, requirements, upright
 from .overlay import draw_handler, scheduler
 
 Function = Callable[..., None]
@@ -81,6 +81,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
         ),
     ),
     (signals.view_changed, (session.on_view_changed, scheduler.schedule)),
+    (signals.requirement_chosen, (requirements.look_at_worst, scheduler.schedule)),
     (
         signals.moving,
         (

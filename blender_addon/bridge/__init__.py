@@ -21,6 +21,17 @@ from .outcome import blender_version, store_outcome, store_text, store_warnings
 from .own_sensors import add_own_sensor, remove_own_sensors, sync_own_sensors, table_of
 from .plain_objects import plain_objects, put_objects, sensors_of_objects
 from .prior import focus_rows, prior_from_scene, prior_key
+from .requirements import (
+    MET,
+    NOT_MET,
+    edit_row,
+    forget_verdict,
+    full_table,
+    requirements_key,
+    requirements_of,
+    store_verdicts,
+    write_row,
+)
 from .rig import (
     last_written_pose,
     mounted_on_sensor,
@@ -106,6 +117,8 @@ from .view_camera import (
 
 __all__ = [
     "CAMERA_FROM_SENSOR",
+    "MET",
+    "NOT_MET",
     "SENSORS",
     "FigureRule",
     "Fingerprint",
@@ -128,13 +141,16 @@ __all__ = [
     "copy_scene_score",
     "copy_score",
     "drop_foreign_results",
+    "edit_row",
     "figure_rule",
     "figures_of",
     "figures_signature",
     "fingerprint",
     "focus_rows",
     "follow_mirrors",
+    "forget_verdict",
     "free_axes",
+    "full_table",
     "holder_of",
     "in_the_middle",
     "last_written_pose",
@@ -176,6 +192,8 @@ __all__ = [
     "records_of_scene",
     "reference_of",
     "remove_own_sensors",
+    "requirements_key",
+    "requirements_of",
     "restore_result",
     "rig_from_objects",
     "rig_of",
@@ -197,6 +215,7 @@ __all__ = [
     "store_text",
     "store_variant_score",
     "store_variant_scores",
+    "store_verdicts",
     "store_warnings",
     "study_from_scene",
     "study_of",
@@ -219,4 +238,5 @@ __all__ = [
     "write_passthrough",
     "write_records",
     "write_reference",
+    "write_row",
 ]

@@ -17,6 +17,7 @@ from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, pe, search, studies
 from .apply_variant import apply_records
 from .prior import write_prior
+from .requirements import write_requirements
 from .rig import place_at, view_layer_of
 from .scene_record import SceneRecord, study_from_scene, vehicle_of_scene, write_options
 from .scene_settings import write_settings, write_values
@@ -41,6 +42,7 @@ def load_into(scene: bpy.types.Scene, study: pe.Study) -> list[str]:
     _write_vehicle(scene, record.vehicle)
     write_settings(scene.perception_entropy, record)
     write_prior(scene.perception_entropy, record.prior)
+    write_requirements(scene.perception_entropy, record.requirements)
     _write_mounts(scene, record.mounts)
     _write_constraints(scene, record.constraints)
     names = apply_records(scene, record.sensors)
@@ -80,6 +82,7 @@ def record_of_study(study: pe.Study) -> SceneRecord:
         selection=replace(study.selection, choices=()),
         reference=study.reference,
         passthrough=study.passthrough,
+        requirements=study.requirements,
     )
 
 

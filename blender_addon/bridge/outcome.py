@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import bpy
 
 from ..engine import advice, pe
+from .requirements import store_verdicts
 from .rig import sensor_objects
 from .scene_diagnostics import DRIVER, MISSING
 from .versions import score_to_dict
@@ -42,6 +43,7 @@ def store_outcome(
     store_robustness(settings, outcome)
     settings.result_missing = "\n".join(w.text for w in outcome.warnings if w.code in MARKING)
     settings.result_signature = signature
+    store_verdicts(settings, outcome.verdicts)
     for obj in sensor_objects(scene) if sensors is None else sensors:
         _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
         obj.perception_entropy.result_of = obj.name

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 
 import bpy
 
-from ..engine import catalog, exchange, pe, search, studies
+from ..engine import catalog, exchange, pe, requirements, search, studies
 from .mounting import constraints_of, mounting_of, mounts_of
 from .prior import prior_from_scene
+from .requirements import requirements_of
 from .rig import sensor_objects
 from .scene_settings import (
     clearance_of,
@@ -39,7 +40,8 @@ from .sensor_records import (
 from .transform_constraints import Limits, search_bounds, unlocked_axes
 from .vehicle import vehicle_from_collection
 
-AnyMount = search.AnyMount  # the record has a field `search`
+AnyMount = search.AnyMount  # the record has fields of these names
+Requirement = requirements.Requirement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +67,7 @@ class SceneRecord:
     selection: pe.Selection
     reference: pe.Reference | None
     passthrough: exchange.Passthrough | None
+    requirements: tuple[Requirement, ...]
 
 
 def study_from_scene(
@@ -142,6 +145,7 @@ def record_of_scene(
         selection=selection_limits(settings) if _has_options(records) else pe.Selection(),
         reference=reference_of(settings),
         passthrough=passthrough_of(settings),
+        requirements=requirements_of(settings),
     )
 
 
@@ -179,6 +183,7 @@ def study_of(record: SceneRecord) -> pe.Study:
         selection=selection_of(counted, record.selection),
         passthrough=record.passthrough,
         targets=record.targets,
+        requirements=record.requirements,
     )
 
 

@@ -35,6 +35,8 @@ def pair_as_typed(values: Sequence[float]) -> tuple[float, float]:
 
 LARGEST_INT = 2**31 - 1
 """A property holds no larger whole number."""
+KEEP = "keep"
+"""Value of `Search.requirements`: placements that meet the requirements come first."""
 PLACED = frozenset({"score_samples", "targets", "traffic", "scenes"})
 """Settings with a place of their own in the signature of a scene."""
 
@@ -138,6 +140,7 @@ def search_of(settings: bpy.types.PropertyGroup) -> pe.Search:
         schedule=pe.Schedule(**values_of(settings, pe.Schedule)),
         method=settings.method,
         tolerance=tolerance_of(settings),
+        requirements=KEEP if settings.keep_requirements else None,
         **values_of(settings, pe.Search),
     )
 
@@ -184,6 +187,7 @@ def write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> No
     for instance in (record.space, record.targets, search, search.schedule, record.selection):
         write_values(settings, instance)
     settings.score_samples, settings.method = record.samples, search.method
+    settings.keep_requirements = search.requirements == KEEP
     settings.currency = record.selection.currency
     settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
     names = () if settings.mounting_errors else ("failures", "worst")

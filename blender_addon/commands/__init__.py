@@ -19,6 +19,7 @@ from .open_file import REVIEW, flush, take_over_process
 from .scene_verbs import (
     OBJECTS,
     add_objects_options,
+    check_scene_requirements,
     compare_variants,
     explain_study,
     export_study,
@@ -92,6 +93,10 @@ def parser(prog: str) -> argparse.ArgumentParser:
     app.add_explain_options(explain)
     add_variant_option(explain)
     explain.set_defaults(function=explain_study)
+    check = verbs.add_parser("check", help="hold the scene to its requirements; 3: not all are met")
+    app.add_check_options(check)
+    add_variant_option(check)
+    check.set_defaults(function=check_scene_requirements)
     listing = verbs.add_parser("variants", help="list the variants in the file")
     listing.add_argument("--json", action="store_true", help="print JSON")
     listing.set_defaults(function=list_variants)

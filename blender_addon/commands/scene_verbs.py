@@ -131,6 +131,11 @@ def export_study(args: argparse.Namespace) -> app.Answer:
     return str(path), app.DONE
 
 
+def check_scene_requirements(args: argparse.Namespace) -> app.Answer:
+    """Hold the scene to its requirements; the exit status says whether all are met."""
+    return app.check_study(opened_study(args.variant), args)
+
+
 def explain_study(args: argparse.Namespace) -> app.Answer:
     """Describe the scene's score as text, or query a location."""
     return app.explain(app.with_options(opened_study(args.variant), args), args)

@@ -21,6 +21,7 @@ from . import (
     placement,
     query_location,
     replace_sensors,
+    requirements,
     rig_files,
     running_job,
     score_jobs,
@@ -33,6 +34,7 @@ from .fix_warnings import FIX_LABELS
 from .panel_rows import own_fields, reference_label
 from .query_location import answer
 from .replace_sensors import known_rigs
+from .requirements import ShownVerdict, shown_verdicts
 
 __all__ = [
     "CLASSES",
@@ -40,6 +42,7 @@ __all__ = [
     "SENSOR_COLORS",
     "Offer",
     "ShownScore",
+    "ShownVerdict",
     "answer",
     "brief",
     "export_job",
@@ -56,6 +59,7 @@ __all__ = [
     "register",
     "running_job",
     "shown_score",
+    "shown_verdicts",
     "unregister",
     "warnings_outdated",
 ]
@@ -66,6 +70,7 @@ CLASSES = (
     *edit_sensors.CLASSES,
     *mounts.CLASSES,
     *panel_rows.CLASSES,
+    *requirements.CLASSES,
     *look_through.CLASSES,
     *upright.CLASSES,
     *score_jobs.CLASSES,

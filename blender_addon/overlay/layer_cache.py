@@ -5,12 +5,12 @@ Plain data, no scene and no GPU. `shown` belongs to the main thread, a `LayerCac
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from .. import simplified_vehicles
-from ..engine import graphics, pe, sight
+from ..engine import graphics, pe, requirements, sight
 from .request import SceneSensor, ViewRequest
 
 Sight = sight.Sight  # a cache has a method `sight`
@@ -71,6 +71,7 @@ class LayerCache:
 
     def __init__(self) -> None:
         self._kept: dict[str, dict[Hashable, Any]] = {}
+        self._met: dict[Hashable, tuple[dict[str, bool], dict[str, bool]]] = {}
 
     def cast(self, request: ViewRequest, of: SceneSensor) -> graphics.Cast:
         """Return where the beams of a LiDAR end; of a few beams while something moves."""
@@ -87,6 +88,27 @@ class LayerCache:
         """Return the `Sight` that computes the visibility of rigs."""
         key = request.body_key, request.prior_key
         return self._keep("sight", key, lambda: self._sight(request))
+
+    def checker(
+        self, request: ViewRequest
+    ) -> tuple[requirements.RequirementChecker, Mapping[str, str]]:
+        """Return what holds rigs to the requirements, and why others cannot be placed, by name."""
+        key = request.requirements_key, request.body_key, request.reference, request.prior_key
+        return self._keep("checker", key, lambda: _checker(request))
+
+    def met_before(
+        self, request: ViewRequest, verdicts: Sequence[requirements.Verdict]
+    ) -> Mapping[str, bool]:
+        """Return whether each requirement was met before the last move; note what is met now."""
+        key = request.requirements_key
+        before, now = self._met.get(key, ({}, {}))
+        if request.moving:
+            return now
+        found = {verdict.name: verdict.met for verdict in verdicts}
+        if found != now:
+            before, now = now, found
+        self._met = {key: (before, now)}
+        return before
 
     def compared(self, key: Hashable, make: Callable[[], GroundSight]) -> GroundSight:
         """Return the ground map that a difference map compares with."""
@@ -113,3 +135,23 @@ class LayerCache:
         while len(kept) > MAX_KEPT.get(sort, 1):
             del kept[next(iter(kept))]
         return kept[key]
+
+
+def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dict[str, str]]:
+    placed, unplaced = [], {}
+    rig = pe.Rig([each.sensor for each in request.counted])
+    for each in request.requirements:
+        try:
+            each.zone.placed(request.vehicle, request.reference, each.name)
+            each.criterion.check_rig(rig, each.name)
+            placed.append(each)
+        except pe.InputError as error:
+            unplaced[each.name] = f"{error.field}: expected {error.expected}, found {error.found}"
+    checker = requirements.RequirementChecker(
+        placed,
+        request.vehicle,
+        model=request.model,
+        reference=request.reference,
+        space=request.space,
+    )
+    return checker, unplaced

@@ -15,6 +15,7 @@ from . import ground_layers, heatmap, regions
 from .annotations import GHOST_PALETTE, GHOST_TITLE, axles, ghost_sensors, location_mark
 from .layer_cache import LayerCache
 from .request import ALL, BY_CHANNEL, BY_SENSOR, RIG, SceneSensor, ViewRequest, ViewSettings
+from .requirement_zones import requirement_zones
 
 WHOLE_RIG = ""
 """The name of shapes that belong to no single sensor."""
@@ -261,6 +262,21 @@ def _place(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.Lay
     return location_mark(request.place, [each.sensor for each in request.counted])
 
 
+def _requirement_keys(request: ViewRequest) -> dict[str, Hashable]:
+    if not request.requirements:
+        return {}
+    chosen = request.requirements_key, request.requirement, request.reference
+    keys = _rig_keys(prior=False)(request)
+    return {name: (key, request.prior_key, chosen) for name, key in keys.items()}
+
+
+def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
+    checker, unplaced = cache.checker(request)
+    verdicts = checker.check(_counted_rig(request), preview=request.moving)
+    before = cache.met_before(request, verdicts)
+    return requirement_zones(verdicts, request.requirement, before, unplaced)
+
+
 def _mount_keys(request: ViewRequest) -> dict[str, Hashable]:
     if not request.mounts and not request.boxes:
         return {}
@@ -314,6 +330,16 @@ LAYERS = (
         edged=True,
     ),
     Layer("reach", "Reach", _reach_keys, _reach, 2.2, rough=True, on_ground=True, edged=True),
+    Layer(
+        "requirements",
+        "Requirements",
+        _requirement_keys,
+        _requirements,
+        1.6,
+        rough=True,
+        on_ground=True,
+        edged=True,
+    ),
     Layer("mounts", "Mounts", _mount_keys, _mounts, 1.4, edged=True),
     Layer("focus", "Focus", _focus_keys, _focus, 1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..engine import graphics
 
 if TYPE_CHECKING:
-    from ..engine import advice, pe
+    from ..engine import advice, pe, requirements
 
 
 AVERAGE = "AVERAGE"
@@ -109,7 +109,7 @@ class ViewRequest:
     approximate picture now is better than a fine one later. `scored` is the ground map of the last
     score, of all voxels, where the scene has not changed since. `ghosts` are the sensors of another
     variant, or of the best placement of a running search (`searching`). `compared` are the sensors
-    that the difference map compares with.
+    that the difference map compares with. `requirement` is the name of the selected requirement.
     """
 
     sensors: tuple[SceneSensor, ...]
@@ -133,6 +133,9 @@ class ViewRequest:
     compared: tuple[pe.Sensor, ...] = ()
     compared_name: str = ""
     reference: pe.Reference | None = None
+    requirements: tuple[requirements.Requirement, ...] = ()
+    requirements_key: Hashable = None
+    requirement: str = ""
 
     @property
     def counted(self) -> tuple[SceneSensor, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Hashable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -83,6 +83,7 @@ class SnapshotReader:
             compared_name=compared_name,
             focus=tuple(FocusRegion(*row) for row in bridge.focus_rows(scene)),
             reference=bridge.reference_of(scene.perception_entropy),
+            **_requirements(scene),
         )
 
     def _mounts(
@@ -237,6 +238,19 @@ def _compared(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
             with contextlib.suppress(pe.InputError):
                 return tuple(bridge.rig_of(bridge.records_of(row))), row.name
     return (), ""
+
+
+def _requirements(scene: bpy.types.Scene) -> dict[str, Any]:
+    """Return the requirements of a scene; none where one is wrong: a check says what is."""
+    settings = scene.perception_entropy
+    rows, index = settings.requirements, settings.requirement_index
+    chosen = rows[index].name if index < len(rows) else ""
+    try:
+        found = bridge.requirements_of(settings)
+    except pe.InputError:
+        return {"requirement": chosen}
+    key = bridge.requirements_key(settings)
+    return {"requirements": found, "requirements_key": key, "requirement": chosen}
 
 
 def _height(choice: str) -> float | None:

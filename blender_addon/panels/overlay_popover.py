@@ -128,6 +128,7 @@ LAYERS: tuple[tuple[str, DrawChoices | None], ...] = (
     ("ground", _ground),
     ("blind", _blind),
     ("reach", _reach),
+    ("requirements", None),
     ("mounts", None),
     ("focus", None),
     ("frustums", _frustums),

@@ -19,6 +19,7 @@ from .list_rows import (
     PE_OwnSensorSettings,
     PE_SensorOption,
 )
+from .requirement import PE_Requirement
 from .results import (
     PE_FrontRow,
     PE_ResultPart,
@@ -48,6 +49,7 @@ CLASSES = (
     PE_MountPart,
     PE_MountSettings,
     PE_SensorOption,
+    PE_Requirement,
     PE_FrontRow,
     PE_VariantSensor,
     PE_Variant,

@@ -18,6 +18,11 @@ def changed(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> 
     signals.study_changed.emit()
 
 
+def requirement_chosen(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Update callback of the list of requirements: the view goes to the chosen one."""
+    signals.requirement_chosen.emit()
+
+
 def switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Update callback of the switch of the live score."""
     signals.live_toggled.emit()

@@ -20,8 +20,9 @@ from bpy.props import (
 
 from ..choices import PRIORS
 from ..engine import search, studies
-from .callbacks import changed, redraw
+from .callbacks import changed, redraw, requirement_chosen
 from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
+from .requirement import PE_Requirement
 from .results import PE_FrontRow, PE_ResultPart, PE_Variant, PE_Warning
 from .view import PE_LiveSettings, PE_ViewSettings
 
@@ -158,6 +159,22 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     )
     mount_index: IntProperty(
         name="Selected Mount", description="Row of the list whose settings are shown", min=0
+    )
+    requirements: CollectionProperty(
+        type=PE_Requirement,
+        name="Requirements",
+        description="Zones in which test bodies have to be seen",
+    )
+    requirement_index: IntProperty(
+        name="Requirement",
+        description="The 3D view goes to the worst place of the requirement",
+        min=0,
+        update=requirement_chosen,
+    )
+    keep_requirements: BoolProperty(
+        name="Keep in Searches",
+        description="Placements that meet all requirements are better than those that do not; "
+        "without it, a search minimizes the entropy alone",
     )
     method: EnumProperty(
         items=METHODS,

@@ -152,6 +152,13 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
     ghost_key: IntProperty(
         name="Ghost", description="Key of the variant that is shown; 0: none", update=redraw
     )
+    show_requirements: BoolProperty(
+        name="Requirements",
+        description="Draw the zones of requirements: filled where they are met, hatched where "
+        "they are not",
+        default=True,
+        update=redraw,
+    )
     show_place: BoolProperty(
         name="Queried Location",
         description="Mark the queried location",

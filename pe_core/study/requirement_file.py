@@ -127,10 +127,10 @@ def read_requirement(table: Table) -> Requirement:
 
 def requirement_table(requirement: Requirement) -> dict[str, Any]:
     """Return the table that `read_requirement` reads: of a preset, what differs from it."""
-    full = _full_table(requirement)
+    full = full_table(requirement)
     if requirement.preset is None:
         return full
-    base = _full_table(preset(requirement.preset).requirement())
+    base = full_table(preset(requirement.preset).requirement())
     kept: dict[str, Any] = {"name": requirement.name, "preset": requirement.preset}
     for key, value in full.items():
         if key in kept or value == base.get(key):
@@ -255,7 +255,7 @@ def _with_headings(body: Body, headings: Any, table: Table) -> Body:
     return replace(body, headings=tuple(as_in_file(math.radians(v)) for v in items or ()))
 
 
-def _full_table(requirement: Requirement) -> dict[str, Any]:
+def full_table(requirement: Requirement) -> dict[str, Any]:
     """Return all of a requirement as plain data, without what has its default."""
     zone = requirement.zone
     table: dict[str, Any] = {

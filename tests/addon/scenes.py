@@ -97,6 +97,7 @@ def seen_rig(car) -> bpy.types.Scene:
     view.beams_of = "ALL"
     car.perception_entropy.axles_known = True
     bpy.ops.pe.add_focus(region="front")
+    bpy.ops.pe.add_requirement(preset="OWN")
     return car
 
 

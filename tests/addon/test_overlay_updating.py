@@ -69,7 +69,7 @@ def test_each_layer_has_a_switch_and_all_of_them_one(rig):
 
 def test_nothing_is_worked_out_without_a_change(rig, worked):
     scenes.drawn(rig)
-    assert len(worked) == 11
+    assert len(worked) == 12
     before = {layer: dict(shown.items(rig.name, layer)) for layer in ALL_LAYERS}
     worked.clear()
     scenes.drawn(rig)
@@ -87,7 +87,7 @@ def test_a_moved_sensor_is_worked_out_alone_and_the_vehicle_is_not_read(rig, wor
     rig.objects["eye"].location.z += 0.1
     bpy.context.view_layer.update()
     scenes.drawn(rig)
-    of_the_rig = {("ground", ""), ("blind", ""), ("reach", "")}
+    of_the_rig = {("ground", ""), ("blind", ""), ("reach", ""), ("requirements", "")}
     assert set(worked) == {("frustums", "eye"), ("labels", "eye"), *of_the_rig}
 
 

@@ -28,6 +28,7 @@ ROUNDS = tries(10, 100)
 
 
 SIGNALS = (
+    signals.requirement_chosen,
     signals.study_changed,
     signals.view_changed,
     signals.moving,

@@ -129,6 +129,8 @@ def rich(car):
         option = own.options.add()
         option.model, option.price = model, price
     own.may_be_left_out = True
+    settings.keep_requirements = True
+    assert bpy.ops.pe.add_requirement(preset="r158_camera") == {"FINISHED"}
     set_what_is_by_default(settings)
     scenes.add_sensor("hidden", CAN, location=(0.0, 0.0, 3.0)).hide_set(True)
     bpy.context.view_layer.update()

@@ -52,7 +52,7 @@ def test_a_row_gives_the_kind_a_figure_a_housing_and_an_image(bumper, monkeypatc
     def drawn(sensor, vehicle):
         return Markup(f"<figure>{sensor.model.range_m:g} m around {vehicle is not None}</figure>")
 
-    view = SensorView(drawn, HOUSING, lambda model: (120.0, 10.0 * model.range_m))
+    view = SensorView(drawn, None, HOUSING, lambda model: (120.0, 10.0 * model.range_m))
     monkeypatch.setitem(SENSOR_VIEWS, "ultrasonic", view)
     assert "<figure>4 m around True</figure>" in sensor_details(bumper).html
     assert housing_of(bumper.rig["bumper"]) is HOUSING

@@ -5,8 +5,15 @@ from .film import FILM
 from .guide import GUIDE
 from .mounts import MOUNTS
 from .reel import Reel
+from .requirements import REQUIREMENTS
 
-REELS = {"guide": GUIDE, "assets": ASSETS, "film": FILM, "mounts": MOUNTS}
+REELS = {
+    "guide": GUIDE,
+    "assets": ASSETS,
+    "film": FILM,
+    "mounts": MOUNTS,
+    "requirements": REQUIREMENTS,
+}
 """By the name that `tools/screenshots.py` takes."""
 
 __all__ = ["REELS", "Reel"]

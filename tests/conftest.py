@@ -31,6 +31,11 @@ def pytest_xdist_auto_num_workers(config):
 
 
 def pytest_collection_modifyitems(items):
-    """Begin with those that open windows: they take longest."""
+    """Begin with those that open windows: they take longest. Those that spend one are the last."""
     rank = {folder: place for place, folder in enumerate(ORDER)}
-    items.sort(key=lambda item: rank.get("/".join(item.nodeid.split("/")[:2]) + "/", len(rank)))
+
+    def place(item):
+        folder = "/".join(item.nodeid.split("/")[:2]) + "/"
+        return rank.get(folder, len(rank)), "spent_stage" in getattr(item, "fixturenames", ())
+
+    items.sort(key=place)

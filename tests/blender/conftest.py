@@ -63,11 +63,25 @@ def screenshots() -> Path:
     return folder
 
 
+PLAIN_DRAWING = """
+bpy.context.preferences.system.viewport_aa = "OFF"
+bpy.context.preferences.view.smooth_view = 0
+"""
+"""A view that stands still is drawn once, not eight times, and jumps to where it is sent."""
+
+
+QUICK_SCORE = """
+window.scene.perception_entropy.score_samples = 16_384
+bpy.ops.ed.undo_push(message="before the test")
+"""
+"""What is scored is no subject of a windowed test, but that it is."""
+
+
 class SharedWindow:
     """One window for all tests: each begins with the file loaded anew.
 
     A window is closed, and the next test opens another, after a test that failed and after one that
-    sets `spent`: for a test that switches the extension off.
+    takes `spent_stage`.
     """
 
     def __init__(self, installed, blend, new_folder):
@@ -79,8 +93,10 @@ class SharedWindow:
         if self._stage is None:
             self._stage = Stage(self._new_folder())
             self._stage.open(self._installed, self._blend)
+            self._stage.do(PLAIN_DRAWING)
         else:
             self._stage.load(self._blend)
+        self._stage.do(QUICK_SCORE)
         return self._stage
 
     def close(self) -> None:
@@ -119,8 +135,17 @@ def stage(shared_window, request):
         shown = shared_window.begin()
         yield shown
     finally:
-        if not request.node.stash.get(PASSED, False) or shown.spent:
+        if not request.node.stash.get(PASSED, False) or "spent_stage" in request.fixturenames:
             shared_window.close()
+
+
+@pytest.fixture
+def spent_stage(stage):
+    """Return the window for a test after which none should begin in it, as it switches us off.
+
+    Such tests come last (`tests/conftest.py`), so that the others share one window.
+    """
+    return stage
 
 
 @pytest.fixture

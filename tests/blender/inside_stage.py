@@ -21,7 +21,7 @@ KEPT = {}
 
 
 def obey():
-    """Run what is asked for, in the first 3D view's context."""
+    """Run what is asked for, in the first 3D view's context; a file dialog may fill the window."""
     asked = FOLDER / "do.py"
     if not asked.exists():
         return POLL_S
@@ -29,14 +29,18 @@ def obey():
     asked.unlink()
     problem = ""
     try:
-        window, area, _ = view3d()
-        region = next(each for each in area.regions if each.type == "WINDOW")
-        with bpy.context.temp_override(window=window, area=area, region=region):
-            names = {"bpy": bpy, "window": window, "area": area, "region": region, "kept": KEPT}
+        place = {"window": bpy.context.window_manager.windows[0]}
+        if any(area.type == "VIEW_3D" for area in place["window"].screen.areas):
+            _, area, _ = view3d()
+            region = next(each for each in area.regions if each.type == "WINDOW")
+            place |= {"area": area, "region": region}
+        with bpy.context.temp_override(**place):
+            names = {"bpy": bpy, "kept": KEPT, **place}
             names["start_again"] = start_again
             exec(compile(code, "do.py", "exec"), names)
-        for each in window.screen.areas:  # Blender does not draw what a script has changed
-            each.tag_redraw()
+        if names["redraw"]:
+            for each in place["window"].screen.areas:
+                each.tag_redraw()
     except Exception:
         problem = traceback.format_exc()
     write("done.json", json.dumps({"problem": problem, "kept": KEPT}, default=str))

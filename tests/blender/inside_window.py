@@ -1,6 +1,8 @@
 """Run inside Blender's window: lays the screen out for the test and reports through files.
 
 ``ready.json``   once our tab of the sidebar has been drawn: where the sidebar is
+``drawn.json``   again and again: what time it is, and when something was last drawn
+``..._answer.json``   where the button is that ``button.json`` asks for, and other answers
 ``state.json``   again and again: what the scene holds
 ``copied.txt``   what was copied by Ctrl+C, which tells the button under the mouse
 """
@@ -8,6 +10,7 @@
 import json
 import math
 import sys
+import time
 from pathlib import Path
 
 import bpy
@@ -21,8 +24,13 @@ FOLDER = Path(sys.argv[-1])
 CATEGORY = "Perception"
 VIEW_CENTER_M, VIEW_DISTANCE_M = (0.0, -0.6, 0.7), 9.0
 VIEW_ROTATION = (math.radians(66.0), 0.0, math.radians(128.0))
-STEP_S = 0.5
+STEP_S = 0.1
 REPORT_S = 0.1
+TURN_S, IDLE_S = 0.01, 0.05
+ROW_STEP = 18
+"""A button is 20 pixels high at this scale: smaller steps cannot miss one."""
+COLUMNS = (0.7, 0.25, 0.5)
+"""Where to look in a row: its middle may be the gap between two buttons."""
 
 
 def write(name, document):
@@ -200,6 +208,84 @@ def better_found(job):
     return len(getattr(job, "history", ())) > 1
 
 
+def report_answers():
+    """Answer the requests there are: one turn of each answer at each call."""
+    for what, answer in (("button", look_for_button), ("turns", count_turns)):
+        asked = FOLDER / f"{what}.json"
+        if asked.exists():
+            request = json.loads(asked.read_text())
+            asked.unlink()
+            answers[what] = answer(**request)
+    for what, answer in list(answers.items()):
+        try:
+            next(answer)
+        except StopIteration as ended:
+            del answers[what]
+            write(f"{what}_answer.json", ended.value)
+    return TURN_S if answers else IDLE_S
+
+
+def count_turns(count):
+    """Let Blender handle the events that came before: it does so once a turn."""
+    for _ in range(count):
+        yield
+    return {}
+
+
+def look_for_button(operator, words, first):
+    """Move the mouse down the sidebar until the button under it calls the operator.
+
+    Blender does not tell scripts where its buttons are, but whether one is under the mouse, and its
+    Python call.
+    """
+    call = f"bpy.ops.{operator}("
+    window, area, sidebar = view3d()
+    for x, y in [*first, *sidebar_places(window, sidebar)]:
+        window.cursor_warp(x, window.height - y)
+        yield  # the move is an event of the next turn, which runs timers before it
+        yield
+        with bpy.context.temp_override(window=window, area=area, region=sidebar):
+            said = copied_call()
+        if call in said and words in said:
+            return {"place": [x, y]}
+    return {"place": None}
+
+
+def sidebar_places(window, sidebar):
+    """Yield places in the sidebar from its top down, column by column; y from the window's top."""
+    top = window.height - (sidebar.y + sidebar.height)
+    for column in COLUMNS:
+        for y in range(top + ROW_STEP, top + sidebar.height, ROW_STEP):
+            yield round(sidebar.x + column * sidebar.width), y
+
+
+def copied_call():
+    """Return the Python call of the button under the mouse, "" where there is none."""
+    if not bpy.ops.ui.copy_python_command_button.poll():
+        return ""
+    bpy.ops.ui.copy_python_command_button()
+    manager = bpy.context.window_manager
+    said, manager.clipboard = manager.clipboard, ""
+    return said
+
+
+answers = {}
+"""Generators that find the answers to requests, by what they are about."""
+drawn_at = time.monotonic()
+
+
+def note_drawing():
+    """Remember when something was drawn."""
+    global drawn_at
+    drawn_at = time.monotonic()
+
+
+def report_drawing():
+    """Tell when something was last drawn."""
+    write("drawn.json", {"now": time.monotonic(), "drawn": drawn_at})
+    return REPORT_S
+
+
 def report_copied():
     """Hand over what Ctrl+C copied, once."""
     manager = bpy.context.window_manager
@@ -210,4 +296,8 @@ def report_copied():
 
 bpy.context.preferences.view.show_splash = False
 bpy.app.timers.register(fill_the_window, first_interval=STEP_S, persistent=True)
-bpy.app.timers.register(report_state, first_interval=STEP_S, persistent=True)
+for report in (report_state, report_drawing, report_answers):
+    bpy.app.timers.register(report, first_interval=STEP_S, persistent=True)
+for space in (bpy.types.SpaceView3D, bpy.types.SpaceFileBrowser):
+    for kind in ("WINDOW", "UI") if space is bpy.types.SpaceView3D else ("WINDOW",):
+        space.draw_handler_add(note_drawing, (), kind, "POST_PIXEL")

@@ -22,25 +22,25 @@ class Stage(windowed.Window):
     """A window that does what Python says, beside what its mouse and keyboard do."""
 
     startup = INSIDE
-    spent = False
-    """Whether a test has left the window in a state in which no other test should begin."""
 
     def load(self, blend: Path) -> None:
         """Show a file as it was saved, laid out as at the start; nothing of before is left."""
         self.point_at_view()
-        (self.folder / "ready.json").unlink()
-        for path in self.folder.glob("*"):
-            if path.name not in ("window.log", "screen.log"):
+        for path in self.folder.glob("*"):  # Blender is about to rename what is partial
+            if path.suffix not in (".log", ".partial"):
                 path.unlink(missing_ok=True)
         self.do(f"kept.clear(); start_again({str(blend)!r})")
         self.wait_for(lambda: (self.folder / "ready.json").exists(), DONE_TIMEOUT_S, "the file")
 
-    def do(self, code: str) -> dict:
-        """Run Python inside Blender; return what it keeps in `kept`."""
+    def do(self, code: str, redraw: bool = True) -> dict:
+        """Run Python inside Blender; return what it keeps in `kept`.
+
+        Blender draws what Python has changed only when it is told to.
+        """
         done, asked = self.folder / "done.json", self.folder / "do.py"
         done.unlink(missing_ok=True)
         partial = asked.with_suffix(".partial")
-        partial.write_text(textwrap.dedent(code))
+        partial.write_text(f"redraw = {redraw}\n{textwrap.dedent(code)}")
         partial.replace(asked)
         self.wait_for(done.exists, DONE_TIMEOUT_S, f"an answer to {code[:60]!r}")
         answer = json.loads(done.read_text())
@@ -51,7 +51,9 @@ class Stage(windowed.Window):
     def wait_until(self, expression: str, timeout_s: float = DONE_TIMEOUT_S) -> None:
         """Wait until an expression holds inside Blender."""
         self.wait_for(
-            lambda: self.do(f"kept['holds'] = bool({expression})")["holds"], timeout_s, expression
+            lambda: self.do(f"kept['holds'] = bool({expression})", redraw=False)["holds"],
+            timeout_s,
+            expression,
         )
 
     def rest(self, seconds: float = DRAWN_S) -> None:
@@ -85,20 +87,25 @@ class Stage(windowed.Window):
 
     def show_assets(self, catalog_id: str) -> None:
         """A 3D view above an asset browser that shows one catalogue of our library."""
-        self.do('window.workspace = bpy.data.workspaces["Shading"]')
-        self.rest()
+        self.do("""
+            workspace = bpy.data.workspaces["Shading"]
+            for each in workspace.screens[0].areas:
+                if each.type == "VIEW_3D":  # else the materials' shaders are compiled
+                    each.spaces.active.shading.type = "SOLID"
+            window.workspace = workspace
+        """)
+        self.settle()
         self.do("""
             below = next(a for a in window.screen.areas if a.type == "NODE_EDITOR")
             below.ui_type = "ASSETS"
         """)
-        self.rest()
+        self.settle()
         self.do(f"""
             below = next(a for a in window.screen.areas if a.ui_type == "ASSETS")
             below.spaces.active.params.asset_library_reference = {LIBRARY!r}
             below.spaces.active.params.catalog_id = {catalog_id!r}
-            area.spaces.active.shading.type = "SOLID"
         """)
-        self.rest()
+        self.settle()
 
     def place_of(self, point: tuple[float, float, float]) -> tuple[int, int]:
         """Where a point of the scene is on the screen, from its top left."""

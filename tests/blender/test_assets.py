@@ -72,7 +72,7 @@ def dropped_on(stage, place, before):
     def dropped():
         """Blender does not say when it has read the assets; before, a drag does nothing."""
         stage.drag(first_asset(stage), stage.place_of(place))
-        stage.rest()
+        stage.settle()
         return len(stage.do(SENSORS)["sensors"]) > len(before)
 
     stage.wait_for(dropped, EFFECT_TIMEOUT_S, "a new sensor")
@@ -85,7 +85,7 @@ def test_an_asset_dropped_on_the_roof_is_a_sensor_that_stands_there(stage, scree
     before = stage.do(SENSORS)["sensors"]
     stage.show_assets(catalog_id("LiDAR/Velodyne"))
     stage.do(LOOK_FROM_ABOVE)
-    stage.rest()
+    stage.settle()
     new, after = dropped_on(stage, ROOF, before)
     stage.photograph(screenshots / "window_assets.png")
     assert new["model"].startswith("Velodyne ")
@@ -101,7 +101,7 @@ def test_an_asset_dropped_on_the_roof_is_a_sensor_that_stands_there(stage, scree
         below = next(a for a in window.screen.areas if a.ui_type == "ASSETS")
         below.spaces.active.params.catalog_id = {catalog_id("Camera/Paper")!r}
     """)
-    stage.rest()
+    stage.settle()
     surface = tail_of_the_car(stage)
     camera, everything = dropped_on(stage, surface, after)
     stage.photograph(screenshots / "window_asset_camera.png")
@@ -117,15 +117,18 @@ def test_an_asset_dropped_on_the_roof_is_a_sensor_that_stands_there(stage, scree
     stage.wait_until(f"{name!r} not in window.scene.objects")
     stage.mouse("key", "ctrl+shift+z")
     stage.wait_until(f"{name!r} in window.scene.objects")
-    stage.rest()
+    stage.settle()
     again = stage.do(SENSORS)["sensors"][name]
     assert again == camera, "redo brings it back as it was dropped"
     assert "Traceback" not in stage.log.read_text()
 
 
-def test_the_preferences_take_the_library_away(stage):
+def test_the_preferences_take_the_library_away(spent_stage):
+    stage = spent_stage
     names = "[each.name for each in bpy.context.preferences.filepaths.asset_libraries]"
     stage.wait_until(f"'Perception Entropy' in {names}")
-    stage.spent = True
-    stage.do("bpy.ops.preferences.addon_disable(module='bl_ext.user_default.perception_entropy')")
+    addon = "module='bl_ext.user_default.perception_entropy'"
+    stage.do(f"bpy.ops.preferences.addon_disable({addon})")
     stage.wait_until(f"'Perception Entropy' not in {names}")
+    stage.do(f"bpy.ops.preferences.addon_enable({addon})")
+    stage.wait_until(f"'Perception Entropy' in {names}")

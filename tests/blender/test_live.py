@@ -132,8 +132,7 @@ def test_vertices_moved_in_edit_mode_count_and_make_a_result_stale(live):
     assert "Traceback" not in live.log.read_text()
 
 
-def test_disabled_in_the_middle_of_a_drag_it_leaves_nothing_and_comes_back(live):
-    live.spent = True
+def test_disabled_in_the_middle_of_a_drag_it_leaves_nothing_and_comes_back(live, spent_stage):
     grab_and_move(live, moves=4)
     live.do(DISABLE)
     live.mouse("click", 1)
@@ -145,12 +144,12 @@ def test_disabled_in_the_middle_of_a_drag_it_leaves_nothing_and_comes_back(live)
     assert "Traceback" not in live.log.read_text()
 
 
-def test_disabled_during_a_search_it_leaves_nothing_and_works_again(stage, screenshots):
+def test_disabled_during_a_search_it_leaves_nothing_and_works_again(spent_stage, screenshots):
+    stage = spent_stage
     stage.do(CALM)
     places = stage.state["places"]
     stage.press("pe.optimize")
     stage.wait_for(lambda: stage.state["running"], EFFECT_TIMEOUT_S, "the search to start")
-    stage.spent = True
     stage.do(DISABLE)
     stage.do(ENABLE)
     stage.wait_until("bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()")

@@ -32,7 +32,7 @@ def test_a_search_on_a_painted_roof_shows_its_curve(stage, screenshots):
     stage.press("pe.optimize")
     stage.wait_until(f"len({shown('points')}) > 1", BETTER_TIMEOUT_S)
     stage.point_at_view()
-    stage.rest()
+    stage.rest()  # the search goes on drawing
     stage.photograph(screenshots / "window_search.png")
     if stage.do(f"kept['still'] = bool({VIEW})")["still"]:
         assert pixels_of_the_curve(screenshots / "window_search.png") > 100
@@ -78,7 +78,8 @@ def ask_for(stage, page):
         with bpy.context.temp_override(window=window, area=area, region=region):
             bpy.ops.pe.export_review("INVOKE_DEFAULT", filepath={str(page)!r})
     """)
-    stage.rest(3.0)
+    stage.wait_until("any(area.type == 'FILE_BROWSER' for area in window.screen.areas)")
+    stage.settle()
     stage.key("Return")
 
 

@@ -2,7 +2,6 @@
 
 import json
 import math
-import time
 
 import pytest
 
@@ -136,7 +135,6 @@ def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
     window.point_at_view()
     window.key("KP_3")
     window.wait_for(lambda: window.state["view"]["along_axis"], EFFECT_TIMEOUT_S, "a side view")
-    time.sleep(1.0)  # the view slides there
     view = window.state["view"]
     window.press("pe.look_through")
     window.wait_for(lambda: window.state["perspective"] == "CAMERA", EFFECT_TIMEOUT_S, "its view")

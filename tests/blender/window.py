@@ -1,8 +1,9 @@
 """Blender in a real window on an X server of its own, worked with a real mouse and keyboard.
 
 Blender does not tell scripts where its buttons are. It does copy the Python call of the button
-under the mouse on Ctrl+C, so buttons are found by asking at places from top to bottom; no pixel
-of the theme and no order of the panels is assumed.
+under the mouse, so buttons are found by asking at places from top to bottom; no pixel of the theme
+and no order of the panels is assumed. Before it is clicked, a button found is asked once more, by a
+real mouse and Ctrl+C.
 """
 
 import json
@@ -25,15 +26,14 @@ READY_TIMEOUT_S = 120  # the first start on a machine without a graphics card co
 TOOL_TIMEOUT_S = 30
 POLL_S = 0.05
 REST_S = 1.5  # panels slide to their places, and buttons let go of the mouse
-SETTLE_S = 0.1  # between moving and pressing: Blender finds the button by the move
+QUIET_S = 0.3  # nothing was drawn for so long: everything is in its place
+SETTLE_TIMEOUT_S = 30
+TURNS = 4  # of Blender's loop between moving and pressing: it finds the button by the move
 
-# A button is 20 pixels high at this scale; steps of less can't miss one.
-ROW_STEP = 12
 SCROLLS = 30  # of the wheel: more than the sidebar is long
-# Where to ask in a row: its middle may be the gap between two buttons.
-COLUMNS = (0.7, 0.25, 0.5)
-# How long to wait for an answer; the second time around for a machine that is busy.
-PATIENCE_S = (0.25, 1.0)
+SEARCHES = 3  # for a button: panels may move while one is looked for
+ANSWER_TIMEOUT_S = 120
+COPY_TIMEOUT_S = 5
 
 
 class Window:
@@ -46,6 +46,7 @@ class Window:
         self.log = folder / "window.log"
         self._processes: list[subprocess.Popen] = []
         self._env: dict[str, str] = {}
+        self._found: dict[tuple[str, str], tuple[int, int]] = {}
 
     def open(self, installed: Installed, blend: Path) -> None:
         """Start the screen and Blender, and wait until its sidebar shows our tab."""
@@ -124,31 +125,67 @@ class Window:
 
     def scroll_sidebar(self) -> None:
         """Scroll the sidebar to its end, where sections are that have no room in the window."""
-        self._move(*next(self._sidebar_places()))
-        for _ in range(SCROLLS):
-            self.press_button(5)
-        time.sleep(REST_S)
+        sidebar = json.loads((self.folder / "ready.json").read_text())["sidebar"]
+        self._move(sidebar["left"] + sidebar["width"] // 2, sidebar["bottom"] - 12)
+        self._xdotool("click", "--repeat", str(SCROLLS), "--delay", "20", "5")
+        self.settle()
 
     def find_button(self, operator: str, words: str = "") -> tuple[int, int]:
         """Return a place inside the sidebar's button of an operator."""
         call = f"bpy.ops.{operator}("
-        for patience_s in PATIENCE_S:
-            for x, y in self._sidebar_places():
-                # Asked twice: the first answer may be a late one, to the place before.
-                said = self._call_at(x, y, patience_s)
-                if call in said and words in said and call in self._call_at(x, y, 1.0):
-                    return x, y
+        for _ in range(SEARCHES):
+            place = self._look_for(operator, words)
+            if place is not None:
+                said = self._call_at(*place)
+                if call in said and words in said:
+                    self._found[operator, words] = place
+                    return place
+            self._found.pop((operator, words), None)
+            self.point_at_view()
+            self.settle()
         self.screenshot(self.folder / "no_button.png")
         raise AssertionError(
             f"no button for {operator} in the sidebar; see {self.folder}/no_button.png\n"
             f"{self._end_of_log()}"
         )
 
+    def _look_for(self, operator: str, words: str) -> tuple[int, int] | None:
+        """Have Blender look for a button, first where it was the last time."""
+        last = self._found.get((operator, words))
+        request = {"operator": operator, "words": words, "first": [last] if last else []}
+        place = self._ask("button", request)["place"]
+        return None if place is None else tuple(place)
+
+    def _ask(self, what: str, request: dict) -> dict:
+        """Ask Blender something through a file, and wait for its answer."""
+        asked, answer = self.folder / f"{what}.json", self.folder / f"{what}_answer.json"
+        answer.unlink(missing_ok=True)
+        partial = asked.with_suffix(".partial")
+        partial.write_text(json.dumps(request))
+        partial.replace(asked)
+        self.wait_for(answer.exists, ANSWER_TIMEOUT_S, f"an answer about {what}")
+        return json.loads(answer.read_text())
+
+    def settle(self) -> None:
+        """Wait until Blender draws nothing more."""
+        begun, drawn = time.monotonic(), self.folder / "drawn.json"
+
+        def quiet() -> bool:
+            if not drawn.exists():
+                return False
+            told = json.loads(drawn.read_text())
+            return told["now"] - max(told["drawn"], begun) > QUIET_S
+
+        self.wait_for(quiet, SETTLE_TIMEOUT_S, "a picture at rest")
+
     def screenshot(self, path: Path, aside: bool = True) -> None:
         """Keep a picture of the whole screen, the mouse out of the way and all panels at rest."""
         if aside:
             self.point_at_view()
-        time.sleep(REST_S)
+        if self.state["running"]:  # the search goes on drawing
+            time.sleep(REST_S)
+        else:
+            self.settle()
         self._tool("import", "-window", "root", str(path))
 
     def _start_screen(self) -> str:
@@ -171,20 +208,13 @@ class Window:
         os.close(reader)
         return f":{int(number)}"
 
-    def _sidebar_places(self) -> Iterator[tuple[int, int]]:
-        """Yield places in the sidebar to look for buttons at, from its top down."""
-        sidebar = json.loads((self.folder / "ready.json").read_text())["sidebar"]
-        for column in COLUMNS:
-            for y in range(sidebar["top"] + ROW_STEP, sidebar["bottom"], ROW_STEP):
-                yield round(sidebar["left"] + column * sidebar["width"]), y
-
-    def _call_at(self, x: int, y: int, patience_s: float) -> str:
+    def _call_at(self, x: int, y: int) -> str:
         """Return the Python call of the button at a place, "" where there is none."""
         copied = self.folder / "copied.txt"
         copied.unlink(missing_ok=True)
         self._move(x, y)
         self.key("ctrl+c")
-        deadline = time.monotonic() + patience_s
+        deadline = time.monotonic() + COPY_TIMEOUT_S
         while not copied.exists() and time.monotonic() < deadline:
             time.sleep(POLL_S)
         return copied.read_text() if copied.exists() else ""
@@ -192,7 +222,7 @@ class Window:
     def _move(self, x: int, y: int) -> None:
         # Coming from one pixel aside: a move that changes nothing is no event.
         self._xdotool("mousemove", str(x - 1), str(y), "mousemove", str(x), str(y))
-        time.sleep(SETTLE_S)
+        self._ask("turns", {"count": TURNS})
 
     def _xdotool(self, *arguments: str) -> None:
         self._tool("xdotool", *arguments)

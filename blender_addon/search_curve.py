@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import bpy
 
 from . import viewport
-from .viewport import FAINT, INK, PLATE, SMALL, Color
+from .viewport import FAINT, INK, PLATE, SMALL, Rgba
 
 if TYPE_CHECKING:
     from .engine import pe
@@ -26,8 +26,8 @@ PAD, LEFT, TOP, BOTTOM = 10.0, 36.0, 26.0, 18.0
 """Round the plate's inside, and what axes and title take of it."""
 PLATE_NAME = "search"
 LINE_PX, AXIS_PX, DOT_PX = 2.0, 1.0, 5.0
-AXIS: Color = (0.55, 0.55, 0.55, 1.0)
-LINE: Color = (0.45, 0.78, 0.96, 1.0)
+AXIS: Rgba = (0.55, 0.55, 0.55, 1.0)
+LINE: Rgba = (0.45, 0.78, 0.96, 1.0)
 
 
 @dataclass(frozen=True, slots=True)

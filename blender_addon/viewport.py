@@ -16,7 +16,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-Color = tuple[float, float, float, float]
+Rgba = tuple[float, float, float, float]
 PlateBox = tuple[float, float, float, float]
 """Left, bottom, right, top in the region [px]."""
 
@@ -26,13 +26,13 @@ SMALL = 11.0
 """Size of most text, in pixels of an interface at scale 1; so are all lengths of drawers."""
 MARGIN, HUD_ROW = 14.0, 30.0
 """From the toolbar to a plate, and the height of the panel of the last operation."""
-INK: Color = (0.95, 0.95, 0.95, 1.0)
-FAINT: Color = (0.74, 0.74, 0.74, 1.0)
-PLATE: Color = (0.08, 0.08, 0.08, 0.72)
+INK: Rgba = (0.95, 0.95, 0.95, 1.0)
+FAINT: Rgba = (0.74, 0.74, 0.74, 1.0)
+PLATE: Rgba = (0.08, 0.08, 0.08, 0.72)
 
 _shaders: dict[str, gpu.types.GPUShader] = {}
 _square: list[gpu.types.GPUBatch] = []
-_gradients: dict[tuple[Color, ...], gpu.types.GPUBatch] = {}
+_gradients: dict[tuple[Rgba, ...], gpu.types.GPUBatch] = {}
 """Uploaded once, in the unit square, and drawn at any place and size."""
 _plates: dict[int, dict[str, PlateBox]] = {}
 
@@ -68,7 +68,7 @@ def text_size(text: str, size_px: float) -> tuple[float, float]:
 
 
 def draw_text(
-    text: str, x: float, y: float, size_px: float, color: Color, *, left_of_x: float = 0.0
+    text: str, x: float, y: float, size_px: float, color: Rgba, *, left_of_x: float = 0.0
 ) -> float:
     """Draw a line of text on a baseline, and return its width [px].
 
@@ -81,7 +81,7 @@ def draw_text(
     return width
 
 
-def fill_box(box: PlateBox, color: Color) -> None:
+def fill_box(box: PlateBox, color: Rgba) -> None:
     """Fill a box, mixed with what is below it."""
     plain = shader("UNIFORM_COLOR")
     if not _square:
@@ -92,7 +92,7 @@ def fill_box(box: PlateBox, color: Color) -> None:
         _square[0].draw(plain)
 
 
-def fill_gradient(box: PlateBox, colors: Sequence[Color]) -> None:
+def fill_gradient(box: PlateBox, colors: Sequence[Rgba]) -> None:
     """Fill a box with a row of colours that run into each other, from left to right."""
     smooth, row = shader("SMOOTH_COLOR"), tuple(colors)
     if row not in _gradients:
@@ -103,7 +103,7 @@ def fill_gradient(box: PlateBox, colors: Sequence[Color]) -> None:
         _gradients[row].draw(smooth)
 
 
-def draw_line(points: Sequence[tuple[float, float]], color: Color, width_px: float) -> None:
+def draw_line(points: Sequence[tuple[float, float]], color: Rgba, width_px: float) -> None:
     """Draw a line through points [px]."""
     wide, region = shader("POLYLINE_UNIFORM_COLOR"), bpy.context.region
     batch = batch_for_shader(wide, "LINE_STRIP", {"pos": [(x, y, 0.0) for x, y in points]})
@@ -115,7 +115,7 @@ def draw_line(points: Sequence[tuple[float, float]], color: Color, width_px: flo
         batch.draw(wide)
 
 
-def draw_outline(box: PlateBox, color: Color) -> None:
+def draw_outline(box: PlateBox, color: Rgba) -> None:
     """Draw the edges of a box, a pixel wide."""
     left, bottom, right, top = box
     edges = ((left, bottom), (right, bottom), (right, top), (left, top), (left, bottom))

@@ -16,7 +16,7 @@ from ..engine import pe, requirements, studies, text
 
 UNKNOWN, NOT_MET, MET = -1, 0, 1
 """Verdicts as a row stores them."""
-Table = dict[str, Any]
+TableData = dict[str, Any]
 Requirement = requirements.Requirement
 Verdict = requirements.Verdict
 
@@ -38,7 +38,7 @@ def requirement_of(row: bpy.types.PropertyGroup) -> Requirement:
     return _read(row.name, table_of_row(row))
 
 
-def table_of_row(row: bpy.types.PropertyGroup) -> Table:
+def table_of_row(row: bpy.types.PropertyGroup) -> TableData:
     """Return a row's table, without its name; `InputError` where the text is no table."""
     try:
         table = json.loads(row.table or "{}")
@@ -49,7 +49,7 @@ def table_of_row(row: bpy.types.PropertyGroup) -> Table:
     return table
 
 
-def full_table(row: bpy.types.PropertyGroup) -> Table:
+def full_table(row: bpy.types.PropertyGroup) -> TableData:
     """Return a row's table with the keys of its preset; empty where the table is wrong."""
     try:
         return studies.requirement_file.full_table(requirement_of(row))
@@ -74,7 +74,7 @@ def write_requirements(settings: bpy.types.PropertyGroup, wanted: Sequence[Requi
     settings.requirement_index = 0
 
 
-def edit_row(row: bpy.types.PropertyGroup, change: Callable[[Table], None]) -> None:
+def edit_row(row: bpy.types.PropertyGroup, change: Callable[[TableData], None]) -> None:
     """Change a row's table; a change that makes it wrong is not made, and the row says why."""
     try:
         table = table_of_row(row)
@@ -110,6 +110,6 @@ def forget_verdict(row: bpy.types.PropertyGroup) -> None:
     row.met, row.verdict, row.margin_text, row.has_worst = UNKNOWN, "", "", False
 
 
-def _read(name: str, table: Table) -> Requirement:
+def _read(name: str, table: TableData) -> Requirement:
     reader = text.Table({**table, "name": name}, "scene", f"requirement {name!r}")
     return studies.requirement_file.read_requirement(reader)

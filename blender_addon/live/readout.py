@@ -13,7 +13,7 @@ from typing import NamedTuple
 import bpy
 
 from .. import viewport, worker
-from ..viewport import FAINT, INK, PLATE, SMALL, Color
+from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from . import background_figures
 from .readout_text import BETTER, WORSE, figure_lines, known_rig_line, readout_of
 from .state import LiveScore, ShownScore, live_state, shown_score
@@ -24,7 +24,7 @@ ROW, PAD = 17.0, 10.0
 ZONE_ROWS = 2
 """Rows that are reserved for zones, so that the plate does not jump with every move."""
 MIN_WIDTH, MAX_COLUMNS = 236.0, 64
-ALERT: Color = (1.0, 0.84, 0.35, 1.0)
+ALERT: Rgba = (1.0, 0.84, 0.35, 1.0)
 SENSE_COLORS = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
 """Blue is better, orange worse: told apart by colour-blind eyes too, and an arrow is beside it."""
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
@@ -37,7 +37,7 @@ class TextRow(NamedTuple):
     """Text in a row: its size, and pieces with their colours."""
 
     size: float
-    words: tuple[tuple[str, Color], ...]
+    words: tuple[tuple[str, Rgba], ...]
 
 
 _handlers = viewport.DrawHandlers()

@@ -115,7 +115,7 @@ def _bounds(
 
 
 Floats = NDArray[np.float64]
-Box = tuple[Floats, Floats]
+BoxBounds = tuple[Floats, Floats]
 
 HATCH_M, HATCH_ALPHA = 0.35, 0.45
 MIN_ZONE_M = 0.3
@@ -130,7 +130,7 @@ TICK_M = 0.35
 
 def blind_ground(
     found: sight.BlindGround,
-    body: Box | None,
+    body: BoxBounds | None,
     height: float,
     palette: graphics.Palette = graphics.VIEWPORT,
 ) -> graphics.LayerShape:
@@ -191,7 +191,7 @@ def hatch(outlines: Sequence[Floats], spacing_m: float) -> Floats:
 
 
 def _measure(
-    found: sight.BlindGround, body: Box, side: str, palette: graphics.Palette
+    found: sight.BlindGround, body: BoxBounds, side: str, palette: graphics.Palette
 ) -> tuple[graphics.Primitives, graphics.Tag] | None:
     """Return a line from the vehicle to where blind ground begins or ends, with its length."""
     spot, zone = found.nearest[side], found.zone[side]

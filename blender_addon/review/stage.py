@@ -139,7 +139,7 @@ PLANE_M = 1.0
 PLATE_M, LAYER_M = 1.05, 0.005
 INK = (0.10, 0.12, 0.14, 1.0)
 FAINT_INK = (0.36, 0.39, 0.42, 1.0)
-Color = tuple[float, float, float, float]
+Rgba = tuple[float, float, float, float]
 
 
 @dataclass(slots=True)
@@ -148,7 +148,7 @@ class Lettering:
 
     stage: Stage
     view: View
-    _materials: dict[Color, bpy.types.Material]
+    _materials: dict[Rgba, bpy.types.Material]
 
     @classmethod
     def on(cls, stage: Stage, view: View) -> Lettering:
@@ -156,7 +156,7 @@ class Lettering:
         return cls(stage, view, {})
 
     def write(
-        self, text: str, place: tuple[float, float], size_px: float, color: Color = INK,
+        self, text: str, place: tuple[float, float], size_px: float, color: Rgba = INK,
         align: str = "LEFT",
     ) -> bpy.types.Object:  # fmt: skip
         """Write one line; `place` is the left, middle or right end of its baseline."""
@@ -173,24 +173,24 @@ class Lettering:
         return thing
 
     def rectangle(
-        self, left: float, top: float, right: float, bottom: float, color: Color, layer: int = 0
+        self, left: float, top: float, right: float, bottom: float, color: Rgba, layer: int = 0
     ) -> None:
         """Fill a rectangle behind the texts; higher layers are in front of lower ones."""
         self._fill([(left, bottom), (right, bottom), (right, top), (left, top)], color, layer)
 
-    def disc(self, center: tuple[float, float], radius_px: float, color: Color, layer: int) -> None:
+    def disc(self, center: tuple[float, float], radius_px: float, color: Rgba, layer: int) -> None:
         """Fill a circle behind the texts."""
         angles = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
         outline = np.column_stack([np.cos(angles), -np.sin(angles)]) * radius_px + center
         self._fill(outline, color, layer)
 
-    def ring(self, center: tuple[float, float], radius_px: float, color: Color, layer: int) -> None:
+    def ring(self, center: tuple[float, float], radius_px: float, color: Rgba, layer: int) -> None:
         """Draw a circle, white inside."""
         self.disc(center, radius_px, color, layer)
         self.disc(center, radius_px * 0.6, (1.0, 1.0, 1.0, 1.0), layer + 1)
 
     def line(
-        self, start: tuple[float, float], end: tuple[float, float], width_px: float, color: Color,
+        self, start: tuple[float, float], end: tuple[float, float], width_px: float, color: Rgba,
         layer: int,
     ) -> None:  # fmt: skip
         """Draw a line behind the texts."""
@@ -200,7 +200,7 @@ class Lettering:
         corners = [ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across]
         self._fill(corners, color, layer)
 
-    def _fill(self, places: object, color: Color, layer: int) -> None:
+    def _fill(self, places: object, color: Rgba, layer: int) -> None:
         points = self._points(places, PLATE_M - layer * LAYER_M)
         self.stage.add_faces("Review plate", Faces(points[None], np.array([color])), self.view)
 

@@ -13,11 +13,11 @@ from .colors import Rgba
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
-Box = tuple[float, float, float, float]
+LabelRectangle = tuple[float, float, float, float]
 """Left, lower, right and upper side of a box in a picture; lower and upper may change places."""
 
 
-def boxes_overlap(one: Box, other: Box) -> bool:
+def boxes_overlap(one: LabelRectangle, other: LabelRectangle) -> bool:
     """Whether two boxes overlap, for labels that must not."""
     return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
 

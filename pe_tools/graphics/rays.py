@@ -18,7 +18,7 @@ from .sensor_images import lidar_of
 Colors = NDArray[np.floating]
 
 Floats = NDArray[np.float64]
-Box = tuple[Floats, Floats]
+BoxBounds = tuple[Floats, Floats]
 """Lowest and highest corner, (3,) each [m]."""
 
 OVER_THE_CAR = 0.06
@@ -36,7 +36,7 @@ def free_lines(
     beams: Beams,
     length_m: float,
     colors: Colors,
-    around: Box | None = None,
+    around: BoxBounds | None = None,
 ) -> Primitives:
     """Lines of the free beams, two pieces each, in (N, 4) colours.
 
@@ -115,7 +115,7 @@ def _joined(found: Cast, beams: NDArray[np.int64], far: Floats, colors: Colors) 
     return Primitives.of(points, shown)
 
 
-def _housing_exits(sensor: Sensor, directions: Floats, around: Box | None) -> Floats:
+def _housing_exits(sensor: Sensor, directions: Floats, around: BoxBounds | None) -> Floats:
     """(N,) distance at which directions leave a box and its surroundings; 0 outside of it [m]."""
     if around is None or not len(directions):
         return np.zeros(len(directions))

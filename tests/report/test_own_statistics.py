@@ -12,7 +12,7 @@ from pe_tools.validity.own.analysis import HOLDS, OPEN, REFUTED, analysis
 from pe_tools.validity.own.placements import placements
 from pe_tools.validity.own.plan import FIXED, full_plan, quick_plan
 from pe_tools.validity.own.rank_tests import (
-    Samples,
+    PlacementSamples,
     better_half,
     interval,
     ordered_share,
@@ -33,7 +33,7 @@ def samples_of(aps, groups=None):
     aps = np.atleast_2d(np.asarray(aps, float))
     aps = aps.T if aps.shape[0] == 1 else aps
     groups = np.zeros(len(aps), int) if groups is None else np.asarray(groups)
-    return Samples(aps, groups, np.arange(len(aps)))
+    return PlacementSamples(aps, groups, np.arange(len(aps)))
 
 
 def test_ranks_and_rho_are_those_of_the_published_study_s_page():

@@ -59,7 +59,7 @@ class _BodySet:
 
 
 @dataclass(frozen=True, eq=False)
-class _Part:
+class _CheckedPart:
     """A requirement with its samples and bodies."""
 
     requirement: Requirement
@@ -228,7 +228,7 @@ class _CheckedSet:
 
     def _shortfall(
         self,
-        part: _Part,
+        part: _CheckedPart,
         rig: Rig,
         m: Mapping[str, Floats],
         others: Sequence[tuple[Rig, Mapping[str, Floats]]],
@@ -252,7 +252,7 @@ class _CheckedSet:
 
     def _verdict(
         self,
-        part: _Part,
+        part: _CheckedPart,
         rig: Rig,
         m: Mapping[str, Floats],
         others: Sequence[tuple[Rig, Mapping[str, Floats]]],
@@ -284,7 +284,7 @@ class _CheckedSet:
             preview,
         )
 
-    def _passed(self, part: _Part, rig: Rig, m: Mapping[str, Floats]) -> Flags:
+    def _passed(self, part: _CheckedPart, rig: Rig, m: Mapping[str, Floats]) -> Flags:
         """Return the samples (N,) that pass with a rig, and with each one of its sensors lost."""
         seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
         names = [s.name for s in rig]
@@ -294,7 +294,7 @@ class _CheckedSet:
                 passed &= self._enough(part, rig, seen, m, [n for n in names if n != name])
         return passed
 
-    def _seen(self, part: _Part, sensor: Sensor, m: Floats) -> Flags:
+    def _seen(self, part: _CheckedPart, sensor: Sensor, m: Floats) -> Flags:
         """Return the samples and bodies (N, bodies * headings) that a sensor sees."""
         criterion, counts = part.requirement.criterion, kind_of(sensor).counts_points
         threshold = criterion.points if counts else criterion.pixels
@@ -313,7 +313,7 @@ class _CheckedSet:
 
     def _enough(
         self,
-        part: _Part,
+        part: _CheckedPart,
         rig: Rig,
         seen: Mapping[str, Flags],
         m: Mapping[str, Floats],
@@ -331,11 +331,11 @@ class _CheckedSet:
         passed: Flags = enough.all(axis=1)
         return passed
 
-    def _part(self, requirement: Requirement, zone: PlacedZone) -> _Part:
+    def _part(self, requirement: Requirement, zone: PlacedZone) -> _CheckedPart:
         if requirement.criterion.is_of_ground:
             empty = Samples(zone, np.zeros((0, 2)), np.zeros(0))
             ground = GroundCheck(requirement, zone, self._space, self._vehicle, self._ground_caches)
-            return _Part(requirement, empty, (), ground)
+            return _CheckedPart(requirement, empty, (), ground)
         points, distance = zone.samples(grown=self._which == FULL)
         if self._which == PREVIEW and len(points) > PREVIEW_SAMPLES:
             points, distance = zone.samples(COARSE, grown=False)
@@ -345,7 +345,7 @@ class _CheckedSet:
         heights = np.linspace(low, high, count)
         feet = np.column_stack([np.repeat(points, count, axis=0), np.tile(heights, len(points))])
         bodies = tuple(self._body_set(each, feet, requirement) for each in requirement.bodies)
-        return _Part(requirement, samples, bodies)
+        return _CheckedPart(requirement, samples, bodies)
 
     def _body_set(self, body: Body, feet: Floats, requirement: Requirement) -> _BodySet:
         number = len(self._objects)
@@ -389,7 +389,7 @@ def _check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionS
             raise InputError(who, "body", "a body that is not larger than the zone", found)
 
 
-def _turned_away(part: _Part, rig: Rig, failing: Flags) -> float:
+def _turned_away(part: _CheckedPart, rig: Rig, failing: Flags) -> float:
     """Return the mean angle between failing samples and the nearest boresight, 1 for 180 deg."""
     kinds = part.requirement.criterion.of
     sensors = [s for s in rig if not kinds or s.kind in kinds]

@@ -51,7 +51,7 @@ SMALL_BOX = scene.Housing("box", (0.05, 0.06, 0.05), (0.025, 0.0, 0.025))
 """About the size of a camera module."""
 
 
-Picture = Callable[[pe.Sensor, "pe.Vehicle | None", list[ReferenceFigure]], LabelledPicture]
+PictureMaker = Callable[[pe.Sensor, "pe.Vehicle | None", list[ReferenceFigure]], LabelledPicture]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class SensorView:
     """
 
     figure: Callable[[pe.Sensor, pe.Vehicle | None], Markup]
-    picture: Picture | None = None
+    picture: PictureMaker | None = None
     housing: scene.Housing = SMALL_BOX
     image_field: Callable[[Any], tuple[float, float] | None] = lambda _model: None
 

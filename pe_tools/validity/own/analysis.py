@@ -18,8 +18,8 @@ from ..ranks import holm
 from .placements import Placement, placements
 from .plan import ACROSS, FIXED, GRID, MIXED, PLAIN, StudyPlan
 from .rank_tests import (
+    PlacementSamples,
     Resample,
-    Samples,
     better_half,
     interval,
     ordered_share,
@@ -44,7 +44,7 @@ MOSTLY_RIGHT = 2.0 / 3.0
 
 
 @dataclass(frozen=True)
-class Design:
+class DesignResults:
     """The finished part of a design.
 
     Attributes
@@ -52,7 +52,7 @@ class Design:
     name : str
     chosen : list of Placement
         Those with a result.
-    samples : Samples
+    samples : PlacementSamples
         Their AP, of the seeds that all of them have.
     done, planned : int
         Runs.
@@ -60,7 +60,7 @@ class Design:
 
     name: str
     chosen: list[Placement]
-    samples: Samples
+    samples: PlacementSamples
     done: int
     planned: int
 
@@ -97,7 +97,7 @@ def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, 
     }
 
 
-def designs_of(plan: StudyPlan, results: Mapping[str, Json]) -> list[Design]:
+def designs_of(plan: StudyPlan, results: Mapping[str, Json]) -> list[DesignResults]:
     """Return the finished parts of all designs."""
     own = [_design(plan, name, results) for name in (FIXED, ACROSS)]
     return own + [_mixed(plan, results, name) for name in (MIXED, FRESH)]
@@ -105,7 +105,7 @@ def designs_of(plan: StudyPlan, results: Mapping[str, Json]) -> list[Design]:
 
 def _design(
     plan: StudyPlan, name: str, results: Mapping[str, Json], step: tuple[str, str] = (PLAIN, GRID)
-) -> Design:
+) -> DesignResults:
     """Return the finished part of a design with a detector a placement."""
     wanted = [
         r
@@ -115,16 +115,16 @@ def _design(
     return _of_runs(name, wanted, results)
 
 
-def _of_runs(name: str, wanted: Sequence[Run], results: Mapping[str, Json]) -> Design:
+def _of_runs(name: str, wanted: Sequence[Run], results: Mapping[str, Json]) -> DesignResults:
     aps: dict[Placement, list[float]] = {}
     for run in wanted:
         if run.name in results and run.placement is not None:
             aps.setdefault(run.placement, []).append(results[run.name]["ap"])
     done = sum(map(len, aps.values()))
-    return Design(name, list(aps), _samples(aps), done, len(wanted))
+    return DesignResults(name, list(aps), _samples(aps), done, len(wanted))
 
 
-def _mixed(plan: StudyPlan, results: Mapping[str, Json], name: str) -> Design:
+def _mixed(plan: StudyPlan, results: Mapping[str, Json], name: str) -> DesignResults:
     """Return the placements at which the mixed detector was tested; only fresh ones for `FRESH`."""
     by_name = {p.name: p for p in placements(plan)}
     wanted = [run for run in runs(plan) if run.placement is None]
@@ -134,15 +134,15 @@ def _mixed(plan: StudyPlan, results: Mapping[str, Json], name: str) -> Design:
         for placement, found in results[run.name]["placements"].items():
             if name == MIXED or not found["trained_with"]:
                 aps.setdefault(by_name[placement], []).append(found["ap"])
-    return Design(name, list(aps), _samples(aps), len(done), len(wanted))
+    return DesignResults(name, list(aps), _samples(aps), len(done), len(wanted))
 
 
-def _samples(aps: Mapping[Placement, Sequence[float]]) -> Samples:
+def _samples(aps: Mapping[Placement, Sequence[float]]) -> PlacementSamples:
     """Return samples with the seeds that all placements have."""
     count = min(map(len, aps.values()), default=0)
     values = np.array([list(row)[:count] for row in aps.values()]).reshape(len(aps), count)
     groups = np.array([p.vehicle for p in aps])
-    return Samples(values, groups, np.array([f"{p.lidars} x {p.channels}" for p in aps]))
+    return PlacementSamples(values, groups, np.array([f"{p.lidars} x {p.channels}" for p in aps]))
 
 
 def _values(
@@ -155,7 +155,7 @@ def _of_design(name: str) -> list[ComparedScore]:
     return [s for s in COMPARED if name == ACROSS or not s.across_only]
 
 
-def _table(plan: StudyPlan, design: Design, scores: Mapping[str, Json]) -> Json:
+def _table(plan: StudyPlan, design: DesignResults, scores: Mapping[str, Json]) -> Json:
     """Return the correlations of a design with each score."""
     head = {"done": design.done, "planned": design.planned, "placements": len(design.chosen)}
     if not design.has_figures:
@@ -175,7 +175,9 @@ def _table(plan: StudyPlan, design: Design, scores: Mapping[str, Json]) -> Json:
     }
 
 
-def _row(plan: StudyPlan, design: Design, score: ComparedScore, scores: Mapping[str, Json]) -> Json:
+def _row(
+    plan: StudyPlan, design: DesignResults, score: ComparedScore, scores: Mapping[str, Json]
+) -> Json:
     values, samples = _values(score, design.chosen, scores), design.samples
     heights = np.array([p.mean_height for p in design.chosen])
     members = samples.members
@@ -196,7 +198,7 @@ def _row(plan: StudyPlan, design: Design, score: ComparedScore, scores: Mapping[
     return row
 
 
-def _partial(plan: StudyPlan, samples: Samples, values: Floats, given: Floats) -> Json:
+def _partial(plan: StudyPlan, samples: PlacementSamples, values: Floats, given: Floats) -> Json:
     members = samples.members
 
     def partial(resample: Resample) -> Floats:
@@ -209,7 +211,7 @@ def _partial(plan: StudyPlan, samples: Samples, values: Floats, given: Floats) -
     }
 
 
-def _better_half(plan: StudyPlan, samples: Samples, values: Floats) -> Json | None:
+def _better_half(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json | None:
     index, half = better_half(samples)
     members = half.members
     if not members:
@@ -226,7 +228,7 @@ def _better_half(plan: StudyPlan, samples: Samples, values: Floats) -> Json | No
 
 
 def _interval(
-    plan: StudyPlan, samples: Samples, statistic: Callable[[Resample], Floats]
+    plan: StudyPlan, samples: PlacementSamples, statistic: Callable[[Resample], Floats]
 ) -> list[float | None]:
     return [_rounded(v) for v in interval(samples, plan.statistics, plan.seed, statistic)]
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .casting import LAYERS_M, MAX_COUNT, MAX_POINTS, Cloud, RegionObjects, Voxels
-from .plan import Region
+from .casting import LAYERS_M, MAX_COUNT, MAX_POINTS, Cloud, RegionObjects, RegionVoxels
+from .plan import DetectionRegion
 from .scenes import CLASSES
 
 Singles = NDArray[np.float32]
@@ -35,15 +35,17 @@ Inputs = Singles | tuple[Singles, NDArray[np.int32]]
 FEATURES = 4
 
 
-def inputs(scenes: Sequence[RegionObjects], region: Region, mirrors: Sequence[Mirrors]) -> Inputs:
+def inputs(
+    scenes: Sequence[RegionObjects], region: DetectionRegion, mirrors: Sequence[Mirrors]
+) -> Inputs:
     """Return the input of the network for scenes of its kind, mirrored along x, y."""
     if clouds := [scene for scene in scenes if isinstance(scene, Cloud)]:
         return point_inputs(clouds, region, mirrors)
-    return voxel_inputs([s for s in scenes if isinstance(s, Voxels)], region, mirrors)
+    return voxel_inputs([s for s in scenes if isinstance(s, RegionVoxels)], region, mirrors)
 
 
 def point_inputs(
-    scenes: Sequence[Cloud], region: Region, mirrors: Sequence[Mirrors]
+    scenes: Sequence[Cloud], region: DetectionRegion, mirrors: Sequence[Mirrors]
 ) -> tuple[Singles, NDArray[np.int32]]:
     """Return features (B, N, 4) of points, and their pillars (B, N): X * Y for no point.
 
@@ -62,7 +64,9 @@ def point_inputs(
     return features, pillars
 
 
-def voxel_inputs(scenes: Sequence[Voxels], region: Region, mirrors: Sequence[Mirrors]) -> Singles:
+def voxel_inputs(
+    scenes: Sequence[RegionVoxels], region: DetectionRegion, mirrors: Sequence[Mirrors]
+) -> Singles:
     """Return the input of the network *grid*, (B, X, Y, layers)."""
     nx, ny = region.shape
     x = np.zeros((len(scenes), nx * ny * LAYERS), np.float32)
@@ -75,7 +79,7 @@ def voxel_inputs(scenes: Sequence[Voxels], region: Region, mirrors: Sequence[Mir
 
 
 def targets(
-    scenes: Sequence[RegionObjects], region: Region, mirrors: Sequence[Mirrors]
+    scenes: Sequence[RegionObjects], region: DetectionRegion, mirrors: Sequence[Mirrors]
 ) -> tuple[Singles, Singles, Singles]:
     """Return heat maps (B, X, Y, C), offsets (B, X, Y, 2) and cells with centres (B, X, Y).
 
@@ -99,7 +103,7 @@ def targets(
     return heat, offsets, at
 
 
-def _in_cells(centers: np.ndarray, region: Region) -> np.ndarray:
+def _in_cells(centers: np.ndarray, region: DetectionRegion) -> np.ndarray:
     return (centers + np.array([region.x_m, region.y_m])) / (STRIDE * region.cell_m)
 
 
@@ -116,7 +120,7 @@ def _add_peak(heat: Singles, i: int, j: int) -> None:
 
 
 def detections(
-    heat: np.ndarray, offsets: np.ndarray, region: Region
+    heat: np.ndarray, offsets: np.ndarray, region: DetectionRegion
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the detections of a scene, by class: scores (N,), descending, and centres (N, 2) [m].
 
@@ -126,7 +130,7 @@ def detections(
     ----------
     heat : (X, Y, C) float
     offsets : (X, Y, 2) float
-    region : Region
+    region : DetectionRegion
     """
     padded = np.pad(heat, ((1, 1), (1, 1), (0, 0)), constant_values=-1.0)
     nx, ny, classes = heat.shape

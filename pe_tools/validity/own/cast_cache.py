@@ -1,4 +1,4 @@
-"""Voxels of many scenes, cast once for a placement and kept in a file for its other seeds."""
+"""RegionVoxels of many scenes, cast once for a placement and kept in a file for its other seeds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from pe_core import InputError
 from pe_core.base import read_bytes, write_bytes
 
-from .casting import Voxels
+from .casting import RegionVoxels
 
 MAX_BYTES = 1 << 30
 FIELDS = ("cells", "counts", "centers", "labels", "beams")
@@ -19,7 +19,9 @@ PER_VOXEL = 2
 """The first so many fields have a row a voxel, the others a row an object."""
 
 
-def cached(path: Path | None, count: int, cast: Callable[[int], Voxels]) -> list[Voxels]:
+def cached(
+    path: Path | None, count: int, cast: Callable[[int], RegionVoxels]
+) -> list[RegionVoxels]:
     """Return the voxels of scenes 0 to `count` - 1, from a file if it has them, else cast.
 
     Parameters
@@ -41,7 +43,7 @@ def cached(path: Path | None, count: int, cast: Callable[[int], Voxels]) -> list
     return scenes
 
 
-def _packed(scenes: Sequence[Voxels]) -> bytes:
+def _packed(scenes: Sequence[RegionVoxels]) -> bytes:
     data = io.BytesIO()
     arrays = {name: np.concatenate([getattr(s, name) for s in scenes]) for name in FIELDS}
     lengths = np.array([(len(s.cells), len(s.labels)) for s in scenes]).reshape(-1, 2)
@@ -49,7 +51,7 @@ def _packed(scenes: Sequence[Voxels]) -> bytes:
     return data.getvalue()
 
 
-def _unpacked(path: Path) -> list[Voxels]:
+def _unpacked(path: Path) -> list[RegionVoxels]:
     try:
         with np.load(io.BytesIO(read_bytes(path, MAX_BYTES)), allow_pickle=False) as data:
             ends = np.cumsum(data["lengths"], axis=0)[:-1]
@@ -58,4 +60,7 @@ def _unpacked(path: Path) -> list[Voxels]:
             ]
     except (ValueError, KeyError, OSError, EOFError) as error:
         raise InputError(path, "file", "scenes that were cast (delete it)", error) from None
-    return [Voxels(**dict(zip(FIELDS, arrays, strict=True))) for arrays in zip(*parts, strict=True)]
+    return [
+        RegionVoxels(**dict(zip(FIELDS, arrays, strict=True)))
+        for arrays in zip(*parts, strict=True)
+    ]

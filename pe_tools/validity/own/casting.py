@@ -17,7 +17,7 @@ from pe_core.geometry.triangle_tree import TriangleTree
 from pe_core.sensors.lidar import Lidar
 
 from .placements import Placement, vehicle
-from .plan import SPLITS, Region, StudyPlan
+from .plan import SPLITS, DetectionRegion, StudyPlan
 from .scenes import NOBODY, Scene, scene
 
 Floats = NDArray[np.float64]
@@ -70,7 +70,7 @@ class RegionObjects:
 
 
 @dataclass(frozen=True, slots=True)
-class Voxels(RegionObjects):
+class RegionVoxels(RegionObjects):
     """Points of a scene counted in voxels: the input of the detector *grid*.
 
     Attributes
@@ -139,10 +139,10 @@ class Caster:
         self._plan, self._placement, self._world = plan, placement, world
         self._beams = [FreeBeams(plan, placement, k) for k in range(placement.lidars)]
 
-    def voxels(self, split: str, number: int) -> Voxels:
+    def voxels(self, split: str, number: int) -> RegionVoxels:
         """Return the voxels of a scene."""
         content, points = self.points(split, number)
-        return Voxels(
+        return RegionVoxels(
             *self._objects(content, points), *voxel_counts(points.positions, self._plan.region)
         )
 
@@ -184,7 +184,9 @@ class Caster:
         return content, Points(np.concatenate(positions), beams)
 
 
-def voxel_counts(positions: Floats, region: Region) -> tuple[NDArray[np.int32], NDArray[np.uint8]]:
+def voxel_counts(
+    positions: Floats, region: DetectionRegion
+) -> tuple[NDArray[np.int32], NDArray[np.uint8]]:
     """Return flat indices (N,) of voxels with points (P, 3), ascending, and counts (N,)."""
     x = np.floor((positions[:, 0] + region.x_m) / region.cell_m).astype(np.int64)
     y = np.floor((positions[:, 1] + region.y_m) / region.cell_m).astype(np.int64)
@@ -198,7 +200,7 @@ def voxel_counts(positions: Floats, region: Region) -> tuple[NDArray[np.int32], 
     return cells.astype(np.int32), np.minimum(counts[cells], MAX_COUNT).astype(np.uint8)
 
 
-def chosen_points(positions: Floats, region: Region, seed: int) -> Floats:
+def chosen_points(positions: Floats, region: DetectionRegion, seed: int) -> Floats:
     """Return at most `MAX_POINTS` points in the region, (N, 3), those above the ground first."""
     x, y, z = positions.T
     inside = (np.abs(x) < region.x_m) & (np.abs(y) < region.y_m)

@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import lax
 
-Array = Any
+JaxArray = Any
 Weights = dict[str, Any]
 
 STRIDE = 2
@@ -33,8 +33,8 @@ NEAR_ZERO = 1e-4
 class Network:
     """A network: `weights` makes the first weights, `outputs` maps an input to (B, X, Y, C + 2)."""
 
-    weights: Callable[[Array], Weights]
-    outputs: Callable[[Weights, Array], Array]
+    weights: Callable[[JaxArray], Weights]
+    outputs: Callable[[Weights, JaxArray], JaxArray]
 
 
 @dataclass(slots=True)
@@ -51,11 +51,11 @@ def grid_network(layers: int, classes: int) -> Network:
     """Return the network *grid*: counts of points in voxels, two scales."""
     entry = layers * STRIDE * STRIDE
 
-    def weights(key: Array) -> Weights:
+    def weights(key: JaxArray) -> Weights:
         shapes = {"entry": (1, 1, entry, WIDTH), **_trunk_shapes(WIDTH, classes)}
         return _first_weights(key, shapes)
 
-    def outputs(w: Weights, x: Array) -> Array:
+    def outputs(w: Weights, x: JaxArray) -> JaxArray:
         return _trunk(w, jax.nn.relu(_conv(_space_to_depth(x), w, "entry")))
 
     return Network(weights, outputs)
@@ -75,7 +75,7 @@ def points_network(features: int, region: tuple[int, int], classes: int) -> Netw
     nx, ny = region
     entry = WIDTH * STRIDE * STRIDE
 
-    def weights(key: Array) -> Weights:
+    def weights(key: JaxArray) -> Weights:
         shapes = {
             "point_1": (features, WIDTH),
             "point_2": (WIDTH, WIDTH),
@@ -84,11 +84,11 @@ def points_network(features: int, region: tuple[int, int], classes: int) -> Netw
         }
         return _first_weights(key, shapes)
 
-    def pillar_maxima(values: Array, pillars: Array) -> Array:
+    def pillar_maxima(values: JaxArray, pillars: JaxArray) -> JaxArray:
         empty = jnp.zeros((nx * ny + 1, WIDTH), jnp.float32)  # the last one is for no point
         return empty.at[pillars].max(values)[:-1].reshape(nx, ny, WIDTH)
 
-    def outputs(w: Weights, x: Array) -> Array:
+    def outputs(w: Weights, x: JaxArray) -> JaxArray:
         values, pillars = x
         for name in ("point_1", "point_2"):
             values = jax.nn.relu(values @ w[name] + w[f"{name}_bias"])
@@ -109,7 +109,7 @@ def _trunk_shapes(width: int, classes: int) -> dict[str, tuple[int, ...]]:
     }
 
 
-def _trunk(w: Weights, fine: Array) -> Array:
+def _trunk(w: Weights, fine: JaxArray) -> JaxArray:
     """Return outputs from features at the output's scale, by way of a coarser scale."""
     coarse = jax.nn.relu(_conv(fine, w, "down", STRIDE))
     for name in ("deep_1", "deep_2"):
@@ -119,7 +119,7 @@ def _trunk(w: Weights, fine: Array) -> Array:
     return _conv(joined, w, "head")
 
 
-def _first_weights(key: Array, shapes: dict[str, tuple[int, ...]]) -> Weights:
+def _first_weights(key: JaxArray, shapes: dict[str, tuple[int, ...]]) -> Weights:
     """Return He's normal weights (arXiv 1502.01852) and zero biases but for the heat maps."""
     weights = {}
     for (name, shape), part in zip(shapes.items(), jax.random.split(key, len(shapes)), strict=True):
@@ -130,25 +130,25 @@ def _first_weights(key: Array, shapes: dict[str, tuple[int, ...]]) -> Weights:
     return weights
 
 
-def _conv(x: Array, w: Weights, name: str, stride: int = 1) -> Array:
+def _conv(x: JaxArray, w: Weights, name: str, stride: int = 1) -> JaxArray:
     strides, form = (stride, stride), ("NHWC", "HWIO", "NHWC")
     result = lax.conv_general_dilated(x, w[name], strides, "SAME", dimension_numbers=form)
     return result + w[f"{name}_bias"]
 
 
-def _space_to_depth(x: Array) -> Array:
+def _space_to_depth(x: JaxArray) -> JaxArray:
     b, h, w, c = x.shape
     blocks = x.reshape(b, h // STRIDE, STRIDE, w // STRIDE, STRIDE, c)
     return blocks.transpose(0, 1, 3, 2, 4, 5).reshape(b, h // STRIDE, w // STRIDE, -1)
 
 
-def _depth_to_space(x: Array) -> Array:
+def _depth_to_space(x: JaxArray) -> JaxArray:
     b, h, w, c = x.shape
     blocks = x.reshape(b, h, w, STRIDE, STRIDE, c // STRIDE**2)
     return blocks.transpose(0, 1, 3, 2, 4, 5).reshape(b, h * STRIDE, w * STRIDE, -1)
 
 
-def loss(outputs: Array, heat: Array, offsets: Array, at: Array) -> Array:
+def loss(outputs: JaxArray, heat: JaxArray, offsets: JaxArray, at: JaxArray) -> JaxArray:
     """Return the loss of a batch.
 
     Parameters
@@ -184,16 +184,16 @@ class Detector:
     def __init__(self, network: Network, rate: float, average: float) -> None:
         self._network = network
 
-        def batch_loss(weights: Weights, x: Array, targets: tuple[Array, ...]) -> Array:
+        def batch_loss(weights: Weights, x: JaxArray, targets: tuple[JaxArray, ...]) -> JaxArray:
             return loss(network.outputs(weights, x), *targets)
 
         def step(
             weights: Weights,
             mean: Weights,
             moments: tuple[Weights, Weights],
-            number: Array,
-            x: Array,
-            targets: tuple[Array, ...],
+            number: JaxArray,
+            x: JaxArray,
+            targets: tuple[JaxArray, ...],
         ) -> tuple[Weights, Weights, tuple[Weights, Weights]]:
             gradient = jax.grad(batch_loss)(weights, x, targets)
             now = rate * jnp.minimum(1.0, number / WARM_UP_STEPS)
@@ -212,18 +212,18 @@ class Detector:
         zeros = jax.tree.map(jnp.zeros_like, weights)
         return TrainingState(weights, weights, (zeros, zeros))
 
-    def train(self, state: TrainingState, x: Array, targets: tuple[Array, ...]) -> None:
+    def train(self, state: TrainingState, x: JaxArray, targets: tuple[JaxArray, ...]) -> None:
         """Change a state by one step of Adam (arXiv 1412.6980)."""
         state.step += 1
         state.weights, state.average, state.moments = self._step(
             state.weights, state.average, state.moments, float(state.step), x, targets
         )
 
-    def loss(self, weights: Weights, x: Array, targets: tuple[Array, ...]) -> float:
+    def loss(self, weights: Weights, x: JaxArray, targets: tuple[JaxArray, ...]) -> float:
         """Return the loss of a batch."""
         return float(self._loss(weights, x, targets))
 
-    def outputs(self, weights: Weights, x: Array) -> tuple[np.ndarray, np.ndarray]:
+    def outputs(self, weights: Weights, x: JaxArray) -> tuple[np.ndarray, np.ndarray]:
         """Return probabilities (B, X, Y, C) and offsets (B, X, Y, 2) [cells]."""
         outputs = np.asarray(self._outputs(weights, x))
         return 1.0 / (1.0 + np.exp(-outputs[..., :-2])), outputs[..., -2:]
@@ -233,8 +233,8 @@ def _adam(
     weights: Weights,
     gradient: Weights,
     moments: tuple[Weights, Weights],
-    number: Array,
-    rate: Array,
+    number: JaxArray,
+    rate: JaxArray,
 ) -> tuple[Weights, tuple[Weights, Weights]]:
     first = jax.tree.map(lambda m, g: BETAS[0] * m + (1.0 - BETAS[0]) * g, moments[0], gradient)
     second = jax.tree.map(lambda v, g: BETAS[1] * v + (1.0 - BETAS[1]) * g**2, moments[1], gradient)

@@ -11,7 +11,7 @@ from typing import Any
 from ...reproduction.results_file import made_by
 from .batches import FEATURES, LAYERS
 from .cast_cache import cached
-from .casting import Caster, RegionObjects, Voxels
+from .casting import Caster, RegionObjects, RegionVoxels
 from .detector import Detector, Network, grid_network, points_network, versions
 from .placements import Placement, placements
 from .plan import FIXED, MIXED, POINTS, SPLITS, StudyPlan
@@ -104,7 +104,7 @@ def mixed_placements(plan: StudyPlan) -> tuple[list[Placement], list[Placement]]
 
 def _cast(
     plan: StudyPlan, placement: Placement, world: str, split: str, count: int, cache: Path | None
-) -> list[Voxels]:
+) -> list[RegionVoxels]:
     caster = Caster(plan, placement, world)
     name = f"{world}-{placement.name}-{split}-{count}.npz"
     return cached(cache and cache / name, count, lambda k: caster.voxels(split, k))
@@ -117,7 +117,7 @@ def _cast_in_turn(
     split: str,
     count: int,
     cache: Path | None,
-) -> list[Voxels]:
+) -> list[RegionVoxels]:
     casters = [Caster(plan, placement, world) for placement in chosen]
     path = cache and cache / f"{world}-{MIXED}-{split}-{count}.npz"
     return cached(path, count, lambda k: casters[k % len(casters)].voxels(split, k))

@@ -49,7 +49,7 @@ class SceneRule:
 
 
 @dataclass(frozen=True, slots=True)
-class Region:
+class DetectionRegion:
     """The rectangle round the vehicle in which objects are to be found [m]."""
 
     x_m: float
@@ -98,7 +98,7 @@ class StatisticsRule:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class RealismStep:
     """Runs in another world or with another detector."""
 
     world: str
@@ -136,13 +136,13 @@ class StudyPlan:
     across: tuple[tuple[int, int, int], ...]
     mixed: Mapping[str, int]
     scenes: SceneRule
-    region: Region
+    region: DetectionRegion
     training: TrainingRule
     precision: PrecisionRule
     statistics: StatisticsRule
     step_fixed: int
     step_across: tuple[str, ...]
-    steps: tuple[Step, ...]
+    steps: tuple[RealismStep, ...]
 
 
 @cache
@@ -231,8 +231,8 @@ def _scene_rule(table: Table) -> SceneRule:
     return rule
 
 
-def _region(table: Table) -> Region:
-    region = Region(table.number("x_m"), table.number("y_m"), table.number("cell_m"))
+def _region(table: Table) -> DetectionRegion:
+    region = DetectionRegion(table.number("x_m"), table.number("y_m"), table.number("cell_m"))
     table.finish()
     return region
 
@@ -277,7 +277,7 @@ def _steps(table: Table) -> dict[str, Any]:
     for row in table.tables("runs"):
         world = row.text("world", choices=(PLAIN, TOWN))
         detector = row.text("detector", choices=(GRID, POINTS))
-        steps.append(Step(world, detector, tuple(map(int, _numbers(row, "seeds")))))
+        steps.append(RealismStep(world, detector, tuple(map(int, _numbers(row, "seeds")))))
         row.finish()
     fixed, across = table.whole("fixed"), table.texts("across")
     table.finish()

@@ -28,7 +28,7 @@ AT_ONCE = 2_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class PlacementSamples:
     """Placements with AP of each seed.
 
     Attributes
@@ -56,9 +56,9 @@ class Samples:
         found = [np.flatnonzero(self.groups == g) for g in np.unique(self.groups)]
         return [index for index in found if len(index) >= MIN_GROUP]
 
-    def subset(self, index: Ints) -> Samples:
+    def subset(self, index: Ints) -> PlacementSamples:
         """Return some of the placements."""
-        return Samples(self.aps[index], self.groups[index], self.hardware[index])
+        return PlacementSamples(self.aps[index], self.groups[index], self.hardware[index])
 
 
 def ranks_of(values: Floats) -> Floats:
@@ -99,7 +99,9 @@ def partial_rho(score: Floats, ap: Floats, given: Floats, members: Sequence[Ints
     return np.mean(parts, axis=0)
 
 
-def permutation_p(score: Floats, samples: Samples, rule: StatisticsRule, seed: int) -> float:
+def permutation_p(
+    score: Floats, samples: PlacementSamples, rule: StatisticsRule, seed: int
+) -> float:
     """Return the two-sided p of rho: placements are permuted within their groups at random.
 
     The observed order counts as one of the permutations, so p is never 0.
@@ -123,7 +125,7 @@ class Resample:
     ap: Floats
 
 
-def resamples(samples: Samples, rule: StatisticsRule, seed: int) -> Iterator[Resample]:
+def resamples(samples: PlacementSamples, rule: StatisticsRule, seed: int) -> Iterator[Resample]:
     """Yield bootstrap samples in portions: placements within groups, and for each its seeds."""
     rng = np.random.default_rng([seed, 3])
     placements, seeds = samples.aps.shape
@@ -138,7 +140,7 @@ def resamples(samples: Samples, rule: StatisticsRule, seed: int) -> Iterator[Res
 
 
 def interval(
-    samples: Samples,
+    samples: PlacementSamples,
     rule: StatisticsRule,
     seed: int,
     statistic: Callable[[Resample], Floats],
@@ -172,21 +174,21 @@ def ordered_share(
     return float(((of_score > 0.0) + 0.5 * (of_score == 0.0)).mean())
 
 
-def pooled_noise(samples: Samples) -> float:
+def pooled_noise(samples: PlacementSamples) -> float:
     """Return the standard deviation over seeds, pooled over the placements; NaN for one seed."""
     if samples.aps.shape[1] < 2:
         return float("nan")
     return float(np.sqrt(samples.aps.var(axis=1, ddof=1).mean()))
 
 
-def better_half(samples: Samples) -> tuple[Ints, Samples]:
+def better_half(samples: PlacementSamples) -> tuple[Ints, PlacementSamples]:
     """Return the half of each group with the higher AP at the first seed, with the other seeds.
 
     Selection and result do not share their noise.
 
     Returns
     -------
-    tuple of (Q,) int and Samples
+    tuple of (Q,) int and PlacementSamples
         Indices of the placements, and those placements.
     """
     chosen = [
@@ -195,4 +197,4 @@ def better_half(samples: Samples) -> tuple[Ints, Samples]:
     ]
     index = np.sort(np.concatenate(chosen))
     part = samples.subset(index)
-    return index, Samples(part.aps[:, 1:], part.groups, part.hardware)
+    return index, PlacementSamples(part.aps[:, 1:], part.groups, part.hardware)

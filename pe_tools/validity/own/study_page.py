@@ -11,7 +11,7 @@ from .analysis import FRESH, HOLDS, OPEN, REFUTED, UNDECIDED
 from .plan import ACROSS, FIXED, MIXED, StudyPlan
 from .scores import PRIMARY
 
-Json = Mapping[str, Any]
+Json = dict[str, Any]
 
 TITLE = "# Does a better score find more? Our own study"
 DESIGNS = {

@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ...reproduction.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
-from .analysis import Design
+from .analysis import DesignResults
 from .plan import StudyPlan
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
 
@@ -30,7 +30,7 @@ COLORS = (BLUE, ORANGE)
 
 @styled
 def ap_against_scores(
-    path: Path, plan: StudyPlan, design: Design, scores: Mapping[str, dict[str, Any]]
+    path: Path, plan: StudyPlan, design: DesignResults, scores: Mapping[str, dict[str, Any]]
 ) -> None:
     """Draw AP against three scores: a dot a placement, a bar from lowest to highest seed."""
     figure, axes = plt.subplots(1, 3, figsize=(9.4, 3.3), sharey=True, layout="constrained")
@@ -46,7 +46,7 @@ def ap_against_scores(
     save_plot(figure, path)
 
 
-def _panel(panel: Axes, plan: StudyPlan, design: Design, values: np.ndarray) -> None:
+def _panel(panel: Axes, plan: StudyPlan, design: DesignResults, values: np.ndarray) -> None:
     aps, mean = design.samples.aps, design.samples.ap
     for vehicle, color in zip(plan.vehicles, COLORS, strict=False):
         index = np.flatnonzero(design.samples.groups == vehicle)
@@ -57,7 +57,9 @@ def _panel(panel: Axes, plan: StudyPlan, design: Design, values: np.ndarray) -> 
 
 
 @styled
-def pairs_by_distance(path: Path, design: Design, scores: Mapping[str, dict[str, Any]]) -> None:
+def pairs_by_distance(
+    path: Path, design: DesignResults, scores: Mapping[str, dict[str, Any]]
+) -> None:
     """Draw the share of pairs on one vehicle that a score orders rightly, by their distance."""
     first, second = np.triu_indices(len(design.chosen), 1)
     same = design.samples.groups[first] == design.samples.groups[second]

@@ -13,7 +13,7 @@ import numpy as np
 from .batches import NEITHER, Mirrors, detections, inputs, targets
 from .casting import RegionObjects
 from .detector import Detector, TrainingState, Weights
-from .plan import Region, StudyPlan, TrainingRule
+from .plan import DetectionRegion, StudyPlan, TrainingRule
 from .precision import ClassScene, average_precision, in_ring
 from .scenes import CLASSES
 
@@ -42,7 +42,7 @@ class Trained:
 def train(
     detector: Detector,
     rule: TrainingRule,
-    region: Region,
+    region: DetectionRegion,
     scenes: Sequence[RegionObjects],
     validation: Sequence[RegionObjects],
     seed: int,
@@ -73,7 +73,7 @@ def _epoch(
     detector: Detector,
     state: TrainingState,
     rule: TrainingRule,
-    region: Region,
+    region: DetectionRegion,
     scenes: Sequence[RegionObjects],
     rng: np.random.Generator,
 ) -> None:
@@ -96,7 +96,11 @@ def _batches(
 
 
 def _mean_loss(
-    detector: Detector, weights: Weights, size: int, region: Region, scenes: Sequence[RegionObjects]
+    detector: Detector,
+    weights: Weights,
+    size: int,
+    region: DetectionRegion,
+    scenes: Sequence[RegionObjects],
 ) -> float:
     mirrors = [NEITHER] * size
     losses = [

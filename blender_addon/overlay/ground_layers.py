@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import graphics, pe, sight
-from .request import FIXED, WHOLE
+from .request import COUNTED, FIXED, KINDS, KINDS_LEFT, REDUNDANCY, SENSORS_LEFT, WHOLE
 
 if TYPE_CHECKING:
     from ..engine import pe, sight
@@ -27,6 +27,8 @@ NOTHING_TO_COMPARE = "Difference: nothing to compare with yet"
 def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     """Return the requested ground map with its legend."""
     view = request.view
+    if view.ground_quantity == REDUNDANCY:
+        return _redundancy(request, cache)
     if shows_difference(request):
         return _difference(request, cache)
     scored, where = scored_map(request), None
@@ -41,15 +43,39 @@ def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     )
 
 
+REDUNDANCY_TITLES = {
+    SENSORS_LEFT: "fewest sensors with any one lost",
+    KINDS: "kinds of sensors",
+    KINDS_LEFT: "fewest kinds with any one sensor lost",
+}
+
+
+def _redundancy(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
+    """Return the map of what is left with one sensor lost, or of the number of kinds."""
+    view = request.view
+    seen = cache.redundancy(request).map(pe.Rig([e.sensor for e in request.counted]))
+    values = {
+        SENSORS_LEFT: seen.sensors_left,
+        KINDS: seen.kinds,
+        KINDS_LEFT: seen.kinds_left,
+    }[view.redundancy_of]
+    cells, unknown = seen.cells, np.full(values.shape, np.nan)
+    ground = sight.GroundSight(
+        cells.x, cells.y, cells.step, seen.height, unknown, unknown, values, values
+    )
+    where = f"{REDUNDANCY_TITLES[view.redundancy_of]}, what is {seen.height:g} m tall"
+    return graphics.ground_map(ground, graphics.SENSORS, view.ground_opacity, where=where)
+
+
 def shows_difference(request: ViewRequest) -> bool:
     """Whether a difference map is shown; the number of sensors has no difference map."""
-    return request.view.ground_difference and request.view.ground_quantity != graphics.SENSORS
+    return request.view.ground_difference and request.view.ground_quantity not in COUNTED
 
 
 def scored_map(request: ViewRequest) -> pe.GroundMap | None:
     """Return the score's own map, if it is to be shown."""
     view = request.view
-    averaged = view.ground_height is None and view.ground_quantity != graphics.SENSORS
+    averaged = view.ground_height is None and view.ground_quantity not in COUNTED
     return request.scored if averaged and not shows_difference(request) else None
 
 
@@ -99,7 +125,7 @@ def _bounds(
 ) -> tuple[float, float] | None:
     """Return the values at the ends of the colours; they are constant while a sensor moves."""
     view = request.view
-    if view.ground_quantity == graphics.SENSORS or view.ground_range == WHOLE:
+    if view.ground_quantity in COUNTED or view.ground_range == WHOLE:
         return None
     if view.ground_range == FIXED:
         fixed = (

@@ -20,6 +20,11 @@ SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
 BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
 
 
+REDUNDANCY = "REDUNDANCY"
+"""Quantity of the ground map: what one lost sensor leaves, or how many kinds see a place."""
+COUNTED = (graphics.SENSORS, REDUNDANCY)
+"""Quantities that are numbers of sensors or kinds: they have no range of colours."""
+SENSORS_LEFT, KINDS, KINDS_LEFT = "SENSORS_LEFT", "KINDS", "KINDS_LEFT"
 FITTED, WHOLE, FIXED = "FITTED", "WHOLE", "FIXED"
 """The range of values that the colours of the ground map cover."""
 
@@ -32,6 +37,8 @@ class ViewSettings:
     ground_quantity: str = graphics.SENSORS
     ground_height: float | None = None
     ground_opacity: float = 0.5
+    redundancy_of: str = SENSORS_LEFT
+    redundancy_height: float = 0.8
     ground_range: str = FITTED
     entropy_range: tuple[float, float] = (0.0, 0.0)
     coverage_range: tuple[float, float] = (0.0, 1.0)

@@ -149,6 +149,7 @@ def view_of(scene: bpy.types.Scene) -> ViewSettings:
     layers = (each.name for each in LAYERS if on and getattr(view, f"show_{each.name}"))
     same = (
         *("ground_quantity", "ground_opacity", "ground_range", "ground_difference"),
+        *("redundancy_of", "redundancy_height"),
         *("reach_class", "reach_of", "beams_of", "channels"),
         *("beam_colors", "rings", "footprints", "view_range"),
     )

@@ -49,6 +49,11 @@ def _ground(layout: UILayout, settings: OverlaySettings) -> None:
     view = settings.view
     layout.row(align=True).prop(view, "ground_quantity", expand=True)
     row = layout.row(align=True)
+    if view.ground_quantity == "REDUNDANCY":
+        row.prop(view, "redundancy_of", text="")
+        row.prop(view, "redundancy_height", text="")
+        layout.prop(view, "ground_opacity", text="Opacity", slider=True)
+        return
     row.prop(view, "ground_height", text="")
     row.prop(view, "ground_opacity", text="Opacity", slider=True)
     if view.ground_quantity in RANGES:

@@ -69,10 +69,30 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
             ("SENSORS", "Sensors", "Number of sensors that see a location: none, 1, 2, 3 or more"),
             ("COVERAGE", "Coverage", "Share of a location that is visible to a sensor"),
             ("ENTROPY", "Entropy", "Uncertainty of a detector in nats; lower is better"),
+            ("REDUNDANCY", "Redundancy", "What is left when any one sensor is lost, or kinds"),
         ),
         name="Show",
         description="Quantity that the colours of the ground show",
         default="ENTROPY",
+        update=redraw,
+    )
+    redundancy_of: EnumProperty(
+        items=(
+            ("SENSORS_LEFT", "Sensors Left", "The fewest sensors when any one is lost"),
+            ("KINDS", "Kinds", "How many kinds of sensors see the test body"),
+            ("KINDS_LEFT", "Kinds Left", "The fewest kinds when any one sensor is lost"),
+        ),
+        name="Redundancy",
+        description="What the redundancy map shows",
+        update=redraw,
+    )
+    redundancy_height: FloatProperty(
+        name="Body Height",
+        description="Height of the test body: a cylinder 0.3 m wide that stands alone",
+        default=0.8,
+        min=0.01,
+        max=5.0,
+        unit="LENGTH",
         update=redraw,
     )
     ground_height: EnumProperty(

@@ -31,7 +31,7 @@ def test_every_setting_of_the_view_is_offered(car):
     for view.channels in ("FEW", "ONE", "EVERY", "ALL"):
         shown |= set(offered(car))
     view.ground_range = "FIXED"
-    for view.ground_quantity in ("ENTROPY", "COVERAGE"):
+    for view.ground_quantity in ("ENTROPY", "COVERAGE", "REDUNDANCY"):
         shown |= set(offered(car))
     of_group = {p.identifier for p in view.bl_rna.properties} - {"rna_type", "name"}
     of_group -= {"ghost_key"}  # by the button in the list of variants

@@ -11,6 +11,7 @@ from blender_addon import bridge
 from blender_addon.operators import requirements as operators
 from blender_addon.overlay.requirement_zones import MET, NOT_MET
 from pe_core.study import requirement_file
+from pe_tools import graphics
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 
@@ -185,3 +186,25 @@ class TestZones:
         for row in rows(held):
             row.enabled = False
         assert "requirements" not in scenes.drawn(held)
+
+
+def test_the_ground_map_of_redundancy_has_the_engine_s_numbers(held):
+    view = held.perception_entropy.view
+    view.ground_quantity, view.redundancy_height, view.ground_opacity = "REDUNDANCY", 1.0, 1.0
+    study = scenes.study()
+    maker = pe.requirements.Redundancy(study.vehicle, study.space, 1.0, within=20.0, step=0.5)
+    seen = maker.map(study.rig)
+    counts = np.float32(graphics.COUNTS)
+    wanted = {
+        "SENSORS_LEFT": seen.sensors_left,
+        "KINDS": seen.kinds,
+        "KINDS_LEFT": seen.kinds_left,
+    }
+    assert {int(values.max()) for values in wanted.values()} == {1, 2}, "they differ"
+    for name, values in wanted.items():
+        view.redundancy_of = name
+        (shape,) = scenes.drawn(held)["ground"].values()
+        known = values >= 0
+        shown = shape.sheet.image[..., :3].transpose(1, 0, 2)
+        assert np.allclose(shown[known], counts[values[known]], atol=1e-6), name
+        assert "1 m tall" in shape.legend.title

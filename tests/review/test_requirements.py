@@ -8,9 +8,12 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring import requirements
+from pe_tools import graphics
 from pe_tools.page import ReportContext, page_bytes
+from pe_tools.page.markup import percent
 from pe_tools.page.pictures.requirement_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
 from pe_tools.page.pictures.test_bodies import worst_bodies
+from pe_tools.page.sections.redundancy import HEIGHT_M, STEP_M, WITHIN_M, redundancy
 from pe_tools.page.sections.requirement_verdicts import CSS, reasons_text, requirement_verdicts
 from tests.review.conftest import NAMES, outcome_of, small_study
 from tests.review.test_maps import pixels_of
@@ -116,3 +119,29 @@ def test_colours_are_those_of_the_tags():
     for rgba, name in ((MET_RGBA, "met"), (NOT_MET_RGBA, "not-met")):
         found = re.search(rf"\.tag\.{name} {{ background: (#\w+)", CSS)
         assert found[1] == "#" + "".join(f"{value:02x}" for value in rgba[:3])
+
+
+def test_the_redundancy_section_has_the_engine_s_map_and_shares():
+    """Two cameras side by side: where both see, one is left."""
+    camera = small_study().rig[NAMES[1]]
+    other = pe.Sensor("other", camera.model, pe.Pose((2.3, -0.6, 1.2)))
+    study = dataclasses.replace(small_study(), rig=pe.Rig([camera, other]))
+    context = ReportContext("two", outcome_of(pe.ScoreJob(study)))
+    html = redundancy(context).html
+    seen = requirements.Redundancy(study.vehicle, study.space, HEIGHT_M, WITHIN_M, STEP_M)
+    found = seen.map(context.rig)
+    one, left = found.share(1), found.share(1, one_lost=True)
+    assert 0.0 < left < one < 1.0
+    assert f"<td>{percent(one, 1)}</td><td>{percent(left, 1)}</td>" in html
+    pixels = pixels_of(re.findall("<svg.*?</svg>", html, re.DOTALL)[1])
+    assert pixels.shape[:2] == found.sensors.shape[::-1]
+    best = graphics.as_bytes(np.array(graphics.COUNTS))[1]
+    shown = (pixels[::-1, :, :3] == best).all(axis=-1).T
+    assert (shown == (found.sensors_left == 1)).all()
+    assert ((found.sensors < 0) == (pixels[::-1, :, 3] == 0).T).all()
+
+
+def test_a_rig_of_one_sensor_has_no_redundancy():
+    study = small_study()
+    study = dataclasses.replace(study, rig=pe.Rig(study.rig.sensors[:1]))
+    assert redundancy(ReportContext("one", outcome_of(pe.ScoreJob(study)))).html == ""

@@ -225,6 +225,15 @@ def difference_map(
     return _map_drawing(second, colors, known, layer, vehicle, alt)
 
 
+def count_map(values: NDArray, bounds: PlanBounds, vehicle: pe.Vehicle | None, alt: str) -> Markup:
+    """Return a map of numbers (NX, NY) of sensors or kinds as SVG; below 0 is no ground.
+
+    `bounds` are the ends of the map along x and y [m].
+    """
+    known = values >= 0
+    return _drawing(bounds, _count_colors(values), known, SENSORS, vehicle, alt, rings=False)
+
+
 def _map_drawing(
     ground: sight.GroundSight,
     colors: Floats,
@@ -235,10 +244,24 @@ def _map_drawing(
 ) -> Markup:
     half = ground.step / 2.0
     bounds = tuple((float(w[0]) - half, float(w[-1]) + half) for w in (ground.x, ground.y))
-    plan = PlanDrawing((bounds[0], bounds[1]), alt, KEY_HEIGHT)
+    return _drawing((bounds[0], bounds[1]), colors, known, layer, vehicle, alt, rings=True)
+
+
+def _drawing(
+    bounds: PlanBounds,
+    colors: Floats,
+    known: NDArray[np.bool_],
+    layer: MapLayer,
+    vehicle: pe.Vehicle | None,
+    alt: str,
+    *,
+    rings: bool,
+) -> Markup:
+    """Return a map of colours (NX, NY, 3); rings separate the zones near, middle and far."""
+    plan = PlanDrawing(bounds, alt, KEY_HEIGHT)
     rgba = np.concatenate([colors[..., :3], known[..., None]], axis=-1)
     plan.cells(graphics.png_bytes(graphics.as_bytes(rgba.transpose(1, 0, 2)[::-1])))
-    for radius in RINGS:
+    for radius in RINGS if rings else ():
         plan.ring(radius, f"{radius:g} m")
     plan.vehicle(vehicle)
     plan.frame()

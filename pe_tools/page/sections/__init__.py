@@ -10,6 +10,7 @@ from .bill_of_materials import bill_of_materials
 from .breakdown import by_class_and_zone, objects, sensor_loss
 from .comparison import comparison
 from .overview import overview, warnings_and_text
+from .redundancy import redundancy
 from .requirement_verdicts import requirement_verdicts
 from .search_history import search_history
 from .sensor_details import dimensions, sensor_details
@@ -21,7 +22,7 @@ TOP_SECTIONS: tuple[Callable[[tuple[ReportContext, ...]], Section], ...] = (
 )
 """Sections on all studies together, at the top of the page."""
 STUDY_SECTIONS: tuple[Callable[[ReportContext], Section], ...] = (
-    *(view3d, dimensions, requirement_verdicts, visibility, by_class_and_zone, objects),
+    *(view3d, dimensions, requirement_verdicts, visibility, redundancy, by_class_and_zone, objects),
     *(sensor_details, sensor_loss, search_history, warnings_and_text, rerun),
 )
 """Sections that each study has; several studies stand side by side. Empty ones are left out."""

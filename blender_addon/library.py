@@ -9,6 +9,14 @@ from bpy.props import BoolProperty
 
 NAME = "Perception Entropy"
 FOLDER = Path(__file__).resolve().parent / "assets"
+EXAMPLES = (FOLDER / "examples", FOLDER.parents[1] / "blend_assets")
+"""Where the example is: in the extension, or in a checkout of the project."""
+EXAMPLE = "sedan.blend"
+
+
+def example_file() -> Path | None:
+    """Return the example to open; None if this installation does not have it."""
+    return next((each / EXAMPLE for each in EXAMPLES if (each / EXAMPLE).is_file()), None)
 
 
 def show_or_hide(preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:

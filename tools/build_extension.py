@@ -25,6 +25,8 @@ MANIFEST = ADDON / "blender_manifest.toml"
 PACKED = (ENGINE.name, TOOLS.name)
 REPORTS = ("reproduction", "validity")
 """Rooms of the tools that the extension has no use for: they plot with Matplotlib."""
+EXAMPLE = "assets/examples/sedan.blend"
+"""What the button *Open an Example* opens; a copy of that in `blend_assets`."""
 FROM_PACKED = re.compile(r"^(\s*)from ((?:pe_core|pe_tools)\b[\w.]*) import", re.MULTILINE)
 PACKED_AS = re.compile(r"^(\s*)import ((?:pe_core|pe_tools)(?: as \w+)?)$", re.MULTILINE)
 
@@ -61,7 +63,10 @@ def read(path: str | Path) -> str:
 
 
 def stage(target: Path) -> None:
-    """Copy add-on, engine, tools, licence; links become files: Blender's tool would drop them."""
+    """Copy add-on, engine, tools, licence and the example.
+
+    Links become files: Blender's tool would drop them.
+    """
     shutil.copytree(ADDON, target, ignore=LEFT_OUT)
     for package in (ENGINE, TOOLS):
         # A developer's link to it may stand in the add-on's folder.
@@ -70,6 +75,8 @@ def stage(target: Path) -> None:
     for room in REPORTS:
         shutil.rmtree(target / TOOLS.name / room)
     shutil.copy(ROOT / "LICENSE", target / "LICENSE")
+    (target / EXAMPLE).parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(ROOT / "blend_assets" / Path(EXAMPLE).name, target / EXAMPLE)
     for path in target.rglob("*.py"):
         source = path.read_text("utf-8")
         relative = with_relative_imports(source, len(path.relative_to(target).parts))
@@ -180,7 +187,7 @@ def check_contents(archive: Path) -> None:
     with zipfile.ZipFile(archive) as packed:
         names = set(packed.namelist())
     presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("**/*.toml")}
-    always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py"}
+    always = {"__init__.py", "blender_manifest.toml", "LICENSE", "pe_core/__init__.py", EXAMPLE}
     always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("page/**/*.[cj]s*")}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}
     for wanted in sorted(always | presets | assets):

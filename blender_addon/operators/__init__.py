@@ -12,6 +12,7 @@ from . import (
     edit_sensors,
     export_files,
     export_job,
+    first_steps,
     fix_warnings,
     inset,
     look_through,
@@ -65,6 +66,7 @@ __all__ = [
 ]
 
 CLASSES = (
+    *first_steps.CLASSES,
     *add_sensor.CLASSES,
     *place_sensor.CLASSES,
     *edit_sensors.CLASSES,

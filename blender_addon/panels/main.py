@@ -9,6 +9,7 @@ from ..operators import (
     ShownScore,
     brief,
     export_job,
+    listed_sensors,
     makers,
     models,
     offers,
@@ -115,6 +116,38 @@ def draw_vehicle_warnings(layout: bpy.types.UILayout, context: bpy.types.Context
             draw_warning(box, context, warning)
 
 
+STEPS = {1: "Choose the vehicle", 2: "Add a sensor", 3: "Score"}
+"""The way from an empty tab to the first score."""
+
+
+def next_step(scene: bpy.types.Scene) -> int | None:
+    """Return the key of the next of `STEPS`; None after the first score."""
+    settings = scene.perception_entropy
+    if settings.has_result:
+        return None
+    if settings.vehicle is None:
+        return 1
+    return 3 if listed_sensors(scene) else 2
+
+
+def draw_step(layout: bpy.types.UILayout, context: bpy.types.Context, step: int) -> None:
+    """Draw the heading of a step while it is the next one."""
+    if next_step(context.scene) == step:
+        layout.label(text=f"{step}  {STEPS[step]}", icon="TRIA_DOWN")
+
+
+def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the vehicle's field and warnings; while none is chosen, ways to one."""
+    settings = context.scene.perception_entropy
+    draw_step(layout, context, 1)
+    layout.prop(settings, "vehicle")
+    if settings.vehicle is None and next_step(context.scene) == 1:
+        column = layout.column(align=True)
+        column.operator("pe.use_selected", icon="RESTRICT_SELECT_OFF")
+        column.operator("pe.open_example", icon="FILE_BLEND")
+    draw_vehicle_warnings(layout, context)
+
+
 KIND, MAKER = "pe_kind", "pe_maker"
 """Names in Blender's context by which a button passes kind and maker to its menu."""
 
@@ -130,10 +163,11 @@ class PE_PT_main(Tab, bpy.types.Panel):
         if settings.version > VERSION:
             newer = "Saved by a newer version of the extension: its new settings are not shown"
             draw_sentence(self.layout, context, newer, icon="ERROR")
-        self.layout.prop(settings, "vehicle")
-        draw_vehicle_warnings(self.layout, context)
+        draw_vehicle(self.layout, context)
+        draw_step(self.layout, context, 2)
         draw_add(self.layout)
         draw_sensors(self.layout, context)
+        draw_step(self.layout, context, 3)
         draw_actions(self.layout, settings)
         draw_written(self.layout, context)
         draw_result(self.layout, context)

@@ -86,6 +86,7 @@ ALLOWED = {
         "diagnostics",
         "engine",
         "housing",
+        "library",
         "live",
         "location_query",
         "overlay",

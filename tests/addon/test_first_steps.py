@@ -1,0 +1,106 @@
+"""The first minute: a vehicle from what is selected, an example, and what the empty tab says."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+
+from blender_addon import library
+from blender_addon.panels import main
+from tests.addon import scenes
+from tests.addon.layouts import Window, drawn
+
+
+def select(*chosen):
+    """Select these objects and no other."""
+    for obj in bpy.context.scene.objects:
+        obj.select_set(obj in chosen)
+
+
+@pytest.fixture
+def body(scene):
+    """Return two parts under a parent and a tree, all in the collection *Imported*."""
+    imported = scenes.add_collection(scene.collection, "Imported")
+    root = bpy.data.objects.new("root", None)
+    imported.objects.link(root)
+    shell, wheel = scenes.add_box(imported, "shell"), scenes.add_box(imported, "wheel")
+    shell.parent = wheel.parent = root
+    tree = scenes.add_box(imported, "tree")
+    return SimpleNamespace(root=root, shell=shell, wheel=wheel, tree=tree)
+
+
+def vehicle():
+    return bpy.context.scene.perception_entropy.vehicle
+
+
+def test_the_selected_meshes_become_a_collection_of_their_own_in_one_undo_step(body):
+    select(body.root)
+    bpy.ops.ed.undo_push(message="before")
+    assert bpy.ops.pe.use_selected("EXEC_DEFAULT", True) == {"FINISHED"}
+    assert {obj.name for obj in vehicle().objects} == {"shell", "wheel"}
+    imported = bpy.data.collections["Imported"]
+    assert {obj.name for obj in imported.objects} == {"root", "tree"}, "in two collections"
+    bpy.ops.ed.undo()
+    assert vehicle() is None
+    assert [each.name for each in bpy.data.collections] == ["Imported"]
+    assert len(bpy.data.collections["Imported"].objects) == 4
+
+
+def test_a_collection_of_the_selected_meshes_alone_is_taken(body):
+    bpy.data.objects.remove(body.tree)
+    select(body.shell, body.wheel)
+    bpy.ops.pe.use_selected()
+    assert vehicle().name == "Imported" and len(bpy.data.collections) == 1
+
+
+def test_sensors_and_their_housings_are_no_parts(car):
+    roof = car.objects["roof"]
+    select(roof)
+    with pytest.raises(RuntimeError, match="expected at least one mesh of the vehicle, found roof"):
+        bpy.ops.pe.use_selected()
+    select(roof, car.objects["body"], car.objects["cabin"])
+    bpy.ops.pe.use_selected()
+    assert vehicle().name == "Car", "the collection that has both parts"
+
+
+def test_the_example_has_no_name_so_that_saving_it_does_not_change_the_extension(scene):
+    assert bpy.ops.pe.open_example() == {"FINISHED"}
+    assert bpy.data.filepath == "" and vehicle().name == "Sedan"
+    assert bpy.ops.pe.score.poll()
+
+
+def test_changes_of_a_named_file_are_saved_if_that_is_chosen(scene, tmp_path):
+    path = tmp_path / "mine.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    scenes.add_box(bpy.context.scene.collection, "new")
+    bpy.ops.ed.undo_push(message="changed")
+    bpy.ops.pe.open_example(changes="SAVE")
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    assert "new" in bpy.data.objects
+
+
+def test_an_installation_without_the_example_says_so(scene, monkeypatch, tmp_path):
+    monkeypatch.setattr(library, "EXAMPLES", (tmp_path,))
+    with pytest.raises(RuntimeError, match="not in this installation"):
+        bpy.ops.pe.open_example()
+
+
+def headings():
+    """Return the steps that the first panel names."""
+    shown = drawn(main.PE_PT_main, **vars(Window(bpy.context.scene)))
+    steps = [f"{number}  {text}" for number, text in main.STEPS.items()]
+    return [text for text in shown.texts("label") if text in steps], shown
+
+
+def test_the_tab_names_the_next_step_until_the_first_score(scene):
+    texts, shown = headings()
+    assert texts == ["1  Choose the vehicle"]
+    assert {"pe.use_selected", "pe.open_example"} <= set(shown.texts("operator"))
+    scenes.add_car(scene)
+    texts, shown = headings()
+    assert texts == ["2  Add a sensor"]
+    assert not {"pe.use_selected", "pe.open_example"} & set(shown.texts("operator"))
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
+    assert headings()[0] == ["3  Score"]
+    bpy.ops.pe.score()
+    assert headings()[0] == []

@@ -7,6 +7,10 @@ from xdist.scheduler import LoadScopeScheduling
 
 WINDOWS = "tests/blender/"
 """The folder whose tests open a real Blender's window: one at a time, and begun first."""
+QUICK = dict.fromkeys(
+    ("tests/report/test_reproduce.py", "tests/report/test_results_file.py"), "pe reproduce --quick"
+)
+"""Files that share one run of 40 s of a processor: they have one process."""
 ORDER = (WINDOWS, "tests/review/", "tests/report/", "tests/addon/", "tests/engine/")
 """Folders whose files take long come first; the many short files at the end level the load."""
 
@@ -15,7 +19,8 @@ class Together(LoadScopeScheduling):
     """Keeps the tests of a file on one processor, and all those that open windows."""
 
     def _split_scope(self, nodeid):
-        return WINDOWS if nodeid.startswith(WINDOWS) else nodeid.partition("::")[0]
+        file = nodeid.partition("::")[0]
+        return WINDOWS if nodeid.startswith(WINDOWS) else QUICK.get(file, file)
 
 
 @pytest.hookimpl(optionalhook=True)

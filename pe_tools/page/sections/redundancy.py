@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from pe_core.base.errors import InputError
 from pe_core.scoring.requirements import Redundancy, RedundancyMap
 
-from ..markup import Markup, percent, table
+from ..markup import Markup, escaped, percent, table
 from ..pictures.ground_plan import count_map
 from ..pictures.svg import STYLE, figure, figure_grid
 from ..report_context import ReportContext, Section
@@ -21,7 +22,10 @@ def redundancy(context: ReportContext) -> Section:
 
 def _content(context: ReportContext) -> str:
     study = context.study
-    seen = Redundancy(study.vehicle, study.space, HEIGHT_M, WITHIN_M, STEP_M).map(context.rig)
+    try:
+        seen = Redundancy(study.vehicle, study.space, HEIGHT_M, WITHIN_M, STEP_M).map(context.rig)
+    except InputError as error:  # a kind of sensor that measures voxels alone
+        return f"<p>Not available: {escaped(error)}.</p>"
     cells = seen.cells
     bounds = (float(cells.x0[0]), float(cells.x1[-1])), (float(cells.y0[0]), float(cells.y1[-1]))
     maps = {

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import bpy
-from bpy.props import EnumProperty, FloatVectorProperty, StringProperty
-from mathutils import Matrix, Vector
+from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
+from mathutils import Euler, Matrix, Vector
 
 from .. import bridge, signals
 from ..engine import pe
@@ -19,6 +19,7 @@ ON_VEHICLE_M = 0.5
 
 FIX_LABELS = {
     "turn_vehicle": "Turn the Vehicle",
+    "stand_vehicle": "Stand on Wheels",
     "scale_vehicle": "Scale the Vehicle",
     "move_vehicle": "Move the Vehicle",
     "roll_sensor": "Turn It Upright",
@@ -68,6 +69,15 @@ def turn_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount
     _transform_vehicle(context, Matrix.Rotation(math.radians(amount[0]), 4, "Z"))
 
 
+def stand_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
+    """Turn the vehicle about x, y and z [deg], and put its lowest point on the ground."""
+    _turn_in_place(context, Euler([math.radians(each) for each in amount]))
+    context.view_layer.update()
+    low, _ = _bounds(_chosen_vehicle(context).all_objects)
+    if math.isfinite(low.z):
+        _transform_vehicle(context, Matrix.Translation((0.0, 0.0, -low.z)))
+
+
 def move_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
     """Move the vehicle [m]."""
     _transform_vehicle(context, Matrix.Translation(amount))
@@ -108,6 +118,7 @@ def show_vehicle(context: bpy.types.Context, _subject: str, _amount: AdviceAmoun
 
 FIXES: dict[str, Callable[[bpy.types.Context, str, AdviceAmount], None]] = {
     "turn_vehicle": turn_vehicle,
+    "stand_vehicle": stand_vehicle,
     "scale_vehicle": scale_vehicle,
     "move_vehicle": move_vehicle,
     "roll_sensor": roll_sensor,
@@ -117,12 +128,16 @@ FIXES: dict[str, Callable[[bpy.types.Context, str, AdviceAmount], None]] = {
 }
 
 
-def _transform_vehicle(context: bpy.types.Context, change: Matrix) -> None:
-    """Apply a transform to the vehicle's outermost objects and the sensors on the vehicle."""
+def _chosen_vehicle(context: bpy.types.Context) -> bpy.types.Collection:
     vehicle = context.scene.perception_entropy.vehicle
     if vehicle is None:
         raise pe.InputError("scene", "vehicle collection", "a collection", "none chosen")
-    members = list(vehicle.all_objects)
+    return vehicle
+
+
+def _transform_vehicle(context: bpy.types.Context, change: Matrix) -> None:
+    """Apply a transform to the vehicle's outermost objects and the sensors on the vehicle."""
+    members = list(_chosen_vehicle(context).all_objects)
     outermost = [obj for obj in members if obj.parent not in members]
     for obj in outermost:
         if obj.library is not None:
@@ -139,20 +154,13 @@ def _transform_vehicle(context: bpy.types.Context, change: Matrix) -> None:
 def _sensors_on(
     context: bpy.types.Context, members: list[bpy.types.Object]
 ) -> list[bpy.types.Object]:
-    """Return the sensors within a metre of the vehicle's bounding box."""
-    corners = [
-        obj.matrix_world @ Vector(corner)
-        for obj in members
-        if obj.type == "MESH"
-        for corner in obj.bound_box
-    ]
-    if not corners:
-        return []
-    low = [min(c[k] for c in corners) - ON_VEHICLE_M for k in range(3)]
-    high = [max(c[k] for c in corners) + ON_VEHICLE_M for k in range(3)]
+    """Return the sensors within half a metre of the vehicle's bounding box."""
+    low, high = _bounds(members)
 
     def near(point: Vector) -> bool:
-        return all(low[k] <= point[k] <= high[k] for k in range(3))
+        return all(low[k] <= point[k] + ON_VEHICLE_M for k in range(3)) and all(
+            point[k] - ON_VEHICLE_M <= high[k] for k in range(3)
+        )
 
     sensors = bridge.sensor_objects(context.scene)
     return [obj for obj in sensors if near(obj.matrix_world.translation)]
@@ -174,4 +182,54 @@ def _sensor_named(context: bpy.types.Context, name: str) -> bpy.types.Object:
     raise pe.InputError("scene", "sensor", "one of the scene", repr(name))
 
 
-CLASSES = (PE_OT_mend,)
+def _bounds(members: Iterable[bpy.types.Object]) -> tuple[Vector, Vector]:
+    """Return the lowest and the highest corner of the meshes [m]; of none, a box without points."""
+    low, high = Vector((math.inf,) * 3), Vector((-math.inf,) * 3)
+    for obj in members:
+        for corner in obj.bound_box if obj.type == "MESH" else ():
+            point = obj.matrix_world @ Vector(corner)
+            low, high = Vector(map(min, low, point)), Vector(map(max, high, point))
+    return low, high
+
+
+def _turn_in_place(context: bpy.types.Context, turn: Euler) -> None:
+    """Turn the vehicle about the middle of its bounding box, and the sensors on it."""
+    low, high = _bounds(_chosen_vehicle(context).all_objects)
+    middle = (low + high) / 2.0 if low.x <= high.x else Vector()
+    around = turn.to_matrix().to_4x4()
+    _transform_vehicle(context, Matrix.Translation(middle) @ around @ Matrix.Translation(-middle))
+
+
+class PE_OT_turn_round(bpy.types.Operator):
+    """Turn the vehicle round where it is: front becomes rear. Sensors on it move with it"""
+
+    bl_idname = "pe.turn_round"
+    bl_label = "Turn Round"
+    bl_options = {"REGISTER", "UNDO"}
+
+    angle: FloatProperty(
+        name="Angle",
+        description="Angle about the vertical, counter-clockwise",
+        default=math.pi,
+        subtype="ANGLE",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("The vehicle is turned in Object Mode")
+            return False
+        return context.scene.perception_entropy.vehicle is not None
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        try:
+            _turn_in_place(context, Euler((0.0, 0.0, self.angle)))
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        context.view_layer.update()
+        context.scene.perception_entropy.result_warnings.clear()  # the checks run again
+        signals.study_changed.emit()
+        return {"FINISHED"}
+
+
+CLASSES = (PE_OT_mend, PE_OT_turn_round)

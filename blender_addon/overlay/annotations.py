@@ -49,6 +49,30 @@ def _axle_line(x: float, z: float, half: float) -> graphics.Primitives:
     )
 
 
+GAP_M, SHAFT_M, HEAD_M, HEAD_HALF_M = 0.3, 0.9, 0.6, 0.35
+"""Of the arrow ahead of a vehicle: distance from its bumper, length of shaft and head, and half the
+head's width."""
+ARROW = (1.0, 0.85, 0.3, 0.95)
+
+
+def front_arrow(vehicle: pe.Vehicle) -> graphics.LayerShape:
+    """Return an arrow on the ground ahead of a vehicle, and the names of its two ends."""
+    low, high = vehicle.bounds
+    rear, front, y = float(low[0]) - GAP_M, float(high[0]) + GAP_M, float(low[1] + high[1]) / 2.0
+    neck, tip = front + SHAFT_M, front + SHAFT_M + HEAD_M
+    head = [(neck, y - HEAD_HALF_M, 0.0), (neck, y + HEAD_HALF_M, 0.0), (tip, y, 0.0)]
+    edges = [(front, y, 0.0), (neck, y, 0.0), *(head[k] for k in (0, 1, 1, 2, 2, 0))]
+    labels = (
+        graphics.Tag("front", (tip, y, 0.0), ARROW, strong=True),
+        graphics.Tag("rear", (rear, y, 0.0), ARROW),
+    )
+    return graphics.LayerShape(
+        faces=graphics.Primitives.of(head, ARROW),
+        through=graphics.Primitives.of(edges, ARROW),
+        labels=labels,
+    )
+
+
 SIDE_M = 0.1
 POST_M = 0.6
 """A voxel alone would be too small to see: a post marks it."""

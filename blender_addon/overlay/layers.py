@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 
 from ..engine import graphics, pe
 from . import ground_layers, heatmap, regions
-from .annotations import GHOST_PALETTE, GHOST_TITLE, axles, ghost_sensors, location_mark
+from .annotations import (
+    GHOST_PALETTE,
+    GHOST_TITLE,
+    axles,
+    front_arrow,
+    ghost_sensors,
+    location_mark,
+)
 from .layer_cache import LayerCache
 from .request import ALL, BY_CHANNEL, BY_SENSOR, RIG, SceneSensor, ViewRequest, ViewSettings
 from .requirement_zones import requirement_zones
@@ -311,6 +318,16 @@ def _axles(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.Lay
     return axles(request.reference, half)
 
 
+def _front_keys(request: ViewRequest) -> dict[str, Hashable]:
+    """Return the arrow's key while there is a vehicle and no sensor yet."""
+    return {} if request.sensors or request.vehicle is None else {WHOLE_RIG: request.body_key}
+
+
+def _front(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    assert request.vehicle is not None  # the layer has no key without one
+    return front_arrow(request.vehicle)
+
+
 LAYERS = (
     Layer(
         "ground",
@@ -347,6 +364,7 @@ LAYERS = (
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
     Layer("heat", "Blocked Beams", _heat_keys, _heat, rough=True),
     Layer("axles", "Axles", _axle_keys, _axles, 1.6, edged=True),
+    Layer("front", "Front", _front_keys, _front, 2.2, edged=True),
     Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, 1.6, edged=True),
     Layer("place", "Queried Location", _place_keys, _place, 1.8, edged=True),
     Layer("labels", "Names", _label_keys, _label),

@@ -59,9 +59,7 @@ class SnapshotReader:
     ) -> ViewRequest:
         """Return the request of a scene's layers."""
         sensors = _sensors(scene, depsgraph)
-        vehicle, body_key = (
-            self._vehicle(scene, depsgraph, moving) if sensors else vehicle_cache.NO_VEHICLE
-        )
+        vehicle, body_key = self._vehicle(scene, depsgraph, moving)
         inputs = self._inputs_by(scene)
         others, name = _ghosts(scene)
         compared, compared_name = _compared(scene)

@@ -140,7 +140,10 @@ def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     """Draw the vehicle's field and warnings; while none is chosen, ways to one."""
     settings = context.scene.perception_entropy
     draw_step(layout, context, 1)
-    layout.prop(settings, "vehicle")
+    row = layout.row(align=True)
+    row.prop(settings, "vehicle")
+    if settings.vehicle is not None:
+        row.operator("pe.turn_round", text="", icon="FILE_REFRESH")
     if settings.vehicle is None and next_step(context.scene) == 1:
         column = layout.column(align=True)
         column.operator("pe.use_selected", icon="RESTRICT_SELECT_OFF")

@@ -140,6 +140,7 @@ LAYERS: tuple[tuple[str, DrawChoices | None], ...] = (
     ("beams", _beams),
     ("heat", None),
     ("axles", None),
+    ("front", None),
     ("ghosts", None),
     ("place", None),
 )

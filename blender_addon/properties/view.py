@@ -163,6 +163,12 @@ class PE_ViewSettings(bpy.types.PropertyGroup):
         default=True,
         update=redraw,
     )
+    show_front: BoolProperty(
+        name="Front",
+        description="Show with an arrow where the front of the vehicle is, until there is a sensor",
+        default=True,
+        update=redraw,
+    )
     show_ghosts: BoolProperty(
         name="Other Variant",
         description="Show the variant whose ghost is switched on in the list of variants",

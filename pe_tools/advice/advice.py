@@ -64,7 +64,8 @@ class Advice:
         The part of the vehicle that causes the warning.
     fix : str or None
         Correction: "turn_vehicle" by `amount` degrees counter-clockwise, "scale_vehicle" by
-        a factor, "move_vehicle" by x, y and z [m], "roll_sensor" by degrees.
+        a factor, "move_vehicle" by x, y and z [m], "stand_vehicle" by degrees about x, y and z and
+        then onto the ground, "roll_sensor" by degrees.
     amount : tuple of float
         Arguments of the fix.
     """

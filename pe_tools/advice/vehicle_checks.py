@@ -74,6 +74,10 @@ FLOOR_M = 6.0
 """A mesh wider than any vehicle and lower than this [m] may be a vehicle on a floor."""
 
 
+WHEELS_BELOW = 0.1
+"""The wheels are this far off the middle of the up axis, as a share of the side."""
+
+
 def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
     """Yield warnings about a vehicle's mesh.
 
@@ -131,10 +135,30 @@ def _stands(body: Bodywork) -> Iterator[Advice]:
     x, y, z = body.size
     if z > LONGER * max(x, y):
         text = f"taller ({metres(z)}) than long ({metres(max(x, y))}): does it stand on its tail?"
-        yield Advice(None, "on_tail", text)
+        yield _stand(text, "on_tail", _quarter_turn(body))
     elif across(body.shape) == 2:
         text = "its left half mirrors its right one from top to bottom: does it lie on its side?"
-        yield Advice(None, "on_side", text)
+        yield _stand(text, "on_side", _quarter_turn(body))
+
+
+def _stand(text: str, code: str, turn: tuple[float, float, float]) -> Advice:
+    return Advice(None, code, text, fix="stand_vehicle", amount=turn)
+
+
+def _quarter_turn(body: Bodywork) -> tuple[float, float, float]:
+    """Return the turn about x and y [deg] that puts the wheels of a lying vehicle below its body.
+
+    Without names of wheels the side is unknown: the vehicle may then be on its roof.
+    """
+    middle = (body.low + body.high)[:2] / 2.0
+    wheels, mirrored = wheel_center(body.shape), across(body.shape)
+    offset = np.zeros(2) if wheels is None else (wheels[:2] - middle) / np.maximum(body.size[:2], 1)
+    if np.abs(offset).max() > WHEELS_BELOW:
+        up = int(np.argmax(np.abs(offset)))
+    else:
+        up = 1 - mirrored if mirrored in (0, 1) else int(np.argmin(body.size[:2]))
+    turn = -90.0 if offset[up] < 0.0 else 90.0
+    return (0.0, turn, 0.0) if up == 0 else (-turn, 0.0, 0.0)
 
 
 def _faces(body: Bodywork) -> Iterator[Advice]:
@@ -163,7 +187,8 @@ def _on_its_roof(body: Bodywork) -> Iterator[Advice]:
     wheels = wheel_center(body.shape)
     middle = float(body.low[2] + body.high[2]) / 2.0
     if wheels is not None and float(wheels[2]) > middle + 0.1 * body.size[2]:
-        yield Advice(None, "on_roof", "its wheels are on top: does it lie on its roof?")
+        text = "its wheels are on top: does it lie on its roof?"
+        yield _stand(text, "on_roof", (180.0, 0.0, 0.0))
 
 
 def _height(body: Bodywork) -> Iterator[Advice]:

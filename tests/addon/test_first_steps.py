@@ -1,11 +1,13 @@
 """The first minute: a vehicle from what is selected, an example, and what the empty tab says."""
 
+import math
 from types import SimpleNamespace
 
 import bpy
 import pytest
+from mathutils import Matrix
 
-from blender_addon import library
+from blender_addon import diagnostics, library
 from blender_addon.panels import main
 from tests.addon import scenes
 from tests.addon.layouts import Window, drawn
@@ -83,6 +85,53 @@ def test_an_installation_without_the_example_says_so(scene, monkeypatch, tmp_pat
     monkeypatch.setattr(library, "EXAMPLES", (tmp_path,))
     with pytest.raises(RuntimeError, match="not in this installation"):
         bpy.ops.pe.open_example()
+
+
+def points_of(names, scene):
+    """Return the centres of objects, in the ground frame, rounded [m]."""
+    bpy.context.view_layer.update()
+    return [tuple(round(c, 5) for c in scene.objects[n].matrix_world.translation) for n in names]
+
+
+def test_turn_round_turns_the_vehicle_and_the_sensors_on_it_where_it_is(car):
+    for obj in car.objects:
+        obj.location.x += 3.0
+    assert bpy.ops.pe.turn_round() == {"FINISHED"}
+    assert points_of(("body", "cabin", "roof"), car) == [
+        (3.0, 0.0, 0.55),
+        (3.3, 0.0, 1.2),
+        (3.43, 0.0, 1.8),
+    ]
+    bpy.ops.pe.turn_round()
+    assert points_of(("cabin", "roof"), car) == [(2.7, 0.0, 1.2), (2.57, 0.0, 1.8)]
+
+
+def test_stand_on_wheels_puts_the_vehicle_on_the_ground(scene):
+    scenes.add_car(scene)
+    bpy.context.view_layer.update()
+    for obj in scene.perception_entropy.vehicle.objects:  # on its tail
+        obj.matrix_world = Matrix.Rotation(-math.pi / 2, 4, "Y") @ obj.matrix_world
+    bpy.context.view_layer.update()
+    diagnostics.run_checks()
+    rows = scene.perception_entropy.result_warnings
+    (found,) = [each for each in rows if each.code == "on_tail"]
+    assert bpy.ops.pe.mend(fix=found.fix, amount=found.amount) == {"FINISHED"}
+    bpy.context.view_layer.update()
+    low, high = scenes.vehicle(scene.perception_entropy.vehicle).bounds
+    assert low[2] == pytest.approx(0.0, abs=1e-5)
+    assert tuple(high - low) == pytest.approx((4.0, 1.8, 1.3), abs=1e-5)
+
+
+def test_an_arrow_ahead_of_the_vehicle_is_shown_until_there_is_a_sensor(scene):
+    assert "front" not in scenes.drawn(scene)
+    scenes.add_car(scene)
+    bpy.context.view_layer.update()
+    (shape,) = scenes.drawn(scene)["front"].values()
+    assert shape.faces.points[:, 0].min() > 2.0 and abs(shape.faces.points[:, 1]).max() < 0.5
+    labels = {tag.text: tag.place[0] for tag in shape.labels}
+    assert labels["front"] > 2.0 and labels["rear"] < -2.0
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
+    assert "front" not in scenes.drawn(scene)
 
 
 def headings():

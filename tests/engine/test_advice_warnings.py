@@ -256,6 +256,37 @@ def test_on_its_tail_or_on_its_side(sedan, bus):
     assert (None, "on_side") not in told(shapes.box_car())
 
 
+def turned_by(vehicle, amount):
+    """Return a vehicle turned about x, then about y [deg], and put on the ground."""
+    (sx, sy), (cx, cy) = np.sin(np.radians(amount[:2])), np.cos(np.radians(amount[:2]))
+    about_x = np.array([(1, 0, 0), (0, cx, -sx), (0, sx, cx)])
+    about_y = np.array([(cy, 0, sy), (0, 1, 0), (-sy, 0, cy)])
+    turned = moved(vehicle, about_y @ about_x)
+    return moved(turned, shift=(0.0, 0.0, -turned.bounds[0][2]))
+
+
+LYING = ("on_tail", "on_side", "on_roof")
+
+
+def test_the_fix_of_a_lying_vehicle_puts_its_wheels_down(sedan, bus):
+    """However it lies: on tail or nose, on either side, on its roof, and along y as well."""
+    nose, other = -np.array(TAIL) * [[1], [-1], [1]], np.array(SIDE) * [[1], [-1], [-1]]
+    roof = np.diag([1.0, -1.0, -1.0])
+    still_lying = []
+    for vehicle in (sedan, bus):
+        for name, lying in (("tail", TAIL), ("nose", nose), ("side", SIDE), ("other", other)):
+            for yaw in (np.eye(3), LEFT):
+                there = moved(vehicle, np.array(yaw) @ lying)
+                (found,) = [each for (_, code), each in told(there).items() if code in LYING]
+                assert found.fix == "stand_vehicle"
+                left = {code for _, code in told(turned_by(there, found.amount))}
+                still_lying += [name] if left & set(LYING) else []
+        over = moved(vehicle, roof)
+        left = {code for _, code in told(turned_by(over, told(over)[None, "on_roof"].amount))}
+        still_lying += ["roof"] if left & set(LYING) else []
+    assert not still_lying
+
+
 def test_a_sixth_more_is_longer():
     """A side is longer than another from 1.15 times its length on."""
 

@@ -23,6 +23,7 @@ from pe_tools.validity.own.scenes import CLASSES, NOBODY, scene
 from pe_tools.validity.own.segmentation import section
 from pe_tools.validity.own.study_page import page
 from tests.report.conftest import ROOT, pe
+from tests.thorough import THOROUGH
 
 PLAN = full_plan()
 PLACEMENT = placements(PLAN)[0]
@@ -196,6 +197,7 @@ def test_files_of_another_plan_are_refused(tmp_path):
         files.read()
 
 
+@pytest.mark.skipif(not THOROUGH, reason="a detector is trained twice: with CI=true")
 def test_a_run_has_the_same_results_when_it_is_repeated():
     pytest.importorskip("jax")
     from pe_tools.validity.own.one_run import run_one

@@ -30,7 +30,7 @@ from build_extension import ROOT, BuildError, agreed_version, bpy_tool, read
 WANTED_BLENDERS = ("4.2", "4.3", "5")
 """Versions of Blender whose own tool has to validate the extension, by their beginning."""
 BPY_4_2 = "bpy==4.2.*"
-EXTRAS = ("progress", "cluster", "report", "cad", "rerun", "argoverse", "meshes")
+EXTRAS = ("progress", "completion", "cluster", "report", "cad", "rerun", "argoverse", "meshes")
 """Extras of users, each of which is installed into an empty environment of its own."""
 EXAMPLE = ROOT / "blend_assets" / "experiments" / "1_pandar64.toml"
 CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "perception-entropy"

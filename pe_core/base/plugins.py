@@ -45,6 +45,7 @@ EXTRAS = {
     "library.detector": "validate",
     "tqdm": "progress",
     "distributed": "cluster",
+    "shtab": "completion",
 }
 """The extra that installs what a plugin, or a sort of plugins, or a verb needs."""
 

@@ -26,7 +26,9 @@ from .exchange_verbs import (
     import_study,
 )
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
+from .new_verb import add_new_verb
 from .run_job import add_page_option, begun_search, carry_out, job_and_folder, with_pages
+from .setup_verbs import add_setup_verbs
 from .sweep_verb import add_sweep_options, sweep
 from .terminal import Answer, open_missing_streams, tell
 
@@ -94,6 +96,8 @@ def parser() -> argparse.ArgumentParser:
     add_sensors_verb(verbs)
     add_rigs_verb(verbs)
     add_requirements_verb(verbs)
+    add_new_verb(verbs)
+    add_setup_verbs(verbs, parser)
     for plugin in find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)
     add_page_option(optimize)

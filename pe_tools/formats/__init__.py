@@ -4,7 +4,7 @@ from pe_core.base.files import MESH_BYTES
 
 from .ap_fit import SATURATION, ApTable, CurveFit, fit_ap_curve, read_ap_table, study_snippet
 from .boxes import read_boxes, write_boxes
-from .meshes import FoundMesh, Mesh, MeshAxes, read_mesh, write_mesh
+from .meshes import FoundMesh, Mesh, MeshAxes, axes_in_text, read_mesh, write_mesh
 
 __all__ = [
     "MESH_BYTES",
@@ -14,6 +14,7 @@ __all__ = [
     "FoundMesh",
     "Mesh",
     "MeshAxes",
+    "axes_in_text",
     "fit_ap_curve",
     "read_ap_table",
     "read_boxes",

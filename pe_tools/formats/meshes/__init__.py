@@ -14,7 +14,7 @@ from pe_core.base.files import MESH_BYTES, read_bytes, write_bytes
 from pe_core.base.memory import report_memory_errors
 from pe_core.scene.mesh import AS_SAID, Mesh, MeshAxes
 
-from .axes import GLTF, OURS, UNSAID, SaidAxes, oriented, said_in_comments
+from .axes import GLTF, OURS, UNSAID, SaidAxes, axes_in_text, oriented, said_in_comments
 from .glb import read_glb
 from .mesh import FoundMesh, fit_names, has_plugin, make_mesh, read_with_plugin
 from .npz import dump_npz, read_npz
@@ -24,7 +24,15 @@ from .stl import read_stl
 
 _F = TypeVar("_F")
 
-__all__ = ["AS_SAID", "FoundMesh", "Mesh", "MeshAxes", "read_mesh", "write_mesh"]
+__all__ = [
+    "AS_SAID",
+    "FoundMesh",
+    "Mesh",
+    "MeshAxes",
+    "axes_in_text",
+    "read_mesh",
+    "write_mesh",
+]
 
 _READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
     ".npz": read_npz,

@@ -148,3 +148,15 @@ def _text(chosen: SaidAxes) -> str:
         return ""
     up_by, forward_by = chosen.up_by or "assumed", chosen.forward_by or "assumed"
     return f"faces {chosen.forward} ({forward_by}), up is {chosen.up} ({up_by})"
+
+
+_TEXT = re.compile(r"faces ([+-][xyz]) \((.*?)\), up is ([+-][xyz]) \((.*?)\)")
+
+
+def axes_in_text(text: str) -> SaidAxes:
+    """Return the axes that `Mesh.axes` names, with their sources; empty: the ground frame."""
+    match = _TEXT.fullmatch(text)
+    if match is None:
+        return OURS
+    forward, forward_by, up, up_by = match.groups()
+    return SaidAxes(up, up_by, forward, forward_by)

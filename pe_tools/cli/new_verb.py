@@ -1,0 +1,152 @@
+"""`pe new`: a first study of a vehicle's mesh, with comments and a sensor on the roof."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pe_core import catalog
+from pe_core.base.errors import InputError
+from pe_core.base.files import write_bytes
+from pe_core.scene import Pose, Sensor, Vehicle, vehicle_line
+from pe_core.scene.body_shape import BodyShape, fitting_units, require_vehicle_size
+from pe_core.scene.mesh import AXIS_NAMES
+from pe_core.scene.orientation import is_called
+
+from ..advice import warnings
+from ..formats import Mesh, MeshAxes, read_mesh, write_mesh
+from .first_study import FirstStudy, study_text
+from .roof import MOUNT, RoofSensor, roof_sensor
+from .terminal import DONE, Answer, one_line, show, tell
+
+MODEL = "Pandar64"
+GLASS = ("glass", "window", "windshield", "windscreen")
+NO_GLASS = ("frame", "trim", "seal", "wiper", "rubber", "washer")
+"""Beginnings of words in the names of parts: glass, and parts of windows that are none."""
+
+
+def add_new_verb(verbs: Any) -> None:
+    """Add ``new``: the study of a mesh to begin with."""
+    parser = verbs.add_parser("new", help="write a first study of a vehicle's mesh, with comments")
+    parser.add_argument("file", metavar="MESH", help="mesh: .glb, .obj, .stl, .ply, .npz, ...")
+    parser.add_argument("-o", "--output", required=True, metavar="STUDY", help="study to write")
+    about = f"model of the sensor on the roof (default: {MODEL}; pe sensors lists them)"
+    parser.add_argument("--sensor", default=MODEL, metavar="MODEL", help=about)
+    for key in ("forward", "up"):
+        about = f"the file's axis that points {key}, if it is not found: --{key}=-x"
+        parser.add_argument(f"--{key}", choices=AXIS_NAMES, metavar="AXIS", help=about)
+    about = "metres in a unit of the file, if it is not found: 0.0254 for inches"
+    parser.add_argument("--scale", type=float, metavar="M", help=about)
+    parser.add_argument("--replace", action="store_true", help="replace files that are there")
+    parser.set_defaults(function=new_study)
+
+
+def new_study(args: argparse.Namespace) -> Answer:
+    """Write the study of a mesh, and tell what was found in the mesh."""
+    mesh_path, output = Path(args.file), Path(args.output)
+    area_path = output.with_name(f"{output.stem}_roof.npz")
+    _refuse_existing(output, mesh_path, args.replace)
+    model = catalog.load(args.sensor)
+    mesh, scale, unit = read_in_metres(mesh_path, args.up, args.forward, args.scale)
+    vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names, glass_parts(mesh.part_names))
+    show(f"{one_line(f'{mesh_path}: {vehicle_line(vehicle, mesh.axes)}')}\n", sys.stderr)
+    start = Sensor(MOUNT, model, Pose.from_degrees((0, 0, 0), (0, 0, 0)))
+    roof = roof_sensor(vehicle, start, catalog.housing(args.sensor), area_path.name)
+    found = (output.name, vehicle, mesh.axes, scale, unit, roof)
+    first = FirstStudy(_relative(mesh_path, output.parent), *found)
+    written = [output]
+    if (area := _area_mesh(roof)) is not None:
+        _refuse_existing(area_path, mesh_path, args.replace)
+        write_mesh(area_path, area)
+        written.append(area_path)
+    write_bytes(output, study_text(first).encode())
+    _warn(first)
+    return "\n".join([*(f"wrote {path}" for path in written), *_next(output)]), DONE
+
+
+def _refuse_existing(path: Path, mesh: Path, may_replace: bool) -> None:
+    """Raise `InputError` where a file would be overwritten; the mesh never is."""
+    if path.exists() and (not may_replace or _is_same(path, mesh)):
+        raise InputError(path, "file", "a new file (or --replace)", "an existing file")
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    try:
+        return path.samefile(other)
+    except OSError:
+        return False
+
+
+def _relative(mesh: Path, folder: Path) -> str:
+    """Return the path of a mesh from the study's folder; the full path from another drive."""
+    try:
+        return Path(os.path.relpath(mesh, folder)).as_posix()
+    except ValueError:
+        return mesh.resolve().as_posix()
+
+
+def read_in_metres(
+    path: Path, up: str | None, forward: str | None, scale: float | None
+) -> tuple[Mesh, float, str]:
+    """Read a mesh; without a scale find the unit in which it has the size of a vehicle.
+
+    Returns
+    -------
+    mesh : Mesh
+    scale : float
+        Metres in a unit of the file.
+    unit : str
+        Name of the unit; empty for metres and for a scale that was asked for.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, or has a vehicle's size in no unit.
+    """
+    mesh = read_mesh(path, MeshAxes(up, forward, 1.0 if scale is None else scale))
+    try:
+        require_vehicle_size(str(path), mesh)
+    except InputError:
+        sides = sorted(BodyShape(mesh.triangles, mesh.parts, mesh.part_names).size)
+        units = fitting_units(sides[2], sides[1]) if scale is None and sides[2] > 0.0 else []
+        if not units:
+            raise
+        (unit, factor), *others = units
+        tell(f"{path}: taken as {unit}, --scale {factor:g}{_or_else(others)}")
+        return replace(mesh, triangles=mesh.triangles * factor), factor, unit
+    return mesh, 1.0 if scale is None else scale, ""
+
+
+def _or_else(units: list[tuple[str, float]]) -> str:
+    texts = [f"--scale {factor:g} if they are {unit}" for unit, factor in units]
+    return f"; or {', '.join(texts)}" if texts else ""
+
+
+def glass_parts(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the parts that are glass by name."""
+    return tuple(name for name in names if is_called(name, GLASS, NO_GLASS))
+
+
+def _area_mesh(roof: RoofSensor) -> Mesh | None:
+    """Return the faces of a mount that is no part of the vehicle, as a mesh of its own."""
+    if roof.mount is None or roof.mount.area is None:
+        return None
+    triangles = roof.mount.area.triangles
+    return Mesh(triangles, np.zeros(len(triangles), np.int32), (MOUNT,))
+
+
+def _warn(first: FirstStudy) -> None:
+    """Print warnings about the mesh: sunk into the ground, far from the origin, odd sizes."""
+    study = first.study()
+    for each in warnings((), study.vehicle, study.space, study.prior):
+        tell(f"warning: {each.line}")
+
+
+def _next(output: Path) -> list[str]:
+    return [f"next: pe score {output}", f"      pe optimize {output} -o results"]

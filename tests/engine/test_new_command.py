@@ -1,0 +1,184 @@
+"""`pe new`: the first study of a mesh in any format is found right, is commented, and runs."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import catalog
+from pe_core.scene import cuts_body
+from pe_tools.cli.roof import find_roof
+from pe_tools.cli.verbs import main
+from pe_tools.formats import axes_in_text, read_mesh
+from tests.engine.mesh_files import glb_file, gltf, obj_bytes, ply_binary, stl_binary
+from tests.engine.test_docs import ROOT
+from tests.engine.test_mesh_axes import TURNS, car, obj, triangles_of
+
+ASSETS = ROOT / "blend_assets"
+CHEAP = ["--grid-samples", "1024"]
+
+
+def new(mesh, study, *more):
+    return main(["new", str(mesh), "-o", str(study), *more])
+
+
+def car_files(folder):
+    """The car of `test_mesh_axes` in every format that is written by hand, in several axes."""
+    points, faces = car("-Y forward, Z up")
+    triangles = np.concatenate([quads[:, [0, k, k + 1]] for quads in faces.values() for k in (1, 2)])
+    glb = triangles_of("Z forward, Y up")
+    root, _ = gltf(points=triangles_of("ours"), indices=None)
+    files = {
+        "names.obj": obj("Blender, Y up"),
+        "shape.obj": obj("Z forward, Y up", named=False),
+        "turned.stl": stl_binary(triangles=triangles_of("-Y forward, Z up")),
+        "millimetres.stl": stl_binary(triangles=1000.0 * triangles_of("Blender, Y up")),
+        "turned.ply": ply_binary("<", points, triangles),
+        "car.glb": glb_file(root, glb.astype("<f4").tobytes()),
+    }
+    for name, data in files.items():
+        (folder / name).write_bytes(data)
+    return list(files)
+
+
+def checked(path):
+    """Read a study that was written: its LiDAR is clear, on its mount, high and in the middle."""
+    study = pe.load_study(path)
+    (sensor,) = study.rig
+    low, high = study.vehicle.bounds
+    x, y, z = sensor.pose.position
+    assert high[2] - 0.25 < z < high[2] + 0.3 and abs(y - (low[1] + high[1]) / 2) < 0.05
+    assert low[0] + 0.2 * (high[0] - low[0]) < x < high[0] - 0.2 * (high[0] - low[0])
+    assert not cuts_body(sensor.pose, catalog.housing(sensor.model.name), study.vehicle)
+    assert study.search.mounting.on == {"roof": "roof"}
+    study.coding()  # the start is on its mount
+    return study
+
+
+@pytest.mark.parametrize("name", ["sedan", "bus"])
+def test_a_study_of_our_vehicles_runs_as_it_is(name, tmp_path, monkeypatch, capsys):
+    """The sedan's part `roof` is the mount; the bus has a pod there, so faces of it are."""
+    monkeypatch.chdir(tmp_path)
+    assert new(ASSETS / f"{name}.npz", "study.toml") == 0
+    told = capsys.readouterr()
+    assert "next: pe score study.toml" in told.out and "faces +x" in told.err
+    study = checked(tmp_path / "study.toml")
+    assert set(study.vehicle.glass) >= {"windshield", "windows_left", "rear_window"}
+    assert main(["score", "study.toml", *CHEAP]) == 0
+    budget = ["--samples", "1024", "--evaluations", "4", "--no-review"]
+    assert main(["optimize", "study.toml", "-o", "out", *CHEAP, *budget]) == 0
+    moved = pe.load_study(tmp_path / "out" / "study.toml")
+    assert moved.search.mounting.on == {"roof": "roof"}
+
+
+def test_axes_and_units_of_every_format_are_found_and_written(tmp_path, capsys):
+    """The mesh is upright and faces forward; the study says so to a reader that guesses nothing."""
+    for name in car_files(tmp_path):
+        path = tmp_path / f"{name}.toml"
+        assert new(tmp_path / name, path) == 0, capsys.readouterr().err
+        study = checked(path)
+        low, high = study.vehicle.bounds
+        np.testing.assert_allclose([low, high], [(-2, -0.9, 0), (2, 0.9, 1.5)], atol=1e-5)
+        corners = study.vehicle.triangles.reshape(-1, 3)
+        assert corners[corners[:, 2] > 1.4][:, 0].mean() < 0.0, f"{name}: the cabin is behind"
+        assert study.axes.up and study.axes.forward, name
+        found = capsys.readouterr().err
+        assert ("taken as millimetres" in found) == (study.axes.scale == 0.001)
+    assert "scale = 0.001" in (tmp_path / "millimetres.stl.toml").read_text()
+
+
+def test_a_box_without_names_has_its_roof_as_an_area(tmp_path):
+    (tmp_path / "box.obj").write_bytes(obj_bytes())
+    assert new(tmp_path / "box.obj", tmp_path / "study.toml") == 0
+    area = read_mesh(tmp_path / "study_roof.npz")
+    assert len(area.triangles) == 2 and (area.triangles[..., 2] == 2.0).all()
+    study = checked(tmp_path / "study.toml")
+    x, y, _ = study.rig.sensors[0].pose.position
+    assert (x, y) == (1.5, 0.25), "the middle of its top"
+
+
+def test_the_study_read_is_the_study_meant_and_its_comments_are_right(tmp_path):
+    """Lines that are commented out are keys that work, too."""
+    new(ASSETS / "sedan.npz", tmp_path / "study.toml")
+    text = (tmp_path / "study.toml").read_text("utf-8")
+    keys = [line for line in text.splitlines() if " = " in line and not line.startswith("#   ")]
+    plain = [line for line in keys if "#" not in line.removeprefix("# ")]
+    assert len(plain) < len(keys) / 2, plain
+    more, camera = [], text.index("# [[sensor]]")
+    for number, line in enumerate(text.splitlines()):
+        is_off = line.startswith(("# [", "# scale", "# max", "# min")) or (
+            text.splitlines()[number].startswith("# ")
+            and " = " in line
+            and text.index(line) > camera
+        )
+        more.append(line.removeprefix("# ") if is_off else line)
+    on = tomllib.loads("\n".join(more))
+    assert [sensor["name"] for sensor in on["sensor"]] == ["roof", "front camera"]
+    assert on["optimize"]["max_height"] > on["sensor"][0]["position"][2] and "scale" in on["vehicle"]
+    (tmp_path / "more.toml").write_text("\n".join(more), "utf-8")
+    study = pe.load_study(tmp_path / "more.toml")
+    study.coding()
+    roof = find_roof(study.vehicle)
+    camera = study.rig.sensors[1]
+    assert not study.vehicle.faces_near(camera.pose.position, 0.02).size
+    assert camera.pose.position[2] > roof.level
+
+
+def test_files_that_are_there_are_never_overwritten(tmp_path, capsys):
+    (tmp_path / "box.obj").write_bytes(obj_bytes())
+    study, area = tmp_path / "study.toml", tmp_path / "study_roof.npz"
+    study.write_text("mine")
+    assert new(tmp_path / "box.obj", study) == 1 and study.read_text() == "mine"
+    study.unlink()
+    area.write_text("mine")
+    assert new(tmp_path / "box.obj", study) == 1
+    assert area.read_text() == "mine" and not study.exists()
+    assert "--replace" in capsys.readouterr().err
+    assert new(tmp_path / "box.obj", study, "--replace") == 0
+    checked(study)
+    mesh = (tmp_path / "box.obj").read_bytes()
+    assert new(tmp_path / "box.obj", tmp_path / "box.obj", "--replace") == 1
+    assert (tmp_path / "box.obj").read_bytes() == mesh
+
+
+def test_what_is_asked_for_holds_against_what_is_found(tmp_path):
+    (tmp_path / "car.obj").write_bytes(obj("ours"))
+    asked = ["--forward=-x", "--up=+z", "--scale", "2", "--sensor", "Hesai Pandar40P"]
+    assert new(tmp_path / "car.obj", tmp_path / "study.toml", *asked) == 0
+    study = checked(tmp_path / "study.toml")
+    assert study.axes == pe.MeshAxes("+z", "-x", 2.0)
+    assert study.rig.sensors[0].model.name == "Hesai Pandar40P"
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "words"),
+    [
+        ("none.obj", [], "no such file"),
+        ("car.blend", [], "suffix"),
+        ("box.obj", ["--sensor", "Pandar640"], "a name such as"),
+        ("dot.obj", [], "one point"),
+        ("box.obj", ["--scale", "0.0001"], "a vehicle"),
+    ],
+)
+def test_what_cannot_be_is_one_line_and_leaves_no_file(name, more, words, tmp_path, capsys):
+    (tmp_path / "box.obj").write_bytes(obj_bytes())
+    (tmp_path / "dot.obj").write_bytes(obj_bytes(np.ones((8, 3))))
+    before = {path.name for path in tmp_path.iterdir()}
+    assert new(tmp_path / name, tmp_path / "study.toml", *more) == 1
+    (line,) = capsys.readouterr().err.splitlines()[-1:]
+    assert line.startswith("pe: ") and words in line
+    assert {path.name for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_the_axes_of_a_text_are_those_of_the_reader(turn, tmp_path):
+    (tmp_path / "car.obj").write_bytes(obj(turn))
+    mesh = read_mesh(tmp_path / "car.obj")
+    found = axes_in_text(mesh.axes)
+    assert mesh.axes == (
+        f"faces {found.forward} ({found.forward_by}), up is {found.up} ({found.up_by})"
+    )
+    asked = read_mesh(tmp_path / "car.obj", pe.MeshAxes(found.up, found.forward))
+    np.testing.assert_array_equal(asked.triangles, mesh.triangles)
+    assert axes_in_text("") == ("+z", "file", "+x", "file")

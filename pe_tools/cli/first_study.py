@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -105,9 +106,10 @@ def _inline(table: Mapping[str, Any]) -> str:
 
 
 def _head(first: FirstStudy) -> Iterator[str]:
+    file = _safe(shlex.quote(first.file))
     yield "# A study: a vehicle, its sensors, and how to search for a better placement."
-    yield f"#   pe score {first.file}                  how good the placement is"
-    yield f"#   pe optimize {first.file} -o results    look for a better one"
+    yield f"#   pe score {file}                  how good the placement is"
+    yield f"#   pe optimize {file} -o results    look for a better one"
     yield "# Lengths in metres, angles in degrees; x forward, y left, z up; the origin is on the"
     yield "# ground under the vehicle. Keys that are left out have their defaults: docs/study.md"
     yield ""
@@ -141,9 +143,9 @@ def _safe(text: str) -> str:
 def _axes(first: FirstStudy) -> Iterator[str]:
     axes, found = first.axes, axes_in_text(first.faces)
     if axes.up is not None and axes.forward is not None:
-        yield _row("up", axes.up, f"the file's axis that points up: found by {found.up_by}")
+        yield _row("up", axes.up, f"the file's axis that points up ({found.up_by})")
         back = axes.forward.translate(str.maketrans("+-", "-+"))
-        comment = f'the axis to its front: {found.forward_by}; "{back}" turns it round'
+        comment = f'the axis to the front ({found.forward_by}); "{back}" turns the vehicle round'
         yield _row("forward", axes.forward, comment)
     comment = f"the file is in {first.unit}" if first.unit else "metres in a unit of the file"
     yield _row("scale", axes.scale, comment, off=axes.scale == 1.0)

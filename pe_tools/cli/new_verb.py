@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -84,11 +85,15 @@ def _is_same(path: Path, other: Path) -> bool:
 
 
 def _relative(mesh: Path, folder: Path) -> str:
-    """Return the path of a mesh from the study's folder; the full path from another drive."""
+    """Return the path of a mesh from the study's folder; the full path from another drive.
+
+    Folders that are links are followed first: `..` of a link is the folder that it leads to.
+    """
+    full = mesh.parent.resolve() / mesh.name
     try:
-        return Path(os.path.relpath(mesh, folder)).as_posix()
+        return Path(os.path.relpath(full, folder.resolve())).as_posix()
     except ValueError:
-        return mesh.resolve().as_posix()
+        return full.as_posix()
 
 
 def read_in_metres(
@@ -118,14 +123,13 @@ def read_in_metres(
         if not units:
             raise
         (unit, factor), *others = units
-        tell(f"{path}: taken as {unit}, --scale {factor:g}{_or_else(others)}")
+        tell(f"{path}: no vehicle in metres; taken as {unit}, scale {factor:g}{_or_else(others)}")
         return replace(mesh, triangles=mesh.triangles * factor), factor, unit
     return mesh, 1.0 if scale is None else scale, ""
 
 
 def _or_else(units: list[tuple[str, float]]) -> str:
-    texts = [f"--scale {factor:g} if they are {unit}" for unit, factor in units]
-    return f"; or {', '.join(texts)}" if texts else ""
+    return "".join(f"; --scale {factor:g} if these are {unit}" for unit, factor in units)
 
 
 def glass_parts(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -149,4 +153,5 @@ def _warn(first: FirstStudy) -> None:
 
 
 def _next(output: Path) -> list[str]:
-    return [f"next: pe score {output}", f"      pe optimize {output} -o results"]
+    file = shlex.quote(str(output))
+    return [f"next: pe score {file}", f"      pe optimize {file} -o results"]

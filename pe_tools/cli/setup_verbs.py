@@ -15,6 +15,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.files import reason_of
@@ -40,8 +42,7 @@ PACKAGES: Mapping[str, tuple[str, ...]] = {
 VERSION_TIMEOUT_S = 30
 BLENDER, COMMAND = "BLENDER", "blender"
 SHELLS = ("bash", "zsh", "fish")
-FILES = ("STUDY", "FILE", "MESH", "PATH", "TABLE")
-FOLDERS = ("DIR", "FOLDER")
+FILES, FOLDERS = ("STUDY", "FILE", "MESH", "PATH", "TABLE"), ("DIR",)
 """Metavars of arguments that shells complete with files, and with folders."""
 
 
@@ -71,7 +72,7 @@ def installation() -> dict[str, Any]:
         "perception_entropy": __version__,
         "installed_in": _without_home(str(Path(__file__).parents[2])),
         "python": f"{platform.python_version()} ({_without_home(sys.executable)})",
-        "numpy": version("numpy"),
+        "numpy": np.__version__,
         "platform": platform.platform(),
         "processors": usable_processors(),
         "memory_available": "not known" if memory is None else size_text(memory),

@@ -18,6 +18,7 @@ WITH_PATHS = [
         f"docs/{name}.md"
         for name in (
             "blender",
+            "command_line",
             "engine",
             "exchange",
             "glossary",

@@ -1,6 +1,6 @@
 """`pe new`: the first study of a mesh in any format is found right, is commented, and runs."""
 
-import tomllib
+import re
 
 import numpy as np
 import pytest
@@ -8,6 +8,9 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core.scene import cuts_body
+from pe_core.study import study_to_dict
+from pe_tools.cli import new_verb
+from pe_tools.cli.first_study import study_text
 from pe_tools.cli.roof import find_roof
 from pe_tools.cli.verbs import main
 from pe_tools.formats import axes_in_text, read_mesh
@@ -26,7 +29,9 @@ def new(mesh, study, *more):
 def car_files(folder):
     """The car of `test_mesh_axes` in every format that is written by hand, in several axes."""
     points, faces = car("-Y forward, Z up")
-    triangles = np.concatenate([quads[:, [0, k, k + 1]] for quads in faces.values() for k in (1, 2)])
+    triangles = np.concatenate(
+        [quads[:, [0, k, k + 1]] for quads in faces.values() for k in (1, 2)]
+    )
     glb = triangles_of("Z forward, Y up")
     root, _ = gltf(points=triangles_of("ours"), indices=None)
     files = {
@@ -98,31 +103,35 @@ def test_a_box_without_names_has_its_roof_as_an_area(tmp_path):
     assert (x, y) == (1.5, 0.25), "the middle of its top"
 
 
-def test_the_study_read_is_the_study_meant_and_its_comments_are_right(tmp_path):
-    """Lines that are commented out are keys that work, too."""
+def test_most_keys_have_a_comment_and_those_that_are_off_work(tmp_path):
+    """Without the "# " before them, the proposed camera and limits are a study that runs, too."""
     new(ASSETS / "sedan.npz", tmp_path / "study.toml")
     text = (tmp_path / "study.toml").read_text("utf-8")
-    keys = [line for line in text.splitlines() if " = " in line and not line.startswith("#   ")]
-    plain = [line for line in keys if "#" not in line.removeprefix("# ")]
-    assert len(plain) < len(keys) / 2, plain
-    more, camera = [], text.index("# [[sensor]]")
-    for number, line in enumerate(text.splitlines()):
-        is_off = line.startswith(("# [", "# scale", "# max", "# min")) or (
-            text.splitlines()[number].startswith("# ")
-            and " = " in line
-            and text.index(line) > camera
-        )
-        more.append(line.removeprefix("# ") if is_off else line)
-    on = tomllib.loads("\n".join(more))
-    assert [sensor["name"] for sensor in on["sensor"]] == ["roof", "front camera"]
-    assert on["optimize"]["max_height"] > on["sensor"][0]["position"][2] and "scale" in on["vehicle"]
-    (tmp_path / "more.toml").write_text("\n".join(more), "utf-8")
-    study = pe.load_study(tmp_path / "more.toml")
+    on, count = re.subn(r"^# (?=\[|\w+ = )", "", text, flags=re.MULTILINE)
+    keys = [line for line in on.splitlines() if re.match(r"\w+ = ", line)]
+    assert len(keys) == 28 and sum("  # " in line for line in keys) > 16
+    assert count == 8, "a camera of five lines, the scale, two limits"
+    (tmp_path / "on.toml").write_text(on, "utf-8")
+    study = pe.load_study(tmp_path / "on.toml")
     study.coding()
-    roof = find_roof(study.vehicle)
-    camera = study.rig.sensors[1]
-    assert not study.vehicle.faces_near(camera.pose.position, 0.02).size
-    assert camera.pose.position[2] > roof.level
+    lidar, camera = study.rig
+    assert (
+        camera.name == "front camera"
+        and not study.vehicle.faces_near(camera.pose.position, 0.02).size
+    )
+    assert camera.pose.position[2] > find_roof(study.vehicle).level
+    assert study.search.mounting.constraints.max_height > lidar.pose.position[2]
+
+
+def test_the_text_is_read_as_the_study_it_was_written_from(tmp_path, monkeypatch):
+    meant = []
+    monkeypatch.setattr(
+        new_verb, "study_text", lambda first: meant.append(first.study()) or study_text(first)
+    )
+    for name in ("sedan", "bus"):
+        assert new(ASSETS / f"{name}.npz", tmp_path / f"{name}.toml") == 0
+        found = study_to_dict(pe.load_study(tmp_path / f"{name}.toml"))
+        assert found == study_to_dict(meant.pop())
 
 
 def test_files_that_are_there_are_never_overwritten(tmp_path, capsys):
@@ -140,6 +149,15 @@ def test_files_that_are_there_are_never_overwritten(tmp_path, capsys):
     mesh = (tmp_path / "box.obj").read_bytes()
     assert new(tmp_path / "box.obj", tmp_path / "box.obj", "--replace") == 1
     assert (tmp_path / "box.obj").read_bytes() == mesh
+
+
+def test_the_mesh_is_found_from_a_folder_that_is_a_link(tmp_path):
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "a" / "b").mkdir(parents=True)
+    (tmp_path / "meshes" / "box.obj").write_bytes(obj_bytes())
+    (tmp_path / "link").symlink_to(tmp_path / "a" / "b")
+    assert new(tmp_path / "meshes" / "box.obj", tmp_path / "link" / "study.toml") == 0
+    assert checked(tmp_path / "link" / "study.toml").mesh == "../../meshes/box.obj"
 
 
 def test_what_is_asked_for_holds_against_what_is_found(tmp_path):

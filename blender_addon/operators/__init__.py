@@ -26,6 +26,7 @@ from . import (
     rig_files,
     running_job,
     score_jobs,
+    shortcuts,
     upright,
     variants,
 )
@@ -89,7 +90,7 @@ CLASSES = (
 
 def register() -> None:
     """Add keys, draw handlers and listeners of operators."""
-    look_through.register()
+    shortcuts.register()
     inset.register()
 
 
@@ -99,4 +100,4 @@ def unregister() -> None:
     placement.end()
     export_job.unregister()
     inset.unregister()
-    look_through.unregister()
+    shortcuts.unregister()

@@ -10,7 +10,7 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from mathutils import Vector
 
-from .. import bridge
+from .. import bridge, library
 from ..engine import catalog, graphics, kinds, pe
 from ..housing import measured_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
@@ -83,7 +83,8 @@ def offers() -> Iterator[Offer]:
     for kind in kinds.KINDS.values():
         models = catalog.names(kind.name)
         if models:
-            yield Offer(kind.name, kind.label, mount_of(kind.name).usual or models[0])
+            usual = library.preferred_model(kind.name) or mount_of(kind.name).usual
+            yield Offer(kind.name, kind.label, usual or models[0])
 
 
 def makers(kind: str | None) -> list[str]:

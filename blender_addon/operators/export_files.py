@@ -15,7 +15,14 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 from .. import bridge, signals
 from ..engine import app, exchange, jobs, outputs, page, pe
 from .export_job import ExportJob, ExportOperator, ExportSteps, WrittenFiles, report_files
-from .reports import USER_ERRORS, OperatorResult, chosen_file, report, report_error
+from .reports import (
+    USER_ERRORS,
+    OperatorResult,
+    begin_in_results_folder,
+    chosen_file,
+    report,
+    report_error,
+)
 
 
 class PE_OT_export_study(ExportHelper, bpy.types.Operator):
@@ -26,6 +33,10 @@ class PE_OT_export_study(ExportHelper, bpy.types.Operator):
 
     filename_ext = ".toml"
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        begin_in_results_folder(self)
+        return super().invoke(context, event)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:

@@ -18,7 +18,14 @@ from bpy_extras.io_utils import ExportHelper
 from .. import viewport
 from ..engine import pe
 from . import running_job
-from .reports import USER_ERRORS, OperatorMixin, OperatorResult, report, report_error
+from .reports import (
+    USER_ERRORS,
+    OperatorMixin,
+    OperatorResult,
+    begin_in_results_folder,
+    report,
+    report_error,
+)
 from .score_jobs import JobOperator, SceneJob
 
 
@@ -115,6 +122,7 @@ class ExportOperator(ExportHelper, OperatorMixin):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         """Open the file dialog; the export then runs as a job."""
         self.asked_in_window = not bpy.app.background
+        begin_in_results_folder(self)
         return super().invoke(context, event)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

@@ -206,24 +206,6 @@ def _vehicle(context: bpy.types.Context) -> pe.Vehicle | None:
     return bridge.vehicle_of_scene(context.scene, context.evaluated_depsgraph_get())
 
 
-_keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
-
-
-def register() -> None:
-    """Add the key Esc to 3D views, where there is a window."""
-    keys = bpy.context.window_manager.keyconfigs.addon
-    if keys is not None:  # there are none without a window
-        keymap = keys.keymaps.new(name="3D View", space_type="VIEW_3D")
-        _keys.append((keymap, keymap.keymap_items.new("pe.look_back", "ESC", "PRESS")))
-
-
-def unregister() -> None:
-    """Remove the key."""
-    while _keys:
-        keymap, item = _keys.pop()
-        keymap.keymap_items.remove(item)
-
-
 CLASSES = (
     PE_OT_look_through,
     PE_OT_look_back,

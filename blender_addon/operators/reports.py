@@ -6,10 +6,11 @@ A report is one line in the status bar, whatever the input was.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import bpy
 
+from .. import library
 from ..engine import pe
 
 USER_ERRORS = (pe.InputError, MemoryError)
@@ -55,6 +56,12 @@ def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
     if obj is None or not obj.perception_entropy.is_sensor:
         raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
     return obj
+
+
+def begin_in_results_folder(operator: Any) -> None:
+    """Have the file dialog of an export begin in the folder of results of the preferences."""
+    named = f"{Path(bpy.data.filepath).stem or 'untitled'}{operator.filename_ext}"
+    operator.filepath = library.in_results_folder(operator.filepath, named)
 
 
 def chosen_file(filepath: str) -> Path:

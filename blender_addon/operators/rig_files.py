@@ -13,7 +13,13 @@ from .. import bridge
 from ..engine import catalog, exchange, pe
 from .export_job import report_files
 from .replace_sensors import replace_sensors
-from .reports import USER_ERRORS, OperatorResult, chosen_file, report_error
+from .reports import (
+    USER_ERRORS,
+    OperatorResult,
+    begin_in_results_folder,
+    chosen_file,
+    report_error,
+)
 
 _FORMAT_ITEMS = tuple(
     (row.name, row.title, "", k) for k, row in enumerate(exchange.RIG_FORMATS.values())
@@ -39,6 +45,7 @@ class PE_OT_export_rig(ExportHelper, bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         files = exchange.rig_format(self.format).files
         self.filepath = files[0] if len(files) == 1 else f"{self.format}_rig"
+        begin_in_results_folder(self)
         return super().invoke(context, event)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

@@ -223,6 +223,26 @@ class PE_MT_sensors_of_maker(bpy.types.Menu):
 AXLES = ("rear_axle_x", "rear_axle_z", "wheelbase", "front_overhang", "rear_overhang")
 
 
+class PE_MT_add(bpy.types.Menu):
+    """Sensors at the 3D cursor, or on the roof; or placed by pointing"""
+
+    bl_idname = "PE_MT_add"
+    bl_label = "Perception"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        for offer in offers():
+            add = self.layout.operator("pe.add_sensor", text=offer.label, icon="ADD")
+            add.model = offer.usual
+        self.layout.separator()
+        self.layout.menu(PE_MT_add_sensor.bl_idname, icon="RESTRICT_SELECT_OFF")
+
+
+def draw_add_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """Add (Shift A), in Object Mode."""
+    if context.mode == "OBJECT":
+        menu.layout.menu(PE_MT_add.bl_idname, icon="OUTLINER_OB_CAMERA")
+
+
 class PE_PT_export(Tab, bpy.types.Panel):
     """Files to take away, and rigs of other programs"""
 
@@ -279,10 +299,12 @@ def register() -> None:
     """Add the entries to Blender's own menus."""
     bpy.types.TOPBAR_MT_file_export.append(draw_export)
     bpy.types.TOPBAR_MT_file_import.append(draw_import)
+    bpy.types.VIEW3D_MT_add.append(draw_add_menu)
 
 
 def unregister() -> None:
     """Remove the entries from Blender's own menus."""
+    bpy.types.VIEW3D_MT_add.remove(draw_add_menu)
     bpy.types.TOPBAR_MT_file_import.remove(draw_import)
     bpy.types.TOPBAR_MT_file_export.remove(draw_export)
 
@@ -290,6 +312,7 @@ def unregister() -> None:
 CLASSES = (
     PE_MT_sensors_of_maker,
     PE_MT_add_sensor,
+    PE_MT_add,
     PE_PT_main,
 )
 

@@ -46,7 +46,7 @@ ALLOWED = {
     },
     "location_query": {"bridge", "engine", "sensor_cache", "signals", "vehicle_cache", "worker"},
     "housing": {"engine", "sensor_cache", "sensor_kinds"},
-    "library": set(),
+    "library": {"engine"},
     "live": {
         "bridge",
         "change_events",

@@ -8,9 +8,10 @@ import pytest
 from mathutils import Matrix
 
 from blender_addon import diagnostics, library
+from blender_addon.operators import shortcuts
 from blender_addon.panels import main
 from tests.addon import scenes
-from tests.addon.layouts import Window, drawn
+from tests.addon.layouts import Layout, Window, drawn
 
 
 def select(*chosen):
@@ -132,6 +133,27 @@ def test_an_arrow_ahead_of_the_vehicle_is_shown_until_there_is_a_sensor(scene):
     assert labels["front"] > 2.0 and labels["rear"] < -2.0
     scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert "front" not in scenes.drawn(scene)
+
+
+def test_keys_are_added_and_all_of_them_removed(scene):
+    keymap = bpy.context.window_manager.keyconfigs.new("test").keymaps.new(name="3D View")
+    shortcuts.add_to(keymap)
+    items = {(each.idname, each.type): each for each in keymap.keymap_items}
+    assert len(items) == len(shortcuts.SHORTCUTS)
+    toggled = items["wm.context_toggle", "L"].properties.data_path
+    assert bpy.context.path_resolve(toggled) is False, "Live is a switch"
+    assert all(each.ctrl and each.alt for (_, key), each in items.items() if key != "ESC")
+    shortcuts.unregister()
+    assert not keymap.keymap_items
+
+
+def test_the_add_menu_has_each_kind_in_object_mode_alone(scene):
+    menu = drawn(main.PE_MT_add)
+    assert menu.texts("operator") == ["LiDAR", "Camera"]
+    for mode, entries in (("OBJECT", ["PE_MT_add"]), ("EDIT_MESH", [])):
+        layout = Layout()
+        main.draw_add_menu(SimpleNamespace(layout=layout), SimpleNamespace(mode=mode))
+        assert layout.texts("menu") == entries
 
 
 def headings():

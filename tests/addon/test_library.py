@@ -1,6 +1,7 @@
 """The sensors for the asset browser: each a ready sensor; the library comes and goes with us."""
 
 import re
+import tomllib
 
 import bpy
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import bridge, library, sensor_cache
+from blender_addon import bridge, library, operators, sensor_cache
 from blender_addon.housing import KEY
 from tests.addon import scenes
 
@@ -160,6 +161,27 @@ def test_a_library_of_that_name_that_is_not_ours_is_left_alone(enabled, tmp_path
     library.hide()
     assert [path for _, path in libraries() if path == str(tmp_path)]
     others.remove(foreign)
+
+
+def test_the_preferred_models_are_those_of_the_buttons(enabled):
+    preferences = enabled[1].preferences
+    usual = {each.kind: each.usual for each in operators.offers()}
+    preferences.lidar_model, preferences.camera_model = "Hesai QT128C2X", "no such camera"
+    chosen = {each.kind: each.usual for each in operators.offers()}
+    assert chosen == {**usual, "lidar": "Hesai QT128C2X"} != usual
+
+
+def test_dialogs_begin_in_the_folder_of_results(enabled, tmp_path):
+    assert library.in_results_folder("", "car.toml") == ""
+    enabled[1].preferences.results_folder = str(tmp_path)
+    assert library.in_results_folder("", "car.toml") == str(tmp_path / "car.toml")
+    assert library.in_results_folder("map.svg", "car.toml") == str(tmp_path / "map.svg")
+    assert library.in_results_folder("/there/a.toml", "car.toml") == "/there/a.toml"
+
+
+def test_the_website_is_the_manifest_s():
+    manifest = tomllib.loads((library.FOLDER.parent / "blender_manifest.toml").read_text())
+    assert manifest["website"] == library.WEBSITE
 
 
 def test_a_script_that_registers_us_gets_no_library(addon):

@@ -160,6 +160,20 @@ def test_the_mesh_is_found_from_a_folder_that_is_a_link(tmp_path):
     assert checked(tmp_path / "link" / "study.toml").mesh == "../../meshes/box.obj"
 
 
+def test_a_mesh_that_floats_is_warned_of_and_a_plate_has_no_mount(tmp_path, capsys):
+    """A plate has no roof that a housing is clear of: the LiDAR is above it and moves in a box."""
+    points = np.array([(x, y, 1.0) for x in (-2.0, 2.0) for y in (-0.9, 0.9)])
+    (tmp_path / "plate.obj").write_bytes(obj_bytes(points, [(0, 1, 3, 2)]))
+    study = tmp_path / "study.toml"
+    assert new(tmp_path / "plate.obj", study, "--forward=+x", "--up=+z") == 0
+    assert "pe: warning: vehicle: " in capsys.readouterr().err
+    found = pe.load_study(study)
+    assert not found.search.mounting.mounts and not (tmp_path / "study_roof.npz").exists()
+    assert found.search.free["roof"] == ("x", "y", "pitch")
+    assert found.rig.sensors[0].pose.position[2] > 1.0
+    found.coding()
+
+
 def test_what_is_asked_for_holds_against_what_is_found(tmp_path):
     (tmp_path / "car.obj").write_bytes(obj("ours"))
     asked = ["--forward=-x", "--up=+z", "--scale", "2", "--sensor", "Hesai Pandar40P"]

@@ -25,7 +25,7 @@ from pe_core.scoring.requirements import (
     sees,
     signed_distance,
 )
-from pe_core.scoring.requirements.criteria import largest_solid_angle
+from pe_core.scoring.requirements.criteria import largest_solid_angle, visible_share
 from pe_core.scoring.sight import Sight
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study.requirement_file import presets, read_requirement, requirement_table
@@ -211,12 +211,12 @@ def cylinder_hits(start, way, foot, radius, low, high):
     return np.minimum(mantle, top)
 
 
-def camera_points(sensor, foot, radius, high, vehicle):
+def camera_points(sensor, foot, radius, high, vehicle, low=0.0):
     """Share of points on a cylinder towards a camera that it shows, by its pinhole and rays."""
     start = np.array(sensor.pose.position)
     towards = math.atan2(*(start[1::-1] - foot[::-1]))
     turn = towards + np.linspace(-1.2, 1.2, 13)
-    u, z = np.meshgrid(turn, np.linspace(0.01, high - 0.01, 17))
+    u, z = np.meshgrid(turn, np.linspace(low + 0.01, high - 0.01, 17))
     points = np.stack([foot[0] + radius * np.cos(u), foot[1] + radius * np.sin(u), z], -1).reshape(
         -1, 3
     )
@@ -265,6 +265,43 @@ def test_a_cylinder_that_is_seen_is_seen_by_rays_too():
     assert not wrong and not missed
     counts = [int(seen[name].passed.sum()) for name in names]
     assert all(0 < n < len(points) for n in counts), counts
+
+
+def test_a_share_of_a_cylinder_is_never_too_high():
+    """Points on real cylinders by a pinhole and rays: what a picture's side cuts is missing.
+
+    The camera is rolled, so that no side of its picture is upright. The lowest and the highest band
+    are left out of the oracle: they count as whole if they are seen in part.
+    """
+    camera = shapes.camera(70.0, (2.53, 0.1, 0.93), (8.0, 22.0, 14.0), "front")
+    zone = Zone(polygon=(("front + 0.6", -1.4), (4.6, -1.4), (4.6, 2.2), (3.0, 2.2)), step=0.2)
+    body = Body("cylinder", (0.3, 0.3, 0.8), is_round=True)
+    shares = (0.4, 1.0)
+    verdicts = check(
+        Requirement("touched", zone, (body,)),
+        *(Requirement(f"{s}", zone, (body,), Criterion(share=s)) for s in shares),
+        of=pe.Rig([camera]),
+    )
+    vehicle, touched = van(), verdicts[0].passed
+    truth = np.array(
+        [camera_points(camera, p, 0.15, 0.7, vehicle, 0.1) for p in verdicts[0].samples.points]
+    )
+    for share, verdict in zip(shares, verdicts[1:], strict=True):
+        assert not (verdict.passed & (truth < share)).any()
+        assert (verdict.passed & verdict.samples.inside).sum() > 20
+    assert (touched & (truth < 0.8)).sum() > 5  # cut at the side, which a point would not tell
+    assert (verdicts[1].passed & ~verdicts[2].passed).any()
+
+
+def test_a_body_of_several_columns_is_visible_in_part():
+    """Of a car that is cut across, the columns of a quarter of its length that are whole."""
+    car = BODIES["car"]
+    centers, sizes = car.boxes(True)
+    for cut in np.linspace(-2.04, 2.04, 40):
+        seen = centers[:, 0] + sizes[:, 0] / 2.0 > cut
+        whole = math.floor(4.0 * (2.05 - cut) / 4.1) / 4.0
+        assert visible_share(car, seen[None])[0] == whole, cut
+    assert visible_share(car, (centers[:, 2] > 0.2)[None])[0] == pytest.approx(10 / 13)
 
 
 def test_blind_ground_of_a_zone_is_that_of_sight():

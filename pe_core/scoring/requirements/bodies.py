@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
 
 import numpy as np
@@ -19,6 +20,7 @@ from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Angle, Number
 
 Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
 HEADING = Angle(-360.0, 360.0)
@@ -26,6 +28,14 @@ LOW = Number(0.0, 100.0, unit="m", noun="length")
 BAND_M = 0.1
 """Height of the bands of a body whose visible share is asked for."""
 RING_CELLS = 4
+COLUMN_M = 0.5
+MAX_COLUMNS = 4
+"""A body is one column wide and long up to `COLUMN_M`, at most `MAX_COLUMNS` beyond."""
+_BEFORE, _AFTER = slice(None, -2), slice(2, None)
+DIAGONALS = ((_BEFORE, _BEFORE), (_BEFORE, _AFTER), (_AFTER, _BEFORE), (_AFTER, _AFTER))
+"""The diagonal neighbours of all columns, as slices of `column_plan`."""
+POST_SHARE = 0.25
+"""Side of the posts beside a body, as a share of its shorter horizontal side."""
 FLAT_M = 1e-3
 """Thickness of a patch of ground."""
 
@@ -95,7 +105,8 @@ class Body:
         Parameters
         ----------
         cells : bool
-            The cells of which a share has to be visible, instead of the one box.
+            The cells of which a share has to be visible, and the posts beside the body, instead of
+            the one box: band after band, those of `column_plan`. Of a ring, its four sides.
         """
         length, width, height = self.box
         if not cells:
@@ -103,10 +114,55 @@ class Body:
             return np.array([center]), np.array([[length, width, height]])
         if self.is_ring:
             return _rim(self.size[0], self.low, height)
-        count = max(1, math.ceil(height / BAND_M - 1e-9))
-        z = self.low + (np.arange(count) + 0.5) * height / count
-        centers = np.stack([np.zeros(count), np.zeros(count), z], axis=1)
-        return centers, np.tile([length, width, height / count], (count, 1))
+        rows, columns = (self._divided(axis) for axis in (0, 1))
+        plan = column_plan(len(rows) - 2, len(columns) - 2)
+        i, j = np.nonzero(plan)
+        z = self.low + (np.arange(self.bands) + 0.5) * height / self.bands
+        x, y = rows[i], columns[j]
+        flat = np.stack([x[:, 0], y[:, 0], x[:, 1], y[:, 1]], axis=1)
+        everywhere = np.tile(flat, (self.bands, 1))
+        up = np.repeat(z, len(i))
+        centers = np.column_stack([everywhere[:, :2], up])
+        return centers, np.column_stack([everywhere[:, 2:], np.full(len(up), height / self.bands)])
+
+    @property
+    def bands(self) -> int:
+        """Number of bands of equal height."""
+        return max(1, math.ceil(self.size[2] / BAND_M - 1e-9))
+
+    @property
+    def columns(self) -> tuple[int, int]:
+        """Number of the columns along and across into which the body is divided."""
+        along, across = (
+            min(MAX_COLUMNS, max(1, math.ceil(side / COLUMN_M - 1e-9))) for side in self.size[:2]
+        )
+        return along, across
+
+    def _divided(self, axis: int) -> Floats:
+        """Return centre and width (C + 2, 2) of the columns along an axis, and of both posts."""
+        count, inside = self.columns[axis], self.box[axis]
+        post = POST_SHARE * min(self.size[:2])
+        away = (self.size[axis] + post) / 2.0
+        middles = ((np.arange(count) + 0.5) / count - 0.5) * inside
+        widths = [post, *[inside / count] * count, post]
+        return np.column_stack([[-away, *middles, away], widths])
+
+
+@cache
+def column_plan(along: int, across: int) -> Flags:
+    """Return which cells (along + 2, across + 2) of a band are measured.
+
+    Those inside the edge are the columns of the body, those at the edge posts beside the body: the
+    diagonal neighbours of columns. A post touches the body's extent from outside. So if a side of
+    the picture, which is a plane through the camera, cuts a column, it also leaves out one of the
+    column's diagonal neighbours, all of it.
+    """
+    plan = np.zeros((along + 2, across + 2), bool)
+    plan[1:-1, 1:-1] = True
+    for rows, columns in DIAGONALS:
+        plan[rows, columns] = True
+    plan.setflags(write=False)
+    return plan
 
 
 def _rim(diameter: float, low: float, height: float) -> tuple[Floats, Floats]:

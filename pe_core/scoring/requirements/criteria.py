@@ -21,7 +21,7 @@ from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_named, kind_of
 from ...sensors.object_kernel import PlacedBoxes
-from .bodies import Body
+from .bodies import DIAGONALS, Body, column_plan
 from .zones import Zone
 
 Floats = NDArray[np.float64]
@@ -37,7 +37,7 @@ class Criterion:
     """What has to be seen of a body at a sample of the zone.
 
     A sensor sees a body if it has at least `points` on it (kinds that count points) or `pixels` of
-    it (other kinds), and at least the `share` of its cells.
+    it (other kinds), and at least the `share` of it is visible.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Criterion:
         At least so many beams or pixels on a degree, on average over the body's box: the square
         root of m over its solid angle, which errs high.
     share : float, optional
-        At least this share of the body's cells (bands of 0.1 m) is visible.
+        At least this share of the body is visible, of its height (bands of 0.1 m) and its width.
     ap : float, optional
         The AP of the body's class, all sensors fused, is at least this.
     zone_share : float
@@ -84,7 +84,7 @@ class Criterion:
         "A sensor sees a body with at least so many beams or pixels on a degree",
     )
     share: float | None = setting(
-        None, POSITIVE_SHARE, "At least this share of the body's height is visible"
+        None, POSITIVE_SHARE, "At least this share of the body is visible"
     )
     ap: float | None = setting(
         None, SHARE, "AP of the body's class is at least this, all sensors fused"
@@ -229,8 +229,8 @@ def sees(
     """Whether a sensor sees a body that stands alone at a place: the definition.
 
     m of the body's box, by the definition of the sensor's kind, reaches the threshold; with a
-    share, so many of the body's cells have an m above 0. Of cells that are seen those beside a cell
-    that is not are left out: they may be seen in part.
+    share, so much of the body is visible: `visible_share` of the cells that have an m above 0. What
+    is beside a cell that is not seen does not count: it may be seen in part.
     """
     measure, counts = kind_of(sensor).measure_objects, kind_of(sensor).counts_points
     objects = placed(body, [foot], [heading], False)
@@ -268,13 +268,24 @@ def largest_solid_angle(objects: Objects, position: Sequence[float]) -> Floats:
 
 
 def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
-    """Return the share (N,) of a body's cells (N, K) that is visible, erring low."""
+    """Return the share (N,) of a body that is visible, erring low, from its cells (N, K).
+
+    The cells of a body are bands of columns, and posts beside them. A column in a band counts if it
+    and its four diagonal neighbours are seen, in the bands above and below as well.
+    """
     if body.is_ring:
         return cells.mean(axis=1)
-    sure = cells.copy()
-    sure[:, 1:] &= cells[:, :-1]
-    sure[:, :-1] &= cells[:, 1:]
-    return sure.mean(axis=1)
+    along, across = body.columns
+    plan = column_plan(along, across)
+    seen = np.zeros((len(cells), body.bands, *plan.shape), bool)
+    seen[:, :, plan] = cells.reshape(len(cells), body.bands, -1)
+    whole = seen[:, :, 1:-1, 1:-1].copy()
+    for rows, columns in DIAGONALS:
+        whole &= seen[:, :, rows, columns]
+    sure = whole.copy()
+    sure[:, 1:] &= whole[:, :-1]
+    sure[:, :-1] &= whole[:, 1:]
+    return sure.mean(axis=(1, 2, 3))
 
 
 def body_met(seen: Mapping[str, bool], rig: Rig, criterion: Criterion) -> bool:

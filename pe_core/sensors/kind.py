@@ -124,6 +124,16 @@ class Kind(ABC):
         expected = "a kind of sensor that measures objects"
         raise InputError(sensor.name, "kind", expected, repr(self.name))
 
+    def image_widths(self, sensor: Sensor, objects: Objects) -> Floats:
+        """Return the widths (N,) of the images of objects [px]; no row of an image is wider.
+
+        Raises
+        ------
+        InputError
+            When the kind has no pictures: the default.
+        """
+        raise InputError(sensor.name, "kind", "a kind of sensor with pictures", repr(self.name))
+
     @abstractmethod
     def read(self, name: str, table: Mapping[str, Any], folder: Path) -> SensorModel:
         """Build a sensor's intrinsics from its table; files it names are relative to `folder`."""

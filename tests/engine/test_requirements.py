@@ -152,6 +152,7 @@ def test_verdicts_are_those_of_the_definition():
         Requirement("share", AHEAD, (BODIES["cylinder"],), Criterion(share=0.6)),
         Requirement("ring", AHEAD, bodies[2:], Criterion(share=1.0, of=("camera",))),
         Requirement("fine", AHEAD, bodies[:1], Criterion(per_degree=16.5)),
+        Requirement("high", AHEAD, bodies[:1], Criterion(pixels_high=500.0, of=("camera",))),
     ]
     vehicle, whole = van(), rig()
     some = 0
@@ -304,6 +305,31 @@ def test_a_body_of_several_columns_is_visible_in_part():
     assert visible_share(car, (centers[:, 2] > 0.2)[None])[0] == pytest.approx(10 / 13)
 
 
+def test_pixels_in_height_are_never_too_many():
+    """The rows of a pinhole between the highest and the lowest corner, and the height by hand."""
+    body, places = BODIES["adult"], [(6.0, 1.0), (9.0, -3.0), (20.0, 0.5), (4.0, 3.2), (45.0, 6.0)]
+    for rotation in ((0.0, 0.0, 0.0), (20.0, 12.0, 5.0), (0.0, 0.0, -33.0)):
+        camera = shapes.camera(100.0, (2.53, 0.0, 1.4), rotation, "front")
+        focal = 960.0 / math.tan(math.radians(50.0))
+        for x, y in places:
+            corners = [
+                (x + a, y + b, z) for a in (-0.15, 0.15) for b in (-0.15, 0.15) for z in (0.0, 1.7)
+            ]
+            own = (np.array(corners) - camera.pose.position) @ oracle.rotation(*camera.pose.rpy)
+            with np.errstate(divide="ignore"):
+                rows = np.clip(540.0 - own[:, 2] / own[:, 0] * focal, 0.0, 1080.0)
+            true = float(np.ptp(rows))
+            seen = [
+                sees(camera, body, (x, y, 0.0), 0.0, None, Criterion(pixels_high=high))
+                for high in (0.8 * true, true + 1e-6)
+            ]
+            assert not seen[1], (rotation, x, y)
+            columns = 960.0 - own[:, 1] / own[:, 0] * focal
+            whole = columns.min() > 0.0 and columns.max() < 1920.0 and true < 1080.0
+            if not rotation[0] and (own[:, 0] > 0.0).all() and whole:
+                assert seen[0], (rotation, x, y)  # upright in the picture: within a fifth
+
+
 def test_blind_ground_of_a_zone_is_that_of_sight():
     """The squares in the zone, of `Sight.blind` on the same grid; a lost sensor blinds more."""
     zone = Zone(x=("front", "front + 2"), y=(-1, 1))
@@ -449,6 +475,8 @@ BAD = {
     "kinds": ({"criterion": {"kinds": 3}}, "the number of kinds"),
     "of": ({"criterion": {"of": ["lidar", "sonar"]}}, "sonar"),
     "lacking": ({"criterion": {"of": ["camera"]}}, "no sensor"),
+    "rows": ({"criterion": {"pixels_high": 9}}, "a kind that counts pixels"),
+    "no row": ({"criterion": {"pixels_high": 0}}, "above 0"),
     "key": ({"zone": {"x": [3, 4], "y": [0, 1], "stepp": 1}}, "unknown key"),
     "preset": ({"preset": "r000"}, "pe requirements"),
     "ap": ({"body": "pole_ring", "criterion": {"ap": 0.5}}, "a class"),

@@ -22,14 +22,14 @@ from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference
-from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
+from ...sensors import ObjectMeasurementCache, PerceptionModel
 from ..targets.object_metric import FusedObjects
 from .bodies import Body
 from .criteria import (
     Criterion,
     Requirement,
     checked_requirements,
-    largest_solid_angle,
+    has_enough,
     placed,
     visible_share,
 )
@@ -296,15 +296,10 @@ class _CheckedSet:
 
     def _seen(self, part: _CheckedPart, sensor: Sensor, m: Floats) -> Flags:
         """Return the samples and bodies (N, bodies * headings) that a sensor sees."""
-        criterion, counts = part.requirement.criterion, kind_of(sensor).counts_points
-        threshold = criterion.points if counts else criterion.pixels
-        count = len(part.samples.points)
+        criterion, count = part.requirement.criterion, len(part.samples.points)
         columns = []
         for each in part.bodies:
-            seen = m[each.box] >= threshold
-            if criterion.per_degree is not None:
-                angles = largest_solid_angle(self._objects[each.number], sensor.pose.position)
-                seen &= m[each.box] >= criterion.per_degree**2 * angles
+            seen = has_enough(sensor, self._objects[each.number], m[each.box], criterion)
             if each.cells is not None and criterion.share is not None:
                 cells = (m[each.cells] > 0.0).reshape(len(seen), -1)
                 seen &= visible_share(each.body, cells) >= criterion.share

@@ -29,6 +29,7 @@ COUNT = Whole(1, 1000)
 POSITIVE_SHARE = Number(0.0, 1.0, above=True)
 AREA = Number(0.0, 1e6, unit="m2", noun="area")
 NEAREST_M = 1e-3
+NARROWEST_PX = 1e-9
 DISTANCE = Number(0.0, 100.0, unit="m", noun="length")
 
 
@@ -47,6 +48,9 @@ class Criterion:
         Only these kinds of sensors count; all by default.
     points, pixels : float
         At least so many beams end on the body, or so many pixels show it.
+    pixels_high : float, optional
+        The image of the body is at least so many pixels high, where a sensor counts pixels: m over
+        the width of the box's image, which errs low.
     per_degree : float, optional
         At least so many beams or pixels on a degree, on average over the body's box: the square
         root of m over its solid angle, which errs high.
@@ -77,6 +81,11 @@ class Criterion:
         1.0,
         Number(1e-6, 1e9, unit="px"),
         "A camera sees a body with at least so many pixels of it",
+    )
+    pixels_high: float | None = setting(
+        None,
+        Number(0.0, 1e6, above=True, unit="px"),
+        "A camera sees a body with at least so many pixels in height",
     )
     per_degree: float | None = setting(
         None,
@@ -120,7 +129,12 @@ class Criterion:
             if kind not in kinds:
                 found = f"{kind}, of which the rig has no sensor"
                 raise InputError(who, "criterion.of", f"some of {', '.join(sorted(kinds))}", found)
-        count = len(kinds & set(self.of)) if self.of else len(kinds)
+        eligible = kinds & set(self.of) if self.of else kinds
+        count = len(eligible)
+        counted = [kind_named(kind, who, "criterion.of").counts_points for kind in eligible]
+        if self.pixels_high is not None and all(counted):
+            found = f"{', '.join(sorted(eligible))} alone"
+            raise InputError(who, "criterion.pixels_high", "a kind that counts pixels", found)
         if self.kinds > count:
             expected = f"at most {count}, the number of kinds of the rig"
             raise InputError(who, "criterion.kinds", expected, self.kinds)
@@ -232,19 +246,32 @@ def sees(
     share, so much of the body is visible: `visible_share` of the cells that have an m above 0. What
     is beside a cell that is not seen does not count: it may be seen in part.
     """
-    measure, counts = kind_of(sensor).measure_objects, kind_of(sensor).counts_points
+    measure = kind_of(sensor).measure_objects
     objects = placed(body, [foot], [heading], False)
     m = measure(sensor, objects, vehicle, False)
-    if m[0] < (criterion.points if counts else criterion.pixels):
+    if not has_enough(sensor, objects, m, criterion)[0]:
         return False
-    if criterion.per_degree is not None:
-        angle = largest_solid_angle(objects, sensor.pose.position)[0]
-        if m[0] < criterion.per_degree**2 * angle:
-            return False
     if criterion.share is None:
         return True
     cells = measure(sensor, placed(body, [foot], [heading], True), vehicle, False) > 0.0
     return bool(visible_share(body, cells[None])[0] >= criterion.share)
+
+
+def has_enough(
+    sensor: Sensor, objects: Objects, m: Floats, criterion: Criterion
+) -> NDArray[np.bool_]:
+    """Whether m (N,) of boxes, points or pixels, is enough, for their image and solid angle too.
+
+    An image of m pixels has at least m / w rows, if no row has more than w pixels.
+    """
+    counts = kind_of(sensor).counts_points
+    enough = m >= (criterion.points if counts else criterion.pixels)
+    if criterion.pixels_high is not None and not counts:
+        widths = kind_of(sensor).image_widths(sensor, objects)
+        enough &= m >= criterion.pixels_high * np.maximum(widths, NARROWEST_PX)
+    if criterion.per_degree is not None:
+        enough &= m >= criterion.per_degree**2 * largest_solid_angle(objects, sensor.pose.position)
+    return np.asarray(enough)
 
 
 def largest_solid_angle(objects: Objects, position: Sequence[float]) -> Floats:

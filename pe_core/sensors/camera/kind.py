@@ -18,8 +18,9 @@ from ..field_of_view import EgoMask, ViewPatch
 from ..ground_kernel import GroundView
 from ..kernels import Floats, Voxels
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
-from ..object_kernel import ObjectView
+from ..object_kernel import ObjectView, PlacedBoxes
 from . import sensor_table
+from .box_area import box_images
 from .definition import count_pixels, out_of_range
 from .kernel_ground import CameraGround
 from .kernel_objects import CameraObjects
@@ -27,6 +28,7 @@ from .kernels import CameraGrid, CameraSample
 from .model import Camera
 from .object_definition import count_object_pixels
 from .picture import picture_mask, picture_patch, picture_rays
+from .tie_rules import axes_of
 
 
 def summary(camera: Camera) -> str:
@@ -89,6 +91,12 @@ class CameraKind(Kind):
     ) -> Floats:
         """Measure what is seen of each object's image."""
         return count_object_pixels(sensor, objects, vehicle, traffic)
+
+    def image_widths(self, sensor: Sensor, objects: Objects) -> Floats:
+        """Measure how wide the images are in the picture, whatever hides them."""
+        boxes = PlacedBoxes.of(objects, sensor.pose.position)
+        images = box_images(cast(Camera, sensor.model), axes_of(sensor.pose), boxes)
+        return np.maximum(images.high[:, 0] - images.low[:, 0], 0.0)
 
     def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Camera:
         """Build a camera from its table."""

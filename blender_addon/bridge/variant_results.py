@@ -144,11 +144,13 @@ def store_front(scene: bpy.types.Scene, trade_off: pe.TradeOff, surroundings: st
             store_variant_score(variant, design.score, surroundings)
         variant.note = variant.note or _note(design, settings.currency)
         row = settings.front.add()
-        row.name, row.key = design.name, variant.key
+        met = f" ({design.met_text})" if design.met_text else ""
+        row.name, row.key = f"{design.name}{met}", variant.key
         row.price, row.entropy = design.price, design.entropy
     count = len(trade_off.designs) + len(trade_off.refused)
     more = "all there are" if trade_off.is_complete else "of more"
-    settings.front_told = f"{trade_off.searched} searched of {count} looked at, {more}"
+    note = f"; {trade_off.requirements_note}" if trade_off.requirements_note else ""
+    settings.front_told = f"{trade_off.searched} searched of {count} looked at, {more}{note}"
     mark_active(scene, before)
 
 

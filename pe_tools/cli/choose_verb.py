@@ -50,6 +50,8 @@ def search_notes(chosen: TradeOff) -> Iterator[str]:
     yield f"{len(chosen.front)} on the front; {searched} searched of {count} looked at ({every})"
     if not searched:
         yield "none was searched in full: entropies are those of a first look"
+    if chosen.requirements_note:
+        yield chosen.requirements_note
     if chosen.stopped:
         yield "stopped early: this is the front of what was found so far"
     for name, why in chosen.refused.items():
@@ -58,7 +60,9 @@ def search_notes(chosen: TradeOff) -> Iterator[str]:
 
 def _figures(design: Design) -> tuple[str, ...]:
     coverage = "-" if design.score is None else f"{design.score.coverage:.1%}"
-    return (f"{design.price:,.10g}", f"{design.entropy:.4f}", coverage, design.name)
+    entropy = "infeasible" if design.is_led_in else f"{design.entropy:.4f}"
+    name = f"{design.name} ({design.met_text})" if design.met_text else design.name
+    return (f"{design.price:,.10g}", entropy, coverage, name)
 
 
 def _line(cells: tuple[str, ...], widths: list[int]) -> str:

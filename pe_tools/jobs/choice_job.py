@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from pe_core.base.errors import InputError
 from pe_core.scoring import RigJudge
+from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import DesignSearch, Picks, above_front, pareto_front
+from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Search, Study
 
 from ..advice import Advice
@@ -44,6 +46,8 @@ class Design:
     score : Score, optional
         Score without a ground map; None for a design that was only screened.
     warnings : tuple of Advice
+    verdicts : tuple of Verdict
+        On the study's requirements; none for a design that was only screened.
     """
 
     name: str
@@ -53,6 +57,23 @@ class Design:
     entropy: float
     score: Score | None = None
     warnings: tuple[Advice, ...] = ()
+    verdicts: tuple[Verdict, ...] = ()
+
+    @property
+    def broken(self) -> tuple[str, ...]:
+        """Names of the requirements that are not met."""
+        return tuple(verdict.requirement.name for verdict in self.verdicts if not verdict.met)
+
+    @property
+    def met_text(self) -> str:
+        """How many requirements are met: "2 of 3 met"; empty where none was asked for."""
+        count = len(self.verdicts)
+        return f"{count - len(self.broken)} of {count} met" if count else ""
+
+    @property
+    def is_led_in(self) -> bool:
+        """Whether `entropy` is no entropy: the screening found no placement to keep."""
+        return self.score is None and is_infeasible(self.entropy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +88,8 @@ class TradeOff:
         All evaluated designs with a feasible placement, cheapest first.
     front : tuple of Design
         Designs that no other design beats in both price and entropy, cheapest first. Only designs
-        that were searched are compared, if there are any.
+        that were searched are compared, if there are any; if the search keeps requirements, only
+        those of them that break the fewest.
     refused : mapping of name to str
         Names of designs without a feasible placement, and the reason.
     is_complete : bool
@@ -89,6 +111,19 @@ class TradeOff:
     def searched(self) -> int:
         """How many designs were searched in full."""
         return sum(design.score is not None for design in self.designs)
+
+    @property
+    def requirements_note(self) -> str:
+        """What the designs of the front make of the study's requirements; empty without any."""
+        count = len(self.study.requirements)
+        if not count or not self.front or not self.searched:
+            return ""
+        fewest = min(len(design.broken) for design in self.front)
+        if self.study.search.requirements and fewest:
+            some = f"the fewest broken are {fewest}, by the designs of the front"
+            return f"no design meets all {count} requirements: {some}"
+        good = sum(not design.broken for design in self.front)
+        return f"{good} of {len(self.front)} on the front meet all {count} requirements"
 
 
 class ChoiceJob(Job):
@@ -121,6 +156,8 @@ class ChoiceJob(Job):
             return None
         ordered = sorted(self._named(), key=lambda design: (design.price, design.entropy))
         compared = [d for d in ordered if d.score is not None] or ordered
+        if self.study.search.requirements:
+            compared = _fewest_broken(compared)
         front = pareto_front([(design.price, design.entropy) for design in compared])
         names = design_names([self._designs.models(picks) for picks in self._errors])
         refused = {n: str(e) for n, e in zip(names, self._errors.values(), strict=True)}
@@ -214,8 +251,8 @@ class ChoiceJob(Job):
             self._inner = None
         if (outcome := job.outcome) is not None:
             score = replace(outcome.after, ground_map=None)
-            design = Design("", 0.0, {}, outcome.study, score.entropy, score, outcome.warnings)
-            self._keep(picks, design)
+            found = (outcome.study, score.entropy, score, outcome.warnings, outcome.verdicts)
+            self._keep(picks, Design("", 0.0, {}, *found))
 
     def _keep(self, picks: Picks, design: Design) -> None:
         models, price = self._designs.models(picks), self._designs.price(picks)
@@ -263,6 +300,12 @@ class _DesignJob(OptimizeJob):
         waiting = Progress("preparing", 0.0)
         yield from self._beside(self._checked, lambda: waiting)
         yield from self._search()
+
+
+def _fewest_broken(designs: Sequence[Design]) -> list[Design]:
+    """Return the designs that break the fewest requirements: the feasible ones, if any is."""
+    broken = [len(design.broken) + design.is_led_in for design in designs]
+    return [d for d, count in zip(designs, broken, strict=True) if count == min(broken)]
 
 
 def _few_candidates(search: Search) -> Search:

@@ -96,13 +96,16 @@ def front_csv(chosen: TradeOff) -> str:
     writer = csv.writer(text, lineterminator="\n")
     sensors = [sensor.name for sensor in chosen.study.rig]
     head = ["design", "on_front", "price", "entropy", "coverage", "searched"]
-    writer.writerow([*head, *(f"{name}.model" for name in sensors)])
+    asked = bool(chosen.study.requirements)
+    more = ["requirements_met"] if asked else []
+    writer.writerow([*head, *more, *(f"{name}.model" for name in sensors)])
     for design in chosen.designs:
         models_by_sensor = {sensor.name: sensor.model.name for sensor in design.study.rig}
-        figures = (design.price, design.entropy, _coverage(design), int(design.score is not None))
+        figures = (design.price, _entropy(design), _coverage(design), int(design.score is not None))
+        met = [_met(design)] if asked else []
         on_front = int(design in chosen.front)
         models = (models_by_sensor.get(name, "") for name in sensors)
-        writer.writerow([design.name, on_front, *figures, *models])
+        writer.writerow([design.name, on_front, *figures, *met, *models])
     return text.getvalue()
 
 
@@ -139,7 +142,7 @@ def _design_dict(design: Design, on_front: bool, files: Mapping[str, str]) -> di
         "name": design.name,
         "on_front": on_front,
         "price": design.price,
-        "entropy": design.entropy,
+        "entropy": _entropy(design),
         "coverage": _coverage(design),
         "stderr": None if design.score is None else design.score.stderr,
         "searched": design.score is not None,
@@ -147,7 +150,25 @@ def _design_dict(design: Design, on_front: bool, files: Mapping[str, str]) -> di
         "placements": placements(design.study.rig),
         "warnings": [warning.to_dict() for warning in design.warnings],
         "study": file,
+        **_requirements(design),
     }
+
+
+def _requirements(design: Design) -> dict[str, Any]:
+    """Return how many requirements a design meets, and which not; empty without any."""
+    if not design.verdicts:
+        return {}
+    return {"requirements_met": _met(design), "requirements_not_met": list(design.broken)}
+
+
+def _met(design: Design) -> int | None:
+    """Return how many requirements are met; None for a design that was only screened."""
+    return len(design.verdicts) - len(design.broken) if design.verdicts else None
+
+
+def _entropy(design: Design) -> float | None:
+    """Return the entropy; None where the screening found no placement that keeps requirements."""
+    return None if design.is_led_in else design.entropy
 
 
 def _model_name(model: SensorModel | None) -> str | None:

@@ -142,6 +142,42 @@ def test_a_design_without_a_place_is_reported_and_the_others_stay():
     assert "height" in found.refused["Pandar64"]
 
 
+def test_designs_that_keep_requirements_come_first(tmp_path):
+    """Points that only the larger LiDARs have: the cheapest is on the front unless they are kept.
+
+    Where no design meets all requirements, the front is of those that break the fewest.
+    """
+    zone = pe.requirements.Zone(x=("front + 3", "front + 4"), y=(-0.5, 0.5), step=0.5)
+    many, most = (
+        pe.requirements.Requirement(
+            name, zone, (pe.requirements.BODIES["adult"],), pe.requirements.Criterion(points=points)
+        )
+        for name, points in (("many", 150), ("most", 900_000))
+    )
+    plain = study([pe.Choice(options(), ["roof"])], free=())
+
+    def front(*requirements, keep):
+        search = replace(plain.search, requirements="keep" if keep else None)
+        return front_of(replace(plain, requirements=requirements, search=search))
+
+    told, kept, none = front(many, keep=False), front(many, keep=True), front(many, most, keep=True)
+    assert [d.name for d in told.front] == [d.name for d in front_of(plain).front]
+    assert {d.name: d.broken for d in told.designs}[mounting.CAN] == ("many",)
+    assert mounting.CAN in [d.name for d in told.front]
+    assert kept.front and all(not d.broken for d in kept.front)
+    assert {d.name for d in kept.designs} == set(PRICES)
+    assert [d.name for d in none.front] == [d.name for d in kept.front]
+    assert all(d.broken == ("most",) for d in none.front)
+    assert "no design meets all 2 requirements" in front_summary(none)
+    assert "(1 of 1 met)" in front_summary(kept)
+    data = write_front(kept, tmp_path)
+    rows = {row["name"]: row for row in data["designs"]}
+    assert rows[mounting.CAN]["requirements_not_met"] == ["many"]
+    table = {row["design"]: row for row in csv.DictReader((tmp_path / "front.csv").open())}
+    assert table[mounting.CAN]["requirements_met"] == "0"
+    assert table[kept.front[0].name]["requirements_met"] == "1"
+
+
 def test_files_hold_every_design_of_the_front_as_a_study(tmp_path):
     """What is read back scores to the bit what front.json tells."""
     eye = mounting.can((0.5, 0.0, 1.6), "eye", model="Camera 60 deg")

@@ -33,7 +33,8 @@ MAX_COLUMNS = 4
 """A body is one column wide and long up to `COLUMN_M`, at most `MAX_COLUMNS` beyond."""
 _BEFORE, _AFTER = slice(None, -2), slice(2, None)
 DIAGONALS = ((_BEFORE, _BEFORE), (_BEFORE, _AFTER), (_AFTER, _BEFORE), (_AFTER, _AFTER))
-"""The diagonal neighbours of all columns, as slices of `column_plan`."""
+"""The diagonal neighbours of all columns, as slices of a band of `cell_plan`."""
+POST_EVERY = 4
 POST_SHARE = 0.25
 """Side of the posts beside a body, as a share of its shorter horizontal side."""
 FLAT_M = 1e-3
@@ -106,7 +107,7 @@ class Body:
         ----------
         cells : bool
             The cells of which a share has to be visible, and the posts beside the body, instead of
-            the one box: band after band, those of `column_plan`. Of a ring, its four sides.
+            the one box: band after band, those of `cell_plan`. Of a ring, its four sides.
         """
         length, width, height = self.box
         if not cells:
@@ -114,16 +115,12 @@ class Body:
             return np.array([center]), np.array([[length, width, height]])
         if self.is_ring:
             return _rim(self.size[0], self.low, height)
-        rows, columns = (self._divided(axis) for axis in (0, 1))
-        plan = column_plan(len(rows) - 2, len(columns) - 2)
-        i, j = np.nonzero(plan)
-        z = self.low + (np.arange(self.bands) + 0.5) * height / self.bands
-        x, y = rows[i], columns[j]
-        flat = np.stack([x[:, 0], y[:, 0], x[:, 1], y[:, 1]], axis=1)
-        everywhere = np.tile(flat, (self.bands, 1))
-        up = np.repeat(z, len(i))
-        centers = np.column_stack([everywhere[:, :2], up])
-        return centers, np.column_stack([everywhere[:, 2:], np.full(len(up), height / self.bands)])
+        along, across = (self._divided(axis) for axis in (0, 1))
+        k, i, j = np.nonzero(cell_plan(self.bands, *self.columns))
+        z = self.low + (k + 0.5) * height / self.bands
+        thick = np.full(len(k), height / self.bands)
+        sizes = np.stack([along[i, 1], across[j, 1], thick], axis=1)
+        return np.stack([along[i, 0], across[j, 0], z], axis=1), sizes
 
     @property
     def bands(self) -> int:
@@ -149,20 +146,25 @@ class Body:
 
 
 @cache
-def column_plan(along: int, across: int) -> Flags:
-    """Return which cells (along + 2, across + 2) of a band are measured.
+def cell_plan(bands: int, along: int, across: int) -> Flags:
+    """Return which cells (bands, along + 2, across + 2) of a body are measured.
 
     Those inside the edge are the columns of the body, those at the edge posts beside the body: the
-    diagonal neighbours of columns. A post touches the body's extent from outside. So if a side of
-    the picture, which is a plane through the camera, cuts a column, it also leaves out one of the
-    column's diagonal neighbours, all of it.
+    diagonal neighbours of columns, in the bands of `post_bands`. A post touches the body's extent
+    from outside. So if a side of the picture, which is a plane through the camera, cuts a column,
+    it also leaves out all of a diagonal neighbour, there or in the next post above or below.
     """
-    plan = np.zeros((along + 2, across + 2), bool)
-    plan[1:-1, 1:-1] = True
+    plan = np.zeros((bands, along + 2, across + 2), bool)
     for rows, columns in DIAGONALS:
-        plan[rows, columns] = True
+        plan[post_bands(bands), rows, columns] = True
+    plan[:, 1:-1, 1:-1] = True
     plan.setflags(write=False)
     return plan
+
+
+def post_bands(bands: int) -> list[int]:
+    """Return the bands that have posts: the lowest, the highest, and each `POST_EVERY`-th."""
+    return sorted({*range(0, bands, POST_EVERY), bands - 1})
 
 
 def _rim(diameter: float, low: float, height: float) -> tuple[Floats, Floats]:

@@ -21,7 +21,7 @@ from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_named, kind_of
 from ...sensors.object_kernel import PlacedBoxes
-from .bodies import DIAGONALS, Body, column_plan
+from .bodies import DIAGONALS, Body, cell_plan, post_bands
 from .zones import Zone
 
 Floats = NDArray[np.float64]
@@ -297,15 +297,20 @@ def largest_solid_angle(objects: Objects, position: Sequence[float]) -> Floats:
 def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
     """Return the share (N,) of a body that is visible, erring low, from its cells (N, K).
 
-    The cells of a body are bands of columns, and posts beside them. A column in a band counts if it
-    and its four diagonal neighbours are seen, in the bands above and below as well.
+    The cells of a body are bands of columns, and posts beside them (`cell_plan`); a post between
+    two that are measured is seen if both are. A column in a band counts if it and its four diagonal
+    neighbours are seen, in the bands above and below as well.
     """
     if body.is_ring:
         return cells.mean(axis=1)
-    along, across = body.columns
-    plan = column_plan(along, across)
-    seen = np.zeros((len(cells), body.bands, *plan.shape), bool)
-    seen[:, :, plan] = cells.reshape(len(cells), body.bands, -1)
+    plan = cell_plan(body.bands, *body.columns)
+    measured = np.zeros((len(cells), *plan.shape), bool)
+    measured[:, plan] = cells
+    levels, every = np.array(post_bands(body.bands)), np.arange(body.bands)
+    below = levels[np.searchsorted(levels, every, "right") - 1]
+    above = levels[np.searchsorted(levels, every)]
+    seen = measured[:, below] & measured[:, above]
+    seen[:, :, 1:-1, 1:-1] = measured[:, :, 1:-1, 1:-1]
     whole = seen[:, :, 1:-1, 1:-1].copy()
     for rows, columns in DIAGONALS:
         whole &= seen[:, :, rows, columns]

@@ -147,12 +147,14 @@ def test_designs_that_keep_requirements_come_first(tmp_path):
 
     Where no design meets all requirements, the front is of those that break the fewest.
     """
-    zone = pe.requirements.Zone(x=("front + 3", "front + 4"), y=(-0.5, 0.5), step=0.5)
     many, most = (
         pe.requirements.Requirement(
-            name, zone, (pe.requirements.BODIES["adult"],), pe.requirements.Criterion(points=points)
+            name,
+            pe.requirements.Zone(spots=((f"front + {ahead}", 0.0),)),
+            (pe.requirements.BODIES["adult"],),
+            pe.requirements.Criterion(points=points),
         )
-        for name, points in (("many", 150), ("most", 900_000))
+        for name, ahead, points in (("many", 3, 150), ("most", 9, 1000))
     )
     plain = study([pe.Choice(options(), ["roof"])], free=())
 

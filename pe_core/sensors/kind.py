@@ -125,13 +125,7 @@ class Kind(ABC):
         raise InputError(sensor.name, "kind", expected, repr(self.name))
 
     def image_widths(self, sensor: Sensor, objects: Objects) -> Floats:
-        """Return the widths (N,) of the images of objects [px]; no row of an image is wider.
-
-        Raises
-        ------
-        InputError
-            When the kind has no pictures: the default.
-        """
+        """Return the widths (N,) of objects' images [px]; `InputError` without pictures."""
         raise InputError(sensor.name, "kind", "a kind of sensor with pictures", repr(self.name))
 
     @abstractmethod

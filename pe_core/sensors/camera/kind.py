@@ -95,8 +95,8 @@ class CameraKind(Kind):
     def image_widths(self, sensor: Sensor, objects: Objects) -> Floats:
         """Measure how wide the images are in the picture, whatever hides them."""
         boxes = PlacedBoxes.of(objects, sensor.pose.position)
-        images = box_images(cast(Camera, sensor.model), axes_of(sensor.pose), boxes)
-        return np.maximum(images.high[:, 0] - images.low[:, 0], 0.0)
+        found = box_images(cast(Camera, sensor.model), axes_of(sensor.pose), boxes)
+        return np.maximum(found.high - found.low, 0.0)[:, 0]
 
     def read(self, name: str, table: Mapping[str, Any], folder: Path) -> Camera:
         """Build a camera from its table."""

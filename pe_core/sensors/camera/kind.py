@@ -54,8 +54,7 @@ def _lens(camera: Camera) -> list[str]:
     lens = camera.lens
     if lens is None:
         return []
-    values = {key: value for key in lens.coefficients if (value := getattr(lens, key))}
-    shown = ", ".join(f"{key} {value:g}" for key, value in values.items())
+    shown = ", ".join(f"{key} {v:g}" for key in lens.coefficients if (v := getattr(lens, key)))
     return [
         f"principal point {lens.cx:g}, {lens.cy:g} px",
         f"lens            {lens.model}{': ' if shown else ''}{shown}",

@@ -63,7 +63,7 @@ def front_arrow(vehicle: pe.Vehicle) -> graphics.LayerShape:
     head = [(neck, y - HEAD_HALF_M, 0.0), (neck, y + HEAD_HALF_M, 0.0), (tip, y, 0.0)]
     edges = [(front, y, 0.0), (neck, y, 0.0), *(head[k] for k in (0, 1, 1, 2, 2, 0))]
     labels = (
-        graphics.Tag("front", (tip, y, 0.0), ARROW, strong=True),
+        graphics.Tag("front", (tip + GAP_M, y, 0.0), ARROW, strong=True),
         graphics.Tag("rear", (rear, y, 0.0), ARROW),
     )
     return graphics.LayerShape(

@@ -133,7 +133,7 @@ def next_step(scene: bpy.types.Scene) -> int | None:
 def draw_step(layout: bpy.types.UILayout, context: bpy.types.Context, step: int) -> None:
     """Draw the heading of a step while it is the next one."""
     if next_step(context.scene) == step:
-        layout.label(text=f"{step}  {STEPS[step]}", icon="TRIA_DOWN")
+        layout.label(text=f"{step}  {STEPS[step]}", icon="FORWARD")
 
 
 def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -142,13 +142,18 @@ def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     draw_step(layout, context, 1)
     row = layout.row(align=True)
     row.prop(settings, "vehicle")
-    if settings.vehicle is not None:
+    step = next_step(context.scene)
+    if settings.vehicle is not None and step != 2:
         row.operator("pe.turn_round", text="", icon="FILE_REFRESH")
-    if settings.vehicle is None and next_step(context.scene) == 1:
+    if step == 1:
         column = layout.column(align=True)
         column.operator("pe.use_selected", icon="RESTRICT_SELECT_OFF")
         column.operator("pe.open_example", icon="FILE_BLEND")
     draw_vehicle_warnings(layout, context)
+    if step == 2:
+        asked, button = columns(layout, 0.5)
+        asked.label(text="Front at the arrow?")
+        button.operator("pe.turn_round", icon="FILE_REFRESH")
 
 
 KIND, MAKER = "pe_kind", "pe_maker"

@@ -38,7 +38,9 @@ def register() -> None:
 def add_to(keymap: bpy.types.KeyMap) -> None:
     """Add the keys to a key map."""
     for each in SHORTCUTS:
-        item = keymap.keymap_items.new(each.operator, each.key, "PRESS", **each.modifiers)
+        item = keymap.keymap_items.new(each.operator, each.key, "PRESS")
+        for name, value in each.modifiers.items():
+            setattr(item, name, value)
         for name, value in each.properties.items():
             setattr(item.properties, name, value)
         _items.append((keymap, item))

@@ -116,18 +116,18 @@ def draw_vehicle_warnings(layout: bpy.types.UILayout, context: bpy.types.Context
             draw_warning(box, context, warning)
 
 
-STEPS = {1: "Choose the vehicle", 2: "Add a sensor", 3: "Score"}
-"""The way from an empty tab to the first score."""
+STEPS = {1: "Choose the vehicle", 2: "Add a sensor"}
+"""The way from an empty tab to *Score*."""
 
 
 def next_step(scene: bpy.types.Scene) -> int | None:
-    """Return the key of the next of `STEPS`; None after the first score."""
+    """Return the key of the next of `STEPS`; None once a sensor is there, or a score."""
     settings = scene.perception_entropy
     if settings.has_result:
         return None
     if settings.vehicle is None:
         return 1
-    return 3 if listed_sensors(scene) else 2
+    return None if listed_sensors(scene) else 2
 
 
 def draw_step(layout: bpy.types.UILayout, context: bpy.types.Context, step: int) -> None:
@@ -175,7 +175,6 @@ class PE_PT_main(Tab, bpy.types.Panel):
         draw_step(self.layout, context, 2)
         draw_add(self.layout)
         draw_sensors(self.layout, context)
-        draw_step(self.layout, context, 3)
         draw_actions(self.layout, settings)
         draw_written(self.layout, context)
         draw_result(self.layout, context)

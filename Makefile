@@ -47,7 +47,7 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 	@touch $@
 
 .venv/dev.stamp: .venv/run.stamp
-	@tools/make_venv.sh blender,test,report,meshes,cad,rerun,argoverse,validate,dev
+	@tools/make_venv.sh blender,test,report,meshes,cad,rerun,argoverse,dev
 	@touch $@
 
 .venv/release.stamp: .venv/run.stamp

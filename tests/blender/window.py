@@ -125,9 +125,13 @@ class Window:
 
     def scroll_sidebar(self) -> None:
         """Scroll the sidebar to its end, where sections are that have no room in the window."""
+        self._scroll("5")
+
+    def _scroll(self, wheel: str) -> None:
+        """Turn the wheel over the sidebar: 4 to its beginning, 5 to its end."""
         sidebar = json.loads((self.folder / "ready.json").read_text())["sidebar"]
         self._move(sidebar["left"] + sidebar["width"] // 2, sidebar["bottom"] - 12)
-        self._xdotool("click", "--repeat", str(SCROLLS), "--delay", "20", "5")
+        self._xdotool("click", "--repeat", str(SCROLLS), "--delay", "20", wheel)
         self.settle()
 
     def find_button(self, operator: str, words: str = "") -> tuple[int, int]:
@@ -141,6 +145,7 @@ class Window:
                     self._found[operator, words] = place
                     return place
             self._found.pop((operator, words), None)
+            self._scroll("4")  # an earlier test may have left it at its end
             self.point_at_view()
             self.settle()
         self.screenshot(self.folder / "no_button.png")

@@ -3,10 +3,11 @@
 SHELL := /bin/bash
 PYTHON_VENV := .venv/bin/python
 ARGS ?=
+comma := ,
 ON_ALL_PROCESSORS := --numprocesses auto --dist loadscope --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
-.PHONY: demo test properties mutants bench lint extension release screenshots clean help
+.PHONY: demo test properties mutants bench lint extension release site examples screenshots clean help
 
 demo: .venv/run.stamp  ## optimize the sensors of a sedan: a picture, a report, the better .blend
 	@tools/demo.sh $(ARGS)
@@ -38,6 +39,16 @@ extension: .venv/run.stamp  ## build the Blender extension, dist/perception_entr
 release: .venv/release.stamp  ## build and check all that is published, from a clean tree: dist/release-VERSION
 	@$(PYTHON_VENV) tools/release.py --install $(ARGS)
 
+# Not --quiet: it silences the warnings that a strict build counts.
+site: export NO_MKDOCS_2_WARNING = 1
+site: .venv/docs.stamp  ## build the site of the documentation, dist/site; strict: no dead link
+	@mkdir -p dist
+	@.venv/bin/mkdocs build >dist/site.log 2>&1 || { cat dist/site.log >&2; exit 1; }
+	@echo "site: dist/site/index.html"
+
+examples: .venv/dev.stamp  ## make the projects of examples/ again, with their figures; ARGS="city_bus" for some
+	@$(PYTHON_VENV) tools/examples.py $(ARGS)
+
 screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide" for some, needs a Blender
 	@$(PYTHON_VENV) tools/screenshots.py $(ARGS)
 
@@ -46,8 +57,13 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 	@tools/make_venv.sh blender
 	@touch $@
 
+# The library of the detectors takes 1.6 GB: CI alone has it, and else who asks for it.
 .venv/dev.stamp: .venv/run.stamp
-	@tools/make_venv.sh blender,test,report,meshes,cad,rerun,argoverse,dev
+	@tools/make_venv.sh blender,test,report,meshes,cad,rerun,argoverse,docs,dev$(if $(CI),$(comma)validate)
+	@touch $@
+
+.venv/docs.stamp: .venv/run.stamp
+	@tools/make_venv.sh blender,docs
 	@touch $@
 
 .venv/release.stamp: .venv/run.stamp

@@ -17,8 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
+from . import requirement_searches
+from .experiment_searches_told import table_lines
 from .rows import ROWS, Timing
-from .searches_told import table_lines
 
 REPORT = Path(__file__).with_name("README.md")
 HEAD = ["work", "ours", "yardstick", "its time", "ratio", "our peak memory"]
@@ -65,6 +66,8 @@ def _report(rows: list[Timing]) -> str:
         *(f"| {' | '.join(_cells(row))} |" for row in rows),
         "",
         *table_lines(),
+        "",
+        *requirement_searches.table_lines(),
         "",
         _machine(),
         "",

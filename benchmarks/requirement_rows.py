@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -17,11 +17,19 @@ NINE = (
     *("r159_crossing", "r159_longitudinal", "r159_annex3", "r151_moving", "r158_camera"),
     *("r158_detection", "ncap26_forward_child", "ncap26_reverse_static", "perceptor_ground"),
 )
+TWELVE = (*NINE, "fmvss111_rear", "r151_static_crossing", "ncap26_frontal_pedestrian")
+"""Three of them ask for a share of the body."""
 
 
 def nine_presets_preview() -> Timing:
     """Verdicts that follow a drag."""
     return _after_a_move("nine presets, preview", _checked(preview=True), draft=True)
+
+
+def twelve_presets_with_shares_preview() -> Timing:
+    """The same of a dozen requirements, three of which ask for a share of the body."""
+    label = "twelve presets, three with a share, preview"
+    return _after_a_move(label, _checked(preview=True, names=TWELVE), draft=True)
 
 
 def nine_presets() -> Timing:
@@ -37,9 +45,9 @@ def redundancy_map() -> Timing:
     return _after_a_move(f"redundancy map of {count:,} places", places.map)
 
 
-def _checked(preview: bool) -> Callable[[pe.Rig], object]:
+def _checked(preview: bool, names: Sequence[str] = NINE) -> Callable[[pe.Rig], object]:
     study, presets = four_on_car(), requirement_file.presets()
-    requirements = [presets[name].requirement() for name in NINE]
+    requirements = [presets[name].requirement() for name in names]
     checker = pe.requirements.RequirementChecker(requirements, study.vehicle, space=study.space)
     return lambda rig: checker.check(rig, preview=preview)
 

@@ -9,6 +9,7 @@ import numpy as np
 import pe_core as pe
 
 from . import literal
+from .condition_rows import four_states_in_three_weathers
 from .embree import Embree
 from .many_rows import full_score_of_four_lidars, full_score_of_many, time_against_sensors
 from .mesh_rows import read_glb, read_obj, read_ply
@@ -30,8 +31,18 @@ from .problems import (
     two_lidars,
     two_lidars_two_cameras,
 )
-from .requirement_rows import nine_presets, nine_presets_preview, redundancy_map
-from .search_rows import candidate, candidates_in_processes
+from .requirement_rows import (
+    nine_presets,
+    nine_presets_preview,
+    redundancy_map,
+    twelve_presets_with_shares_preview,
+)
+from .search_rows import (
+    candidate,
+    candidates_in_processes,
+    candidates_in_traffic,
+    search_in_traffic,
+)
 from .sight_rows import blind_ground, fine_map, live_map, reach, simplify
 from .timing import Timing, Work, best, best_in_turn, peak_mb
 
@@ -238,10 +249,14 @@ ROWS: dict[str, Callable[[], Timing]] = {
         reach,
         nine_presets_preview,
         nine_presets,
+        twelve_presets_with_shares_preview,
         redundancy_map,
+        four_states_in_three_weathers,
         simplify,
         candidate,
         candidates_in_processes,
+        candidates_in_traffic,
+        search_in_traffic,
         read_obj,
         read_ply,
         read_glb,

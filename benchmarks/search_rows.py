@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 import pe_core as pe
 from pe_core.search import evaluate_all, start_processes
 
-from .timing import Timing, best_in_turn, peak_mb
+from .timing import Timing, best_in_turn, best_of_processor, peak_mb, timed
 
 EXPERIMENT = Path(__file__).parents[1] / "blend_assets" / "experiments" / "4_cameras.toml"
 FOUND = {
@@ -22,6 +23,7 @@ FOUND = {
 """Where a search ended (docs/reproduction/results.json, search/4_cameras/road/front/0)."""
 SAMPLES = 32_768
 CANDIDATES = 8
+TRAFFIC_REPEATS, LONGEST_S = 2, 90.0
 SPREAD_M, SPREAD_DEG = 0.03, 0.5
 
 
@@ -38,6 +40,32 @@ def candidate() -> Timing:
     ours, theirs = best_in_turn(lambda: evaluate_all(evaluator, rigs), every_beam)
     work = f"{CANDIDATES} candidates near the optimum of experiment 4, {SAMPLES:,} samples"
     return Timing(work, ours, peak_mb(), "first hits of all their beams", theirs)
+
+
+def candidates_in_traffic() -> Timing:
+    """Candidates scored by objects that occlude each other, against the voxels of a search."""
+    study = pe.load_study(EXPERIMENT)
+    targets = pe.TargetRule("objects", traffic=True)
+    judges = [
+        each.evaluator(study.search.samples) for each in (replace(study, targets=targets), study)
+    ]
+    rigs = list(_near_the_optimum(study))
+    ours, theirs = (
+        best_of_processor(lambda judge=judge: evaluate_all(judge, rigs), TRAFFIC_REPEATS)
+        for judge in judges
+    )
+    work = f"the same by {targets.scenes} scenes of objects in traffic, processor time"
+    yardstick = f"by {study.search.samples:,} samples"
+    return Timing(work, ours, peak_mb(), yardstick, theirs)
+
+
+def search_in_traffic() -> Timing:
+    """A whole search of experiment 4's rig by objects in traffic, against 90 s that it may take."""
+    study = pe.load_study(EXPERIMENT)
+    targets = pe.TargetRule("objects", traffic=True)
+    seconds, _ = timed(lambda: list(pe.OptimizeJob(replace(study, targets=targets))))
+    work = f"`pe optimize` of experiment 4 by {targets.scenes} scenes of objects in traffic"
+    return Timing(work, seconds, peak_mb(), "what it may take", LONGEST_S)
 
 
 def candidates_in_processes() -> Timing:

@@ -1,119 +1,141 @@
-"""``python -m benchmarks.searches``: how low the methods of search come, and how soon.
+"""``python -m benchmarks.searches``: methods of search on a dozen problems, and other libraries.
 
-Every run is a whole `OptimizeJob` from the paper's placement, on all processors, and leaves a JSON
-file of its own; what is there already is not run again, so it may be broken off at any time. Then
-come the table (in benchmarks/README.md, by `make bench`) and the plot of docs/optimize.md. Have
-nothing else run beside it, as the axis is the clock: ten seeds take about half an hour.
+All methods have the same evaluator and the same number of evaluations. Every run leaves a JSON file
+of its own; what is there, or in the summary that is kept with the project, is not run again. Then
+come the summary, its table (benchmarks/searches.md) and the plot of docs/optimize.md.
+
+Nevergrad and pycma come with the extra "bench". `--problems`, `--methods` and `--seeds` select, and
+`--again METHOD` forgets the runs of a method that has changed.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import os
 import sys
 import time
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pe_core as pe
 
-ROOT = Path(__file__).resolve().parent.parent
-STUDIES = ROOT / "blend_assets" / "experiments"
-RUNS = ROOT / "build" / "searches"
+from .run_files import restore, run_once
+from .search_problems import PROBLEMS
+from .yardstick_searches import YARDSTICKS, Landscape
+
+RUNS = Path(__file__).resolve().parent.parent / "build" / "search_problems"
 SUMMARY = Path(__file__).with_name("searches.json")
-EXPERIMENTS = {
-    "1_pandar64": "1, Pandar64 on a car",
-    "3_default": "3, two LiDARs on a bus",
-    "3_front": "3, both in front",
-    "4_cameras": "4, two LiDARs, two cameras",
-}
-COMPARED = ("block-descent", "random")
-SAMPLES, JUDGES, SHIFT = 65_536, 262_144, (0.31, 0.62, 0.13)
-"""Voxels a candidate is judged on; voxels, others, that tell what the best so far is worth."""
-MARKS_S = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100, 150, 200, 300, 450)
-
+METHODS = (*pe.METHODS, *YARDSTICKS)
+MARKS = 16
+"""Points of a curve, at most."""
 Json = dict[str, Any]
+EvaluatedRow = tuple[float, pe.Rig]
+"""Processor time [s], and the best placement so far."""
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: Sequence[str]) -> int:
     """Run what is missing, then put all together."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.searches", description=__doc__)
-    parser.add_argument("--seeds", type=int, default=10, help="runs of each (10)")
-    parser.add_argument("--seconds", type=float, default=20.0, help="longest search by random (20)")
-    parser.add_argument("--methods", nargs="+", choices=pe.METHODS, default=COMPARED)
-    parser.add_argument("--experiments", nargs="+", choices=EXPERIMENTS, default=EXPERIMENTS)
+    parser.add_argument("--problems", nargs="+", choices=PROBLEMS, default=list(PROBLEMS))
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    parser.add_argument("--seeds", type=int, nargs="+", default=list(range(5)))
+    parser.add_argument("--again", nargs="+", choices=METHODS, default=[])
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of the runs' files")
     args = parser.parse_args(arguments)
-    args.runs.mkdir(parents=True, exist_ok=True)
-    for seed in range(args.seeds):
-        for experiment in args.experiments:
+    restore(args.runs, SUMMARY, partial(_path, args.runs), args.again)
+    for seed in args.seeds:
+        for name in args.problems:
             for method in args.methods:
-                most = args.seconds if method == "random" else float("inf")
-                _run_once(args.runs, experiment, method, seed, most)
+                path = _path(args.runs, {"problem": name, "method": method, "seed": seed})
+                run_once(path, partial(run, name, method, seed), " of processor")
     from .searches_told import write_summary
 
     write_summary(args.runs, SUMMARY)
     return 0
 
 
-def _run_once(folder: Path, experiment: str, method: str, seed: int, most: float) -> None:
-    """Run a search unless its file is there; the file comes last, and whole."""
-    path = folder / f"{experiment} {method} {seed}.json"
-    if path.exists():
-        return
-    found = run(experiment, method, seed, most)
-    scratch = path.with_suffix(".part")
-    scratch.write_text(json.dumps(found), "utf-8")
-    os.replace(scratch, path)
-    told = f"{found['entropy']:.4f} on the grid after {found['seconds']:.1f} s"
-    print(f"{experiment} {method} seed {seed}: {told}", flush=True)
+def _path(folder: Path, run: Json) -> Path:
+    return folder / f"{run['problem']}, {run['method']}, {run['seed']}.json"
 
 
-def run(experiment: str, method: str, seed: int, most: float = float("inf")) -> Json:
-    """Search from the paper's placement; return what was found, and the curve of the best."""
-    study = pe.load_study(STUDIES / f"{experiment}.toml")
-    search = replace(study.search, method=method, seed=seed, samples=SAMPLES)
-    job, bests = pe.OptimizeJob(replace(study, search=search)), []
-    searching = None
-    for progress in job:
-        if searching is None and progress.evaluations:
-            searching = time.monotonic()
-        if len(job.history) > len(bests):
-            bests += [(time.monotonic() - searching, row) for row in job.history[len(bests) :]]
-        if searching is not None and time.monotonic() - searching > most:
-            job.stop()
-    outcome = job.outcome
+def run(name: str, method: str, seed: int) -> Json:
+    """Search; return the entropy that was found on the grid, and the curve of the best."""
+    problem = PROBLEMS[name]
+    study = problem.make()
+    evaluator = study.evaluator(study.search.samples)
+    search = _ours if method in pe.METHODS else _theirs
+    begun = time.process_time()
+    rows, count, how = search(study, evaluator, method, seed, problem.evaluations)
+    seconds = time.process_time() - begun
+    kept = list(_marked(rows))
     return {
-        "experiment": experiment,
+        "problem": name,
         "method": method,
         "seed": seed,
-        "entropy": outcome.after.entropy,
-        "start": outcome.before.entropy,
-        "own_sample": job.history[-1].entropy,
-        "seconds": outcome.seconds,
-        "evaluations": outcome.evaluations,
-        "curve": _curve(study, bests, outcome.seconds),
-        "placements": pe.result_dict(outcome)["placements"]["after"],
+        "entropy": study.evaluator(0).entropy(rows[-1][1]),
+        "own_sample": evaluator.entropy(rows[-1][1]),
+        "seconds": round(seconds, 3),
+        "evaluations": count,
+        "chosen": how,
+        "curve": [[round(at - begun, 3), evaluator.entropy(rig)] for at, rig in kept],
     }
 
 
-def _curve(study: pe.Study, bests: list[tuple[float, Any]], end: float) -> list[list[float]]:
-    """Return time [s] and entropy of the best so far at some times, on voxels of its own."""
-    options = {"samples": JUDGES, "shift": SHIFT, "model": study.model}
-    judge = pe.Evaluator(study.space, study.prior, study.vehicle, **options)
-    known: dict[int, float] = {}
-    points = []
-    for mark in MARKS_S:
-        number = sum(seconds <= mark for seconds, _ in bests) - 1
-        if number >= 0:
-            if number not in known:
-                known[number] = judge.entropy(bests[number][1].rig)
-            points.append([float(mark), known[number]])
-        if mark >= end:
-            break
-    return points
+def _ours(
+    study: pe.Study, last: pe.RigJudge, method: str, seed: int, evaluations: int
+) -> tuple[list[EvaluatedRow], int, str]:
+    """Search by a method of the engine, on its own levels."""
+    levels = pe.METHODS[method].samples(study.search.samples)
+    objectives = [last if n == study.search.samples else study.evaluator(n) for n in levels]
+    schedule = None
+    if method == "random":
+        rounds = len(pe.Schedule().scales)
+        schedule = pe.Schedule(candidates=max(1, evaluations // rounds))
+    rows, count = list[EvaluatedRow](), 0
+    for step in pe.optimize(
+        objectives,
+        study.rig,
+        study.search_space(),
+        seed,
+        schedule,
+        method=method,
+        evaluations=evaluations,
+    ):
+        count = step.evaluations
+        if step.improved or not rows:
+            rows.append((time.process_time(), step.best))
+    return rows, count, method
+
+
+def _theirs(
+    study: pe.Study, evaluator: pe.RigJudge, method: str, seed: int, evaluations: int
+) -> tuple[list[EvaluatedRow], int, str]:
+    """Search by a method of another library."""
+    rows, lowest, count = list[EvaluatedRow](), float("inf"), 0
+
+    def told(rig: pe.Rig, entropy: float) -> None:
+        nonlocal lowest, count
+        count += 1
+        if entropy < lowest:
+            lowest = entropy
+            rows.append((time.process_time(), rig))
+
+    landscape = Landscape(study, evaluator, evaluations, told)
+    chosen = YARDSTICKS[method](landscape, seed, evaluations)
+    return rows, count, chosen
+
+
+def _marked(rows: list[EvaluatedRow]) -> Iterator[EvaluatedRow]:
+    """Yield the last row in each of `MARKS` spans of time, each 1.5 times the one before."""
+    first, last = rows[0][0], rows[-1][0]
+    ends = [first + (last - first) / 1.5**k for k in reversed(range(MARKS))]
+    number = -1
+    for end in ends:
+        at = sum(time_s <= end for time_s, _ in rows) - 1
+        if at > number:
+            number = at
+            yield rows[at]
 
 
 if __name__ == "__main__":

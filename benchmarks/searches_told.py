@@ -2,100 +2,104 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 import pe_core as pe
 
-from .searches import EXPERIMENTS, SUMMARY
+from .run_files import summarise
+from .search_curves import draw_curve, save_with_legend
+from .search_problems import PROBLEMS
+from .yardstick_searches import YARDSTICKS
 
-PLOT = Path(__file__).resolve().parent.parent / "docs" / "images" / "searches.png"
-TICKS_S = (1, 3, 10, 30, 100)
-HEAD = ["experiment", "method", "seeds", "entropy on the grid", "lowest to highest", "time"]
+ROOT = Path(__file__).resolve().parent.parent
+PLOT = ROOT / "docs" / "images" / "search_problems.png"
+TABLE = Path(__file__).with_name("searches.md")
+NAMES = {"ngopt": "Nevergrad NGOpt", "pycma": "pycma, restarts"}
+COLUMNS = 4
 
 Json = dict[str, Any]
 
 
 def write_summary(runs: Path, path: Path) -> None:
-    """Put all runs of a folder into one file, and draw them."""
-    found = [json.loads(each.read_text("utf-8")) for each in sorted(runs.glob("*.json"))]
-    kept = [{k: v for k, v in run.items() if k != "placements"} for run in found]
-    path.write_text("[\n" + ",\n".join(json.dumps(run) for run in kept) + "\n]\n", "utf-8")
-    print("\n".join(table(kept)))
-    plot(kept, PLOT)
+    """Put all runs of a folder into one file, one a line; write the table and the plot."""
+    found = summarise(runs, path)
+    lines = table(found)
+    print("\n".join(lines))
+    TABLE.write_text("\n".join(lines) + "\n", "utf-8")
+    plot(found, PLOT)
 
 
-def table_lines() -> list[str]:
-    """Return the table of the runs that are kept with the project; none: nothing."""
-    return table(json.loads(SUMMARY.read_text("utf-8"))) if SUMMARY.exists() else []
+def methods_of(runs: list[Json]) -> list[str]:
+    """Return the methods that have runs, the engine's first."""
+    return [m for m in (*pe.METHODS, *YARDSTICKS) if any(run["method"] == m for run in runs)]
 
 
 def table(runs: list[Json]) -> list[str]:
-    """Return a table of medians over the seeds."""
+    """Return the table: median of the seeds, and lowest to highest."""
+    methods = methods_of(runs)
     lines = [
-        "Searches from the paper's placement (`python -m benchmarks.searches`), medians.",
-        "The time is that of a whole `pe optimize`, with the grid scores of start and result.",
+        "# Methods of search on a dozen problems",
         "",
-        f"| {' | '.join(HEAD)} |",
-        f"|{' --- |' * len(HEAD)}",
+        "Entropy on the grid [nats], lower is better: the median of the seeds, and lowest to",
+        "highest. All methods have the same evaluator and the same number of evaluations. The",
+        "problems of the second half were kept for the end: no setting was chosen on them.",
+        "`python -m benchmarks.searches` writes this; search_problems.py has the problems.",
+        "",
+        f"| problem | evaluations | {' | '.join(NAMES.get(m, m) for m in methods)} |",
+        f"|{' --- |' * (len(methods) + 2)}",
     ]
-    for (experiment, method), some in groups(runs).items():
-        ends = [run["entropy"] for run in some]
-        seconds = median(run["seconds"] for run in some)
-        cells = [EXPERIMENTS[experiment], method, str(len(some)), f"{median(ends):.3f}"]
-        cells += [f"{min(ends):.3f} to {max(ends):.3f}", f"{seconds:.0f} s"]
-        lines.append(f"| {' | '.join(cells)} |")
+    for name, problem in PROBLEMS.items():
+        ends = {m: entropies(runs, name, m) for m in methods}
+        best = min((median(values) for values in ends.values() if values), default=0.0)
+        cells = [_cell(ends[m], best) for m in methods]
+        title = f"{name} (kept)" if problem.kept else name
+        lines.append(f"| {title} | {problem.evaluations} | {' | '.join(cells)} |")
+    counts = [max(len(entropies(runs, name, m)) for name in PROBLEMS) for m in methods]
+    lines.append(f"| seeds, at most | | {' | '.join(map(str, counts))} |")
+    seconds = [f"{sum(r['seconds'] for r in runs if r['method'] == m):.0f} s" for m in methods]
+    lines.append(f"| processor time of all runs | | {' | '.join(seconds)} |")
+    lines += ["", "| problem | what it is |", "| --- | --- |"]
+    lines += [f"| {name} | {problem.about} |" for name, problem in PROBLEMS.items()]
     return lines
 
 
-def groups(runs: list[Json]) -> dict[tuple[str, str], list[Json]]:
-    """Return the runs by experiment and method, in the order of both."""
-    keys = [(e, m) for e in EXPERIMENTS for m in pe.METHODS]
-    found = {key: [r for r in runs if (r["experiment"], r["method"]) == key] for key in keys}
-    return {key: some for key, some in found.items() if some}
+def entropies(runs: list[Json], problem: str, method: str) -> list[float]:
+    """Return the entropies on the grid that a method found on a problem [nats]."""
+    return [r["entropy"] for r in runs if (r["problem"], r["method"]) == (problem, method)]
 
 
-def middle(some: list[Json]) -> tuple[list[float], list[list[float]]]:
-    """Return times, and at each the entropies of all runs; a run that is over stays as it is."""
-    times = sorted({t for run in some for t, _ in run["curve"]})
-    curves = [[[e for t, e in run["curve"] if t <= time] for run in some] for time in times]
-    known = [(t, [c[-1] for c in at]) for t, at in zip(times, curves, strict=True) if all(at)]
-    return [t for t, _ in known], [values for _, values in known]
+def _cell(values: list[float], best: float) -> str:
+    if not values:
+        return "-"
+    middle = f"{median(values):.3f}"
+    middle = f"**{middle}**" if median(values) == best else middle
+    return f"{middle} ({min(values):.3f} to {max(values):.3f})"
 
 
 def plot(runs: list[Json], path: Path) -> None:
-    """Draw the best so far against time: the median of the seeds, and from lowest to highest."""
+    """Draw the best so far against processor time: a panel for each problem."""
     from pe_tools.reproduction import plotting
 
-    looks = dict(zip(pe.METHODS, plotting.PALETTE, strict=False))
+    methods = methods_of(runs)
+    looks = dict(zip(methods, plotting.PALETTE, strict=False))
 
     @plotting.styled
     def draw() -> None:
-        shown = [e for e in EXPERIMENTS if any(run["experiment"] == e for run in runs)]
-        figure, axes = plotting.pyplot().subplots(1, len(shown), figsize=(2.6 * len(shown), 3.0))
-        for axis, experiment in zip(list(getattr(axes, "flat", [axes])), shown, strict=True):
-            for (own, method), some in groups(runs).items():
-                if own == experiment:
-                    _curve(axis, some, looks[method], method)
-            number, what = EXPERIMENTS[experiment].split(", ", 1)
-            axis.set(xscale="log", title=f"Experiment {number}\n{what}", xlabel="time [s]")
-            axis.set_xticks(TICKS_S, map(str, TICKS_S), minor=False)
-            axis.minorticks_off()
+        rows = -(-len(PROBLEMS) // COLUMNS)
+        figure, grid = plotting.pyplot().subplots(rows, COLUMNS, figsize=(10.4, 2.3 * rows))
+        for axis, (name, problem) in zip(grid.flat, PROBLEMS.items(), strict=False):
+            for method in methods:
+                some = [r for r in runs if (r["problem"], r["method"]) == (name, method)]
+                if some:
+                    draw_curve(axis, some, looks[method], NAMES.get(method, method))
+            axis.set(xscale="log", title=name + (" (kept)" if problem.kept else ""))
             plotting.remove_frame(axis)
-        figure.axes[0].set_ylabel("perception entropy [nats]")
-        handles = figure.axes[0].get_legend_handles_labels()
-        figure.legend(*handles, loc="lower center", ncols=len(handles[0]), frameon=False)
-        figure.tight_layout(rect=(0.0, 0.08, 1.0, 1.0))
-        plotting.save_plot(figure, path)
+        for axis in grid[-1]:
+            axis.set_xlabel("processor time [s]")
+        for axis in grid[:, 0]:
+            axis.set_ylabel("entropy [nats]")
+        save_with_legend(figure, path, 0.05)
 
     draw()
-
-
-def _curve(axis: Any, some: list[Json], colour: str, label: str) -> None:
-    """Draw the median of some runs, and the band they are in."""
-    times, values = middle(some)
-    low, high = [min(v) for v in values], [max(v) for v in values]
-    axis.fill_between(times, low, high, step="post", color=colour, alpha=0.15, lw=0)
-    axis.step(times, list(map(median, values)), where="post", color=colour, label=label)

@@ -21,7 +21,7 @@ from blend_file import save  # noqa: E402
 
 import blender_addon  # noqa: E402
 from blender_addon import bridge  # noqa: E402
-from blender_addon.engine import pe, search  # noqa: E402
+from blender_addon.engine import pe  # noqa: E402
 
 FOLDER = HERE / "examples" / "four_corners"
 LIDAR, CAMERA = "Velodyne VLP-16 Puck", "Camera 120 deg"
@@ -30,6 +30,16 @@ BASE_M, RECESS_M = 0.04, 0.01
 """A base plate of 40 mm on the roof; a lens 10 mm proud of the bumper."""
 SIDE_M = (0.3, 1.0)
 """Bounds of y of the sensors on the left: each pair has one on either side."""
+
+PRESETS = (
+    *("r159_longitudinal", "r151_static_crossing", "r151_static_parallel"),
+    *("r158_camera", "r158_detection", "ncap26_reverse_static", "ncap26_reverse_moving"),
+)
+METHOD = "portfolio"
+"""Of the example's search."""
+STOPPING = "Adult within the stopping distance"
+STOPPING_M = "15"
+"""At 25 km/h: 6.9 m in the first second, then 3 m/s2: 8.0 m. An estimate for shuttles."""
 
 Vertex = bpy.types.MeshVertex
 
@@ -74,6 +84,19 @@ def add_pair(name: str, model: str, near: tuple[float, float, float], mount: str
     bpy.ops.pe.mirror_sensor(name=obj.name, linked=True)
 
 
+def add_requirements() -> None:
+    """Hold the shuttle to presets, and to an adult ahead that two sensors see."""
+    settings = bpy.context.scene.perception_entropy
+    for preset in PRESETS:
+        bpy.ops.pe.add_requirement(preset=preset)
+    bpy.ops.pe.add_requirement(preset="OWN")
+    row = settings.requirements[-1]
+    row.name = STOPPING
+    row.x_from, row.x_to = "front + 3.7", f"front + {STOPPING_M}"
+    row.one_lost = True
+    settings.requirement_index = 0
+
+
 def design() -> None:
     """Have the bus's scene hold this example."""
     for obj in bridge.sensor_objects(bpy.context.scene):
@@ -84,9 +107,11 @@ def design() -> None:
     add_mount(BUMPER, RECESS_M, "facing")
     add_pair("lidar", LIDAR, (2.2, 0.7, 2.6), ROOF)
     add_pair("camera", CAMERA, (-3.0, 0.7, 0.42), BUMPER)
+    add_requirements()
     settings = bpy.context.scene.perception_entropy
     settings.min_distance, settings.max_height = 0.3, 2.7
-    settings.method = search.DEFAULT_METHOD  # said, so that another default changes nothing
+    settings.method = METHOD  # said, so that another default changes nothing
+    settings.keep_requirements = True
 
 
 def write_study() -> None:

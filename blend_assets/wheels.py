@@ -62,6 +62,15 @@ def wheel(shape: Wheel) -> Part:
     )
 
 
+def scaled(shape: Wheel, factor: float, segments: int = 24) -> Wheel:
+    """A wheel with all lengths multiplied."""
+    grown = {
+        name: [tuple(factor * value for value in row) for row in getattr(shape, name)]
+        for name in ("tyre", "rim", "disc", "hub", "spoke")
+    }
+    return shape._replace(**grown, segments=segments)
+
+
 def four_wheels(shape: Wheel, axles: dict[str, float]) -> dict[str, Part]:
     """Named wheels, each about its own centre."""
     left = wheel(shape)

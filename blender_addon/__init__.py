@@ -9,11 +9,13 @@ from . import (
     commands,
     consistency,
     diagnostics,
+    language,
     library,
     live,
     location_query,
     operators,
     panels,
+    preferences_panel,
     properties,
     search_curve,
     sensor_cache,
@@ -22,12 +24,16 @@ from . import (
     worker,
 )
 from .overlay import draw_handler as overlay
+from .translation_context import in_own_context, names_of, tooltips_of
 
-CLASSES = (*library.CLASSES, *properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
+CLASSES = (*preferences_panel.CLASSES, *properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
 
 def register() -> None:
     """Called by Blender when the add-on is enabled."""
+    for cls in CLASSES:
+        in_own_context(cls)
+    language.register(text for cls in CLASSES for text in (*names_of(cls), *tooltips_of(cls)))
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties.add_pointers()
@@ -44,6 +50,7 @@ def start() -> None:
     overlay.register()
     commands.register()
     library.register()
+    preferences_panel.register()
 
 
 def unregister() -> None:
@@ -53,6 +60,7 @@ def unregister() -> None:
     properties.remove_pointers()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
+    language.unregister()
 
 
 def stop() -> None:
@@ -60,6 +68,7 @@ def stop() -> None:
     operators.unregister()
     worker.unregister()
     wiring.unregister()
+    preferences_panel.unregister()
     library.unregister()
     commands.unregister()
     overlay.unregister()

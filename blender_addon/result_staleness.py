@@ -1,15 +1,37 @@
 """Whether stored results are still those of the scene: its own result, and its variants.
 
-Both are checked whenever the scene becomes idle.
+Both are checked whenever the scene becomes idle. A score takes the vehicle as drawn, so showing
+another state makes no result stale. What the scene is as drawn cannot be read while another state
+is shown: going to that frame would lose a pose without a key. So the scene as drawn is remembered,
+and counts until something changes in the state that is shown.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import bpy
 
 from . import bridge, sensor_cache, signals, vehicle_cache
+
+
+class LastDrawn(NamedTuple):
+    """What a scene was when it was last shown as drawn; None: not since its file was opened.
+
+    `states` are the fingerprints, by frame, of the states that were shown since.
+    """
+
+    fingerprint: bridge.Fingerprint | None
+    states: dict[int, str]
+
+
+_last_drawn: dict[str, LastDrawn] = {}
+
+
+def clear(*_: object) -> None:
+    """Forget all scenes: another file is opened."""
+    _last_drawn.clear()
 
 
 def fingerprint(
@@ -18,11 +40,33 @@ def fingerprint(
     sensors: Sequence[bpy.types.Object] | None = None,
 ) -> bridge.Fingerprint:
     """Return the fingerprint of what a score of the scene, as it is now, depends on."""
+    shown = _fingerprint_shown(scene, depsgraph, sensors)
+    return _as_drawn(scene, shown) or shown
+
+
+def _fingerprint_shown(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph | None = None,
+    sensors: Sequence[bpy.types.Object] | None = None,
+) -> bridge.Fingerprint:
     depsgraph = depsgraph or bridge.view_layer_of(scene).depsgraph
     # A scene that was not shown yet is not evaluated: its vehicle cannot be read.
     shape = "" if depsgraph is None else vehicle_cache.shared.digest(scene, depsgraph)
     found = sensor_cache.sensors(scene) if sensors is None else sensors
     return bridge.fingerprint(scene, shape, found)
+
+
+def _as_drawn(scene: bpy.types.Scene, shown: bridge.Fingerprint) -> bridge.Fingerprint | None:
+    """Return the fingerprint of a scene as drawn, from what it is as shown; None: unknown."""
+    if not bridge.shown_state(scene):
+        _last_drawn[scene.name] = LastDrawn(shown, {})
+        return shown
+    last = _last_drawn.setdefault(scene.name, LastDrawn(None, {}))
+    if last.states.setdefault(scene.frame_current, shown.text) == shown.text:
+        return last.fingerprint
+    # Changed while this state is shown: equal to no result until the vehicle is shown as drawn.
+    _last_drawn[scene.name] = LastDrawn(shown, {scene.frame_current: shown.text})
+    return shown
 
 
 def update_result() -> None:
@@ -31,7 +75,10 @@ def update_result() -> None:
         settings = scene.perception_entropy
         if not settings.has_result or bridge.view_layer_of(scene).depsgraph is None:
             continue
-        stale = fingerprint(scene).text != settings.result_signature
+        now = _as_drawn(scene, _fingerprint_shown(scene))
+        if now is None:  # a file that was saved with another state shown: its mark holds
+            continue
+        stale = now.text != settings.result_signature
         if stale != settings.result_stale:
             settings.result_stale = stale
             signals.view_changed.emit()  # a timer that sets a property does not redraw panels
@@ -40,5 +87,10 @@ def update_result() -> None:
 def update_variants() -> None:
     """Update the marks of stale variants and of unsaved changes in every scene."""
     for scene in bpy.data.scenes:
-        if scene.perception_entropy.variants and bridge.view_layer_of(scene).depsgraph is not None:
-            bridge.check_variants(scene, fingerprint(scene))
+        if not scene.perception_entropy.variants or bridge.view_layer_of(scene).depsgraph is None:
+            continue
+        shown = _fingerprint_shown(scene)
+        now = _as_drawn(scene, shown)
+        # In another state sensors stand elsewhere than in the variant: nothing is to be marked.
+        if now is not None and now.text == shown.text:
+            bridge.check_variants(scene, now)

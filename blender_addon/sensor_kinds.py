@@ -97,6 +97,10 @@ def _lidar_mount(model: pe.Lidar, mount: Mount) -> Mount:
 CAN = pe.Housing("cylinder", (0.1, 0.1, 0.09), (0.0, 0.0, 0.045), "typical size")
 VISOR = pe.Housing("box", (0.1, 0.13, 0.05), (0.05, 0.0, 0.025), "typical size")
 SMALL_BOX = pe.Housing("box", (0.045, 0.03, 0.03), (0.0225, 0.0, 0.0145), "typical size")
+RADAR_BOX = pe.Housing("box", (0.03, 0.13, 0.09), (0.015, 0.0, 0.0), "typical size")
+MEMBRANE = pe.Housing("box", (0.02, 0.03, 0.03), (0.01, 0.0, 0.0), "typical size")
+FIELD_PX = 3
+"""Pixels of a picture for each of its ranges and azimuths."""
 CAN_FOV = math.radians(200.0)
 """A LiDAR that looks around less than this has its back to something: no window all round."""
 
@@ -113,6 +117,15 @@ def range_pixels(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Pixels:
     rows, columns = (graphics.even_angles(axis, PIXELS_PER_DEG) for axis in angles)
     farthest = cast(pe.Lidar, sensor.model).max_range
     colors = graphics.range_colors(picture, farthest)[np.ix_(rows, columns)]
+    return np.concatenate([colors, np.ones((*colors.shape[:2], 1))], axis=2).astype(np.float32)
+
+
+def field_pixels(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Pixels:
+    """Return what a radar or an ultrasonic sensor detects by range (upwards) and azimuth."""
+    picture = kinds.kind_of(sensor).field_picture(sensor, vehicle)
+    assert picture is not None, "kinds with this function have pictures"
+    colors = graphics.field_colors(picture)
+    colors = np.repeat(np.repeat(colors, FIELD_PX, axis=0), FIELD_PX, axis=1)
     return np.concatenate([colors, np.ones((*colors.shape[:2], 1))], axis=2).astype(np.float32)
 
 
@@ -136,6 +149,22 @@ ROWS = {
         own_fields=("width", "height", "hfov", "lens"),
         has_lens=True,
         camera=lambda model: model,
+    ),
+    "radar": KindRow(
+        Mount("Continental ARS408-21", 0.05, True, 0.5, True, "CONE", 0.12),
+        lambda _model: RADAR_BOX,
+        own_about="Modes with their azimuths and ranges, as a study's table has them",
+        pixels=field_pixels,
+        legend="ranges upwards, azimuths across: many detections of a car are bright; orange: "
+        "hidden by the vehicle; grey: not detected",
+    ),
+    "ultrasonic": KindRow(
+        Mount("Bosch Ultrasonic 3.1", 0.03, True, 0.5, True, "CIRCLE", 0.05),
+        lambda _model: MEMBRANE,
+        own_about="A cone and a range, as a study's table has them",
+        pixels=field_pixels,
+        legend="ranges upwards, azimuths across: where a post returns an echo; orange: hidden by "
+        "the vehicle; grey: no echo",
     ),
 }
 OTHER = KindRow(Mount(None, 0.05, True, 1.5, True, "ARROWS", 0.25), lambda _model: SMALL_BOX)

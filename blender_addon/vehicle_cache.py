@@ -87,7 +87,8 @@ def vehicle_digest(vehicle: pe.Vehicle) -> str:
     digest = hashlib.blake2b(digest_size=16)
     digest.update(vehicle.triangles.data)
     digest.update(vehicle.parts.data)
-    digest.update(repr((vehicle.part_names, vehicle.glass)).encode())
+    covers = (dict(vehicle.covers),) if vehicle.covers else ()
+    digest.update(repr((vehicle.part_names, vehicle.glass, *covers)).encode())
     return digest.hexdigest()
 
 
@@ -97,11 +98,12 @@ shared = VehicleCache()
 
 def counted_members(
     collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
-) -> tuple[tuple[str, bool], ...]:
-    """Return the names of the vehicle's counted objects, and whether cameras see through them."""
+) -> tuple[tuple[str, bool, float], ...]:
+    """Return the names of the vehicle's counted objects, if cameras see through, covers' losses."""
     members = bridge.visible_members(collection, depsgraph.view_layer)
     counted = (each for each in members if not bridge.mounted_on_sensor(each))
-    return tuple(sorted((each.name_full, each.perception_entropy.see_through) for each in counted))
+    own = ((each.name_full, each.perception_entropy) for each in counted)
+    return tuple(sorted((name, each.see_through, each.cover_loss_db) for name, each in own))
 
 
 def vehicle_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:

@@ -53,6 +53,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
         vehicle_cache.clear,
         change_events.clear,
         session.clear,
+        result_staleness.clear,
         location_query.clear,
         scheduler.clear,
     ),

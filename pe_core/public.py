@@ -6,12 +6,14 @@ from .metric import ApCurve
 from .prior import Boxes, BoxReport, Focus, ObjectClass, Prior
 from .scene import (
     Housing,
+    Motion,
     Objects,
     PerceptionSpace,
     Pose,
     Reference,
     Rig,
     Sensor,
+    State,
     Vehicle,
     cuts_body,
     guessed_reference,
@@ -60,84 +62,31 @@ from .sensors import (
     Lidar,
     PerceptionModel,
     Pinhole,
+    Weather,
     beam_field,
     measure,
     measure_objects,
 )
-from .study import Search, Study, load_study, save_study, study_from_dict, study_to_dict
+from .study import (
+    Conditions,
+    Search,
+    Study,
+    load_study,
+    save_study,
+    study_from_dict,
+    study_to_dict,
+)
 from .version import __version__
 
-__all__ = [
-    "METHODS",
-    "ApCurve",
-    "BeamField",
-    "BlindGround",
-    "BoxReport",
-    "Boxes",
-    "BrownConrady",
-    "Camera",
-    "Choice",
-    "Constraints",
-    "Evaluator",
-    "FTheta",
-    "Focus",
-    "Glance",
-    "GroundMap",
-    "GroundSight",
-    "Housing",
-    "InputError",
-    "KannalaBrandt",
-    "Lidar",
-    "Mesh",
-    "MeshAxes",
-    "Method",
-    "MountArea",
-    "Mounting",
-    "NoGo",
-    "ObjectClass",
-    "ObjectEvaluator",
-    "ObjectScore",
-    "Objective",
-    "Objects",
-    "Option",
-    "PartScore",
-    "PerceptionModel",
-    "PerceptionSpace",
-    "Pinhole",
-    "Pose",
-    "Prior",
-    "Reach",
-    "Reference",
-    "Rig",
-    "RigJudge",
-    "Scatter",
-    "Schedule",
-    "Score",
-    "Search",
-    "SearchSpace",
-    "Selection",
-    "Sensor",
-    "SensorScore",
-    "Sight",
-    "Slot",
-    "SlotMount",
-    "Step",
-    "Study",
-    "SurfaceMount",
-    "TargetRule",
-    "Tolerance",
-    "Vehicle",
-    "__version__",
-    "beam_field",
-    "catalog",
-    "cuts_body",
-    "guessed_reference",
-    "load_study",
-    "measure",
-    "measure_objects",
-    "optimize",
-    "requirements",
-    "save_study",
-    "study_from_dict",
-    "study_to_dict",
-]
+__all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes"]
+__all__ += ["BrownConrady", "Camera", "Choice", "Conditions", "Constraints", "Evaluator"]
+__all__ += ["FTheta", "Focus", "Glance", "GroundMap", "GroundSight", "Housing", "InputError"]
+__all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
+__all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
+__all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]
+__all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigJudge", "Scatter", "Schedule"]
+__all__ += ["Score", "Search", "SearchSpace", "Selection", "Sensor", "SensorScore", "Sight"]
+__all__ += ["Slot", "SlotMount", "State", "Step", "Study", "SurfaceMount", "TargetRule"]
+__all__ += ["Tolerance", "Vehicle", "Weather", "__version__", "beam_field", "catalog"]
+__all__ += ["cuts_body", "guessed_reference", "load_study", "measure", "measure_objects"]
+__all__ += ["optimize", "requirements", "save_study", "study_from_dict", "study_to_dict"]

@@ -16,11 +16,36 @@ ORDER = (WINDOWS, "tests/review/", "tests/report/", "tests/addon/", "tests/engin
 
 
 class Together(LoadScopeScheduling):
-    """Keeps the tests of a file on one processor, and all those that open windows."""
+    """Keeps the tests of a file on one processor, and all those that open windows.
+
+    When a process dies, xdist 3.8 gives away all that the process was ever given: finished files,
+    which no process can finish again, and the test that ended it. Then xdist waits for ever
+    (pytest-dev/pytest-xdist, issues 1327 and 1378). Here one test fails and the others go on.
+    """
 
     def _split_scope(self, nodeid):
         file = nodeid.partition("::")[0]
         return WINDOWS if nodeid.startswith(WINDOWS) else QUICK.get(file, file)
+
+    def remove_node(self, node):
+        work = self.assigned_work.pop(node)
+        crashed = next((test for tests in work.values() for test in tests if not tests[test]), None)
+        for file, tests in reversed(work.items()):
+            left = {test: False for test in tests if not tests[test] and test != crashed}
+            if left:
+                self.workqueue[file] = left
+                self.workqueue.move_to_end(file, last=False)
+        for other in self.assigned_work:
+            self._reschedule(other)
+        return crashed
+
+    def _reschedule(self, node):
+        # A process keeps its last test waiting for another one: a file of one test is too few.
+        while not node.shutting_down and self._pending_of(self.assigned_work[node]) <= 2:
+            if not self.workqueue:
+                node.shutdown()
+                return
+            self._assign_work_unit(node)
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Search for places of the shuttle's four sensors, and write its page: two minutes.
+"""Search for places of the shuttle's four sensors, and write its page: in three minutes.
 
 usage: tools/example_review.py [RESULTS]
 

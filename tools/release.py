@@ -32,7 +32,7 @@ WANTED_BLENDERS = ("4.2", "4.3", "5")
 BPY_4_2 = "bpy==4.2.*"
 EXTRAS = ("progress", "completion", "cluster", "report", "cad", "rerun", "argoverse", "meshes")
 """Extras of users, each of which is installed into an empty environment of its own."""
-EXAMPLE = ROOT / "blend_assets" / "experiments" / "1_pandar64.toml"
+EXAMPLE = ROOT / "examples" / "robotaxi_sedan" / "1_roof.toml"
 CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "perception-entropy"
 PAGE = ROOT / "tools" / "repository_page.html"
 TIMEOUT_S = 1200
@@ -187,7 +187,8 @@ def release(arguments: argparse.Namespace) -> Path:
         folder.mkdir()
         archive = Path(shutil.copy(build_extension.build(), folder))
         tell(f"extension, {size_of(archive)}", validate(archive, not arguments.dirty))
-        *_, wheel = packages = build_packages(folder)
+        packages = build_packages(folder)
+        wheel = next(path for path in packages if path.suffix == ".whl")
         extras = () if arguments.quick else EXTRAS
         for extra in ("", *extras):
             try_wheel(wheel, extra)

@@ -28,24 +28,54 @@ from pe_core.study import (  # noqa: E402
 PAGE = ROOT / "docs" / "settings.md"
 HEAD = """# Settings
 
-Numbers and switches of a study, as the engine declares them: written by `tools/settings_page.py`.
-Angles are in degrees in a file. [study.md](study.md) explains the file, its lists and tables.
-
-| key | default | range | in Blender's panel | meaning |
-| --- | --- | --- | --- | --- |
+Numbers and switches of a study, as the engine declares them: written by `tools/settings_page.py`. A
+section has the keys of one table of the file, in dotted form: `optimize.seed` is the key `seed` of
+`[optimize]`. Angles are in degrees in a file. [study.md](study.md) explains the file, its lists and
+tables.
 """
+COLUMNS = """
+| key | type, unit | range | default | meaning | in Blender's panel |
+| --- | --- | --- | --- | --- | --- |
+"""
+TOP = "top of the file"
+"""Heading of the keys that are in no table."""
 
 
 def page() -> str:
     """Return the whole page."""
-    return HEAD + "".join(row(key, setting) for key, setting in setting_keys())
+    tables: dict[str, list[str]] = {}
+    for key, setting in setting_keys():
+        tables.setdefault(key.rpartition(".")[0] or TOP, []).append(row(key, setting))
+    sections = [f"\n## {table}\n{COLUMNS}{''.join(rows)}" for table, rows in tables.items()]
+    return HEAD + "".join(sections)
 
 
 def row(key: str, setting: Setting) -> str:
     """Return the row of one setting."""
     panel = "" if setting.panel is None else setting.panel.label
-    cells = f"`{key}`", default_text(setting), range_text(setting.rule), panel, setting.text
-    return f"| {' | '.join(cells)} |\n"
+    kind = type_text(setting.rule)
+    cells = f"`{key}`", kind, range_text(setting.rule), default_text(setting), setting.text, panel
+    return f"| {' | '.join(cells)} |\n".replace("|  |", "| |")
+
+
+def type_text(rule: object) -> str:
+    """Return the type of a rule's values, with their unit."""
+    match rule:
+        case Toggle():
+            return "switch"
+        case OneOf():
+            return "text"
+        case Pair():
+            return f"two numbers{_unit(rule.rule.unit)}"
+        case Whole():
+            return f"whole number{_unit(rule.unit)}"
+        case Number():
+            return f"number{_unit(rule.unit)}"
+    raise TypeError(f"no words for {type(rule).__name__}")
+
+
+def _unit(unit: str) -> str:
+    return f" [{unit}]" if unit else ""
 
 
 def default_text(setting: Setting) -> str:
@@ -64,11 +94,11 @@ def range_text(rule: object) -> str:
         case OneOf():
             return " or ".join(f'"{text}"' for text in rule.among)
         case Pair():
-            return f"low before high [{rule.rule.unit}]"
+            return "low before high"
         case Whole():
             return f"{rule.minimum:,} to {rule.maximum:,}"
         case Number():
-            return f"{_low(rule)}{_high(rule)}" + (f" [{rule.unit}]" if rule.unit else "")
+            return f"{_low(rule)}{_high(rule)}"
     raise TypeError(f"no words for {type(rule).__name__}")
 
 

@@ -1,6 +1,7 @@
 """The bridge: the only package that converts Blender's data to the engine's, and back."""
 
 from .apply_variant import apply_records, sensors_collection, shown_collection
+from .conditions import as_drawn, conditions_of, read_states, shown_state, write_state
 from .fingerprint import Fingerprint, fingerprint, signature
 from .loading import load_into, record_of_study
 from .mirroring import (
@@ -24,12 +25,15 @@ from .prior import focus_rows, prior_from_scene, prior_key
 from .requirements import (
     MET,
     NOT_MET,
+    after_of,
     edit_row,
     forget_verdict,
     full_table,
+    preset_of,
     requirements_key,
     requirements_of,
     store_verdicts,
+    with_mesh_files_of,
     write_row,
 )
 from .rig import (
@@ -52,6 +56,7 @@ from .scene_record import (
     SceneRecord,
     check_scene,
     record_of_scene,
+    study_as_drawn,
     study_from_scene,
     study_of,
     study_of_rig,
@@ -129,7 +134,9 @@ __all__ = [
     "active_variant",
     "add_own_sensor",
     "add_variant",
+    "after_of",
     "apply_records",
+    "as_drawn",
     "blender_version",
     "bounds_box",
     "check_choosable",
@@ -138,6 +145,7 @@ __all__ = [
     "check_variants",
     "clear_mirrors",
     "clearance_of",
+    "conditions_of",
     "copy_scene_score",
     "copy_score",
     "drop_foreign_results",
@@ -183,9 +191,11 @@ __all__ = [
     "pose_of",
     "pose_of_matrix",
     "possible_sensors",
+    "preset_of",
     "prior_from_scene",
     "prior_key",
     "put_objects",
+    "read_states",
     "record_of_scene",
     "record_of_study",
     "records_of",
@@ -207,6 +217,7 @@ __all__ = [
     "sensors_of_objects",
     "shown_collection",
     "shown_fov",
+    "shown_state",
     "signature",
     "space_of",
     "store_front",
@@ -217,6 +228,7 @@ __all__ = [
     "store_variant_scores",
     "store_verdicts",
     "store_warnings",
+    "study_as_drawn",
     "study_from_scene",
     "study_of",
     "study_of_rig",
@@ -234,9 +246,11 @@ __all__ = [
     "view_camera",
     "view_layer_of",
     "visible_members",
+    "with_mesh_files_of",
     "write_figures",
     "write_passthrough",
     "write_records",
     "write_reference",
     "write_row",
+    "write_state",
 ]

@@ -95,6 +95,7 @@ def _write_settings(obj: bpy.types.Object, record: SensorRecord) -> None:
     settings.free, settings.bounded = record.free, record.bounded
     settings.bounds_low, settings.bounds_high = record.low, record.high
     settings.rack = record.rack
+    settings.stays = record.stays
     if settings.mount != record.mount:
         settings.mount = record.mount
     if not settings.is_sensor:

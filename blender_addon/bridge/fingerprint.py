@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..engine import pe
+from .conditions import conditions_signature
 from .own_sensors import own_sensors_signature
 from .prior import prior_signature
 from .rig import last_written_pose, pose_of_matrix, sensor_objects, view_layer_of
@@ -57,7 +58,7 @@ def fingerprint(
     objects = sensor_objects(scene) if sensors is None else sensors
     states = {obj.name: _sensor_state(obj, obj.visible_get(view_layer=layer)) for obj in objects}
     more = [*settings_signature(settings), *own_sensors_signature(scene)]
-    more += targets_signature(settings)
+    more += [*targets_signature(settings), *conditions_signature(settings)]
     rest = (prior_signature(scene), settings.score_samples, shape, *([more] if more else []))
     return Fingerprint(states, repr(rest))
 

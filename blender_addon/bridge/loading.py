@@ -9,6 +9,7 @@ import contextlib
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import bpy
@@ -16,6 +17,7 @@ import bpy
 from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, pe, search, studies
 from .apply_variant import apply_records
+from .conditions import write_conditions
 from .prior import write_prior
 from .requirements import write_requirements
 from .rig import place_at, view_layer_of
@@ -31,6 +33,8 @@ FAR_M = 1e4
 def load_into(scene: bpy.types.Scene, study: pe.Study) -> list[str]:
     """Write a study to a scene; return the keys of its file that the scene cannot hold.
 
+    Before them are the sensors that have another name here, as another object has theirs.
+
     The scene's vehicle is kept if its triangles are equal to the study's to the bit.
 
     Raises
@@ -43,6 +47,7 @@ def load_into(scene: bpy.types.Scene, study: pe.Study) -> list[str]:
     write_settings(scene.perception_entropy, record)
     write_prior(scene.perception_entropy, record.prior)
     write_requirements(scene.perception_entropy, record.requirements)
+    write_conditions(scene.perception_entropy, record.conditions)
     _write_mounts(scene, record.mounts)
     _write_constraints(scene, record.constraints)
     names = apply_records(scene, record.sensors)
@@ -50,7 +55,12 @@ def load_into(scene: bpy.types.Scene, study: pe.Study) -> list[str]:
         write_options(scene.objects[names[sensor.name]].perception_entropy, sensor)
     layer = view_layer_of(scene)
     layer.update()
-    return differences(study, study_from_scene(scene, layer.depsgraph))
+    renamed = {name: here for name, here in names.items() if name != here}
+    lines = [
+        f"sensor {name!r} (here {new_name!r}: another object has its name)"
+        for name, new_name in renamed.items()
+    ]
+    return lines + differences(study, study_from_scene(scene, layer.depsgraph), renamed)
 
 
 def record_of_study(study: pe.Study) -> SceneRecord:
@@ -76,19 +86,25 @@ def record_of_study(study: pe.Study) -> SceneRecord:
         model=study.model,
         targets=study.targets,
         samples=study.samples,
-        search=replace(study.search, free={}, limits={}, mounting=pe.Mounting()),
+        search=_without_sensors(study.search),
         mounts=mounting.mounts,
         constraints=mounting.constraints,
         selection=replace(study.selection, choices=()),
         reference=study.reference,
         passthrough=study.passthrough,
         requirements=study.requirements,
+        conditions=study.conditions,
     )
 
 
-def differences(study: pe.Study, held: pe.Study) -> list[str]:
-    """Return the keys in which two studies differ; names of other files are left out."""
-    one, other = _comparable(study), _comparable(held)
+def differences(
+    study: pe.Study, held: pe.Study, renamed: Mapping[str, str] = MappingProxyType({})
+) -> list[str]:
+    """Return the keys in which two studies differ; names of other files are left out.
+
+    `renamed` has the names that sensors of the first study have in the second.
+    """
+    one, other = _comparable(study, renamed), _comparable(held)
     keys = sorted(key for key in {*one, *other} if one.get(key) != other.get(key))
     if not same_body(study.vehicle, held.vehicle):
         keys.append("vehicle.mesh")
@@ -99,13 +115,21 @@ def differences(study: pe.Study, held: pe.Study) -> list[str]:
     return keys
 
 
+def _without_sensors(settings: pe.Search) -> pe.Search:
+    """Return the settings of a search without what they say about sensors."""
+    goals = replace(settings.goals, fixed=())
+    return replace(settings, free={}, limits={}, mounting=pe.Mounting(), goals=goals)
+
+
 def _faces(mount: search.AnyMount | None) -> object:
     """Return the triangles of a mount's area; None for a mount without one."""
     area = getattr(mount, "area", None)
     return None if area is None else area.triangles.tolist()
 
 
-def _comparable(study: pe.Study) -> dict[str, object]:
+def _comparable(
+    study: pe.Study, renamed: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, object]:
     """Return the values of a study's file by key, without the names of other files."""
     data = studies.study_to_dict(study)
     flat = {**data, **{f"optimize.{key}": value for key, value in data["optimize"].items()}}
@@ -114,7 +138,8 @@ def _comparable(study: pe.Study) -> dict[str, object]:
     mounts = flat.pop("optimize.mount", [])
     plain = ({k: v for k, v in m.items() if k not in ("area", "parts")} for m in mounts)
     flat["optimize.mount"] = sorted(plain, key=lambda mount: mount["name"])
-    flat["sensor"] = sorted(data["sensor"], key=lambda sensor: sensor["name"])
+    sensors = [s | {"name": renamed.get(s["name"], s["name"])} for s in data["sensor"]]
+    flat["sensor"] = sorted(sensors, key=lambda sensor: sensor["name"])
     return flat
 
 
@@ -140,6 +165,7 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
                 mount=mount,
                 rack=racks.get(name, ""),
                 curve=sensor.curve,
+                stays=name in study.search.goals.fixed,
                 **_options(study.selection, name, mount),
             )
         )

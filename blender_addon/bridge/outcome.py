@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 import bpy
 
-from ..engine import advice, pe
+from ..engine import advice, jobs, pe, studies
 from .requirements import store_verdicts
 from .rig import sensor_objects
 from .scene_diagnostics import DRIVER, MISSING
-from .versions import score_to_dict
+from .versions import migrate_scene, score_to_dict
 
 PARTS_NAMED = 3
 """The panel names so many parts of the vehicle that block beams."""
@@ -30,6 +30,7 @@ def store_outcome(
     `signature` is the scene's signature at the time when it was read: the scene may have changed
     since. `sensors` are the scene's sensors, if the caller has already read them.
     """
+    migrate_scene(scene)  # or the first save would mark the result as one of an earlier version
     settings = scene.perception_entropy
     settings.result_kind = outcome.kind
     settings.result_entropy = outcome.after.entropy
@@ -44,6 +45,7 @@ def store_outcome(
     settings.result_missing = "\n".join(w.text for w in outcome.warnings if w.code in MARKING)
     settings.result_signature = signature
     store_verdicts(settings, outcome.verdicts)
+    settings.result_conditions = "\n".join(_condition_lines(outcome.conditions))
     for obj in sensor_objects(scene) if sensors is None else sensors:
         _store_sensor(obj.perception_entropy, outcome.after.per_sensor.get(obj.name))
         obj.perception_entropy.result_of = obj.name
@@ -53,6 +55,15 @@ def store_outcome(
     store_object_score(settings, outcome.after.objects)
     settings.result_stale = False
     settings.has_result = True
+
+
+def _condition_lines(table: studies.ConditionTable | None) -> list[str]:
+    """Return a line for each condition, the mean and the worst, and what a state covers."""
+    if table is None:
+        return []
+    lines = [line.strip() for line in jobs.condition_lines(table)[1:]]
+    warnings = advice.condition_warnings(table)
+    return lines + [f"{w.subject}: {w.text}" if w.subject else w.text for w in warnings]
 
 
 def store_text(
@@ -136,6 +147,7 @@ def store_robustness(settings: bpy.types.PropertyGroup, outcome: pe.Outcome) -> 
         off = _change(robustness.before.rise, robustness.after.rise)
         lost = _change(robustness.before.loss, robustness.after.loss)
     settings.result_mounted_off, settings.result_sensor_lost = off, lost
+    settings.result_sureness = "\n".join(jobs.sureness_lines(outcome))
     fragile = (warning.text for warning in outcome.warnings if warning.code == advice.FRAGILE)
     settings.result_fragile = next(fragile, "")
 

@@ -7,7 +7,11 @@ is one copy of each value.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -40,21 +44,47 @@ def requirement_of(row: bpy.types.PropertyGroup) -> Requirement:
 
 def table_of_row(row: bpy.types.PropertyGroup) -> TableData:
     """Return a row's table, without its name; `InputError` where the text is no table."""
+    return _loaded(row.name, row.table)
+
+
+def _loaded(name: str, text_of_row: str) -> TableData:
     try:
-        table = json.loads(row.table or "{}")
+        table = json.loads(text_of_row or "{}")
     except ValueError:
         table = None
     if not isinstance(table, dict):
-        raise pe.InputError("scene", f"requirement {row.name!r}", "a table as JSON", "other text")
+        raise pe.InputError("scene", f"requirement {name!r}", "a table as JSON", "other text")
     return table
 
 
 def full_table(row: bpy.types.PropertyGroup) -> TableData:
-    """Return a row's table with the keys of its preset; empty where the table is wrong."""
+    """Return a row's table with the keys of its preset; empty where the table is wrong.
+
+    It is cached, and not to be changed.
+    """
     try:
-        return studies.requirement_file.full_table(requirement_of(row))
+        return _full_table(row.name, row.table)
     except pe.InputError:
         return {}
+
+
+@lru_cache(maxsize=256)
+def _full_table(name: str, table: str) -> TableData:
+    """Return the table of a row of that name; panels ask for it again for each field."""
+    return studies.requirement_file.full_table(_read(name, _loaded(name, table)))
+
+
+def after_of(row: bpy.types.PropertyGroup) -> str:
+    """Return what a row's verdict is called after; empty where that is nothing, or is unknown."""
+    try:
+        return _after(row.name, row.table)
+    except pe.InputError:
+        return ""
+
+
+@lru_cache(maxsize=256)
+def _after(name: str, table: str) -> str:
+    return _read(name, _loaded(name, table)).after
 
 
 def write_row(row: bpy.types.PropertyGroup, requirement: Requirement) -> None:
@@ -74,16 +104,43 @@ def write_requirements(settings: bpy.types.PropertyGroup, wanted: Sequence[Requi
     settings.requirement_index = 0
 
 
+def with_mesh_files_of(study: pe.Study, folder: Path) -> pe.Study:
+    """Return a study from a folder whose mesh files of test bodies are found from any folder."""
+
+    def found(body: requirements.Body) -> requirements.Body:
+        if body.shape is None:
+            return body
+        file = (folder.absolute() / body.shape.file).as_posix()
+        return replace(body, shape=replace(body.shape, file=file))
+
+    held = [replace(each, bodies=tuple(map(found, each.bodies))) for each in study.requirements]
+    return replace(study, requirements=tuple(held))
+
+
 def edit_row(row: bpy.types.PropertyGroup, change: Callable[[TableData], None]) -> None:
-    """Change a row's table; a change that makes it wrong is not made, and the row says why."""
+    """Change a row's full table; a change that makes it wrong is not made, and the row says why."""
     try:
-        table = table_of_row(row)
+        table = deepcopy(_full_table(row.name, row.table))
         change(table)
+        preset = table.pop("preset", None)
         requirement = _read(row.name, table)
     except pe.InputError as error:
         row.problem = f"{error.field}: expected {error.expected}, found {error.found}"
         return
-    write_row(row, requirement)
+    write_row(row, _of_preset(requirement, preset))
+
+
+def _of_preset(requirement: Requirement, preset: str | None) -> Requirement:
+    """Return a requirement as one of its preset, if a study file can say it as a change of it."""
+    if preset is None:
+        return requirement
+    changed = replace(requirement, preset=preset)
+    table = studies.requirement_file.requirement_table(changed)
+    try:
+        again = _read(table.pop("name"), table)
+    except pe.InputError:
+        return requirement
+    return again if again == changed else requirement
 
 
 def requirements_key(settings: bpy.types.PropertyGroup) -> tuple[tuple[str, str], ...]:
@@ -91,13 +148,24 @@ def requirements_key(settings: bpy.types.PropertyGroup) -> tuple[tuple[str, str]
     return tuple((row.name, row.table) for row in settings.requirements if row.enabled)
 
 
-def store_verdicts(settings: bpy.types.PropertyGroup, verdicts: Sequence[Verdict]) -> None:
-    """Store verdicts in the rows of their requirements; other rows have none."""
+def preset_of(row: bpy.types.PropertyGroup) -> str | None:
+    """Return the identifier of a row's preset; None of an own or a wrong one."""
+    return full_table(row).get("preset")
+
+
+def store_verdicts(
+    settings: bpy.types.PropertyGroup,
+    verdicts: Sequence[Verdict],
+    reasons: Mapping[str, str] | None = None,
+) -> None:
+    """Store verdicts in the rows of their requirements; other rows have none, perhaps a reason."""
     found = {verdict.name: verdict for verdict in verdicts}
     for row in settings.requirements:
         verdict = found.get(row.name)
         if verdict is None:
             forget_verdict(row)
+            if reason := (reasons or {}).get(row.name):
+                row.verdict = f"not checked: {reason}"
             continue
         row.met = MET if verdict.met else NOT_MET
         row.margin_text, row.verdict = verdict.margin_text, verdict.text
@@ -112,4 +180,9 @@ def forget_verdict(row: bpy.types.PropertyGroup) -> None:
 
 def _read(name: str, table: TableData) -> Requirement:
     reader = text.Table({**table, "name": name}, "scene", f"requirement {name!r}")
-    return studies.requirement_file.read_requirement(reader)
+    return studies.requirement_file.read_requirement(reader, _folder())
+
+
+def _folder() -> Path:
+    """Return the folder of the Blender file, to which mesh files of test bodies are relative."""
+    return Path(bpy.path.abspath("//") if bpy.data.filepath else "")

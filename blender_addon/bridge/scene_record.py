@@ -14,10 +14,11 @@ from dataclasses import dataclass, replace
 import bpy
 
 from ..engine import catalog, exchange, pe, requirements, search, studies
+from .conditions import as_drawn, conditions_of, read_states
 from .mounting import constraints_of, mounting_of, mounts_of
 from .prior import prior_from_scene
 from .requirements import requirements_of
-from .rig import sensor_objects
+from .rig import sensor_objects, view_layer_of
 from .scene_settings import (
     clearance_of,
     passthrough_of,
@@ -29,6 +30,7 @@ from .scene_settings import (
     targets_of,
     values_of,
 )
+from .search_goals import goals_of_sensors, with_starts
 from .sensor_records import (
     ModelOption,
     SensorRecord,
@@ -68,6 +70,7 @@ class SceneRecord:
     reference: pe.Reference | None
     passthrough: exchange.Passthrough | None
     requirements: tuple[Requirement, ...]
+    conditions: pe.Conditions
 
 
 def study_from_scene(
@@ -94,6 +97,21 @@ def study_from_scene(
         raise pe.InputError("scene", "sensors", "at least one visible sensor", found)
     records = [record_of_object(obj, depsgraph, layer) for obj in visible]
     return study_of(record_of_scene(scene, depsgraph, records, vehicle=vehicle))
+
+
+def study_as_drawn(scene: bpy.types.Scene) -> pe.Study:
+    """Return the study of a scene as its vehicle is drawn, with its states read again.
+
+    Raises
+    ------
+    InputError
+        As `study_from_scene`, and where a part of a state bends.
+    """
+    with as_drawn(scene):
+        read_states(scene)
+        layer = view_layer_of(scene)
+        layer.update()
+        return study_from_scene(scene, layer.depsgraph)
 
 
 def study_of_rig(
@@ -141,11 +159,12 @@ def record_of_scene(
         model=perception_of(settings),
         targets=targets_of(settings),
         samples=samples_of(settings),
-        search=search_of(settings),
+        search=with_starts(search_of(settings), scene),
         selection=selection_limits(settings) if _has_options(records) else pe.Selection(),
         reference=reference_of(settings),
         passthrough=passthrough_of(settings),
         requirements=requirements_of(settings),
+        conditions=conditions_of(settings),
     )
 
 
@@ -169,6 +188,7 @@ def study_of(record: SceneRecord) -> pe.Study:
         free={sensor.name: unlocked_axes(sensor.free, sensor.locked) for sensor in counted},
         limits=_limits(counted, rig, record.vehicle, mounting),
         mounting=mounting,
+        goals=goals_of_sensors(record.search.goals, counted, mounting),
     )
     return pe.Study(
         rig,
@@ -184,6 +204,7 @@ def study_of(record: SceneRecord) -> pe.Study:
         passthrough=record.passthrough,
         targets=record.targets,
         requirements=record.requirements,
+        conditions=record.conditions,
     )
 
 

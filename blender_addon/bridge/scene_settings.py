@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ..choices import OBJECTS
-from ..engine import exchange, kinds, pe, studies
+from ..engine import exchange, kinds, pe, search, studies
 
 if TYPE_CHECKING:
     from .scene_record import SceneRecord
@@ -141,8 +141,42 @@ def search_of(settings: bpy.types.PropertyGroup) -> pe.Search:
         method=settings.method,
         tolerance=tolerance_of(settings),
         requirements=KEEP if settings.keep_requirements else None,
+        goals=goals_of(settings),
+        conditions=None if settings.search_conditions == "none" else settings.search_conditions,
         **values_of(settings, pe.Search),
     )
+
+
+AUTO = "auto"
+"""Value of the menu of the analysis that a study does not have: as much as the search allows."""
+
+
+def goals_of(settings: bpy.types.PropertyGroup) -> search.Goals:
+    """Return when a scene's searches stop, further starts, objectives, and the analysis.
+
+    Raises
+    ------
+    InputError
+        When only one objective is chosen.
+    """
+    names = [name for name in search.Front.KNOWN if name in settings.front_objectives]
+    chosen = settings.sensitivity
+    return search.Goals(
+        search.Stop(**values_of(settings, search.Stop)),
+        starts=search.Start.of_text(settings.start_poses),
+        front=search.Front(names, **values_of(settings, search.Front)),
+        sensitivity=None if chosen == AUTO else chosen,
+    )
+
+
+def write_goals(settings: bpy.types.PropertyGroup, goals: search.Goals) -> None:
+    """Write the goals of a search to a scene; further starts as JSON text."""
+    write_values(settings, goals.stop)
+    write_values(settings, goals.front)
+    settings.front_objectives = set(goals.front.objectives)
+    settings.sensitivity = goals.sensitivity or AUTO
+    settings.start_poses = search.Start.text_of(goals.starts)
+    settings.start_variants = False
 
 
 def samples_of(settings: bpy.types.PropertyGroup) -> int:
@@ -183,11 +217,13 @@ def write_settings(settings: bpy.types.PropertyGroup, record: SceneRecord) -> No
 
     Vehicle, sensors, prior, mounts and constraints are written by others.
     """
-    search, tolerance = record.search, record.search.tolerance
-    for instance in (record.space, record.targets, search, search.schedule, record.selection):
+    own, tolerance = record.search, record.search.tolerance
+    for instance in (record.space, record.targets, own, own.schedule, record.selection):
         write_values(settings, instance)
-    settings.score_samples, settings.method = record.samples, search.method
-    settings.keep_requirements = search.requirements == KEEP
+    settings.score_samples, settings.method = record.samples, own.method
+    settings.keep_requirements = own.requirements == KEEP
+    write_goals(settings, own.goals)
+    settings.search_conditions = own.conditions or "none"
     settings.currency = record.selection.currency
     settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
     names = () if settings.mounting_errors else ("failures", "worst")

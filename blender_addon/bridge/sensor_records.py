@@ -50,7 +50,8 @@ class SensorRecord:
     The last fields belong to the sensor's object and are not stored with a variant: a variant's
     record takes them from the object that the variant would use if it were applied. `locked` axes
     and `constraints` restrict the search, `parent_rack` is a parent that is a rack, `options` are
-    the models to choose from, `may_be_left_out` allows designs without the sensor.
+    the models to choose from, `may_be_left_out` allows designs without the sensor, and one that
+    `stays` is moved by no search.
     """
 
     name: str
@@ -75,6 +76,7 @@ class SensorRecord:
     parent_rack: str = ""
     options: tuple[ModelOption, ...] = ()
     may_be_left_out: bool = False
+    stays: bool = False
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -165,6 +167,7 @@ def _object_fields(obj: bpy.types.Object | None) -> dict[str, Any]:
         "parent_rack": parent.name if on_rack else "",
         "options": tuple(ModelOption(o.model, as_typed(o.price)) for o in settings.options),
         "may_be_left_out": settings.may_be_left_out,
+        "stays": settings.stays,
     }
 
 

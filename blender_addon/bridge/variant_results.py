@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ..engine import advice, pe
+from ..engine import advice, app, jobs, pe
 from .fingerprint import Fingerprint
 from .outcome import store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
@@ -64,6 +64,8 @@ def store_search(scene: bpy.types.Scene, outcome: pe.Outcome, surroundings: str)
     before = find_or_add_variant(scene, "Before optimize", start).key
     name = f"Optimized, seed {outcome.start.search.seed}"
     after = find_or_add_variant(scene, name, result).key
+    for number, other in enumerate(jobs.runners_up(outcome).values(), 1):
+        find_or_add_variant(scene, f"Runner-up {number}", _moved(records, other.rig))
     store_variant_scores(scene, outcome.start.rig, outcome.before, surroundings)
     store_variant_scores(scene, outcome.study.rig, outcome.after, surroundings)
     mark_active(scene, before)
@@ -119,11 +121,11 @@ def check_choosable(scene: bpy.types.Scene, study: pe.Study) -> None:
         When no sensor has models to choose from, no design keeps to the limits, or something
         else holds a sensor that is to be moved.
     """
-    if not study.selection.choices:
+    if not app.has_front(study):
         expected = "a sensor with models to choose from (panel Sensor Choices)"
         raise pe.InputError("scene", "choices", expected, "none")
     try:
-        study.designs()
+        app.front_job(study)
     except pe.InputError as error:
         field = f"{error.source}: {error.field}"
         raise pe.InputError("scene", field, error.expected, error.found) from None
@@ -145,12 +147,17 @@ def store_front(scene: bpy.types.Scene, trade_off: pe.TradeOff, surroundings: st
         variant.note = variant.note or _note(design, settings.currency)
         row = settings.front.add()
         met = f" ({design.met_text})" if design.met_text else ""
+        figures = ", ".join(f"{n} {v:.4g}" for n, v in design.figures.items())
+        row.figures = figures.replace("_", " ")
         row.name, row.key = f"{design.name}{met}", variant.key
         row.price, row.entropy = design.price, design.entropy
     count = len(trade_off.designs) + len(trade_off.refused)
     more = "all there are" if trade_off.is_complete else "of more"
     note = f"; {trade_off.requirements_note}" if trade_off.requirements_note else ""
-    settings.front_told = f"{trade_off.searched} searched of {count} looked at, {more}{note}"
+    names = ", ".join(trade_off.objectives).replace("_", " ")
+    looked = f"Pareto front of {names}" if names else ""
+    told = f"{trade_off.searched} searched of {count} looked at, {more}"
+    settings.front_told = f"{looked or told}{note}"
     mark_active(scene, before)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..engine import geometry, pe
 from .rig import mounted_on_sensor
+from .scene_settings import as_typed
 
 RESIDUAL = "pe_residual"
 """Mesh attribute with what single precision leaves out of the points of an imported vehicle."""
@@ -17,11 +18,12 @@ VEHICLE = "Vehicle"
 
 
 class Part(NamedTuple):
-    """Triangles (F, 3, 3) [m] of one object, and whether cameras see through them."""
+    """Triangles (F, 3, 3) [m] of one object, whether cameras see through, a cover's loss [dB]."""
 
     name: str
     triangles: np.ndarray
     glass: bool
+    cover_db: float = 0.0
 
 
 def vehicle_from_collection(
@@ -50,7 +52,8 @@ def vehicle_from_collection(
     labels = [np.full(len(part.triangles), names.index(part.name), np.int32) for part in parts]
     triangles = np.concatenate([part.triangles for part in parts])
     glass = list(dict.fromkeys(part.name for part in parts if part.glass))
-    return pe.Vehicle(triangles, np.concatenate(labels), names, glass, clearance_m)
+    covers = {part.name: part.cover_db for part in parts if part.cover_db > 0.0}
+    return pe.Vehicle(triangles, np.concatenate(labels), names, glass, clearance_m, covers)
 
 
 def visible_members(
@@ -121,7 +124,8 @@ def _parts(collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph) -> 
             field = f"vehicle object {original.name!r}"
             raise pe.InputError("scene", field, "finite coordinates", "NaN or infinity")
         placed = placed_triangles(triangles, ground_from_object)
-        yield Part(original.name_full, placed, original.perception_entropy.see_through)
+        own = original.perception_entropy
+        yield Part(original.name_full, placed, own.see_through, as_typed(own.cover_loss_db))
 
 
 def _triangles_local(obj: bpy.types.Object, cache: dict[int, np.ndarray]) -> np.ndarray:
@@ -175,6 +179,7 @@ def same_body(one: pe.Vehicle | None, other: pe.Vehicle | None) -> bool:
     if one is None or other is None:
         return one is other
     same = one.part_names == other.part_names and set(one.glass) == set(other.glass)
+    same = same and dict(one.covers) == dict(other.covers)
     same = same and np.array_equal(one.triangles, other.triangles)
     return same and np.array_equal(one.parts, other.parts)
 
@@ -189,6 +194,7 @@ def make_body(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> bpy.types.Collecti
             obj = bpy.data.objects.new(name, mesh_of(name, triangles))
             made.objects.link(obj)
             obj.perception_entropy.see_through = name in vehicle.glass
+            obj.perception_entropy.cover_loss_db = vehicle.covers.get(name, 0.0)
     return made
 
 

@@ -26,7 +26,9 @@ def opened_study(variant: str | None = None) -> pe.Study:
     with from_file():
         if variant is not None:
             bridge.activate_variant(scene, bridge.variant_named(scene, variant))
-        return bridge.study_from_scene(scene, bpy.context.evaluated_depsgraph_get())
+        if scene.perception_entropy.states:
+            scene.frame_set(scene.perception_entropy.drawn_frame)
+        return bridge.study_as_drawn(scene)
 
 
 @contextlib.contextmanager

@@ -75,7 +75,7 @@ def export_objects(study: pe.Study, args: argparse.Namespace) -> app.Answer:
 def run_job(args: argparse.Namespace) -> app.Answer:
     """Score or optimize, and write the results to the output folder."""
     study, kind = app.with_options(opened_study(args.variant), args), args.kind
-    if kind == "optimize" and study.selection.choices:
+    if kind == "optimize" and app.has_front(study):
         return choose_sensors(study, args)
     if kind == "optimize":
         with from_file():
@@ -99,24 +99,25 @@ def run_job(args: argparse.Namespace) -> app.Answer:
         as_json=args.json,
         host=bridge.blender_version(),
         more=more,
+        scheduler=getattr(args, "scheduler", None),
     )
 
 
 def choose_sensors(study: pe.Study, args: argparse.Namespace) -> app.Answer:
     """Search for the front of a scene with choices; its designs are variants of the new scene."""
     scene, output = bpy.context.scene, None
-    app.check_not_resumed(args)
     with from_file():
         bridge.check_choosable(scene, study)
-    if args.output is not None:
-        output = pe.prepare_folder(args.output, [OPTIMIZED])
+    job, host = app.front_job(study, args.workers), bridge.blender_version()
+    if (folder := app.resumed(job, args)) is not None:
+        output = pe.prepare_folder(folder, [OPTIMIZED])
 
     def leave(found: pe.TradeOff, folder: Path) -> None:
         with quiet_blender():
             write_front(found, folder)
 
-    job, host = pe.ChoiceJob(study, args.workers), bridge.blender_version()
-    return app.choose(job, output, as_json=args.json, host=host, more=leave)
+    scheduler = args.scheduler
+    return app.choose(job, output, as_json=args.json, host=host, more=leave, scheduler=scheduler)
 
 
 def export_study(args: argparse.Namespace) -> app.Answer:

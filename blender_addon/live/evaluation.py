@@ -50,12 +50,13 @@ class Problem(NamedTuple):
 
 @dataclass(frozen=True)
 class ScoreRequest:
-    """A rig to be scored; approximately, as a preview, where `draft`."""
+    """A rig to be scored; approximately, as a preview, where `draft`; `moving`: not idle."""
 
     problem: Problem
     rig: pe.Rig
     draft: bool
     prior_key: Hashable = None
+    moving: bool = False
 
 
 def read_prior(scene: bpy.types.Scene) -> tuple[Hashable, pe.Prior]:
@@ -67,7 +68,7 @@ def read_prior(scene: bpy.types.Scene) -> tuple[Hashable, pe.Prior]:
 
 
 def read_request(
-    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, moving: bool
 ) -> ScoreRequest:
     """Read what the score needs of a scene; the vehicle only if it has changed.
 
@@ -88,7 +89,7 @@ def read_request(
     targets = bridge.targets_of(settings)
     problem_key = prior_key, vehicle_key, space, model, targets
     problem = Problem(problem_key, prior, vehicle, space, model, targets)
-    return ScoreRequest(problem, rig, draft, (prior_key, space, model, targets))
+    return ScoreRequest(problem, rig, moving, (prior_key, space, model, targets), moving)
 
 
 class CachedEvaluator(NamedTuple):

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import bpy
 
 from .. import viewport, worker
+from ..language import shown as in_language
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from . import background_figures
 from .readout_text import BETTER, WORSE, figure_lines, known_rig_line, readout_of
@@ -95,7 +96,10 @@ def rows_of(
     """Return rows from the top down: the score, rows of figures, and why there is no newer one."""
     rows = [] if score is None or shown is None else _rows_of_score(score, shown, figures)
     if note:
-        rows += [TextRow(SMALL, ((line, ALERT),)) for line in textwrap.wrap(note, MAX_COLUMNS)]
+        rows += [
+            TextRow(SMALL, ((line, ALERT),))
+            for line in textwrap.wrap(in_language(note), MAX_COLUMNS)
+        ]
     return rows or [TextRow(SMALL, (("Live: scoring ...", FAINT),))]
 
 

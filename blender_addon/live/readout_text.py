@@ -53,6 +53,8 @@ def readout_of(score: LiveScore, shown: ShownScore) -> ReadoutText:
 def state_of(shown: ShownScore) -> str:
     """Return a score's error, and what it is of: the idle scene, a preview, a stored result."""
     state = "as scored" if shown.stored else "exact" if shown.exact else "preview"
+    if shown.state:
+        state += f", state {shown.state}"
     if shown.view_outdated:
         state += ", beams and maps follow"
     whole = shown.stored and not shown.stderr

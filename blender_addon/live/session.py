@@ -1,4 +1,7 @@
-"""Requests live scores: an approximate one while something moves, an exact one once it is idle.
+"""Requests live scores: an exact one once the scene is idle, and one of each move before.
+
+A move is scored exactly where that is quick enough: by the last exact score, and the budget of the
+preferences. Otherwise its score is a preview.
 
 A request is read inside Blender's own update, which costs a fraction of a millisecond, and scored
 on the interactive worker's thread at once, while Blender draws; only the latest request waits. The
@@ -7,12 +10,13 @@ score is shown by the redraw that is in progress, or by the next one.
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from functools import partial
 
 import bpy
 
-from .. import bridge, change_events, signals, vehicle_cache, worker
+from .. import bridge, change_events, preferences, signals, vehicle_cache, worker
 from ..choices import BEFORE_MOVE, PINNED
 from ..engine import pe
 from . import background_figures
@@ -38,7 +42,7 @@ _generation = 0
 
 
 def follow_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """After an update: request an approximate score where a sensor has moved."""
+    """After an update: request a score where a sensor has moved."""
     if bpy.app.background or not scene.perception_entropy.live.on:
         return
     state = live_state(scene.name)
@@ -51,7 +55,7 @@ def follow_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Non
         state.next_request()
         state.note = VEHICLE_MOVES
         return
-    request_score(scene, depsgraph, draft=True)
+    request_score(scene, depsgraph, moving=True)
 
 
 def on_idle() -> None:
@@ -62,20 +66,22 @@ def on_idle() -> None:
     for scene in shown_scenes():
         depsgraph = bridge.view_layer_of(scene).depsgraph
         if depsgraph is not None:
-            request_score(scene, depsgraph, draft=False)
+            request_score(scene, depsgraph, moving=False)
 
 
-def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, draft: bool) -> None:
+def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, moving: bool) -> None:
     """Read a scene, and have it scored by the interactive worker."""
     name, state = scene.name, live_state(scene.name)
     number = state.next_request()
     try:
-        request = read_request(scene, depsgraph, draft=draft)
+        request = read_request(scene, depsgraph, moving=moving)
     except pe.InputError as error:
         show_note(name, str(error))
         return
-    if draft:
+    if moving:
         note_move(state, _moving_operator(), request.rig)
+        exact = state.is_exact_within(preferences.live_budget_s(), request.problem.key)
+        request = replace(request, draft=not exact)
     if state.last_read is not None and state.last_read.prior != request.prior_key:
         state.before_move = None  # entropies under two priors cannot be compared
     counts = change_events.change_count(), vehicle_cache.shared.version
@@ -85,7 +91,7 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, dra
     worker.interactive_worker.ask(
         name, job, lambda _: signals.live_score_changed.emit(), partial(report_failure, name)
     )
-    if not draft:
+    if not moving:
         background_figures.request(scene, request, baseline)
 
 
@@ -93,13 +99,16 @@ def score_in_thread(
     name: str, request: ScoreRequest, number: int, baseline: Baseline | None, generation: int
 ) -> None:
     """On the worker's thread: score, and store the score where the next redraw reads it."""
-    exact = not request.draft
-    if exact and baseline is not None and baseline.summary is None and baseline.rig is not None:
+    idle, state, problem = not request.moving, live_state(name), request.problem.key
+    if idle and baseline is not None and baseline.summary is None and baseline.rig is not None:
         baseline.summary = _evaluators.summary(name, replace(request, rig=baseline.rig))
+    begun = time.perf_counter()
     summary = _evaluators.summary(name, request)
+    if not request.draft:
+        state.note_cost(problem, request.rig, time.perf_counter() - begun)
     if generation == _generation:
-        scored = request.rig, number, request.problem.key
-        live_state(name).put(LiveScore(summary, baseline, exact, *scored))
+        scored = request.rig, number, problem, idle
+        live_state(name).put(LiveScore(summary, baseline, not request.draft, *scored))
 
 
 def report_failure(name: str, error: Exception) -> None:
@@ -213,7 +222,7 @@ def baseline_of(scene: bpy.types.Scene, request: ScoreRequest) -> Baseline | Non
     """
     state, choice = live_state(scene.name), scene.perception_entropy.live.against
     chosen = state.chosen
-    if chosen is not None and request.draft and chosen.key[:2] == (choice, request.problem.key):
+    if chosen is not None and request.moving and chosen.key[:2] == (choice, request.problem.key):
         return chosen.baseline
     rig_and_label = _chosen_rig(scene, state, choice)
     if rig_and_label is None:

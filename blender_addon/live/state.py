@@ -6,12 +6,14 @@ worker's thread writes `LiveState.score` by `put`; everything else is written on
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import bpy
 
+from .. import bridge
 from ..engine import pe
 
 if TYPE_CHECKING:
@@ -70,14 +72,15 @@ class LiveScore:
     baseline : Baseline or None
         What it is compared with; None where there is nothing to compare with yet.
     exact : bool
-        Whether the scene was idle when it was read: the score then is that of every front end, to
-        the last bit.
+        Whether it is no preview: the score then is that of every front end, to the last bit.
     rig : Rig
         What was scored.
     number : int
         The number of the scene's request that it answers.
     problem : Hashable
         Identifies vehicle, prior, space and settings that it was scored with.
+    idle : bool
+        Whether the scene was idle when it was read.
     """
 
     summary: pe.Glance
@@ -86,6 +89,7 @@ class LiveScore:
     rig: pe.Rig
     number: int = 0
     problem: Hashable = None
+    idle: bool = True
 
     @property
     def before(self) -> pe.Glance | None:
@@ -106,6 +110,14 @@ class LastRead(NamedTuple):
     problem: Hashable
 
 
+class ExactCost(NamedTuple):
+    """How long the last exact score of a problem took in which a sensor had moved [s]."""
+
+    problem: Hashable
+    rig: Hashable
+    seconds: float
+
+
 @dataclass(frozen=True, slots=True)
 class KnownRigScore:
     """A known rig on this vehicle, scored as the live score is; `summary` is None until then."""
@@ -124,7 +136,9 @@ class LiveState:
     finished : FinishedScore or None
         The last score that was finished in this session, its ground map included.
     score, exact : LiveScore or None
-        The latest live score, and the latest exact one: previews may have come since.
+        The latest live score, and the latest exact one of the idle scene.
+    exact_cost : ExactCost or None
+        What decides whether moves are scored exactly.
     note : str
         Why there is no newer score, in one line; empty when there is one, or soon will be.
     requests : int
@@ -152,6 +166,7 @@ class LiveState:
     finished: FinishedScore | None = None
     score: LiveScore | None = None
     exact: LiveScore | None = None
+    exact_cost: ExactCost | None = None
     note: str = ""
     requests: int = 0
     last_read: LastRead | None = None
@@ -172,9 +187,22 @@ class LiveState:
     def put(self, score: LiveScore) -> None:
         """Store a new score; the note of why there was none goes."""
         self.score = score
-        if score.exact:
+        if score.exact and score.idle:
             self.exact = score
         self.note = ""
+
+    def note_cost(self, problem: Hashable, rig: pe.Rig, seconds: float) -> None:
+        """Note how long an exact score took [s]; the first one includes what is made once."""
+        last, key = self.exact_cost, rig_key(rig)
+        if last is None or last.problem != problem:
+            self.exact_cost = ExactCost(problem, key, math.inf)
+        elif last.rig != key:
+            self.exact_cost = ExactCost(problem, key, seconds)
+
+    def is_exact_within(self, budget_s: float, problem: Hashable) -> bool:
+        """Whether a move can be scored exactly in this time, by the last one that was."""
+        cost = self.exact_cost
+        return cost is not None and cost.problem == problem and cost.seconds <= budget_s
 
     def is_current(self, score: LiveScore) -> bool:
         """Whether a score is the exact one of the scene as it is now; otherwise it is a preview."""
@@ -182,7 +210,7 @@ class LiveState:
 
     def switch_off(self) -> None:
         """Drop what the live score found; finished scores and pinned sensors stay."""
-        self.score = self.exact = self.last_read = self.before_move = None
+        self.score = self.exact = self.last_read = self.before_move = self.exact_cost = None
         self.figures = self.shown_figures = self.known_rig = None
         self.note = ""
 
@@ -209,6 +237,8 @@ class ShownScore(NamedTuple):
         Whether it is the stored result.
     view_outdated : bool
         Whether beams and maps in the 3D view are still those of before the last move.
+    state : str
+        The state of the vehicle that the score is of; empty: as drawn.
     """
 
     entropy: float
@@ -217,6 +247,7 @@ class ShownScore(NamedTuple):
     exact: bool
     stored: bool
     view_outdated: bool = False
+    state: str = ""
 
 
 def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
@@ -224,13 +255,16 @@ def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
 
     That is the live score; or the stored result, where the scene is idle and the result is that of
     the scene as it is now: it is of more voxels. With *Live* off the panel shows the stored result.
+    A stored result is never that of another state than as drawn.
     """
     settings, state = scene.perception_entropy, live_state(scene.name)
     if state.score is None or not settings.live.on:
         return None
-    exact = state.is_current(state.score)
-    if exact and settings.has_result and not settings.result_stale:
+    exact, other = state.is_current(state.score), bridge.shown_state(scene)
+    idle = state.score.idle  # while something moves it is not known yet whether a result is stale
+    if exact and idle and settings.has_result and not (settings.result_stale or other):
         stored = settings.result_entropy, settings.result_coverage, settings.result_stderr
         return ShownScore(*stored, exact=True, stored=True)
     summary = state.score.summary
-    return ShownScore(summary.entropy, summary.coverage, summary.stderr, exact, stored=False)
+    figures = summary.entropy, summary.coverage, summary.stderr
+    return ShownScore(*figures, exact, stored=False, state=other)

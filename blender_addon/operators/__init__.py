@@ -3,12 +3,15 @@
 Panels take from here the operators, and what menus list.
 """
 
+from ..bridge import shown_state
 from ..diagnostics import warnings_outdated
 from ..live import ShownScore, live_lines, shown_score
 from ..sensor_kinds import kind_label
 from . import (
     add_sensor,
+    body_mesh,
     compare_variants,
+    conditions,
     edit_sensors,
     export_files,
     export_job,
@@ -30,13 +33,22 @@ from . import (
     upright,
     variants,
 )
-from .add_sensor import SENSOR_COLORS, Offer, brief, holder_of, makers, models, offers
+from .add_sensor import (
+    SENSOR_COLORS,
+    Offer,
+    brief,
+    holder_of,
+    known_makers,
+    makers,
+    models,
+    offers,
+)
 from .edit_sensors import listed_sensors
 from .fix_warnings import FIX_LABELS
 from .panel_rows import own_fields, reference_label
 from .query_location import answer
 from .replace_sensors import known_rigs
-from .requirements import ShownVerdict, shown_verdicts
+from .requirements import ShownSource, ShownVerdict, shown_verdicts, source_of
 
 __all__ = [
     "CLASSES",
@@ -44,12 +56,14 @@ __all__ = [
     "SENSOR_COLORS",
     "Offer",
     "ShownScore",
+    "ShownSource",
     "ShownVerdict",
     "answer",
     "brief",
     "export_job",
     "holder_of",
     "kind_label",
+    "known_makers",
     "known_rigs",
     "listed_sensors",
     "live_lines",
@@ -61,7 +75,9 @@ __all__ = [
     "register",
     "running_job",
     "shown_score",
+    "shown_state",
     "shown_verdicts",
+    "source_of",
     "unregister",
     "warnings_outdated",
 ]
@@ -74,6 +90,8 @@ CLASSES = (
     *mounts.CLASSES,
     *panel_rows.CLASSES,
     *requirements.CLASSES,
+    *body_mesh.CLASSES,
+    *conditions.CLASSES,
     *look_through.CLASSES,
     *upright.CLASSES,
     *score_jobs.CLASSES,

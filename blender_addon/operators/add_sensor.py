@@ -10,9 +10,10 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from mathutils import Vector
 
-from .. import bridge, library
+from .. import bridge, preferences
 from ..engine import catalog, graphics, kinds, pe
 from ..housing import measured_housing
+from ..language import shown
 from ..properties import DEFAULT_MODEL, model_suggestions
 from ..sensor_kinds import Mount, mount_of
 from .reports import USER_ERRORS, OperatorResult, report_error
@@ -83,7 +84,7 @@ def offers() -> Iterator[Offer]:
     for kind in kinds.KINDS.values():
         models = catalog.names(kind.name)
         if models:
-            usual = library.preferred_model(kind.name) or mount_of(kind.name).usual
+            usual = preferences.preferred_model(kind.name) or mount_of(kind.name).usual
             yield Offer(kind.name, kind.label, usual or models[0])
 
 
@@ -94,6 +95,11 @@ def makers(kind: str | None) -> list[str]:
             entry.maker for entry in catalog.entries().values() if _is_of_kind(entry, kind)
         )
     )
+
+
+def known_makers() -> list[str]:
+    """Return the makers that ship, and the label of sensors that programs and users add."""
+    return list(dict.fromkeys((*makers(None), catalog.OTHER_LABELS[catalog.OWN])))
 
 
 def models(kind: str | None, maker: str | None = None) -> list[str]:
@@ -149,12 +155,12 @@ class PE_OT_add_sensor(bpy.types.Operator):
 
     @classmethod
     def description(cls, _context: bpy.types.Context, chosen: bpy.types.OperatorProperties) -> str:
-        return f"{cls.__doc__}\n\n{tooltip_of(chosen.model)}"
+        return f"{shown(str(cls.__doc__))}\n\n{tooltip_of(chosen.model)}"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Sensors are added in Object Mode")
+            cls.poll_message_set(shown("Sensors are added in Object Mode"))
             return False
         return True
 

@@ -11,6 +11,7 @@ import bpy
 
 from .. import bridge, result_staleness
 from ..engine import advice, pe
+from ..language import draw_label, shown
 from .reports import OperatorResult, report
 from .score_jobs import JobOperator, SceneJob
 
@@ -105,7 +106,7 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not context.scene.perception_entropy.variants:
-            cls.poll_message_set("There is no variant yet")
+            cls.poll_message_set(shown("There is no variant yet"))
             return False
         return super().poll(context)
 
@@ -121,7 +122,7 @@ class PE_OT_compare_variants(JobOperator, bpy.types.Operator):
             return open_table()
         return super().invoke(context, event)
 
-    def _task(self, context: bpy.types.Context) -> SceneJob:
+    def _read(self, context: bpy.types.Context) -> SceneJob:
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
         pending: dict[int, PendingVariant] = {}
         refused: list[pe.InputError] = []
@@ -179,10 +180,10 @@ class PE_OT_show_comparison(bpy.types.Operator):
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the table of stored scores, with one column for each variant."""
-        self.layout.label(text=self.bl_label, icon="MOD_ARRAY")
+        draw_label(self.layout, self.bl_label, "MOD_ARRAY")
         said = self.layout.column(align=True)  # first: the table may be taller than the window
         for line in self.said:
-            said.label(text=line, translate=False)
+            draw_label(said, line)
         split = self.layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(self.names)))
         names, *columns = columns_of(self.names, self.rows)
         draw_column(split.column(align=True), names, "LEFT")
@@ -190,7 +191,7 @@ class PE_OT_show_comparison(bpy.types.Operator):
         for column in columns:
             draw_column(figures.column(align=True), column, "RIGHT")
         text = f"A star marks the best; in brackets: the difference to {self.names[0]}"
-        self.layout.label(text=text, translate=False)
+        draw_label(self.layout, text)
 
 
 TableCell = tuple[str, bool] | None
@@ -207,7 +208,7 @@ def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: s
         text, best = cell
         row = column.row()
         row.alignment = alignment
-        row.label(text=text, icon="SOLO_ON" if best else other, translate=False)
+        draw_label(row, text, "SOLO_ON" if best else other)
 
 
 def open_table() -> OperatorResult:

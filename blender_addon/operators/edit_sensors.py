@@ -8,6 +8,7 @@ from mathutils import Matrix
 
 from .. import bridge, sensor_cache, signals
 from ..engine import pe
+from ..language import shown
 from .add_sensor import select_only
 from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
 
@@ -106,7 +107,7 @@ class PE_OT_mirror_sensor(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Sensors are mirrored in Object Mode")
+            cls.poll_message_set(shown("Sensors are mirrored in Object Mode"))
             return False
         return True
 

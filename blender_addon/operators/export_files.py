@@ -12,8 +12,9 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from .. import bridge, signals
+from .. import bridge, language, signals
 from ..engine import app, exchange, jobs, outputs, page, pe
+from ..language import shown
 from .export_job import ExportJob, ExportOperator, ExportSteps, WrittenFiles, report_files
 from .reports import (
     USER_ERRORS,
@@ -41,7 +42,7 @@ class PE_OT_export_study(ExportHelper, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             path = chosen_file(self.filepath)
-            study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+            study = bridge.study_as_drawn(context.scene)
             pe.export_study(study, path, replace_study=True)  # the file dialog has confirmed it
         except USER_ERRORS as error:
             return report_error(self, error)
@@ -63,13 +64,14 @@ class PE_OT_import_study(ImportHelper, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Studies are imported in Object Mode")
+            cls.poll_message_set(shown("Studies are imported in Object Mode"))
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
-            study = pe.load_study(chosen_file(self.filepath))
+            path = chosen_file(self.filepath)
+            study = bridge.with_mesh_files_of(pe.load_study(path), path.parent)
             lost = bridge.load_into(context.scene, study)
         except USER_ERRORS as error:
             return report_error(self, error)
@@ -153,7 +155,8 @@ def headless_command(path: Path, render: bool, about: page.About) -> str:
         return ""
     options = ["review", "-o", path.parent.name or ".", *([] if render else ["--no-render"])]
     texts = {field.name: getattr(about, field.name) for field in fields(about)}
-    options += [f"--{name}={text}" for name, text in texts.items() if text]
+    english = page.About().language
+    options += [f"--{name}={text}" for name, text in texts.items() if text not in ("", english)]
     file = shlex.quote(Path(bpy.data.filepath).name)
     return app.as_typed(f"blender -b {file} --command pe", options)
 
@@ -211,8 +214,8 @@ class PE_OT_export_review(ExportOperator, bpy.types.Operator):
     def job(self, context: bpy.types.Context) -> ExportJob:
         """Read the scene; score, render and write the page step by step."""
         path, scene = chosen_file(self.filepath), context.scene.name
-        about = page.About(self.title, self.author, self.date, self.revision)
-        study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+        about = page.About(self.title, self.author, self.date, self.revision, language.current())
+        study = bridge.study_as_drawn(context.scene)
         facts = {
             "command": headless_command(path, self.render, about),
             "versions": bridge.blender_version(),

@@ -17,6 +17,7 @@ from bpy_extras.io_utils import ExportHelper
 
 from .. import viewport
 from ..engine import pe
+from ..language import shown
 from . import running_job
 from .reports import (
     USER_ERRORS,
@@ -115,7 +116,7 @@ class ExportOperator(ExportHelper, OperatorMixin):
     @classmethod
     def poll(cls, _context: bpy.types.Context) -> bool:
         if running_job.current is not None:
-            cls.poll_message_set("Another score, search or export is running; Esc stops it")
+            cls.poll_message_set(shown("Another score, search or export is running; Esc stops it"))
             return False
         return True
 

@@ -9,6 +9,7 @@ from bpy.props import EnumProperty
 
 from .. import bridge, library
 from ..engine import pe
+from ..language import draw_label, shown
 from .add_sensor import is_part
 from .reports import USER_ERRORS, OperatorResult, report, report_error
 
@@ -28,7 +29,7 @@ class PE_OT_use_selected(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("The vehicle is chosen in Object Mode")
+            cls.poll_message_set(shown("The vehicle is chosen in Object Mode"))
             return False
         return True
 
@@ -113,12 +114,13 @@ class PE_OT_open_example(bpy.types.Operator):
         if not bpy.data.is_dirty:
             return self.execute(context)
         self.changes = "SAVE"
+        title = shown("Save Changes Before Opening?")
         return context.window_manager.invoke_props_dialog(
-            self, title="Save Changes Before Opening?", confirm_text="Open"
+            self, title=title, confirm_text=shown("Open"), translate=False
         )
 
     def draw(self, _context: bpy.types.Context) -> None:
-        self.layout.label(text="The open file has changes that are not saved", icon="INFO")
+        draw_label(self.layout, "The open file has changes that are not saved", "INFO")
         self.layout.row().prop(self, "changes", expand=True)
 
     def execute(self, _context: bpy.types.Context) -> OperatorResult:

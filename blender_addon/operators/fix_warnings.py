@@ -11,6 +11,7 @@ from mathutils import Euler, Matrix, Vector
 
 from .. import bridge, signals
 from ..engine import pe
+from ..language import shown
 from .reports import USER_ERRORS, OperatorResult, report, report_error
 
 AdviceAmount = tuple[float, float, float]
@@ -48,7 +49,7 @@ class PE_OT_mend(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("This is mended in Object Mode")
+            cls.poll_message_set(shown("This is mended in Object Mode"))
             return False
         return True
 
@@ -217,7 +218,7 @@ class PE_OT_turn_round(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("The vehicle is turned in Object Mode")
+            cls.poll_message_set(shown("The vehicle is turned in Object Mode"))
             return False
         return context.scene.perception_entropy.vehicle is not None
 

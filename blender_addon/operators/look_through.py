@@ -16,6 +16,7 @@ from bpy.props import StringProperty
 
 from .. import bridge
 from ..engine import pe
+from ..language import shown
 from ..sensor_kinds import kind_label, row_of
 from . import sensor_pictures
 from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
@@ -132,7 +133,7 @@ class PE_OT_look_through(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Look Through works in Object Mode")
+            cls.poll_message_set(shown("Look Through works in Object Mode"))
             return False
         return True
 

@@ -9,7 +9,8 @@ from bpy.props import EnumProperty, StringProperty
 from .. import bridge, signals
 from ..choices import BY_GROUP, BY_PARTS, free_name
 from ..engine import catalog, search
-from .reports import USER_ERRORS, OperatorMixin, OperatorResult, chosen_sensor, report, report_error
+from .list_rows import RemoveRow, SelectedRow
+from .reports import USER_ERRORS, OperatorResult, chosen_sensor, report, report_error
 
 IN_A_BOX = "BOX"
 """The entry for no mount in the menu of a sensor's mounts."""
@@ -43,37 +44,25 @@ class PE_OT_add_mount(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class MountRow(OperatorMixin):
+class MountRow(SelectedRow):
     """What operators on the selected mount share."""
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        settings = context.scene.perception_entropy
-        if settings.mount_index >= len(settings.mounts):
-            cls.poll_message_set("No mount is selected")
-            return False
-        return True
+    ROWS, INDEX, NOUN = "mounts", "mount_index", "mount"
 
 
-class PE_OT_remove_mount(MountRow, bpy.types.Operator):
+class PE_OT_remove_mount(MountRow, RemoveRow, bpy.types.Operator):
     """Remove the selected mount; a search then moves its sensors in boxes again"""
 
     bl_idname = "pe.remove_mount"
     bl_label = "Remove Mount"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene = context.scene
-        settings = scene.perception_entropy
-        index = settings.mount_index
-        name = settings.mounts[index].name
-        settings.mounts.remove(index)
-        settings.mount_index = max(0, min(index, len(settings.mounts) - 1))
+    def after(self, scene: bpy.types.Scene, name: str) -> None:
+        """Take sensors off the mount."""
         for obj in bridge.sensor_objects(scene):
             if obj.perception_entropy.mount == name:
                 obj.perception_entropy.mount = ""
         signals.view_changed.emit()
-        return {"FINISHED"}
 
 
 class PE_OT_mount_parts(MountRow, bpy.types.Operator):

@@ -7,13 +7,14 @@ import math
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from .. import bridge, signals, vehicle_cache
+from .. import bridge, language, signals, vehicle_cache
 from ..choices import BEFORE_MOVE, PINNED, REGION_ITEMS, free_name
 from ..engine import catalog, kinds, pe, search
 from ..live import live_state
 from ..overlay.layer_cache import shown
 from ..properties import DEFAULT_REGION
 from ..sensor_kinds import own_kinds, row_of
+from .list_rows import RemoveRow
 from .reports import USER_ERRORS, OperatorResult, report, report_error
 
 
@@ -42,30 +43,13 @@ class PE_OT_add_focus(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class PE_OT_remove_focus(bpy.types.Operator):
+class PE_OT_remove_focus(RemoveRow, bpy.types.Operator):
     """Remove the focus that is selected in the list"""
 
     bl_idname = "pe.remove_focus"
     bl_label = "Remove Focus"
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        settings = context.scene.perception_entropy
-        if settings.focus_index >= len(settings.focus):
-            cls.poll_message_set("No focus is selected")
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings = context.scene.perception_entropy
-        index = settings.focus_index
-        name = settings.focus[index].name
-        settings.focus.remove(index)
-        settings.focus_index = max(0, min(index, len(settings.focus) - 1))
-        signals.study_changed.emit()
-        report(self, "INFO", f"Removed {name}")
-        return {"FINISHED"}
+    ROWS, INDEX, NOUN = "focus", "focus_index", "focus"
 
 
 def free_focus_name(taken: set[str]) -> str:
@@ -104,24 +88,13 @@ def own_fields(kind: str) -> tuple[str, ...]:
     return row_of(kind).own_fields
 
 
-class PE_OT_remove_own_sensor(bpy.types.Operator):
+class PE_OT_remove_own_sensor(RemoveRow, bpy.types.Operator):
     """Remove this own sensor; sensors of this model can then no longer be scored"""
 
     bl_idname = "pe.remove_own_sensor"
     bl_label = "Remove Own Sensor"
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        settings = context.scene.perception_entropy
-        return settings.own_index < len(settings.own_sensors)
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings = context.scene.perception_entropy
-        settings.own_sensors.remove(settings.own_index)
-        settings.own_index = max(0, min(settings.own_index, len(settings.own_sensors) - 1))
-        signals.study_changed.emit()
-        return {"FINISHED"}
+    ROWS, INDEX, NOUN = "own_sensors", "own_index", "own sensor"
 
 
 class PE_OT_own_curves(bpy.types.Operator):
@@ -234,8 +207,10 @@ class PE_OT_live_against(bpy.types.Operator):
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: bpy.types.Operator) -> str:
         if properties.key == PINNED:
-            return "Pin the sensors as they are now: compare the live score with them from now on"
-        return str(cls.__doc__)
+            return language.shown(
+                "Pin the sensors as they are now: compare the live score with them from now on"
+            )
+        return language.shown(str(cls.__doc__))
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         scene = context.scene

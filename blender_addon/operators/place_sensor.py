@@ -11,6 +11,7 @@ from mathutils import Matrix, Vector
 
 from ..engine import catalog, kinds
 from ..housing import measured_housing
+from ..language import shown
 from ..properties import DEFAULT_MODEL, model_suggestions
 from ..sensor_kinds import Mount, mount_for
 from . import placement
@@ -96,15 +97,17 @@ class PE_OT_place_sensor(bpy.types.Operator):
 
     @classmethod
     def description(cls, _context: bpy.types.Context, chosen: bpy.types.OperatorProperties) -> str:
-        return f"{cls.__doc__}\n\n{tooltip_of(chosen.model)}"
+        return f"{shown(str(cls.__doc__))}\n\n{tooltip_of(chosen.model)}"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Sensors are added in Object Mode")
+            cls.poll_message_set(shown("Sensors are added in Object Mode"))
             return False
         if placement.busy():
-            cls.poll_message_set("Something else waits for Esc: a search, or a sensor to place")
+            cls.poll_message_set(
+                shown("Something else waits for Esc: a search, or a sensor to place")
+            )
             return False
         return True
 

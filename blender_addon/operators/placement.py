@@ -16,6 +16,7 @@ from mathutils import Matrix, Vector
 from .. import bridge
 from ..choices import free_name
 from ..engine import graphics, kinds, pe
+from ..language import draw_label
 from ..sensor_kinds import mount_for
 from . import running_job
 from .add_sensor import is_part
@@ -250,5 +251,5 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
         pair = row.row(align=True)
         for icon in icons[:-1]:
             pair.label(text="", icon=icon)
-        pair.label(text=text, icon=icons[-1])
+        draw_label(pair, text, icons[-1])
     row.separator_spacer()

@@ -7,6 +7,7 @@ from bpy.props import FloatVectorProperty
 from mathutils import Vector
 
 from .. import bridge, location_query
+from ..language import shown
 from .reports import OperatorResult, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under
 
@@ -28,7 +29,7 @@ class PE_OT_ask_place(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not bridge.sensor_objects(context.scene):
-            cls.poll_message_set("There are no sensors yet")
+            cls.poll_message_set(shown("There are no sensors yet"))
             return False
         return True
 
@@ -41,7 +42,7 @@ class PE_OT_ask_place(bpy.types.Operator):
         """Query at each click, until Esc."""
         context.window_manager.modal_handler_add(self)
         context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set(HINT)
+        context.workspace.status_text_set(shown(HINT))
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:

@@ -12,6 +12,7 @@ from bpy.props import BoolProperty, StringProperty
 
 from .. import bridge, signals, vehicle_cache
 from ..engine import catalog, exchange, kinds, pe, search
+from ..language import shown
 from ..properties import FREE_BY_DEFAULT
 from ..sensor_kinds import mount_of, row_of
 from .reports import USER_ERRORS, OperatorResult, report, report_error
@@ -39,13 +40,13 @@ class PE_OT_add_rig(bpy.types.Operator):
     def description(cls, _context: bpy.types.Context, properties: bpy.types.Operator) -> str:
         rig = catalog.known_rigs().get(properties.key)
         if rig is None:
-            return str(cls.__doc__)
+            return shown(str(cls.__doc__))
         return f"{len(rig.sensors)} sensors of {rig.vehicle}. {rig.note}\nSource: {rig.source}"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Rigs are added in Object Mode")
+            cls.poll_message_set(shown("Rigs are added in Object Mode"))
             return False
         return True
 
@@ -174,7 +175,7 @@ class PE_OT_sensors_from_objects(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Sensors are made in Object Mode")
+            cls.poll_message_set(shown("Sensors are made in Object Mode"))
             return False
         return True
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import bpy
 
-from .. import library
+from .. import language, preferences
 from ..engine import pe
 
 USER_ERRORS = (pe.InputError, MemoryError)
@@ -39,9 +39,13 @@ def report_error(operator: bpy.types.Operator, error: Exception) -> OperatorResu
 def report(
     operator: bpy.types.Operator, level: Literal["INFO", "WARNING", "ERROR"], text: str
 ) -> None:
-    """Report one line; characters that would break or reverse it are escaped."""
-    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[:MAX_LETTERS])
-    operator.report({level}, shown)
+    """Report one line in the interface's language.
+
+    Characters that would break or reverse the line are escaped.
+    """
+    text = language.shown(text[:MAX_LETTERS])
+    printable = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+    operator.report({level}, printable)
 
 
 def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
@@ -61,7 +65,7 @@ def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
 def begin_in_results_folder(operator: Any) -> None:
     """Have the file dialog of an export begin in the folder of results of the preferences."""
     named = f"{Path(bpy.data.filepath).stem or 'untitled'}{operator.filename_ext}"
-    operator.filepath = library.in_results_folder(operator.filepath, named)
+    operator.filepath = preferences.in_results_folder(operator.filepath, named)
 
 
 def chosen_file(filepath: str) -> Path:

@@ -2,26 +2,38 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import bpy
-from bpy.props import EnumProperty
+from bpy.props import EnumProperty, IntProperty
 
 from .. import bridge, signals, vehicle_cache
+from ..choices import free_name
 from ..engine import pe, requirements, studies
 from ..overlay.layer_cache import shown
 from ..overlay.requirement_zones import VerdictShape
+from .list_rows import RemoveRow, SelectedRow
 from .reports import USER_ERRORS, OperatorResult, report, report_error
 
-OWN = "OWN"
+OWN, ALL = "OWN", "ALL"
 LOOK_FROM_M = 9.0
 """Distance of the view from the worst place."""
+
+
+def _citation(source_name: str, confidence: str) -> str:
+    """Return a source as a tooltip; its own text stays English, as it is cited."""
+    return f"{source_name} (confidence {confidence})"
+
+
 PRESETS = (
     (OWN, "Own Requirement", "An adult ahead of the vehicle, to be changed below"),
     *(
-        (each.id, f"{each.check}: {each.name}", f"{each.source} (confidence {each.confidence})")
+        (each.id, f"{each.check}: {each.name}", _citation(each.source, each.confidence))
         for each in studies.requirement_file.presets().values()
     ),
+    (ALL, "All Presets", "Each preset that the rig can be held to"),
 )
 
 
@@ -50,40 +62,87 @@ class PE_OT_add_requirement(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
-        made, wanted = _requirement(self.preset)
-        name = _free_name(wanted, {row.name for row in settings.requirements})
-        row = settings.requirements.add()
-        bridge.write_row(row, made)
-        row.name = name
+        if self.preset == ALL:
+            return self.add_all(context)
+        name = _add(settings, *_requirement(self.preset))
         settings.requirement_index = len(settings.requirements) - 1
         signals.study_changed.emit()
         report(self, "INFO", f"Added {name}")
         return {"FINISHED"}
 
+    def add_all(self, context: bpy.types.Context) -> OperatorResult:
+        """Add each preset that the rig can be held to and that is not in the list yet."""
+        settings = context.scene.perception_entropy
+        present = {bridge.preset_of(row) for row in settings.requirements}
+        wanted = [each for each in studies.requirement_file.presets() if each not in present]
+        try:
+            study = bridge.study_from_scene(*_read(context))
+        except USER_ERRORS as error:
+            return report_error(self, error)
+        made = dict(_requirement(each) for each in wanted)
+        fitting, reasons = _checkable(study, list(made))
+        for each in fitting:
+            _add(settings, each, made[each])
+        signals.study_changed.emit()
+        first, *_ = [*reasons.items(), ("", "")]
+        more = f"; left out {len(reasons)}, as {first[0]}: {first[1]}" if reasons else ""
+        report(self, "INFO", f"Added {len(fitting)} requirements{more}")
+        return {"FINISHED"}
 
-class PE_OT_remove_requirement(bpy.types.Operator):
+
+class RequirementRow(SelectedRow):
+    """What operators on the selected requirement share."""
+
+    ROWS, INDEX, NOUN = "requirements", "requirement_index", "requirement"
+
+
+class PE_OT_remove_requirement(RequirementRow, RemoveRow, bpy.types.Operator):
     """Remove the requirement that is selected in the list"""
 
     bl_idname = "pe.remove_requirement"
     bl_label = "Remove Requirement"
     bl_options = {"REGISTER", "UNDO"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        settings = context.scene.perception_entropy
-        if settings.requirement_index >= len(settings.requirements):
-            cls.poll_message_set("No requirement is selected")
-            return False
-        return True
+
+class PE_OT_copy_requirement(RequirementRow, bpy.types.Operator):
+    """Add a copy of the selected requirement below it"""
+
+    bl_idname = "pe.copy_requirement"
+    bl_label = "Copy Requirement"
+    bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = context.scene.perception_entropy
-        index = settings.requirement_index
-        name = settings.requirements[index].name
-        settings.requirements.remove(index)
-        settings.requirement_index = max(0, min(index, len(settings.requirements) - 1))
+        rows, number = settings.requirements, settings.requirement_index
+        name, table, enabled = (getattr(rows[number], k) for k in ("name", "table", "enabled"))
+        row = rows.add()
+        row.name = free_name(name, {each.name for each in rows})
+        row.table, row.enabled = table, enabled
+        rows.move(len(rows) - 1, number + 1)
+        settings.requirement_index = number + 1
         signals.study_changed.emit()
-        report(self, "INFO", f"Removed {name}")
+        report(self, "INFO", f"Added {rows[number + 1].name}")
+        return {"FINISHED"}
+
+
+class PE_OT_move_requirement(RequirementRow, bpy.types.Operator):
+    """Move the selected requirement in the list: tables and pages have this order"""
+
+    bl_idname = "pe.move_requirement"
+    bl_label = "Move Requirement"
+    bl_options = {"REGISTER", "UNDO"}
+
+    step: IntProperty(name="Step", description="-1: up; 1: down", default=-1, min=-1, max=1)
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = context.scene.perception_entropy
+        rows, number = settings.requirements, settings.requirement_index
+        target = number + self.step
+        if not 0 <= target < len(rows):
+            return {"CANCELLED"}
+        rows.move(number, target)
+        settings.requirement_index = target
+        signals.study_changed.emit()
         return {"FINISHED"}
 
 
@@ -95,28 +154,67 @@ class PE_OT_check_requirements(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+        settings = context.scene.perception_entropy
         try:
-            vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
-            study = bridge.study_from_scene(scene, depsgraph, vehicle)
+            study = bridge.study_as_drawn(context.scene)
             if not study.requirements:
                 raise pe.InputError("scene", "requirements", "at least one", "none")
-            verdicts = study.verdicts()
+            fitting, reasons = _checkable(study, study.requirements)
+            verdicts = replace(study, requirements=fitting).verdicts()
         except USER_ERRORS as error:
             return report_error(self, error)
-        bridge.store_verdicts(scene.perception_entropy, verdicts)
+        bridge.store_verdicts(settings, verdicts, reasons)
         met = sum(verdict.met for verdict in verdicts)
         missed = [verdict.name for verdict in verdicts if not verdict.met]
         more = f"; not met: {', '.join(missed)}" if missed else ""
+        more += f"; not checked: {', '.join(reasons)}" if reasons else ""
         text = f"{met} of {len(verdicts)} requirements are met{more}"
-        report(self, "WARNING" if missed else "INFO", text)
+        report(self, "WARNING" if missed or reasons else "INFO", text)
         return {"FINISHED"}
+
+
+def _read(context: bpy.types.Context) -> tuple[bpy.types.Scene, bpy.types.Depsgraph, Any]:
+    """Return scene, dependency graph and vehicle: the arguments of `study_from_scene`."""
+    scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+    return scene, depsgraph, vehicle_cache.shared.read(scene, depsgraph).vehicle
+
+
+def _checkable(
+    study: pe.Study, wanted: Sequence[requirements.Requirement]
+) -> tuple[tuple[requirements.Requirement, ...], dict[str, str]]:
+    """Return the requirements that a study can be held to, and why not the others, by name."""
+    around = study.rig, study.vehicle, study.reference, study.space
+    return requirements.checkable(wanted, *around)
+
+
+def _add(settings: bpy.types.PropertyGroup, made: requirements.Requirement, wanted: str) -> str:
+    """Add a row with a requirement; return the name that it got."""
+    name = free_name(wanted, {row.name for row in settings.requirements})
+    row = settings.requirements.add()
+    bridge.write_row(row, made)
+    row.name = name
+    return name
 
 
 def own_requirement() -> requirements.Requirement:
     """Return the requirement that an own one starts with: an adult ahead."""
     zone = requirements.Zone(x=("front + 1", "front + 5"), y=("right", "left"), step=0.5)
     return requirements.Requirement("My requirement", zone, (requirements.BODIES["adult"],))
+
+
+class ShownSource(NamedTuple):
+    """What a requirement is after, and its source; both may be empty."""
+
+    check: str
+    text: str
+
+
+def source_of(row: bpy.types.PropertyGroup) -> ShownSource | None:
+    """Return what a row's requirement is after; None where the stored table is damaged."""
+    table = bridge.full_table(row)
+    if not table:
+        return None
+    return ShownSource(bridge.after_of(row), str(table.get("source", "")))
 
 
 def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
@@ -184,12 +282,10 @@ def _requirement(choice: str) -> tuple[requirements.Requirement, str]:
     return preset.requirement(), f"{preset.name[:1].upper()}{preset.name[1:]}"
 
 
-def _free_name(name: str, taken: set[str]) -> str:
-    """Return a name that no row has yet."""
-    number, free = 2, name
-    while free in taken:
-        number, free = number + 1, f"{name} {number}"
-    return free
-
-
-CLASSES = (PE_OT_add_requirement, PE_OT_remove_requirement, PE_OT_check_requirements)
+CLASSES = (
+    PE_OT_add_requirement,
+    PE_OT_remove_requirement,
+    PE_OT_copy_requirement,
+    PE_OT_move_requirement,
+    PE_OT_check_requirements,
+)

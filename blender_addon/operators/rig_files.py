@@ -11,6 +11,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .. import bridge
 from ..engine import catalog, exchange, pe
+from ..language import draw_label
 from .export_job import report_files
 from .replace_sensors import replace_sensors
 from .reports import (
@@ -134,10 +135,10 @@ class PE_OT_choose_models(bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self, width=480)
 
     def draw(self, _context: bpy.types.Context) -> None:
-        self.layout.label(text="The file does not name the models of:")
+        draw_label(self.layout, "The file does not name the models of:")
         for row in self.rows:
             split = self.layout.split(factor=0.4)
-            split.label(text=row.sensor)
+            split.label(text=row.sensor, translate=False)
             split.prop(row, "model", text="")
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

@@ -13,6 +13,7 @@ import bpy
 
 from .. import search_curve, signals, viewport
 from ..engine import pe
+from ..language import draw_label, shown
 
 TICK_S = 0.05
 """How often the window gives the job a turn."""
@@ -27,6 +28,8 @@ CURVE_EVERY_S, BEST_EVERY_S = 2.0, 0.5
 """How often the 3D view is redrawn: for the curve, and after a better placement was found."""
 NO_UNDO = "Undo is not possible while a job runs; Esc stops it"
 """Shown when the keys of undo are pressed."""
+EVENTS_S = 0.3
+"""How long windows get events after a job was ended from outside."""
 NOTICE_S = 6.0
 """How long that is shown."""
 
@@ -156,19 +159,40 @@ def unregister() -> None:
     """End a running job and remove what shows it: its operator is about to be removed."""
     if current is not None:
         current.job.drop()
+        _send_events(bpy.context.window_manager)
     end(bpy.context)
+
+
+def _send_events(manager: bpy.types.WindowManager) -> None:
+    """Have each window get some events soon.
+
+    Blender keeps the handler of a modal operator whose class is removed, without an operator, until
+    the window's next event. A modal operator that a script starts before it ends Blender: 4.3 looks
+    into the operators of all handlers.
+    """
+    timers = {
+        window.as_pointer(): manager.event_timer_add(TICK_S, window=window)
+        for window in manager.windows
+    }
+
+    def stop() -> None:
+        for window in bpy.context.window_manager.windows:
+            if (timer := timers.pop(window.as_pointer(), None)) is not None:
+                bpy.context.window_manager.event_timer_remove(timer)
+
+    bpy.app.timers.register(stop, first_interval=EVENTS_S, persistent=True)
 
 
 def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
     """Draw the progress in the status bar, in place of Blender's own hints."""
     if current is not None:
         row = header.layout.row()
-        row.label(text=current.on_escape, icon="EVENT_ESC")
+        draw_label(row, current.on_escape, "EVENT_ESC")
         bar = row.row()
         bar.ui_units_x = STATUS_BAR_WIDTH
-        bar.progress(text=current.text, factor=current.progress.fraction)
+        bar.progress(text=shown(current.text), factor=current.progress.fraction, translate=False)
         if current.notice:
-            row.label(text=current.notice, icon="INFO")
+            draw_label(row, current.notice, "INFO")
         row.separator_spacer()
 
 

@@ -11,7 +11,8 @@ import bpy
 from bpy.props import IntProperty
 
 from .. import bridge, diagnostics, result_staleness, sensor_cache, signals, vehicle_cache
-from ..engine import pe
+from ..engine import app, pe
+from ..language import shown
 from ..live import FinishedScore, live_state
 from . import running_job
 from .reports import USER_ERRORS, OperatorMixin, OperatorResult, report, report_error
@@ -58,10 +59,10 @@ class JobOperator(OperatorMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if running_job.current is not None:
-            cls.poll_message_set("Another score or search is running; Esc stops it")
+            cls.poll_message_set(shown("Another score or search is running; Esc stops it"))
             return False
         if context.mode != "OBJECT":
-            cls.poll_message_set("Vehicles are scored in Object Mode")
+            cls.poll_message_set(shown("Vehicles are scored in Object Mode"))
             return False
         return True
 
@@ -121,7 +122,12 @@ class JobOperator(OperatorMixin):
         running_job.end(context)
 
     def _task(self, context: bpy.types.Context) -> SceneJob:
-        """Read the scene and its fingerprint at the same time."""
+        """Read the scene as drawn, its states, and its fingerprint at the same time."""
+        with bridge.as_drawn(context.scene):
+            bridge.read_states(context.scene)
+            return self._read(context)
+
+    def _read(self, context: bpy.types.Context) -> SceneJob:
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
         vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
         sensors = bridge.sensor_objects(scene)
@@ -141,8 +147,9 @@ class JobOperator(OperatorMixin):
         if scene is None:
             report(self, "WARNING", "The scene was removed; its result was discarded")
             return {"CANCELLED"}
-        gone = self.write(scene, outcome, task.taken)
-        result_staleness.update_result()  # the scene may have changed meanwhile
+        with bridge.as_drawn(scene):  # sensors are placed as drawn
+            gone = self.write(scene, outcome, task.taken)
+            result_staleness.update_result()  # the scene may have changed meanwhile
         if gone:
             report(
                 self,
@@ -253,7 +260,7 @@ class OptionOperator(OperatorMixin):
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         if obj is None or not obj.perception_entropy.is_sensor:
-            cls.poll_message_set("Select a sensor")
+            cls.poll_message_set(shown("Select a sensor"))
             return False
         return True
 
@@ -290,7 +297,7 @@ class PE_OT_remove_option(OptionOperator, bpy.types.Operator):
 
 
 class PE_OT_choose_sensors(JobOperator, bpy.types.Operator):
-    """Search for the Pareto front of price and entropy; each design on it becomes a variant"""
+    """Find the Pareto front of price and entropy or of the chosen objectives; kept as variants"""
 
     bl_idname = "pe.choose_sensors"
     bl_label = "Choose Sensors"
@@ -299,7 +306,7 @@ class PE_OT_choose_sensors(JobOperator, bpy.types.Operator):
     def job_of(self, scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> pe.Job:
         """Search, if there is something to choose."""
         bridge.check_choosable(scene, study)
-        return pe.ChoiceJob(study)
+        return app.front_job(study)
 
     def _apply(self, scene: bpy.types.Scene | None, task: SceneJob) -> OperatorResult:
         """Keep the Pareto front as variants; undo removes them in one step."""

@@ -16,6 +16,7 @@ from mathutils import Matrix, Vector
 
 from .. import bridge, sensor_cache
 from ..engine import catalog, pe
+from ..language import shown
 from ..sensor_kinds import Mount, mount_for
 from .placement import vehicle_center
 from .reports import USER_ERRORS, OperatorResult, report, report_error
@@ -36,7 +37,7 @@ class PE_OT_stand_upright(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Sensors are turned in Object Mode")
+            cls.poll_message_set(shown("Sensors are turned in Object Mode"))
             return False
         return True
 

@@ -10,16 +10,22 @@ from bpy.props import IntProperty
 from .. import bridge, diagnostics, result_staleness, signals
 from ..choices import BEFORE_MOVE, free_name
 from ..engine import pe
+from ..language import shown
+from .list_rows import remove_row
 from .reports import USER_ERRORS, OperatorMixin, OperatorResult, report, report_error
 
 UNSAVED = "Unsaved"
 
 
 class VariantOperator(OperatorMixin):
-    """Base of these operators: the variant by its key, or the selected one."""
+    """Base of these operators: the variant by its key, or the selected one.
+
+    One that is `of_sensors` reads or places the scene's sensors: as drawn, in whatever state.
+    """
 
     bl_options = {"REGISTER", "UNDO"}
     least = 1
+    of_sensors = False
 
     key: IntProperty(
         name="Key", description="Key of the variant; 0: the selected one", options={"HIDDEN"}
@@ -28,10 +34,10 @@ class VariantOperator(OperatorMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if context.mode != "OBJECT":
-            cls.poll_message_set("Variants are for Object Mode")
+            cls.poll_message_set(shown("Variants are for Object Mode"))
             return False
         if len(context.scene.perception_entropy.variants) < cls.least:
-            cls.poll_message_set("There is no variant yet")
+            cls.poll_message_set(shown("There is no variant yet"))
             return False
         return True
 
@@ -40,7 +46,9 @@ class VariantOperator(OperatorMixin):
         rows = list(settings.variants)
         wanted = [row for row in rows if row.key == self.key] or rows[settings.variant_index :][:1]
         try:
-            self.act(context.scene, wanted[0] if wanted else None)
+            drawn = bridge.as_drawn(context.scene) if self.of_sensors else contextlib.nullcontext()
+            with drawn:
+                self.act(context.scene, wanted[0] if wanted else None)
         except USER_ERRORS as error:
             return report_error(self, error)
         signals.study_changed.emit()
@@ -53,6 +61,7 @@ class PE_OT_save_variant(VariantOperator, bpy.types.Operator):
     bl_idname = "pe.save_variant"
     bl_label = "Save Variant"
     least = 0
+    of_sensors = True
 
     def act(self, scene: bpy.types.Scene, _variant: object) -> None:
         """Add the scene's sensors to the list."""
@@ -65,11 +74,12 @@ class PE_OT_update_variant(VariantOperator, bpy.types.Operator):
 
     bl_idname = "pe.update_variant"
     bl_label = "Update Variant"
+    of_sensors = True
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if bridge.active_variant(context.scene) is None:
-            cls.poll_message_set("No variant was put here: save this as a new one")
+            cls.poll_message_set(shown("No variant was put here: save this as a new one"))
             return False
         return super().poll(context)
 
@@ -93,6 +103,7 @@ class PE_OT_switch_variant(VariantOperator, bpy.types.Operator):
 
     bl_idname = "pe.switch_variant"
     bl_label = "Switch to Variant"
+    of_sensors = True
 
     def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
         """Store the present sensors if they are no variant, then apply the variant."""
@@ -129,16 +140,15 @@ class PE_OT_delete_variant(VariantOperator, bpy.types.Operator):
 
     def act(self, scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
         """Remove the variant's row from the list."""
-        settings, name = scene.perception_entropy, variant.name
-        index = [row.key for row in settings.variants].index(variant.key)
+        settings = scene.perception_entropy
+        number = [row.key for row in settings.variants].index(variant.key)
         if variant.key == settings.view.ghost_key:
             settings.view.ghost_key = 0
         if variant.key == settings.live.against:
             settings.live.against = BEFORE_MOVE
         if variant.key == settings.variant_key:
             settings.variant_key, settings.variant_changed = 0, False
-        settings.variants.remove(index)
-        settings.variant_index = max(0, min(index, len(settings.variants) - 1))
+        name = remove_row(settings, "variants", "variant_index", number)
         report(self, "INFO", f"Deleted {name}")
 
 

@@ -186,10 +186,12 @@ def draw_text() -> None:
 
 
 def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
-    """Return the legend of a shape, marked where it is a preview."""
+    """Return the legend of a shape, marked where it is a preview and does not say so itself."""
     item = shown.items(scene, layer)[name]
     found = item.shape.legend
-    if found is None or not scheduler.is_preview(scene, layer, name, item):
+    if found is None or "preview" in found.title:
+        return found
+    if not scheduler.is_preview(scene, layer, name, item):
         return found
     return replace(found, title=f"{found.title} (preview)")
 

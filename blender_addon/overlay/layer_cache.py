@@ -151,15 +151,9 @@ class LayerCache:
 
 
 def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dict[str, str]]:
-    placed, unplaced = [], {}
     rig = pe.Rig([each.sensor for each in request.counted])
-    for each in request.requirements:
-        try:
-            each.zone.placed(request.vehicle, request.reference, each.name)
-            each.criterion.check_rig(rig, each.name)
-            placed.append(each)
-        except pe.InputError as error:
-            unplaced[each.name] = f"{error.field}: expected {error.expected}, found {error.found}"
+    around = rig, request.vehicle, request.reference, request.space
+    placed, unplaced = requirements.checkable(request.requirements, *around)
     checker = requirements.RequirementChecker(
         placed,
         request.vehicle,

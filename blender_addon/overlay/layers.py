@@ -89,7 +89,7 @@ def _blind(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
         _counted_rig(request), height, within=BLIND_WITHIN_M, draft=request.moving
     )
     body = None if request.vehicle is None else request.vehicle.bounds
-    return ground_layers.blind_ground(found, body, height)
+    return ground_layers.blind_ground(found, body, height, request.view.palette)
 
 
 def _reach_keys(request: ViewRequest) -> dict[str, Hashable]:
@@ -126,8 +126,9 @@ def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
 def _beam_keys(request: ViewRequest) -> dict[str, Hashable]:
     view, shown = request.view, request.of_beams()
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
-    chosen = view.channels, view.channel, view.beam_colors, view.rings, view.beam_length, budget
-    return {each.sensor.name: (each.key, request.body_key, chosen) for each in shown}
+    chosen = view.channels, view.channel, view.beam_colors, view.rings, view.beam_length
+    chosen_key = *chosen, budget, view.palette
+    return {each.sensor.name: (each.key, request.body_key, chosen_key) for each in shown}
 
 
 def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.LayerShape:
@@ -158,7 +159,7 @@ def _beam_colors(
 ) -> NDArray[np.float32]:
     """(N, 4) colours of beams of these channels."""
     by_sensor = view.beam_colors == BY_SENSOR
-    palette = graphics.sensor_palette(of.number) if by_sensor else graphics.VIEWPORT
+    palette = graphics.sensor_palette(of.number, view.palette) if by_sensor else view.palette
     free, hit = (np.asarray(c, np.float32) for c in (palette.free, palette.stopped))
     colors = np.where(stopped[:, None], hit, free)
     if view.beam_colors == BY_CHANNEL:
@@ -173,7 +174,7 @@ def _beam_legend(view: ViewSettings) -> graphics.ColorKey:
         row = graphics.on_scale(np.linspace(0.0, 1.0, graphics.SWATCHES), graphics.VIRIDIS)
         swatches = tuple((float(red), float(green), float(blue), 1.0) for red, green, blue in row)
         return graphics.ColorKey("Channel", swatches, ("lowest", "highest"))
-    palette = graphics.VIEWPORT
+    palette = view.palette
     stopped = (graphics.with_alpha(palette.stopped, 1.0), "blocked by the vehicle")
     if view.beam_colors == BY_SENSOR:  # free beams have the colours of the labels
         return graphics.ColorKey("Beams", classes=(stopped,))
@@ -340,7 +341,7 @@ LAYERS = (
     Layer(
         "blind",
         "Blind Ground",
-        _rig_keys("blind_height", prior=True),
+        _rig_keys("blind_height", "palette", prior=True),
         _blind,
         1.6,
         rough=True,

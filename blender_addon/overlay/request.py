@@ -55,6 +55,7 @@ class ViewSettings:
     view_range: float = 12.0
     beam_limit: int = 2000
     beam_length: float = 8.0
+    palette: graphics.Palette = graphics.VIEWPORT
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,6 @@ FILL_ALPHA, FAINT_ALPHA = 0.22, 0.5
 """Opacity of filled samples, and of the outlines of zones that are not selected."""
 ON_GROUND_M = 0.015
 """Zones are drawn a little above the ground."""
-SPOT_M = 0.3
-"""Size at which samples of paths and single spots are drawn at least."""
 TICK_M = 0.12
 HATCH_M = 0.2
 """Distance of hatching lines along x on small samples."""
@@ -64,7 +62,7 @@ def requirement_zones(
         is_chosen = verdict.name == chosen
         alpha = 1.0 if is_chosen else FAINT_ALPHA
         lines += _outlines(verdict, graphics.with_alpha(color, alpha))
-        passed, failed, size = marked_places(verdict)
+        passed, failed, size = graphics.painted_samples(verdict)
         faces.append(_squares(passed, size, graphics.with_alpha(MET, FILL_ALPHA)))
         thin.append(_hatching(failed, size, graphics.with_alpha(NOT_MET, 0.9)))
         if is_chosen:
@@ -80,30 +78,6 @@ def requirement_zones(
         verdicts=tuple(verdicts),
         unplaced=unplaced or {},
     )
-
-
-def marked_places(verdict: Verdict) -> tuple[Floats, Floats, float]:
-    """Return the places that pass (N, 2), those that fail (M, 2), and the size of one [m]."""
-    samples = verdict.samples
-    if verdict.blind is not None and verdict.cells is not None:
-        cells, mask = verdict.cells, samples.mask
-        places = np.stack(np.meshgrid(cells.x, cells.y, indexing="ij"), axis=-1)
-        inside = np.ones(verdict.blind.shape, bool) if mask is None else mask
-        return places[inside & ~verdict.blind], places[inside & verdict.blind], cells.step
-    points, inside, ok = samples.points, samples.inside, verdict.passed
-    step = samples.zone.zone.step
-    if samples.zone.kind in ("path", "spots"):
-        size = max(step, SPOT_M)
-    else:
-        size = _spacing(points[inside], step)
-    return points[inside & ok], points[inside & ~ok], size
-
-
-def _spacing(points: Floats, step: float) -> float:
-    """Return the distance of samples along x: a preview has larger ones than the zone's step."""
-    gaps = np.diff(np.unique(points[:, 0])) if len(points) else np.zeros(0)
-    gaps = gaps[gaps > step / 2.0]
-    return float(gaps.min()) if len(gaps) else step
 
 
 def _outlines(verdict: Verdict, color: graphics.Rgba) -> list[graphics.Primitives]:
@@ -220,7 +194,9 @@ def _legend(
     """Return "7 of 9 requirements met", what was lost or won, and those that are not met."""
     met = sum(verdict.met for verdict in verdicts)
     preview = ", preview" if any(verdict.preview for verdict in verdicts) else ""
-    title = f"{met} of {len(verdicts) + len(unplaced)} requirements met{preview}"
+    others = sum(bool(v.requirement.under.states or v.requirement.under.weathers) for v in verdicts)
+    shown = ", as shown" if others else ""
+    title = f"{met} of {len(verdicts)} requirements met{preview}{shown}"
     rows = []
     for verdict in sorted(verdicts, key=lambda v: (v.met == before.get(v.name, v.met), v.met)):
         was = before.get(verdict.name, verdict.met)
@@ -233,7 +209,10 @@ def _legend(
     if len(rows) > MAX_ROWS:
         more = len(rows) - MAX_ROWS + 1
         rows = [*rows[: MAX_ROWS - 1], (NOT_MET, f"and {more} more")]
-    return graphics.ColorKey(title, classes=tuple(rows) or ((MET, "all met"),))
+    rows = rows or [(MET, "all met")]
+    if others:
+        rows.append((NOT_CHECKED, f"{others} in other states or weathers too: Score checks them"))
+    return graphics.ColorKey(title, classes=tuple(rows))
 
 
 def _short(name: str) -> str:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
-from .. import bridge, location_query, search_curve, sensor_cache, vehicle_cache
+from .. import bridge, location_query, preferences, search_curve, sensor_cache, vehicle_cache
 from ..engine import pe
 from ..live import live_state
 from .layers import LAYERS
@@ -159,6 +159,7 @@ def view_of(scene: bpy.types.Scene) -> ViewSettings:
         blind_height=_height(view.blind_height) or 0.0,
         channel=view.every if view.channels == "EVERY" else view.channel,
         beam_limit=settings.beam_limit,
+        palette=preferences.palette(),
         beam_length=max(MIN_LENGTH_M, settings.beam_length),  # also where it is not a number
         **{name: getattr(view, name) for name in same},
     )
@@ -200,9 +201,11 @@ def _boxes(
 def _scored(
     scene: bpy.types.Scene, sensors: tuple[SceneSensor, ...], space: pe.PerceptionSpace | None
 ) -> pe.GroundMap | None:
-    """Return the last score's ground map; None where the scene has changed since."""
+    """Return the last score's ground map; None where it is not that of what is shown."""
     finished = live_state(scene.name).finished
     if finished is None or scene.perception_entropy.result_stale or finished.study.space != space:
+        return None
+    if bridge.shown_state(scene):  # the score is of the vehicle as drawn
         return None
     now = {(e.sensor.name, e.sensor.model, e.sensor.pose) for e in sensors if e.counted}
     then = {(each.name, each.model, each.pose) for each in finished.study.rig}

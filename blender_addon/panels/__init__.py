@@ -4,18 +4,22 @@ Panels appear in the order of CLASSES; a parent is registered before its childre
 """
 
 from . import (
+    condition_panel,
     layout,
     main,
+    menus,
     overlay_popover,
     requirement_panel,
     score_details,
     scoring_panels,
     search_panels,
     selected_object,
+    sensor_menus,
     variant_panels,
 )
 
 CLASSES = (
+    *sensor_menus.CLASSES,
     *main.CLASSES,
     *score_details.LIVE_CLASSES,
     *selected_object.CLASSES,
@@ -23,10 +27,12 @@ CLASSES = (
     *variant_panels.CLASSES,
     *scoring_panels.CLASSES,
     *requirement_panel.CLASSES,
+    *condition_panel.CLASSES,
     *search_panels.CLASSES,
     *scoring_panels.ADVANCED_CLASSES,
     *overlay_popover.CLASSES,
     *main.EXPORT_CLASSES,
+    *menus.CLASSES,
 )
 
 
@@ -35,10 +41,14 @@ def register() -> None:
     layout.register()
     overlay_popover.register()
     main.register()
+    sensor_menus.register()
+    menus.register()
 
 
 def unregister() -> None:
     """Remove them."""
+    menus.unregister()
+    sensor_menus.unregister()
     main.unregister()
     overlay_popover.unregister()
     layout.unregister()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
@@ -11,6 +12,7 @@ import bpy
 import bpy.utils.previews
 import numpy as np
 
+from ..language import draw_label, shown
 from ..operators import FIX_LABELS, SENSOR_COLORS, warnings_outdated
 
 # Blender registers the subclasses of Panel alone; for the checker of types this is one.
@@ -45,7 +47,7 @@ def draw_with_zero(
     row = layout.row(align=True)
     row.prop(settings, name)
     if not getattr(settings, name):
-        row.label(text=zero)
+        draw_label(row, zero)
 
 
 def draw_list(
@@ -71,7 +73,7 @@ def draw_list(
 def draw_stale_mark(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw a mark above figures of a result that is out of date."""
     if settings.result_stale:
-        layout.label(text="From the last score, before a change", icon="FILE_REFRESH")
+        draw_label(layout, "From the last score, before a change", "FILE_REFRESH")
 
 
 def columns(
@@ -88,6 +90,8 @@ BESIDE_PX, ICON_PX = 72, 20
 """Width of borders and the tab's name, and of an icon, at a scale of 1."""
 BUTTON_PX = 26
 """Width of a small button beside a sentence, at a scale of 1."""
+POPUP_PX = 340
+"""Width of a panel that is called as a popup, at a scale of 1."""
 MIN_LETTERS = 10
 MIN_ROOM_PX = 40
 """A sidebar can be made narrower than any word."""
@@ -103,9 +107,18 @@ def letters_per_line(context: bpy.types.Context) -> int:
 def wrapped(context: bpy.types.Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
     """Return a sentence in lines that fit the sidebar, measured in its font."""
     scale = _scale(context)
-    room = context.region.width - (BESIDE_PX + beside_px) * scale
+    is_popup = getattr(context.region, "type", "UI") != "UI"  # its own width is not known
+    width = POPUP_PX * scale if is_popup else context.region.width
+    room = width - (BESIDE_PX + beside_px) * scale
     points = context.preferences.ui_styles[0].widget.points
     return wrapped_lines(text, max(room, MIN_ROOM_PX * scale), points * scale)
+
+
+WIDE = "\u3000-\u30ff\u3400-\u9fff\uff00-\uffef"
+"""Characters of languages without gaps between words: a line may end after any of them."""
+NEVER_FIRST = "\u3001\u3002\u30fb\u30fc\uff09\uff0c\uff1a\uff1b\uff1f\u300d)."
+"""Marks that no line begins with."""
+WORD = re.compile(rf"\s*(?:[{WIDE}]|[^\s{WIDE}]+)[{NEVER_FIRST}]*")
 
 
 @lru_cache(maxsize=512)
@@ -113,11 +126,11 @@ def wrapped_lines(text: str, room_px: float, size_px: float) -> tuple[str, ...]:
     """Break a text so that no line of that size is wider than the room; a longer word is cut up."""
     blf.size(FONT, size_px)
     lines, line = [], ""
-    for word in text.split():
-        longer = f"{line} {word}".strip()
+    for word in WORD.findall(text):
+        longer = f"{line}{word}".strip()
         if line and _width(longer) > room_px:
             lines.append(line)
-            longer = word
+            longer = word.strip()
         *full, line = _pieces(longer, room_px)
         lines += full
     return (*lines, line)
@@ -159,7 +172,7 @@ def draw_sentence(
     column.scale_y = 0.8
     rest = "NONE" if icon == "NONE" else "BLANK1"
     beside_px += 0.0 if icon == "NONE" else ICON_PX
-    for k, line in enumerate(wrapped(context, text, beside_px)):
+    for k, line in enumerate(wrapped(context, shown(text), beside_px)):
         column.label(text=line, icon=rest if k else icon, translate=False)
 
 
@@ -181,10 +194,14 @@ def draw_warning(
     row = layout.row(align=True)
     row.label(text="", icon="BLANK1")
     if warning.part:
-        part = row.operator("pe.select_part", text=warning.part, icon="RESTRICT_SELECT_OFF")
+        part = row.operator(
+            "pe.select_part", text=warning.part, icon="RESTRICT_SELECT_OFF", translate=False
+        )
         part.name = warning.part
     if warning.fix in FIX_LABELS:
-        mend = row.operator("pe.mend", text=FIX_LABELS[warning.fix], icon="TOOL_SETTINGS")
+        mend = row.operator(
+            "pe.mend", text=shown(FIX_LABELS[warning.fix]), icon="TOOL_SETTINGS", translate=False
+        )
         mend.fix, mend.subject, mend.amount = warning.fix, warning.subject, warning.amount
 
 

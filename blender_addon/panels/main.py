@@ -5,19 +5,19 @@ from __future__ import annotations
 import bpy
 
 from ..choices import VERSION
+from ..language import draw_label, shown
 from ..operators import (
     ShownScore,
-    brief,
     export_job,
     listed_sensors,
-    makers,
-    models,
     offers,
     running_job,
     shown_score,
+    shown_state,
 )
 from .layout import BUTTON_PX, Tab, columns, draw_properties, draw_sentence, draw_warning
 from .sensor_lists import draw_sensors
+from .sensor_menus import KIND, PE_MT_add_sensor
 
 
 def draw_written(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -43,10 +43,14 @@ def draw_actions(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
         row.prop(settings.live, "on", toggle=True, icon="REC")
         row.operator("pe.optimize", icon="ORIENTATION_GIMBAL")
         return
-    row.progress(text=running_job.current.text, factor=running_job.current.progress.fraction)
+    row.progress(
+        text=shown(running_job.current.text),
+        factor=running_job.current.progress.fraction,
+        translate=False,
+    )
     row.operator("pe.cancel", text="", icon="CANCEL")
     if running_job.current.notice:
-        layout.label(text=running_job.current.notice, icon="INFO")
+        draw_label(layout, running_job.current.notice, "INFO")
 
 
 def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -56,6 +60,8 @@ def draw_result(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         draw_live(layout, settings, live)
     elif settings.has_result:
         draw_stored(layout, context)
+    if settings.has_result and (state := shown_state(context.scene)):
+        draw_sentence(layout, context, f"Shown: state {state}. Scored: as drawn", icon="INFO")
 
 
 def draw_live(
@@ -66,9 +72,9 @@ def draw_live(
     draw_figure(column, "Entropy", f"{live.entropy:.3f} ± {max(live.stderr, 1e-3):.3f} nats")
     draw_figure(column, "Coverage", f"{live.coverage:.1%}")
     state = "Live: exact, on a sample" if live.exact else "Live: a preview, on a sample"
-    column.label(text=state, icon="REC")
-    if settings.has_result:
-        layout.label(text="Changed since it was scored", icon="FILE_REFRESH")
+    draw_label(column, state, "REC")
+    if settings.has_result and (settings.result_stale or not live.state):
+        draw_label(layout, "Changed since it was scored", "FILE_REFRESH")
 
 
 def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -94,14 +100,14 @@ def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     for line in settings.result_missing.splitlines():
         draw_sentence(state, context, f"Scored without it: {line}", icon="ERROR")
     if settings.result_stale:
-        state.label(text="Changed since this was scored", icon="FILE_REFRESH")
+        draw_label(state, "Changed since this was scored", "FILE_REFRESH")
 
 
 def draw_figure(layout: bpy.types.UILayout, name: str, value: str) -> None:
     """Draw a figure with its name."""
     left, right = columns(layout, 0.34)
-    left.label(text=name)
-    right.label(text=value, translate=False)
+    draw_label(left, name)
+    draw_label(right, value)
 
 
 def draw_vehicle_warnings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -133,7 +139,7 @@ def next_step(scene: bpy.types.Scene) -> int | None:
 def draw_step(layout: bpy.types.UILayout, context: bpy.types.Context, step: int) -> None:
     """Draw the heading of a step while it is the next one."""
     if next_step(context.scene) == step:
-        layout.label(text=f"{step}  {STEPS[step]}", icon="FORWARD")
+        layout.label(text=f"{step}  {shown(STEPS[step])}", icon="FORWARD", translate=False)
 
 
 def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -141,7 +147,9 @@ def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     settings = context.scene.perception_entropy
     draw_step(layout, context, 1)
     row = layout.row(align=True)
-    row.prop(settings, "vehicle")
+    name, field = columns(row, 0.3)
+    draw_label(name, "Vehicle")
+    field.prop(settings, "vehicle", text="")
     step = next_step(context.scene)
     if settings.vehicle is not None and step != 2:
         row.operator("pe.turn_round", text="", icon="FILE_REFRESH")
@@ -152,12 +160,8 @@ def draw_vehicle(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     draw_vehicle_warnings(layout, context)
     if step == 2:
         asked, button = columns(layout, 0.5)
-        asked.label(text="Front at the arrow?")
+        draw_label(asked, "Front at the arrow?")
         button.operator("pe.turn_round", icon="FILE_REFRESH")
-
-
-KIND, MAKER = "pe_kind", "pe_maker"
-"""Names in Blender's context by which a button passes kind and maker to its menu."""
 
 
 class PE_PT_main(Tab, bpy.types.Panel):
@@ -173,78 +177,27 @@ class PE_PT_main(Tab, bpy.types.Panel):
             draw_sentence(self.layout, context, newer, icon="ERROR")
         draw_vehicle(self.layout, context)
         draw_step(self.layout, context, 2)
-        draw_add(self.layout)
+        draw_add(self.layout, settings)
         draw_sensors(self.layout, context)
         draw_actions(self.layout, settings)
         draw_written(self.layout, context)
         draw_result(self.layout, context)
 
 
-def draw_add(layout: bpy.types.UILayout) -> None:
-    """Draw for each kind: add its usual sensor, place it by pointing, and a menu of all."""
-    column = layout.column(align=True)
-    for offer in offers():
-        row = column.row(align=True)
-        row.operator("pe.add_sensor", text=f"Add {offer.label}", icon="ADD").model = offer.usual
-        button = row.operator("pe.place_sensor", text="Place", icon="RESTRICT_SELECT_OFF")
-        button.model = offer.usual
-        row.context_string_set(KIND, offer.kind)
-        row.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
-
-
-class PE_MT_add_sensor(bpy.types.Menu):
-    """Place another sensor of this kind by pointing: search the catalogue, or go by its maker"""
-
-    bl_idname = "PE_MT_add_sensor"
-    bl_label = "Place Sensor"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout, kind = self.layout, getattr(context, KIND, None)  # no maker: all
-        layout.operator_context = "INVOKE_DEFAULT"
-        search = layout.operator("pe.search_sensor", text="Search...", icon="VIEWZOOM")
-        search.kind = kind or ""
-        layout.separator()
-        for maker in makers(kind):
-            row = layout.row()
-            row.context_string_set(MAKER, maker)
-            row.menu(PE_MT_sensors_of_maker.bl_idname, text=maker, translate=False)
-
-
-class PE_MT_sensors_of_maker(bpy.types.Menu):
-    """Sensors of one maker in the catalogue"""
-
-    bl_idname = "PE_MT_sensors_of_maker"
-    bl_label = "Sensors"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        self.layout.operator_context = "INVOKE_DEFAULT"
-        kind, maker = getattr(context, KIND, None), getattr(context, MAKER, None)
-        for name in models(kind, maker):
-            text = f"{name}   {brief(name)}"
-            self.layout.operator("pe.place_sensor", text=text, translate=False).model = name
+def draw_add(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw a row: the kind; add its usual sensor, place it by pointing, and a menu of all."""
+    by_kind = {offer.kind: offer for offer in offers()}  # a plugin's kind may have gone
+    offer = by_kind.get(settings.kind_to_add) or next(iter(by_kind.values()))
+    row = layout.row(align=True)
+    row.prop(settings, "kind_to_add", text="")
+    row.operator("pe.add_sensor", text="Add", icon="ADD").model = offer.usual
+    button = row.operator("pe.place_sensor", text="Place", icon="RESTRICT_SELECT_OFF")
+    button.model = offer.usual
+    row.context_string_set(KIND, offer.kind)
+    row.menu(PE_MT_add_sensor.bl_idname, text="", icon="DOWNARROW_HLT")
 
 
 AXLES = ("rear_axle_x", "rear_axle_z", "wheelbase", "front_overhang", "rear_overhang")
-
-
-class PE_MT_add(bpy.types.Menu):
-    """Sensors at the 3D cursor, or on the roof; or placed by pointing"""
-
-    bl_idname = "PE_MT_add"
-    bl_label = "Perception"
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        for offer in offers():
-            add = self.layout.operator("pe.add_sensor", text=offer.label, icon="ADD")
-            add.model = offer.usual
-        self.layout.separator()
-        self.layout.menu(PE_MT_add_sensor.bl_idname, icon="RESTRICT_SELECT_OFF")
-
-
-def draw_add_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """Add (Shift A), in Object Mode."""
-    if context.mode == "OBJECT":
-        menu.layout.menu(PE_MT_add.bl_idname, icon="OUTLINER_OB_CAMERA")
 
 
 class PE_PT_export(Tab, bpy.types.Panel):
@@ -286,9 +239,9 @@ def draw_export(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.operator("pe.export_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.export_rig", text="Rig of Sensors (Perception Entropy)")
     text = "Sensors as Cameras and Empties (Perception Entropy)"
-    menu.layout.operator("pe.sensors_to_objects", text=text)
+    menu.layout.operator("pe.sensors_to_objects", text=shown(text), translate=False)
     text = "Fields of View and Scene (Perception Entropy)"
-    menu.layout.operator_menu_enum("pe.export_scene", "output", text=text)
+    menu.layout.operator_menu_enum("pe.export_scene", "output", text=shown(text), translate=False)
 
 
 def draw_import(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
@@ -296,28 +249,21 @@ def draw_import(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.operator("pe.import_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.import_rig", text="Rig of Sensors (Perception Entropy)")
     text = "Cameras and Empties as Sensors (Perception Entropy)"
-    menu.layout.operator("pe.sensors_from_objects", text=text)
+    menu.layout.operator("pe.sensors_from_objects", text=shown(text), translate=False)
 
 
 def register() -> None:
     """Add the entries to Blender's own menus."""
     bpy.types.TOPBAR_MT_file_export.append(draw_export)
     bpy.types.TOPBAR_MT_file_import.append(draw_import)
-    bpy.types.VIEW3D_MT_add.append(draw_add_menu)
 
 
 def unregister() -> None:
     """Remove the entries from Blender's own menus."""
-    bpy.types.VIEW3D_MT_add.remove(draw_add_menu)
     bpy.types.TOPBAR_MT_file_import.remove(draw_import)
     bpy.types.TOPBAR_MT_file_export.remove(draw_export)
 
 
-CLASSES = (
-    PE_MT_sensors_of_maker,
-    PE_MT_add_sensor,
-    PE_MT_add,
-    PE_PT_main,
-)
+CLASSES = (PE_PT_main,)
 
 EXPORT_CLASSES = (PE_PT_export,)  # below all other panels

@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 import bpy
 
+from ..language import draw_label, shown
 from ..operators import reference_label
 
 UILayout: TypeAlias = bpy.types.UILayout
@@ -24,7 +25,7 @@ class PE_PT_view(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
-        self.layout.label(text="Perception")
+        draw_label(self.layout, "Perception")
         column = self.layout.column()
         column.active = settings.show_overlay
         draw_layers(column, settings)
@@ -73,7 +74,9 @@ def _ground_colors(layout: UILayout, settings: OverlaySettings) -> None:
     row = layout.row(align=True)
     row.prop(view, "ground_difference", toggle=True)
     if view.ground_difference:
-        row.menu("PE_MT_live_against", text=reference_label(settings.id_data), translate=False)
+        row.menu(
+            "PE_MT_live_against", text=shown(reference_label(settings.id_data)), translate=False
+        )
 
 
 def _blind(layout: UILayout, settings: OverlaySettings) -> None:

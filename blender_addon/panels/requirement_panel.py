@@ -4,8 +4,19 @@ from __future__ import annotations
 
 import bpy
 
-from ..operators import ShownVerdict, shown_verdicts
-from .layout import Tab, columns, draw_properties, draw_sentence
+from ..language import draw_label, filled
+from ..operators import ShownSource, ShownVerdict, shown_verdicts, source_of
+from ..properties.requirement_fields import (
+    AREA,
+    BODIES_ASKED,
+    OF_GROUND,
+    OWN,
+    RING,
+    SEVERAL,
+)
+from .layout import Tab, columns, draw_list, draw_properties, draw_sentence
+
+ADD_REMOVE = ("pe.add_requirement", "pe.remove_requirement")
 
 ICONS = {True: "CHECKMARK", False: "CANCEL", None: "QUESTION"}
 """By what is known of a requirement: met, not met, not checked."""
@@ -34,7 +45,7 @@ class PE_UL_requirements(bpy.types.UIList):
         name.alert = verdict is not None and verdict.met is False
         name.prop(item, "name", text="", emboss=False, icon=icon)
         margin.alignment = "RIGHT"
-        margin.label(text=text, translate=False)
+        draw_label(margin, text)
 
 
 def _short_margin(verdict: ShownVerdict | None) -> str:
@@ -61,22 +72,18 @@ class PE_PT_requirements(Tab, bpy.types.Panel):
         verdicts = shown_verdicts(context.scene).values()
         if not verdicts:
             return
-        met = sum(verdict.met is True for verdict in verdicts)
-        known = any(verdict.met is not None for verdict in verdicts)
-        text = f"{met} of {len(verdicts)} met" if known else str(len(verdicts))
-        self.layout.label(text=text, translate=False)  # visible also when closed
+        checked = [verdict.met for verdict in verdicts if verdict.met is not None]
+        met = sum(checked)
+        text = f"{met} of {len(checked)} met" if checked else str(len(verdicts))
+        draw_label(self.layout, text)  # visible also when closed
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, layout = context.scene.perception_entropy, self.layout
-        row = layout.row()
-        row.template_list(
-            *(PE_UL_requirements.__name__, "", settings, "requirements"),
-            *(settings, "requirement_index"),
-            rows=4,
-        )
-        buttons = row.column(align=True)
-        buttons.operator("pe.add_requirement", text="", icon="ADD")
-        buttons.operator("pe.remove_requirement", text="", icon="REMOVE")
+        names, operators = ("requirements", "requirement_index"), ADD_REMOVE
+        buttons = draw_list(layout, PE_UL_requirements, settings, names, operators, rows=5)
+        buttons.operator("pe.copy_requirement", text="", icon="DUPLICATE")
+        for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")):
+            buttons.operator("pe.move_requirement", text="", icon=icon).step = step
         if not settings.requirements:
             draw_sentence(layout, context, "Add a preset of a regulation or test, or an own zone")
             return
@@ -96,13 +103,102 @@ def draw_requirement(
         draw_sentence(layout, context, text, icon=ICONS[verdict.met])
     if row.problem:
         draw_sentence(layout, context, row.problem, icon="ERROR")
+    if (source := source_of(row)) is None:
+        draw_sentence(layout, context, "The stored table is damaged: remove the requirement")
+        return
+    _draw_source(layout, context, source)
+    draw_properties(layout, row, ("asks",))
+    if row.asks == BODIES_ASKED:
+        _draw_body(layout, row)
+    _draw_zone(layout, row)
+    _draw_criterion(layout, row)
+    draw_properties(layout, row, ("one_lost", "mounting", "states", "weathers"))
+
+
+def _draw_source(
+    layout: bpy.types.UILayout, context: bpy.types.Context, source: ShownSource
+) -> None:
+    """Draw what the requirement is after, and its source where that is opened."""
+    if not source.text:
+        return
+    header, inside = layout.panel("PE_requirement_source", default_closed=True)
+    if source.check:
+        after = filled("After {check}", check=source.check)  # a name: not translated
+        header.label(text=after, translate=False)
+    else:
+        draw_label(header, "Source")
+    if inside is not None:
+        draw_sentence(inside, context, source.text)
+
+
+def _draw_body(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+    """Draw which body stands at the samples, and the size of an own one."""
     draw_properties(layout, row, ("body",))
-    if row.x_from:
+    if row.body == SEVERAL:
+        draw_properties(layout, row, ("bodies",))
+    if row.body == OWN:
+        column = layout.column(align=True)
+        if row.body_mesh:
+            _draw_mesh_file(column, row)
+            draw_properties(column, row, ("body_up", "body_forward", "body_scale"))
+        else:
+            column.prop(row, "body_size")
+            draw_properties(layout, row, ("body_round",))
+            _draw_mesh_file(layout, row)
+        draw_properties(layout, row, ("body_low", "body_class", "body_name"))
+    draw_properties(layout, row, ("headings",))
+
+
+def _draw_mesh_file(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+    """Draw the mesh file with a button for the file browser.
+
+    A property of a file has such a button of its own, but bpy ends when one with callbacks is set.
+    """
+    line = layout.row(align=True)
+    draw_properties(line, row, ("body_mesh",))
+    line.operator("pe.open_body_mesh", text="", icon="FILEBROWSER")
+
+
+def _draw_zone(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+    """Draw the zone: its shape with the fields of it, and what is less often changed."""
+    draw_properties(layout, row, ("shape",))
+    if row.shape == AREA:
         for axis in "xy":
-            pair = layout.column(align=True)
-            pair.prop(row, f"{axis}_from")
-            pair.prop(row, f"{axis}_to")
-    draw_properties(layout, row, ("step", "sensors", "kinds", "one_lost", "mounting"))
+            _draw_pair(layout, row, axis)
+    elif row.shape == RING:
+        _draw_pair(layout, row, "ring")
+    else:
+        draw_properties(layout, row, ("corners",))
+    draw_properties(layout, row, ("step",))
+    _, inside = _section(layout, "PE_requirement_planes", "Height and Planes")
+    if inside is not None:
+        _draw_pair(inside, row, "z")
+        draw_properties(inside, row, ("below", "near_side", "eyes"))
+
+
+def _draw_criterion(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+    """Draw what has to be seen; 0 stands for what is not asked for."""
+    if row.asks != BODIES_ASKED:
+        draw_properties(layout, row, OF_GROUND)
+        return
+    draw_properties(layout, row, ("sensors", "kinds"))
+    _, inside = _section(layout, "PE_requirement_criterion", "Points, Pixels, Shares")
+    if inside is not None:
+        draw_properties(inside, row, ("of", "points", "pixels", "pixels_high"))
+        draw_properties(inside, row, ("per_degree", "share", "ap", "zone_share"))
+
+
+def _section(
+    layout: bpy.types.UILayout, name: str, title: str
+) -> tuple[bpy.types.UILayout, bpy.types.UILayout | None]:
+    header, inside = layout.panel(name, default_closed=True)
+    draw_label(header, title)
+    return header, inside
+
+
+def _draw_pair(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup, name: str) -> None:
+    pair = layout.column(align=True)
+    draw_properties(pair, row, (f"{name}_from", f"{name}_to"))
 
 
 CLASSES = (PE_UL_requirements, PE_PT_requirements)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..choices import BEFORE_MOVE, PINNED
+from ..language import draw_label, shown
 from ..operators import answer, live_lines, reference_label
 from .layout import BUTTON_PX, Tab, columns, draw_sentence, draw_stale_mark
 from .sensor_lists import draw_sensor_table
@@ -40,12 +41,12 @@ class PE_PT_live(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         name, menu = columns(self.layout, 0.4)
-        name.label(text="Compared With")
+        draw_label(name, "Compared With")
         label = reference_label(context.scene)
-        menu.menu(PE_MT_live_against.bl_idname, text=label, translate=False)
+        menu.menu(PE_MT_live_against.bl_idname, text=shown(label), translate=False)
         live = context.scene.perception_entropy.live
         name, field = columns(self.layout, 0.4)
-        name.label(text="Known Rig")
+        draw_label(name, "Known Rig")
         field.prop(live, "anchor", text="")
         self.layout.prop(live, "figures")
         for line in live_lines(context.scene):
@@ -68,6 +69,13 @@ class PE_PT_explain(Tab, bpy.types.Panel):
             lines.active = not settings.result_stale
             for line in settings.result_words.splitlines():
                 draw_sentence(lines, context, line[:1].upper() + line[1:], icon="DOT")
+        if settings.has_result and settings.result_sureness:
+            lines = layout.box().column(align=True)
+            lines.active = not settings.result_stale
+            draw_label(lines, "How sure the search is")
+            for line in settings.result_sureness.splitlines():
+                text = line.strip()
+                draw_sentence(lines, context, text[:1].upper() + text[1:], icon="DOT")
         if settings.has_result:
             draw_sensor_table(layout, context)
         if obj is not None and obj.perception_entropy.is_sensor:
@@ -141,12 +149,12 @@ def draw_part_row(
     """Draw a row of the table; figures are aligned to the right."""
     split = layout.split(factor=PART_SHARE if len(figures) == 2 else NARROW_PART_SHARE)
     split.active = not header
-    split.label(text=name, translate=False)
+    draw_label(split, name)
     row = split.row()
     for text in figures:
         cell = row.row()
         cell.alignment = "RIGHT"
-        cell.label(text=text, translate=False)
+        draw_label(cell, text)
 
 
 LIVE_CLASSES = (PE_MT_live_against, PE_PT_live)

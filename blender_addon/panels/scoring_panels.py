@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..choices import CUSTOM, FROM_BOXES, OBJECTS, REGIONS
+from ..language import draw_label, shown
 from ..operators import kind_label, own_fields
 from .layout import Tab, columns, draw_list, draw_properties, draw_sentence, draw_with_zero
 
@@ -46,7 +47,9 @@ class PE_PT_targets(Tab, bpy.types.Panel):
 
 def draw_chosen(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, name: str) -> None:
     """Draw the chosen entry of a menu: it is visible also when the panel is closed."""
-    layout.label(text=layout.enum_item_name(settings, name, getattr(settings, name)))
+    layout.label(
+        text=layout.enum_item_name(settings, name, getattr(settings, name)), translate=False
+    )
 
 
 class PE_UL_focus(bpy.types.UIList):
@@ -65,7 +68,7 @@ class PE_UL_focus(bpy.types.UIList):
         name, figures = columns(layout, 0.4)
         name.prop(item, "name", text="", emboss=False)
         region, factor = columns(figures, 0.61)
-        region.label(text=REGIONS[item.region].short, translate=False)
+        draw_label(region, REGIONS[item.region].short)
         factor.alignment = "RIGHT"
         factor.label(text=f"× {item.factor:g}", translate=False)
 
@@ -98,7 +101,7 @@ def draw_focus(layout: bpy.types.UILayout, focus: bpy.types.PropertyGroup) -> No
             pair = layout.column(align=True)
             pair.alert = low >= high
             label = focus.bl_rna.properties[name].name
-            pair.prop(focus, name, index=0, text=f"{label} From")
+            pair.prop(focus, name, index=0, text=shown(f"{label} From"), translate=False)
             pair.prop(focus, name, index=1, text="To")
     layout.column().prop(focus, "classes")
 
@@ -117,7 +120,7 @@ class PE_UL_own_sensors(bpy.types.UIList):
         _active_property: str,
     ) -> None:
         layout.prop(item, "name", text="", emboss=False, icon="ERROR" if item.problem else "NONE")
-        layout.label(text=kind_label(item.kind))
+        draw_label(layout, kind_label(item.kind))
 
 
 class PE_PT_advanced(Tab, bpy.types.Panel):
@@ -132,11 +135,11 @@ class PE_PT_advanced(Tab, bpy.types.Panel):
         draw_own_sensors(self.layout, context)
         draw_curves(self.layout, settings)
         column = self.layout.column()
-        column.label(text="Space and Voxels")
+        draw_label(column, "Space and Voxels")
         for name in ("space_x", "space_y", "space_z"):
             row = column.row(align=True)
             row.alert = getattr(settings, name)[0] >= getattr(settings, name)[1]
-            row.label(text=name[-1].upper())
+            row.label(text=name[-1].upper(), translate=False)
             row.prop(settings, name, index=0, text="")
             row.prop(settings, name, index=1, text="")
         draw_properties(column, settings, ("space_interval", "clearance"))
@@ -145,7 +148,7 @@ class PE_PT_advanced(Tab, bpy.types.Panel):
 def draw_own_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the file's own sensors, and the figures of the one that is selected."""
     settings = context.scene.perception_entropy
-    layout.label(text="Own Sensors")
+    draw_label(layout, "Own Sensors")
     row = layout.row()
     name = PE_UL_own_sensors.__name__
     row.template_list(name, "", settings, "own_sensors", settings, "own_index", rows=2)
@@ -161,12 +164,12 @@ def draw_own_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> 
 
 def draw_curves(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw the AP curve of each kind."""
-    layout.label(text="AP = a ln m + b")
+    draw_label(layout, "AP = a ln m + b")
     if not settings.curves:
         layout.operator("pe.own_curves")
     for curve in settings.curves:
         row = layout.row(align=True)
-        row.prop(curve, "own", text=kind_label(curve.name))
+        row.prop(curve, "own", text=shown(kind_label(curve.name)), translate=False)
         pair = row.row(align=True)
         pair.active = curve.own
         pair.prop(curve, "a")

@@ -5,7 +5,9 @@ from __future__ import annotations
 import bpy
 
 from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, OBJECTS, ON_SLOTS
+from ..language import shown
 from .layout import Tab, columns, draw_list, draw_properties, draw_with_zero
+from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_MATERIAL: "MATERIAL", BY_GROUP: "WPAINT_HLT"}
 SLOTS_ICON = "OUTLINER_COLLECTION"
@@ -45,7 +47,7 @@ class PE_UL_mounts(bpy.types.UIList):
         name.prop(item, "name", text="", emboss=False, icon=icon)
         what.alignment = "RIGHT"
         made = made_of(item)
-        what.label(text="" if made == item.name else made, translate=False)
+        what.label(text="" if made == item.name else shown(made), translate=False)
 
 
 def made_of(mount: bpy.types.PropertyGroup) -> str:
@@ -123,6 +125,29 @@ class PE_PT_constraints(Tab, bpy.types.Panel):
             draw_properties(layout, obj.perception_entropy, ("is_no_go", "is_rack"))
 
 
+class PE_PT_goals(Tab, bpy.types.Panel):
+    """When a search stops, from where it starts, and how its result is analysed"""
+
+    bl_idname = "PE_PT_goals"
+    bl_label = "Goals"
+    bl_parent_id = "PE_PT_search"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, layout = context.scene.perception_entropy, self.layout
+        draw_properties(layout, settings, ())
+        for name in ("stop_target", "stop_seconds", "stop_gain"):
+            draw_with_zero(layout, settings, name, "Off")
+        if settings.stop_gain:
+            layout.prop(settings, "stop_over")
+        draw_properties(layout, settings, ("start_variants", "sensitivity"))
+        layout.column(align=True).prop(settings, "front_objectives")
+        layout.prop(settings, "front_points")
+        layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
+        if settings.front and settings.front[0].figures:
+            draw_front(layout, settings, context)
+
+
 class PE_PT_tolerance(Tab, bpy.types.Panel):
     """What placements have to tolerate: mounting errors, or the loss of a sensor"""
 
@@ -143,4 +168,11 @@ class PE_PT_tolerance(Tab, bpy.types.Panel):
         row.prop(settings, "worst")
 
 
-CLASSES = (PE_PT_search, PE_UL_mounts, PE_PT_mounts, PE_PT_constraints, PE_PT_tolerance)
+CLASSES = (
+    PE_PT_search,
+    PE_UL_mounts,
+    PE_PT_mounts,
+    PE_PT_constraints,
+    PE_PT_tolerance,
+    PE_PT_goals,
+)

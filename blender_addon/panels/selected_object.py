@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..language import draw_label, shown
 from ..operators import holder_of
 from ..properties import AXIS_LABELS
 from .layout import Tab, draw_sentence
@@ -37,8 +38,11 @@ class PE_PT_sensor(Tab, bpy.types.Panel):
         layout.operator("pe.stand_upright", icon="ORIENTATION_GLOBAL")
         draw_mirror(layout, obj)
         draw_mounted(layout, settings)
-        layout.label(text=f"The search may change, for {obj.name}:")
-        draw_free(layout, settings)
+        draw_label(layout, f"The search may change, for {obj.name}:")
+        layout.prop(settings, "stays")
+        column = layout.column()
+        column.active = not settings.stays
+        draw_free(column, settings)
 
 
 def draw_pose(
@@ -58,7 +62,7 @@ def draw_pose(
                 any(locks) if obj.parent else locks[index]
             )  # its own frame is not the ground frame
             cell.enabled = not (holder or locked)
-            cell.prop(settings, name, index=index, text=text)
+            cell.prop(settings, name, index=index, text=shown(text), translate=False)
     if holder:
         draw_sentence(layout, context, f"Pose is fixed by {holder}", icon="LOCKED")
 
@@ -68,7 +72,7 @@ def draw_mirror(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
     row = layout.row(align=True)
     other = obj.perception_entropy.mirror_of
     if other:
-        row.label(text=f"Linked to {other}", icon="MOD_MIRROR", translate=False)
+        draw_label(row, f"Linked to {other}", "MOD_MIRROR")
         row.operator("pe.unlink_mirror", text="", icon="UNLINKED").name = obj.name
         return
     row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
@@ -82,15 +86,15 @@ def draw_free(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> 
     for index, label in enumerate(AXIS_LABELS):
         part = row.row(align=True)
         part.active = index >= len("xyz") or not settings.mount
-        part.prop(settings, "free", index=index, text=label, toggle=True)
+        part.prop(settings, "free", index=index, text=shown(label), translate=False, toggle=True)
 
 
 def draw_mounted(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw the mount of a sensor, and its rack."""
     split = layout.split(factor=0.4)
-    split.label(text="Mounted on")
+    draw_label(split, "Mounted on")
     mount_name = settings.mount or "Box of Coordinates"
-    split.operator_menu_enum("pe.mount_sensor", "mount", text=mount_name, translate=False)
+    split.operator_menu_enum("pe.mount_sensor", "mount", text=shown(mount_name), translate=False)
     layout.prop(settings, "rack")
 
 
@@ -102,8 +106,9 @@ def draw_bounds(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
             continue
         row = column.row(align=True)
         bounded = settings.bounded[index]
-        text = label if bounded else f"Bound {label}"
-        row.operator("pe.bound_axis", text=text, depress=bounded).axis = index
+        text = shown(label if bounded else f"Bound {label}")
+        button = row.operator("pe.bound_axis", text=text, depress=bounded, translate=False)
+        button.axis = index
         if bounded:
             pair = row.row(align=True)
             pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]
@@ -138,7 +143,7 @@ class PE_PT_own_curve(Tab, bpy.types.Panel):
         settings = context.active_object.perception_entropy
         column = self.layout.column()
         column.active = settings.own_curve
-        column.label(text="AP = a ln m + b")
+        draw_label(column, "AP = a ln m + b")
         row = column.row(align=True)
         row.prop(settings, "curve_a")
         row.prop(settings, "curve_b")
@@ -157,8 +162,9 @@ class PE_PT_part(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         obj = context.active_object
-        self.layout.label(text=obj.name, icon="OBJECT_DATA")
+        self.layout.label(text=obj.name, icon="OBJECT_DATA", translate=False)
         self.layout.prop(obj.perception_entropy, "see_through")
+        self.layout.prop(obj.perception_entropy, "cover_loss_db", text="Radar Cover [dB]")
 
 
 CLASSES = (

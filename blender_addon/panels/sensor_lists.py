@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..language import draw_label
 from ..operators import listed_sensors
 from .layout import draw_warning, letters_per_line, swatch
 
@@ -11,7 +12,8 @@ MIN_NAME_SHARE = 0.34
 """Smallest share of a row for the name."""
 BESIDE_LETTERS = 9
 """Width of switches and the figure in a row, in letters."""
-FIGURE_SHARE = 0.2
+FIGURE_SHARE = 0.26
+"""Room for a loss of two digits before the point: "10.37"."""
 
 
 def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -19,7 +21,7 @@ def draw_sensors(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     objects = listed_sensors(context.scene)
     box = layout.box().column(align=True)
     if not objects:
-        box.label(text="No sensors yet", icon="INFO")
+        draw_label(box, "No sensors yet", "INFO")
         return
     share = name_share(objects, letters_per_line(context) - BESIDE_LETTERS)
     draw_header(box, share)
@@ -49,10 +51,10 @@ def draw_header(layout: bpy.types.UILayout, share: float) -> None:
     for _ in range(3):
         row.label(text="", icon="BLANK1")
     name, model, figure = row_cells(row, share)
-    name.label(text="Sensor")
+    draw_label(name, "Sensor")
     if model is not None:
-        model.label(text="Model")
-    figure.label(text="Loss")
+        draw_label(model, "Model")
+    draw_label(figure, "Loss")
 
 
 def draw_sensor(
@@ -73,10 +75,12 @@ def draw_sensor(
     name, model, figure = row_cells(row, share)
     row.active = counts  # a hidden sensor is not scored
     active = obj == context.active_object
-    name.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
+    name.operator(
+        "pe.select_sensor", text=obj.name, depress=active, translate=False
+    ).name = obj.name
     if model is not None:
         model.label(text=settings.model, translate=False)
-    figure.label(text=loss_text(settings), translate=False)
+    draw_label(figure, loss_text(settings))
 
 
 def loss_text(settings: bpy.types.PropertyGroup) -> str:
@@ -108,14 +112,14 @@ HEADER = ("Sensor", "Loss", "Most in", "Occluded by")
 
 def draw_sensor_table(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw loss, where it is largest, and what occludes each sensor of the last result."""
-    layout.label(text="Loss: rise of entropy without it, nats")
+    draw_label(layout, "Loss: rise of entropy without it, nats")
     table = layout.box().column(align=True)
     table.active = not context.scene.perception_entropy.result_stale
     wide = letters_per_line(context) >= WIDE_LETTERS
     header = _cells(table, wide)
     for cell, text in zip(header, HEADER, strict=False):
         cell.active = False
-        cell.label(text=text)
+        draw_label(cell, text)
     for number, obj in enumerate(listed_sensors(context.scene)):
         _draw_row(table, obj, wide, number, active=obj == context.active_object)
 
@@ -126,18 +130,20 @@ def _draw_row(
     settings = obj.perception_entropy
     name, loss, where, *rest = _cells(layout, wide)
     name.label(text="", icon_value=swatch(number))
-    name.operator("pe.select_sensor", text=obj.name, depress=active).name = obj.name
+    name.operator(
+        "pe.select_sensor", text=obj.name, depress=active, translate=False
+    ).name = obj.name
     if not settings.has_result:
-        loss.label(text="not scored")
+        draw_label(loss, "not scored")
         return
     loss.label(text=settings.loss_text or NO_FIGURE, translate=False)
-    where.label(text=settings.loss_where or NO_FIGURE, translate=False)
+    draw_label(where, settings.loss_where or NO_FIGURE)
     if wide:
         _draw_parts(rest[0], settings)
     elif settings.stopped_parts:
         below = layout.row(align=True)
         below.label(text="", icon="BLANK1")
-        below.label(text="Occluded by")
+        draw_label(below, "Occluded by")
         _draw_parts(below, settings, 1)
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import bpy
 
+from ..language import draw_label, shown
 from ..operators import known_rigs
-from .layout import Tab, columns, draw_list, draw_properties, draw_with_zero
+from .layout import Tab, columns, draw_list, draw_properties, draw_sentence, draw_with_zero
 
 
 class PE_UL_variants(bpy.types.UIList):
@@ -105,7 +106,7 @@ def draw_state(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) ->
     update.operator("pe.update_variant", text="Update")
     row = layout.row(align=True)
     row.operator("pe.compare_variants", icon="MOD_ARRAY")
-    row.menu(PE_MT_known_rigs.bl_idname, icon="AUTO", text="Add Rig")
+    row.menu(PE_MT_known_rigs.bl_idname, icon="AUTO", text=shown("Add Rig"), translate=False)
 
 
 class PE_PT_selection(Tab, bpy.types.Panel):
@@ -121,11 +122,11 @@ class PE_PT_selection(Tab, bpy.types.Panel):
         if obj is not None and obj.perception_entropy.is_sensor:
             draw_options(layout, obj)
         else:
-            layout.label(text="Select a sensor to choose models for it", icon="INFO")
+            draw_label(layout, "Select a sensor to choose models for it", "INFO")
         draw_limits(layout.column(), settings)
         layout.operator("pe.choose_sensors", icon="VIEWZOOM")
         if settings.front:
-            draw_front(layout, settings)
+            draw_front(layout, settings, context)
 
 
 def draw_options(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
@@ -150,16 +151,34 @@ def draw_limits(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
         draw_with_zero(layout, settings, name, "No Limit")
 
 
-def draw_front(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def draw_front(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, context: bpy.types.Context
+) -> None:
     """Draw the Pareto front: price, entropy and name, with a button for each design's variant."""
     column = layout.box().column(align=True)
+    if settings.front[0].figures:
+        draw_front_of_objectives(column, settings, context)
+        return
     _draw_design(column.row(), "BLANK1", (settings.currency or "Price", "Entropy", "Design"))
     for row in settings.front:
         icon = "RADIOBUT_ON" if row.key == settings.variant_key else "RADIOBUT_OFF"
         line = column.row()
         figures = (f"{row.price:,.7g}", f"{row.entropy:.2f}", row.name)
         _draw_design(line, icon, figures, row.key)
-    column.label(text=settings.front_told, translate=False)
+    draw_label(column, settings.front_told)
+
+
+def draw_front_of_objectives(
+    column: bpy.types.UILayout, settings: bpy.types.PropertyGroup, context: bpy.types.Context
+) -> None:
+    """Draw a front of several objectives: two lines a design, its name and its figures."""
+    for row in settings.front:
+        icon = "RADIOBUT_ON" if row.key == settings.variant_key else "RADIOBUT_OFF"
+        line = column.row()
+        line.operator("pe.switch_variant", text="", icon=icon, emboss=False).key = row.key
+        line.label(text=row.name, translate=False)
+        draw_sentence(column, context, row.figures, icon="BLANK1")
+    draw_label(column, settings.front_told)
 
 
 def _draw_design(
@@ -175,8 +194,8 @@ def _draw_design(
     for text in texts[:2]:
         cell = figures.row()
         cell.alignment = "RIGHT"
-        cell.label(text=text, translate=False)
-    name.label(text=texts[2], translate=False)
+        draw_label(cell, text)
+    draw_label(name, texts[2])
 
 
 CLASSES = (

@@ -10,6 +10,7 @@ from bpy.props import PointerProperty
 
 from ..sensor_kinds import DEFAULT_MODEL
 from .callbacks import model_suggestions
+from .condition import PE_State, PE_Weather
 from .list_rows import (
     DEFAULT_REGION,
     PE_CurveSettings,
@@ -50,6 +51,8 @@ CLASSES = (
     PE_MountSettings,
     PE_SensorOption,
     PE_Requirement,
+    PE_State,
+    PE_Weather,
     PE_FrontRow,
     PE_VariantSensor,
     PE_Variant,

@@ -63,3 +63,16 @@ def model_suggestions(
     """Return the catalogue's names with what they are; Blender filters by what was typed."""
     labels = {n: kind.label for kind in kinds.KINDS.values() for n in catalog.names(kind.name)}
     return [(name, labels[name]) for name in catalog.names() if name in labels]
+
+
+_kind_items: list[tuple[str, str, str, int]] = []
+"""What the menu lists: Blender reads the texts after the function that made them returned."""
+
+
+def kinds_to_add(
+    _settings: bpy.types.PropertyGroup, _context: bpy.types.Context | None
+) -> list[tuple[str, str, str, int]]:
+    """Return the kinds of sensors that the catalogue has, as items of a Blender menu."""
+    listed = [kind for kind in kinds.KINDS.values() if catalog.names(kind.name)]
+    _kind_items[:] = [(kind.name, kind.label, "", n) for n, kind in enumerate(listed)]
+    return _kind_items

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -16,92 +17,143 @@ from bpy.props import (
 )
 
 from .. import bridge, signals
-from ..engine import requirements
+from ..engine import kinds, requirements, studies
+from . import requirement_fields as fields
 from .callbacks import changed
 
-OTHER_BODIES = "other"
 BODIES = (
     *(
-        (name, name.replace("_", " ").capitalize(), body.source, number)
-        for number, (name, body) in enumerate(requirements.BODIES.items())
+        (name, name.replace("_", " ").capitalize(), b.source)
+        for name, b in requirements.BODIES.items()
     ),
-    (OTHER_BODIES, "Several or Own", "As the study file says", len(requirements.BODIES)),
+    (fields.SEVERAL, "Several", "Each of them has to be seen, one at a time"),
+    (fields.OWN, "Own Body", "A box or a cylinder of a size of your own, or a mesh of a file"),
 )
 """Test bodies of the menu."""
-Getter = Callable[[bpy.types.PropertyGroup], Any]
-Setter = Callable[[bpy.types.PropertyGroup, Any], None]
+SHAPES = (
+    ("area", "Rectangle", "From and to along x and y"),
+    ("polygon", "Polygon", "An area with three corners or more"),
+    ("ring", "Ring", "All ground at a distance from the outline of the vehicle's body"),
+    ("path", "Path", "A line along which a body moves"),
+    ("spots", "Spots", "Single places"),
+)
+ASKS = (
+    ("bodies", "Test Bodies", "A body stands at each sample of the zone, and has to be seen"),
+    ("ground", "Blind Ground", "Blind ground in the zone is limited"),
+)
+AXES = (
+    (fields.AS_IN_FILE, "As in the File", "As the file states it, or as is usual for its format"),
+    *((axis, axis.upper(), f"The file's {axis.upper()}") for axis in fields.AXIS_NAMES),
+)
+SIDES = (
+    ("right", "Right", "As in countries that drive on the right"),
+    ("left", "Left", "As in the UK"),
+)
+ZONE, CRITERION = requirements.Zone, requirements.Criterion
+PLACE = "A number [m], or a plane with an offset outwards: front + 0.8, near, rear_axle, 25 %"
+EditedRow = bpy.types.PropertyGroup
+Getter = Callable[[EditedRow], Any]
+Change = Callable[[dict[str, Any], Any], None]
 
 
-def _edit(row: bpy.types.PropertyGroup, *keys: str, value: Any) -> None:
-    """Write a value into a row's table, at keys one below the other."""
+def _view(get: Callable[[dict[str, Any]], Any], put: Change) -> dict[str, Any]:
+    """Return the callbacks of a property: read from a row's full table, and changed in it."""
 
-    def change(table: dict[str, Any]) -> None:
-        for key in keys[:-1]:
-            table = table.setdefault(key, {})
-        table[keys[-1]] = value
+    def getter(row: EditedRow) -> Any:
+        return get(bridge.full_table(row))
 
-    bridge.edit_row(row, change)
-    signals.study_changed.emit()
+    def setter(row: EditedRow, value: Any) -> None:
+        bridge.edit_row(row, lambda table: put(table, value))
+        signals.study_changed.emit()
 
-
-def _number(section: str, key: str, default: float, *, whole: bool = False) -> dict[str, Any]:
-    """Return the callbacks of a number in a section of the table."""
-
-    def get(row: bpy.types.PropertyGroup) -> float:
-        value = bridge.full_table(row).get(section, {}).get(key)
-        return default if value is None else value
-
-    def put(row: bpy.types.PropertyGroup, value: float) -> None:
-        _edit(row, section, key, value=int(value) if whole else round(value, 6))
-
-    return {"get": get, "set": put}
+    return {"get": getter, "set": setter}
 
 
-def _switch(section: str, key: str) -> dict[str, Any]:
-    """Return the callbacks of a switch in a section of the table."""
-
-    def get(row: bpy.types.PropertyGroup) -> bool:
-        return bool(bridge.full_table(row).get(section, {}).get(key))
-
-    def put(row: bpy.types.PropertyGroup, value: bool) -> None:
-        _edit(row, section, key, value=bool(value))
-
-    return {"get": get, "set": put}
+def _choice(
+    items: tuple[tuple[str, str, str], ...], get: Callable[..., str], put: Change
+) -> dict[str, Any]:
+    """Return items and callbacks of a menu: Blender hands over the numbers of its entries."""
+    names = [item[0] for item in items]
+    view = _view(lambda t: names.index(get(t)), lambda t, number: put(t, names[number]))
+    return {"items": items, **view}
 
 
-def _edge(axis: str, end: int) -> dict[str, Any]:
-    """Return the callbacks of an end of a rectangular zone: "front + 0.8", or a number."""
+def _key(
+    section: str, key: str, default: Any, *, none: bool = False, whole: bool = False
+) -> dict[str, Any]:
+    """Return the callbacks of a value of a section; with `none`, the default removes the key."""
 
-    def get(row: bpy.types.PropertyGroup) -> str:
-        ends = bridge.full_table(row).get("zone", {}).get(axis)
-        return "" if ends is None else str(ends[end])
+    def put(table: dict[str, Any], value: Any) -> None:
+        if isinstance(value, float):
+            value = int(value) if whole else round(value, 6)
+        if none and value == default:
+            table.get(section, {}).pop(key, None)
+        else:
+            table.setdefault(section, {})[key] = value
 
-    def put(row: bpy.types.PropertyGroup, value: str) -> None:
-        ends = list(bridge.full_table(row).get("zone", {}).get(axis) or ("0", "0"))
-        ends[end] = _place(value)
-        _edit(row, "zone", axis, value=ends)
-
-    return {"get": get, "set": put}
-
-
-def _place(text: str) -> str | float:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    return _view(lambda t: t.get(section, {}).get(key, default), put)
 
 
-def _body(row: bpy.types.PropertyGroup) -> int:
-    value = bridge.full_table(row).get("body")
-    names = [item[0] for item in BODIES]
-    alone = value[0] if isinstance(value, list) and len(value) == 1 else value
-    return names.index(alone if isinstance(alone, str) and alone in names else OTHER_BODIES)
+def _setting(cls: type, section: str, key: str, *, none: bool = True) -> dict[str, Any]:
+    """Return description, limits and callbacks of a number that is declared with its dataclass."""
+    declared = studies.settings_of(cls)[key]
+    whole = isinstance(declared.default, int) and not isinstance(declared.default, bool)
+    default = declared.default if declared.default is not None else 0.0
+    view = _key(section, key, default, none=none, whole=whole)
+    return {"description": declared.text, "min": 1 if whole else 0.0, **view}
 
 
-def _set_body(row: bpy.types.PropertyGroup, number: int) -> None:
-    name = BODIES[number][0]
-    if name != OTHER_BODIES:
-        _edit(row, "body", value=name)
+def _pair(section: str, key: str, end: int, usual: tuple[Any, Any]) -> dict[str, Any]:
+    """Return the callbacks of one of the two ends of a range."""
+
+    def put(table: dict[str, Any], value: Any) -> None:
+        ends = list(table.setdefault(section, {}).get(key) or usual)
+        ends[end] = fields.place_of(value) if isinstance(value, str) else round(value, 6)
+        table[section][key] = ends
+
+    def get(table: dict[str, Any]) -> Any:
+        ends = table.get(section, {}).get(key)
+        missing = "" if isinstance(usual[end], str) else usual[end]
+        return (
+            missing if ends is None else str(ends[end]) if isinstance(missing, str) else ends[end]
+        )
+
+    return _view(get, put)
+
+
+def _shown_file(table: dict[str, Any]) -> str:
+    """Return the mesh file as Blender writes paths: //child.glb is beside the Blender file."""
+    file = fields.mesh_file(table)
+    return file if not file or Path(file).is_absolute() else f"//{file}"
+
+
+def _set_file(table: dict[str, Any], path: str) -> None:
+    """Set the mesh file by a path of Blender: a study names relative files without //."""
+    fields.set_mesh_file(table, path.strip().replace("\\", "/").removeprefix("//"))
+
+
+def _kind_items(
+    _self: EditedRow, _context: bpy.types.Context | None
+) -> list[tuple[str, str, str, str, int]]:
+    return _kinds
+
+
+_kinds = [
+    (name, kind.label, f"Sensors of the kind {kind.label} count", "NONE", 1 << number)
+    for number, (name, kind) in enumerate(kinds.KINDS.items())
+]
+
+
+def _kind_flags(table: dict[str, Any]) -> int:
+    chosen = table.get("criterion", {}).get("of", ())
+    return sum(item[4] for item in _kinds if item[0] in chosen)
+
+
+def _set_kind_flags(table: dict[str, Any], flags: int) -> None:
+    chosen = [item[0] for item in _kinds if item[4] & flags]
+    table.setdefault("criterion", {})["of"] = chosen
+    if not chosen:
+        del table["criterion"]["of"]
 
 
 class PE_Requirement(bpy.types.PropertyGroup):
@@ -112,56 +164,187 @@ class PE_Requirement(bpy.types.PropertyGroup):
     )
     table: StringProperty(name="Table", description="The requirement as JSON", update=changed)
     problem: StringProperty(name="Problem", description="Why a change was not made")
+    asks: EnumProperty(
+        name="Asks For",
+        description="What is asked for in the zone",
+        **_choice(ASKS, fields.asked_for, fields.ask_for),
+    )
     body: EnumProperty(
-        items=BODIES,
         name="Body",
         description="What stands at each sample of the zone",
-        get=_body,
-        set=_set_body,
+        **_choice(BODIES, fields.body_choice, fields.choose_body),
     )
-    x_from: StringProperty(
-        name="X From",
-        description="A number [m], or a plane with an offset outwards: front + 0.8, rear_axle",
-        **_edge("x", 0),
+    bodies: StringProperty(
+        name="Bodies",
+        description="Names of test bodies: child, adult, cyclist",
+        **_view(fields.bodies_text, fields.set_bodies),
     )
-    x_to: StringProperty(name="To", description="As X From", **_edge("x", 1))
-    y_from: StringProperty(
-        name="Y From",
-        description="A number [m], or a plane with an offset outwards: left + 1, near, right",
-        **_edge("y", 0),
+    body_size: FloatVectorProperty(
+        name="Size",
+        description="Length along the heading, width and height",
+        size=3,
+        min=0.001,
+        unit="LENGTH",
+        **_view(fields.own_size, fields.set_own_size),
     )
-    y_to: StringProperty(name="To", description="As Y From", **_edge("y", 1))
+    body_round: BoolProperty(
+        name="Round",
+        description="An upright cylinder as wide as the body is long",
+        **_view(fields.own_is_round, fields.set_own_round),
+    )
+    body_low: FloatProperty(
+        name="Lower Edge",
+        description="Height of the lower edge above the ground",
+        min=0.0,
+        unit="LENGTH",
+        **_view(fields.own_low, fields.set_own_low),
+    )
+    body_mesh: StringProperty(
+        name="Mesh File",
+        description="A closed mesh (.glb, .stl, .obj, .ply, .npz) in place of a box; empty: none",
+        **_view(_shown_file, _set_file),
+    )
+    body_up: EnumProperty(
+        name="Up",
+        description="The file's axis that points up",
+        **_choice(AXES, *fields.own_text("up", fields.AS_IN_FILE)),
+    )
+    body_forward: EnumProperty(
+        name="Forward",
+        description="The file's axis that points along the heading of the body",
+        **_choice(AXES, *fields.own_text("forward", fields.AS_IN_FILE)),
+    )
+    body_scale: FloatProperty(
+        name="Scale",
+        description="Factor for lengths, applied after the file's own unit",
+        min=1e-6,
+        max=1e6,
+        precision=4,
+        **_view(fields.mesh_scale, fields.set_mesh_scale),
+    )
+    body_class: StringProperty(
+        name="Class",
+        description="Class of objects whose AP curve holds for the body; empty: none",
+        **_view(*fields.own_text("class", "")),
+    )
+    body_name: StringProperty(
+        name="Body Name",
+        description="What the body is called in a verdict",
+        **_view(*fields.own_text("name", fields.OWN)),
+    )
+    headings: StringProperty(
+        name="Headings",
+        description="Headings at which bodies stand, in degrees: 0, 90; empty: those of the body",
+        **_view(fields.headings_text, fields.set_headings),
+    )
+    shape: EnumProperty(
+        name="Zone",
+        description="Shape of the zone",
+        **_choice(SHAPES, fields.shape_of, fields.reshape),
+    )
+    x_from: StringProperty(name="X From", description=PLACE, **_pair("zone", "x", 0, ("0", "1")))
+    x_to: StringProperty(name="To", description="As X From", **_pair("zone", "x", 1, ("0", "1")))
+    y_from: StringProperty(name="Y From", description=PLACE, **_pair("zone", "y", 0, ("0", "1")))
+    y_to: StringProperty(name="To", description="As Y From", **_pair("zone", "y", 1, ("0", "1")))
+    corners: StringProperty(
+        name="Corners",
+        description="x, y of each corner or spot, separated by semicolons: front + 1, left; "
+        "front + 5, left + 1",
+        **_view(fields.corners_text, fields.set_corners),
+    )
+    ring_from: FloatProperty(
+        name="Ring From",
+        description="Smallest distance from the outline of the vehicle's body",
+        min=0.0,
+        unit="LENGTH",
+        **_pair("zone", "ring", 0, (0.0, 1.0)),
+    )
+    ring_to: FloatProperty(
+        name="To",
+        description="Largest distance from the outline",
+        min=0.0,
+        unit="LENGTH",
+        **_pair("zone", "ring", 1, (0.0, 1.0)),
+    )
+    z_from: FloatProperty(
+        name="Height From",
+        description="Lowest height of the foot of the body above the ground",
+        min=0.0,
+        unit="LENGTH",
+        **_pair("zone", "z", 0, (0.0, 0.0)),
+    )
+    z_to: FloatProperty(
+        name="To",
+        description="Greatest height of the foot of the body; sampled at the step",
+        min=0.0,
+        unit="LENGTH",
+        **_pair("zone", "z", 1, (0.0, 0.0)),
+    )
     step: FloatProperty(
         name="Step",
-        description="Largest distance of two samples",
-        min=0.02,
-        soft_max=2.0,
         unit="LENGTH",
-        **_number("zone", "step", requirements.Zone.__dataclass_fields__["step"].default),
+        **_setting(ZONE, "zone", "step") | {"min": 0.02, "soft_max": 2.0},
     )
-    sensors: IntProperty(
-        name="Sensors",
-        description="How many sensors have to see each body",
-        min=1,
-        soft_max=6,
-        **_number("criterion", "sensors", 1, whole=True),
+    below: FloatProperty(name="Planes Below", unit="LENGTH", **_setting(ZONE, "zone", "below"))
+    near_side: EnumProperty(
+        name="Near Side",
+        description="The side of the kerb",
+        **_choice(SIDES, *fields.NEAR_SIDE),
     )
-    kinds: IntProperty(
-        name="Kinds",
-        description="Of how many kinds these sensors have to be",
-        min=1,
-        soft_max=3,
-        **_number("criterion", "kinds", 1, whole=True),
+    eyes: StringProperty(
+        name="Driver's Eyes X",
+        description="x of the driver's eyes [m], for the plane eyes; empty: not known",
+        **_view(fields.eyes_text, fields.set_eyes),
+    )
+    sensors: IntProperty(name="Sensors", soft_max=6, **_setting(CRITERION, "criterion", "sensors"))
+    kinds: IntProperty(name="Kinds", soft_max=3, **_setting(CRITERION, "criterion", "kinds"))
+    of: EnumProperty(
+        name="Only",
+        description="Only these kinds of sensors count; none chosen: all",
+        items=_kind_items,
+        options={"ENUM_FLAG"},
+        **_view(_kind_flags, _set_kind_flags),
+    )
+    points: IntProperty(name="Points", **_setting(CRITERION, "criterion", "points"))
+    pixels: FloatProperty(name="Pixels", **_setting(CRITERION, "criterion", "pixels"))
+    pixels_high: FloatProperty(
+        name="Pixels in Height", **_setting(CRITERION, "criterion", "pixels_high")
+    )
+    per_degree: FloatProperty(name="Per Degree", **_setting(CRITERION, "criterion", "per_degree"))
+    share: FloatProperty(name="Visible Share", max=1.0, **_setting(CRITERION, "criterion", "share"))
+    ap: FloatProperty(name="AP", max=1.0, **_setting(CRITERION, "criterion", "ap"))
+    zone_share: FloatProperty(
+        name="Share of Zone", max=1.0, **_setting(CRITERION, "criterion", "zone_share")
+    )
+    blind_m2: FloatProperty(
+        name="Blind Area", unit="AREA", **_setting(CRITERION, "criterion", "blind_m2", none=False)
+    )
+    blind_out: FloatProperty(
+        name="Blind At Most Out", unit="LENGTH", **_setting(CRITERION, "criterion", "blind_out")
+    )
+    blind_height: FloatProperty(
+        name="Height", unit="LENGTH", **_setting(CRITERION, "criterion", "blind_height")
     )
     one_lost: BoolProperty(
         name="One Sensor Lost",
         description="It has to be met without any one of the sensors, too",
-        **_switch("under", "one_lost"),
+        **_key("under", "one_lost", False, none=True),
     )
     mounting: BoolProperty(
         name="Mounting Errors",
         description="It has to be met with the mounting errors of the search, too",
-        **_switch("under", "mounting"),
+        **_key("under", "mounting", False, none=True),
+    )
+    states: StringProperty(
+        name="States",
+        description="It has to be met in these states of the vehicle, too: names separated by "
+        "commas; *: all",
+        **_view(*fields.names_under("states")),
+    )
+    weathers: StringProperty(
+        name="Weathers",
+        description="It has to be met in these weathers, too: names separated by commas; *: all",
+        **_view(*fields.names_under("weathers")),
     )
     met: IntProperty(name="Met", description="-1 unknown, 0 not met, 1 met", default=-1)
     verdict: StringProperty(name="Verdict", description="The last verdict, in words")

@@ -160,5 +160,8 @@ class PE_FrontRow(bpy.types.PropertyGroup):
     """A design of the Pareto front of price and entropy, with the key of its variant."""
 
     price: FloatProperty(name="Price", description="Price of all chosen sensors")
+    figures: StringProperty(
+        name="Figures", description="Its objectives, on a front of several objectives"
+    )
     entropy: FloatProperty(name="Entropy", description="Perception entropy in nats, for display")
     key: IntProperty(name="Key", description="Key of the design's variant")

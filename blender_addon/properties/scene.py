@@ -20,7 +20,8 @@ from bpy.props import (
 
 from ..choices import PRIORS
 from ..engine import search, studies
-from .callbacks import changed, redraw, requirement_chosen
+from .callbacks import changed, kinds_to_add, redraw, requirement_chosen
+from .condition import PE_State, PE_Weather
 from .list_rows import PE_CurveSettings, PE_FocusSettings, PE_MountSettings, PE_OwnSensorSettings
 from .requirement import PE_Requirement
 from .results import PE_FrontRow, PE_ResultPart, PE_Variant, PE_Warning
@@ -51,10 +52,9 @@ def property_of(key: str, setting: studies.Setting) -> Any:
         return _made(BoolProperty, options)
     if isinstance(rule, studies.Pair):
         return _made(FloatVectorProperty, {**options, "size": 2, "unit": _unit(rule.rule)})
-    low, high = (
-        0 if setting.is_optional else rule.minimum if panel.min is None else panel.min,
-        rule.maximum if panel.max is None else panel.max,
-    )
+    least = 0 if setting.is_optional else rule.minimum
+    low = least if panel.min is None else panel.min
+    high = rule.maximum if panel.max is None else panel.max
     if isinstance(rule, studies.Whole):
         high = LARGEST_INT if high is None else min(high, LARGEST_INT)
         return _made(IntProperty, {**options, "min": low, "max": high})
@@ -97,6 +97,12 @@ METHODS = tuple(
 )
 """Of searches; a file holds a number that stays a method's whatever others there are."""
 
+FRONT_LABELS = {
+    name: (label[:1].upper() + label[1:], unit)
+    for name, (label, unit) in search.Front.KNOWN.items()
+}
+"""Labels and units of what may be on a Pareto front."""
+
 DEFAULT_BEAM_LIMIT = 5_000
 
 DEFAULT_BEAM_LENGTH_M = 8.0
@@ -112,6 +118,11 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         name="Version",
         description="Version of the stored settings; 0: older than versions, or not saved yet",
         min=0,
+    )
+    kind_to_add: EnumProperty(
+        items=kinds_to_add,
+        name="Kind",
+        description="Kind of sensor that Add and Place put on the vehicle",
     )
     vehicle: PointerProperty(
         type=bpy.types.Collection,
@@ -171,6 +182,32 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         min=0,
         update=requirement_chosen,
     )
+    states: CollectionProperty(
+        type=PE_State, name="States", description="States of the vehicle: frames of the scene"
+    )
+    state_index: IntProperty(name="State", description="Row of the list", min=0)
+    drawn_frame: IntProperty(
+        name="Drawn at Frame",
+        description="Frame at which the vehicle is as it is drawn: scores and files are of it",
+        default=1,
+        min=0,
+    )
+    weathers: CollectionProperty(
+        type=PE_Weather, name="Weathers", description="Weathers in which the rig is scored, too"
+    )
+    weather_index: IntProperty(name="Weather", description="Row of the list", min=0)
+    search_conditions: EnumProperty(
+        items=(
+            ("none", "As Drawn", "A search minimizes the score as drawn, in clear air"),
+            ("mean", "Mean of Conditions", "A search minimizes the mean by weights"),
+            ("worst", "Worst Condition", "A search minimizes the worst of the conditions"),
+        ),
+        name="Search For",
+        description="What a search minimizes where there are states or weathers",
+    )
+    result_conditions: StringProperty(
+        name="Conditions", description="Scores of the last run by condition"
+    )
     keep_requirements: BoolProperty(
         name="Keep in Searches",
         description="Placements that meet all requirements are better than those that do not; "
@@ -181,6 +218,35 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
         name="Method",
         description="Method of the search",
         default=search.DEFAULT_METHOD,
+    )
+    sensitivity: EnumProperty(
+        items=(
+            ("auto", "As Far As Cheap", "As much as an eighth of the search's evaluations allow"),
+            ("full", "Full", "Also after a short search"),
+            ("off", "Off", "The result is not analysed"),
+        ),
+        name="Analyse",
+        description="How sure a search is: what 1 cm and 1 degree cost, which constraints are "
+        "active, which other optima there are",
+        default="auto",
+    )
+    start_variants: BoolProperty(
+        name="Start from Variants",
+        description="Searches also start from all other variants; all starts share the budget",
+    )
+    start_poses: StringProperty(
+        name="Further Starts",
+        description="Placements of an imported study that searches also start from, as JSON",
+        options={"HIDDEN"},
+    )
+    front_objectives: EnumProperty(
+        items=tuple(
+            (name, label, f"{label} is on the front", 1 << number)
+            for number, (name, (label, _)) in enumerate(FRONT_LABELS.items())
+        ),
+        name="Objectives",
+        description="Two or more: the search looks for their Pareto front",
+        options={"ENUM_FLAG"},
     )
     mounting_errors: BoolProperty(
         name="Mounting Errors",
@@ -299,6 +365,10 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     result_sensor_lost: StringProperty(
         name="Sensor Lost",
         description="Mean rise of the entropy by the loss of one sensor, before and after",
+    )
+    result_sureness: StringProperty(
+        name="How Sure",
+        description="How sure the last search is of its result, one line each",
     )
     result_fragile: StringProperty(
         name="Fragile", description="Warning if the result is too sensitive to mounting errors"

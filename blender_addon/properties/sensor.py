@@ -197,6 +197,10 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
         name="Models",
         description="Models that a search may choose for this sensor",
     )
+    stays: BoolProperty(
+        name="Stays",
+        description="A search leaves this sensor where it is, and those that follow it",
+    )
     may_be_left_out: BoolProperty(
         name="May Be Left Out", description="A search may choose a design without this sensor"
     )
@@ -276,5 +280,14 @@ class PE_ObjectSettings(GroundPose, bpy.types.PropertyGroup):
     see_through: BoolProperty(
         name="Cameras See Through",
         description="Glass: cameras see through this object; it occludes LiDAR beams",
+        update=changed,
+    )
+    cover_loss_db: FloatProperty(
+        name="Radar Cover",
+        description="Radars measure through this object and lose so many decibels one way; 0: it "
+        "occludes them",
+        min=0.0,
+        max=100.0,
+        soft_max=10.0,
         update=changed,
     )

@@ -2,7 +2,7 @@
 
 from .files import decode_text, read_bytes, write_bytes
 from .memory import available_bytes, require_memory
-from .serialization import dump_json, dumps, load_toml
+from .serialization import dump_json, dumps
 from .table_reader import Table
 from .values import Name, Number
 
@@ -14,7 +14,6 @@ __all__ = [
     "decode_text",
     "dump_json",
     "dumps",
-    "load_toml",
     "read_bytes",
     "require_memory",
     "write_bytes",

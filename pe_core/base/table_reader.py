@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from .errors import InputError, shown
@@ -52,6 +53,16 @@ class Table:
         """Return an `InputError` about the value of a key."""
         return InputError(self.source, self.field(key), expected, found)
 
+    @contextmanager
+    def naming(self) -> Iterator[None]:
+        """Name this table in errors about what is made of it; errors about the file stay."""
+        try:
+            yield
+        except InputError as error:
+            if error.source == self.source:
+                raise
+            raise self.error(error.field, error.expected, error.found) from None
+
     def raw(self, key: str, default: Any = REQUIRED) -> Any:
         """Return the unchecked value of a key."""
         self._read.add(key)
@@ -70,11 +81,7 @@ class Table:
         return self._checked(key, default, lambda v: rule.checked(self.source, self.field(key), v))
 
     def text(
-        self,
-        key: str,
-        default: Any = REQUIRED,
-        choices: Sequence[str] = (),
-        rule: Name = A_TEXT,
+        self, key: str, default: Any = REQUIRED, choices: Sequence[str] = (), rule: Name = A_TEXT
     ) -> str:
         """Return a text that meets a rule, or one of the choices if these are given."""
         field = self.field(key)

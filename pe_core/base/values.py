@@ -192,12 +192,7 @@ def plain(value: Any) -> Any:
 
 
 def vector(
-    source: object,
-    field: str,
-    values: Any,
-    count: int,
-    rule: Number = FINITE,
-    more: str = "",
+    source: object, field: str, values: Any, count: int, rule: Number = FINITE, more: str = ""
 ) -> tuple[float, ...]:
     """Return `count` numbers that meet one rule, or raise one `InputError` for all of them.
 
@@ -213,12 +208,7 @@ def vector(
 
 
 def pair(
-    source: object,
-    field: str,
-    values: Any,
-    rule: Number = FINITE,
-    *,
-    same: bool = False,
+    source: object, field: str, values: Any, rule: Number = FINITE, *, same: bool = False
 ) -> tuple[float, float]:
     """Return two numbers, low < high (with `same`: low <= high), or raise `InputError`."""
     more = ", low before high"

@@ -17,7 +17,9 @@ from types import MappingProxyType
 from typing import Any
 
 from ..base.errors import InputError, shown
+from ..base.files import decode_text, read_bytes
 from ..base.read_only import read_only_data
+from ..base.serialization import load_toml
 from ..base.values import A_NAME, A_TEXT
 from ..scene.housing import Housing
 from ..scene.rig import Rig, Sensor, SensorModel
@@ -30,10 +32,13 @@ from .rigs import known_rig as known_rig
 from .rigs import known_rigs as known_rigs
 
 __all__ = [
+    "OTHER_LABELS",
+    "OWN",
     "Entry",
     "KnownRig",
     "KnownSensor",
     "add",
+    "add_file",
     "entries",
     "from_table",
     "housing",
@@ -52,7 +57,12 @@ PAPER_FILE = "paper.toml"
 """File with the paper's sensors, which come first in lists."""
 OWN = "own"
 """Replaces the file name for presets that a program has added."""
-OTHER_LABELS = {PAPER_FILE: "Paper", "cameras.toml": "Cameras", OWN: "Own"}
+OTHER_LABELS = {
+    PAPER_FILE: "Paper",
+    "cameras.toml": "Cameras",
+    "ultrasonic.toml": "Ultrasonic",
+    OWN: "Own",
+}
 """Labels of the files that do not belong to a maker."""
 COMMON_KEYS = frozenset({"kind", "source", "note", "housing"})
 
@@ -108,7 +118,7 @@ def matching(typed: str, kind: str | None = None) -> list[str]:
     return exact or containing
 
 
-def add(name: str, table: Mapping[str, Any]) -> None:
+def add(name: str, table: Mapping[str, Any], folder: Path | None = None) -> None:
     """Add a preset to the catalogue, until the program ends.
 
     Parameters
@@ -116,6 +126,8 @@ def add(name: str, table: Mapping[str, Any]) -> None:
     name : str
     table : mapping
         Table of the sensor, see `from_table`.
+    folder : Path, optional
+        Folder of the table's file of angles.
 
     Raises
     ------
@@ -124,8 +136,28 @@ def add(name: str, table: Mapping[str, Any]) -> None:
     """
     if name in entries():
         raise InputError("catalogue", "name", "a name used once", repr(name))
-    _loaded[name] = from_table(name, table)
+    _loaded[name] = from_table(name, table, folder)
     _added[name] = Entry(name, OWN, read_only_data(table))
+
+
+def add_file(path: Path) -> list[str]:
+    """Add the presets of a file, a table each by its name; return their names.
+
+    Raises
+    ------
+    InputError
+        When the file is no TOML, or a preset cannot be added; then none of them is.
+    """
+    tables, added = load_toml(path, "catalogue", decode_text(read_bytes(path))), []
+    try:
+        for name, table in tables.items():
+            add(name, table, path.parent)
+            added.append(name)
+    except InputError:
+        for name in added:
+            remove(name)
+        raise
+    return added
 
 
 def remove(name: str) -> None:

@@ -7,15 +7,18 @@ from .objects import Objects
 from .rig import Rig, Sensor
 from .vehicle import Vehicle
 from .vehicle_description import Reference, guessed_reference, vehicle_line
+from .vehicle_state import Motion, State
 
 __all__ = [
     "Housing",
+    "Motion",
     "Objects",
     "PerceptionSpace",
     "Pose",
     "Reference",
     "Rig",
     "Sensor",
+    "State",
     "Vehicle",
     "cuts_body",
     "guessed_reference",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +17,7 @@ from ..geometry.grids import PerceptionSpace, top_heights
 from ..geometry.poses import FARTHEST_M, cross, dot
 from ..geometry.raycast import Hits, VisibleTriangles
 from ..geometry.triangle_tree import TriangleTree
+from .radar_covers import checked_covers
 
 Floats = NDArray[np.float64]
 
@@ -42,6 +43,8 @@ class Vehicle:
     clearance : float
         A sensor nearer to the surface than this, on either side, is evaluated at this distance
         outside the surface [m]. So a flush-mounted sensor is not occluded by its own surface.
+    covers : mapping of str to float
+        Parts that radars measure through, and their loss one way [dB]. They occlude all others.
 
     Raises
     ------
@@ -61,6 +64,7 @@ class Vehicle:
         Panel("clearance", "Clearance", max=0.99),
         scored=True,
     )
+    covers: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         triangles = _checked_triangles(self.triangles)
@@ -76,6 +80,7 @@ class Vehicle:
         for name in self.glass:
             if name not in names:
                 raise InputError("vehicle", "glass", f"one of {', '.join(names)}", shown(name))
+        object.__setattr__(self, "covers", checked_covers(self.covers, names))
         check_settings(self, "vehicle")
         for key, value in (("triangles", triangles), ("parts", parts), ("part_names", names)):
             object.__setattr__(self, key, value)
@@ -83,8 +88,8 @@ class Vehicle:
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle without cached properties."""
-        fields = self.triangles, self.parts, self.part_names, self.glass, self.clearance
-        return type(self), fields
+        own = self.triangles, self.parts, self.part_names, self.glass, self.clearance, self.covers
+        return type(self), own
 
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:

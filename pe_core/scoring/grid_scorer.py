@@ -248,10 +248,7 @@ class GridScorer:
             yield weighed, first
 
     def _reduced(
-        self,
-        parts: Sequence[Sequence[Group]],
-        planes: slice,
-        members: LeaveOneOut | None,
+        self, parts: Sequence[Sequence[Group]], planes: slice, members: LeaveOneOut | None
     ) -> tuple[Floats, Floats, Floats]:
         """Return sums by part and class (P, 2, C), by column of the whole rig, and by sensor.
 

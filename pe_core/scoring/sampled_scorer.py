@@ -21,16 +21,7 @@ from .protocol import Judgement
 from .sampling import BLOCKS, CENTERED, VoxelSample, draw
 from .scatter import ALIKE, RULE_OF_THREE, FigureKey, Scatter, residuals, sample_digest
 from .scenarios import Scenarios, fused_early, mean_or_worst
-from .score import (
-    Glance,
-    PartScore,
-    Score,
-    SensorScore,
-    Watch,
-    rounded,
-    sensor_score,
-    zone_masks,
-)
+from .score import Glance, PartScore, Score, SensorScore, Watch, rounded, sensor_score, zone_masks
 
 Floats = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..base.errors import InputError
 from ..geometry.poses import Pose
 from ..metric.fusion import CurveOf, group_sum
-from ..scene.rig import Rig, Sensor
+from ..scene.rig import Rig, Sensor, SensorModel
 from .score import rounded
 
 
@@ -45,14 +45,14 @@ class Scenarios:
     def __init__(self, rigs: Sequence[Rig]) -> None:
         if not rigs:
             raise InputError("evaluator", "rigs", "at least one rig", "none")
-        self._by_pose: dict[tuple[str, Pose], Sensor] = {}
+        self._by_pose: dict[tuple[str, Pose, SensorModel], Sensor] = {}
         self._counts: dict[str, int] = {}
         self.parts = tuple(Rig([self._numbered(sensor) for sensor in rig]) for rig in rigs)
         self.all = Rig(list(self._by_pose.values()))
 
     def _numbered(self, sensor: Sensor) -> Sensor:
         """Return a sensor under a name for its pose, in its fusion group."""
-        key = sensor.name, sensor.pose
+        key = sensor.name, sensor.pose, sensor.model
         if key not in self._by_pose:
             pose = self._counts.get(sensor.name, 0)
             self._counts[sensor.name] = pose + 1

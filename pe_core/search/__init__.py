@@ -3,14 +3,16 @@
 from ..scoring.protocol import Judgement, Objective
 from .design_space import DesignSearch, DesignSpace, Picks, above_front, pareto_front
 from .design_variable import AXES, POSITION_AXES, pose_from_values, pose_values
-from .dispatch import evaluate_all
+from .dispatch import evaluate_all, shared_parts
 from .domains import snap_to_mount, standoff_point
+from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal
 from .linkage import mirrored
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, optimize
 from .parametrization import Candidate, Parametrization, feasible_start
+from .payload import Payload, Unreadable, send_payload
 from .processes import LazyProcesses, Processes, start_processes
 from .robustness import RigRobustness, Robustness, RobustObjective, objective_of, robustness
 from .search_space import (
@@ -40,6 +42,8 @@ __all__ = [
     "DesignSearch",
     "DesignSpace",
     "EvaluatedRig",
+    "Front",
+    "Goals",
     "Journal",
     "Judgement",
     "LazyProcesses",
@@ -50,6 +54,7 @@ __all__ = [
     "Objective",
     "Option",
     "Parametrization",
+    "Payload",
     "Picks",
     "Processes",
     "RigRobustness",
@@ -61,9 +66,12 @@ __all__ = [
     "Site",
     "Slot",
     "SlotMount",
+    "Start",
     "Step",
+    "Stop",
     "SurfaceMount",
     "Tolerance",
+    "Unreadable",
     "WorkerDied",
     "above_front",
     "checked_axes",
@@ -81,6 +89,8 @@ __all__ = [
     "pose_values",
     "robustness",
     "run_tasks",
+    "send_payload",
+    "shared_parts",
     "snap_to_mount",
     "standoff_point",
     "start_processes",

@@ -27,6 +27,21 @@ class BatchObjective(Protocol):
         """Evaluate several rigs, as the function of this name does."""
 
 
+@runtime_checkable
+class WrappingObjective(Protocol):
+    """An objective of little content round others that workers are to be sent once."""
+
+    def shared_parts(self) -> tuple[object, ...]:
+        """Return its parts that do not change; the rest is sent with each candidate."""
+
+
+def shared_parts(objective: Objective) -> tuple[object, ...]:
+    """Return what a worker is sent once to evaluate an objective: its parts, or the objective."""
+    if isinstance(objective, WrappingObjective):
+        return objective.shared_parts()
+    return (objective,)
+
+
 def evaluate_all(
     objective: Objective,
     rigs: Sequence[Rig],
@@ -38,8 +53,8 @@ def evaluate_all(
     Parameters
     ----------
     objective : Objective
-        It is sent to each worker once, so it must not change. Where it cannot be pickled, or a
-        worker cannot unpickle it, the rigs are evaluated here.
+        Its `shared_parts` are sent to each worker once, so they must not change. Where it cannot be
+        pickled, or a worker cannot unpickle it, the rigs are evaluated here.
     rigs : sequence of Rig
     cutoff : float
         Entropies are needed only below this value [nats]; all of them, by default.
@@ -74,7 +89,7 @@ def _evaluate_by_workers(
     objective: Objective, rigs: Sequence[Rig], cutoff: float, executor: Executor
 ) -> list[Judgement]:
     models = (sensor.model for rig in rigs for sensor in rig)
-    sent = send_payload(executor, (objective, *models))
+    sent = send_payload(executor, (*shared_parts(objective), *models))
     candidates = [sent.payload.pickled((objective, rig)) for rig in rigs]
     tried: set[int] = set()
 

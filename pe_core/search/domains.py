@@ -246,10 +246,7 @@ ANY_ANGLE = {axis: (-math.tau, math.tau) for axis in ("roll", "pitch", "yaw")}
 
 
 def snap_to_mount(
-    sensor: Sensor,
-    mount: AnyMount,
-    vehicle: Vehicle | None = None,
-    housing: Housing | None = None,
+    sensor: Sensor, mount: AnyMount, vehicle: Vehicle | None = None, housing: Housing | None = None
 ) -> Pose:
     """Return the pose on a mount that is nearest to the pose of a sensor, rounded.
 

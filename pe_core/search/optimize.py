@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
+from itertools import accumulate
 
 from ..scene.rig import Rig
 from ..scoring.protocol import Judgement, Objective
@@ -123,6 +124,9 @@ def _steps(
     while question is not None and step.evaluations < budget:
         if question.level != step.level:
             yield (step := _reevaluated(step, levels[question.level], question))
+            if step.evaluations == budget:
+                return
+        question = _within(question, budget - step.evaluations)
         answers: JudgedVectors = []
         evaluated = _evaluated(question, levels[question.level], executor_source())
         for candidate, answer in zip(question.candidates, evaluated, strict=True):
@@ -133,6 +137,13 @@ def _steps(
             if step.evaluations == budget:
                 return
         question = _next_question(questions, answers)
+
+
+def _within(question: Question, left: int) -> Question:
+    """Return the question without the candidates that the budget has no evaluation left for."""
+    counts = accumulate(candidate is not None for candidate in question.candidates)
+    inside = sum(count <= left for count in counts)
+    return replace(question, candidates=question.candidates[:inside])
 
 
 def _evaluated(

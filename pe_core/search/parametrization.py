@@ -145,6 +145,8 @@ def _domain(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface
     mounting, name = space.mounting, sensor.name
     mount, bounds = mounting.mount_of(name), space.bounds.get(name, {})
     who = f"sensor {name!r}"
+    if name in space.fixed:
+        return BoxDomain(sensor.pose, {})
     if isinstance(mount, SlotMount):
         return SlotDomain(who, mount, sensor.pose)
     if isinstance(mount, SurfaceMount):

@@ -48,6 +48,10 @@ class RobustObjective:
         cases = self._tolerance.cases(rig, self._seed)
         return self._evaluator.judge_together(cases, below, self._tolerance.worst)
 
+    def shared_parts(self) -> tuple[object, ...]:
+        """Return what workers are sent once: the evaluator."""
+        return (self._evaluator,)
+
 
 def objective_of(evaluator: RigJudge, tolerance: Tolerance, seed: int = 0) -> Objective:
     """Return what a search minimises: the evaluator, or `RobustObjective` if a tolerance is on."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -46,12 +46,15 @@ class SearchSpace:
         The body that has the mounts, and that housings must be clear of.
     housings : mapping of sensor name to Housing
         The housings that are known.
+    fixed : sequence of str
+        Sensors that stay where they are, with those that follow them.
     """
 
     bounds: Mapping[str, Mapping[str, Bounds]] = field(default_factory=dict)
     mounting: Mounting = field(default_factory=Mounting)
     vehicle: Vehicle | None = None
     housings: Mapping[str, Housing] = field(default_factory=dict)
+    fixed: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "bounds", ReadOnlyDict(self.bounds))
@@ -66,6 +69,7 @@ class SearchSpace:
         limits: Mapping[str, Mapping[str, Bounds]] | None = None,
         mounting: Mounting | None = None,
         housings: Mapping[str, Housing] | None = None,
+        fixed: Sequence[str] = (),
     ) -> SearchSpace:
         """Return a rig's free axes within the vehicle's outline and HEADROOM_M above it.
 
@@ -81,6 +85,7 @@ class SearchSpace:
             A sensor on a surface moves on it, whichever of x, y, z are free; a sensor in a slot, or
             one that follows another, has no bounds.
         housings : mapping of sensor name to Housing, optional
+        fixed : sequence of str
         """
         limits, mounting, bounds = limits or {}, mounting or Mounting(), {}
         for sensor in rig:
@@ -93,7 +98,7 @@ class SearchSpace:
                 )
             bounded = _bounded_axes(sensor.name, axes, given, mounting)
             bounds[sensor.name] = {a: given.get(a, default[a]) for a in bounded}
-        return cls(bounds, mounting, vehicle, housings or {}).checked(rig)
+        return cls(bounds, mounting, vehicle, housings or {}, fixed).checked(rig)
 
     def checked(self, rig: Rig) -> SearchSpace:
         """Return itself, or raise `InputError` when a name, an axis or a start is not possible."""

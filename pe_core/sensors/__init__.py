@@ -10,6 +10,11 @@ from .measure import measure, measure_objects
 from .measurement_cache import MeasurementCache, ObjectMeasurementCache, VisibleGroundCache
 from .object_kernel import ObjectKernel, ObjectView
 from .perception import BLIND_RULES, PerceptionModel
+from .radar import RADAR, Radar, RadarMode
+from .ray_fan_view import FieldPicture
+from .ultrasonic import ULTRASONIC, Ultrasonic
+from .weather import Weather
+from .weather_rig import rig_in_weather
 
 __all__ = [
     "BLIND_RULES",
@@ -19,6 +24,7 @@ __all__ = [
     "Camera",
     "EgoMask",
     "FTheta",
+    "FieldPicture",
     "GridKernel",
     "GroundKernel",
     "GroundView",
@@ -34,12 +40,16 @@ __all__ = [
     "Occlusion",
     "PerceptionModel",
     "Pinhole",
+    "Radar",
+    "RadarMode",
     "RangePicture",
     "SampleKernel",
+    "Ultrasonic",
     "ViewPatch",
     "VisibleGround",
     "VisibleGroundCache",
     "Voxels",
+    "Weather",
     "beam_field",
     "derived_object_curves",
     "kind_named",
@@ -48,8 +58,9 @@ __all__ = [
     "measure_objects",
     "range_picture",
     "register",
+    "rig_in_weather",
     "unregister",
 ]
 
-for _kind in (LIDAR, CAMERA):
+for _kind in (LIDAR, CAMERA, RADAR, ULTRASONIC):
     register(_kind)

@@ -9,9 +9,8 @@ never too many.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from ..geometry.grids import GroundGrid
 from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
+from .kernels import CachingKernel
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -48,26 +48,12 @@ class VisibleGround:
     approximate: bool = False
 
 
-class GroundKernel(ABC):
-    """Marks squares of one grid for sensors of one kind.
-
-    `cache` holds results that do not depend on the grid; kernels of the same kind and vehicle may
-    share it.
-    """
-
-    cache: Any = None
+class GroundKernel(CachingKernel, ABC):
+    """Marks squares of one grid for sensors of one kind."""
 
     @abstractmethod
     def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
         """Mark squares; with `approximate` occlusion may be approximate, if that is faster."""
-
-    def share_cache(self, cache: Any) -> None:
-        """Use the cache of another kernel of this kind."""
-        return
-
-    def keep_only(self, sensors: Collection[Sensor]) -> None:
-        """Remove all other sensors from the caches."""
-        return
 
 
 class DefinedGround(GroundKernel):

@@ -102,14 +102,26 @@ def block_voxels(space: PerceptionSpace) -> int:
     return min(nx, BLOCK_PLANES) * ny * nz
 
 
-class SampleKernel(ABC):
-    """Measures sensors of one kind on a fixed sample of voxels.
+class CachingKernel:
+    """A kernel of one kind of sensors with a `cache` of what does not depend on its targets.
 
-    `cache` holds results that do not depend on the voxels. Kernels of the same kind and vehicle may
-    share it.
+    Kernels of the same kind and vehicle may share it.
     """
 
     cache: Any = None
+
+    def share_cache(self, cache: Any) -> None:
+        """Use the cache of another kernel of this kind."""
+        self.cache = cache
+
+    def keep_only(self, sensors: Collection[Sensor]) -> None:
+        """Remove all other sensors from the caches."""
+        if self.cache is not None:
+            self.cache.keep_only(sensors)
+
+
+class SampleKernel(CachingKernel, ABC):
+    """Measures sensors of one kind on a fixed sample of voxels."""
 
     @abstractmethod
     def measure(self, sensor: Sensor, approximate: bool) -> Measured:
@@ -122,14 +134,6 @@ class SampleKernel(ABC):
     def occlusion(self, measured: Measured) -> Occlusion:
         """Return how much of a measured sensor the vehicle occludes."""
         return Occlusion()
-
-    def share_cache(self, cache: Any) -> None:
-        """Use the cache of another kernel of this kind."""
-        return
-
-    def keep_only(self, sensors: Collection[Sensor]) -> None:
-        """Remove all other sensors from the caches."""
-        return
 
 
 Definition = Callable[[Sensor, Floats, float, Vehicle | None], Floats]

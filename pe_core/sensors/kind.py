@@ -27,6 +27,8 @@ from .field_of_view import EgoMask, ViewPatch
 from .ground_kernel import DefinedGround, GroundKernel, GroundView
 from .kernels import DefinedGrid, DefinedSample, Floats, GridKernel, SampleKernel, Voxels
 from .object_kernel import DefinedObjects, ObjectKernel, ObjectView
+from .ray_fan_view import FieldPicture
+from .weather import Weather
 
 BoxSize = tuple[float, float, float]
 ClassCurves = Mapping[str, Mapping[str, ApCurve]]
@@ -87,9 +89,11 @@ class Kind(ABC):
         class without a curve cannot be scored.
     counts_points : bool
         Whether m of an object is a number of points on it.
+    point : float
+        m that is one point to a requirement: below 1 where m is an expected number.
     has_top : bool
         Whether it matters which side of the sensor is up, as for a picture.
-    loss : str
+    occlusion_text : str
         Text about its occlusion by the vehicle: "12 % of its *beams stopped*".
     """
 
@@ -102,8 +106,11 @@ class Kind(ABC):
     keys: frozenset[str]
     object_curves: Mapping[str, ApCurve] = MappingProxyType({})
     counts_points: bool = False
+    point: float = 1.0
     has_top: bool = False
     occlusion_text: str = "beams stopped"
+    weather_limits_range: bool = False
+    """Whether weather changes `max_range` alone, beyond which m is 0."""
 
     @abstractmethod
     def measure(
@@ -140,6 +147,10 @@ class Kind(ABC):
     def data_sheet(self, model: Any) -> list[str]:
         """Return the figures of a sensor for users, one line each."""
 
+    def in_weather(self, model: Any, weather: Weather) -> Any:
+        """Return a sensor's intrinsics as they are under a weather; unchanged by default."""
+        return model
+
     def summary(self, model: Any) -> str:
         """Return the main figures of a sensor in one line; by default the first of `data_sheet`."""
         return next((" ".join(line.split()) for line in self.data_sheet(model)), "")
@@ -171,6 +182,18 @@ class Kind(ABC):
     def view(self, model: Any, step: float) -> ViewPatch | None:
         """Return the field of view in triangles of about `step` [rad]; None by default."""
         return None
+
+    def field_picture(self, sensor: Sensor, vehicle: Vehicle | None) -> FieldPicture | None:
+        """Return what it detects by range and azimuth; None by default."""
+        return None
+
+    def covers_met(self, sensor: Sensor, vehicle: Vehicle) -> Mapping[str, tuple[float, float]]:
+        """Return loss [dB] and share of the field of each cover it measures through; none here."""
+        return {}
+
+    def opaque(self, vehicle: Vehicle) -> Vehicle | None:
+        """Return what blocks the rays of such sensors: all of the vehicle by default."""
+        return vehicle
 
     def ego_mask(self, sensor: Sensor, vehicle: Vehicle | None) -> EgoMask | None:
         """Return which rays of the sensor end on its vehicle; None by default: unknown."""

@@ -6,7 +6,8 @@ one for squares of the ground.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Hashable, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -22,6 +23,7 @@ from .ground_kernel import Flags, GroundKernel, GroundView, VisibleGround
 from .kernels import Measured, Occlusion, SampleKernel, Voxels
 from .kind import kind_of
 from .object_kernel import ObjectKernel, ObjectView
+from .weather_rig import clear_air, within_range
 
 Floats = NDArray[np.float64]
 
@@ -51,6 +53,9 @@ class MeasurementCache:
         self._kernel_caches = {} if kernel_caches is None else kernel_caches
         self._kernels: dict[tuple[str, ApCurve | None], SampleKernel] = {}
         self._measured: dict[str, Measured] = {}
+        self._clear: dict[Hashable, Measured] = {}  # in clear air, of the last rig and of `_stayed`
+        self._occlusions: dict[Hashable, Occlusion] = {}
+        self._stayed: dict[str, Hashable] = {}  # where each sensor last was for two rigs in a row
 
     @property
     def last(self) -> Mapping[str, Measured]:
@@ -64,34 +69,73 @@ class MeasurementCache:
 
     def measure(self, rig: Rig, approximate: bool = False) -> None:
         """Measure the sensors that are not cached; without `approximate` exactly."""
+        before, stayed = self._measured, self._stayed
         self._measured = {
-            s.name: self.cached(s, approximate) or self._kernel(s).measure(s, approximate)
-            for s in rig
+            s.name: self.cached(s, approximate) or self._one(s, approximate) for s in rig
         }
+        used = {s.name: _key(clear_air(s) or s) for s in rig}
+        moved = {n for n, m in self._measured.items() if before.get(n) is not m}
+        self._stayed = {n: stayed.get(n) if n in moved else key for n, key in used.items()}
+        kept = {*used.values(), *self._stayed.values()}
+        self._clear = {k: self._clear[k] for k in self._clear if k in kept}
+        self._occlusions = {k: v for k, v in self._occlusions.items() if k in kept}
         for kernel in self._kernels.values():
             kernel.keep_only(rig.sensors)
 
     def measure_again(self, sensor: Sensor) -> NDArray:
         """Measure one sensor exactly, cache the result, and return m (V,)."""
-        measured = self._measured[sensor.name] = self._kernel(sensor).measure(sensor, False)
+        measured = self._measured[sensor.name] = self._one(sensor, False)
         return measured.m
+
+    def _one(self, sensor: Sensor, approximate: bool) -> Measured:
+        """Measure a sensor; of one in a weather only what differs from clear air."""
+        clear = clear_air(sensor) or sensor
+        measured = self._clear.get(_key(clear))
+        if measured is None or (measured.approximate and not approximate):
+            measured = self._kernel(clear).measure(clear, approximate)
+            self._clear[_key(clear)] = measured
+        if clear is sensor:
+            return measured
+        return within_range(sensor, measured, self._voxels, self._measure_some)
+
+    def _measure_some(self, sensor: Sensor, voxels: Voxels) -> NDArray:
+        """Return m (V,) of a sensor on other voxels."""
+        few = MeasurementCache(voxels, self._vehicle, self._saturation_count)
+        return few._kernel(sensor).measure(sensor, False).m
 
     def cached(self, sensor: Sensor, approximate: bool) -> Measured | None:
         """Return the valid cached measurement of a sensor; without `approximate` an exact one."""
-        cached = self._measured.get(sensor.name)
-        if cached is None or (cached.approximate and not approximate):
-            return None
-        before = cached.sensor
-        same = before.model is sensor.model and before.curve == sensor.curve
-        return cached if same and before.pose == sensor.pose else None
+        for cached in (self._measured.get(sensor.name), self._clear.get(_key(sensor))):
+            if cached is None or (cached.approximate and not approximate):
+                continue
+            one = cached.sensor
+            if one.model is sensor.model and (one.curve, one.pose) == (sensor.curve, sensor.pose):
+                return cached
+        return None
 
     def unoccluded(self, sensor: Sensor) -> NDArray:
         """Return m (V,) of a sensor without the vehicle; it is not cached."""
         return self._kernel(sensor).unoccluded(sensor)
 
     def occlusion(self, sensor: Sensor) -> Occlusion:
-        """Return how much of a sensor of the last rig the vehicle occludes."""
-        return self._kernel(sensor).occlusion(self._measured[sensor.name])
+        """Return how much of a sensor of the last rig the vehicle occludes.
+
+        Weather that shortens a range to no less than the far end of the vehicle changes nothing.
+        """
+        clear = clear_air(sensor)
+        key = _key(sensor if clear is None or not self._is_whole(sensor) else clear)
+        if key not in self._occlusions:
+            measured = self._measured[sensor.name]
+            self._occlusions[key] = self._kernel(sensor).occlusion(measured)
+        return self._occlusions[key]
+
+    def _is_whole(self, sensor: Sensor) -> bool:
+        """Whether the whole vehicle is in the range of a sensor of a kind with a range."""
+        if self._vehicle is None:
+            return True
+        offsets = np.abs(np.asarray(self._vehicle.bounds) - np.asarray(sensor.pose.position))
+        limit: float = sensor.model.max_range  # type: ignore[attr-defined]  # as in `within_range`
+        return math.hypot(*offsets.max(axis=0)) <= limit
 
     def _kernel(self, sensor: Sensor) -> SampleKernel:
         kind, key = kind_of(sensor), (sensor.kind, sensor.curve)
@@ -103,6 +147,11 @@ class MeasurementCache:
         return self._kernels[key]
 
 
+def _key(sensor: Sensor) -> Hashable:
+    """Return what a measurement depends on."""
+    return sensor.model, sensor.pose, sensor.curve
+
+
 class ObjectMeasurementCache:
     """Measures rigs on a fixed set of objects.
 
@@ -112,12 +161,19 @@ class ObjectMeasurementCache:
     vehicle : Vehicle, optional
     traffic : bool
         Whether the objects of a scene occlude each other.
+    kernel_caches : dict, optional
+        Caches of kernels by kind, shared by several of these on one vehicle.
     """
 
     def __init__(
-        self, objects: Objects, vehicle: Vehicle | None = None, traffic: bool = False
+        self,
+        objects: Objects,
+        vehicle: Vehicle | None = None,
+        traffic: bool = False,
+        kernel_caches: dict[str, Any] | None = None,
     ) -> None:
         self._view = ObjectView(objects, vehicle, traffic)
+        self._kernel_caches = {} if kernel_caches is None else kernel_caches
         self._kernels: dict[str, ObjectKernel] = {}
         self._measured: dict[str, tuple[Sensor, Floats]] = {}
 
@@ -128,16 +184,43 @@ class ObjectMeasurementCache:
             kernel.keep_only(rig.sensors)
         return MappingProxyType({name: m for name, (_, m) in self._measured.items()})
 
-    def _one(self, sensor: Sensor) -> Floats:
+    def cached(self, sensor: Sensor) -> Floats | None:
+        """Return the valid cached m (N,) of a sensor."""
         cached = self._measured.get(sensor.name)
         if cached and cached[0].model is sensor.model and cached[0].pose == sensor.pose:
             return cached[1]
-        kind = kind_of(sensor)
-        if kind.name not in self._kernels:
-            self._kernels[kind.name] = kind.on_objects(self._view)
-        m = self._kernels[kind.name].measure(sensor)
+        return None
+
+    def measure_again(self, sensor: Sensor) -> Floats:
+        """Measure one sensor, cache the result, and return m (N,)."""
+        m = self._one(sensor)
+        self._measured[sensor.name] = sensor, m
+        return m
+
+    def unoccluded(self, sensor: Sensor) -> Floats | None:
+        """Return m (N,) of a sensor without occlusion, not cached; None where that saves no time.
+
+        Nothing is saved by sensors whose objects are not occluded at all.
+        """
+        if self._view.vehicle is None and not self._view.traffic:
+            return None
+        return self._kernel(sensor).unoccluded(sensor)
+
+    def _one(self, sensor: Sensor) -> Floats:
+        cached = self.cached(sensor)
+        if cached is not None:
+            return cached
+        m = self._kernel(sensor).measure(sensor)
         m.flags.writeable = False
         return m
+
+    def _kernel(self, sensor: Sensor) -> ObjectKernel:
+        kind = kind_of(sensor)
+        if kind.name not in self._kernels:
+            kernel = self._kernels[kind.name] = kind.on_objects(self._view)
+            if kernel.cache is not None:
+                kernel.share_cache(self._kernel_caches.setdefault(kind.name, kernel.cache))
+        return self._kernels[kind.name]
 
 
 class VisibleGroundCache:
@@ -154,6 +237,11 @@ class VisibleGroundCache:
         self.view, self._kernel_caches = view, kernel_caches
         self._kernels: dict[str, GroundKernel] = {}
         self._visible: dict[str, VisibleGround] = {}
+
+    @property
+    def by_sensor(self) -> dict[str, Flags]:
+        """Squares (NX, NY) that each sensor of the last rig marks, by name."""
+        return {name: visible.marked for name, visible in self._visible.items()}
 
     def marked(self, rig: Rig, approximate: bool = False) -> tuple[Flags, bool]:
         """Return squares (NX, NY) that any sensor marks, and whether any of it is approximate."""

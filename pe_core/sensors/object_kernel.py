@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..scene.objects import Objects
 from ..scene.rig import Sensor
 from ..scene.vehicle import Vehicle
+from .kernels import CachingKernel
 
 Floats = NDArray[np.float64]
 ObjectDefinition = Callable[[Sensor, Objects, Vehicle | None, bool], Floats]
@@ -30,16 +31,19 @@ class ObjectView:
     traffic: bool = False
 
 
-class ObjectKernel(ABC):
+class ObjectKernel(CachingKernel, ABC):
     """Measures sensors of one kind on a fixed set of objects."""
 
     @abstractmethod
     def measure(self, sensor: Sensor) -> Floats:
         """Return m (N,) of a sensor, equal to the definition of its kind."""
 
-    def keep_only(self, sensors: Collection[Sensor]) -> None:
-        """Remove all other sensors from the caches."""
-        return
+    def unoccluded(self, sensor: Sensor) -> Floats | None:
+        """Return m (N,) where nothing occludes an object; None: as expensive as `measure`.
+
+        No m of `measure` is higher.
+        """
+        return None
 
 
 class DefinedObjects(ObjectKernel):

@@ -9,9 +9,14 @@ OPTIMIZED, REVIEW = "optimized.blend", "review.png"
 """Files that Blender adds."""
 REVIEW_PAGE = "review.html"
 """The review page."""
-SEARCH = "search.json"
-"""Checkpoint of a search, from which it can be resumed."""
-BESIDE_RESULT = (STUDY, MESH, AREAS, BOXES, HISTORY, SEARCH, OPTIMIZED, REVIEW, REVIEW_PAGE)
+CONDITIONS = "conditions.csv"
+"""The table of a study's conditions."""
+SEARCH, RUNNERS_UP = "search.json", tuple(f"runner_up_{k}.toml" for k in (1, 2, 3))
+"""Checkpoint of a search, from which it can be resumed, and studies of other optima it found."""
+BESIDE_RESULT = (
+    *(STUDY, MESH, AREAS, BOXES, HISTORY, CONDITIONS, SEARCH),
+    *(*RUNNERS_UP, OPTIMIZED, REVIEW, REVIEW_PAGE),
+)
 """All files that belong to a result.json."""
 SCHEMA = 1
 """Version of the schema of result.json."""

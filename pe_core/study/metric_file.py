@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..base.errors import InputError
 from ..base.setting_file import read_settings, settings_table
 from ..base.table_reader import Table
 from ..metric.entropy import ApCurve
@@ -19,10 +18,8 @@ def read_targets(table: Table) -> TargetRule:
     """Return whether voxels or objects are scored, from [metric]."""
     values = read_settings(table, TargetRule)
     table.finish()
-    try:
+    with table.naming():
         return TargetRule(**values)
-    except InputError as error:
-        raise table.error(error.field, error.expected, error.found) from None
 
 
 def targets_table(targets: TargetRule) -> dict[str, Any] | None:

@@ -19,16 +19,7 @@ from ..base.table_reader import Table
 from ..base.values import A_NAME, A_PATH
 from ..geometry.poses import Pose
 from ..scene.mesh import AS_SAID, Mesh
-from ..search import (
-    AnyMount,
-    Constraints,
-    MountArea,
-    Mounting,
-    NoGo,
-    Slot,
-    SlotMount,
-    SurfaceMount,
-)
+from ..search import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 
 T = TypeVar("T")
 

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..base.errors import InputError
 from ..base.plugins import shipped
 from ..base.table_reader import REQUIRED, Table
 from ..base.values import A_NAME, A_PATH, vector
@@ -103,10 +102,8 @@ def _read_class(table: Table, shipped: Sequence[ObjectClass]) -> ObjectClass:
     size = table.numbers("size", 3, default("size"))
     lanes = _read_lanes(table, default("lanes"))
     table.finish()
-    try:
+    with table.naming():
         return ObjectClass(name=name, size=(size[0], size[1], size[2]), lanes=lanes, **values)
-    except InputError as error:
-        raise table.error(error.field, error.expected, error.found) from None
 
 
 NOT_NUMBERS = ("name", "size", "lanes")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..base.errors import InputError
 from ..scene.rig import Rig
-from ..scoring.requirements import RequirementChecker, Verdict
-from ..search import mounted_off
+from ..scoring.requirements import Requirement, RequirementChecker, Verdict
+from ..search import Tolerance, mounted_off
+from .condition_check import ConditionedChecker
 
 if TYPE_CHECKING:
     from .study import Study
@@ -22,13 +24,16 @@ def checker_of(study: Study) -> RequirementChecker:
         When a zone cannot be placed round the vehicle, the rig lacks a kind of sensor, or mounting
         errors are asked for that the study does not state.
     """
-    checker = RequirementChecker(
-        study.requirements,
-        study.vehicle,
-        model=study.model,
-        reference=study.reference,
-        space=study.space,
-    )
+    if any(each.under.states or each.under.weathers for each in study.requirements):
+        checker: RequirementChecker = ConditionedChecker(study)
+    else:
+        checker = RequirementChecker(
+            study.requirements,
+            study.vehicle,
+            model=study.model,
+            reference=study.reference,
+            space=study.space,
+        )
     checker.check_rig(study.rig)
     for each in study.requirements:
         if each.under.mounting and not study.search.tolerance.mounts_off:
@@ -44,6 +49,14 @@ def verdicts_of(
     if not study.requirements:
         return ()
     search = study.search
-    off = any(each.under.mounting for each in study.requirements)
-    cases = mounted_off(rig, search.tolerance, search.seed) if off else []
-    return (checker or checker_of(study)).check(rig, cases=cases[: search.tolerance.draws])
+    cases = mounting_cases(study.requirements, rig, search.tolerance, search.seed)
+    return (checker or checker_of(study)).check(rig, cases=cases)
+
+
+def mounting_cases(
+    requirements: Sequence[Requirement], rig: Rig, tolerance: Tolerance, seed: int
+) -> list[Rig]:
+    """Return the rig with each draw of the mounting errors, if a requirement asks for them."""
+    if not any(each.under.mounting for each in requirements):
+        return []
+    return mounted_off(rig, tolerance, seed)[: tolerance.draws]

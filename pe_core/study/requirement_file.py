@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -23,11 +24,9 @@ from ..base.table_reader import Table
 from ..base.values import A_NAME, listed
 from ..scoring import requirements as room
 from ..scoring.requirements import BODIES, Body, Criterion, Requirement, Under, Zone
+from .requirement_body import mesh_table, read_mesh_body
 
-CONFIDENCE = {
-    "A": "the text of the standard or maker was read",
-    "B": "a secondary source",
-}
+CONFIDENCE = {"A": "the text of the standard or maker was read", "B": "a secondary source"}
 SHAPES = ("x", "y", "polygon", "ring", "path", "spots")
 TABLES = ("zone", "criterion", "under")
 CUSTOM = "own"
@@ -93,8 +92,8 @@ def _shipped() -> Mapping[str, Preset]:
     return MappingProxyType(made)
 
 
-def read_requirements(table: Table) -> tuple[Requirement, ...]:
-    """Return the requirements of a study's table.
+def read_requirements(table: Table, folder: Path = Path()) -> tuple[Requirement, ...]:
+    """Return the requirements of a study's table; mesh files are relative to a folder.
 
     Raises
     ------
@@ -105,7 +104,7 @@ def read_requirements(table: Table) -> tuple[Requirement, ...]:
     if len(tables) > MAX_REQUIREMENTS:
         expected = f"at most {MAX_REQUIREMENTS} requirements"
         raise table.error("requirement", expected, len(tables))
-    found = [read_requirement(each) for each in tables]
+    found = [read_requirement(each, folder) for each in tables]
     names = [each.name for each in found]
     for number, name in enumerate(names):
         if name in names[:number]:
@@ -114,15 +113,20 @@ def read_requirements(table: Table) -> tuple[Requirement, ...]:
     return tuple(found)
 
 
-def read_requirement(table: Table) -> Requirement:
+def read_requirement(table: Table, folder: Path = Path()) -> Requirement:
     """Return one requirement from its table; `InputError` as `read_requirements`."""
     identifier = table.text("preset", None, rule=A_NAME)
     if identifier is None:
-        return _read(table, None)
-    base = preset(identifier, table.source, table.field("preset")).table
-    merged = Table(_merged(base, table.data), table.source, table.path)
+        return _read(table, None, folder)
+    base = preset(identifier, table.source, table.field("preset"))
+    merged = Table(_merged(base.table, table.data), table.source, table.path)
     merged.raw("preset")
-    return _read(merged, identifier)
+    return replace(_read(merged, identifier, folder), original=_as_shipped(base))
+
+
+def _as_shipped(base: Preset) -> Requirement:
+    """Return the requirement of a preset as it is shipped."""
+    return _read(Table(_merged(base.table, {}), f"preset {base.id}"), base.id, Path())
 
 
 def requirement_table(requirement: Requirement) -> dict[str, Any]:
@@ -158,22 +162,21 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     return {k: v for k, v in merged.items() if v != {} or k in own}
 
 
-def _read(table: Table, identifier: str | None) -> Requirement:
+def _read(table: Table, identifier: str | None, folder: Path) -> Requirement:
     table.raw("preset", None)
     name = table.text("name", rule=A_NAME)
     zone = _read_zone(table.table("zone"))
     criterion = _read_criterion(table.table("criterion"))
     own = table.table("under")
-    under = Under(**read_settings(own, Under))
+    named: dict[str, Any] = {key: own.texts(key, ()) for key in ("states", "weathers")}
+    under = Under(**read_settings(own, Under), **named)
     own.finish()
     headings = table.raw("headings", None)
-    bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table))
+    bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table, folder))
     source, check = table.text("source", ""), table.text("check", "")
     table.finish()
-    try:
+    with table.naming():
         return Requirement(name, zone, bodies, criterion, under, identifier, source, check)
-    except InputError as error:
-        raise table.error(error.field, error.expected, error.found) from None
 
 
 def _read_zone(table: Table) -> Zone:
@@ -191,31 +194,27 @@ def _read_zone(table: Table) -> Zone:
         values[key] = tuple(rows)
     values["z"] = table.numbers("z", 2, (0.0, 0.0))
     table.finish()
-    try:
+    with table.naming():
         return Zone(**values)
-    except InputError as error:
-        raise table.error(error.field, error.expected, error.found) from None
 
 
 def _read_criterion(table: Table) -> Criterion:
     values = read_settings(table, Criterion)
     kinds = table.texts("of", ())
     table.finish()
-    try:
+    with table.naming():
         return Criterion(**values, of=kinds)
-    except InputError as error:
-        raise table.error(error.field, error.expected, error.found) from None
 
 
-def _read_bodies(table: Table) -> list[Body]:
+def _read_bodies(table: Table, folder: Path) -> list[Body]:
     value = table.raw("body", ())
     items = [value] if isinstance(value, str | Mapping) else listed(value)
     if items is None:
         raise table.error("body", "a name, a table, or a list of them", shown(value))
-    return [_read_body(each, table) for each in items]
+    return [_read_body(each, table, folder) for each in items]
 
 
-def _read_body(value: Any, table: Table) -> Body:
+def _read_body(value: Any, table: Table, folder: Path) -> Body:
     if isinstance(value, str):
         if value not in BODIES:
             raise table.error("body", f"one of {', '.join(BODIES)}", shown(value))
@@ -223,7 +222,9 @@ def _read_body(value: Any, table: Table) -> Body:
     own = Table(value, table.source, table.field("body"))
     name = own.text("name", CUSTOM, rule=A_NAME)
     if own.names == ["name"]:
-        return _read_body(name, table)
+        return _read_body(name, table, folder)
+    if "mesh" in own:
+        return read_mesh_body(own, name, folder)
     is_round = "diameter" in own
     if is_round:
         diameter = own.number("diameter")
@@ -232,10 +233,8 @@ def _read_body(value: Any, table: Table) -> Body:
         size = own.numbers("size", 3)
     low, class_name = own.number("low", 0.0), own.text("class", None, rule=A_NAME)
     own.finish()
-    try:
+    with own.naming():
         return Body(name, (size[0], size[1], size[2]), low, is_round, class_name=class_name)
-    except InputError as error:
-        raise own.error(error.field, error.expected, error.found) from None
 
 
 def _with_headings(body: Body, headings: Any, table: Table) -> Body:
@@ -279,7 +278,10 @@ def full_table(requirement: Requirement) -> dict[str, Any]:
             **({"of": list(requirement.criterion.of)} if requirement.criterion.of else {}),
             **_changed(requirement.criterion, Criterion),
         },
-        "under": _changed(requirement.under, Under),
+        "under": {
+            **_changed(requirement.under, Under),
+            **{k: list(v) for k in ("states", "weathers") if (v := getattr(requirement.under, k))},
+        },
     }
     return {k: v for k, v in table.items() if v is not None and v != {}}
 
@@ -303,6 +305,7 @@ def _body_table(body: Body) -> dict[str, Any]:
     sizes: dict[str, Any] = {"size": list(body.size)}
     if body.is_round:
         sizes = {"diameter": body.size[0], "height": body.size[2]}
+    sizes = mesh_table(body) or sizes
     more = {"low": body.low or None, "class": body.class_name}
     return {"name": body.name, **sizes} | {k: v for k, v in more.items() if v is not None}
 

@@ -8,8 +8,6 @@ not matter and are not computed.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,10 +16,9 @@ from ..scene.rig import Rig
 from ..scoring.protocol import Judgement, Objective
 from ..scoring.requirements import RequirementChecker
 from ..scoring.score import rounded
-from ..search import Parametrization, Tolerance, mounted_off, optimize
-from ..search.design_variable import METRE, RADIAN, SHARE
+from ..search import Tolerance, optimize, shared_parts
 from ..search.methods.method import sampled_candidate
-from .requirement_check import checker_of
+from .requirement_check import checker_of, mounting_cases
 
 if TYPE_CHECKING:
     from .study import Study
@@ -48,11 +45,7 @@ class FeasibleFirst:
     """
 
     def __init__(
-        self,
-        objective: Objective,
-        checker: RequirementChecker,
-        tolerance: Tolerance,
-        seed: int = 0,
+        self, objective: Objective, checker: RequirementChecker, tolerance: Tolerance, seed: int = 0
     ) -> None:
         self._objective, self._checker = objective, checker
         self._tolerance, self._seed = tolerance, seed
@@ -69,14 +62,15 @@ class FeasibleFirst:
             return Judgement(INFEASIBLE + violation, False)
         return self._objective.judge(rig, below)
 
+    def shared_parts(self) -> tuple[object, ...]:
+        """Return what workers are sent once: the parts of the objective, and the checker."""
+        return (*shared_parts(self._objective), self._checker)
+
     def violation(self, rig: Rig) -> float:
         """Return the sum of the violations of all requirements; 0 where all are met."""
-        return rounded(sum(self._checker.shortfalls(rig, self._cases(rig))))
-
-    def _cases(self, rig: Rig) -> list[Rig]:
-        if not any(each.under.mounting for each in self._checker.requirements):
-            return []
-        return mounted_off(rig, self._tolerance, self._seed)[: self._tolerance.draws]
+        wanted = self._checker.requirements
+        cases = mounting_cases(wanted, rig, self._tolerance, self._seed)
+        return rounded(sum(self._checker.shortfalls(rig, cases)))
 
 
 def feasible_first(
@@ -162,87 +156,3 @@ def conflicts(
         broken = tuple(n for n, was, now in zip(names, before, after, strict=True) if now > was)
         found[names[number]] = None if after[number] else broken
     return found
-
-
-HELP_STEPS = {
-    METRE: (0.05, 0.1, 0.2, 0.4, 0.8),
-    RADIAN: (0.05, 0.1, 0.2, 0.4, 0.8),
-    SHARE: (0.1, 0.2),
-}
-"""Steps of one design variable that are tried: in metres, radians (3 to 46 deg), and shares."""
-
-
-@dataclass(frozen=True, slots=True)
-class Suggestion:
-    """The nearest placement found that meets a requirement, and what it breaks.
-
-    Attributes
-    ----------
-    rig : Rig
-    moved : tuple of str
-        Names of the sensors that are elsewhere.
-    breaks : tuple of str
-        Requirements that were met and no longer are.
-    """
-
-    rig: Rig
-    moved: tuple[str, ...]
-    breaks: tuple[str, ...]
-
-    @property
-    def text(self) -> str:
-        """Where the sensors would be: "rear at (-2.5, 0, 1.5) m, roll 0, pitch 30, yaw 180"."""
-        where = []
-        for name in self.moved:
-            pose = self.rig[name].pose
-            x, y, z = (f"{v:.3g}" for v in pose.position)
-            roll, pitch, yaw = (f"{v:.3g}" for v in pose.rotation_deg)
-            where.append(f"{name} at ({x}, {y}, {z}) m, roll {roll}, pitch {pitch}, yaw {yaw}")
-        broken = f"; that breaks {', '.join(self.breaks)}" if self.breaks else ""
-        return "; ".join(where) + broken
-
-
-def suggestions(
-    study: Study, checker: RequirementChecker | None = None
-) -> dict[str, Suggestion | None]:
-    """Return for each requirement that is not met the nearest placement found that meets it.
-
-    One design variable of the search (a coordinate, or a place along a mount) is changed at a time,
-    by small steps first. Mounting errors are left out.
-
-    Returns
-    -------
-    dict of Suggestion or None
-        By name; None where no step of one variable is enough.
-    """
-    checker, coding = checker or checker_of(study), study.coding()
-    names = [each.name for each in checker.requirements]
-    before = checker.shortfalls(study.rig)
-    left = [number for number, off in enumerate(before) if off]
-    found: dict[str, Suggestion | None] = dict.fromkeys(names[k] for k in left)
-    for rig in _steps_of_one(coding):
-        if not left:
-            break
-        after = checker.shortfalls(rig)
-        for number in [k for k in left if not after[k]]:
-            left.remove(number)
-            moved = tuple(s.name for s in rig if s.pose != study.rig[s.name].pose)
-            broken = [
-                n for n, was, off in zip(names, before, after, strict=True) if off and not was
-            ]
-            found[names[number]] = Suggestion(rig, moved, tuple(broken))
-    return found
-
-
-def _steps_of_one(coding: Parametrization) -> Iterator[Rig]:
-    """Yield allowed placements that differ from the start in one variable, near ones first."""
-    start = coding.start.vector
-    for rank in range(max(map(len, HELP_STEPS.values()))):
-        for number, variable in enumerate(coding.variables):
-            for step in HELP_STEPS[variable.unit][rank : rank + 1]:
-                for shift in (step, -step):
-                    vector = list(start)
-                    vector[number] = variable.clipped(start[number] + shift)
-                    candidate = coding.candidate(vector)
-                    if candidate.vector != start and coding.allowed(candidate.rig):
-                        yield candidate.rig

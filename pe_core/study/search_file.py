@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from ..base.degrees import degrees_in_file
 from ..base.errors import InputError, shown
@@ -27,6 +27,7 @@ from ..search import (
 )
 from ..search.tolerance import CASES, ERRORS
 from ..sensors import KINDS
+from .goals_file import goals_tables, read_goals
 from .mounting_file import mounting_tables, read_mounting
 from .study import Search
 
@@ -71,6 +72,7 @@ def read_search(
         mounting=read_mounting(table, on, folder),
         method=_read_method(table),
         tolerance=_read_tolerance(table),
+        goals=read_goals(table),
         **read_settings(table, Search),
     )
     table.finish()
@@ -96,10 +98,8 @@ def _read_tolerance(table: Table) -> Tolerance:
     errors = table.table("tolerance")
     values = read_settings(errors, Tolerance, ERRORS) | read_settings(table, Tolerance, CASES)
     errors.finish()
-    try:
+    with table.naming():
         return Tolerance(**values)
-    except InputError as error:
-        raise table.error(error.field, error.expected, error.found) from None
 
 
 def _tolerance_keys(tolerance: Tolerance) -> dict[str, Any]:
@@ -118,6 +118,7 @@ def search_table(search: Search) -> dict[str, Any]:
         **settings_table(search),
         **settings_table(search.schedule),
         **_tolerance_keys(search.tolerance),
+        **goals_tables(search.goals),
         **mounting_tables(search.mounting),
     }
 
@@ -128,7 +129,6 @@ def in_file(name: str, value: Any) -> Any:
     return degrees_in_file(value) if angle else value
 
 
-T = TypeVar("T")
 Read = Callable[[Table], SensorModel]
 
 
@@ -150,9 +150,8 @@ def read_selection(table: Table, model: Read) -> Selection:
     kinds.finish()
     own.finish()
     max_of_kind = {kind: count for kind, count in counts.items() if count is not None}
-    return _made(
-        own, lambda: Selection(choices, max_of_kind=max_of_kind, currency=currency, **limits)
-    )
+    with own.naming():
+        return Selection(choices, max_of_kind=max_of_kind, currency=currency, **limits)
 
 
 def selection_tables(
@@ -177,26 +176,19 @@ def _read_choice(table: Table, model: Read) -> Choice:
     options = [_read_option(each, model) for each in table.tables("option")]
     table.raw("sensor", None)  # a known name, whether present or not
     table.finish()
-    return _made(table, lambda: Choice(options, sensors, mount, optional))
+    with table.naming():
+        return Choice(options, sensors, mount, optional)
 
 
 def _read_option(table: Table, model: Read) -> Option:
-    chosen = _made(table, lambda: model(table))
+    with table.naming():
+        chosen = model(table)
     if "price" not in table:
         raise table.error("price", "the price of a sensor of this model", "nothing")
     price = table.number("price")
     table.finish()
-    return _made(table, lambda: Option(chosen, price))
-
-
-def _made(table: Table, make: Callable[[], T]) -> T:
-    """Call `make`; its errors name the table."""
-    try:
-        return make()
-    except InputError as error:
-        if error.source == table.source:
-            raise
-        raise table.error(error.field, error.expected, error.found) from None
+    with table.naming():
+        return Option(chosen, price)
 
 
 def _choice_table(

@@ -13,7 +13,7 @@ from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
 from ..scoring.requirements import Criterion, Under, Zone
 from ..scoring.targets import TargetRule
-from ..search import Constraints, Schedule, Selection, Tolerance
+from ..search import Constraints, Front, Goals, Schedule, Selection, Stop, Tolerance
 from ..search.tolerance import CASES, ERRORS
 from .study import Search, Study
 
@@ -46,7 +46,10 @@ SECTIONS = (
     StudyTable("optimize", Schedule),
     StudyTable("optimize", Constraints),
     StudyTable("optimize", Tolerance, CASES),
+    StudyTable("optimize", Goals),
     StudyTable("optimize.tolerance", Tolerance, ERRORS),
+    StudyTable("optimize.stop", Stop),
+    StudyTable("optimize.front", Front),
     StudyTable("selection", Selection),
     StudyTable("requirement.zone", Zone),
     StudyTable("requirement.criterion", Criterion),

@@ -33,6 +33,7 @@ from ..search import (
     METHODS,
     PAPER_FREE,
     DesignSpace,
+    Goals,
     Mounting,
     Parametrization,
     Schedule,
@@ -45,6 +46,7 @@ from ..search import (
 )
 from ..sensors import PerceptionModel
 from .catalog_lookup import check_pairs, housings_of
+from .condition_set import Conditions
 from .passthrough import Passthrough
 from .requirement_check import checker_of, verdicts_of
 
@@ -80,6 +82,10 @@ class Search:
         Mounting errors and failures that a candidate is judged with; none by default.
     requirements : {"keep"}, optional
         Placements that meet the study's requirements are better than all that do not.
+    goals : Goals
+        When to stop, what stays, further starts, several objectives, the analysis of the result.
+    conditions : {"mean", "worst"}, optional
+        What is minimised over the study's states and weathers, in place of the score as drawn.
 
     Raises
     ------
@@ -109,6 +115,10 @@ class Search:
     requirements: str | None = setting(
         None, OneOf(("keep",)), "Placements that meet the study's requirements come first"
     )
+    goals: Goals = field(default_factory=Goals)
+    conditions: str | None = setting(
+        None, OneOf(("mean", "worst")), "Minimise the mean, or the worst, over states and weathers"
+    )
 
     def __post_init__(self) -> None:
         who = "optimize"
@@ -117,11 +127,8 @@ class Search:
             self, "limits", ReadOnlyDict(_each(self.limits, "bounds", _checked_limits))
         )
         check_settings(self, who)
-        for name, kind in (
-            ("schedule", Schedule),
-            ("mounting", Mounting),
-            ("tolerance", Tolerance),
-        ):
+        for kind in (Schedule, Mounting, Tolerance, Goals):
+            name = kind.__name__.lower()
             if not isinstance(value := getattr(self, name), kind):
                 raise InputError(who, name, f"a {kind.__name__}", type(value).__name__)
         known = checked_method(who, self.method or None, self.schedule != Schedule())
@@ -143,7 +150,8 @@ class Study:
     axles are, for exports; `passthrough` is what an imported rig's file had besides the rig, for an
     export to its own format. Of `search`, what concerns the rig's sensors is kept; one that it does
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
-    `rig`, and what they cost. `targets` says what is judged, `requirements` what has to be met.
+    `rig`, and what they cost. `targets` says what is judged, `requirements` what has to be met,
+    `conditions` the states of the vehicle and the weathers that count.
 
     Raises
     ------
@@ -172,6 +180,7 @@ class Study:
     targets: TargetRule = field(default_factory=TargetRule)
     passthrough: Passthrough | None = None
     requirements: tuple[Requirement, ...] = ()
+    conditions: Conditions = field(default_factory=Conditions)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
@@ -184,6 +193,7 @@ class Study:
         if self.mesh is not None:
             object.__setattr__(self, "mesh", A_PATH.checked("study", "mesh", self.mesh))
         check_settings(self, "study")
+        self.conditions.check(self.vehicle, self.rig)
         object.__setattr__(self, "search", _of_rig(self.search, self.rig))
 
     @property
@@ -244,10 +254,10 @@ class Study:
 
     def search_space(self) -> SearchSpace:
         """Return free axes and bounds [m or rad], with mounts and constraints."""
-        free, limits, mounting = self.search.free, self.search.limits, self.search.mounting
-        check_pairs(self.rig, mounting)
-        housings = housings_of(self.rig)
-        return SearchSpace.on_vehicle(self.rig, self.vehicle, free, limits, mounting, housings)
+        search = self.search
+        check_pairs(self.rig, search.mounting)
+        where = search.free, search.limits, search.mounting, housings_of(self.rig)
+        return SearchSpace.on_vehicle(self.rig, self.vehicle, *where, search.goals.fixed)
 
     def coding(self) -> Parametrization:
         """Return the unknowns of the search; `InputError` when it cannot be made."""
@@ -267,19 +277,10 @@ class Study:
         return replace(self, mesh=mesh, axes=MeshAxes(), faces="")
 
 
-FIELDS: dict[str, type] = {
-    "rig": Rig,
-    "space": PerceptionSpace,
-    "prior": Prior,
-    "model": PerceptionModel,
-    "search": Search,
-    "axes": MeshAxes,
-    "selection": Selection,
-    "targets": TargetRule,
-    "vehicle": Vehicle,
-    "reference": Reference,
-    "passthrough": Passthrough,
-}
+FIELDS: dict[str, type] = {"rig": Rig, "space": PerceptionSpace, "prior": Prior, "search": Search}
+FIELDS |= {"model": PerceptionModel, "axes": MeshAxes, "selection": Selection}
+FIELDS |= {"targets": TargetRule, "vehicle": Vehicle, "reference": Reference}
+FIELDS |= {"conditions": Conditions, "passthrough": Passthrough}
 OPTIONAL = ("vehicle", "reference", "passthrough")
 
 
@@ -310,4 +311,5 @@ def _of_rig(search: Search, rig: Rig) -> Search:
     limits = {name: own for name in names if (own := search.limits.get(name))}
     on = {name: search.mounting.on[name] for name in names if name in search.mounting.on}
     mounting = replace(search.mounting, on=on)
-    return replace(search, free=free, limits=limits, mounting=mounting)
+    goals = search.goals.of_rig(rig, mounting)
+    return replace(search, free=free, limits=limits, mounting=mounting, goals=goals)

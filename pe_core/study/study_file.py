@@ -25,10 +25,12 @@ from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
 from ..search import PAPER_FREE, checked_axes
 from .catalog_lookup import same_model
+from .condition_file import condition_tables, read_conditions
 from .metric_file import curves_table, read_model, read_targets, targets_table
 from .mounting_file import areas_of
 from .passthrough import passthrough_table, read_passthrough
 from .prior_file import prior_table, read_prior
+from .requirement_body import mesh_files
 from .requirement_file import read_requirements, requirement_table
 from .search_file import (
     in_file,
@@ -77,6 +79,8 @@ def save_study(study: Study, path: str | Path) -> None:
     _check_beside(path, "vehicle.mesh", study.vehicle is not None, study.mesh)
     boxes = study.prior.boxes
     _check_beside(path, "prior.boxes", boxes is not None, boxes.file if boxes else None)
+    for name, file in mesh_files(study.requirements):
+        _check_beside(path, f"requirement {name!r}: body.mesh", True, file)
     for name, area in areas_of(study.search.mounting).items():
         _check_beside(path, f"mount {name!r}: area", True, area.file)
     write_bytes(path, study_bytes(study))
@@ -112,6 +116,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
         "passthrough": passthrough_table(study.passthrough),
         "requirement": [requirement_table(each) for each in study.requirements] or None,
+        **condition_tables(study.conditions),
         "optimize": search_table(study.search),
         **selection_tables(study.selection, _model_value),
     }
@@ -158,7 +163,8 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
         read_targets(table.table("metric")),
         read_passthrough(table.table("passthrough")) if "passthrough" in table else None,
-        read_requirements(table),
+        read_requirements(table, folder),
+        read_conditions(table),
     )
     study.designs()
     if study.requirements:
@@ -175,11 +181,11 @@ def _made_of(table: Table, cls: type[T]) -> T:
 
 def _read_vehicle(table: Table, folder: Path) -> tuple[Vehicle | None, MeshFile]:
     mesh = table.text("mesh", None, rule=A_PATH)
-    keys = ("glass", "clearance", *AXES_KEYS)
+    keys = ("glass", "covers", "clearance", *AXES_KEYS)
     if mesh is None and any(key in table for key in keys):
         raise table.error("mesh", "the file of the vehicle's mesh", "nothing")
     glass = table.texts("glass", ())
-    settings = read_settings(table, Vehicle)
+    settings = {"covers": table.raw("covers", {}), **read_settings(table, Vehicle)}
     axes = read_axes(table)
     table.finish()
     if mesh is None:
@@ -195,13 +201,9 @@ def _read_sensor(table: Table, folder: Path) -> Sensor:
     position = table.numbers("position", 3)
     rotation = table.numbers("rotation", 3, (0.0, 0.0, 0.0))
     fusion = table.text("fusion", None, rule=A_NAME)
-    try:
+    with table.naming():
         pose = Pose.from_degrees(position, rotation)
         intrinsics = _read_intrinsics(table, name, folder)
-    except InputError as error:
-        if error.source == table.source:
-            raise
-        raise table.error(error.field, error.expected, error.found) from None
     return Sensor(name, intrinsics, pose, fusion, _own_curve(table))
 
 
@@ -236,6 +238,7 @@ def _vehicle_table(study: Study) -> dict[str, Any] | None:
     return {
         "mesh": study.mesh,
         "glass": list(study.vehicle.glass),
+        **({"covers": dict(study.vehicle.covers)} if study.vehicle.covers else {}),
         **settings_table(study.vehicle),
         **axes_table(study.axes),
     }
@@ -297,10 +300,8 @@ def read_axes(table: Table) -> MeshAxes:
     up, forward = table.text("up", None), table.text("forward", None)
     scale = table.number("scale", 1.0, rule=ANY)
     rotation = table.numbers("rotation", 3, None)
-    try:
+    with table.naming():
         return MeshAxes(up, forward, scale, rotation)  # type: ignore[arg-type]  # three of them
-    except InputError as error:
-        raise table.error(error.field, error.expected, error.found) from None
 
 
 def axes_table(axes: MeshAxes) -> dict[str, Any]:

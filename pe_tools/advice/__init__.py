@@ -6,6 +6,7 @@ Nothing here computes a score; results of `pe_core` are checked, compared and de
 from pe_tools.advice.advice import joined, percent
 
 from .advice import FRAGILE, UNMET, Advice, fragile, off_by, unmet
+from .condition_checks import condition_warnings
 from .key_figures import (
     SENSOR_COLUMNS,
     SHORT_ZONES,
@@ -52,6 +53,7 @@ __all__ = [
     "class_of",
     "compare",
     "compare_figures",
+    "condition_warnings",
     "fragile",
     "hidden_sensors",
     "hidden_words",

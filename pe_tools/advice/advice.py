@@ -131,10 +131,10 @@ def unmet(conflicts: Mapping[str, tuple[str, ...] | None]) -> tuple[Advice, ...]
 def _unmet_text(name: str, against: tuple[str, ...] | None) -> str:
     text = f"{name} is not met; no placement was found that keeps all requirements"
     if against is None:
-        return f"{text}, and none that meets this one alone"
+        return f"{text}, and a short search found none that meets this one alone"
     if not against:
         return f"{text}, though none stands against it: a longer search may"
-    return f"{text}: against it stands {', '.join(against)}"
+    return f"{text}: a short search met it only by breaking {', '.join(against)}"
 
 
 def off_by(position: float, angle: float) -> str:

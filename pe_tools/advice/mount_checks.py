@@ -128,7 +128,13 @@ class SensorAtBody:
 
 def odd_mounting(mounted: SensorAtBody) -> Iterator[Advice]:
     """Yield warnings about how a sensor is mounted on the vehicle."""
-    sensor = mounted.sensor
+    sensor, body = mounted.sensor, mounted.body.vehicle
+    covers = {} if body is None else kind_of(sensor).covers_met(sensor, body)
+    for part, (db, share) in covers.items():
+        text = f"the cover {part} takes {db:g} dB one way from {percent(share)} of its field"
+        yield Advice(sensor.name, "cover", text, part=part)
+    if covers:  # behind a cover a sensor is meant to be inside
+        return
     if mounted.inside:
         yield Advice(sensor.name, "inside", "it is inside the body and sees next to nothing")
         return

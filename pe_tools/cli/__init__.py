@@ -8,7 +8,7 @@ from .check_verb import (
     verdict_lines,
     verdicts_csv,
 )
-from .choose_verb import check_not_resumed, choose, plots
+from .choose_verb import choose, front_job, has_front, plots, resumed
 from .command import (
     Parser,
     add_run_options,
@@ -77,7 +77,6 @@ __all__ = [
     "as_typed",
     "begun_search",
     "carry_out",
-    "check_not_resumed",
     "check_study",
     "choose",
     "chosen_models",
@@ -86,6 +85,8 @@ __all__ = [
     "drive",
     "explain",
     "export",
+    "front_job",
+    "has_front",
     "job_and_folder",
     "leave",
     "named_by_file",
@@ -95,6 +96,7 @@ __all__ = [
     "plots",
     "printable",
     "refuse_different",
+    "resumed",
     "run",
     "scored",
     "show",

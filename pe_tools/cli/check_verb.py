@@ -14,10 +14,10 @@ from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.files import write_bytes
 from pe_core.base.serialization import finite
-from pe_core.scoring.requirements import Redundancy, RedundancyMap, Requirement, Verdict
+from pe_core.scoring.requirements import Redundancy, RedundancyMap, Verdict, checkable
 from pe_core.study import Study, load_study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
-from pe_core.study.requirement_search import Suggestion, suggestions
+from pe_core.study.requirement_help import Suggestion, suggestions
 
 from .run_job import print_vehicle
 from .terminal import DONE, Answer
@@ -68,7 +68,14 @@ def show_requirements(args: argparse.Namespace) -> Answer:
 
 def check(path: str, args: argparse.Namespace) -> Answer:
     """Hold a study file to its requirements; the exit status says whether all are met."""
-    return check_study(load_study(path), args)
+    study = load_study(path)
+    try:
+        return check_study(study, args)
+    except InputError as error:
+        if not error.source.startswith("requirement "):
+            raise
+        field = f"{error.source}: {error.field}"
+        raise InputError(path, field, error.expected, error.found) from None
 
 
 def check_study(study: Study, args: argparse.Namespace) -> Answer:
@@ -103,7 +110,7 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
 
 def _suggested(found: dict[str, Suggestion | None]) -> list[str]:
     """Return a line for each requirement: what would meet it."""
-    none = "no change of one sensor that was tried is enough"
+    none = "no placement of one sensor, or linked pair, that was tried is enough"
     return [
         f"{name}: met with {own.text}" if own else f"{name}: {none}" for name, own in found.items()
     ]
@@ -126,30 +133,16 @@ def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, s
 
     Of ``all`` presets those that cannot be placed round the vehicle are left out, with the reason.
     """
+    named = [preset(name, "check", "--preset").id for name in names if name != ALL]
     own = {each.name for each in study.requirements}
-    added: list[Requirement] = []
+    added = [presets()[name].requirement() for name in dict.fromkeys(named) if name not in own]
     unchecked: dict[str, str] = {}
-    for name in names:
-        for each in presets().values() if name == ALL else [preset(name, "check", "--preset")]:
-            if each.id in own:
-                continue
-            own.add(each.id)
-            requirement = each.requirement()
-            if name == ALL and (reason := _cannot(study, requirement)):
-                unchecked[each.id] = reason
-            else:
-                added.append(requirement)
+    if ALL in names:
+        rest = [each.requirement() for each in presets().values() if each.id not in own | {*named}]
+        around = study.rig, study.vehicle, study.reference, study.space
+        fitting, unchecked = checkable(rest, *around)
+        added += fitting
     return replace(study, requirements=(*study.requirements, *added)), unchecked
-
-
-def _cannot(study: Study, requirement: Requirement) -> str:
-    """Return why a requirement cannot be checked on a study; empty if it can."""
-    try:
-        requirement.criterion.check_rig(study.rig, requirement.name)
-        requirement.zone.placed(study.vehicle, study.reference, requirement.name)
-    except InputError as error:
-        return f"{error.field}: expected {error.expected}, found {error.found}"
-    return ""
 
 
 def verdict_lines(verdicts: Sequence[Verdict], unchecked: dict[str, str]) -> list[str]:
@@ -171,12 +164,13 @@ def verdict_lines(verdicts: Sequence[Verdict], unchecked: dict[str, str]) -> lis
 
 def _row(verdict: Verdict) -> tuple[str, str, str, str, str, str]:
     name = verdict.name if len(verdict.name) <= LONGEST else verdict.name[: LONGEST - 3] + "..."
-    margin = f"blind {verdict.blind_m2:.2f} m2" if verdict.blind_m2 is not None else ""
+    margin = verdict.margin_text
     if verdict.margin is not None:
-        margin = f"{'>= ' if verdict.at_least else ''}{verdict.margin:+.2f} m"
+        blind = "" if verdict.blind_m2 is None else f"blind {verdict.blind_m2:.2f} m2, "
+        margin = f"{blind}{'>= ' if verdict.at_least else ''}{verdict.margin:+.2f} m"
     met = "met" if verdict.met else "NOT MET"
     share = f"{verdict.share:.1%}"
-    return met, name, verdict.requirement.check, margin, share, _reason(verdict)
+    return met, name, verdict.requirement.after, margin, share, _reason(verdict)
 
 
 def _reason(verdict: Verdict) -> str:
@@ -189,9 +183,8 @@ def _reason(verdict: Verdict) -> str:
     if verdict.worst is None:
         return ""
     x, y = verdict.worst
-    hidden = ", ".join(f"{name}: {reason}" for name, reason in verdict.hidden.items())
-    what = f"{verdict.body} at " if verdict.body else ""
-    return f"{what}({x:.2f}, {y:.2f}){f'; {hidden}' if hidden else ''}"
+    what = f"{verdict.body or 'nearest blind ground'} at "
+    return f"{what}({x:.2f}, {y:.2f}){f': {verdict.hidden_text}' if verdict.hidden else ''}"
 
 
 def verdicts_csv(verdicts: Sequence[Verdict]) -> str:

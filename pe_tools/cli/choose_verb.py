@@ -12,18 +12,23 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.study import mounts_table
+from pe_core.search.goals import OBJECTIVES
+from pe_core.study import Study, mounts_table
 
 from ..jobs import (
     FRONT_NAMES,
     SAVE_EVERY_S,
     ChoiceJob,
     Design,
+    FrontJob,
     TradeOff,
     front_dict,
     prepare_folder,
+    read_front_search,
+    save_front_search,
     write_front,
 )
+from .executors import evaluated_by
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
 from .run_job import folder_or_fallback
@@ -32,6 +37,8 @@ from .terminal import BAD_INPUT, DONE, Answer, tell
 
 def front_summary(chosen: TradeOff) -> str:
     """Return the front as a table: price, entropy, coverage, and the pose of each sensor."""
+    if chosen.objectives:
+        return _objectives_summary(chosen)
     unit = chosen.study.selection.currency
     head = (f"price [{unit}]" if unit else "price", "entropy", "coverage", "design")
     rows = [_figures(design) for design in chosen.front]
@@ -42,6 +49,26 @@ def front_summary(chosen: TradeOff) -> str:
     return "\n".join([*lines, "", *search_notes(chosen)])
 
 
+def _objectives_summary(chosen: TradeOff) -> str:
+    """Return a front of several objectives as a table, with the pose of each sensor."""
+    labels = [OBJECTIVES[name] for name in chosen.objectives]
+    head = [f"{label} [{unit}]" if unit else label for label, unit in labels]
+    rows = [[f"{d.figures[name]:,.4g}" for name in chosen.objectives] for d in chosen.front]
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+
+    def line(cells: Sequence[str], name: str) -> str:
+        figures = (cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
+        return "  ".join([*figures, name])
+
+    lines = [line(head, "design")]
+    for row, design in zip(rows, chosen.front, strict=True):
+        met = f" ({design.met_text})" if design.met_text else ""
+        lines += [line(row, f"{design.name}{met}"), *_placed(design, " " * (sum(widths) + 2))]
+    count = len(chosen.front)
+    lines += ["", f"{count} on the front of {', '.join(label for label, _ in labels)}"]
+    return "\n".join([*lines, *_more_notes(chosen)])
+
+
 def search_notes(chosen: TradeOff) -> Iterator[str]:
     """Yield sentences about the search: numbers of designs, early stop, infeasible designs."""
     count, searched = len(chosen.designs) + len(chosen.refused), chosen.searched
@@ -50,6 +77,11 @@ def search_notes(chosen: TradeOff) -> Iterator[str]:
     yield f"{len(chosen.front)} on the front; {searched} searched of {count} looked at ({every})"
     if not searched:
         yield "none was searched in full: entropies are those of a first look"
+    yield from _more_notes(chosen)
+
+
+def _more_notes(chosen: TradeOff) -> Iterator[str]:
+    """Yield what the designs make of requirements, an early stop, and infeasible designs."""
     if chosen.requirements_note:
         yield chosen.requirements_note
     if chosen.stopped:
@@ -98,20 +130,42 @@ plots: list[Draw] = []
 """
 
 
-def check_not_resumed(args: argparse.Namespace) -> None:
-    """Raise `InputError` for `--resume`: a choice of sensors cannot be resumed."""
-    if getattr(args, "resume", None) is not None:
-        expected = "none for a study with choices, which begins anew"
-        raise InputError("command line", "--resume", expected, args.resume)
+def resumed(job: ChoiceJob | FrontJob, args: argparse.Namespace) -> str | None:
+    """Let a job go on where that of ``--resume`` ended; return the folder of its results.
+
+    Raises
+    ------
+    InputError
+        The folder has no checkpoint of this study's front.
+    """
+    folder = getattr(args, "resume", None)
+    if folder is None:
+        output: str | None = args.output
+        return output
+    job.journals = read_front_search(job.study, Path(folder))
+    tell(f"going on after {job.journals.count:,} placements")
+    return str(folder)
+
+
+def front_job(study: Study, workers: int | None = None) -> ChoiceJob | FrontJob:
+    """Return the job that computes a study's front: of its objectives, or of price and entropy."""
+    kind = FrontJob if study.search.goals.front.objectives else ChoiceJob
+    return kind(study, workers)
+
+
+def has_front(study: Study) -> bool:
+    """Whether `pe optimize` computes a front of a study."""
+    return bool(study.selection.choices or study.search.goals.front.objectives)
 
 
 def choose(
-    job: ChoiceJob,
+    job: ChoiceJob | FrontJob,
     output: Path | None,
     *,
     as_json: bool,
     host: Mapping[str, str] | None = None,
     more: Callable[[TradeOff, Path], None] | None = None,
+    scheduler: str | None = None,
 ) -> Answer:
     """Compute the front of a study's designs, write it, and return the text to print.
 
@@ -122,10 +176,12 @@ def choose(
     ----------
     more : callable, optional
         Writes further files to the folder (Blender's).
+    scheduler : str, optional
+        Address of a Dask scheduler whose workers evaluate placements; by default processes do.
     """
     if output is not None:
         prepare_folder(output, FRONT_NAMES)
-    with stop_at_first(job.stop) as received:
+    with evaluated_by(job, scheduler), stop_at_first(job.stop) as received:
         _drive(job, output, host)
         chosen = job.trade_off
         if chosen is None:
@@ -138,7 +194,7 @@ def choose(
         return text, status or received.status(DONE)
 
 
-def _drive(job: ChoiceJob, output: Path | None, host: Mapping[str, str] | None) -> None:
+def _drive(job: ChoiceJob | FrontJob, output: Path | None, host: Mapping[str, str] | None) -> None:
     """Run a job to its end with progress; save the front so far every few seconds."""
     reporter, saved, kept = Reporter(sys.stderr), time.monotonic(), 0
     try:
@@ -146,12 +202,22 @@ def _drive(job: ChoiceJob, output: Path | None, host: Mapping[str, str] | None) 
             reporter.report(progress)
             if output is None or time.monotonic() - saved < SAVE_EVERY_S:
                 continue
+            _try_to_save(job, output)
             saved, chosen = time.monotonic(), job.trade_off
             if chosen is not None and chosen.searched > kept:
                 kept = chosen.searched
                 _try_to_write(chosen, output, host)
     finally:
         reporter.clear()
+        if output is not None and job.journals.count:
+            _try_to_save(job, output)
+
+
+def _try_to_save(job: ChoiceJob | FrontJob, output: Path) -> None:
+    try:
+        save_front_search(job.study, job.journals, output)
+    except InputError as error:
+        tell(f"{error}; the search goes on")
 
 
 def _try_to_write(chosen: TradeOff, output: Path, host: Mapping[str, str] | None) -> None:

@@ -17,8 +17,9 @@ from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import quoted
 from pe_core.sensors import kind_of
-from pe_core.study import METHODS, SCHEDULED_METHOD, Study
+from pe_core.study import METHODS, SCHEDULED_METHOD, Study, under
 
+from .goal_options import add_goal_options, with_goals
 from .interrupts import FATAL, signals_interrupt
 from .run_job import print_answer
 from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, tell
@@ -48,6 +49,8 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     parser.add_argument("--json", action="store_true", help="print result.json on stdout")
     add_score_options(parser)
     if search:
+        about = "have the workers of a Dask scheduler evaluate placements, tcp://host:8786"
+        parser.add_argument("--scheduler", metavar="ADDRESS", help=about)
         add_search_options(parser)
 
 
@@ -63,6 +66,7 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--method", choices=METHODS, metavar="NAME", help=about)
     for option, greatest, about in options:
         parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
+    add_goal_options(parser)
 
 
 def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads") -> None:
@@ -70,6 +74,8 @@ def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads")
     voxels, count = count_up_to(MAX_VOXELS), count_up_to(MAX_WORKERS)
     about = "voxels a score looks at (0: all)"
     parser.add_argument("--grid-samples", type=voxels, metavar="N", help=about)
+    parser.add_argument("--state", metavar="NAME", help="a state of the study, in place of all")
+    parser.add_argument("--weather", metavar="NAME", help="a weather of the study, in place of all")
     parser.add_argument("--workers", type=count, metavar="N", help=f"{workers} (default: all)")
 
 
@@ -90,6 +96,9 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     """Return the study with the changes of the command line's options."""
     if args.grid_samples is not None:
         study = replace(study, samples=args.grid_samples)
+    state, weather = getattr(args, "state", None), getattr(args, "weather", None)
+    if state or weather:
+        study = under(study, study.conditions.one(state, weather))
     search = study.search
     for name in ("method", "seed", "samples", "evaluations"):
         if (value := getattr(args, name, None)) is not None:
@@ -98,7 +107,7 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
         schedule = replace(search.schedule, candidates=args.candidates)
         method = args.method or SCHEDULED_METHOD  # the only method with candidates
         search = replace(search, schedule=schedule, method=method)
-    return replace(study, search=search)
+    return with_goals(replace(study, search=search), args)
 
 
 def add_sensors_verb(verbs: argparse._SubParsersAction[Any]) -> None:

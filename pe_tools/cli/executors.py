@@ -9,7 +9,7 @@ import re
 import secrets
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from pe_core.scene import Pose
 from pe_core.search import EvaluatedRig, Journal, start_processes
 from pe_core.study import Study
 
-from ..jobs import Checkpoint, OptimizeJob, SearchState, read_search
+from ..jobs import Checkpoint, Job, OptimizeJob, SearchState, read_search
 from ..sweep import FolderCheckpoints, RunCheckpoints, SweepRun, WorkerPool
 from .terminal import tell
 
@@ -119,10 +119,15 @@ class ClusterCheckpoints:
         with suppress(queue.Empty):
             while True:
                 event = self._events.get_nowait()
-                search = changed[event["run"]] = self._searches[event["run"]]
-                search.add(event)
+                if search := self._searches.get(event["run"]):
+                    changed[event["run"]] = search
+                    search.add(event)
         for search in changed.values():
             search.save()
+
+    def finish(self, name: str) -> None:
+        """Forget a run whose result is here: events that come later do not replace its state."""
+        self._searches.pop(name, None)
 
     def _receive(self, event: tuple[float, Mapping[str, Any]]) -> None:
         """Queue an event; called in the client's own thread."""
@@ -159,6 +164,24 @@ def workplace(workers: int | None, scheduler: str | None) -> Iterator[WorkerPool
         place.close()
 
 
+@contextmanager
+def evaluated_by(job: Job, scheduler: str | None) -> Iterator[None]:
+    """Have the workers of a Dask scheduler evaluate a job's candidates meanwhile; None: processes.
+
+    Raises
+    ------
+    InputError
+        As `workplace`.
+    """
+    if scheduler is None:
+        yield
+        return
+    with closing(DaskWorkers(scheduler)) as workers:
+        workers.check()
+        job.executor = workers.executor
+        yield
+
+
 class Here:
     """A pool of processes on this machine; a single thread if no process can be started."""
 
@@ -179,6 +202,9 @@ class Here:
         """Return checkpoints that the worker process itself saves in the folder."""
         return FolderCheckpoints(folder)
 
+    def finish(self, name: str) -> None:
+        """Do nothing: a worker that returns its result saves no more."""
+
     def close(self) -> None:
         """Kill the processes in the middle of their tasks."""
         processes = self._count > 1  # processes are killed; a thread finishes its task
@@ -197,6 +223,7 @@ class DaskWorkers:
         self.executor: Executor = self._client.get_executor(pure=False)
         self._alone = False
         self._saved = ClusterCheckpoints(self._client)
+        self.finish = self._saved.finish
 
     def width(self) -> int:
         """Two tasks for each thread, so that no thread waits for its next task."""

@@ -30,6 +30,7 @@ from ..jobs import (
     set_aside_files_of_other_runs,
     write_outcome,
 )
+from .executors import evaluated_by
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
 from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, summary, tell
@@ -143,6 +144,7 @@ def carry_out(
     as_json: bool,
     host: dict[str, str] | None = None,
     more: More | None = None,
+    scheduler: str | None = None,
 ) -> Answer:
     """Run a job, keep its results, and return what is printed with the exit status.
 
@@ -152,7 +154,7 @@ def carry_out(
     1.
     """
     print_vehicle(job.study)
-    with stop_at_first(job.stop) as received:
+    with evaluated_by(job, scheduler), stop_at_first(job.stop) as received:
         outcome = drive(job, output)
         if outcome is None:
             note = "no score was complete, so nothing was written"

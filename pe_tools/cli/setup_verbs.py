@@ -34,7 +34,7 @@ PACKAGES: Mapping[str, tuple[str, ...]] = {
     "cad": ("ezdxf",),
     "rerun": ("rerun-sdk", "pyarrow"),
     "argoverse": ("pyarrow",),
-    "validate": ("jax",),
+    "validate": ("tensorflow",),
     "completion": ("shtab",),
     "blender": ("bpy",),
 }

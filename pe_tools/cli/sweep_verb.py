@@ -147,7 +147,12 @@ class _SweepVerb:
                 def make_task(name: str) -> RunTask:
                     return self._begin(self.rows[self._numbers[name]].run, place)
 
-                run_all(left, make_task, place, self._take, lambda: self._goes_on(received))
+                def take(name: str, found: Outcome | InputError) -> None:
+                    if isinstance(found, Outcome):
+                        place.finish(name)
+                    self._take(name, found)
+
+                run_all(left, make_task, place, take, lambda: self._goes_on(received))
         finally:
             self._reporter.clear()
             self.rows = [

@@ -12,7 +12,7 @@ from pe_core.sensors import kind_of
 from pe_core.study import Robustness
 
 from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
-from ..jobs import Outcome
+from ..jobs import Outcome, condition_lines, sureness_lines
 
 DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
 Answer = tuple[str, int]
@@ -126,6 +126,8 @@ def summary(outcome: Outcome) -> str:
         found = outcome.after.objects
         lines += [*object_words(found), f"on {objects_looked_at(found)}"]
     lines += _requirements(outcome)
+    if outcome.conditions is not None:
+        lines += condition_lines(outcome.conditions)
     scores = outcome.after.per_sensor
     rig = outcome.study.rig
     hidden = hidden_sensors(rig, outcome.after, outcome.warnings)
@@ -141,6 +143,7 @@ def summary(outcome: Outcome) -> str:
             f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"
         )
     if outcome.kind == "optimize":
+        lines += sureness_lines(outcome)
         lines.append(searched(outcome))
     if outcome.stopped:
         lines.append("stopped early: this is the best placement found so far")

@@ -14,9 +14,9 @@ from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_
 from pe_core.study import STUDY, Study, load_study
 from pe_core.version import __version__
 
-from ..jobs import ChoiceJob, OptimizeJob, ScoreJob, prepare_folder, result_names
+from ..jobs import OptimizeJob, ScoreJob, prepare_folder, result_names
 from .check_verb import add_check_options, add_requirements_verb, check
-from .choose_verb import check_not_resumed, choose
+from .choose_verb import choose, front_job, has_front, resumed
 from .command import Parser, add_run_options, add_sensors_verb, as_typed, run, with_options
 from .exchange_verbs import (
     add_export_options,
@@ -121,16 +121,14 @@ def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
 
 
 def _run_job(args: argparse.Namespace) -> Answer:
+    given = None if args.study is None else with_options(load_study(args.study), args)
+    if given is not None and args.kind == "optimize" and has_front(given):
+        return _choose(given, args)
     begun = begun_search(args)
-    if args.study is not None:
-        study = load_study(args.study)
-    elif begun is not None:
-        study = begun.study
-    else:
+    if given is None and begun is None:
         args.usage_error("expected STUDY, or --resume DIR")
-    study = with_options(study, args)
-    if args.kind == "optimize" and study.selection.choices:
-        return _choose(study, args)
+    study = given if given is not None or begun is None else with_options(begun.study, args)
+    assert study is not None
     (job, output), more = job_and_folder(study, args, begun), with_pages(args)
     if output is not None:
         if args.study is not None:
@@ -139,15 +137,17 @@ def _run_job(args: argparse.Namespace) -> Answer:
         prepare_folder(output, [*result_names(study, args.kind), *more_names])
     _print_boxes(study)
     folder = None if output is None else Path(output)
-    return carry_out(job, folder, as_json=args.json, more=more)
+    scheduler = getattr(args, "scheduler", None)
+    return carry_out(job, folder, as_json=args.json, more=more, scheduler=scheduler)
 
 
 def _choose(study: Study, args: argparse.Namespace) -> Answer:
     """Search for sensors and poses; write the Pareto front to the folder of results."""
-    check_not_resumed(args)
-    output = None if args.output is None else Path(args.output)
+    job = front_job(study, args.workers)
+    folder = resumed(job, args)
     _print_boxes(study)
-    return choose(ChoiceJob(study, args.workers), output, as_json=args.json)
+    output = None if folder is None else Path(folder)
+    return choose(job, output, as_json=args.json, scheduler=args.scheduler)
 
 
 def _print_boxes(study: Study) -> None:

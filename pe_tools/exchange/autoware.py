@@ -25,11 +25,13 @@ from .foreign_values import Written, named_numbers, plain_number, pose_from, tex
 from .frame_tree import with_legal_frames
 from .frames import composed, seen_from
 from .portable import PortableSensor, merged_lines
-from .portable_kinds import CAMERA, LIDAR
+from .portable_kinds import CAMERA, LIDAR, RADAR
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
 LENS_FRAME, FOOT_FRAME, OWN_FRAME = "/camera_link", "_base_link", "_link"
+RADAR_FRAME = "/radar_link"
+FRAMES = {CAMERA: LENS_FRAME, LIDAR: FOOT_FRAME, RADAR: RADAR_FRAME}
 POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 KitUnit = tuple[str, dict[str, Pose]]
 """File name of a unit, and the poses of its frames by frame name."""
@@ -56,7 +58,7 @@ def frame_of(sensor: PortableSensor) -> str:
     """Return the name of a sensor's frame."""
     if sensor.name.endswith(OWN_FRAME):
         return sensor.name
-    return sensor.name + {CAMERA: LENS_FRAME, LIDAR: FOOT_FRAME}.get(sensor.kind or "", "")
+    return sensor.name + FRAMES.get(sensor.kind or "", "")
 
 
 def frames_of(sensor: PortableSensor) -> tuple[str, ...]:
@@ -207,6 +209,8 @@ def _sensor(frame: str, pose: Pose, models: Mapping[str, str]) -> PortableSensor
     model = models.get(frame)
     if frame.endswith(LENS_FRAME):
         return PortableSensor(frame.removesuffix(LENS_FRAME), pose, CAMERA, model)
+    if frame.endswith(RADAR_FRAME):
+        return PortableSensor(frame.removesuffix(RADAR_FRAME), pose, RADAR, model)
     name = frame.removesuffix(FOOT_FRAME)
     return PortableSensor(name, pose, LIDAR if name != frame else None, model)
 

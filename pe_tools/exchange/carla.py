@@ -31,11 +31,15 @@ from .foreign_values import (
 from .frame_tree import with_legal_frames
 from .lens_pictures import Picture, picture_of_fov
 from .passthrough import ORIGIN, entry_row
-from .portable import PortableSensor, Scan, uneven
-from .portable_kinds import CAMERA, LIDAR
+from .portable import FieldOfView, PortableSensor, Scan, uneven
+from .portable_kinds import CAMERA, LIDAR, RADAR
 
 FILE = "objects.json"
-TYPES = {CAMERA: "sensor.camera.rgb", LIDAR: "sensor.lidar.ray_cast"}
+TYPES = {
+    CAMERA: "sensor.camera.rgb",
+    LIDAR: "sensor.lidar.ray_cast",
+    RADAR: "sensor.other.radar",
+}
 VEHICLE = {"type": "vehicle.*", "id": "ego_vehicle"}
 FRAMES_A_SECOND = 10
 TINY_DEG = 1e-6
@@ -47,8 +51,11 @@ UP = Number(-90.0, 90.0, unit="degrees", noun="angle")
 AROUND = Number(0.0, 360.0, above=True, unit="degrees", noun="angle")
 RATE, TURNS = Number(0.0, above=True, cap=1e12), Number(1e-3, cap=1e6)
 """Points per second, and rotations per second."""
-SPAWN, LISTS, ACROSS = "spawn_point", ("sensors", "objects"), "horizontal_fov"
-FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS)
+SPAWN, LISTS = "spawn_point", ("sensors", "objects")
+ACROSS, UPWARDS = "horizontal_fov", "vertical_fov"
+RADAR_FOV_DEG, RADAR_RANGE_M = 30.0, 100.0
+"""CARLA's defaults of a radar: both angles, and the range (sensors reference)."""
+FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS, UPWARDS)
 POSITION_KEYS, ROTATION_KEYS = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
@@ -117,6 +124,11 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
         row |= {"image_size_x": width, "image_size_y": height, "fov": fov}
     if sensor.scan is not None:
         row |= _lidar(sensor.scan)
+    if sensor.field is not None:
+        angles = (
+            math.degrees(2.0 * max(map(abs, a))) for a in (sensor.field.across, sensor.field.up)
+        )
+        row |= dict(zip((ACROSS, UPWARDS), angles, strict=True)) | {"range": sensor.field.max_range}
     return row
 
 
@@ -178,7 +190,19 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
         return replace(sensor, picture=_picture(row))
     if kind == LIDAR and all(key in row for key in SCAN_KEYS):
         return replace(sensor, scan=_scan(row))
+    if kind == RADAR and any(key in row for key in (ACROSS, UPWARDS, "range")):
+        return replace(sensor, field=_field(row))
     return sensor
+
+
+def _field(row: Table) -> FieldOfView:
+    """Return a radar's field of view, to both sides alike."""
+    keys = (ACROSS, AROUND), (UPWARDS, FOV)
+    across, up = (
+        math.radians(row.number(key, RADAR_FOV_DEG, rule=rule)) / 2.0 for key, rule in keys
+    )
+    reach = row.number("range", RADAR_RANGE_M, rule=RANGE)
+    return FieldOfView((-across, across), (-up, up), reach)
 
 
 def _picture(row: Table) -> Picture:

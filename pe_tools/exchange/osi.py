@@ -39,12 +39,13 @@ from .foreign_values import (
 )
 from .lens_pictures import picture_of_fov
 from .passthrough import entry_row
-from .portable import PortableSensor, Scan
-from .portable_kinds import CAMERA, LIDAR
+from .portable import FieldOfView, PortableSensor, Scan
+from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 
 FILE = "sensor_view_configuration.json"
-OTHER_KINDS = ("radar", "ultrasonic")
-"""Sensor kinds of OSI that this project does not evaluate; they are passed through."""
+OTHER_KINDS = (RADAR, ULTRASONIC)
+"""Kinds whose entries an export keeps: OSI has fields of theirs that are not read."""
+FIGURES = ("field_of_view_horizontal", "field_of_view_vertical")
 LISTS = {k: f"{k}_sensor_view_configuration" for k in (CAMERA, LIDAR, *OTHER_KINDS)}
 DIGITS = 9
 """Decimals of a beam's direction; a LiDAR has up to 240,000 beams."""
@@ -67,12 +68,13 @@ def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
     """
     beams = sum(s.scan.beam_count for s in sensors if s.scan is not None)
     require_at_most("osi", "sensors", beams, MAX_BEAMS, "beams, each of which is written")
-    ranges = {s.name: s.scan.max_range for s in sensors if s.scan is not None}
+    figures = ((s.name, s.scan or s.field) for s in sensors)
+    ranges = {name: own.max_range for name, own in figures if own is not None}
     top: dict[str, Any] = {"range": max(ranges.values())} if ranges else {}
     left_out = [
-        (sensor, entry_row(sensor, lambda _: {}, (), ()))
+        (sensor, entry_row(sensor, _row, ("mounting_position",), FIGURES))
         for sensor in sensors
-        if sensor.is_left_out
+        if sensor.is_left_out or sensor.entry
     ]
     used_ids = {_id_of(row) for _, row in left_out}
     free_ids = (number for number in count() if number not in used_ids)
@@ -89,7 +91,7 @@ def write(sensors: tuple[PortableSensor, ...]) -> tuple[Written, list[str]]:
 
 
 def _ours(sensors: Sequence[PortableSensor]) -> list[PortableSensor]:
-    return [sensor for sensor in sensors if not sensor.is_left_out]
+    return [sensor for sensor in sensors if not (sensor.is_left_out or sensor.entry)]
 
 
 def _id_of(row: Mapping[str, Any]) -> int | None:
@@ -105,7 +107,7 @@ def _lines(sensor_by_id: Mapping[int, PortableSensor], ranges: dict[str, float])
     shorter = [f"{name} {reach:g} m" for name, reach in ranges.items() if reach != farthest]
     if shorter:
         lines.append(
-            f"OSI has one range for all LiDARs, {farthest:g} m; left out: {', '.join(shorter)}"
+            f"OSI has one range for all sensors, {farthest:g} m; left out: {', '.join(shorter)}"
         )
     return lines
 
@@ -128,6 +130,9 @@ def _figures(sensor: PortableSensor) -> dict[str, Any]:
             "number_of_pixels_horizontal": width,
             "number_of_pixels_vertical": height,
         }
+    if sensor.field is not None:
+        angles = (2.0 * max(map(abs, ends)) for ends in (sensor.field.across, sensor.field.up))
+        return dict(zip(FIGURES, angles, strict=True))
     if sensor.scan is None or (beams := sensor.scan.beams) is None:
         return {}
     low, high = sensor.scan.fov
@@ -178,10 +183,19 @@ def _sensor(
         f"{kind or 'sensor'}_{number}", pose_from(path, mounting.path, coordinates, angles), kind
     )
     if kind in OTHER_KINDS:
-        return replace(sensor, entry=json_entry(row.data))
+        seen = _field(row, row.figure("range", RANGE) or max_range)
+        return replace(sensor, entry=json_entry(row.data), field=seen)
     if kind == CAMERA:
         return _camera(row, sensor)
     return _lidar(path, row, sensor, max_range) if kind == LIDAR and "directions" in row else sensor
+
+
+def _field(row: Message, max_range: float | None) -> FieldOfView | None:
+    """Return the field of view of a radar or an ultrasonic sensor; None without angles or range."""
+    across, up = (row.figure(key, WIDEST) for key in FIGURES)
+    if across is None or up is None or max_range is None:
+        return None
+    return FieldOfView((-across / 2.0, across / 2.0), (-up / 2.0, up / 2.0), max_range)
 
 
 def _camera(row: Message, sensor: PortableSensor) -> PortableSensor:

@@ -41,7 +41,7 @@ def restored_sensor(source: SourceSensor, sensor: PortableSensor, model: str) ->
     """Return a sensor with its imported entry, and without properties that have not changed."""
     untouched = bool(source.entry or source.is_stand_in) and same_model(source.model, model)
     if untouched:
-        sensor = replace(sensor, picture=None, scan=None, parameters="")
+        sensor = replace(sensor, picture=None, scan=None, field=None, parameters="")
         sensor = replace(sensor, is_stand_in=source.is_stand_in)
         sensor = replace(sensor, min_range=None, max_range=None)
     unmoved = source.pose is not None and same_pose(source.pose, sensor.pose)

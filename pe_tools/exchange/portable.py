@@ -53,6 +53,19 @@ class Scan:
 
 
 @dataclass(frozen=True, slots=True)
+class FieldOfView:
+    """The field of view of a radar or an ultrasonic sensor: azimuths and elevations [rad], ranges.
+
+    `across` and `up` are the lowest and the highest angle; ranges are in metres.
+    """
+
+    across: tuple[float, float]
+    up: tuple[float, float]
+    max_range: float
+    min_range: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class PortableSensor:
     """A sensor in the exchange model.
 
@@ -85,6 +98,8 @@ class PortableSensor:
     parameters : str
         Table of its model in a study (JSON), of a kind that has neither picture nor scan; may be
         empty.
+    field : FieldOfView or None
+        Of a kind whose parameters formats without room for them reduce to it.
     """
 
     name: str
@@ -102,11 +117,13 @@ class PortableSensor:
     is_unmoved: bool = False
     is_stand_in: bool = False
     parameters: str = ""
+    field: FieldOfView | None = None
 
     @property
     def has_figures(self) -> bool:
         """Whether it has figures of its model."""
-        return self.picture is not None or self.scan is not None or bool(self.parameters)
+        own = self.picture, self.scan, self.field
+        return any(figures is not None for figures in own) or bool(self.parameters)
 
     @property
     def known_model(self) -> str | None:

@@ -21,12 +21,14 @@ from pe_core.sensors import KINDS
 from pe_core.sensors.camera import Camera, Lens
 from pe_core.sensors.camera.lens import fold_angle
 from pe_core.sensors.lidar import Lidar
+from pe_core.sensors.radar import Radar, RadarMode
+from pe_core.sensors.ultrasonic import Ultrasonic
 from pe_core.study.passthrough import json_entry
 
 from .lens_pictures import ALIKE_PX, Picture, Size
-from .portable import EVEN_RAD, PortableSensor, Scan
+from .portable import EVEN_RAD, FieldOfView, PortableSensor, Scan
 
-CAMERA, LIDAR = Camera.kind, Lidar.kind
+CAMERA, LIDAR, RADAR, ULTRASONIC = Camera.kind, Lidar.kind, Radar.kind, Ultrasonic.kind
 NO_EXTENT_RAD = 1e-9
 """A scan with a smaller horizontal field of view does not rotate [rad]."""
 OFF_CENTER = 0.06
@@ -72,7 +74,8 @@ def stand_in_of(kind: str) -> str | None:
 
     It is the first of the catalogue where the kind has no row; None if there is none.
     """
-    return portable_kind(kind).stand_in or next(iter(catalog.names(kind)), None)
+    stand_in = portable_kind(kind).stand_in
+    return stand_in or next(iter(catalog.names(kind)), None)
 
 
 def has_model(sensor: PortableSensor) -> bool:
@@ -234,6 +237,30 @@ def _model_by_table(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
     return catalog.from_table(sensor.model or sensor.name, table), ""
 
 
+def _radar_model(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
+    """Return the radar of its table, or one with a single mode of the file's field of view."""
+    if sensor.parameters or sensor.field is None:
+        return _model_by_table(sensor, None)
+    seen, name = sensor.field, sensor.model or sensor.name
+    ends = np.array(seen.across), np.array([seen.max_range] * 2), np.array(seen.up), np.ones(2)
+    model = Radar(name, [RadarMode("scan", *ends, min_range=seen.min_range)])
+    return model, f"{sensor.name}: the file has no resolution and no RCS; 10 dBsm, one cell"
+
+
+def _ultrasonic_model(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
+    """Return the ultrasonic sensor of its table, or one with the file's cone."""
+    if sensor.parameters or sensor.field is None:
+        return _model_by_table(sensor, None)
+    seen, name = sensor.field, sensor.model or sensor.name
+    cone = seen.across[1] - seen.across[0], seen.up[1] - seen.up[0]
+    return Ultrasonic(name, seen.max_range, *cone, min_range=seen.min_range), ""
+
+
+def _with_field(model: Radar | Ultrasonic) -> dict[str, Any]:
+    seen = FieldOfView(*model.window, model.max_range, model.min_range)
+    return {"parameters": json_entry(catalog.to_table(model)), "field": seen}
+
+
 PORTABLE_KINDS: dict[str, PortableKind] = {
     LIDAR: PortableKind(lambda model: {"scan": _scan(model)}, _lidar_model, "Velodyne VLP-16 Puck"),
     CAMERA: PortableKind(
@@ -241,6 +268,10 @@ PORTABLE_KINDS: dict[str, PortableKind] = {
         _camera_model,
         "nuScenes front",
         ("cam", "fisheye", "rgb", "image"),
+    ),
+    RADAR: PortableKind(_with_field, _radar_model, "Continental ARS408-21", ("radar",)),
+    ULTRASONIC: PortableKind(
+        _with_field, _ultrasonic_model, "Bosch Ultrasonic 3.1", ("ultrasonic", "uss")
     ),
 }
 """Rows by kind; other kinds are expressed by `OTHER`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -146,13 +146,16 @@ def _line(x: Floats, y: Floats, weight: Floats) -> tuple[float, float, float, fl
     return a, b, math.sqrt(variance / spread), b_error, math.sqrt(square / total)
 
 
-COLUMNS = ("m", "ap", "n")
+COLUMNS, RANGE_COLUMN = ("m", "ap", "n"), "range_m"
 
 
-def read_ap_table(path: str | Path) -> ApTable:
+def read_ap_table(
+    path: str | Path, m_at_ranges: Callable[[Floats], Floats] | None = None
+) -> ApTable:
     """Read a CSV with the columns m and ap, and optionally n, the number of objects of each point.
 
-    Lines that begin with ``#`` are comments. Other columns are ignored.
+    Lines that begin with ``#`` are comments. Other columns are ignored. With `m_at_ranges` the
+    table has a column range_m [m] in place of m, and the function returns m (N,) of ranges (N,).
 
     Raises
     ------
@@ -164,18 +167,20 @@ def read_ap_table(path: str | Path) -> ApTable:
     if b"\0" in data:
         raise InputError(source, "file", "a table in text (CSV)", "binary data")
     rows = numbered_lines(decode_text(data))
+    columns = COLUMNS if m_at_ranges is None else (RANGE_COLUMN, *COLUMNS[1:])
     if not rows:
-        raise InputError(source, "file", "a table with the columns m and ap", "nothing")
+        expected = f"a table with the columns {columns[0]} and ap"
+        raise InputError(source, "file", expected, "nothing")
     names = [name.lower() for name in _cells(source, *rows[0])]
-    for name in COLUMNS[:2]:
+    for name in columns[:2]:
         if names.count(name) != 1:
             found = ", ".join(names)
             raise InputError(
                 source, f"line {rows[0][0]}", f"one column named {name}", quoted(found)
             )
-    values = [_values(source, k, names, _cells(source, k, line)) for k, line in rows[1:]]
+    values = [_values(source, k, names, _cells(source, k, row), columns) for k, row in rows[1:]]
     m, ap, n = np.array(values, dtype=float).reshape(-1, 3).T
-    return ApTable(m, ap, n, source)
+    return ApTable(m if m_at_ranges is None else m_at_ranges(m), ap, n, source)
 
 
 def _cells(source: str, number: int, line: str) -> list[str]:
@@ -187,16 +192,16 @@ def _cells(source: str, number: int, line: str) -> list[str]:
 
 
 def _values(
-    source: str, line: int, names: Sequence[str], cells: Sequence[str]
+    source: str, line: int, names: Sequence[str], cells: Sequence[str], columns: Sequence[str]
 ) -> tuple[float, float, float]:
-    """m, ap and n of a row, checked."""
+    """m or the range, ap and n of a row, checked."""
     where = f"line {line}"
     if len(cells) != len(names):
         raise InputError(source, where, f"{len(names)} columns", len(cells))
     row = dict(zip(names, cells, strict=True))
-    m, ap, n = (parse_number(source, where, name, row.get(name, "1")) for name in COLUMNS)
+    m, ap, n = (parse_number(source, where, name, row.get(name, "1")) for name in columns)
     if m < 0.0:
-        raise InputError(source, where, "m of 0 or more", m)
+        raise InputError(source, where, f"{columns[0]} of 0 or more", m)
     if not 0.0 <= ap <= 1.0:
         raise InputError(source, where, "ap between 0 and 1", ap)
     if n <= 0.0:

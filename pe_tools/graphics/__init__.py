@@ -31,6 +31,7 @@ from .colors import (
     sensor_palette,
     with_alpha,
 )
+from .fields import FieldSketch, field_colors
 from .frustums import (
     footprint,
     footprint_faces,
@@ -79,6 +80,7 @@ from .sensor_images import (
     range_share,
 )
 from .simplify import simplified
+from .verdicts import painted_samples
 
 __all__ = [
     "AS_SCORED",
@@ -108,6 +110,7 @@ __all__ = [
     "Cast",
     "ChannelMode",
     "ColorKey",
+    "FieldSketch",
     "GroundSheet",
     "LayerShape",
     "Look",
@@ -126,6 +129,7 @@ __all__ = [
     "drawing_of",
     "even_angles",
     "fan",
+    "field_colors",
     "fitted_bound",
     "fitted_bounds",
     "footprint",
@@ -141,6 +145,7 @@ __all__ = [
     "hidden_lines",
     "on_scale",
     "outline",
+    "painted_samples",
     "png_bytes",
     "polyline",
     "range_colors",

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pe_core.scene import Sensor, Vehicle
 
-from . import frustums, rays
+from . import fields, frustums, rays
 from .beams import BeamChoice, Beams, cast, shown_beams
 from .colors import VIEWPORT, Palette, Rgba
 from .primitives import Primitives
@@ -153,6 +153,10 @@ def _camera(sensor: Sensor, *_: object) -> FrustumSketch:
     return FrustumSketch(sensor)
 
 
+def _field(sensor: Sensor, *_: object) -> fields.FieldSketch:
+    return fields.FieldSketch(sensor)
+
+
 def _other(sensor: Sensor, *_: object) -> RingSketch:
     return RingSketch(sensor)
 
@@ -169,6 +173,18 @@ DRAWINGS = {
         lambda palette: palette.camera,
         Look("camera view", 2.0, 1.8),
         footprint=frustums.footprint,
+    ),
+    "radar": Drawing(
+        _field,
+        lambda palette: palette.other,
+        Look("radar field", 5.0, 1.8),
+        footprint=fields.field_footprint,
+    ),
+    "ultrasonic": Drawing(
+        _field,
+        lambda palette: palette.other,
+        Look("ultrasonic cone", 2.5, 1.8),
+        footprint=fields.field_footprint,
     ),
 }
 OTHER = Drawing(_other, lambda palette: palette.other, Look(None, 2.0, 1.8))

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pe_core.scene import Sensor, Vehicle
-from pe_core.sensors import Camera, Lidar, RangePicture
-from pe_core.sensors.camera.picture import picture_rays
+from pe_core.sensors import Camera, Lidar, RangePicture, kind_of
 
 from .colors import VIRIDIS, Scale, on_scale
 from .primitives import Primitives
@@ -74,23 +73,23 @@ RAYS = 240
 def hidden_lines(
     sensor: Sensor, vehicle: Vehicle | None, color: ArrayLike, most: int = RAYS
 ) -> Primitives:
-    """Return lines from a camera to its own vehicle, evenly spread over the picture.
+    """Return lines from a sensor to its own vehicle, evenly spread over its field of view.
 
     Parameters
     ----------
     sensor : Sensor
-        A camera.
     vehicle : Vehicle or None
-        The vehicle; cameras see through its glass. None gives no lines.
+        The vehicle; cameras see through its glass, radars through its covers. None gives no
+        lines.
     color : (4,) float
     most : int
-        Number of positions in the picture.
+        Number of rays.
     """
-    if vehicle is None:
+    body = None if vehicle is None else kind_of(sensor).opaque(vehicle)
+    if body is None:
         return Primitives.empty()
-    rays = picture_rays(sensor, most)
-    through_glass = camera_of(sensor).sees_through_glass
-    distance = vehicle.first_hit(sensor.pose.position, rays, through_glass).distance
+    rays, through_glass = kind_of(sensor).rays(sensor, most), sensor.model.sees_through_glass
+    distance = body.first_hit(sensor.pose.position, rays, through_glass).distance
     met = np.isfinite(distance)
     start = np.broadcast_to(sensor.pose.position, (int(met.sum()), 3))
     ends = start + rays[met] * distance[met, None]

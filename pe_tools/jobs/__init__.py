@@ -2,42 +2,53 @@
 
 from .checkpoint import SAVE_EVERY_S, BegunSearch, Checkpoint, SearchState, read_search
 from .choice_job import ChoiceJob, Design, TradeOff
+from .condition_files import condition_lines, conditions_csv
 from .designed import design_study
 from .folder import FileSet, check_files, prepare_folder
+from .front_checkpoint import FRONT_SEARCH, FrontJournals, read_front_search, save_front_search
 from .front_files import (
     DESIGNS,
     FRONT_CSV,
     FRONT_JSON,
     FRONT_NAMES,
+    FRONT_PAGE,
     FRONT_PLOT,
     front_dict,
     write_front,
 )
-from .job import HistoryRow, Job, Outcome, Progress
+from .front_job import FrontJob
+from .job import HistoryRow, Job, Outcome, Progress, StartEnd
 from .results import (
     add_to_result,
     files_of_other_runs,
     placements,
     result_dict,
     result_names,
+    runners_up,
     set_aside_files_of_other_runs,
     write_outcome,
 )
 from .score_and_optimize import OptimizeJob, ScoreJob
+from .stopping import stop_text
 from .study_export import export_study, fingerprint, study_writers
+from .sureness import sureness_lines
 
 __all__ = [
     "DESIGNS",
     "FRONT_CSV",
     "FRONT_JSON",
     "FRONT_NAMES",
+    "FRONT_PAGE",
     "FRONT_PLOT",
+    "FRONT_SEARCH",
     "SAVE_EVERY_S",
     "BegunSearch",
     "Checkpoint",
     "ChoiceJob",
     "Design",
     "FileSet",
+    "FrontJob",
+    "FrontJournals",
     "HistoryRow",
     "Job",
     "OptimizeJob",
@@ -45,9 +56,12 @@ __all__ = [
     "Progress",
     "ScoreJob",
     "SearchState",
+    "StartEnd",
     "TradeOff",
     "add_to_result",
     "check_files",
+    "condition_lines",
+    "conditions_csv",
     "design_study",
     "export_study",
     "files_of_other_runs",
@@ -55,11 +69,16 @@ __all__ = [
     "front_dict",
     "placements",
     "prepare_folder",
+    "read_front_search",
     "read_search",
     "result_dict",
     "result_names",
+    "runners_up",
+    "save_front_search",
     "set_aside_files_of_other_runs",
+    "stop_text",
     "study_writers",
+    "sureness_lines",
     "write_front",
     "write_outcome",
 ]

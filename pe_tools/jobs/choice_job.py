@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 
 from pe_core.base.errors import InputError
 from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score
-from pe_core.search import DesignSearch, Picks, above_front, pareto_front
+from pe_core.search import DesignSearch, Objective, Picks, above_front, pareto_front
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Search, Study
 
 from ..advice import Advice
+from .candidate_workers import ExecutorSource, candidate_workers
 from .designed import Models, design_names, design_study
+from .front_checkpoint import FrontJournals
 from .job import Job, Progress
 from .score_and_optimize import OptimizeJob
 
@@ -48,6 +51,8 @@ class Design:
     warnings : tuple of Advice
     verdicts : tuple of Verdict
         On the study's requirements; none for a design that was only screened.
+    figures : mapping of str to float
+        Its objectives by name, on a front of several.
     """
 
     name: str
@@ -58,6 +63,7 @@ class Design:
     score: Score | None = None
     warnings: tuple[Advice, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
+    figures: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def broken(self) -> tuple[str, ...]:
@@ -97,6 +103,8 @@ class TradeOff:
     stopped : bool
         Whether the job was stopped early.
     seconds : float
+    objectives : tuple of str
+        Of a front of several objectives; none: it is that of price and entropy.
     """
 
     study: Study
@@ -106,6 +114,7 @@ class TradeOff:
     is_complete: bool = True
     stopped: bool = False
     seconds: float = 0.0
+    objectives: tuple[str, ...] = ()
 
     @property
     def searched(self) -> int:
@@ -138,6 +147,8 @@ class ChoiceJob(Job):
     ----------
     trade_off : TradeOff or None
         The result; while the job runs, the result so far.
+    journals : FrontJournals
+        Of all searches; those of an interrupted job may be set before this one begins.
     """
 
     def __init__(self, study: Study, workers: int | None = None) -> None:
@@ -148,6 +159,9 @@ class ChoiceJob(Job):
         self._inner: _DesignJob | None = None
         self._possible: int | None = None
         self._evaluators: dict[int, RigJudge] = {}
+        self._helpers: ExecutorSource | None = None
+        self._open = ExitStack()
+        self.journals = FrontJournals()
 
     @property
     def trade_off(self) -> TradeOff | None:
@@ -184,6 +198,10 @@ class ChoiceJob(Job):
             self._inner.drop()
 
     def __iter__(self) -> Iterator[Progress]:
+        with self._open:
+            yield from self._all()
+
+    def _all(self) -> Iterator[Progress]:
         wanted = self._designs.first(ALL_SEARCHED_UP_TO + 1)
         if len(wanted) <= ALL_SEARCHED_UP_TO:
             self._possible = len(wanted)
@@ -221,7 +239,7 @@ class ChoiceJob(Job):
     def _screen(self, picks: Picks, progress: Progress) -> Iterator[Progress]:
         """Search a design with few candidates, and store the result."""
         try:
-            job = self._job_of(picks)
+            job = self._job_of(picks, "first look")
             full_search, search = job.study.search, _few_candidates(job.study.search)
             job.study = replace(job.study, search=search)
             for _ in job.look():
@@ -237,7 +255,7 @@ class ChoiceJob(Job):
         """Search a design in full, and store the result."""
         stage, fraction = f"searching {count} designs", 0.0
         try:
-            self._inner = job = self._job_of(picks)
+            self._inner = job = self._job_of(picks, "search")
             for progress in job:
                 if progress.stage == job.SEARCHING:
                     fraction = progress.fraction
@@ -263,8 +281,10 @@ class ChoiceJob(Job):
         both = zip(self._found.values(), names, strict=True)
         return [replace(design, name=name) for design, name in both]
 
-    def _job_of(self, picks: Picks) -> _DesignJob:
-        return _DesignJob(design_study(self.study, self._designs.models(picks)), self)
+    def _job_of(self, picks: Picks, stage: str) -> _DesignJob:
+        job = _DesignJob(design_study(self.study, self._designs.models(picks)), self)
+        job.journal = self.journals.begin(f"{stage} {'-'.join(map(str, picks))}")
+        return job
 
     def evaluator_of(self, samples: int) -> RigJudge:
         """Return the evaluator with this number of samples; all designs share it.
@@ -278,11 +298,24 @@ class ChoiceJob(Job):
             self._evaluators[sample_count] = self.study.evaluator(samples, self.workers)
         return self._evaluators[sample_count]
 
+    def helpers(self, objectives: Sequence[Objective]) -> ExecutorSource:
+        """Return what evaluates the candidates of all designs; it is made for the first one.
+
+        All models that may be chosen go to the workers at once, with the evaluators of all levels.
+        """
+        if self._helpers is None:
+            offered = [o.model for c in self.study.selection.choices for o in c.options]
+            levels = map(self.evaluator_of, self.study.search.level_samples)
+            common = [*levels, *offered, *(sensor.model for sensor in self.study.rig)]
+            self._helpers = self._open.enter_context(candidate_workers(self, objectives, common))
+        return self._helpers
+
 
 class _DesignJob(OptimizeJob):
     """The search of one design, with the evaluators that all designs share."""
 
     SEARCHING = "optimizing"
+    analyses = False
 
     def __init__(self, study: Study, parent: ChoiceJob) -> None:
         super().__init__(study, parent.workers)
@@ -294,6 +327,10 @@ class _DesignJob(OptimizeJob):
 
     def _evaluator_of(self, samples: int) -> RigJudge:
         return self._parent.evaluator_of(samples)
+
+    @contextmanager
+    def _candidate_workers(self) -> Iterator[ExecutorSource]:
+        yield self._parent.helpers(self._objectives)
 
     def look(self) -> Iterator[Progress]:
         """Search without scoring the start and the result."""

@@ -12,8 +12,10 @@ from pe_core import catalog
 from pe_core.geometry.poses import Pose, rotate
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.search import (
+    Goals,
     Mounting,
     Selection,
+    Start,
     SurfaceMount,
     mirrored,
     pose_from_values,
@@ -44,11 +46,21 @@ def design_study(study: Study, models: Models) -> Study:
     mounting = _mounting_of(study.search.mounting, models)
     sensors = [_taken(sensor, models[sensor.name]) for sensor in _kept(study.rig, models)]
     sensors += [sensor for sensor in study.rig if sensor.name not in models]
-    order = [sensor.name for sensor in study.rig]
-    rig = Rig(sorted(sensors, key=lambda sensor: order.index(sensor.name)))
+    rig = Rig(sorted(sensors, key=lambda s: [o.name for o in study.rig].index(s.name)))
+    order = [sensor.name for sensor in rig]
     poses = _seated(study.rig, rig, mounting)
-    search = replace(study.search, mounting=mounting)
+    search = replace(study.search, mounting=mounting, goals=_goals_of(study.search.goals, order))
     return replace(study, rig=rig.with_poses(poses), search=search, selection=Selection())
+
+
+def _goals_of(goals: Goals, names: Sequence[str]) -> Goals:
+    """Return the goals of a search without the sensors that are left out."""
+    fixed = [name for name in goals.fixed if name in names]
+    starts = [
+        Start(start.name, {n: pose for n, pose in start.poses.items() if n in names})
+        for start in goals.starts
+    ]
+    return replace(goals, fixed=fixed, starts=starts)
 
 
 def design_names(designs: Sequence[Models]) -> list[str]:

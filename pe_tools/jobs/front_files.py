@@ -22,8 +22,9 @@ from .results import placements, run_dict
 from .study_export import study_writers
 
 FRONT_JSON, FRONT_CSV, FRONT_PLOT, DESIGNS = "front.json", "front.csv", "front.png", "designs"
-FRONT_NAMES = (FRONT_JSON, FRONT_CSV, FRONT_PLOT)
-"""Files of a front. Another package draws the plot, if matplotlib is installed."""
+FRONT_PAGE = "front.html"
+FRONT_NAMES = (FRONT_JSON, FRONT_CSV, FRONT_PLOT, FRONT_PAGE)
+"""Files of a front. Other rooms write the page, and the plot where matplotlib is installed."""
 FRONT_SCHEMA = 1
 MAX_STEM_LENGTH = 80
 """Maximum number of characters of a design's file name, without the suffix."""
@@ -41,6 +42,7 @@ def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[
         "kind": "front",
         "seed": chosen.study.search.seed,
         "currency": selection.currency,
+        **({"objectives": list(chosen.objectives)} if chosen.objectives else {}),
         "looked_at": len(chosen.designs) + len(chosen.refused),
         "searched": chosen.searched,
         "all_designs_looked_at": chosen.is_complete,
@@ -84,7 +86,7 @@ def write_front(
         for name, write in _writers(chosen).items():
             files.add(name, write)
     with FileSet(folder) as files:
-        files.take_away([FRONT_PLOT])  # it shows the front of an earlier run
+        files.take_away([FRONT_PLOT, FRONT_PAGE])  # they show the front of an earlier run
         files.add(FRONT_CSV, front_csv(chosen).encode(errors="backslashreplace"))
         files.add(FRONT_JSON, dump_json(data).encode(errors="backslashreplace"))
     return data
@@ -98,11 +100,13 @@ def front_csv(chosen: TradeOff) -> str:
     head = ["design", "on_front", "price", "entropy", "coverage", "searched"]
     asked = bool(chosen.study.requirements)
     more = ["requirements_met"] if asked else []
+    more += [f"objective.{name}" for name in chosen.objectives]
     writer.writerow([*head, *more, *(f"{name}.model" for name in sensors)])
     for design in chosen.designs:
         models_by_sensor = {sensor.name: sensor.model.name for sensor in design.study.rig}
         figures = (design.price, _entropy(design), _coverage(design), int(design.score is not None))
-        met = [_met(design)] if asked else []
+        met: list[object] = [_met(design)] if asked else []
+        met += [design.figures[name] for name in chosen.objectives]
         on_front = int(design in chosen.front)
         models = (models_by_sensor.get(name, "") for name in sensors)
         writer.writerow([design.name, on_front, *figures, *met, *models])
@@ -150,6 +154,7 @@ def _design_dict(design: Design, on_front: bool, files: Mapping[str, str]) -> di
         "placements": placements(design.study.rig),
         "warnings": [warning.to_dict() for warning in design.warnings],
         "study": file,
+        **({"figures": dict(design.figures)} if design.figures else {}),
         **_requirements(design),
     }
 

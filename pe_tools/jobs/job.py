@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future
 from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,9 +16,11 @@ from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score, ScoreStopped
 from pe_core.search import EvaluatedRig, Robustness
+from pe_core.study.condition_table import ConditionTable, condition_table
 from pe_core.study.study import Study
 
 from ..advice import Advice, warnings
+from ..sensitivity import Sensitivity
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +31,16 @@ class HistoryRow:
     round: int
     entropy: float
     rig: Rig
+
+
+@dataclass(frozen=True, slots=True)
+class StartEnd:
+    """Where a start of a search ended: its name (empty: the given one), entropy [nats], and how
+    many rigs were evaluated until then."""
+
+    name: str
+    entropy: float
+    evaluations: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +73,14 @@ class Outcome:
         Of a search: how the entropy of start and result changes under mounting errors and failures.
     verdicts : tuple of Verdict
         On the requirements of `study`, in its order.
+    conditions : ConditionTable or None
+        Of `study`, where it has states or weathers.
+    sensitivity : Sensitivity or None
+        Of a search: how sure it is of its result; None where it was too short or has it off.
+    starts : tuple of StartEnd
+        Where each start of a search ended, if it had several.
+    stop_reason : str
+        Why the search ended before its budget did: "target", "seconds", "gain", or empty.
     """
 
     kind: str
@@ -77,6 +97,10 @@ class Outcome:
     judged: tuple[EvaluatedRig, ...] = ()
     robustness: Robustness | None = None
     verdicts: tuple[Verdict, ...] = ()
+    conditions: ConditionTable | None = None
+    sensitivity: Sensitivity | None = None
+    starts: tuple[StartEnd, ...] = ()
+    stop_reason: str = ""
 
 
 T = TypeVar("T")
@@ -123,6 +147,8 @@ class Job:
         self.study, self.workers = study, workers
         self.outcome: Outcome | None = None
         self.stopped = self.dropped = False
+        self.executor: Executor | None = None
+        """Evaluates the candidates of searches; by default processes on this machine."""
         self.notes: tuple[Advice, ...] = ()
         """Warnings of the program that created the study; they precede those of the checks."""
         self._started = time.monotonic()
@@ -215,6 +241,27 @@ class Job:
         if not study.requirements:
             return ()
         return (yield from self._beside(study.verdicts, lambda: waiting, to_the_end=True))
+
+    def _conditions(
+        self, study: Study, waiting: Progress
+    ) -> Generator[Progress, None, ConditionTable | None]:
+        """Score a study under its conditions in a thread; None without, or where it is dropped."""
+        if not study.conditions:
+            return None
+        done = 0.0
+
+        def watch(share: float) -> bool:
+            nonlocal done
+            done = share
+            return not self.dropped
+
+        def work() -> ConditionTable | None:
+            try:
+                return condition_table(study, self.workers, watch)
+            except ScoreStopped:
+                return None
+
+        return (yield from self._beside(work, lambda: replace(waiting, fraction=done), True))
 
 
 def begun(work: Callable[[], T]) -> Future[T]:

@@ -12,6 +12,7 @@ import json
 import platform
 from collections.abc import Collection, Mapping
 from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +27,11 @@ from pe_core.study.file_names import (
     AREAS,
     BESIDE_RESULT,
     BOXES,
+    CONDITIONS,
     HISTORY,
     MESH,
     RESULT,
+    RUNNERS_UP,
     SCHEMA,
     SEARCH,
     STUDY,
@@ -38,6 +41,7 @@ from pe_core.study.study import Study
 from pe_core.version import __version__
 
 from .checkpoint import SearchState
+from .condition_files import conditions_csv
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
 from .job import HistoryRow, Outcome
 from .study_export import inputs_of, study_writers
@@ -50,7 +54,8 @@ def result_names(study: Study, kind: str) -> list[str]:
     vehicle, boxes = study.vehicle is not None, study.prior.boxes is not None
     areas = bool(areas_of(study.search.mounting))
     with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *[BOXES] * boxes]
-    return [*with_study, *[HISTORY, SEARCH] * (kind == "optimize"), RESULT]
+    of_search = [HISTORY, SEARCH, *RUNNERS_UP] * (kind == "optimize")
+    return [*with_study, *of_search, *[CONDITIONS] * bool(study.conditions), RESULT]
 
 
 def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[str, Any]:
@@ -78,7 +83,9 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         "mounts": mounts_table(outcome.study.rig, outcome.study.search.mounting),
         **_robustness(outcome),
         **_requirements(outcome),
+        **({} if outcome.conditions is None else {"conditions": outcome.conditions.to_dict()}),
         **_search_dict(outcome),
+        **_sensitivity(outcome),
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,
         "warnings": [each.to_dict() for each in outcome.warnings],
@@ -150,7 +157,12 @@ def write_outcome(
     writers = study_writers(outcome.study, STUDY)
     if outcome.kind == "optimize":
         writers[HISTORY] = history_csv(outcome.history).encode(errors="backslashreplace")
+        for name, each in runners_up(outcome).items():
+            writers[name] = study_writers(each, STUDY)[STUDY]
         writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.judged)
+    if outcome.conditions is not None:
+        text = conditions_csv(outcome.conditions)
+        writers[CONDITIONS] = text.encode(errors="backslashreplace")
     add_to_result(data, folder, writers, unwanted=set(BESIDE_RESULT) - set(later))
     return data
 
@@ -242,6 +254,26 @@ def _robustness(outcome: Outcome) -> dict[str, Any]:
     """Return the robustness of a search; empty for a score."""
     robustness = outcome.robustness
     return {} if robustness is None else {"robustness": robustness.to_dict()}
+
+
+def runners_up(outcome: Outcome) -> dict[str, Study]:
+    """Return the studies of other optima that a search found, by the name of their file."""
+    found = outcome.sensitivity
+    ends = None if found is None else found.endings
+    rigs = [] if ends is None else [each.rig for each in ends.runners_up]
+    return {n: outcome.start.with_rig(rig) for n, rig in zip(RUNNERS_UP, rigs, strict=False)}
+
+
+def _sensitivity(outcome: Outcome) -> dict[str, Any]:
+    """Return how sure a search is, where its starts ended and why it ended; empty for a score."""
+    if outcome.kind != "optimize":
+        return {}
+    found = outcome.sensitivity
+    return {
+        "sensitivity": None if found is None else found.to_dict(),
+        "starts": [asdict(each) for each in outcome.starts],
+        "stop_reason": outcome.stop_reason or None,
+    }
 
 
 def _requirements(outcome: Outcome) -> dict[str, Any]:

@@ -2,29 +2,35 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Generator, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any
 
+from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import (
     Journal,
-    LazyProcesses,
     Objective,
     Robustness,
     Step,
     feasible_start,
-    objective_of,
     optimize,
     robustness,
 )
+from pe_core.study.condition_search import study_objective
 from pe_core.study.requirement_search import conflicts, feasible_first, is_infeasible
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
-from ..advice import Advice, fragile, unmet
-from .job import HistoryRow, Job, Outcome, Progress, begun
+from ..advice import Advice, condition_warnings, fragile, unmet
+from ..sensitivity import Archive, Sensitivity, analyse
+from .candidate_workers import ExecutorSource, candidate_workers
+from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun
+from .stopping import TARGET, StopWatch
 
 
 class ScoreJob(Job):
@@ -38,11 +44,16 @@ class ScoreJob(Job):
             self.study, score, Progress("scoring", 1.0, score.entropy)
         )
         verdicts = yield from self._verdicts(self.study, Progress("checking", 1.0, score.entropy))
-        if warnings is None or verdicts is None:
+        table = yield from self._conditions(self.study, Progress("conditions", 0.0, score.entropy))
+        if warnings is None or verdicts is None or (self.study.conditions and table is None):
             return
-        both = (self.study, self.study, score, score)
         self.outcome = Outcome(
-            "score", *both, seconds=self.seconds, warnings=warnings, verdicts=verdicts
+            "score",
+            *(self.study, self.study, score, score),
+            seconds=self.seconds,
+            warnings=(*warnings, *condition_warnings(table)),
+            verdicts=verdicts,
+            conditions=table,
         )
         yield Progress("done", 1.0, score.entropy)
 
@@ -66,7 +77,14 @@ class OptimizeJob(Job):
         Every placement that became the best so far.
     evaluations, round : int
         Evaluations and rounds of the search so far.
+    ends : list of StartEnd
+        Where the starts ended so far, if the study has further ones.
+    stop_reason : str
+        Why the search ended before its budget did, by a rule of the study; empty otherwise.
     """
+
+    analyses = True
+    """Whether the result is analysed after the search."""
 
     def __init__(
         self,
@@ -81,12 +99,18 @@ class OptimizeJob(Job):
         self.round = 0
         self.history: list[HistoryRow] = []
         self.evaluations = 0
+        self.ends: list[StartEnd] = []
+        self._ended: list[HistoryRow] = []
+        self.stop_reason = ""
+        self._archive = Archive()
+        self._first: HistoryRow | None = None
         self._progress = Progress("preparing", 0.0)
 
     @property
     def best(self) -> Study:
         """The study with the best placement so far."""
-        return self.study.with_rig(self.history[-1].rig) if self.history else self.study
+        rows = self._ended or self.history
+        return self.study.with_rig(rows[-1].rig) if rows else self.study
 
     @cached_property
     def _objectives(self) -> list[Objective]:
@@ -94,8 +118,10 @@ class OptimizeJob(Job):
         search = self.study.search
         checker = self.study.checker() if search.requirements and self.study.requirements else None
         return [
-            feasible_first(self.study, objective_of(each, search.tolerance, search.seed), checker)
-            for each in self._evaluators
+            feasible_first(
+                self.study, study_objective(self.study, each, samples, self.workers), checker
+            )
+            for each, samples in zip(self._evaluators, search.level_samples, strict=True)
         ]
 
     @cached_property
@@ -125,8 +151,10 @@ class OptimizeJob(Job):
         warnings = yield from self._warnings(best, after, looking)
         verdicts = yield from self._verdicts(best, looking)
         unmet_warnings = yield from self._unmet(best, verdicts or (), looking)
+        sensitivity = yield from self._sensitivity(best, replace(looking, stage="analysing"))
         if None in (warnings, robustness_result, verdicts, unmet_warnings):
             return
+        table = yield from self._conditions(best, looking)
         assert warnings is not None and robustness_result is not None
         self.outcome = Outcome(
             "optimize",
@@ -138,11 +166,18 @@ class OptimizeJob(Job):
             self.evaluations,
             stopped,
             self.seconds,
-            (*warnings, *_fragile(best, robustness_result), *(unmet_warnings or ())),
+            (
+                *(*warnings, *_fragile(best, robustness_result), *(unmet_warnings or ())),
+                *condition_warnings(table),
+            ),
             self.inputs,
             self.journal.entries,
             robustness_result,
             verdicts or (),
+            table,
+            sensitivity,
+            tuple(self.ends),
+            self.stop_reason,
         )
         yield Progress("done", 1.0, after.entropy, self.evaluations)
 
@@ -177,6 +212,20 @@ class OptimizeJob(Job):
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
 
+    def _sensitivity(
+        self, best: Study, waiting: Progress
+    ) -> Generator[Progress, None, Sensitivity | None]:
+        """Analyse the result in a thread; None if the job is stopped, or the search too short."""
+        if not self.analyses or self.stopped:
+            return None
+
+        def work() -> Sensitivity | None:
+            searched_on, goes_on = self._evaluators[-1], lambda: not self.stopped
+            given = (self.study, best, searched_on, self._archive, self.evaluations)
+            return analyse(*given, self.workers, goes_on)
+
+        return (yield from self._beside(work, lambda: waiting, to_the_end=True))
+
     def _unmet(
         self, best: Study, verdicts: tuple[Verdict, ...], waiting: Progress
     ) -> Generator[Progress, None, tuple[Advice, ...] | None]:
@@ -193,32 +242,70 @@ class OptimizeJob(Job):
 
         It may not if it violates a constraint of the search or breaks a requirement to be kept. It
         may not either if the search had a tolerance: the scores ignore mounting errors and
-        failures, which the search minimized.
+        failures, which the search minimized, nor if it had conditions.
         """
-        start = self.history[0]
+        start = self._first or self.history[0]
         kept = start.rig is self.study.rig and not is_infeasible(start.entropy)
-        return kept and not self.study.search.tolerance.is_on
+        search = self.study.search
+        return kept and not (search.tolerance.is_on or search.conditions)
 
     def _search(self) -> Iterator[Progress]:
+        """Search from every start in turn; the best of what they end at is the result."""
+        objectives = self._archive.wrap(self.journal.wrap(self._objectives))
+        starts = self.study.search.goals.starts
+        rigs = {"": self.study.rig, **{s.name: s.placed(self.study.rig) for s in starts}}
+        ended: list[list[HistoryRow]] = []
+        began = time.monotonic()
+        with self._candidate_workers() as helpers:
+            for number, (name, rig) in enumerate(rigs.items()):
+                if self.stopped or self.stop_reason == TARGET:
+                    break
+                if number:  # the best so far stays the job's until a start ends better
+                    self.history = []
+                watch = StopWatch(self.study.search.goals.stop, self._objectives, began)
+                share = number / len(rigs), 1.0 / len(rigs)
+                yield from self._search_from(rig, objectives, helpers, watch, share)
+                if len(rigs) > 1 and self.history:
+                    ended.append(self.history)
+                    entropy = objectives[-1].entropy(self.history[-1].rig)
+                    self.ends.append(StartEnd(name, entropy, self.evaluations))
+                    best = min(range(len(ended)), key=lambda k: self.ends[k].entropy)
+                    self.history = self._ended = ended[best]
+
+    @contextmanager
+    def _candidate_workers(self) -> Iterator[ExecutorSource]:
+        """Yield what evaluates candidates, until the search ends."""
+        models = (sensor.model for sensor in self.study.rig)
+        with candidate_workers(self, self._objectives, models) as helpers:
+            yield helpers
+
+    def _search_from(
+        self,
+        rig: Rig,
+        objectives: list[Objective],
+        helpers: ExecutorSource,
+        watch: StopWatch,
+        share: tuple[float, float],
+    ) -> Iterator[Progress]:
         """Search step by step in a thread: one candidate may take longer than a window can wait."""
-        search, models = self.study.search, (sensor.model for sensor in self.study.rig)
-        helpers = LazyProcesses(self.workers, (*self._objectives, *models))
+        search, before = self.study.search, self.evaluations
         steps = optimize(
-            self.journal.wrap(self._objectives),
-            self.study.rig,
-            self.study.search_space(),
+            objectives,
+            rig,
+            self.study.with_rig(rig).search_space(),
             search.seed,
             search.schedule,
             method=search.method,
-            evaluations=search.evaluations,
+            evaluations=round(search.evaluations * share[1]),
             executor=helpers,
         )
-        try:
-            while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
-                self._note(step)
-                yield self._now()
-        finally:
-            helpers.end()
+        while step := (yield from self._awaited(begun(lambda: next(steps, None)), self._now)):
+            fraction = share[0] + share[1] * step.fraction
+            self._note(replace(step, evaluations=before + step.evaluations, fraction=fraction))
+            yield self._now()
+            if self.study.search.goals.stop.is_on and (reason := watch.reason(step)):
+                self.stop_reason = reason
+                break
 
     def _now(self) -> Progress:
         return self._progress
@@ -229,6 +316,7 @@ class OptimizeJob(Job):
         if step.improved or not self.history:
             row = HistoryRow(step.evaluations, step.round, step.entropy, step.best)
             self.history.append(row)
+            self._first = self._first or row
 
 
 def _fragile(study: Study, robustness_result: Robustness) -> tuple[Advice, ...]:

@@ -14,7 +14,7 @@ from pe_core.base.plugins import call_plugin, install_hint, required_plugin
 from pe_core.study import Study
 
 from ..exchange import Written, write_files
-from . import masks, scene_gltf, solids, svg
+from . import masks, nebula, scene_gltf, solids, svg
 from .footprints import ground_plan
 from .request import OutputRequest
 
@@ -73,6 +73,7 @@ _ROWS = (
     SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
     SceneOutput("rerun", "Rerun Recording", RECORDING, write_recording),
     SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", masks.write, True, has_range=False),
+    SceneOutput("nebula", "Radar Mountings (Nebula)", nebula.FILE, nebula.write, has_range=False),
 )
 SCENE_OUTPUTS = MappingProxyType({row.name: row for row in _ROWS})
 """Outputs by name."""

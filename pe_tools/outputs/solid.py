@@ -129,8 +129,9 @@ def mounted_view(
         return None
     directions = rotate(sensor.pose.ground_from_sensor, patch.directions)
     ends = np.full(len(directions), reach)
-    if vehicle is not None:
+    body = None if vehicle is None else kind_of(sensor).opaque(vehicle)
+    if body is not None:
         position, through = sensor.pose.position, sensor.model.sees_through_glass
-        hits = vehicle.first_hit(position, directions, through)
+        hits = body.first_hit(position, directions, through)
         ends = np.clip(hits.distance, NEAREST_M, reach)
     return MountedView(np.asarray(sensor.pose.position), directions, patch.faces, reach, ends)

@@ -8,6 +8,7 @@ Names are imported at first use: the other verbs of `pe` start without the page.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -76,16 +77,25 @@ def add_review_options(parser: argparse.ArgumentParser) -> None:
     about = "date on the page, any text; 'today' is the day of the run (none without it)"
     parser.add_argument("--date", default="", metavar="TEXT", help=about)
     parser.add_argument("--revision", default="", metavar="TEXT", help="revision of the page")
+    about = "language of the page: en (default), de, ja, zh"
+    parser.add_argument("--language", default="en", metavar="CODE", help=about)
 
 
 def add_page() -> None:
-    """Write a page beside the results of every search from now on."""
+    """Write a page beside the results of every search and of every front from now on."""
     from pe_core import study as studies
 
     from .. import cli as app
 
     if not any(studies.REVIEW_PAGE in artifact.names for artifact in app.pages):
         app.pages.append(app.More([studies.REVIEW_PAGE], _write_search_page))
+        app.plots.append(_write_front_page)
+
+
+def _write_front_page(data: Mapping[str, Any], folder: Path) -> None:
+    from .front_page import write_front_page
+
+    write_front_page(data, folder)
 
 
 def _review(args: argparse.Namespace) -> Answer:

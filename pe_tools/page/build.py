@@ -20,6 +20,7 @@ from pe_core import study as studies
 
 from .. import cli as app
 from .. import jobs
+from ..sensitivity import sensitivity_from_dict
 from .document import PAGE, page_bytes, write_page
 from .report_context import MAX_STUDIES, About, ReportContext
 
@@ -116,7 +117,7 @@ def _write(contexts: Sequence[ReportContext], args: argparse.Namespace) -> app.A
 
 
 def _about(args: argparse.Namespace) -> About:
-    return About(args.title, args.author, args.date, args.revision)
+    return About(args.title, args.author, args.date, args.revision, args.language)
 
 
 def _read_study(path: str) -> pe.Study:
@@ -153,6 +154,9 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
         result = json.loads(text.read_bytes(path, MAX_RESULT_BYTES))
         history = tuple(_history_row(start.rig, row) for row in result["history"])
         robustness = _robustness(result.get("robustness"))
+        sure = sensitivity_from_dict(result.get("sensitivity"), start.rig)
+        starts = tuple(jobs.StartEnd(**table) for table in result.get("starts", ()))
+        reason = str(result.get("stop_reason") or "")
         warnings = tuple(_advice(table) for table in result["warnings"])
         evaluations, stopped = int(result["evaluations"]), bool(result["stopped"])
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
@@ -160,10 +164,12 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
             raise
         expected = "the result of a search by this version"
         raise pe.InputError(path, "file", expected, "another file") from None
-    before = score(start).after
-    after = before if best.rig == start.rig else score(best).after
-    parts = (start, best, before, after, history, evaluations, stopped, 0.0, warnings)
-    return pe.Outcome("optimize", *parts, checkpoint.inputs, checkpoint.judged, robustness)
+    first = score(start)
+    last = first if best.rig == start.rig else score(best)
+    parts = (start, best, first.after, last.after, history, evaluations, stopped, 0.0, warnings)
+    held = last.verdicts, last.conditions
+    more = (checkpoint.inputs, checkpoint.judged, robustness, *held, sure, starts, reason)
+    return pe.Outcome("optimize", *parts, *more)
 
 
 def command_of_folder(folder: Path) -> str:

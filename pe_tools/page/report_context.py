@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import pe_core as pe
 from pe_core import search
 
-from .. import advice, graphics, jobs
+from .. import advice, graphics, jobs, languages
 
 T = TypeVar("T")
 MAX_TRIANGLES = 200_000
@@ -200,19 +200,25 @@ class About:
     author, revision : str
     date : str
         Any text ("2026-05-04", "May 2026"); "today" is the day of the run.
+    language : str
+        Code of the page's language: "en", "de", "ja", "zh".
 
     Raises
     ------
     InputError
-        When a text is longer than 200 letters.
+        When a text is longer than 200 letters, or there is no catalogue of the language.
     """
 
     title: str = ""
     author: str = ""
     date: str = ""
     revision: str = ""
+    language: str = languages.ENGLISH
 
     def __post_init__(self) -> None:
+        known = (languages.ENGLISH, *languages.LANGUAGES)
+        if self.language not in known:
+            raise pe.InputError("review", "language", " or ".join(known), self.language)
         for name in ("title", "author", "date", "revision"):
             text = " ".join(str(getattr(self, name)).split())
             if len(text) > MAX_LETTERS:
@@ -223,7 +229,7 @@ class About:
             object.__setattr__(self, "date", date.today().isoformat())
 
     @property
-    def line(self) -> str:
-        """Author, date and revision in one line."""
+    def parts(self) -> tuple[str, ...]:
+        """Author, date and revision, those that are given."""
         revision = f"Revision {self.revision}" if self.revision else ""
-        return ", ".join(filter(None, (self.author, self.date, revision)))
+        return tuple(filter(None, (self.author, self.date, revision)))

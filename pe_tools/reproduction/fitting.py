@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pe_core import prepare_folder
+from pe_core import catalog, prepare_folder
 from pe_core.base import dump_json
-from pe_tools.formats import CurveFit, fit_ap_curve, study_snippet
+from pe_core.base.errors import InputError
+from pe_tools.formats import CurveFit, fit_ap_curve, m_by_range, study_snippet
 
 from ..cli import DONE, Answer
 from ..formats import read_ap_table
@@ -29,9 +31,15 @@ MAX_FILE_NAME = 255
 
 def fit(args: argparse.Namespace) -> Answer:
     """Run the verb."""
-    table = Path(args.table)
-    curve_fit = fit_ap_curve(read_ap_table(args.table), args.saturation)
-    snippet = study_snippet(_with_safe_name(curve_fit, table), args.kind, args.object)
+    table, kind, m_at_ranges = Path(args.table), args.kind or "lidar", None
+    if args.model is not None:
+        model = catalog.load(args.model)
+        kind = model.kind
+        if args.kind not in (None, kind):
+            raise InputError("fit", "kind", f"{kind}, the kind of {args.model}", args.kind)
+        m_at_ranges = partial(m_by_range, model, class_name=args.object, height=args.height)
+    curve_fit = fit_ap_curve(read_ap_table(args.table, m_at_ranges), args.saturation)
+    snippet = study_snippet(_with_safe_name(curve_fit, table), kind, args.object)
     data = fit_data(curve_fit)
     if args.output is not None:
         folder = prepare_folder(args.output, (SNIPPET, PLOT))

@@ -58,6 +58,7 @@ def search(
         study.search, method="random", seed=seed, samples=search_samples, schedule=schedule
     )
     job = pe.OptimizeJob(replace(study, search=settings, samples=samples), workers=1)
+    job.analyses = False
     for _ in job:
         pass
     outcome = job.outcome

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pe_core.sensors import KINDS
 from pe_tools.formats import SATURATION
 
 from ..cli import Answer, count_up_to, plots
@@ -30,9 +31,14 @@ def add_verbs(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
 def _add_fit(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     fit = verbs.add_parser("fit", help="fit a and b of AP = a ln m + b to a table")
     fit.add_argument(
-        "table", metavar="TABLE", help="CSV with the columns m and ap, and optionally n"
+        "table", metavar="TABLE", help="CSV with the columns m (or range_m) and ap, optionally n"
     )
-    fit.add_argument("--kind", choices=("lidar", "camera"), default="lidar", help="of the sensor")
+    about = "of the sensor (default lidar, or the kind of --model)"
+    fit.add_argument("--kind", choices=tuple(KINDS), help=about)
+    about = "the table has a column range_m in place of m; m is what this model measures there"
+    fit.add_argument("--model", metavar="MODEL", help=about)
+    about = "of the model above the ground (default: level with the object's middle)"
+    fit.add_argument("--height", type=float, metavar="M", help=about)
     about = "m is counted on whole objects of this class, not divided by their voxels"
     fit.add_argument("--object", metavar="CLASS", help=about)
     fit.add_argument(
@@ -117,7 +123,7 @@ def _draw_front(data: Mapping[str, Any], folder: Path) -> None:
     """Write the plot beside the front of ``pe optimize``, where matplotlib is installed."""
     from .plotting import has_matplotlib, write_front_plot
 
-    if has_matplotlib():
+    if has_matplotlib() and not data.get("objectives"):
         write_front_plot(data, folder)
 
 

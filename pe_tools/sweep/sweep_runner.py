@@ -150,6 +150,9 @@ class WorkerPool(Protocol):
     def checkpoints(self, run: SweepRun, folder: Path) -> RunCheckpoints:
         """Return the checkpoints of a run's search; `folder` is that of the run's results."""
 
+    def finish(self, name: str) -> None:
+        """Save no more checkpoints of a run: its outcome is here, with the whole search."""
+
 
 def run_all(
     names: Sequence[str],

@@ -24,6 +24,8 @@ def add_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     own = parser.add_argument_group("our own study")
     about = f"train detectors at the placements of the plan (default folder {OWN_FOLDER})"
     own.add_argument("--own", action="store_true", help=about)
+    about = "the study of camera placements instead of that of LiDARs"
+    own.add_argument("--cameras", action="store_true", help=about)
     own.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
     about = "do at most so many runs now"
     own.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
@@ -31,7 +33,7 @@ def add_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
 
 
 def _validate(args: argparse.Namespace) -> Answer:
-    if args.own:
+    if args.own or args.cameras:
         from .own.command import validate_own
 
         args.default_output, args.default_quick_output = OWN_FOLDER, OWN_QUICK_FOLDER

@@ -33,7 +33,8 @@ better-scored placement. Such results are published for few placements: {counts}
 with four detectors. This page compares the scores of this project with those results. `pe validate`
 writes it; every figure is in [results.json](results.json), and every verdict follows from the figures.
 
-[A study of our own](own/README.md) trains detectors at placements that it draws itself.
+[A study of our own](own/README.md) trains detectors at placements that it draws itself, with a bounded look at
+[cameras](own/README.md#cameras).
 
 In short: {_significant(results)} {_opposite(results)} {_height(results)}
 """

@@ -4,6 +4,7 @@ import ctypes
 import functools
 import importlib.util
 import os
+import sys
 
 import pytest
 
@@ -35,6 +36,8 @@ def registered():
 
     import blender_addon
 
+    loaded = "tensorflow" in sys.modules
+    assert not loaded, "TensorFlow in bpy's process: its LLVM and Mesa's crash at the first picture"
     bpy.ops.wm.read_factory_settings(use_empty=True)
     blender_addon.register()
     blender_addon.stop()

@@ -46,7 +46,8 @@ class Layout:
 def drawn(cls, **context) -> Layout:
     """Return what a panel or a menu draws in a context of these members."""
     layout = Layout()
-    cls.draw(SimpleNamespace(layout=layout), SimpleNamespace(**context))
+    own = {"maker": cls.maker} if hasattr(cls, "maker") else {}
+    cls.draw(SimpleNamespace(layout=layout, **own), SimpleNamespace(**context))
     return layout
 
 

@@ -191,11 +191,12 @@ def test_a_removed_one_is_refused_in_one_line(full):
 
 def test_the_live_score_is_of_the_same_study(full):
     """What follows the hand is of the scene's own space and curves, as the score is."""
-    study, wish = scenes.study(), evaluation.read_request(full, scenes.depsgraph(), draft=False)
+    study, wish = scenes.study(), evaluation.read_request(full, scenes.depsgraph(), moving=False)
     problem = wish.problem
     assert (problem.space, problem.model) == (study.space, study.model)
     assert problem.vehicle.clearance == 0.05
     own = study.evaluator(samples=evaluation.SAMPLES)
     assert evaluation.EvaluatorCache().summary("it", wish).entropy == own.entropy(study.rig)
     full.perception_entropy.space_x = (-20.0, 30.0)
-    assert evaluation.read_request(full, scenes.depsgraph(), draft=False).problem.key != problem.key
+    changed = evaluation.read_request(full, scenes.depsgraph(), moving=False)
+    assert changed.problem.key != problem.key

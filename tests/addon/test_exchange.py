@@ -123,14 +123,14 @@ def test_the_command_in_blender_writes_a_rig(axled, tmp_path):
 
 
 def test_what_a_file_has_besides_its_rig_stays_in_the_scene(axled, tmp_path, capfd):
-    """Radars are named, kept through a .blend and a study, and go out as they came in."""
+    """A collision sensor is named, kept through a .blend and a study, and goes out as it came."""
     objects = tmp_path / "objects.json"
     objects.write_text(json.dumps(CARLA))
     assert bpy.ops.pe.import_rig(filepath=str(objects)) == {"FINISHED"}
-    line = "left out: 1 radar (radar_front), 1 collision sensor (collision)"
+    line = "left out: 1 collision sensor (collision)"
     assert line in capfd.readouterr().out
     assert line in bridge.active_variant(axled).note
-    assert {s.name for s in scenes.study().rig} == {"rgb_front", "lidar"}
+    assert {s.name for s in scenes.study().rig} == {"rgb_front", "lidar", "radar_front"}
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "car.blend"))
     study = tmp_path / "study" / "study.toml"

@@ -8,8 +8,9 @@ import pytest
 from mathutils import Matrix
 
 from blender_addon import diagnostics, library
+from blender_addon.engine import kinds
 from blender_addon.operators import shortcuts
-from blender_addon.panels import main
+from blender_addon.panels import main, sensor_menus
 from tests.addon import scenes
 from tests.addon.layouts import Layout, Window, drawn
 
@@ -148,11 +149,11 @@ def test_keys_are_added_and_all_of_them_removed(scene):
 
 
 def test_the_add_menu_has_each_kind_in_object_mode_alone(scene):
-    menu = drawn(main.PE_MT_add)
-    assert menu.texts("operator") == ["LiDAR", "Camera"]
+    menu = drawn(sensor_menus.PE_MT_add)
+    assert menu.texts("operator") == [kind.label for kind in kinds.KINDS.values()]
     for mode, entries in (("OBJECT", ["PE_MT_add"]), ("EDIT_MESH", [])):
         layout = Layout()
-        main.draw_add_menu(SimpleNamespace(layout=layout), SimpleNamespace(mode=mode))
+        sensor_menus.draw_add_menu(SimpleNamespace(layout=layout), SimpleNamespace(mode=mode))
         assert layout.texts("menu") == entries
 
 

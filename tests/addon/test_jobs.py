@@ -228,7 +228,7 @@ def finished_after(car, operator, change):
 
 def acting(operator):
     """An operator's own functions without Blender's part of it."""
-    names = ("_task", "_apply", "job_of", "write", "message")
+    names = ("_task", "_read", "_apply", "job_of", "write", "message")
     return lambda own: type("Act", (), {n: vars_of(operator, n) for n in names} | vars(own))()
 
 

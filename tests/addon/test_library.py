@@ -9,8 +9,19 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import bridge, library, operators, sensor_cache
+from blender_addon import (
+    bridge,
+    language,
+    library,
+    operators,
+    own_catalog,
+    preferences,
+    preferences_panel,
+    sensor_cache,
+)
+from blender_addon.engine import graphics
 from blender_addon.housing import KEY
+from blender_addon.overlay.snapshot import view_of
 from tests.addon import scenes
 
 BLEND = library.FOLDER / "sensors.blend"
@@ -171,12 +182,38 @@ def test_the_preferred_models_are_those_of_the_buttons(enabled):
     assert chosen == {**usual, "lidar": "Hesai QT128C2X"} != usual
 
 
+MINE = """
+["My LiDAR"]
+kind = "lidar"
+elevations_deg = [-15, 0, 5]
+azimuth_step_deg = 1.0
+max_range_m = 80
+"""
+
+
+def test_sensors_of_an_own_catalogue_are_in_the_menus_of_all_files(enabled, tmp_path):
+    """They go with the preference, and with the extension; a wrong file has its line."""
+    stored, path = enabled[1].preferences, tmp_path / "mine.toml"
+    path.write_text(MINE)
+    stored.own_catalog = str(path)
+    assert not own_catalog.problem and operators.models("lidar", "Own") == ["My LiDAR"]
+    preferences_panel.unregister()
+    assert not operators.models("lidar", "Own")
+    preferences_panel.register()
+    assert operators.models("lidar", "Own") == ["My LiDAR"]
+    path.write_text(MINE + '[Pandar64]\nkind = "lidar"\n')
+    stored.own_catalog = str(path)
+    assert not operators.models("lidar", "Own") and "a name used once" in own_catalog.problem
+    stored.own_catalog = ""
+    assert not own_catalog.problem
+
+
 def test_dialogs_begin_in_the_folder_of_results(enabled, tmp_path):
-    assert library.in_results_folder("", "car.toml") == ""
+    assert preferences.in_results_folder("", "car.toml") == ""
     enabled[1].preferences.results_folder = str(tmp_path)
-    assert library.in_results_folder("", "car.toml") == str(tmp_path / "car.toml")
-    assert library.in_results_folder("map.svg", "car.toml") == str(tmp_path / "map.svg")
-    assert library.in_results_folder("/there/a.toml", "car.toml") == "/there/a.toml"
+    assert preferences.in_results_folder("", "car.toml") == str(tmp_path / "car.toml")
+    assert preferences.in_results_folder("map.svg", "car.toml") == str(tmp_path / "map.svg")
+    assert preferences.in_results_folder("/there/a.toml", "car.toml") == "/there/a.toml"
 
 
 def test_the_website_is_the_manifest_s():
@@ -187,3 +224,21 @@ def test_the_website_is_the_manifest_s():
 def test_a_script_that_registers_us_gets_no_library(addon):
     """Tests and commands work on the user's machine, but not on his preferences."""
     assert str(library.FOLDER) not in [path for _, path in libraries()]
+
+
+def test_the_colours_of_the_preferences_are_those_of_the_overlay(enabled):
+    own = enabled[1].preferences
+    assert preferences.palette() == graphics.VIEWPORT
+    own.blocked_color = (1.0, 0.0, 0.5, 0.75)
+    assert preferences.palette().stopped == (1.0, 0.0, 0.5, 0.75)
+    assert view_of(bpy.context.scene).palette == preferences.palette()
+    own.property_unset("blocked_color")
+    assert preferences.palette() == graphics.VIEWPORT
+
+
+def test_dimensions_in_texts_are_in_the_preferred_unit(enabled):
+    text = "0.35 m from roof, 81.2 m² blind, detected to 47 m, at (1.5, 2.25) m"
+    assert language.shown(text) == text
+    enabled[1].preferences.length_unit = "MM"
+    assert language.shown(text) == text.replace("0.35 m from", "350 mm from")
+    enabled[1].preferences.property_unset("length_unit")

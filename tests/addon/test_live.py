@@ -11,6 +11,7 @@ import blender_addon
 from blender_addon import (
     bridge,
     change_events,
+    preferences,
     result_staleness,
     signals,
     simplified_vehicles,
@@ -43,6 +44,7 @@ def live(monkeypatch, car):
     """The car with a second sensor, in a window, the live score switched on."""
     scenes.add_sensor("front", model="Camera 60 deg", location=(1.9, 0.0, 1.2))
     monkeypatch.setattr(evaluation, "SAMPLES", SAMPLES)
+    monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 0.0)  # but where it is tested
     for module in (change_events, session):
         monkeypatch.setattr(module, "bpy", Window)
     drag(car.objects["roof"])  # from here on it is known what there is
@@ -94,6 +96,39 @@ def test_a_draft_follows_and_the_rest_is_exact_to_the_bit(live):
     rest()
     assert told(reading(live).summary) == told(exact()) != told(start)
     assert reading(live).exact and reading(live).before == start
+
+
+def test_moves_are_exact_where_the_budget_allows_it(live, monkeypatch):
+    """The last time decides; what is exact in a move is no score of the idle scene."""
+    roof, of_scene = live.objects["roof"], state.live_state(live.name)
+    drag(roof)
+    rest()
+    start, cost = reading(live).summary, of_scene.exact_cost.seconds
+    assert 0.0 < cost < 60.0
+    monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 1e6)
+    for _ in range(2):
+        drag(roof)
+        assert reading(live).exact and not reading(live).idle and not reading(live).summary.draft
+        assert told(reading(live).summary) == told(exact()) and reading(live).before == start
+        assert of_scene.exact.summary == start
+    monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 0.0)
+    drag(roof)
+    assert reading(live).summary.draft
+    live.perception_entropy.prior = "highway"  # another problem: its cost is not known
+    rest()
+    assert of_scene.exact_cost.seconds == np.inf
+
+
+def test_a_stored_result_is_not_shown_while_something_moves(live, monkeypatch):
+    """Whether it is stale is known once the scene is idle."""
+    monkeypatch.setattr(preferences, "LIVE_BUDGET_MS", 1e6)
+    live.perception_entropy.has_result = True
+    live.perception_entropy.result_stale = False
+    drag(live.objects["roof"])
+    rest()
+    live.perception_entropy.result_stale = False
+    drag(live.objects["roof"])
+    assert reading(live).exact and not state.shown_score(live).stored
 
 
 def test_the_next_drag_is_compared_with_where_it_began(live):
@@ -213,11 +248,11 @@ def test_one_score_is_shown_at_a_time(live, monkeypatch):
     assert score.stored and score.exact and score.entropy == settings.result_entropy
     drag(live.objects["roof"])
     now = reading(live).summary
-    assert state.shown_score(live) == (now.entropy, now.coverage, now.stderr, False, False, False)
+    assert state.shown_score(live)[:5] == (now.entropy, now.coverage, now.stderr, False, False)
     rest()
     result_staleness.update_result()
     now = reading(live).summary
-    assert state.shown_score(live) == (now.entropy, now.coverage, now.stderr, True, False, False)
+    assert state.shown_score(live)[:5] == (now.entropy, now.coverage, now.stderr, True, False)
     settings.live.on = False
     assert state.shown_score(live) is None, "the panel draws the stored result, which is marked"
 
@@ -416,7 +451,7 @@ def test_the_extension_disabled_in_the_middle_of_a_drag(live):
 
 
 def test_what_is_dropped_while_it_is_worked_out_is_never_shown(live):
-    wish = evaluation.read_request(live, bpy.context.evaluated_depsgraph_get(), draft=False)
+    wish = evaluation.read_request(live, bpy.context.evaluated_depsgraph_get(), moving=False)
     state.live_state(live.name).switch_off()
     asked_at = session._generation
     session.cancel(live.name)

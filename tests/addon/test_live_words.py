@@ -43,6 +43,7 @@ def test_a_draft_says_so():
         ({"stored": True}, "± 0.022  as scored"),
         ({"stored": True, "stderr": 0.0}, "on all voxels, as scored"),
         ({"view_outdated": True}, "± 0.022  exact, beams and maps follow"),
+        ({"state": "door open"}, "± 0.022  exact, state door open"),
     ],
 )
 def test_what_a_score_is_of_is_said(told, line):

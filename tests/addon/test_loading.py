@@ -1,5 +1,7 @@
 """A study put into a scene: the scene is that study again, to the bit, or says what it is not."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
@@ -29,13 +31,17 @@ def test_the_four_corners_come_into_an_empty_scene_to_the_bit(scene):
     again = scenes.study()
     assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
     assert again.search == study.search
+    assert again.requirements == study.requirements and study.requirements
     left = bpy.data.objects["lidar_left"].perception_entropy
     assert (left.mirror_of, left.mount) == ("lidar_right", "roof corners")
     settings = scene.perception_entropy
     settings.score_samples = settings.search_samples = 1024
     settings.method, settings.candidates = "random", 1
+    for row in settings.requirements:  # equal above, and this search does not keep them
+        row.enabled = False
     here = scenes.study()
-    there = pe.Study(**{**vars(study), "search": here.search, "samples": 1024})
+    kept = {"search": here.search, "samples": 1024, "requirements": ()}
+    there = pe.Study(**{**vars(study), **kept})
     assert history(here) == history(there)
 
 
@@ -68,6 +74,18 @@ def test_all_that_a_scene_says_of_its_search_comes_back(car, tmp_path):
     assert again.search == saved.search
     assert (again.space, again.model, again.samples) == (saved.space, saved.model, saved.samples)
     assert {s.name: s.pose for s in again.rig} == {s.name: s.pose for s in saved.rig}
+
+
+def test_a_sensor_named_like_a_part_is_reported_with_its_new_name(scene):
+    """Objects of Blender have unique names: the part has it, as it was there before."""
+    study = pe.load_study(CORNERS)
+    part = next(iter(study.vehicle.part_names))
+    first, *others = study.rig
+    named = pe.Study(pe.Rig([replace(first, name=part), *others]), study.vehicle)
+    lines = load(named)
+    assert lines[0] == f"sensor '{part}' (here '{part}.001': another object has its name)"
+    assert "sensor" not in lines
+    assert f"{part}.001" in {sensor.name for sensor in scenes.study().rig}
 
 
 def test_a_vehicle_that_is_the_study_s_stays(car, tmp_path):

@@ -48,6 +48,23 @@ def test_a_copy_on_the_other_side_looks_out_of_it(left):
     assert {s.name for s in study.rig} == {"front_left", "front_right", "roof"}
 
 
+@pytest.mark.parametrize("model", ["Continental ARS408-21", "Parking module 2.5 m"])
+def test_radars_and_ultrasonic_sensors_are_linked_pairs_too(car, model):
+    left = scenes.add_sensor("front_left", model=model, **PLACE)
+    right = mirror(linked=True)
+    assert alike(left, right) and right.perception_entropy.model == model
+    moved(left, location=(1.0, 0.8, 0.6))
+    assert alike(left, right)
+    study = scenes.study()
+    one, other = (study.rig[name] for name in ("front_left", "front_right"))
+    rng = np.random.default_rng(2)
+    centers = np.array(one.pose.position) + rng.uniform(-2.0, 2.0, (4000, 3))
+    flip = np.array([1.0, -1.0, 1.0])
+    m = [pe.measure(s, c, 0.1) for s, c in ((one, centers), (other, centers * flip))]
+    assert (m[0] > 0).any()
+    assert np.quantile(np.abs(m[0] - m[1]), 0.99) < 1e-3  # but points at an edge of the field
+
+
 def test_a_rig_and_its_mirror_image_score_the_same_on_a_mirrored_vehicle(left):
     """The car is its own mirror image, and so is the prior: on the whole grid nothing tells."""
     right = mirror()

@@ -208,6 +208,7 @@ def test_each_event_has_one_handler_and_a_written_order(car):
             "vehicle_cache.clear",
             "change_events.clear",
             "live.session.clear",
+            "result_staleness.clear",
             "location_query.clear",
             "overlay.scheduler.clear",
         ],

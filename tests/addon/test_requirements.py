@@ -14,6 +14,7 @@ from pe_core.study import requirement_file
 from pe_tools import graphics
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
+from tests.engine.shapes import box
 
 
 @pytest.fixture
@@ -59,6 +60,230 @@ def test_each_field_of_the_panel_reads_back_what_was_set(held):
     assert made.zone.y == (-1.5, "left + 1") and made.zone.step == 0.25
     assert [body.name for body in made.bodies] == ["child"]
     assert made.under.one_lost and made.under.mounting
+
+
+def test_the_zone_takes_each_shape_and_keeps_its_corners(held):
+    """A rectangle becomes a polygon with its corners, and the polygon a rectangle again."""
+    row = rows(held)[1]
+    row.shape = "polygon"
+    assert row.corners == "front + 1, right; front + 2, right; front + 2, left; front + 1, left"
+    row.shape = "area"
+    assert (row.x_from, row.x_to, row.y_from, row.y_to) == (
+        "front + 1",
+        "front + 2",
+        "right",
+        "left",
+    )
+    row.shape = "path"
+    row.corners = "front + 1, -2; front + 1, left + 0.5"
+    made = scenes.study().requirements[1].zone
+    assert made.path == (("front + 1", -2.0), ("front + 1", "left + 0.5")) and made.x is None
+    row.shape = "spots"
+    assert scenes.study().requirements[1].zone.spots == made.path
+    row.shape = "ring"
+    row.ring_to = 0.6
+    assert scenes.study().requirements[1].zone.ring == (0.2, 0.6)
+    assert row.problem == ""
+    row.shape = "polygon"
+    row.corners = "front, left; rear"
+    assert "x, y; x, y" in row.problem and row.corners.startswith("front + 1, right")
+
+
+def test_bodies_are_one_several_or_of_an_own_size(held):
+    row = rows(held)[1]
+    row.body = "several"
+    row.bodies = "child, cyclist"
+    assert [body.name for body in scenes.study().requirements[1].bodies] == ["child", "cyclist"]
+    row.bodies = "child, horse"
+    assert "horse" in row.problem and row.bodies == "child, cyclist"
+    row.body, row.body_size, row.body_low, row.headings = "own", (0.4, 0.6, 1.2), 0.3, "0, 45"
+    (own,) = scenes.study().requirements[1].bodies
+    assert own.size == pytest.approx((0.4, 0.6, 1.2)) and own.low == pytest.approx(0.3)
+    assert np.rad2deg(own.headings) == pytest.approx([0.0, 45.0])
+    row.body_round = True
+    row.body_size = (0.4, 0.3, 1.2)
+    (own,) = scenes.study().requirements[1].bodies
+    assert own.is_round and own.size == pytest.approx((0.3, 0.3, 1.2))
+    row.body = "adult"
+    assert row.headings == "" and scenes.study().requirements[1].bodies[0].name == "adult"
+
+
+def test_a_body_from_a_mesh_is_that_of_the_study_file_to_the_bit(held, tmp_path):
+    """File, axes, scale, lower edge, class and name; the file is relative to the Blender file."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))
+    triangles = np.concatenate(
+        [box([0.0, 0.0, 0.0], [30.0, 20.0, 45.0]), box([5.0, 5.0, 45.0], [15.0, 15.0, 70.0])]
+    )[:, :, [0, 2, 1]][:, ::-1]  # y is up; centimetres
+    parts = np.zeros(len(triangles), np.int32)
+    pe.write_mesh(tmp_path / "dog.obj", pe.Mesh(triangles, parts, ("dog",)))
+    row = rows(held)[1]
+    row.body = "own"
+    fields = {"body_mesh": "//dog.obj", "body_up": "+y", "body_forward": "-x"}
+    fields |= {"body_scale": 0.01, "body_low": 0.25, "body_class": "cyclist", "body_name": "dog"}
+    for name, value in fields.items():
+        setattr(row, name, value)
+        assert row.problem == "", name
+        assert getattr(row, name) == (pytest.approx(value) if name == "body_scale" else value)
+    table = {"name": "dog", "mesh": "dog.obj", "up": "+y", "forward": "-x", "scale": 0.01}
+    assert json.loads(row.table)["body"] == [table | {"low": 0.25, "class": "cyclist"}]
+    (body,) = scenes.study().requirements[1].bodies
+    assert body.size == pytest.approx((0.3, 0.2, 0.7)) and row.body == "own"
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    pe.export_study(scenes.study(), folder / "study.toml")
+    study, verdicts = pe.load_study(folder / "study.toml"), scenes.study().verdicts()
+    assert study.requirements[1].bodies[0].shape == body.shape
+    assert [v.to_dict() for v in study.verdicts()] == [v.to_dict() for v in verdicts]
+    assert bpy.ops.pe.import_study(filepath=str(folder / "study.toml")) == {"FINISHED"}
+    assert scenes.study().requirements == study.requirements, "found from another folder"
+    row = rows(held)[1]
+    before = row.table
+    row.body_mesh = "//cat.obj"
+    assert "cat.obj" in row.problem and row.table == before
+    row.body_mesh = ""
+    (body,) = scenes.study().requirements[1].bodies
+    assert body.shape is None and body.size == (0.5, 0.5, 1.5)
+    assert (body.name, body.low, body.class_name) == ("dog", 0.25, "cyclist")
+
+
+def test_the_file_browser_sets_the_mesh_file_beside_the_blender_file(held, tmp_path):
+    """As a relative path in the file's folder, else as it is; what is no mesh is refused."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))
+    folder = tmp_path / "meshes"
+    folder.mkdir()
+    triangles = box([-0.2, -0.2, 0.0], [0.2, 0.2, 0.7])
+    body = pe.Mesh(triangles, np.zeros(len(triangles), np.int32), ("dog",))
+    pe.write_mesh(folder / "dog.obj", body)
+    held.perception_entropy.requirement_index = 1
+    row = rows(held)[1]
+    assert bpy.ops.pe.open_body_mesh(filepath=str(folder / "dog.obj")) == {"FINISHED"}
+    assert row.body_mesh == "//meshes/dog.obj" and row.problem == ""
+    (own,) = scenes.study().requirements[1].bodies
+    assert own.size == pytest.approx((0.4, 0.4, 0.7))
+    before = row.table
+    (folder / "cat.obj").write_text("no mesh")
+    with pytest.raises(RuntimeError, match="test body"):
+        bpy.ops.pe.open_body_mesh(filepath=str(folder / "cat.obj"))
+    with pytest.raises(RuntimeError, match="name of a file"):
+        bpy.ops.pe.open_body_mesh(filepath="")
+    assert row.table == before
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "car.blend"))
+    assert bpy.ops.pe.open_body_mesh(filepath=str(folder / "dog.obj")) == {"FINISHED"}
+    assert rows(held)[1].body_mesh == "//dog.obj"
+
+
+def test_a_changed_preset_is_said_to_be_changed(held):
+    """In the verdict and in the panel; the vehicle's own eyes and kerb change no preset."""
+    row = rows(held)[0]
+    shown = operators.source_of(row).check
+    assert shown and "changed" not in shown
+    row.near_side = "left"
+    assert operators.source_of(row).check == shown
+    row.points = 7
+    assert operators.source_of(row).check == f"{shown}, changed"
+    assert f"after {shown}, changed:" in scenes.study().verdicts()[0].text
+
+
+def test_states_and_weathers_of_a_requirement_are_those_of_the_study_file(held, tmp_path):
+    """In fog the LiDAR and the camera lose the child behind; names are the engine's to check."""
+    bpy.ops.pe.add_state()
+    bpy.ops.pe.add_weather(weather="FOG")
+    (state,), (fog,) = held.perception_entropy.states, held.perception_entropy.weathers
+    fog.fog_mor_m = 1.0
+    row = rows(held)[1]
+    before = row.table
+    row.states, row.weathers = f" {state.name}, ", "*"
+    assert (row.states, row.weathers, row.problem) == (state.name, "*", "")
+    study = scenes.study()
+    assert study.requirements[1].under.states == (state.name,)
+    assert study.requirements[1].under.weathers == ("*",)
+    pe.export_study(study, tmp_path / "study.toml")
+    again = pe.load_study(tmp_path / "study.toml")
+    assert again.requirements == study.requirements
+    bpy.ops.pe.check_requirements()
+    verdicts = again.verdicts()
+    assert [row.verdict for row in rows(held)] == [v.text for v in verdicts]
+    assert fog.name in verdicts[1].condition and not verdicts[1].met
+    row.weathers = "drizzle"
+    with pytest.raises(pe.InputError, match="drizzle"):
+        scenes.study().verdicts()
+    row.states = row.weathers = ""
+    assert row.table == before
+
+
+CRITERION = {
+    **{"points": 3, "pixels": 12.5, "pixels_high": 4.0, "per_degree": 2.0},
+    **{"share": 0.5, "ap": 0.4, "zone_share": 0.9, "of": {"lidar"}},
+}
+
+
+def test_each_key_of_the_criterion_is_set_and_taken_away(held):
+    row = rows(held)[1]
+    before = row.table
+    for name, value in CRITERION.items():
+        setattr(row, name, value)
+        assert row.problem == "", name
+    made = scenes.study().requirements[1].criterion
+    for name, value in CRITERION.items():
+        wanted = ("lidar",) if name == "of" else pytest.approx(value)
+        assert getattr(made, name) == wanted, name
+    neutral = {"points": 1, "pixels": 1.0, "zone_share": 1.0, "of": set()}
+    for name in CRITERION:
+        setattr(row, name, neutral.get(name, 0.0))
+    assert row.table == before
+
+
+def test_blind_ground_replaces_bodies_and_zone_keys_are_read_back(held):
+    row = rows(held)[1]
+    row.asks = "ground"
+    row.blind_m2, row.blind_height, row.blind_out = 0.0, 0.5, 2.0
+    made = scenes.study().requirements[1]
+    assert made.bodies == () and made.criterion.blind_m2 == 0.0
+    assert (made.criterion.blind_height, made.criterion.blind_out) == (0.5, 2.0)
+    row.asks = "bodies"
+    assert not scenes.study().requirements[1].criterion.is_of_ground
+    row.z_to, row.below, row.near_side, row.eyes = 0.5, 2.0, "left", "1.2"
+    zone = scenes.study().requirements[1].zone
+    assert (zone.z, zone.below, zone.near_side, zone.eyes) == ((0.0, 0.5), 2.0, "left", 1.2)
+    row.eyes = ""
+    assert scenes.study().requirements[1].zone.eyes is None
+
+
+def test_a_change_that_a_preset_cannot_say_makes_it_an_own_one(held):
+    """A share can be added to a preset and is stored as a change; its criterion's end cannot."""
+    held.perception_entropy.requirements.clear()
+    bpy.ops.pe.add_requirement(preset="fmvss111_rear")
+    (row,) = rows(held)
+    row.sensors = 2
+    assert json.loads(row.table) == {"preset": "fmvss111_rear", "criterion": {"sensors": 2}}
+    row.share = 0.0
+    assert row.problem == "" and bridge.preset_of(row) is None
+    made = scenes.study().requirements[0]
+    assert made.criterion.share is None and made.criterion.sensors == 2
+    assert made.check == "FMVSS 111" and len(made.zone.spots) == 6
+
+
+def test_rows_are_copied_moved_and_undone(held):
+    settings = held.perception_entropy
+    names = [row.name for row in rows(held)]
+    settings.requirement_index = 1
+    assert bpy.ops.pe.copy_requirement() == {"FINISHED"}
+    assert [row.name for row in rows(held)] == [*names[:2], "My requirement 3", names[2]]
+    assert rows(held)[2].table == rows(held)[1].table and settings.requirement_index == 2
+    assert bpy.ops.pe.move_requirement(step=-1) == {"FINISHED"}
+    assert [row.name for row in rows(held)][1:3] == ["My requirement 3", names[1]]
+    settings.requirement_index = 0
+    assert bpy.ops.pe.move_requirement(step=-1) == {"CANCELLED"}
+    scenes.study()
+
+
+def test_what_cannot_be_checked_keeps_none_of_the_others_from_it(held):
+    """The box car has no door: the row says what was looked for, the others have verdicts."""
+    bpy.ops.pe.add_requirement(preset="ncap26_dooring")
+    assert bpy.ops.pe.check_requirements() == {"FINISHED"}
+    *others, door = rows(held)
+    assert all(row.met >= 0 for row in others)
+    assert door.met == -1 and "a part whose name has the word door" in door.verdict
 
 
 def test_a_wrong_value_is_refused_and_said_and_the_requirement_stays(held):

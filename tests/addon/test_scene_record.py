@@ -129,6 +129,12 @@ def rich(car):
         option = own.options.add()
         option.model, option.price = model, price
     own.may_be_left_out = True
+    own.stays = True
+    settings.sensitivity, settings.front_objectives = "full", {"entropy", "height"}
+    settings.start_poses = '[["other", {"eye": [2.1, 0.0, 1.1, 0.0, 0.0, 0.0]}]]'
+    bpy.ops.pe.add_state()
+    bpy.ops.pe.add_weather(weather="FOG")
+    settings.search_conditions = "worst"
     settings.keep_requirements = True
     assert bpy.ops.pe.add_requirement(preset="r158_camera") == {"FINISHED"}
     set_what_is_by_default(settings)

@@ -1,6 +1,6 @@
 """The kind of sensor in `toy_kind` is added, scored, searched, listed and drawn in Blender.
 
-An ultrasonic ring: m depends on the distance alone. No module of the add-on knows of it.
+A toy ring: m depends on the distance alone. No module of the add-on knows of it.
 """
 
 from pathlib import Path
@@ -28,10 +28,10 @@ PRESET = "Parking Ring"
 def ring_kind(car):
     """Have the kind and a preset of it in the engine's tables for a test, and a car to try it."""
     kinds.register(RingKind())
-    catalog.add(PRESET, {"kind": "ultrasonic", "range_m": 12.0})
+    catalog.add(PRESET, {"kind": "toyring", "range_m": 12.0})
     yield car
     catalog.remove(PRESET)
-    kinds.unregister("ultrasonic")
+    kinds.unregister("toyring")
 
 
 @pytest.fixture
@@ -41,34 +41,33 @@ def ring(ring_kind):
 
 
 def test_it_is_offered_beside_the_others(ring_kind):
-    assert [(o.label, o.usual, models(o.kind)) for o in offers()][2:] == [
-        ("Ultrasonic Ring", PRESET, [PRESET])
+    assert [(o.label, o.usual, models(o.kind)) for o in offers()][4:] == [
+        ("Toy Ring", PRESET, [PRESET])
     ]
-    assert (PRESET, "Ultrasonic Ring") in properties.model_suggestions(None, None, "")
-    layout = Layout()
-    panels.main.draw_add(layout)
-    assert layout.texts("operator") == [
-        *("Add LiDAR", "Place", "Add Camera", "Place", "Add Ultrasonic Ring", "Place")
+    assert (PRESET, "Toy Ring") in properties.model_suggestions(None, None, "")
+    layout, settings = Layout(), bpy.context.scene.perception_entropy
+    settings.kind_to_add = "toyring"
+    panels.main.draw_add(layout, settings)
+    assert layout.notes == [
+        *(("prop", "kind_to_add"), ("operator", "Add"), ("operator", "Place")),
+        *((panels.sensor_menus.KIND, "toyring"), ("menu", "PE_MT_add_sensor")),
     ]
 
 
 def test_its_menu_lists_its_presets(ring_kind):
-    menu = panels.main.PE_MT_add_sensor
-    of_maker, kind = panels.main.PE_MT_sensors_of_maker, {panels.main.KIND: "ultrasonic"}
-    layout = drawn(menu, **kind)
+    menus = panels.sensor_menus
+    kind = {menus.KIND: "toyring"}
+    layout = drawn(menus.PE_MT_add_sensor, **kind)
     assert layout.texts("operator") == ["Search..."]
-    assert layout.texts(panels.main.MAKER) == ["Own"]
+    assert layout.texts("menu") == [menus.MAKER_MENUS["Own"].bl_idname]
     text = f"{PRESET}   range 12 m"
-    assert drawn(of_maker, **kind, **{panels.main.MAKER: "Own"}).texts("operator") == [text]
-    cameras = drawn(of_maker, **{panels.main.KIND: "camera"}).texts("operator")
-    assert [each.partition("   ")[0] for each in cameras] == catalog.names("camera")
-    assert len(drawn(of_maker).texts("operator")) == len(catalog.names())
+    assert drawn(menus.MAKER_MENUS["Own"], **kind).texts("operator") == [text]
 
 
 def test_the_operator_adds_it(ring_kind):
     assert bpy.ops.pe.add_sensor(model=PRESET) == {"FINISHED"}
     added = bpy.context.object
-    assert added.name == "Ultrasonic Ring" and added.perception_entropy.model == PRESET
+    assert added.name == "Toy Ring" and added.perception_entropy.model == PRESET
     assert added.location.z > 1.5, "not on the roof"
     assert isinstance(scenes.study().rig[added.name].model, Ring)
 
@@ -130,7 +129,7 @@ def test_the_review_shows_it(ring_kind, ring, tmp_path):
     for _ in job:
         pass
     names = [text for text, _, _ in legend_of(study.rig, stopped=True, moved=False)]
-    assert names == ["LiDAR beam", "blocked by the vehicle", "Ultrasonic Ring"]
+    assert names == ["LiDAR beam", "blocked by the vehicle", "Toy Ring"]
     path = tmp_path / "review.png"
     render_review(ring_kind, study, job.outcome, path, (800, 450))
     image = bpy.data.images.load(str(path))
@@ -141,16 +140,16 @@ def test_the_review_shows_it(ring_kind, ring, tmp_path):
 
 def test_an_own_sensor_of_it_is_defined_by_its_keys(ring_kind):
     items = {name: number for name, _, _, number in sensor_kinds.own_kinds(None, None)}
-    assert (items["lidar"], items["camera"]) == (0, 1) and items["ultrasonic"] >= 1000
-    assert bpy.ops.pe.add_own_sensor(kind="ultrasonic") == {"FINISHED"}
+    assert (items["lidar"], items["camera"]) == (0, 1) and items["toyring"] >= 1000
+    assert bpy.ops.pe.add_own_sensor(kind="toyring") == {"FINISHED"}
     row = ring_kind.perception_entropy.own_sensors[-1]
-    assert row.name == "My Ultrasonic Ring" and row.problem != "", "it has no keys yet"
+    assert row.name == "My Toy Ring" and row.problem != "", "it has no keys yet"
     row.keys = "range_m = 7.5"
     assert row.problem == "" and catalog.load(row.name).range_m == 7.5
-    assert bridge.add_own_sensor(ring_kind, "Other Ring", {"kind": "ultrasonic", "range_m": 3.0})
+    assert bridge.add_own_sensor(ring_kind, "Other Ring", {"kind": "toyring", "range_m": 3.0})
     assert ring_kind.perception_entropy.own_sensors[-1].keys == "range_m = 3.0"
-    assert operators.own_fields("ultrasonic") == ("keys",)
-    assert operators.kind_label("ultrasonic") == "Ultrasonic Ring"
+    assert operators.own_fields("toyring") == ("keys",)
+    assert operators.kind_label("toyring") == "Toy Ring"
     row.keys = "range_m = "
     assert "keys" in row.problem, "a line that cannot be read is refused by the engine"
     bridge.remove_own_sensors()
@@ -177,12 +176,12 @@ def test_a_row_gives_it_a_picture_a_housing_and_fields(ring_kind, ring, monkeypa
         pixels=lambda _sensor, _vehicle: pixels,
         legend="all grey",
     )
-    monkeypatch.setitem(sensor_kinds.ROWS, "ultrasonic", row)
+    monkeypatch.setitem(sensor_kinds.ROWS, "toyring", row)
     assert bpy.ops.pe.look_through(name="bumper") == {"FINISHED"}
     image = bpy.data.images["bumper range"]
     assert tuple(image.size) == (8, 4)
     np.testing.assert_allclose(np.array(image.pixels[:]), 0.25, atol=0.01)
-    assert operators.own_fields("ultrasonic") == ("max_range",)
+    assert operators.own_fields("toyring") == ("max_range",)
     surface = housing.model_surface(PRESET)
     np.testing.assert_allclose(np.ptp(surface.points, axis=0), (0.5, 0.4, 0.3), atol=0.01)
 
@@ -190,11 +189,11 @@ def test_a_row_gives_it_a_picture_a_housing_and_fields(ring_kind, ring, monkeypa
 def test_without_the_kind_nothing_of_it_is_left(car):
     known = [(o.kind, models(o.kind)) for o in offers()]
     kinds.register(RingKind())
-    catalog.add(PRESET, {"kind": "ultrasonic", "range_m": 12.0})
+    catalog.add(PRESET, {"kind": "toyring", "range_m": 12.0})
     scenes.add_sensor("bumper", PRESET)
-    assert len(list(offers())) == 3
+    assert len(list(offers())) == 5
     catalog.remove(PRESET)
-    kinds.unregister("ultrasonic")
+    kinds.unregister("toyring")
     assert [(o.kind, models(o.kind)) for o in offers()] == known
     assert PRESET not in dict(properties.model_suggestions(None, None, ""))
     with pytest.raises(RuntimeError, match="sensor 'bumper': model: expected a name such as"):
@@ -208,10 +207,10 @@ def test_without_the_kind_nothing_of_it_is_left(car):
 def test_a_preset_of_a_kind_that_is_gone_is_refused(car):
     """The preset was forgotten when the kind went: one line, no sensor of another kind."""
     kinds.register(RingKind())
-    catalog.add(PRESET, {"kind": "ultrasonic", "range_m": 12.0})
+    catalog.add(PRESET, {"kind": "toyring", "range_m": 12.0})
     try:
         scenes.add_sensor("bumper", PRESET)
-        kinds.unregister("ultrasonic")
+        kinds.unregister("toyring")
         assert PRESET not in dict(properties.model_suggestions(None, None, ""))
         assert PRESET not in models(None)
         for operator in (bpy.ops.pe.score, bpy.ops.pe.optimize):
@@ -228,4 +227,4 @@ def test_a_preset_of_a_kind_that_is_gone_is_refused(car):
 def test_the_add_on_never_heard_of_it():
     """The proof that no module had to be touched: none of them holds its name."""
     for path in Path(blender_addon.__file__).parent.rglob("*.py"):
-        assert "ultrasonic" not in path.read_text("utf-8").lower(), path.name
+        assert "toyring" not in path.read_text("utf-8").lower(), path.name

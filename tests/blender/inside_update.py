@@ -41,6 +41,13 @@ def state() -> dict:
     }
 
 
+def installed_files() -> list[str]:
+    """Return the files of the extension's folder, without what Python keeps beside its modules."""
+    folder = Path(sys.modules[PACKAGE].__file__).parent
+    files = (path for path in folder.rglob("*") if path.is_file() and path.suffix != ".pyc")
+    return sorted(path.relative_to(folder).as_posix() for path in files)
+
+
 def score() -> float:
     """Score the open scene."""
     assert bpy.ops.pe.score() == {"FINISHED"}
@@ -57,4 +64,5 @@ bpy.ops.extensions.repo_sync_all()
 bpy.ops.extensions.package_upgrade_all()
 report["after"] = state()
 report["score after"] = score()
+report["files"] = installed_files()
 REPORT.write_text(json.dumps(report))

@@ -18,6 +18,23 @@ settings = bpy.context.scene.perception_entropy
 settings.targets, settings.traffic, settings.scenes = "objects", True, 8
 bpy.ops.wm.save_as_mainfile(filepath=saved)
 """
+NUSCENES_IN_THE_WEATHER = """
+import sys, bpy
+start, saved, folder = sys.argv[-3:]
+bpy.ops.wm.open_mainfile(filepath=start)
+scene = bpy.context.scene
+assert bpy.ops.pe.add_rig(key="nuscenes") == {"FINISHED"}
+hood = bpy.data.objects["hood"]
+for frame, angle in ((1, 0.0), (20, -0.3)):
+    hood.rotation_euler.y = angle
+    hood.keyframe_insert("rotation_euler", frame=frame)
+for frame in (1, 20):
+    scene.frame_set(frame)
+    assert bpy.ops.pe.add_state() == {"FINISHED"}
+assert bpy.ops.pe.add_weather(weather="FOG") == {"FINISHED"}
+bpy.ops.wm.save_as_mainfile(filepath=saved)  # with the hood open
+assert bpy.ops.pe.export_study(filepath=folder + "/study.toml") == {"FINISHED"}
+"""
 SHORT = ("--samples", 4096, "--candidates", 10)
 
 
@@ -84,6 +101,28 @@ def test_they_agree_on_objects_in_traffic(installed, sedan, tmp_path):
     assert inside["after"] == outside["after"]
 
 
+def test_radars_weathers_and_states_of_nuscenes_have_the_same_bits(installed, sedan, tmp_path):
+    script, saved = tmp_path / "nuscenes.py", tmp_path / "nuscenes.blend"
+    script.write_text(NUSCENES_IN_THE_WEATHER, "utf-8")
+    answer = installed.script(script, sedan, saved, tmp_path)
+    assert answer.returncode == 0, output_of(answer)
+    study = tmp_path / "study.toml"
+    inside = installed.pe(saved, "score", *FAST, "--json")
+    scored, outside = document_in(inside.stdout), alone("score", study, *FAST, "--json")
+    assert scored["conditions"] == outside["conditions"] and scored["after"] == outside["after"]
+    rows = scored["conditions"]["rows"]
+    assert len(rows) == 2 and len({row["entropy"] for row in rows}) == 2
+    assert sum(name.startswith("RADAR_") for name in scored["after"]["per_sensor"]) == 5
+
+
+def alone(*arguments) -> dict:
+    """What the engine alone prints, numbers as text."""
+    command = [sys.executable, "-m", "pe_core", *map(str, arguments)]
+    answer = subprocess.run(command, capture_output=True, text=True, timeout=SCORE_TIMEOUT_S)
+    assert answer.returncode == 0, output_of(answer)
+    return document_in(answer.stdout)
+
+
 def both_scores(installed, blend, folder) -> tuple[dict, dict]:
     """What Blender and the engine alone say of a scene, numbers as text."""
     inside = installed.pe(blend, "score", *FAST, "--json", "--output", folder / "inside")
@@ -92,7 +131,4 @@ def both_scores(installed, blend, folder) -> tuple[dict, dict]:
     assert exported.returncode == 0, output_of(exported)
 
     (study,) = (folder / "study").glob("*.toml")
-    command = [sys.executable, "-m", "pe_core", "score", study, *map(str, FAST), "--json"]
-    outside = subprocess.run(command, capture_output=True, text=True, timeout=SCORE_TIMEOUT_S)
-    assert outside.returncode == 0, output_of(outside)
-    return document_in(inside.stdout), document_in(outside.stdout)
+    return document_in(inside.stdout), alone("score", study, *FAST, "--json")

@@ -7,7 +7,7 @@ import bpy
 bpy.ops.wm.read_homefile(use_factory_startup=True)
 bpy.ops.wm.save_as_mainfile(filepath={path!r})
 """
-EFFECT_TIMEOUT_S = 20
+EFFECT_TIMEOUT_S = 120
 
 
 @pytest.fixture

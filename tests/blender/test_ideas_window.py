@@ -2,7 +2,7 @@
 
 from tests.blender.window import HEIGHT, WIDTH
 
-EFFECT_TIMEOUT_S = 30
+EFFECT_TIMEOUT_S = 120
 ANSWER_TIMEOUT_S = 90
 
 

@@ -158,3 +158,20 @@ def test_disabled_during_a_search_it_leaves_nothing_and_works_again(spent_stage,
     stage.wait_until("window.scene.perception_entropy.has_result", timeout_s=2 * EFFECT_TIMEOUT_S)
     assert stage.state["places"] == places, "the search that was ended has moved something"
     assert not re.search("Traceback|Error:", stage.log.read_text())
+
+
+def test_a_search_begun_by_a_script_after_one_was_ended_by_disabling(spent_stage):
+    """No event comes in between: the handler of the removed operator is gone all the same."""
+    stage = spent_stage
+    stage.do(CALM)
+    for _ in range(2):
+        stage.do("bpy.ops.pe.optimize('INVOKE_DEFAULT')")
+        stage.do(DISABLE)
+        stage.rest()
+        stage.do(ENABLE)
+    stage.do("bpy.ops.pe.optimize('INVOKE_DEFAULT')")
+    stage.wait_for(lambda: stage.state["running"], EFFECT_TIMEOUT_S, "the search to start")
+    stage.point_at_view()
+    stage.key("Escape")
+    stage.wait_for(lambda: not stage.state["running"], EFFECT_TIMEOUT_S, "the search to end")
+    assert not re.search("Traceback|Error:", stage.log.read_text())

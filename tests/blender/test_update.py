@@ -105,6 +105,11 @@ def test_the_open_scene_scores_the_same_after_the_update(report):
     assert report["score after"] == report["score before"]
 
 
+def test_nothing_is_written_into_the_folder_of_the_installation(report, extension_zip):
+    with zipfile.ZipFile(extension_zip) as archive:
+        assert report["files"] == sorted(n for n in archive.namelist() if not n.endswith("/"))
+
+
 def test_the_page_has_a_link_to_drag_into_blender(repositories):
     page = (repositories / "newer" / "index.html").read_text("utf-8")
     version = release.agreed_version()

@@ -2,7 +2,7 @@
 
 import math
 
-EFFECT_TIMEOUT_S = 20
+EFFECT_TIMEOUT_S = 120
 SCORE_TIMEOUT_S = 180
 
 

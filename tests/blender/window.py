@@ -31,7 +31,7 @@ SETTLE_TIMEOUT_S = 30
 TURNS = 4  # of Blender's loop between moving and pressing: it finds the button by the move
 
 SCROLLS = 30  # of the wheel: more than the sidebar is long
-SEARCHES = 3  # for a button: panels may move while one is looked for
+SEARCHES = 4  # for a button: panels may move while one is looked for
 ANSWER_TIMEOUT_S = 120
 COPY_TIMEOUT_S = 5
 
@@ -137,7 +137,7 @@ class Window:
     def find_button(self, operator: str, words: str = "") -> tuple[int, int]:
         """Return a place inside the sidebar's button of an operator."""
         call = f"bpy.ops.{operator}("
-        for _ in range(SEARCHES):
+        for search in range(SEARCHES):
             place = self._look_for(operator, words)
             if place is not None:
                 said = self._call_at(*place)
@@ -145,7 +145,7 @@ class Window:
                     self._found[operator, words] = place
                     return place
             self._found.pop((operator, words), None)
-            self._scroll("4")  # an earlier test may have left it at its end
+            self._scroll("54"[(search + 1) % 2])  # its beginning, then its end, by turns
             self.point_at_view()
             self.settle()
         self.screenshot(self.folder / "no_button.png")

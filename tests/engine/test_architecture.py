@@ -38,15 +38,17 @@ ROOMS = {
         "__main__": set(),
     },
     "pe_tools": {
+        "languages": set(),
         "formats": set(),
         "exchange": {"formats"},
         "graphics": set(),
         "advice": set(),
-        "jobs": {"formats", "advice"},
+        "sensitivity": set(),
+        "jobs": {"formats", "advice", "sensitivity"},
         "outputs": {"exchange", "graphics"},
         "sweep": {"jobs"},
-        "cli": {"formats", "exchange", "advice", "jobs", "outputs", "sweep"},
-        "page": {"graphics", "advice", "jobs", "cli"},
+        "cli": {"formats", "exchange", "advice", "sensitivity", "jobs", "outputs", "sweep"},
+        "page": {"languages", "graphics", "advice", "sensitivity", "jobs", "cli"},
         "reproduction": {"formats", "jobs", "cli"},
         "validity": {"cli", "reproduction"},
         "public": {"formats", "exchange", "advice", "jobs"},
@@ -58,19 +60,30 @@ ROOMS = {
 STOREYS = 8
 MAX_CHAIN_LENGTH = 30
 """Of pe_core: storeys of rooms, and files in a row of which each imports the next, at most."""
-MAX_LINES = 26_000
-LINES_OF_REQUIREMENTS = {
-    "pe_core/scoring/requirements/": 2_500,
-    "pe_core/study/requirement_": 650,
+MAX_LINES = 26_200
+LINES_OF_ROOMS = {
+    "pe_core/scoring/requirements/": 3_150,
+    "pe_core/study/requirement_": 760,
+    "pe_core/sensors/radar/": 1_090,
+    "pe_core/sensors/ultrasonic/": 400,
+    "pe_core/sensors/ray_fan": 690,
+    "pe_core/scene/radar_covers": 40,
+    "pe_core/sensors/weather": 360,
+    "pe_core/scene/vehicle_state": 280,
+    "pe_core/study/condition_": 700,
+    "pe_core/search/goals": 240,
+    "pe_core/study/goals_": 90,
+    "pe_core/search/methods/portfolio": 460,
 }
-"""Lines of requirements, and of their file and their search, beside `MAX_LINES` of all others."""
+"""Lines of requirements, of conditions, of the kinds of sensors that are not the paper's, and of a
+search's goals and its default method, beside `MAX_LINES` of all others."""
 LIBRARIES = {
     "collada": {"pe_tools/formats"},
     "pxr": {"pe_tools/formats"},
     "pyarrow": {"pe_tools/exchange"},
     "ezdxf": {"pe_tools/outputs"},
     "rerun": {"pe_tools/outputs"},
-    "jax": {"pe_tools/validity"},
+    "tensorflow": {"pe_tools/validity"},
     "matplotlib": {"pe_tools/reproduction", "pe_tools/validity"},
 }
 """Optional libraries, and the rooms in which they are imported."""
@@ -246,7 +259,7 @@ def test_the_engine_is_low_and_its_chains_are_short():
 
 def test_the_engine_stays_small():
     lines = {n: len(p.read_text("utf-8").splitlines()) for n, p in files("pe_core").items()}
-    for start, most in LINES_OF_REQUIREMENTS.items():
+    for start, most in LINES_OF_ROOMS.items():
         own = [name for name in lines if name.startswith(start)]
         assert 0 < sum(map(lines.pop, own)) <= most, start
     assert sum(lines.values()) <= MAX_LINES
@@ -271,20 +284,20 @@ def test_the_check_sees_every_way_to_write_an_import(tmp_path):
 
 def test_a_sensor_s_kind_is_asked_of_the_table_alone():
     """Outside a kind's own folder nobody tells LiDARs from cameras by class or by name."""
-    own = ("pe_core/sensors/lidar/", "pe_core/sensors/camera/", "pe_core/sensors/__init__.py")
+    kinds = ("Lidar", "Camera", "Radar", "Ultrasonic")
+    own = (*(f"pe_core/sensors/{kind.lower()}/" for kind in kinds), "pe_core/sensors/__init__.py")
     tables = (
         *("pe_tools/graphics/", "pe_tools/reproduction/", "pe_tools/validity/"),
         *("pe_tools/page/pictures/sensor_views.py", "pe_tools/exchange/portable_kinds.py"),
+        "pe_tools/exchange/passthrough.py",  # words in the names of foreign sensors
     )
     offenders = []
     for name, path in files(*ROOMS).items():
         if name.startswith((*own, *tables)) or name.count("/") == 1:
             continue
-        named = {full.rsplit(".")[-1] for full in imported(path)} & {"Lidar", "Camera"}
-        texts = {node.value for node in nodes(path) if isinstance(node, ast.Constant)} & {
-            "lidar",
-            "camera",
-        }
+        named = {full.rsplit(".")[-1] for full in imported(path)} & set(kinds)
+        texts = {node.value for node in nodes(path) if isinstance(node, ast.Constant)}
+        texts &= {kind.lower() for kind in kinds}
         if named | texts:
             offenders.append(name)
     assert not offenders

@@ -1,4 +1,4 @@
-"""The default method: it finds what others walk past, from afar, in slots, on several levels."""
+"""Block descent: it finds what others walk past, from afar, in slots, on several levels."""
 
 import contextlib
 import math
@@ -117,7 +117,7 @@ def test_several_workers_take_the_same_steps():
 
 
 def test_a_schedule_and_no_method_means_the_one_that_has_schedules():
-    assert pe.Search().method == "block-descent"
+    assert pe.Search().method == "portfolio"
     assert pe.Search(schedule=pe.Schedule(candidates=3)).method == "random"
     assert pe.Search(method="cma-es", schedule=pe.Schedule(candidates=3)).method == "cma-es"
 

@@ -7,6 +7,8 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring import Judgement
+from pe_core.scoring.targets import ObjectEvaluator
+from pe_core.scoring.targets.bound_log import BoundLog
 from pe_core.search import SearchSpace
 from tests.engine import shapes
 from tests.thorough import tries
@@ -27,6 +29,16 @@ def sensors(rng):
     )
 
 
+def is_right_bound(found, exact, below):
+    """Check a judgement against the entropy; return whether it is a lower bound."""
+    if found.is_lower_bound:
+        assert below <= found.entropy <= exact
+    else:
+        assert found.entropy == exact
+    assert (found.entropy < below) == (exact < below)
+    return found.is_lower_bound
+
+
 @pytest.mark.parametrize("blind", ["floor", "literal"])
 def test_a_bound_is_one_and_is_reported_only_where_it_settles_the_matter(blind):
     rng = np.random.default_rng(5)
@@ -39,13 +51,7 @@ def test_a_bound_is_one_and_is_reported_only_where_it_settles_the_matter(blind):
         rig = sensors(rng)
         exact = plain.entropy(rig)
         for below in (exact - 1.0, exact - 0.01, exact, exact + 1e-6, exact + 1.0, math.inf):
-            told = evaluator.judge(rig, below)
-            if told.is_lower_bound:
-                assert below <= told.entropy <= exact
-            else:
-                assert told.entropy == exact
-            assert (told.entropy < below) == (exact < below)
-            bounds += told.is_lower_bound
+            bounds += is_right_bound(evaluator.judge(rig, below), exact, below)
     assert bounds > 10
 
 
@@ -88,3 +94,62 @@ def test_a_lidar_beside_a_voxels_axis_warns_of_nothing():
     pose = pe.Pose((-0.34371, -0.18753, 1.58554), (0.0, -0.005813691738393112, 0.0))
     sensor = pe.Sensor("roof", pe.catalog.load("Pandar64"), pose)
     pe.Evaluator(pe.PerceptionSpace(), pe.Prior.road(), samples=32_768).entropy(pe.Rig([sensor]))
+
+
+def on_objects(traffic=True, vehicle=VEHICLE, **options):
+    """Score on a few scenes; every bound is tried."""
+    rule = pe.TargetRule("objects", traffic, 8)
+    evaluator = ObjectEvaluator(SPACE, pe.Prior.road(), vehicle, targets=rule, **options)
+    evaluator._bounds.pay = lambda: True
+    return evaluator
+
+
+@pytest.mark.parametrize("traffic", [False, True])
+@pytest.mark.parametrize("blind", ["floor", "literal"])
+def test_a_bound_on_objects_is_one_and_never_rejects_what_is_better(traffic, blind):
+    rng, model = np.random.default_rng(9), pe.PerceptionModel(blind=blind)
+    evaluator, plain = (on_objects(traffic, model=model) for _ in range(2))
+    bounds, elsewhere = 0, sensors(rng)
+    for _ in range(tries(5, 25)):
+        rig = sensors(rng)
+        exact = plain.entropy(rig)
+        for below in (exact - 4.0, exact - 2.0, exact - 1.0, exact, exact + 1e-9, math.inf):
+            evaluator.entropy(elsewhere)  # all sensors have moved
+            bounds += is_right_bound(evaluator.judge(rig, below), exact, below)
+    assert bounds > 5
+
+
+def test_a_search_in_traffic_finds_the_same_with_bounds_and_without():
+    class Plain(ObjectEvaluator):
+        def judge(self, rig, below=math.inf):
+            return Judgement(super().entropy(rig), False)
+
+    rig = sensors(np.random.default_rng(7))
+    space, found, bounds = SearchSpace.on_vehicle(rig, VEHICLE), [], []
+    for kind in (ObjectEvaluator, Plain):
+        rule = pe.TargetRule("objects", True, 8)
+        evaluator = kind(SPACE, pe.Prior.road(), VEHICLE, targets=rule)
+        noted = evaluator._bounds.note
+        evaluator._bounds.note = lambda settled, noted=noted: (
+            bounds.append(settled),
+            noted(settled),
+        )
+        steps = pe.optimize(evaluator, rig, space, 3, evaluations=60)
+        found.append([(s.entropy, s.improved, [b.pose for b in s.best]) for s in steps])
+    assert found[0] == found[1]
+    assert any(improved for _, improved, _ in found[0])
+    assert any(bounds) and not all(bounds), "some candidates are settled by a bound, some are not"
+
+
+def test_bounds_are_seldom_tried_while_they_settle_nothing():
+    log = BoundLog()
+    tried = 0
+    for _ in range(200):
+        if log.pay():
+            tried += 1
+            log.note(False)
+    assert 20 < tried < 40
+    for _ in range(60):
+        if log.pay():
+            log.note(True)
+    assert log.pay() and log.pay()

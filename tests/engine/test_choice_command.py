@@ -1,11 +1,14 @@
 """`pe optimize` of a study with choices: what it prints, writes and refuses."""
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 import pe_core as pe
-from pe_tools.cli import choose_verb, verbs
+from pe_core.search import EvaluatedRig
+from pe_tools import jobs
+from pe_tools.cli import choose_verb, executors, verbs
 from tests.engine import mounting
 from tests.engine.test_choice_job import options, study
 
@@ -59,3 +62,64 @@ def test_the_plots_that_others_add_are_drawn_of_what_is_kept(file, tmp_path, mon
     ((data, folder),) = drawn
     assert folder == tmp_path / "out"
     assert data == json.loads((folder / "front.json").read_text())
+
+
+def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
+    """Journals of half of the searches are lost, and half of the entries of another."""
+    given = study([pe.Choice(options(), ["roof"])], free=("pitch",))
+    pe.export_study(given, tmp_path / "car.toml")
+    file, out = str(tmp_path / "car.toml"), tmp_path / "out"
+    assert verbs.main(["optimize", file, "--json", "-o", str(out)]) == 0
+    whole = json.loads(capsys.readouterr().out)
+    state = json.loads((out / jobs.FRONT_SEARCH).read_text())
+    names = list(state["journals"])
+    cut = {n: rows[: len(rows) // (k + 1)] for k, (n, rows) in enumerate(state["journals"].items())}
+    assert len(names) == 3 and all(cut.values())
+    jobs.save_front_search(
+        given,
+        jobs.FrontJournals({n: [EvaluatedRig(*row) for row in cut[n]] for n in names[:2]}),
+        out,
+    )
+    assert verbs.main(["optimize", file, "--json", "--resume", str(out)]) == 0
+    told = capsys.readouterr()
+    assert {**json.loads(told.out), "run": 0} == {**whole, "run": 0}
+    assert "going on after" in told.err
+    assert json.loads((out / jobs.FRONT_SEARCH).read_text()) == state
+    assert verbs.main(["optimize", file, "--seed", "5", "--resume", str(out)]) == 1
+    assert "front_search.json: study: expected the study and the" in capsys.readouterr().err
+    (out / jobs.FRONT_SEARCH).write_text("{}")
+    assert verbs.main(["optimize", file, "--resume", str(out)]) == 1
+    assert "expected the checkpoint of a front" in capsys.readouterr().err
+
+
+def test_a_scheduler_evaluates_the_placements_and_the_front_is_the_same(
+    tmp_path, capsys, monkeypatch
+):
+    choices = [pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])]
+    file = tmp_path / "car.toml"
+    pe.export_study(study(choices, candidates=2), file)
+
+    class Workers(ThreadPoolExecutor):
+        addresses, submitted = (), 0
+
+        def __init__(self, address):
+            super().__init__(2)
+            self.executor, Workers.addresses = self, (*Workers.addresses, address)
+
+        def check(self):
+            """Say nothing: there are workers."""
+
+        def submit(self, *args):
+            Workers.submitted += 1
+            return super().submit(*args)
+
+        def close(self):
+            self.shutdown()
+
+    monkeypatch.setattr(executors, "DaskWorkers", Workers)
+    fronts = []
+    for more in ([], ["--scheduler", "there:8786"]):
+        assert verbs.main(["optimize", str(file), "--json", "--workers", "1", *more]) == 0
+        fronts.append(json.loads(capsys.readouterr().out))
+    assert Workers.addresses == ("there:8786",) and Workers.submitted
+    assert {**fronts[0], "run": 0} == {**fronts[1], "run": 0}

@@ -69,7 +69,7 @@ REFUSED = [
     ({"choice": [{**ROOF, "option": LIDARS * 2}]}, "expected each model once"),
     ({"choice": [{**ROOF, "optional": 1}]}, "optional: expected true or false, found 1"),
     ({"choice": [{**ROOF, "pice": 1}]}, "choice[0].pice: expected one of"),
-    ({"selection": {"max_of_kind": {"radar": 1}}}, "max_of_kind.radar: expected one of"),
+    ({"selection": {"max_of_kind": {"sonar": 1}}}, "max_of_kind.sonar: expected one of"),
     (
         {"selection": {"max_price": float("nan")}},
         "selection.max_price: expected a price >= 0, found nan",

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
@@ -114,6 +115,28 @@ def test_the_result_is_the_same_with_one_worker_or_two():
     given = study([pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])], candidates=1)
     one, two = (front_dict(front_of(given, workers)) for workers in (1, 2))
     assert {**one, "run": 0} == {**two, "run": 0}
+
+
+def test_all_designs_share_the_workers_of_an_executor():
+    """As a cluster is: what the workers are sent once is sent once for all designs."""
+    given = study([pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])], candidates=2)
+    sent = []
+
+    class Workers(ThreadPoolExecutor):
+        def submit(self, replied, function, payload, *rest):
+            sent.append(payload.key)
+            return super().submit(replied, function, payload, *rest)
+
+    with Workers(2) as workers:
+        job = pe.ChoiceJob(given, 1)
+        job.executor = workers
+        list(job)
+    alone = front_of(given, 1)
+    assert [d.study.rig["roof"].pose for d in job.trade_off.designs] == [
+        d.study.rig["roof"].pose for d in alone.designs
+    ]
+    assert [d.entropy for d in job.trade_off.designs] == [d.entropy for d in alone.designs]
+    assert len(sent) == 4 and len(set(sent)) == 1
 
 
 @pytest.mark.parametrize("after", [1, 2])

@@ -20,17 +20,17 @@ IMU = (
 )
 ROBOT = f"""<robot name="cart">
   <link name="base_link"/><link name="base_footprint"/>
-  <link name="roof"/><link name="imu_link"/><link name="front_radar"/>
+  <link name="roof"/><link name="imu_link"/><link name="front_sonar"/>
   <joint name="f" type="fixed"><parent link="base_link"/><child link="base_footprint"/>
     <origin xyz="0 0 -0.35"/></joint>
   <joint name="r" type="fixed"><parent link="base_link"/><child link="roof"/>
     <origin xyz="0.2 0 1.5" rpy="0 0.1 0"/></joint>
   <joint name="i" type="fixed"><parent link="roof"/><child link="imu_link"/>
     <origin xyz="0 0 0.1"/></joint>
-  <joint name="o" type="fixed"><parent link="base_link"/><child link="front_radar"/>
+  <joint name="o" type="fixed"><parent link="base_link"/><child link="front_sonar"/>
     <origin xyz="2 0 0.3"/></joint>
   <gazebo reference="roof"><sensor name="l" type="gpu_lidar"/></gazebo>
-  <gazebo reference="front_radar"><sensor name="r" type="radar"><range>80</range></sensor></gazebo>
+  <gazebo reference="front_sonar"><sensor name="r" type="sonar"><range>80</range></sensor></gazebo>
   {IMU}
 </robot>
 """
@@ -44,7 +44,7 @@ def transforms(root):
     """A launch file with a LiDAR and a radar on its roof, as ROS 2 has them."""
     call = '<node pkg="tf2_ros" exec="static_transform_publisher" args="--x {} --z {} '
     call += '--yaw {} --frame-id {} --child-frame-id {}"/>'
-    rows = [(0.5, 1.7, 0.25, root, "roof"), (2.0, 0.5, 0.125, "roof", "front_radar")]
+    rows = [(0.5, 1.7, 0.25, root, "roof"), (2.0, 0.5, 0.125, "roof", "front_sonar")]
     return "<launch>" + "".join(call.format(*row) for row in rows) + "</launch>"
 
 
@@ -120,7 +120,7 @@ def test_a_robot_s_other_sensors_go_through_three_times(tmp_path):
     for number in (1, 2, 3):
         found = import_rig(path, placed=pe.Pose((0.3, 0.0, 0.0)))
         assert [each.name for each in found.rig] == ["roof"]
-        gone = "left out: 1 radar (front_radar), 1 imu sensor (imu_link)"
+        gone = "left out: 1 sonar sensor (front_sonar), 1 imu sensor (imu_link)"
         assert found.lines[0].startswith(gone)
         path = tmp_path / f"{number}.urdf"
         pe.export_rig(found.rig, "urdf", path, passthrough=found.passthrough)
@@ -131,7 +131,7 @@ def test_a_robot_s_other_sensors_go_through_three_times(tmp_path):
         }
         assert robot.get("name") == "cart" and robot.find("link").get("name") == "base_footprint"
         assert [float(v) for v in places["roof"].split()] == pytest.approx([0.2, 0.0, 1.85])
-        assert [float(v) for v in places["front_radar"].split()] == pytest.approx([2.0, 0.0, 0.65])
+        assert [float(v) for v in places["front_sonar"].split()] == pytest.approx([2.0, 0.0, 0.65])
         kept = [
             "".join(ElementTree.tostring(block, "unicode").split())
             for block in robot.iter("gazebo")
@@ -145,13 +145,13 @@ def test_ros_transforms_go_through_three_times(tmp_path):
     path.write_text(transforms("car"))
     for number in (1, 2, 3):
         found = import_rig(path, "ros")
-        assert found.lines[0].startswith("left out: 1 radar (front_radar)")
+        assert found.lines[0].startswith("left out: 1 sonar sensor (front_sonar)")
         out = tmp_path / str(number) / "rig.launch.xml"
         pe.export_rig(found.rig, "ros", out, passthrough=found.passthrough)
         calls = re.findall(r'args="(.*?)"', out.read_text())
         assert [call.split("--frame-id ")[1] for call in calls] == [
             "car --child-frame-id roof",
-            "car --child-frame-id front_radar",
+            "car --child-frame-id front_sonar",
         ]
         assert calls[0].startswith("--x 0.5 --y 0.0 --z 1.7 --roll 0.0 --pitch 0.0 --yaw 0.25 ")
         radars.append(calls[1])
@@ -202,14 +202,14 @@ def test_comments_are_left_out_wherever_they_begin():
 
 def test_rows_of_a_table_whose_model_is_known_need_no_entry(tmp_path):
     head = ",".join(("name", "kind", "model", "x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg"))
-    rows = "a,lidar,,0,0,2,0,0,0", "b,,,0,0,2,0,0,0", "c,radar,,0,0,2,0,0,0"
+    rows = "a,lidar,,0,0,2,0,0,0", "b,,,0,0,2,0,0,0", "c,sonar,,0,0,2,0,0,0"
     path = tmp_path / "rig.csv"
     path.write_text("\n".join((head, *rows)))
     found = csv_table.read(path)
     assert [(s.name, s.kind, bool(s.entry)) for s in found] == [
         ("a", "lidar", False),
         ("b", None, False),
-        ("c", "radar", True),
+        ("c", "sonar", True),
     ]
 
 

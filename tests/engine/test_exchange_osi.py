@@ -68,7 +68,7 @@ def test_what_protobuf_s_printer_writes_is_read(parsed, schema_names, tmp_path):
 
 def test_one_range_is_there_for_all_lidars_and_others_are_reported(tmp_path):
     (path,), lines = pe.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
-    assert "OSI has one range for all LiDARs, 80 m; left out: nose 30 m" in lines
+    assert "OSI has one range for all sensors, 80 m; left out: nose 30 m" in lines
     found = pe.import_rig(path, "osi", AXLE)
     assert [s.model.max_range for s in found.rig][:2] == [80.0, 80.0]
     data = json.loads(path.read_text())
@@ -113,15 +113,15 @@ def test_a_rig_of_too_many_beams_is_refused_before_they_are_written(monkeypatch)
         rig_files(RIG, "osi", AXLE)
 
 
-def test_radars_are_left_out_by_name_and_come_again(tmp_path):
+def test_fields_of_radars_that_are_not_read_are_kept(tmp_path):
     (path,), _ = pe.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
     data = json.loads(path.read_text())
     radar = {"sensorId": {"value": "7"}, "emitter_frequency": 77e9, "rx_antenna_diagram": [{}]}
     data["radar_sensor_view_configuration"] = [radar]
     path.write_text(json.dumps(data))
     found = pe.import_rig(path, "osi", AXLE)
-    assert [s.name for s in found.rig] == ["lidar_0", "lidar_1", "camera_2"]
-    assert found.lines[0].startswith("left out: 1 radar (radar_7)")
+    assert [s.name for s in found.rig] == ["lidar_0", "lidar_1", "camera_2", "radar_7"]
+    assert found.to_choose == ("radar_7",)
     (again,), _ = pe.export_rig(
         found.rig, "osi", tmp_path / "again.json", AXLE, passthrough=found.passthrough
     )

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core import sensors as kinds
 from pe_core.metric import H_BLIND, POINTPILLARS, RTM3D, average_precision
 from pe_core.metric.fusion import (
     Fusion,
@@ -160,7 +161,8 @@ def test_a_model_tells_its_curves():
     own = pe.ApCurve(0.2, 0.5)
     model = pe.PerceptionModel(lidar=own)
     assert model.curve("lidar") is own and model.lidar is own
-    assert model.camera == RTM3D and model.curves == {"lidar": own, "camera": RTM3D}
+    assert model.camera == RTM3D and list(model.curves) == list(kinds.KINDS)
+    assert [model.curves[kind] for kind in ("lidar", "camera")] == [own, RTM3D]
     assert pe.PerceptionModel().lidar == POINTPILLARS
     with pytest.raises(AttributeError, match="sonar"):
         _ = model.sonar

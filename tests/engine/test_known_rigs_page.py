@@ -24,7 +24,7 @@ def page():
         found = re.match(r"\| .*\(`(\w+)`\) \|", line)
         if found:
             cells = [cell.strip() for cell in line.strip("|").split("|")]
-            figures = [cells[3], cells[4], cells[6], cells[7]]
+            figures = [cells[4], cells[5], cells[7], cells[8]]
             rows[found[1]] = [float(w) for cell in figures for w in cell.split(" ± ")]
     return rows
 

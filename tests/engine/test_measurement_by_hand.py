@@ -316,10 +316,13 @@ def test_kinds_are_known_by_name_and_by_sensor():
     assert words["lidar"] == ("LiDAR", "LiDARs", "beams")
     assert words["camera"] == ("Camera", "Cameras", "pixels")
     with pytest.raises(
-        pe.InputError, match=r"x: kind: expected one of lidar, camera, found 'sonar'"
+        pe.InputError,
+        match=r"x: kind: expected one of lidar, camera, radar, ultrasonic, found 'sonar'",
     ):
         kinds.kind_named("sonar", "x")
-    with pytest.raises(pe.InputError, match=r"x: what: expected one of lidar, camera, found 3"):
+    with pytest.raises(
+        pe.InputError, match=r"x: what: expected one of lidar, camera, radar, ultrasonic, found 3"
+    ):
         kinds.kind_named(3, "x", "what")
     with pytest.raises(
         pe.InputError, match="kinds: name: expected a name used once, found 'lidar'"

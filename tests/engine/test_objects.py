@@ -55,7 +55,7 @@ def test_objects_cannot_be_changed_and_are_sent_whole():
 
 
 def test_a_kind_that_measures_no_objects_says_so(ring_kind):
-    with pytest.raises(pe.InputError, match=r"bumper: kind: expected .* objects, found 'ultra"):
+    with pytest.raises(pe.InputError, match=r"bumper: kind: expected .* objects, found 'toyring"):
         pe.measure_objects(ring(), objects())
 
 

@@ -1,4 +1,4 @@
-"""Parts of the default method of search, asked by hand: races, repeats, starts, levels."""
+"""Parts of block descent, asked by hand: races, repeats, starts, levels."""
 
 from typing import ClassVar
 

@@ -7,6 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.base.setting import REQUIRED, check_settings, settings_of
+from pe_core.search import Front, Goals, Stop
 from pe_core.study import setting_keys
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -44,6 +45,7 @@ def test_every_declared_setting_is_a_key_of_the_study_file():
     """A setting of a dataclass that no section lists would be declared for nothing."""
     classes = (pe.Study, pe.Search, pe.Schedule, pe.Constraints, pe.Tolerance, pe.Selection)
     classes += (pe.PerceptionSpace, pe.TargetRule, pe.Reference, pe.Vehicle)
+    classes += (Goals, Stop, Front)
     classes += (pe.requirements.Zone, pe.requirements.Criterion, pe.requirements.Under)
     declared = sum(len(settings_of(cls)) for cls in classes)
     assert declared == len(SETTINGS)

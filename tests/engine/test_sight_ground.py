@@ -23,7 +23,7 @@ def ring_kind():
     """The kind of tests, for a test."""
     kinds.register(toy_kind.RingKind())
     yield
-    kinds.unregister("ultrasonic")
+    kinds.unregister("toyring")
 
 
 def lidar(position=(-0.43, 0.11, 1.83), rotation=(0.0, 0.0, 0.0), name="roof", **options):

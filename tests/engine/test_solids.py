@@ -34,6 +34,9 @@ ROSETTE = pe.Lidar.from_directions(
 LINE = pe.Lidar("line", [0.0], 360, 30.0)
 MODELS = {"fisheye": FISHEYE, "dome": DOME, "sector": SECTOR, "rosette": ROSETTE, "line": LINE}
 MODELS |= {"ring": small_lidar(), "pinhole": camera(90.0).model}
+MODELS |= {
+    name: pe.catalog.load(name) for name in ("Continental ARS408-21", "Parking module 2.5 m")
+}
 
 
 def view_of(name, vehicle=None, step=STEP):

@@ -155,8 +155,7 @@ def test_searches_on_a_cluster_leave_checkpoints_here(cluster, tmp_path, monkeyp
     whole = pe.OptimizeJob(pe.load_study(path))
     list(whole)
     judged = read_search(out / "car").judged
-    wanted = whole.outcome.judged  # the result may be here before the last round's events
-    assert judged == wanted[: len(judged)] and len(judged) > len(wanted) // 2
+    assert judged == whole.outcome.judged  # events that come after the result change nothing
     assert saved and all(folder == out / "car" for folder, _ in saved)
     assert all(entries == judged[: len(entries)] for _, entries in saved)
     assert json.loads((out / "car" / "result.json").read_text())["entropy"] == (

@@ -1,6 +1,6 @@
 """The kind of sensor in `toy_kind` goes all the way: study, grid, sample, search, result.
 
-An ultrasonic ring: m depends on the distance alone, and so does what is expected of every score.
+A toy ring: m depends on the distance alone, and so does what is expected of every score.
 """
 
 import json
@@ -27,12 +27,12 @@ y = [-6, 6]
 z = [0, 3]
 interval = 0.5
 
-[ap.ultrasonic]
+[ap.toyring]
 a = 0.2
 
 [[sensor]]
 name = "bumper"
-model = { kind = "ultrasonic", range_m = 4.0 }
+model = { kind = "toyring", range_m = 4.0 }
 position = [2.0, 0.0, 0.5]
 free = ["x", "y"]
 
@@ -103,7 +103,7 @@ def test_a_study_holds_it_and_its_curve(ring_kind, tmp_path):
     path.write_text(STUDY)
     study = pe.load_study(path)
     assert study.rig["bumper"].model.range_m == 4.0
-    assert study.model.curve("ultrasonic") == study.model.ultrasonic == pe.ApCurve(0.2, 0.4)
+    assert study.model.curve("toyring") == study.model.toyring == pe.ApCurve(0.2, 0.4)
     pe.save_study(study, tmp_path / "again.toml")
     again = pe.load_study(tmp_path / "again.toml")
     assert pe.study_to_dict(again) == pe.study_to_dict(study)
@@ -118,21 +118,21 @@ def test_the_command_scores_searches_and_leaves_results(ring_kind, tmp_path, cap
     assert result == json.loads((tmp_path / "out" / "result.json").read_text())
     bumper = result["after"]["per_sensor"]["bumper"]
     assert math.isfinite(bumper["entropy"]) and bumper["beams"] == bumper["stopped"] == 0
-    assert result["inputs"]["study"]["sensor"][0]["model"] == {"kind": "ultrasonic", "range_m": 4.0}
+    assert result["inputs"]["study"]["sensor"][0]["model"] == {"kind": "toyring", "range_m": 4.0}
     moved = {p["placements"]["bumper"]["position"][0] for p in result["history"]}
     assert len(moved) > 1, "the search never moved the ring"
 
 
 def test_a_preset_of_ones_own_is_listed_and_told(ring_kind, capsys):
-    catalog.add("Parking Ring", {"kind": "ultrasonic", "range_m": 2.5, "source": "this test"})
+    catalog.add("Parking Ring", {"kind": "toyring", "range_m": 2.5, "source": "this test"})
     try:
-        assert "Parking Ring" in catalog.names("ultrasonic")
+        assert "Parking Ring" in catalog.names("toyring")
         assert catalog.load("Parking Ring") is catalog.load("Parking Ring")
         assert main(["sensors", "Parking Ring"]) == 0
         told = capsys.readouterr().out
         assert "2.5 m" in told and "this test" in told
         with pytest.raises(pe.InputError, match="a name used once"):
-            catalog.add("Parking Ring", {"kind": "ultrasonic", "range_m": 3.0})
+            catalog.add("Parking Ring", {"kind": "toyring", "range_m": 3.0})
     finally:
         catalog.remove("Parking Ring")
     assert "Parking Ring" not in catalog.entries()
@@ -148,11 +148,11 @@ def test_a_kind_that_is_not_in_the_table_is_refused_everywhere():
     with pytest.raises(pe.InputError, match="kind"):
         pe.measure(rig["bumper"], np.zeros((1, 3)), 0.5)
     with pytest.raises(pe.InputError, match="kind: expected one of lidar, camera"):
-        catalog.from_table("ring", {"kind": "ultrasonic", "range_m": 4.0})
+        catalog.from_table("ring", {"kind": "toyring", "range_m": 4.0})
     with pytest.raises(pe.InputError, match="the model of a sensor, found str"):
         pe.Sensor("wrong", "Pandar64")
-    with pytest.raises(pe.InputError, match="ultrasonic"):
-        pe.PerceptionModel(ultrasonic=CURVE)
+    with pytest.raises(pe.InputError, match="toyring"):
+        pe.PerceptionModel(toyring=CURVE)
 
 
 def test_the_table_takes_each_name_once_and_only_its_own_model(ring_kind):
@@ -162,9 +162,9 @@ def test_the_table_takes_each_name_once_and_only_its_own_model(ring_kind):
     class Odd(RingKind):
         name = "odd"
 
-    with pytest.raises(pe.InputError, match=r"model\.kind: expected 'odd', found 'ultrasonic'"):
+    with pytest.raises(pe.InputError, match=r"model\.kind: expected 'odd', found 'toyring'"):
         kinds.register(Odd())
-    assert list(kinds.KINDS) == ["lidar", "camera", "ultrasonic"]
+    assert list(kinds.KINDS) == ["lidar", "camera", "radar", "ultrasonic", "toyring"]
 
 
 def test_kernels_of_ones_own_are_asked(ring_kind, monkeypatch):
@@ -214,7 +214,7 @@ def test_it_goes_through_other_programs_files(ring_kind, tmp_path):
         assert (back.model.name, back.model.range_m, back.fusion) == ("long", 7.5, "all")
         assert back.pose.position == pytest.approx(away.pose.position, abs=1e-9)
     for name, lines in told.items():
-        assert any("away" in line and ("left out" in line or "no ul" in line) for line in lines), (
+        assert any("away" in line and ("left out" in line or "no toy" in line) for line in lines), (
             name
         )
 
@@ -223,7 +223,7 @@ def test_a_table_that_is_none_is_one_line(ring_kind, tmp_path):
     (path,), _ = pe.export_rig(pe.Rig([ring()]), "csv", tmp_path / "rig.csv")
     text = path.read_text()
     for wrong, message in (('"{"', "a table of a model"), ('"{}"', "bumper|ring: kind")):
-        path.write_text(text.replace('"{""kind"":""ultrasonic"",""range_m"":4.0}"', wrong))
+        path.write_text(text.replace('"{""kind"":""toyring"",""range_m"":4.0}"', wrong))
         with pytest.raises(pe.InputError, match=message):
             pe.import_rig(path)
 

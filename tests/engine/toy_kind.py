@@ -1,4 +1,4 @@
-"""A kind of sensor that only tests know: an ultrasonic ring, m from the distance alone.
+"""A kind of sensor that only tests know: a toy ring, m from the distance alone.
 
 All of the kind is in this file; no module of the engine or the add-on names it.
 """
@@ -17,9 +17,9 @@ CURVE = pe.ApCurve(0.1, 0.4)
 
 @dataclass(frozen=True, eq=False)
 class Ring(SensorModel):
-    """An ultrasonic ring."""
+    """A toy ring."""
 
-    kind: ClassVar[str] = "ultrasonic"
+    kind: ClassVar[str] = "toyring"
     name: str
     range_m: float
 
@@ -27,7 +27,7 @@ class Ring(SensorModel):
 class RingKind(kinds.Kind):
     """m is how many times the distance goes into the range, 0 beyond it."""
 
-    name, label, plural, unit = "ultrasonic", "Ultrasonic Ring", "Ultrasonic Rings", "echoes"
+    name, label, plural, unit = "toyring", "Toy Ring", "Toy Rings", "echoes"
     model = Ring
     curve = CURVE
     keys = frozenset({"range_m"})

@@ -1,10 +1,14 @@
 """``pe fit``: what it prints, writes and refuses."""
 
 import json
+import math
 import tomllib
 
+import numpy as np
 import pytest
 
+from pe_core import catalog
+from pe_tools.formats import m_by_range
 from tests.report.conftest import ROOT, pe, pe_without_matplotlib
 
 TABLE = ROOT / "pe_tools" / "reproduction" / "data" / "paper_lidar.csv"
@@ -45,6 +49,40 @@ def test_json_is_all_there_is_on_stdout():
 def test_public_detections_have_a_curve(name):
     data = json.loads(pe("fit", TABLE.with_name(f"kitti_{name}.csv"), "--json").stdout)
     assert 0.1 < data["a"] < 0.3 and data["a_error"] < data["a"] / 2
+
+
+RADAR, RANGES = "Continental ARS408-21", (60.0, 80.0, 100.0, 120.0)
+
+
+def test_a_table_by_range_gives_the_curve_of_what_the_model_measures(tmp_path):
+    """AP made of a known curve at the radar's own m by range: the fit finds the curve again."""
+    m = m_by_range(catalog.load(RADAR), np.array(RANGES), "car")
+    assert (np.diff(m) < 0.0).all() and m[-1] > 1.0
+    rows = [f"{r},{0.3 * math.log(v) + 0.1}" for r, v in zip(RANGES, m.tolist(), strict=True)]
+    (tmp_path / "radar.csv").write_text("\n".join(["range_m,ap", *rows]) + "\n")
+    run = pe("fit", tmp_path / "radar.csv", "--model", RADAR, "--object", "car")
+    assert run.returncode == 0 and not run.stderr
+    curve = tomllib.loads(run.stdout[run.stdout.index("#") :])["ap"]["radar"]["objects"]["car"]
+    assert (curve["a"], curve["b"]) == pytest.approx((0.3, 0.1), abs=1e-5)
+    plain = pe("fit", tmp_path / "radar.csv", "--model", RADAR)
+    of_voxels = tomllib.loads(plain.stdout[plain.stdout.index("#") :])["ap"]["radar"]
+    times = (4.6 + 1.9) * 1.7 / (2.0 * 0.1**2)
+    assert of_voxels["b"] == pytest.approx(0.1 + 0.3 * math.log(times), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        ((), "one column named m, found 'range_m, ap'"),
+        (("--model", "no such"), "a name such as"),
+        (("--model", RADAR, "--kind", "camera"), "kind: expected radar, the kind of Continental"),
+        (("--model", RADAR, "--object", "dog"), "object: expected one of car, pedestrian"),
+    ],
+)
+def test_wrong_options_of_a_table_by_range_are_one_line(tmp_path, options, line):
+    (tmp_path / "r.csv").write_text("range_m,ap\n10,0.5\n20,0.4\n30,0.3\n")
+    run = pe("fit", tmp_path / "r.csv", *options)
+    assert run.returncode == 1 and line in run.stderr and run.stderr.count("\n") == 1
 
 
 def test_a_wrong_table_is_one_line_and_status_1(tmp_path):

@@ -1,6 +1,7 @@
 """The verb, and the page beside a search's results, as a user runs them."""
 
 import html
+import json
 import re
 import shlex
 import tomllib
@@ -12,9 +13,10 @@ import pe_core as pe
 from pe_tools import jobs
 from pe_tools.cli.verbs import main
 from pe_tools.page import PAGE
+from pe_tools.page.build import outcome_of_folder
 from pe_tools.page.sections.search_history import search_history
 from pe_tools.page.sections.traceability import rerun
-from tests.review.conftest import small_study
+from tests.review.conftest import outcome_of, small_study
 
 NAMED = "a <b> & c"
 """A file's name that a page must escape."""
@@ -123,8 +125,15 @@ def test_a_search_leaves_its_page_unless_it_is_not_wanted(study, tmp_path, capsy
 
 
 def test_a_folder_of_results_is_reviewed_as_the_search_it_was(study, tmp_path, capsys):
-    out = tmp_path / "out"
+    out, held = (
+        tmp_path / "out",
+        '[[requirement]]\nname = "child"\npreset = "ncap26_forward_child"\n',
+    )
+    study.write_text(f"{study.read_text('utf-8')}\n{held}", "utf-8")
     assert main(["optimize", str(study), "-o", str(out)]) == 0
+    told = json.loads((out / "result.json").read_text("utf-8"))["requirements"]
+    again = outcome_of_folder(out, lambda each: outcome_of(pe.ScoreJob(each)))
+    assert [verdict.text for verdict in again.verdicts] == [each["text"] for each in told] != []
     left = (out / PAGE).read_text("utf-8").replace("a &lt;b&gt; &amp; c.npz", "vehicle.npz")
     assert main(["review", str(out), "-o", str(tmp_path / "again")]) == 0
     assert (tmp_path / "again" / PAGE).read_text("utf-8") == left

@@ -14,7 +14,7 @@ from pe_tools.page.markup import percent
 from pe_tools.page.pictures.requirement_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
 from pe_tools.page.pictures.test_bodies import worst_bodies
 from pe_tools.page.sections.redundancy import HEIGHT_M, STEP_M, WITHIN_M, redundancy
-from pe_tools.page.sections.requirement_verdicts import CSS, reasons_text, requirement_verdicts
+from pe_tools.page.sections.requirement_verdicts import CSS, requirement_verdicts
 from tests.review.conftest import NAMES, outcome_of, small_study
 from tests.review.test_maps import pixels_of
 
@@ -90,11 +90,44 @@ def test_a_plan_is_filled_by_the_verdict_where_the_zone_is(context, number, colo
     assert shown == pytest.approx(np.ptp(rows) * np.ptp(columns), rel=0.1), "one rectangle"
 
 
+def test_samples_are_not_painted_beyond_an_edge_that_runs_across_them(context):
+    """A triangle of 8 m2 at a step of 1 m: the painted pixels are those of the triangle."""
+    corners = (("front + 2", -2.0), ("front + 6", 0.0), ("front + 2", 2.0))
+    zone = requirements.Zone(polygon=corners, step=1.0)
+    held = dataclasses.replace(BEHIND, zone=zone)
+    checker = requirements.RequirementChecker([held], context.vehicle)
+    (verdict,) = checker.check(context.rig)
+    pixels = pixels_of(requirement_plan(verdict, context.vehicle, "alt"))
+    rear, front = (corner[0] for corner in context.vehicle.bounds)
+    length = front - rear + 6.0 + 2.0
+    meters = length / pixels.shape[1]
+    assert (pixels[..., 3] > 0).sum() * meters**2 == pytest.approx(8.0, rel=0.03)
+
+
+def test_a_plan_holds_all_of_its_margin_line(context):
+    """The dashed line of a zone that could grow far is inside the frame on all sides."""
+    verdict = context.outcome.verdicts[0]
+    assert verdict.met and verdict.margin > 1.5
+    drawing = str(requirement_plan(verdict, context.vehicle, "alt"))
+    (dashed,) = re.findall(r'<path d="([^"]*)"[^>]*stroke-dasharray', drawing)
+    points = np.array(re.findall(r"(-?[\d.]+)[ ,](-?[\d.]+)", dashed), float)
+    frame = re.search(r'<rect[^>]*class="axis"[^>]*>', drawing)[0]
+    x, y, width, height = (
+        float(re.search(rf' {key}="([\d.]+)"', frame)[1]) for key in ("x", "y", "width", "height")
+    )
+    low, high = points.min(axis=0), points.max(axis=0)
+    assert (low > [x, y]).all() and (high < [x + width, y + height]).all()
+    assert np.allclose(points[0], points[-1], atol=2.0), "one closed line"
+
+
 def test_blind_ground_is_drawn_where_the_engine_has_it(context):
     verdict = context.outcome.verdicts[1]
     pixels = pixels_of(requirement_plan(verdict, context.vehicle, "alt"))
     assert (pixels == NOT_MET_RGBA).all(axis=-1).any()
-    assert verdict.blind.any() and f"{verdict.blind_m2:.2f}" in requirement_verdicts(context).html
+    assert (
+        verdict.ground.blind.any()
+        and f"{verdict.blind_m2:.2f}" in requirement_verdicts(context).html
+    )
 
 
 def test_bodies_have_the_points_that_the_engine_counts(context):
@@ -108,11 +141,6 @@ def test_bodies_have_the_points_that_the_engine_counts(context):
     box = requirements.BODIES["adult"]
     assert low[2] == 0.0 and high[2] == pytest.approx(box.low + box.size[2])
     assert np.allclose((low[:2] + high[:2]) / 2.0, ahead.verdict.worst, atol=1e-6)
-
-
-def test_reasons_are_grouped():
-    said = reasons_text({"a": "roof", "b": "out of view", "c": "roof"})
-    assert said == "roof (a, c); out of view (b)"
 
 
 def test_colours_are_those_of_the_tags():

@@ -22,21 +22,21 @@ HOUSING = scene.Housing("box", (0.02, 0.2, 0.02), (0.0, 0.0, 0.0))
 
 @pytest.fixture
 def bumper():
-    """A study with a LiDAR, a camera and an ultrasonic ring, scored."""
+    """A study with a LiDAR, a camera and a toy ring, scored."""
     kinds.register(RingKind())
     study = dataclasses.replace(small_study(), samples=1024)
     ring = pe.Sensor("bumper", Ring("park pilot", 4.0), pe.Pose((2.3, 0.0, 0.5)))
     study = study.with_rig(pe.Rig([*study.rig, ring]))
     yield ReportContext("parking", outcome_of(pe.ScoreJob(study)))
-    kinds.unregister("ultrasonic")
+    kinds.unregister("toyring")
 
 
 def test_a_page_shows_a_rig_with_the_kind(bumper):
     text = page_bytes([bumper]).decode()
     elements = Elements(text)
     assert not elements.open and len(elements.ids) == len(set(elements.ids))
-    assert "1 ultrasonic ring" in text and "<td>Ultrasonic Ring</td>" in text
-    assert "Ultrasonic Ring: no picture is available for this kind of sensor." in text
+    assert "1 toy ring" in text and "<td>Toy Ring</td>" in text
+    assert "Toy Ring: no picture is available for this kind of sensor." in text
     assert "<pre>range           4 m</pre>" in text
     for sensor, score in bumper.after.per_sensor.items():
         assert score.coverage > 0.0, sensor
@@ -44,7 +44,7 @@ def test_a_page_shows_a_rig_with_the_kind(bumper):
 
 def test_the_3d_view_shows_it_as_a_ring_without_image(bumper):
     ring = scene_data(bumper)["sensors"][-1]
-    assert (ring["name"], ring["kind"]) == ("bumper", "Ultrasonic Ring")
+    assert (ring["name"], ring["kind"]) == ("bumper", "Toy Ring")
     assert ring["field"] is None and ring["layers"]["fov"]["lines"]["at"]
 
 
@@ -53,7 +53,7 @@ def test_a_row_gives_the_kind_a_figure_a_housing_and_an_image(bumper, monkeypatc
         return Markup(f"<figure>{sensor.model.range_m:g} m around {vehicle is not None}</figure>")
 
     view = SensorView(drawn, None, HOUSING, lambda model: (120.0, 10.0 * model.range_m))
-    monkeypatch.setitem(SENSOR_VIEWS, "ultrasonic", view)
+    monkeypatch.setitem(SENSOR_VIEWS, "toyring", view)
     assert "<figure>4 m around True</figure>" in sensor_details(bumper).html
     assert housing_of(bumper.rig["bumper"]) is HOUSING
     assert scene_data(bumper)["sensors"][-1]["field"] == [120.0, 40.0]

@@ -7,10 +7,12 @@ from .reel import Camera, Reel
 
 BEHIND = LOOK.format(center=(0.35, -2.6, 0.3), distance=13.5, rotation=(0.98, 0.0, -0.9))
 PRESETS = (
-    *("r158_camera", "r151_moving", "ncap26_reverse_static", "ncap26_dooring"),
+    *("r158_camera", "r151_moving", "ncap26_reverse_static", "r159_longitudinal"),
     *("park_aid_front", "perceptor_ground"),
 )
 SHOWN = OURS.format("overlay.layer_cache") + ".shown.items(window.scene.name, 'requirements')"
+
+EXACT = f"not any(v.preview for item in {SHOWN}.values() for v in item.shape.verdicts)"
 
 
 def held(camera: Camera) -> None:
@@ -35,6 +37,7 @@ def held(camera: Camera) -> None:
     stage.do(BEHIND)
     stage.wait_until(SHOWN, 120)
     settled(camera)
+    stage.wait_until(EXACT, 120)
     stage.point_at(1110, 330)
     stage.do("bpy.ops.wm.call_panel('INVOKE_DEFAULT', name='PE_PT_requirements', keep_open=True)")
     stage.rest()

@@ -1,17 +1,22 @@
 """Requirements with a verdict: zones round the vehicle, test bodies, criteria, margins."""
 
 from .bodies import BODIES, Body
-from .checker import RequirementChecker
-from .criteria import Criterion, Requirement, Under, body_met, checked_requirements, sees
+from .checker import RequirementChecker, checkable
+from .criteria import Criterion, Requirement, Under, checked_requirements
+from .definition import body_met, sees
+from .margins import margin_of
+from .mesh_shape import MeshShape
 from .planes import VehiclePlanes
 from .redundancy import Redundancy, RedundancyMap
-from .verdict import Samples, Verdict, margin_of
+from .verdict import GroundFigures, Samples, Verdict
 from .zones import PlacedZone, Zone, signed_distance
 
 __all__ = [
     "BODIES",
     "Body",
     "Criterion",
+    "GroundFigures",
+    "MeshShape",
     "PlacedZone",
     "Redundancy",
     "RedundancyMap",
@@ -23,6 +28,7 @@ __all__ = [
     "Verdict",
     "Zone",
     "body_met",
+    "checkable",
     "checked_requirements",
     "margin_of",
     "sees",

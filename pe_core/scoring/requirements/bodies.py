@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Angle, Number
+from .mesh_shape import MeshShape
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -62,6 +63,8 @@ class Body:
         Headings at which it stands at every sample [rad].
     source : str
         Where its size is from.
+    shape : MeshShape, optional
+        Of a body from a mesh; then `size` is that of its extent.
 
     Raises
     ------
@@ -77,6 +80,7 @@ class Body:
     class_name: str | None = None
     headings: tuple[float, ...] = (0.0,)
     source: str = ""
+    shape: MeshShape | None = None
 
     def __post_init__(self) -> None:
         who = f"body {A_NAME.checked('body', 'name', self.name)!r}"
@@ -107,9 +111,12 @@ class Body:
         ----------
         cells : bool
             The cells of which a share has to be visible, and the posts beside the body, instead of
-            the one box: band after band, those of `cell_plan`. Of a ring, its four sides.
+            the one box: band after band, those of `cell_plan`. Of a ring, its four sides. Of a
+            mesh, the cells of its extent; without them, the boxes inside it.
         """
         length, width, height = self.box
+        if not cells and self.shape is not None:
+            return self.shape.centers + np.array([0.0, 0.0, self.low]), self.shape.sizes
         if not cells:
             center = [0.0, 0.0, self.low + height / 2.0]
             return np.array([center]), np.array([[length, width, height]])
@@ -121,6 +128,11 @@ class Body:
         thick = np.full(len(k), height / self.bands)
         sizes = np.stack([along[i, 1], across[j, 1], thick], axis=1)
         return np.stack([along[i, 0], across[j, 0], z], axis=1), sizes
+
+    @property
+    def box_count(self) -> int:
+        """Number of its boxes, of which a sensor has to see one well enough."""
+        return 1 if self.shape is None else len(self.shape.sizes)
 
     @property
     def bands(self) -> int:

@@ -1,14 +1,9 @@
-"""RequirementChecker: holds rigs to requirements; a sensor that has not moved costs nothing.
-
-All bodies of all requirements are one set of objects, so a sensor that has moved is measured once,
-with the kernels of objects. What follows, for every requirement and every lost sensor, is counting.
-"""
+"""RequirementChecker: holds rigs to requirements; a sensor that has not moved costs nothing."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
 from threading import RLock
 from typing import Any
 
@@ -17,55 +12,28 @@ from numpy.typing import NDArray
 
 from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
-from ...metric.entropy import ap_of_entropy
-from ...scene.objects import Objects
-from ...scene.rig import Rig, Sensor
+from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference
-from ...sensors import ObjectMeasurementCache, PerceptionModel
-from ..targets.object_metric import FusedObjects
-from .bodies import Body
-from .criteria import (
-    Criterion,
-    Requirement,
-    checked_requirements,
-    has_enough,
-    placed,
-    visible_share,
-)
+from ...sensors import PerceptionModel
+from .body_checks import BodyChecks, SceneCaches
+from .criteria import Requirement, checked_requirements, levels_of
 from .ground import GroundCheck
+from .margins import growth, margin_of
 from .planes import VehiclePlanes
-from .verdict import Samples, Verdict, verdict
+from .shortfall import shortfall
+from .verdict import Judged, Samples, Verdict, body_verdict
 from .zones import INSIDE_M, PlacedZone
 
 Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 FULL, INSIDE, PREVIEW = "full", "inside", "preview"
 """Sets of samples: of the zones and the ground round them, of the zones alone, of fewer."""
 COARSE = 2.0
 """Factor of the step of a preview."""
-PREVIEW_SAMPLES = 400
-"""A zone of fewer samples keeps its step in a preview."""
-
-
-@dataclass(frozen=True, eq=False)
-class _BodySet:
-    """One body of a requirement: the number of its objects, and where these are among all."""
-
-    body: Body
-    number: int
-    box: slice
-    cells: slice | None
-
-
-@dataclass(frozen=True, eq=False)
-class _CheckedPart:
-    """A requirement with its samples and bodies."""
-
-    requirement: Requirement
-    samples: Samples
-    bodies: tuple[_BodySet, ...]
-    ground: GroundCheck | None = None
+PREVIEW_OBJECTS = 1_000
+"""A zone with fewer boxes keeps its step in a preview."""
+MAX_GROWN = 30_000
+"""A zone is grown as long as no more boxes stand on the ground that is added."""
 
 
 class RequirementChecker:
@@ -83,6 +51,8 @@ class RequirementChecker:
         The vehicle's axles, for zones that are anchored to them.
     space : PerceptionSpace, optional
         The ground on which blind ground is searched.
+    anchor : Vehicle, optional
+        The vehicle to which zones are anchored, where it is not the one that occludes.
 
     Raises
     ------
@@ -98,16 +68,20 @@ class RequirementChecker:
         model: PerceptionModel | None = None,
         reference: Reference | None = None,
         space: PerceptionSpace | None = None,
+        anchor: Vehicle | None = None,
     ) -> None:
         self.requirements = checked_requirements(requirements)
         self.vehicle, self._model = vehicle, model or PerceptionModel()
         self._reference, self._space = reference, space or PerceptionSpace()
+        self._anchor = anchor
         planes: dict[tuple[Any, ...], VehiclePlanes] = {}
         self.zones: tuple[PlacedZone, ...] = tuple(
-            each.zone.placed(vehicle, reference, each.name, planes) for each in self.requirements
+            each.zone.placed(anchor or vehicle, reference, each.name, planes)
+            for each in self.requirements
         )
         for requirement, zone in zip(self.requirements, self.zones, strict=True):
-            _check_extent(requirement, zone, self._space)
+            check_extent(requirement, zone, self._space)
+        self._caches = SceneCaches(vehicle)
         self._sets: dict[str, _CheckedSet] = {}
         self._lock = RLock()
 
@@ -115,7 +89,7 @@ class RequirementChecker:
         """Pickle the arguments: another process makes a checker of its own from them."""
         return _checker_again, (
             *(self.requirements, self.vehicle, self._model),
-            *(self._reference, self._space),
+            *(self._reference, self._space, self._anchor),
         )
 
     def check_rig(self, rig: Rig) -> None:
@@ -162,7 +136,7 @@ class RequirementChecker:
 
     def _set(self, name: str) -> _CheckedSet:
         if name not in self._sets:
-            self._sets[name] = _CheckedSet(self, name, self._space, self._model)
+            self._sets[name] = _CheckedSet(self, name, self._space, self._model, self._caches)
         return self._sets[name]
 
 
@@ -172,13 +146,16 @@ def _checker_again(
     model: PerceptionModel,
     reference: Reference | None,
     space: PerceptionSpace,
+    anchor: Vehicle | None,
 ) -> RequirementChecker:
     """Make a checker from its pickled arguments."""
-    return RequirementChecker(requirements, vehicle, model=model, reference=reference, space=space)
+    return RequirementChecker(
+        requirements, vehicle, model=model, reference=reference, space=space, anchor=anchor
+    )
 
 
 class _CheckedSet:
-    """The bodies of all requirements as objects, and the sensors measured on them."""
+    """Samples of all zones: those of bodies as one set, and blind ground zone by zone."""
 
     def __init__(
         self,
@@ -186,191 +163,131 @@ class _CheckedSet:
         which: str,
         space: PerceptionSpace,
         model: PerceptionModel,
+        caches: SceneCaches,
     ) -> None:
-        self._vehicle, self._which, self._space = checker.vehicle, which, space
-        self._ground_caches: dict[str, dict[str, Any]] = {}
-        self._objects: list[Objects] = []
-        self._count = 0
-        pairs = zip(checker.requirements, checker.zones, strict=True)
-        self._parts = [self._part(requirement, zone) for requirement, zone in pairs]
-        joined = _joined(self._objects)
-        self._sensors = None if joined is None else ObjectMeasurementCache(joined, self._vehicle)
-        self._cases: dict[int, ObjectMeasurementCache] = {}
-        self._joined = joined
-        self._fused = (
-            None if joined is None else FusedObjects(joined, self._asked(len(joined)), model)
-        )
+        self._vehicle, self._which, self._model = checker.vehicle, which, model
+        self._caches, self._grounds, pairs = caches, dict[int, GroundCheck](), []
+        self._numbers: list[int] = []
+        for number, own in enumerate(checker.requirements):
+            zone = checker.zones[number]
+            if own.criterion.is_of_ground:
+                self._grounds[number] = GroundCheck(own, zone, space, self._vehicle, caches)
+            else:
+                self._numbers.append(number)
+                pairs.append((own, _samples(own, zone, which)))
+        self._pairs = pairs
+        self._bodies = BodyChecks(pairs, model, caches)
+        self._grown: dict[tuple[int, float], tuple[Samples, BodyChecks] | None] = {}
 
     def verdicts(self, rig: Rig, cases: Sequence[Rig]) -> tuple[Verdict, ...]:
         """Return the verdicts on a rig."""
-        m = self._measured(rig)
-        others = self._measured_cases(cases)
-        return tuple(self._verdict(part, rig, m, others) for part in self._parts)
+        preview = self._which == PREVIEW
+        found: dict[int, Verdict] = {}
+        for number, judged in enumerate(self._bodies.judged(rig, cases)):
+            requirement, samples = self._pairs[number]
+            own = body_verdict(requirement, samples, judged, rig, self._vehicle, preview)
+            if own.at_least:
+                margin, at_least = self._grown_margin(number, judged, rig, cases)
+                own = replace(own, margin=margin, at_least=at_least)
+            found[self._numbers[number]] = own
+        for number, ground in self._grounds.items():
+            found[number] = ground.verdict(rig, preview, cases)
+        return tuple(found[number] for number in sorted(found))
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig]) -> tuple[float, ...]:
         """Return how far a rig is off each requirement, 0 where it is met."""
-        m = self._measured(rig)
-        others = self._measured_cases(cases)
-        return tuple(
-            self._shortfall(part, rig, m, others)
-            if part.ground is None
-            else part.ground.shortfall(rig)
-            for part in self._parts
-        )
+        found = {k: ground.shortfall(rig, cases) for k, ground in self._grounds.items()}
+        for number, judged in enumerate(self._bodies.judged(rig, cases)):
+            found[self._numbers[number]] = shortfall(*self._pairs[number], judged, rig)
+        return tuple(found[number] for number in sorted(found))
 
-    def _measured(self, rig: Rig) -> Mapping[str, Floats]:
-        return {} if self._sensors is None else self._sensors.measure(rig)
+    def _grown_margin(
+        self, number: int, judged: Judged, rig: Rig, cases: Sequence[Rig]
+    ) -> tuple[float, bool]:
+        """Return the margin of a zone that could grow farther than it was sampled at first.
 
-    def _measured_cases(self, cases: Sequence[Rig]) -> list[tuple[Rig, Mapping[str, Floats]]]:
-        """Return the cases with m of their sensors, where any requirement has to survive them."""
-        needed = any(p.requirement.under.mounting and p.bodies for p in self._parts)
-        return [(c, self._case(k).measure(c)) for k, c in enumerate(cases)] if needed else []
+        The zone is grown to twice as far again and again, as long as it does not fail.
+        """
+        requirement, samples = self._pairs[number]
+        distance, passed = samples.distance, judged.passed
+        wanted, step = requirement.criterion.zone_share, requirement.zone.step
+        inner = samples.zone.grow
+        margin = margin_of(distance, passed, wanted, step, inner)
+        for outer in growth(samples.zone):
+            known = self._grown_checks(number, inner, outer)
+            if known is None:
+                break
+            added, checks = known
+            if len(added.points):
+                (own,) = checks.judged(rig, cases)
+                distance = np.concatenate([distance, added.distance])
+                passed = np.concatenate([passed, own.passed])
+            margin, inner = margin_of(distance, passed, wanted, step, outer), outer
+            if not margin[1]:
+                break
+        return margin
 
-    def _shortfall(
-        self,
-        part: _CheckedPart,
-        rig: Rig,
-        m: Mapping[str, Floats],
-        others: Sequence[tuple[Rig, Mapping[str, Floats]]],
-    ) -> float:
-        """Return how far a requirement on bodies is off: see `RequirementChecker.shortfalls`."""
-        criterion = part.requirement.criterion
-        passed = self._passed(part, rig, m)
-        for case, measured in others if part.requirement.under.mounting else ():
-            passed &= self._passed(part, case, measured)
-        share = float(passed[part.samples.inside].mean())
-        if share >= criterion.zone_share:
-            return 0.0
-        seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
-        counts, kinds = _counted(rig, seen, criterion, [s.name for s in rig])
-        spare = int(part.requirement.under.one_lost)
-        wanted = criterion.sensors + spare + criterion.kinds
-        has = np.minimum(counts, criterion.sensors + spare) + np.minimum(kinds, criterion.kinds)
-        lacks = 1.0 - float(has.mean()) / wanted
-        away = _turned_away(part, rig, ~passed & part.samples.inside)
-        return 0.45 * (1.0 - share / criterion.zone_share) + 0.45 * lacks + 0.1 * away
-
-    def _verdict(
-        self,
-        part: _CheckedPart,
-        rig: Rig,
-        m: Mapping[str, Floats],
-        others: Sequence[tuple[Rig, Mapping[str, Floats]]],
-    ) -> Verdict:
-        requirement = part.requirement
-        preview = self._which == PREVIEW
-        if part.ground is not None:
-            return part.ground.verdict(rig, preview)
-        seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
-        whole = self._enough(part, rig, seen, m, [s.name for s in rig])
-        without = {
-            s.name: self._enough(part, rig, seen, m, [o.name for o in rig if o is not s])
-            for s in rig
-        }
-        passed = whole.copy()
-        if requirement.under.one_lost:
-            passed &= np.logical_and.reduce(list(without.values()))
-        for case, measured in others if requirement.under.mounting else ():
-            passed &= self._passed(part, case, measured)
-        return verdict(
-            requirement,
-            part.samples,
-            rig,
-            self._vehicle,
-            passed,
-            whole,
-            without,
-            seen,
-            preview,
-        )
-
-    def _passed(self, part: _CheckedPart, rig: Rig, m: Mapping[str, Floats]) -> Flags:
-        """Return the samples (N,) that pass with a rig, and with each one of its sensors lost."""
-        seen = {s.name: self._seen(part, s, m[s.name]) for s in rig}
-        names = [s.name for s in rig]
-        passed = self._enough(part, rig, seen, m, names)
-        if part.requirement.under.one_lost:
-            for name in names:
-                passed &= self._enough(part, rig, seen, m, [n for n in names if n != name])
-        return passed
-
-    def _seen(self, part: _CheckedPart, sensor: Sensor, m: Floats) -> Flags:
-        """Return the samples and bodies (N, bodies * headings) that a sensor sees."""
-        criterion, count = part.requirement.criterion, len(part.samples.points)
-        columns = []
-        for each in part.bodies:
-            seen = has_enough(sensor, self._objects[each.number], m[each.box], criterion)
-            if each.cells is not None and criterion.share is not None:
-                cells = (m[each.cells] > 0.0).reshape(len(seen), -1)
-                seen &= visible_share(each.body, cells) >= criterion.share
-            columns.append(seen.reshape(count, -1))
-        return np.concatenate(columns, axis=1)
-
-    def _enough(
-        self,
-        part: _CheckedPart,
-        rig: Rig,
-        seen: Mapping[str, Flags],
-        m: Mapping[str, Floats],
-        members: Collection[str],
-    ) -> Flags:
-        """Return the samples (N,) at which some of the sensors see every body well enough."""
-        criterion = part.requirement.criterion
-        counts, kinds = _counted(rig, seen, criterion, members)
-        enough = (counts >= criterion.sensors) & (kinds >= criterion.kinds)
-        if criterion.ap is not None and self._fused is not None:
-            entropies, _ = self._fused.entropies(rig, m, members)
-            ap = ap_of_entropy(entropies)
-            columns = [ap[b.box].reshape(len(enough), -1) for b in part.bodies]
-            enough &= np.concatenate(columns, axis=1) >= criterion.ap
-        passed: Flags = enough.all(axis=1)
-        return passed
-
-    def _part(self, requirement: Requirement, zone: PlacedZone) -> _CheckedPart:
-        if requirement.criterion.is_of_ground:
-            empty = Samples(zone, np.zeros((0, 2)), np.zeros(0))
-            ground = GroundCheck(requirement, zone, self._space, self._vehicle, self._ground_caches)
-            return _CheckedPart(requirement, empty, (), ground)
-        points, distance = zone.samples(grown=self._which == FULL)
-        if self._which == PREVIEW and len(points) > PREVIEW_SAMPLES:
-            points, distance = zone.samples(COARSE, grown=False)
-        samples = Samples(zone, points, distance)
-        low, high = requirement.zone.z
-        count = 1 if high == low else int(np.ceil((high - low) / requirement.zone.step)) + 1
-        heights = np.linspace(low, high, count)
-        feet = np.column_stack([np.repeat(points, count, axis=0), np.tile(heights, len(points))])
-        bodies = tuple(self._body_set(each, feet, requirement) for each in requirement.bodies)
-        return _CheckedPart(requirement, samples, bodies)
-
-    def _body_set(self, body: Body, feet: Floats, requirement: Requirement) -> _BodySet:
-        number = len(self._objects)
-        box = self._added(placed(body, feet, body.headings, False))
-        with_cells = requirement.criterion.share is not None
-        cells = self._added(placed(body, feet, body.headings, True)) if with_cells else None
-        return _BodySet(body, number, box, cells)
-
-    def _added(self, objects: Objects) -> slice:
-        self._objects.append(objects)
-        self._count += len(objects)
-        return slice(self._count - len(objects), self._count)
-
-    def _case(self, number: int) -> ObjectMeasurementCache:
-        assert self._joined is not None
-        if number not in self._cases:
-            self._cases[number] = ObjectMeasurementCache(self._joined, self._vehicle)
-        return self._cases[number]
-
-    def _asked(self, count: int) -> Floats:
-        """Return weights (N,) of objects: 1 of those whose AP is asked for."""
-        weights = np.zeros(count)
-        for part in self._parts:
-            if part.requirement.criterion.ap is not None:
-                for each in part.bodies:
-                    weights[each.box] = 1.0
-        return weights
+    def _grown_checks(
+        self, number: int, inner: float, outer: float
+    ) -> tuple[Samples, BodyChecks] | None:
+        """Return the samples round a zone between two distances; None where there are too many."""
+        key = number, outer
+        if key not in self._grown:
+            requirement, samples = self._pairs[number]
+            most = MAX_GROWN // _boxes_of(requirement)
+            points, distance = samples.zone.ring_of_samples(inner, outer, most)
+            added = Samples(samples.zone, points, distance)
+            checks = BodyChecks(
+                [(requirement, added)] * bool(len(points)), self._model, self._caches
+            )
+            self._grown[key] = (added, checks) if len(points) <= most else None
+        return self._grown[key]
 
 
-def _check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionSpace) -> None:
+def _samples(requirement: Requirement, zone: PlacedZone, which: str) -> Samples:
+    """Return the samples of a zone that one of the sets has."""
+    points, distance = zone.samples(grown=which == FULL)
+    if which == PREVIEW and len(points) * _boxes_of(requirement) > PREVIEW_OBJECTS:
+        points, distance = zone.samples(COARSE, grown=False)
+    return Samples(zone, points, distance)
+
+
+def _boxes_of(requirement: Requirement) -> int:
+    """Return how many boxes are measured at each sample."""
+    with_cells = (False, True) if requirement.criterion.share is not None else (False,)
+    boxes = sum(
+        len(body.boxes(cells)[0]) * len(body.headings)
+        for body in requirement.bodies
+        for cells in with_cells
+    )
+    return boxes * levels_of(requirement)
+
+
+def checkable(
+    requirements: Sequence[Requirement],
+    rig: Rig,
+    vehicle: Vehicle | None,
+    reference: Reference | None = None,
+    space: PerceptionSpace | None = None,
+) -> tuple[tuple[Requirement, ...], dict[str, str]]:
+    """Return the requirements that a rig on a vehicle can be held to, and why not, by name.
+
+    Others have a zone that cannot be placed, or ask for kinds of sensors that the rig lacks.
+    """
+    fitting, reasons = [], {}
+    planes: dict[tuple[Any, ...], VehiclePlanes] = {}
+    for each in requirements:
+        try:
+            each.criterion.check_rig(rig, each.name)
+            zone = each.zone.placed(vehicle, reference, each.name, planes)
+            check_extent(each, zone, space or PerceptionSpace())
+            fitting.append(each)
+        except InputError as error:
+            reasons[each.name] = f"{error.field}: expected {error.expected}, found {error.found}"
+    return tuple(fitting), reasons
+
+
+def check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionSpace) -> None:
     """Raise `InputError` for a zone outside of the space, or narrower than a body."""
     who = f"requirement {requirement.name!r}"
     low, high = zone.bounds
@@ -382,62 +299,3 @@ def _check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionS
         if zone.kind == "area" and min(body.size[:2]) > min(x1 - x0, y1 - y0) + INSIDE_M:
             found = f"{body.name}, {min(body.size[:2]):g} m, in {x1 - x0:g} x {y1 - y0:g} m"
             raise InputError(who, "body", "a body that is not larger than the zone", found)
-
-
-def _turned_away(part: _CheckedPart, rig: Rig, failing: Flags) -> float:
-    """Return the mean angle between failing samples and the nearest boresight, 1 for 180 deg."""
-    kinds = part.requirement.criterion.of
-    sensors = [s for s in rig if not kinds or s.kind in kinds]
-    if not sensors or not failing.any():
-        return 1.0
-    body = part.bodies[0].body
-    points = np.column_stack(
-        [part.samples.points[failing], np.full(int(failing.sum()), body.low + body.size[2] / 2.0)]
-    )
-    cosines = []
-    for sensor in sensors:
-        offset = points - np.asarray(sensor.pose.position)
-        ahead = sensor.pose.ground_from_sensor[:, 0]
-        x, y, z = offset.T
-        length = np.sqrt(x * x + y * y + z * z)
-        along = ahead[0] * x + ahead[1] * y + ahead[2] * z
-        cosines.append(along / np.maximum(length, INSIDE_M))
-    nearest = np.clip(np.max(cosines, axis=0), -1.0, 1.0)
-    angles = [math.acos(c) for c in nearest.tolist()]  # the same bits in all builds
-    return sum(angles) / len(angles) / math.pi
-
-
-def _counted(
-    rig: Rig,
-    seen: Mapping[str, Flags],
-    criterion: Criterion,
-    members: Collection[str],
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return by how many sensors and kinds each body of each sample is seen, (N, bodies)."""
-    first = next(iter(seen.values()))
-    counts, by_kind = np.zeros(first.shape, np.int64), dict[str, Flags]()
-    for sensor in rig:
-        if sensor.name not in members or (criterion.of and sensor.kind not in criterion.of):
-            continue
-        counts += seen[sensor.name]
-        none = np.zeros(first.shape, bool)
-        by_kind[sensor.kind] = by_kind.get(sensor.kind, none) | seen[sensor.name]
-    kinds = np.zeros(first.shape, np.int64)
-    for flags in by_kind.values():
-        kinds += flags
-    return counts, kinds
-
-
-def _joined(parts: Sequence[Objects]) -> Objects | None:
-    """Return all objects as one set; None without any."""
-    if not parts:
-        return None
-    names = sorted({part.class_names[0] for part in parts})
-    labels = [np.full(len(part), names.index(part.class_names[0])) for part in parts]
-    return Objects(
-        np.concatenate([part.centers for part in parts]),
-        np.concatenate([part.sizes for part in parts]),
-        np.concatenate([part.yaws for part in parts]),
-        np.concatenate(labels),
-        tuple(names),
-    )

@@ -1,35 +1,22 @@
-"""Requirements: a zone, test bodies, a criterion, and what the criterion has to survive.
-
-`sees` and `body_met` are the plain definitions: what one sensor sees of one body, and whether what
-the sensors see meets a criterion. The kernels of `checker` are held to them by tests.
-"""
+"""Requirements: a zone, test bodies, a criterion, and what the criterion has to survive."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 from ...base.errors import InputError, shown
 from ...base.setting import FLAG, check_settings, setting
 from ...base.values import A_NAME, A_TEXT, SHARE, Number, Whole
-from ...scene.objects import Objects
-from ...scene.rig import Rig, Sensor
-from ...scene.vehicle import Vehicle
-from ...sensors import kind_named, kind_of
-from ...sensors.object_kernel import PlacedBoxes
-from .bodies import DIAGONALS, Body, cell_plan, post_bands
+from ...scene.rig import Rig
+from ...sensors import kind_named
+from .bodies import Body
 from .zones import Zone
 
-Floats = NDArray[np.float64]
 COUNT = Whole(1, 1000)
 POSITIVE_SHARE = Number(0.0, 1.0, above=True)
 AREA = Number(0.0, 1e6, unit="m2", noun="area")
-NEAREST_M = 1e-3
-NARROWEST_PX = 1e-9
 DISTANCE = Number(0.0, 100.0, unit="m", noun="length")
 
 
@@ -127,8 +114,8 @@ class Criterion:
         kinds = {sensor.kind for sensor in rig}
         for kind in self.of:
             if kind not in kinds:
-                found = f"{kind}, of which the rig has no sensor"
-                raise InputError(who, "criterion.of", f"some of {', '.join(sorted(kinds))}", found)
+                expected = f"kinds of sensors that the rig has ({', '.join(sorted(kinds))})"
+                raise InputError(who, "criterion.of", expected, kind)
         eligible = kinds & set(self.of) if self.of else kinds
         count = len(eligible)
         counted = [kind_named(kind, who, "criterion.of").counts_points for kind in eligible]
@@ -150,13 +137,20 @@ class Under:
         Also with any one sensor lost.
     mounting : bool
         Also with the mounting errors of the search's tolerance.
+    states, weathers : tuple of str
+        Also in these states and weathers of the study, by name; "*": in all.
     """
 
     one_lost: bool = setting(False, FLAG, "Also with any one sensor lost")
     mounting: bool = setting(False, FLAG, "Also with the mounting errors of the tolerance")
+    states: tuple[str, ...] = ()
+    weathers: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_settings(self, "under")
+        for key in ("states", "weathers"):
+            names = (A_NAME.checked("under", key, name) for name in getattr(self, key))
+            object.__setattr__(self, key, tuple(names))
 
 
 @dataclass(frozen=True)
@@ -178,6 +172,8 @@ class Requirement:
         Where its figures are from.
     check : str
         What it is called in a verdict: "R159 Annex 3".
+    original : Requirement, optional
+        The preset as it is shipped; it tells whether this requirement is changed.
 
     Raises
     ------
@@ -193,6 +189,7 @@ class Requirement:
     preset: str | None = None
     source: str = ""
     check: str = ""
+    original: Requirement | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         put = object.__setattr__
@@ -210,6 +207,25 @@ class Requirement:
             raise InputError(who, "body", "a test body", "none")
         for body in self.bodies:
             self._check_body(body, who)
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether it asks for something else than its preset.
+
+        The driver's eyes and the side of the kerb are the vehicle's, and change no preset.
+        """
+        own = self.original
+        if own is None:
+            return False
+        zone = replace(self.zone, eyes=own.zone.eyes, near_side=own.zone.near_side)
+        wanted = zone, self.bodies, self.criterion, self.under
+        return wanted != (own.zone, own.bodies, own.criterion, own.under)
+
+    @property
+    def after(self) -> str:
+        """What a verdict is called after: "UN R158"; of a changed preset "UN R158, changed"."""
+        named = self.original is not None and self.check == self.original.check
+        return f"{self.check}, changed" if named and self.check and self.is_changed else self.check
 
     def _check_body(self, body: Body, who: str) -> None:
         if self.criterion.ap is not None and body.class_name is None:
@@ -232,119 +248,7 @@ def checked_requirements(requirements: Sequence[Requirement]) -> tuple[Requireme
     return tuple(requirements)
 
 
-def sees(
-    sensor: Sensor,
-    body: Body,
-    foot: Sequence[float],
-    heading: float,
-    vehicle: Vehicle | None,
-    criterion: Criterion,
-) -> bool:
-    """Whether a sensor sees a body that stands alone at a place: the definition.
-
-    m of the body's box, by the definition of the sensor's kind, reaches the threshold; with a
-    share, so much of the body is visible: `visible_share` of the cells that have an m above 0. What
-    is beside a cell that is not seen does not count: it may be seen in part.
-    """
-    measure = kind_of(sensor).measure_objects
-    objects = placed(body, [foot], [heading], False)
-    m = measure(sensor, objects, vehicle, False)
-    if not has_enough(sensor, objects, m, criterion)[0]:
-        return False
-    if criterion.share is None:
-        return True
-    cells = measure(sensor, placed(body, [foot], [heading], True), vehicle, False) > 0.0
-    return bool(visible_share(body, cells[None])[0] >= criterion.share)
-
-
-def has_enough(
-    sensor: Sensor, objects: Objects, m: Floats, criterion: Criterion
-) -> NDArray[np.bool_]:
-    """Whether m (N,) of boxes, points or pixels, is enough, for their image and solid angle too.
-
-    An image of m pixels has at least m / w rows, if no row has more than w pixels.
-    """
-    counts = kind_of(sensor).counts_points
-    enough = m >= (criterion.points if counts else criterion.pixels)
-    if criterion.pixels_high is not None and not counts:
-        widths = kind_of(sensor).image_widths(sensor, objects)
-        enough &= m >= criterion.pixels_high * np.maximum(widths, NARROWEST_PX)
-    if criterion.per_degree is not None:
-        enough &= m >= criterion.per_degree**2 * largest_solid_angle(objects, sensor.pose.position)
-    return np.asarray(enough)
-
-
-def largest_solid_angle(objects: Objects, position: Sequence[float]) -> Floats:
-    """Return an upper bound (N,) of the solid angle of boxes from a position [deg2].
-
-    The solid angle of a face is the integral of h / r^3 over its area, with the distance h from its
-    plane: at most area times h over the cube of the distance to its nearest point. The position is
-    outside of the boxes.
-    """
-    boxes = PlacedBoxes.of(objects, position)
-    low, high = boxes.offsets - boxes.halves, boxes.offsets + boxes.halves
-    gap = np.maximum(np.maximum(low, -high), 0.0)  # to the nearest point of the box, by axis
-    total = np.zeros(len(gap))
-    for axis in range(3):
-        others = [k for k in range(3) if k != axis]
-        height = gap[:, axis]
-        area = 4.0 * boxes.halves[:, others[0]] * boxes.halves[:, others[1]]
-        nearest = np.sqrt(height**2 + gap[:, others[0]] ** 2 + gap[:, others[1]] ** 2)
-        total += area * height / np.maximum(nearest, NEAREST_M) ** 3
-    return np.minimum(total, 4.0 * math.pi) * (180.0 / math.pi) ** 2
-
-
-def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
-    """Return the share (N,) of a body that is visible, erring low, from its cells (N, K).
-
-    The cells of a body are bands of columns, and posts beside them (`cell_plan`); a post between
-    two that are measured is seen if both are. A column in a band counts if it and its four diagonal
-    neighbours are seen, in the bands above and below as well.
-    """
-    if body.is_ring:
-        return cells.mean(axis=1)
-    plan = cell_plan(body.bands, *body.columns)
-    measured = np.zeros((len(cells), *plan.shape), bool)
-    measured[:, plan] = cells
-    levels, every = np.array(post_bands(body.bands)), np.arange(body.bands)
-    below = levels[np.searchsorted(levels, every, "right") - 1]
-    above = levels[np.searchsorted(levels, every)]
-    seen = measured[:, below] & measured[:, above]
-    seen[:, :, 1:-1, 1:-1] = measured[:, :, 1:-1, 1:-1]
-    whole = seen[:, :, 1:-1, 1:-1].copy()
-    for rows, columns in DIAGONALS:
-        whole &= seen[:, :, rows, columns]
-    sure = whole.copy()
-    sure[:, 1:] &= whole[:, :-1]
-    sure[:, :-1] &= whole[:, 1:]
-    return sure.mean(axis=(1, 2, 3))
-
-
-def body_met(seen: Mapping[str, bool], rig: Rig, criterion: Criterion) -> bool:
-    """Whether sensors that see a body, by name, are enough: the definition."""
-    eligible = [s for s in rig if seen.get(s.name) and (not criterion.of or s.kind in criterion.of)]
-    kinds = {sensor.kind for sensor in eligible}
-    return len(eligible) >= criterion.sensors and len(kinds) >= criterion.kinds
-
-
-def placed(
-    body: Body, feet: Sequence[Sequence[float]] | Floats, headings: Sequence[float], cells: bool
-) -> Objects:
-    """Return a body's boxes at all feet (N, 3) and headings, as objects that each stand alone.
-
-    Foot after foot, heading after heading, cell after cell.
-    """
-    centers, sizes = body.boxes(cells)
-    at = np.asarray(feet, dtype=float).reshape(-1, 1, 1, 3)
-    turns = [(math.cos(h), math.sin(h)) for h in headings]
-    x, y, z = centers.T
-    rotated = np.stack([np.stack([c * x - s * y, s * x + c * y, z], axis=1) for c, s in turns])
-    everywhere = (at + rotated[None]).reshape(-1, 3)
-    count, per = len(at), len(centers)
-    return Objects(
-        np.round(everywhere, 9),
-        np.tile(sizes, (count * len(headings), 1)),
-        np.tile(np.repeat(np.asarray(headings, dtype=float), per), count),
-        np.zeros(len(everywhere), np.int64),
-        (body.class_name or body.name,),
-    )
+def levels_of(requirement: Requirement) -> int:
+    """Return the number of heights at which bodies stand at each sample."""
+    low, high = requirement.zone.z
+    return 1 if high == low else math.ceil((high - low) / requirement.zone.step) + 1

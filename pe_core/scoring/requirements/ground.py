@@ -6,8 +6,10 @@ What each sensor marks is cached by sensor, so a moved sensor and a lost one cos
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,18 +17,22 @@ from numpy.typing import NDArray
 from ...geometry.grids import PerceptionSpace
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
-from ...sensors import VisibleGroundCache
 from ..sight.blind_ground import body_rectangle
 from ..sight.blind_squares import STEP_M, BlindSearch, blind_squares
 from ..sight.ground_cells import GroundCells
-from .criteria import Requirement
-from .verdict import Samples, Verdict, ground_verdict
+from .body_checks import SceneCaches
+from .criteria import Criterion, Requirement
+from .margins import growth, rounded_down
+from .verdict import GroundFigures, Samples, Verdict
 from .zones import INSIDE_M, PlacedZone, signed_distance
 
 Flags = NDArray[np.bool_]
+Floats = NDArray[np.float64]
 
 FAR_OFF_M = 10.0
 """Blind ground this much too far out is as far off as can be."""
+MAX_CELLS = 120_000
+"""A zone is grown as long as its ground has no more squares."""
 
 
 class GroundCheck:
@@ -39,8 +45,8 @@ class GroundCheck:
     space : PerceptionSpace
         Ground outside of it is not looked at.
     vehicle : Vehicle or None
-    caches : dict of dict
-        Caches of kernels by sensor and kind, shared by several of these on one vehicle.
+    caches : SceneCaches
+        Shared by several of these, and by checks of bodies.
     """
 
     def __init__(
@@ -49,92 +55,213 @@ class GroundCheck:
         zone: PlacedZone,
         space: PerceptionSpace,
         vehicle: Vehicle | None,
-        caches: dict[str, dict[str, Any]],
+        caches: SceneCaches,
     ) -> None:
-        self.requirement, self._zone, self._vehicle = requirement, zone, vehicle
-        (x0, y0), (x1, y1) = (w.tolist() for w in zone.bounds)
-        around = ((x0 - STEP_M, x1 + STEP_M), (y0 - STEP_M, y1 + STEP_M))
-        self.cells = GroundCells.of(space, STEP_M, around)
-        height = requirement.criterion.blind_height
-        self._search = BlindSearch.of(self.cells, height, vehicle, {})
-        self._caches, self._sensors = caches, dict[str, VisibleGroundCache]()
-        middles = np.stack(np.meshgrid(self.cells.x, self.cells.y, indexing="ij"), axis=-1)
-        points = middles.reshape(-1, 2)
-        inside = zone.distance(points) <= INSIDE_M
-        inside &= signed_distance(points, zone.planes.outline) > 0.0
-        self.mask: Flags = inside.reshape(self.cells.shape)
+        self.requirement, self._zone, self._space = requirement, zone, space
+        self._vehicle, self._caches = vehicle, caches
+        self._own = _ZoneGround(self, 0.0)
+        self._grown: dict[float, _ZoneGround | None] = {}
 
-    def verdict(self, rig: Rig, preview: bool) -> Verdict:
-        """Return the verdict on a rig; a preview is without lost sensors that need not count."""
-        marks = self._marks(rig, preview)
-        blind = self._blind(marks.values())
-        counts = self.requirement.under.one_lost
-        names = list(marks) if len(marks) > 1 and (counts or not preview) else []
-        lost = {name: self.is_met(self._without(marks, name)) for name in names}
-        samples = Samples(self._zone, np.zeros((0, 2)), np.zeros(0), self.mask)
-        met = self.is_met(blind)
-        own = self.requirement
-        return ground_verdict(own, samples, self.cells, blind, met, lost, counts, preview)
-
-    def shortfall(self, rig: Rig) -> float:
-        """Return how far a rig is off the requirement, 0 where it is met, else above 0 to 1."""
-        marks = self._marks(rig, False)
-        cases = [self._blind(marks.values())]
-        if self.requirement.under.one_lost and len(marks) > 1:
-            cases += [self._without(marks, name) for name in marks]
-        return max(self._off(blind) for blind in cases)
-
-    def is_met(self, blind: Flags) -> bool:
-        """Whether blind squares (NX, NY) meet the requirement."""
-        criterion = self.requirement.criterion
-        if criterion.blind_m2 is not None and self._area(blind) > criterion.blind_m2:
-            return False
-        return criterion.blind_out is None or self.farthest_out(blind) <= criterion.blind_out
-
-    def farthest_out(self, blind: Flags) -> float:
-        """Return how far from the vehicle's rectangle the farthest blind square ends [m]."""
+    def verdict(self, rig: Rig, preview: bool, cases: Sequence[Rig] = ()) -> Verdict:
+        """Return the verdict on a rig; a preview has no margin, and is without losses that need
+        not count.
+        """
+        own, ground = self.requirement, self._own
+        marks = ground.marks(rig, preview)
+        blind = ground.blind(marks.values())
+        lost = {}
+        if len(marks) > 1 and (own.under.one_lost or not preview):
+            lost = {name: ground.blind_without(marks, name) for name in marks}
+        counted = [blind, *(lost.values() if own.under.one_lost else ())]
+        for number, case in self._asked(cases):
+            counted += self._blinds(ground, ground.marks(case, False, number))
+        met_whole, met = self._meets(blind), all(map(self._meets, counted))
+        margin, at_least = (None, False) if preview else self._margin(rig, met, cases)
         i, j = np.nonzero(blind)
-        if not len(i):
-            return 0.0
-        (x0, x1), (y0, y1) = body_rectangle(self._vehicle)
-        cells = self.cells
-        dx = np.maximum(np.maximum(cells.x1[i] - x1, x0 - cells.x0[i]), 0.0)
-        dy = np.maximum(np.maximum(cells.y1[j] - y1, y0 - cells.y0[j]), 0.0)
-        return float(np.max(np.hypot(dx, dy)))
+        worst = None
+        if len(i):
+            k = int(np.argmin(ground.distance[i, j]))
+            x, y = ground.cells.x[i[k]], ground.cells.y[j[k]]
+            worst = round(float(x), 3), round(float(y), 3)
+        return Verdict(
+            own,
+            met,
+            margin,
+            at_least,
+            1.0 - np.count_nonzero(blind) / max(int(np.count_nonzero(ground.mask)), 1),
+            worst,
+            None,
+            (),
+            dict,
+            {name: self._meets(each) for name, each in lost.items()},
+            (0, 0),
+            Samples(self._zone, np.zeros((0, 2)), np.zeros(0), ground.mask),
+            np.zeros(0, bool),
+            met_whole=met_whole,
+            preview=preview,
+            ground=self._figures(blind, counted),
+        )
+
+    def shortfall(self, rig: Rig, cases: Sequence[Rig] = ()) -> float:
+        """Return how far a rig is off the requirement, 0 where it is met, else above 0 to 1."""
+        blinds = self._blinds(self._own, self._own.marks(rig, False))
+        for number, case in self._asked(cases):
+            blinds += self._blinds(self._own, self._own.marks(case, False, number))
+        return max(map(self._off, blinds))
+
+    def _asked(self, cases: Sequence[Rig]) -> list[tuple[int, Rig]]:
+        """Return the rigs with mounting errors that count, with their numbers as scenes."""
+        return list(enumerate(cases, start=1)) if self.requirement.under.mounting else []
+
+    def _blinds(self, ground: _ZoneGround, marks: Mapping[str, Flags]) -> list[Flags]:
+        """Return all blind squares that count: of a whole rig, and with each sensor lost."""
+        found = [ground.blind(marks.values())]
+        if self.requirement.under.one_lost and len(marks) > 1:
+            found += [ground.blind_without(marks, name) for name in marks]
+        return found
+
+    def _meets(self, blind: Flags) -> bool:
+        """Whether blind squares (NX, NY) of the zone meet the requirement."""
+        return self._own.fails_at(blind, self.requirement.criterion) > INSIDE_M
+
+    def _margin(self, rig: Rig, met: bool, cases: Sequence[Rig]) -> tuple[float, bool]:
+        """Return how far the zone could grow [m] or has to shrink, and whether it could more."""
+        criterion, looked, step = self.requirement.criterion, 0.0, self._own.cells.step
+        for grown in (self._zone.grow, *growth(self._zone)):
+            ground = self._grown_ground(grown)
+            if ground is None:
+                break
+            blinds = self._blinds(ground, ground.marks(rig, False))
+            for number, case in self._asked(cases):
+                blinds += self._blinds(ground, ground.marks(case, False, number))
+            at = min(ground.fails_at(blind, criterion) for blind in blinds)
+            if at < math.inf:
+                margin = rounded_down(at - step)
+                return (max(margin, 0.0) if met else min(margin, -step)), False
+            looked = grown
+        return (rounded_down(looked), True) if met else (-step, False)
+
+    def _grown_ground(self, grown: float) -> _ZoneGround | None:
+        """Return the ground of the zone grown by some metres; None where it is too large."""
+        if grown not in self._grown:
+            low, high = self._zone.bounds
+            count = math.prod(((high - low + 2.0 * grown) / STEP_M).tolist())
+            self._grown[grown] = _ZoneGround(self, grown) if count <= MAX_CELLS else None
+        return self._grown[grown]
+
+    def _figures(self, blind: Flags, counted: Sequence[Flags]) -> GroundFigures:
+        """Return the blind ground in figures, and what of it is to spare in the worst case."""
+        criterion, ground = self.requirement.criterion, self._own
+        area, out = (max(map(measure, counted)) for measure in (ground.area, ground.farthest_out))
+        return GroundFigures(
+            math.ceil(ground.area(blind) * 100.0 - 1e-6) / 100.0,
+            math.ceil(ground.farthest_out(blind) * 100.0 - 1e-6) / 100.0,
+            None if criterion.blind_m2 is None else rounded_down(criterion.blind_m2 - area),
+            None if criterion.blind_out is None else rounded_down(criterion.blind_out - out),
+            blind,
+            ground.cells,
+        )
 
     def _off(self, blind: Flags) -> float:
-        if self.is_met(blind):
+        if self._meets(blind):
             return 0.0
-        criterion, most = self.requirement.criterion, max(self._area(self.mask), STEP_M)
-        area = 0.0
+        criterion, ground = self.requirement.criterion, self._own
+        area, most = 0.0, max(ground.area(ground.mask), STEP_M)
         if criterion.blind_m2 is not None:
-            area = max(self._area(blind) - criterion.blind_m2, 0.0) / most
+            area = max(ground.area(blind) - criterion.blind_m2, 0.0) / most
         out = 0.0
         if criterion.blind_out is not None:
-            out = max(self.farthest_out(blind) - criterion.blind_out, 0.0) / FAR_OFF_M
+            out = max(ground.farthest_out(blind) - criterion.blind_out, 0.0) / FAR_OFF_M
         return min(1.0, max(area, out, 1e-6))
 
-    def _marks(self, rig: Rig, preview: bool) -> dict[str, Flags]:
-        """Return the squares that each sensor marks, with their margin, by name."""
-        marks = {}
-        for sensor in rig:
-            if sensor.name not in self._sensors:
-                cache = self._caches.setdefault(sensor.name, {})
-                self._sensors[sensor.name] = VisibleGroundCache(self._search.squares.view, cache)
-            marks[sensor.name] = self._sensors[sensor.name].marked(Rig([sensor]), preview)[0]
-        return marks
 
-    def _without(self, marks: Mapping[str, Flags], lost: str) -> Flags:
-        return self._blind(mark for name, mark in marks.items() if name != lost)
+@dataclass(frozen=True, eq=False)
+class _ZoneGround:
+    """The ground of a zone that is grown by some metres, as squares, and the sensors on it."""
 
-    def _blind(self, marks: Iterable[Flags]) -> Flags:
-        """Return the blind squares (NX, NY) of the zone."""
+    check: GroundCheck
+    grown: float
+
+    @cached_property
+    def cells(self) -> GroundCells:
+        """The squares."""
+        (x0, y0), (x1, y1) = (w.tolist() for w in self.check._zone.bounds)
+        room = self.grown + STEP_M
+        around = ((x0 - room, x1 + room), (y0 - room, y1 + room))
+        return GroundCells.of(self.check._space, STEP_M, around)
+
+    @cached_property
+    def distance(self) -> Floats:
+        """Distance (NX, NY) of the squares' middles to the zone, negative inside [m]."""
+        return self.check._zone.distance(self._middles).reshape(self.cells.shape)
+
+    @cached_property
+    def mask(self) -> Flags:
+        """The squares (NX, NY) of the grown zone on which somebody can stand."""
+        outline = self.check._zone.planes.outline
+        free = signed_distance(self._middles, outline).reshape(self.cells.shape) > 0.0
+        return np.asarray(free & (self.distance <= self.grown + INSIDE_M))
+
+    @property
+    def _middles(self) -> Floats:
+        """Middles (N, 2) of the squares [m]."""
+        grid = np.meshgrid(self.cells.x, self.cells.y, indexing="ij")
+        return np.stack(grid, axis=-1).reshape(-1, 2)
+
+    @cached_property
+    def out(self) -> Floats:
+        """How far from the vehicle's rectangle (NX, NY) each square ends [m]."""
+        (x0, x1), (y0, y1) = body_rectangle(self.check._vehicle)
+        cells = self.cells
+        dx = np.maximum(np.maximum(cells.x1 - x1, x0 - cells.x0), 0.0)
+        dy = np.maximum(np.maximum(cells.y1 - y1, y0 - cells.y0), 0.0)
+        return np.hypot(dx[:, None], dy)
+
+    @cached_property
+    def _searches(self) -> dict[int, BlindSearch]:
+        return {}
+
+    def marks(self, rig: Rig, approximate: bool, number: int = 0) -> dict[str, Flags]:
+        """Return the squares that each sensor marks in a scene, with their margin, by name."""
+        check = self.check
+        if number not in self._searches:
+            height, caches = (
+                check.requirement.criterion.blind_height,
+                check._caches.by_kernel(number),
+            )
+            self._searches[number] = BlindSearch.of(self.cells, height, check._vehicle, caches)
+        search = self._searches[number]
+        search.squares.marked(rig, approximate)
+        return {name: marked & ~search.own for name, marked in search.squares.by_sensor.items()}
+
+    def blind(self, marks: Iterable[Flags]) -> Flags:
+        """Return the blind squares (NX, NY) of the grown zone."""
+        search = self._searches[0]
         marked = np.logical_or.reduce(list(marks))
-        own, margin = self._search.own, self._search.margin
-        blind = blind_squares(marked & ~own, own, self.cells.step)
-        inner = tuple(slice(margin, n - margin) for n in blind.shape)
+        blind = blind_squares(marked, search.own, self.cells.step)
+        inner = tuple(slice(search.margin, n - search.margin) for n in blind.shape)
         found: Flags = blind[inner] & self.mask
         return found
 
-    def _area(self, flags: Flags) -> float:
+    def blind_without(self, marks: Mapping[str, Flags], lost: str) -> Flags:
+        """Return the blind squares without one sensor."""
+        return self.blind(mark for name, mark in marks.items() if name != lost)
+
+    def area(self, flags: Flags) -> float:
+        """Return the area of some squares [m2]."""
         return float(np.count_nonzero(flags)) * self.cells.step**2
+
+    def farthest_out(self, blind: Flags) -> float:
+        """Return how far from the vehicle's rectangle the farthest blind square ends [m]."""
+        return float(self.out[blind].max(initial=0.0))
+
+    def fails_at(self, blind: Flags, criterion: Criterion) -> float:
+        """Return by how much the zone can grow (shrink, below 0) until it fails [m]; inf: never."""
+        away, at = np.sort(self.distance[blind]), math.inf
+        if criterion.blind_m2 is not None:
+            allowed = math.floor(criterion.blind_m2 / self.cells.step**2 + INSIDE_M)
+            at = float(away[allowed]) if allowed < len(away) else math.inf
+        if criterion.blind_out is not None:
+            beyond = blind & (self.out > criterion.blind_out)
+            at = min(at, float(self.distance[beyond].min(initial=math.inf)))
+        return at

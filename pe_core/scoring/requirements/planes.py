@@ -22,6 +22,7 @@ from ...base.values import FINITE, real
 from ...scene.orientation import is_called
 from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference, guessed_reference
+from .body_features import axles_of, mirror_faces, parts_below
 
 Floats = NDArray[np.float64]
 Place = float | str
@@ -78,7 +79,7 @@ class VehiclePlanes:
         ----------
         vehicle : Vehicle
         reference : Reference, optional
-            The axles; by default they are guessed from parts that are wheels by name.
+            The axles; by default those of parts that are wheels by name, else of tyres by shape.
         below : float, optional
             What is higher than this is left out [m], as UN R159 leaves out what is above 2.0 m.
         near_side : {"left", "right"}
@@ -183,26 +184,22 @@ def _chain(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
 def _body_points(vehicle: Vehicle, below: float | None) -> tuple[Floats, str]:
     """Return corners (N, 3) of the body without mirrors, below a height, and how it was made."""
     names = vehicle.part_names
-    left_out = [k for k, name in enumerate(names) if is_called(name, MIRRORS, ())]
-    body = vehicle.triangles[~np.isin(vehicle.parts, left_out)]
-    how = "of the mesh; no part is named a mirror"
-    if left_out and len(body):
-        how = f"of the mesh without {', '.join(names[k] for k in left_out)}"
+    named = [k for k, name in enumerate(names) if is_called(name, MIRRORS, ())]
+    left_out = np.isin(vehicle.parts, named) if named else mirror_faces(vehicle)
+    body = vehicle.triangles[~left_out]
+    how = "of the mesh; no part is named a mirror, and none is found by shape"
+    if named and len(body):
+        how = f"of the mesh without {', '.join(names[k] for k in named)}"
+    elif left_out.any():
+        x, z = vehicle.triangles[left_out][..., 0], vehicle.triangles[left_out][..., 2]
+        where = f"x {x.min():.2f} to {x.max():.2f} m, z {z.min():.2f} to {z.max():.2f} m"
+        how = f"of the mesh without what has the shape of mirrors: {where}"
     body = body if len(body) else vehicle.triangles
     if below is None:
         return body.reshape(-1, 3), how
-    low = _below(body, below)
+    low = parts_below(body, below).reshape(-1, 3)
+    low = low[~np.isnan(low[:, 0])]
     return (low, f"{how}, below {below:g} m") if len(low) else (body.reshape(-1, 3), how)
-
-
-def _below(triangles: Floats, height: float) -> Floats:
-    """Return the corners (N, 3) of what is below a height: own corners, and cuts of edges."""
-    corners = triangles.reshape(-1, 3)
-    a, b = corners, triangles[:, [1, 2, 0]].reshape(-1, 3)
-    cut = (a[:, 2] <= height) != (b[:, 2] <= height)
-    share = (height - a[cut, 2]) / (b[cut, 2] - a[cut, 2])
-    cuts = a[cut] + share[:, None] * (b[cut] - a[cut])
-    return np.vstack([corners[corners[:, 2] <= height], cuts])
 
 
 def _add_axles(
@@ -214,8 +211,13 @@ def _add_axles(
     """Add the axles to the planes; return what is missing."""
     own = reference or guessed_reference(vehicle)
     if own is None:
-        needed = "[reference] with the axles, or parts named wheel, tire or tyre"
-        return {"rear_axle": needed, "front_axle": needed}
+        if (axles := axles_of(vehicle)) is None:
+            needed = "[reference] with the axles, parts named wheel, tire or tyre, or tyres alone "
+            needed += "on the ground"
+            return {"rear_axle": needed, "front_axle": needed}
+        for name, x in zip(("rear_axle", "front_axle"), axles, strict=True):
+            along[name], found[name] = x, "where tyres touch the ground, by shape"
+        return {}
     how = "of [reference]" if reference is not None else "of the parts named wheel, tire or tyre"
     along["rear_axle"], found["rear_axle"] = own.rear_axle_x, how
     if own.wheelbase is None:

@@ -21,7 +21,7 @@ from ...sensors import ObjectMeasurementCache, kind_of
 from ..sight.blind_ground import body_rectangle
 from ..sight.ground_cells import GroundCells, widened
 from .bodies import Body
-from .criteria import placed
+from .definition import placed
 from .planes import VehiclePlanes
 from .zones import INSIDE_M, signed_distance
 

@@ -34,6 +34,8 @@ HEIGHT = Number(0.0, 100.0, unit="m", noun="length")
 RING = Number(0.0, 100.0, unit="m", noun="length")
 MAX_SAMPLES = 20_000
 """Samples of one zone at most."""
+MAX_GRID = 60_000
+"""Places of a grid on which a zone is grown at most."""
 GROWN_M = 0.6
 """How far round a zone samples are taken to find how far it could grow [m]."""
 INSIDE_M = 1e-6
@@ -111,7 +113,7 @@ class Zone:
         if sum(shapes) != 1:
             expected = f"one of {', '.join(SHAPES)}"
             found = " and ".join(s for s, has in zip(SHAPES, shapes, strict=True) if has)
-            raise InputError(WHO, "zone", expected, found or "none")
+            raise InputError(WHO, "shape", expected, found or "none")
 
     def placed(
         self,
@@ -259,6 +261,22 @@ class PlacedZone:
             raise InputError(self.who, "zone", "ground on which a body can stand", found)
         return points, distance
 
+    def ring_of_samples(self, low: float, high: float, most: int) -> tuple[Floats, Floats]:
+        """Return the samples of the zone grown by `high` that are beyond `low`, as `samples` does.
+
+        Where there would be many more than `most`, more than `most` of any are returned.
+        """
+        corners = self.bounds
+        around = ((corners[1] - corners[0] + 2.0 * high) / self.zone.step + 1.0).tolist()
+        if math.prod(around) > MAX_GRID:
+            return np.zeros((most + 1, 2)), np.zeros(most + 1)
+        points = self._lattice(self.zone.step, high)
+        distance = self.distance(points)
+        kept = (distance > low + INSIDE_M) & (distance <= high + INSIDE_M)
+        points, distance = points[kept], distance[kept]
+        outside = signed_distance(points, self.planes.outline) > INSIDE_M
+        return points[outside], distance[outside]
+
     def _lattice(self, step: float, grow: float) -> Floats:
         """Return a grid over an area or ring and beyond; points along a path, spots."""
         is_area = self.kind in ("area", "ring")
@@ -295,24 +313,28 @@ def signed_distance(points: Floats, corners: Floats) -> Floats:
     """
     others = np.roll(corners, -1, axis=0)
     away = _to_lines(points, corners, others)
-    x, y = points[:, :1], points[:, 1:]
+    near = ((points >= corners.min(axis=0)) & (points <= corners.max(axis=0))).all(axis=1)
+    x, y = points[near, :1], points[near, 1:]
     (ax, ay), (bx, by) = corners.T, others.T
     crosses = (ay <= y) != (by <= y)
     slope = (bx - ax) / np.where(by == ay, 1.0, by - ay)
-    inside = (crosses & (x < ax + (y - ay) * slope)).sum(axis=1) % 2 == 1
+    inside = np.zeros(len(points), dtype=bool)
+    inside[near] = (crosses & (x < ax + (y - ay) * slope)).sum(axis=1) % 2 == 1
     return np.where(inside, -away, away)
 
 
 def _to_lines(points: Floats, starts: Floats, ends: Floats) -> Floats:
     """Return the distance (N,) of points to the nearest of some line segments (K, 2)."""
+    x, y = np.ascontiguousarray(points.T)
     best = np.full(len(points), np.inf)
-    for a, b in zip(starts, ends, strict=True):
-        along = b - a
-        size = float(along @ along)
-        share = np.clip(((points - a) * along).sum(axis=1) / (size or 1.0), 0.0, 1.0)
-        off = points - (a + share[:, None] * along)
-        best = np.minimum(best, np.hypot(off[:, 0], off[:, 1]))
-    return best
+    for (ax, ay), (bx, by) in zip(starts.tolist(), ends.tolist(), strict=True):
+        along_x, along_y = bx - ax, by - ay
+        size = along_x * along_x + along_y * along_y
+        share = ((x - ax) * along_x + (y - ay) * along_y) / (size or 1.0)
+        np.clip(share, 0.0, 1.0, out=share)
+        off_x, off_y = x - (ax + share * along_x), y - (ay + share * along_y)
+        np.minimum(best, off_x * off_x + off_y * off_y, out=best)
+    return np.sqrt(best)
 
 
 def _nearest(points: Floats, spots: Floats) -> Floats:

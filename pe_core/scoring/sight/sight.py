@@ -161,13 +161,7 @@ class Sight:
             return blind_ground(cells, blind, body, height, float(within), approximate)
 
     def reach(
-        self,
-        rig: Rig,
-        class_name: str,
-        *,
-        ap: float = 0.5,
-        bearings: int = 72,
-        draft: bool = False,
+        self, rig: Rig, class_name: str, *, ap: float = 0.5, bearings: int = 72, draft: bool = False
     ) -> Reach:
         """Return the distance up to which objects of a class are found, in all directions.
 

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from ...geometry.grids import PerceptionSpace
 from ...metric.entropy import H_BLIND
 from ...prior.prior import Prior
-from ...scene.rig import Rig
+from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from ..protocol import Judgement
 from ..scenarios import Scenarios, mean_or_worst
 from ..score import Glance, ObjectScore, Score, ScoreStopped, SensorScore, Watch, rounded
+from .bound_log import BoundLog
 from .lone_objects import LoneObjects
 from .object_metric import FusedObjects, ObjectSums
 from .object_sampling import CENTERED, SampledObjects, sample_objects
@@ -27,6 +28,10 @@ from .target_rule import OBJECTS, TargetRule
 Floats = NDArray[np.float64]
 MByName = Mapping[str, Floats]
 """m of sensors on the objects, (N,) each, by name."""
+
+
+ROUNDING = 2e-9
+"""Entropies are rounded to 1e-9: a bound is lowered by this, so that rounding never rejects."""
 
 
 class ObjectEvaluator:
@@ -72,6 +77,7 @@ class ObjectEvaluator:
         self._sums = ObjectSums(self.drawn)
         traffic = self.targets.traffic
         self._sensors = ObjectMeasurementCache(self.drawn.objects, vehicle, traffic)
+        self._bounds = BoundLog()
         self._lock = RLock()
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -86,8 +92,38 @@ class ObjectEvaluator:
             return self._entropy(rig, self._sensors.measure(rig))
 
     def judge(self, rig: Rig, below: float = inf) -> Judgement:
-        """Return a rig's entropy, whatever the cutoff."""
-        return Judgement(self.entropy(rig), False)
+        """Return a rig's entropy, or a lower bound that is not below `below`.
+
+        Objects and the vehicle occlude beams and pixels and add none, so without occlusion the
+        entropy is no higher. Sensors that have moved are measured without it first, then with it,
+        one after the other, while the bound is below the cutoff.
+        """
+        with self._lock:
+            self._fused.check(rig)
+            if below < inf and self._bounds.pay():
+                bound = self._lower_bound(rig, below)
+                self._bounds.note(bound >= below)
+                if bound >= below:
+                    return Judgement(bound, True)
+            return Judgement(self._entropy(rig, self._sensors.measure(rig)), False)
+
+    def _lower_bound(self, rig: Rig, cutoff: float) -> float:
+        """Return a lower bound of a rig's entropy, which may already reach the cutoff."""
+        m, occluded = dict[str, Floats](), list[Sensor]()
+        for sensor in rig:
+            known = self._sensors.cached(sensor)
+            if known is None and (known := self._sensors.unoccluded(sensor)) is not None:
+                occluded.append(sensor)
+            m[sensor.name] = self._sensors.measure_again(sensor) if known is None else known
+        if not occluded:
+            return -inf
+        bound = self._entropy(rig, m) - ROUNDING
+        for sensor in sorted(occluded, key=lambda s: kind_of(s).counts_points)[:-1]:
+            if bound >= cutoff:
+                break
+            m[sensor.name] = self._sensors.measure_again(sensor)
+            bound = self._entropy(rig, m) - ROUNDING
+        return bound
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the object entropy of each of several rigs [nats], as `Evaluator.entropies`."""

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from ...base.values import choice
-from . import block_descent, cma_es, random_search
+from . import block_descent, cma_es, portfolio, random_search
 from .method import Given, Method, Question
 
 METHODS: dict[str, Method] = {
+    "portfolio": Method(
+        "Portfolio",
+        "A survey of each sensor's range; then all sensors at once, and one at a time, in turn",
+        portfolio.ask,
+        portfolio.samples,
+    ),
     "block-descent": Method(
         "Block Descent",
         "One sensor at a time by CMA-ES, from several starts, on ever more voxels",
@@ -20,7 +26,7 @@ METHODS: dict[str, Method] = {
         random_search.ask,
     ),
 }
-DEFAULT_METHOD, SCHEDULED_METHOD = "block-descent", "random"
+DEFAULT_METHOD, SCHEDULED_METHOD = "portfolio", "random"
 """The method of a search that names none, without and with a schedule."""
 
 

@@ -1,11 +1,9 @@
-"""Block descent, the default: CMA-ES on one sensor at a time, from several starts, multi-level.
+"""Block descent: CMA-ES on one sensor at a time, from several starts, multi-level.
 
 While one sensor moves, the others stay at the incumbent. A sensor that does not move need not be
-measured again, and a few design variables at a time take few candidates.
-
-Most of the budget is spent where it counts: a few rounds on few voxels choose the start to continue
-from, and the last rounds are evaluated on as many voxels as the study sets. A search on a sample
-overestimates its own result, more so with fewer voxels.
+measured again, and a few design variables at a time take few candidates. A few rounds on few voxels
+choose the start to continue from, and the last rounds are evaluated on as many voxels as the study
+sets: a search on a sample overestimates its own result, more so with fewer voxels.
 """
 
 from __future__ import annotations
@@ -73,10 +71,7 @@ def given_start(given: Given, _phase: Phase) -> MethodPart[tuple[Candidate, floa
 
 
 def corner_start(given: Given, phase: Phase) -> MethodPart[tuple[Candidate, float]]:
-    """Move one sensor after the other to the best corner of its bounds, with its angles unchanged.
-
-    Returns the placement and its entropy.
-    """
+    """Move each sensor to the best corner of its bounds; return the placement and its entropy."""
     best, entropy = given.start, given.entropy
     for block in given.parametrization.blocks:
         corners = [c for c in _corners(given, best, block) if given.parametrization.allowed(c.rig)]
@@ -185,10 +180,8 @@ def _turn(
     return Evolution(given, block, start, seed, step)
 
 
-COARSENING = 4
-"""The first level evaluates a fourth of the voxels,"""
-MIN_SAMPLES = 2048
-"""but at least so many."""
+COARSENING, MIN_SAMPLES = 4, 2048
+"""The first level evaluates a fourth of the voxels, but at least so many."""
 BELOW_GRID = 65_536
 """Where the last level is the grid, the first level is as if the last had so many voxels."""
 RACES = (0.05, 0.05)

@@ -187,11 +187,7 @@ class CameraPlanes:
         return area
 
     def _flat(
-        self,
-        out: Singles,
-        cube: Singles,
-        depth: tuple[Singles, float],
-        away: tuple[Singles, float],
+        self, out: Singles, cube: Singles, depth: tuple[Singles, float], away: tuple[Singles, float]
     ) -> None:
         """Write the closed form to `out`; `depth` and `away` have two terms, `cube` is scratch."""
         side = self._space.interval

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from ...geometry.poses import dot
 from ...scene.rig import Sensor
 from ...scene.vehicle import VisibleMesh
+from ..box_rays import behind_others, rivals_near
 from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
 from .box_area import BoxImages, along_camera, box_images
 from .definition import is_ranged, out_of_range
 from .model import Camera
-from .object_definition import Rivals, behind_others, rays_to_boxes, visible_share
+from .object_definition import rays_to_boxes, visible_share
 from .picture import PictureBins
 from .pixel_area import frustum_distance
 from .tie_rules import axes_of
@@ -24,8 +25,6 @@ Ints = NDArray[np.int64]
 
 MARGIN_M = 1e-3
 """Balls round boxes are enlarged by this."""
-APART_RAD = 1e-6
-"""Margin between the directions of balls, seen from above, that do not hide each other [rad]."""
 
 
 class CameraObjects(ObjectKernel):
@@ -48,6 +47,10 @@ class CameraObjects(ObjectKernel):
         area[which] = images.area * self._share(sensor, axes, boxes, which, images)
         return area
 
+    def unoccluded(self, sensor: Sensor) -> Floats:
+        """Measure the whole images (N,) of the objects."""
+        return CameraObjects(ObjectView(self._view.objects)).measure(sensor)
+
     def _share(
         self, sensor: Sensor, axes: Floats, boxes: PlacedBoxes, which: Ints, images: BoxImages
     ) -> Floats:
@@ -65,29 +68,11 @@ class CameraObjects(ObjectKernel):
         if seen is not None:
             hidden |= seen.first_hit(rays.directions).distance < rays.distance
         if view.traffic:
-            rivals = self._rivals(boxes, which[some])
+            rivals = rivals_near(boxes, self._view.objects.scenes, self._balls, which[some])
             hidden |= behind_others(boxes, rivals, rays)
         share = np.ones(len(which))
         share[some] = visible_share(rays, hidden, len(some))
         return share
-
-    def _rivals(self, boxes: PlacedBoxes, which: Ints) -> Rivals:
-        """Return, for some boxes, the other boxes of their scenes that may hide them."""
-        rivals = Rivals.of(self._view.objects.scenes, which)
-        rank, other = rivals.ranks(), rivals.other
-        item = which[rank]
-        x, y = boxes.ground_offsets()
-        flat = np.hypot(x, y)
-        near = flat - self._balls
-        across, along = (
-            x[item] * y[other] - y[item] * x[other],
-            x[item] * x[other] + y[item] * y[other],
-        )
-        half = np.arcsin(self._balls / np.maximum(flat, self._balls))
-        apart = np.abs(np.arctan2(across, along)) > half[item] + half[other] + APART_RAD
-        before = near[other] < flat[item] + self._balls[item]
-        around = np.minimum(near[item], near[other]) <= 0.0
-        return rivals.some(before & (around | ~apart))
 
 
 def _may_be_visible(

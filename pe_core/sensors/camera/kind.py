@@ -19,6 +19,7 @@ from ..ground_kernel import GroundView
 from ..kernels import Floats, Voxels
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
 from ..object_kernel import ObjectView, PlacedBoxes
+from ..weather import Weather, camera_range, limited
 from . import sensor_table
 from .box_area import box_images
 from .definition import count_pixels, out_of_range
@@ -74,6 +75,7 @@ class CameraKind(Kind):
     name, label, plural, unit = "camera", "Camera", "Cameras", "pixels"
     model = Camera
     curve = RTM3D
+    weather_limits_range = True
     object_curves = derived_object_curves(RTM3D)
     keys = sensor_table.KEYS
     has_top = True
@@ -104,6 +106,10 @@ class CameraKind(Kind):
     def write(self, model: Camera) -> dict[str, Any]:
         """Return a camera's table."""
         return sensor_table.write(model)
+
+    def in_weather(self, model: Camera, weather: Weather) -> Camera:
+        """Limit the range: see `camera_range`."""
+        return limited(model, camera_range(model.max_range, weather))
 
     def data_sheet(self, model: Camera) -> list[str]:
         """Picture, field of view, focal length."""

@@ -11,17 +11,17 @@ Then rays to points on the box's sides decide, if these are in the picture and i
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.indexing import blocks, count_up
+from ...geometry.indexing import blocks
 from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
+from ..box_rays import BoxRays, Rivals, behind_others
 from ..object_kernel import PlacedBoxes
 from .box_area import BoxImages, along_camera, box_images, face_points
 from .definition import out_of_range
@@ -37,19 +37,6 @@ RAYS, TURN = 144, 89
 BOXES_AT_ONCE = 512
 SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).reshape(-1, 2)
 """Points on a side of a box, in half sides, that rays aim at if no lattice ray hits the box."""
-
-
-@dataclass(frozen=True, slots=True)
-class BoxRays:
-    """Rays from a camera that hit boxes, (R,) each.
-
-    `item` is the box, by its position in the request; `directions` (R, 3) are unit vectors in the
-    ground frame; `distance` is the distance to the box [m].
-    """
-
-    item: Ints
-    directions: Floats
-    distance: Floats
 
 
 def rays_to_boxes(
@@ -150,43 +137,3 @@ def count_object_pixels(
         hidden |= behind_others(boxes, Rivals.of(objects.scenes, shown), rays)
     area[shown] *= visible_share(rays, hidden, len(shown))
     return area
-
-
-@dataclass(frozen=True, slots=True)
-class Rivals:
-    """Boxes that may hide boxes (P,): for box k, `count[k]` of `other` from `first[k]` on."""
-
-    first: Ints
-    count: Ints
-    other: Ints
-
-    @classmethod
-    def of(cls, scenes: Ints, which: Ints) -> Rivals:
-        """Return all other boxes of the same scenes."""
-        order = np.argsort(scenes, kind="stable")
-        first = np.searchsorted(scenes[order], scenes[which], "left")
-        count = np.searchsorted(scenes[order], scenes[which], "right") - first
-        other = order[np.repeat(first, count) + count_up(count)]
-        rivals = cls(np.cumsum(count) - count, count, other)
-        return rivals.some(other != which[rivals.ranks()])
-
-    def ranks(self) -> Ints:
-        """(R,) the box that each entry may hide."""
-        return np.repeat(np.arange(len(self.count)), self.count)
-
-    def some(self, kept: Flags) -> Rivals:
-        """Return the flagged entries (R,)."""
-        count = np.bincount(self.ranks()[kept], minlength=len(self.count))
-        return Rivals(np.cumsum(count) - count, count, self.other[kept])
-
-
-def behind_others(boxes: PlacedBoxes, rivals: Rivals, rays: BoxRays) -> Flags:
-    """Whether rays enter another box of `rivals` before their own; boxes have the same indices."""
-    hidden = np.zeros(len(rays.item), bool)
-    first, count = rivals.first[rays.item], rivals.count[rays.item]
-    for rank in range(int(count.max(initial=0))):
-        some = np.flatnonzero((count > rank) & ~hidden)
-        box = rivals.other[first[some] + rank]
-        enter, leave = boxes.crossing(box, rays.directions[some])
-        hidden[some] = (enter < leave) & (enter < rays.distance[some])
-    return hidden

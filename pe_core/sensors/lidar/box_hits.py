@@ -147,11 +147,12 @@ def candidate_hits(tester: BoxTester) -> Iterator[BoxHits]:
         yield tester.hits(box[item], beam)
 
 
-def azimuth_spans(tester: BoxTester) -> tuple[Floats, Floats]:
-    """Return the first and last azimuth (N,) of boxes [rad]; a full circle for one on the axis."""
-    (middle, half, _, _), off_axis = _windows(tester)
-    half = np.where(off_axis, half, np.pi)
-    return middle - half, middle + half
+def azimuth_spans(tester: BoxTester) -> tuple[tuple[Floats, Floats], Flags]:
+    """Return the first and last azimuth (N,) of boxes [rad], and which may be hit, by elevation."""
+    (middle, half, low, high), off_axis = _windows(tester)
+    half, channels = np.where(off_axis, half, np.pi), tester.lidar.elevations
+    among = (low <= channels.max()) & (high >= channels.min())
+    return (middle - half, middle + half), among | ~off_axis
 
 
 def _windows(tester: BoxTester) -> tuple[tuple[Floats, Floats, Floats, Floats], Flags]:

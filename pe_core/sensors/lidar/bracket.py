@@ -62,10 +62,7 @@ class Bracket:
 
 
 def bracket(
-    points: Sequence[Singles],
-    ground_from_sensor: Floats,
-    slopes: SlopeBounds,
-    azimuth_count: int,
+    points: Sequence[Singles], ground_from_sensor: Floats, slopes: SlopeBounds, azimuth_count: int
 ) -> Bracket:
     """Bound the number of beams through unit cubes, without a vehicle.
 

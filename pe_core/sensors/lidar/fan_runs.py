@@ -56,8 +56,9 @@ class ChannelRuns:
     """Runs of a fan's channels through boxes, (R,) each.
 
     A run is the channels from `low` to below `high` at azimuth step `column`. `near` and `far` are
-    the inverse horizontal distances at which the plane enters and leaves the box [1/m]. A run is
-    `unsure` where rounding could decide which channels these are.
+    the inverse horizontal distances at which the plane enters and leaves the box [1/m]; of a tilted
+    LiDAR those of the box's nearest and farthest point. A run is `unsure` where rounding could
+    decide which channels these are.
     """
 
     box: Ints

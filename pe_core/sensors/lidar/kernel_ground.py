@@ -7,7 +7,6 @@ that hold points of the segment are marked: both of its ends, and points between
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,14 +56,6 @@ class LidarGround(GroundKernel):
         segments = GroundSegments.of(self._view.grid, sensor.pose.position, (x, y), first, last)
         marked = _squares_of(self._view.grid, segments)
         return VisibleGround(sensor, marked, beams.approximate)
-
-    def share_cache(self, cache: BeamCache) -> None:
-        """Use the beam cache of another kernel."""
-        self.cache = cache
-
-    def keep_only(self, sensors: Collection[Sensor]) -> None:
-        """Drop the cached beams of all other sensors."""
-        self.cache.keep_only(sensors)
 
     def _low_parts(self, sensor: Sensor, components: list[Floats]) -> tuple[Floats, Floats]:
         """Distances (B,) between which beams are low enough, above the grid and in range [m]."""

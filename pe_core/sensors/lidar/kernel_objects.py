@@ -2,18 +2,19 @@
 
 An upright LiDAR's beams are counted azimuth by azimuth, as runs of channels (`planar_clip`). Where
 rounding, the range or the vehicle could decide, the beams are tested one by one, as the definition
-does. A tilted LiDAR is counted in the same way where each object stands alone. In traffic, and with
-too many fans, every beam that may hit a box is tested.
+does. A tilted LiDAR is counted in the same way. With too many fans every beam that may hit a box is
+tested.
 
 In traffic the boxes of a scene occlude each other. At one azimuth they stand one behind the other:
 the beams of each box are bits, and each box takes the bits that no nearer box has taken
 (`FanTraffic`). Where two boxes overlap along the ray, or their order is unsure, the hits are
-compared beam by beam.
+compared beam by beam. Of a tilted LiDAR the order is that of whole boxes: of those that are as far
+away as each other, the hits are compared, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +22,7 @@ from numpy.typing import NDArray
 from ...scene.rig import Sensor
 from ..object_kernel import ObjectKernel, ObjectView, PlacedBoxes
 from .beams import BeamCache
-from .box_hits import (
-    BoxTester,
-    FanBeams,
-    azimuth_spans,
-    candidate_hits,
-    concatenated,
-    nearest_hits,
-)
+from .box_hits import BoxTester, FanBeams, azimuth_spans, candidate_hits, concatenated, nearest_hits
 from .definition import BoxHits
 from .fan_runs import ChannelRuns, RotatedFan, RunBlock, fans_of
 from .lattice import lattice_of
@@ -58,20 +52,20 @@ class LidarObjects(ObjectKernel):
     """Counts beams that end on objects."""
 
     def __init__(self, view: ObjectView) -> None:
-        self._view, self._cache = view, BeamCache(view.vehicle)
+        self._view, self.cache = view, BeamCache(view.vehicle)
 
     def measure(self, sensor: Sensor) -> Floats:
         """Count the beams (N,) that end on each object; equal to the definition."""
-        cache, view = self._cache, self._view
+        cache, view = self.cache, self._view
         boxes = PlacedBoxes.of(view.objects, sensor.pose.position)
         ends = cache.cast(sensor, approximate=False).ends
         tester = BoxTester(sensor, boxes, cache.rotated(sensor), ends)
         scenes = view.objects.scenes if view.traffic else None
         return _count(tester, scenes).astype(float)
 
-    def keep_only(self, sensors: Collection[Sensor]) -> None:
-        """Drop the cached beams of all other sensors."""
-        self._cache.keep_only(sensors)
+    def unoccluded(self, sensor: Sensor) -> Floats:
+        """Count the beams (N,) that pass through each object."""
+        return LidarObjects(ObjectView(self._view.objects)).measure(sensor)
 
 
 def _count(tester: BoxTester, scenes: Ints | None) -> Ints:
@@ -84,11 +78,15 @@ def _count(tester: BoxTester, scenes: Ints | None) -> Ints:
         below_sensor = tester.hits_of_all_beams(np.flatnonzero(~planar.beside))
         if scenes is None:
             return tester.count(below_sensor) + _count_alone(tester, _upright(tester, planar))
-        return _count_traffic(tester, planar, below_sensor, scenes)
-    if few and scenes is None:
+        unsorted = np.unique(scenes[~planar.beside])
+        return _count_traffic(tester, _upright(tester, planar), below_sensor, scenes, unsorted)
+    if few:
         tilted = TiltedBoxes.of(tester.boxes, tester.sensor.pose.ground_from_sensor)
         around_sensor = tester.hits_of_all_beams(np.flatnonzero(~tilted.outside))
-        return tester.count(around_sensor) + _count_alone(tester, _tilted(tester, tilted))
+        if scenes is None:
+            return tester.count(around_sensor) + _count_alone(tester, _tilted(tester, tilted))
+        unsorted = np.unique(scenes[~tilted.outside])
+        return _count_traffic(tester, _tilted(tester, tilted), around_sensor, scenes, unsorted)
     return _count_candidates(tester, scenes)
 
 
@@ -120,17 +118,21 @@ def _count_alone(tester: BoxTester, blocks: Iterator[tuple[FanBeams, RunBlock]])
 
 
 def _count_traffic(
-    tester: BoxTester, planar: PlanarBoxes, below_sensor: BoxHits, scenes: Ints
+    tester: BoxTester,
+    blocks: Iterator[tuple[FanBeams, RunBlock]],
+    others: BoxHits,
+    scenes: Ints,
+    unsorted_scenes: Ints,
 ) -> Ints:
-    """Count where the boxes of a scene occlude each other.
+    """Count from blocks of runs, where the boxes of a scene occlude each other.
 
-    `below_sensor` are hits of boxes above or below the sensor. Their scenes are compared beam by
-    beam.
+    `others` are hits of boxes that have no runs: those above, below or round the sensor. Their
+    scenes, `unsorted_scenes`, are compared beam by beam.
     """
     counts = np.zeros(len(scenes), np.int64)
-    hits, unsorted_scenes = [below_sensor], np.unique(scenes[~planar.beside])
+    hits = [others]
     traffic: dict[int, FanTraffic] = {}
-    for fan, block in _upright(tester, planar):
+    for fan, block in blocks:
         of_fan = traffic.setdefault(id(fan), FanTraffic(tester, fan, scenes, unsorted_scenes))
         of_fan.add(fan.existing(block.take(block.unsure | (block.low < block.high))))
     for of_fan in traffic.values():
@@ -157,10 +159,10 @@ def _upright(tester: BoxTester, planar: PlanarBoxes) -> Iterator[tuple[FanBeams,
 def _tilted(tester: BoxTester, tilted: TiltedBoxes) -> Iterator[tuple[FanBeams, RunBlock]]:
     """Yield the runs of a tilted LiDAR through all boxes it is outside of, fan by fan."""
     lidar, distance = tester.lidar, 1.0 / tilted.near
-    boxes = np.flatnonzero(tilted.outside & (distance <= lidar.max_range))
+    spans, among = azimuth_spans(tester)
+    boxes = np.flatnonzero(tilted.outside & (distance <= lidar.max_range) & among)
     beyond = tester.max_distances() >= lidar.max_range
     range_unsure = (distance <= lidar.min_range) | beyond
-    spans = azimuth_spans(tester)
     for fan in fans_of(lidar):
         beams = FanBeams.of(fan, lattice_of(lidar), tester.ends, range_unsure)
         in_sensor = RotatedFan.of(fan, 0.0, lidar.azimuth_step, lidar.azimuth_count)

@@ -217,10 +217,6 @@ class LidarSample(SampleKernel):
         names = {sensor.name for sensor in sensors}
         self._unoccluded = {n: counts for n, counts in self._unoccluded.items() if n in names}
 
-    def share_cache(self, cache: BeamCache) -> None:
-        """Use the beam cache of another kernel."""
-        self.cache = cache
-
     def _placed(self, sensor: Sensor, ends: BeamEnds) -> PlacedLidar:
         side = self._space.interval
         return PlacedLidar(

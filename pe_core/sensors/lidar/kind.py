@@ -19,6 +19,7 @@ from ..ground_kernel import GroundView
 from ..kernels import Floats, Voxels
 from ..kind import Kind, derived_object_curves
 from ..object_kernel import ObjectView
+from ..weather import Weather, lidar_range, limited
 from . import sensor_table
 from .definition import count_beams, count_on_objects
 from .field_of_view import beam_patch, revolution_mask
@@ -47,6 +48,7 @@ class LidarKind(Kind):
     name, label, plural, unit = "lidar", "LiDAR", "LiDARs", "beams"
     model = Lidar
     curve = POINTPILLARS
+    weather_limits_range = True
     object_curves = OBJECT_CURVES
     counts_points = True
     keys = sensor_table.KEYS
@@ -70,6 +72,10 @@ class LidarKind(Kind):
     def write(self, model: Lidar) -> dict[str, Any]:
         """Return a LiDAR's table."""
         return sensor_table.write(model)
+
+    def in_weather(self, model: Lidar, weather: Weather) -> Lidar:
+        """Limit the range: see `lidar_range`."""
+        return limited(model, lidar_range(model.max_range, weather))
 
     def data_sheet(self, model: Lidar) -> list[str]:
         """Return the channels, azimuths, number of beams and range, a line each."""

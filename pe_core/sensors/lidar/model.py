@@ -98,10 +98,7 @@ class Lidar(SensorModel):
             object.__setattr__(self, key, value)
         if not len(self.azimuth_steps):
             raise InputError(
-                name,
-                "horizontal_fov",
-                "a range with at least one azimuth",
-                self.horizontal_fov,
+                name, "horizontal_fov", "a range with at least one azimuth", self.horizontal_fov
             )
         if self.beam_count > MAX_BEAMS:
             raise InputError(name, "elevations", f"at most {MAX_BEAMS} beams", self.beam_count)

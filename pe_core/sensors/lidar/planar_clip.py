@@ -45,8 +45,10 @@ SMALL_RISE = 1e-6
 """A box with a pair between ZERO_RISE and this is unsure."""
 TINY_RISE = 1e-30
 """Replaces a rise of 0 as a divisor."""
+NEAR, FAR, MAX_PAIRS = 3, 6, 9
+"""Sides that may face a sensor and away from it, and the most pairs of them that differ."""
 DISTANCE_MARGIN_M = 1e-3
-"""Subtracted from a box's distance, against rounding."""
+"""Distances of a box's nearest and farthest point are moved apart by this, against rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,11 +129,7 @@ def upright_runs(
 
 
 def _upright_block(
-    fan: RotatedFan,
-    boxes: PlacedBoxes,
-    planar: PlanarBoxes,
-    box: Ints,
-    column: NDArray[np.int32],
+    fan: RotatedFan, boxes: PlacedBoxes, planar: PlanarBoxes, box: Ints, column: NDArray[np.int32]
 ) -> RunBlock:
     x, y = (np.take(w, column) for w in fan.rays)
     buffer = np.empty(column.shape)
@@ -186,13 +184,14 @@ class TiltedBoxes:
 
     `bounds` are slopes by pair of sides, `unsure` flags boxes that rounding could decide, `outside`
     those that the sensor is clearly outside of; `near` is an inverse distance no smaller than that
-    of any point of the box [1/m].
+    of any point of the box, `far` one no larger [1/m].
     """
 
     bounds: tuple[PairBound, ...]
     unsure: Flags
     outside: Flags
     near: Floats
+    far: Floats
 
     @classmethod
     def of(cls, boxes: PlacedBoxes, ground_from_sensor: Floats) -> TiltedBoxes:
@@ -201,17 +200,20 @@ class TiltedBoxes:
         out = np.abs(boxes.offsets) - boxes.halves
         near, far = _near_sides(boxes, axes, out), _far_sides(boxes, axes, out)
         bounds, unsure = [], np.abs(out).min(axis=1) < IN_LINE_M
-        for one in near:
-            for other in far:
-                x, y, rise = one - other
-                unsure |= (np.abs(rise) > ZERO_RISE) & (np.abs(rise) < SMALL_RISE)
-                rise = np.where(np.abs(rise) > ZERO_RISE, rise, TINY_RISE)
-                lower = rise > 0.0
-                limits = np.where(lower, 0.0, -np.inf), np.where(lower, np.inf, 0.0)
-                bounds.append(PairBound(-x / rise, -y / rise, *limits))
+        for first, second in _different_pairs(out):
+            rows = np.arange(len(out))
+            x, y, rise = (near[first, :, rows] - far[second, :, rows]).T
+            unsure |= (np.abs(rise) > ZERO_RISE) & (np.abs(rise) < SMALL_RISE)
+            rise = np.where(np.abs(rise) > ZERO_RISE, rise, TINY_RISE)
+            lower = rise > 0.0
+            limits = np.where(lower, 0.0, -np.inf), np.where(lower, np.inf, 0.0)
+            bounds.append(PairBound(-x / rise, -y / rise, *limits))
         beyond = np.maximum(out, 0.0)
         distance = np.maximum(np.sqrt(dot(beyond, beyond)) - DISTANCE_MARGIN_M, DISTANCE_MARGIN_M)
-        return cls(tuple(bounds), unsure, out.max(axis=1) > IN_LINE_M, 1.0 / distance)
+        corner = np.abs(boxes.offsets) + boxes.halves
+        farthest = np.sqrt(dot(corner, corner)) + DISTANCE_MARGIN_M
+        outside = out.max(axis=1) > IN_LINE_M
+        return cls(tuple(bounds), unsure, outside, 1.0 / distance, 1.0 / farthest)
 
 
 def _axes_in_sensor(boxes: PlacedBoxes, ground_from_sensor: Floats) -> list[Floats]:
@@ -222,8 +224,19 @@ def _axes_in_sensor(boxes: PlacedBoxes, ground_from_sensor: Floats) -> list[Floa
     return [rotate(ground_from_sensor.T, np.stack(w, axis=1)).T for w in axes]
 
 
-def _near_sides(boxes: PlacedBoxes, axes: list[Floats], out: Floats) -> list[Floats]:
-    """Inverse distances of the three sides that may face the sensor, (3, N) each.
+def _different_pairs(out: Floats) -> Iterator[Ints]:
+    """Yield near and far sides (2, N) of each box, pair by pair; the last one again and again."""
+    facing = out > 0.0
+    near, far = np.divmod(np.arange(NEAR * FAR), FAR)
+    different = facing[:, near] & ((far % 2 == 0) | ~facing[:, far // 2])
+    order = np.argsort(~different, axis=1, kind="stable")[:, :MAX_PAIRS]
+    last = np.minimum(np.arange(MAX_PAIRS), different.sum(axis=1)[:, None] - 1)
+    for column in np.take_along_axis(order, np.maximum(last, 0), axis=1).T:
+        yield np.stack(np.divmod(column, FAR))
+
+
+def _near_sides(boxes: PlacedBoxes, axes: list[Floats], out: Floats) -> Floats:
+    """Inverse distances (3, 3, N) of the three sides that may face the sensor.
 
     One that does not face it is replaced by one that does.
     """
@@ -234,11 +247,11 @@ def _near_sides(boxes: PlacedBoxes, axes: list[Floats], out: Floats) -> list[Flo
             sides.append(axis / (at - np.copysign(boxes.halves[:, k], at)))
     best = np.argmax(out, axis=1)  # a side that faces the sensor
     facing = np.stack(sides)[best, :, np.arange(len(best))].T
-    return [np.where(out[:, k] > 0.0, side, facing) for k, side in enumerate(sides)]
+    return np.stack([np.where(out[:, k] > 0.0, side, facing) for k, side in enumerate(sides)])
 
 
-def _far_sides(boxes: PlacedBoxes, axes: list[Floats], out: Floats) -> list[Floats]:
-    """Inverse distances of the six sides that may face away from the sensor, (3, N) each."""
+def _far_sides(boxes: PlacedBoxes, axes: list[Floats], out: Floats) -> Floats:
+    """Inverse distances (6, 3, N) of the six sides that may face away from the sensor."""
     sides = []
     with np.errstate(divide="ignore", invalid="ignore"):  # of sides that face the sensor
         for k, axis in enumerate(axes):
@@ -246,7 +259,7 @@ def _far_sides(boxes: PlacedBoxes, axes: list[Floats], out: Floats) -> list[Floa
             half = np.copysign(boxes.halves[:, k], at)
             back, front = axis / (at + half), axis / (at - half)
             sides += [back, np.where(out[:, k] > 0.0, back, front)]
-    return sides
+    return np.stack(sides)
 
 
 def tilted_runs(
@@ -280,5 +293,5 @@ def _tilted_block(
     last[missed] = 0
     np.maximum(last, first, out=last)
     column[column >= fan.count] -= fan.count
-    near = np.broadcast_to(boxes.near[box], column.shape)
-    return RunBlock(box, column, first, last, near, near, unsure)
+    near, far = (np.broadcast_to(w[box], column.shape) for w in (boxes.near, boxes.far))
+    return RunBlock(box, column, first, last, near, far, unsure)

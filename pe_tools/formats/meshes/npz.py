@@ -39,7 +39,7 @@ class Header(NamedTuple):
         return math.prod(self.shape) * self.dtype.itemsize
 
 
-class Archive:
+class NpzArchive:
     """The arrays of a mesh in an archive; `headers` has the header of each existing array.
 
     Raises
@@ -56,7 +56,7 @@ class Archive:
         self._members = self._find()
         self.headers = {name: self._header(name) for name in self._members}
 
-    def __enter__(self) -> Archive:
+    def __enter__(self) -> NpzArchive:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -130,7 +130,7 @@ def read_npz(path: Path, data: bytes) -> Mesh:
     # A single .npy array, or another file that NumPy can load, is not an archive.
     if not data.startswith(b"PK"):
         raise InputError(source, "file", "a NumPy .npz archive", "another format")
-    with one_line_errors(source), Archive(source, data) as archive:
+    with one_line_errors(source), NpzArchive(source, data) as archive:
         faces = _check(source, archive.headers)
         arrays = {name: archive.array(name) for name in archive.headers}
         names = _names(arrays.get("part_names"), path.stem)

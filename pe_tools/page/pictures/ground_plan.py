@@ -21,12 +21,13 @@ Floats = NDArray[np.float64]
 PlanBounds = tuple[tuple[float, float], tuple[float, float]]
 
 WIDTH, MAX_HEIGHT = 440.0, 330.0
-LEFT, RIGHT, TOP, BOTTOM = 32.0, 20.0, 8.0, 24.0
+LEFT, RIGHT, TOP, BOTTOM = 36.0, 20.0, 8.0, 24.0
 """Margins of the plan for its numbers."""
 OUTLINE_M, MAX_SQUARES = 0.04, 600
 """Cell size of the grid an outline is computed on, and the limit of cells along a side."""
 TICKS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
-MAX_NUMBERS = 9
+MAX_NUMBERS, NUMBER_HEIGHT = 9, 16.0
+"""Numbers along x at most, and distance of two numbers along y at least."""
 RINGS = (10.0, 40.0)
 """Radii between the zones near, middle and far [m]."""
 KEY_HEIGHT, KEY_WIDTH = 34.0, 210.0
@@ -68,7 +69,8 @@ class PlanDrawing:
         """Draw the border, with metres along it."""
         size = {"width": self.width, "height": self.height}
         self.canvas.add("rect", x=self.left, y=TOP, css="axis", **size)
-        step = next((t for t in TICKS if (self.x1 - self.x0) / t <= MAX_NUMBERS), TICKS[-1])
+        apart = max((self.x1 - self.x0) / MAX_NUMBERS, NUMBER_HEIGHT / self.scale)
+        step = next((t for t in TICKS if t >= apart), TICKS[-1])
         for x in _ticks(self.x0, self.x1, step):
             right, down = self.point(x, self.y0)
             self.canvas.add("path", d=f"M{right:.1f} {down:.1f}v4", css="axis")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +26,10 @@ PLAN_WIDTH, PIXELS = 330.0, 760
 """Width of the drawing, and pixels along the longer side of its zone."""
 HATCH_PX = 4
 AROUND_M = 1.0
-"""Ground that is shown round vehicle and zone."""
+"""Ground that is shown round the vehicle and the zone with its margin."""
 CONTOUR_CELLS = 220
-SPOT_M = 0.3
-"""Size at which samples of paths and single spots are drawn at least."""
+LETTER = 7.5
+"""Width of a letter of a plan's text, at most."""
 
 
 def requirement_plan(verdict: requirements.Verdict, vehicle: pe.Vehicle | None, alt: str) -> Markup:
@@ -38,7 +39,7 @@ def requirement_plan(verdict: requirements.Verdict, vehicle: pe.Vehicle | None, 
     grown, or shrunk, by the margin. A cross marks the worst sample.
     """
     zone = verdict.samples.zone
-    bounds = _bounds(zone, vehicle)
+    bounds = _bounds(verdict, vehicle)
     plan = PlanDrawing(bounds, alt, width=PLAN_WIDTH)
     plan.cells(_sample_png(verdict, bounds))
     color = MET if verdict.met else NOT_MET
@@ -54,8 +55,11 @@ def requirement_plan(verdict: requirements.Verdict, vehicle: pe.Vehicle | None, 
     return plan.canvas.svg()
 
 
-def _bounds(zone: requirements.PlacedZone, vehicle: pe.Vehicle | None) -> PlanBounds:
-    low, high = zone.bounds
+def _bounds(verdict: requirements.Verdict, vehicle: pe.Vehicle | None) -> PlanBounds:
+    """Return the ground of a plan: the zone, grown by its margin, and the vehicle."""
+    low, high = verdict.samples.zone.bounds
+    grown = max(verdict.margin or 0.0, 0.0)
+    low, high = low - grown, high + grown
     if vehicle is not None:
         low = np.minimum(low, vehicle.bounds[0][:2])
         high = np.maximum(high, vehicle.bounds[1][:2])
@@ -68,8 +72,9 @@ def _sample_png(verdict: requirements.Verdict, bounds: PlanBounds) -> bytes:
     (x0, x1), (y0, y1) = bounds
     scale = PIXELS / max(x1 - x0, y1 - y0)
     shape = math.ceil((y1 - y0) * scale), math.ceil((x1 - x0) * scale)
-    passed, failed, size = _marked(verdict)
-    met, missed = (_blocks(p - [x0, y0], size, scale, shape) for p in (passed, failed))
+    passed, failed, size = graphics.painted_samples(verdict)
+    within = _within(verdict.samples.zone, (x0, y0), scale, shape)
+    met, missed = (_blocks(p - [x0, y0], size, scale, shape) & within for p in (passed, failed))
     rows, columns = np.indices(shape)
     line = (rows + columns) % (2 * HATCH_PX) < HATCH_PX
     pixels = np.zeros((*shape, 4), np.uint8)
@@ -78,19 +83,25 @@ def _sample_png(verdict: requirements.Verdict, bounds: PlanBounds) -> bytes:
     return graphics.png_bytes(pixels[::-1])
 
 
-def _marked(verdict: requirements.Verdict) -> tuple[Floats, Floats, float]:
-    """Return the places that pass (N, 2), those that fail (M, 2), and the size of one [m]."""
-    samples = verdict.samples
-    if verdict.blind is not None and verdict.cells is not None:
-        cells, mask = verdict.cells, samples.mask
-        places = np.stack(np.meshgrid(cells.x, cells.y, indexing="ij"), axis=-1)
-        inside = np.ones(verdict.blind.shape, bool) if mask is None else mask
-        return places[inside & ~verdict.blind], places[inside & verdict.blind], cells.step
-    inside, ok = samples.inside, verdict.passed
-    size = samples.zone.zone.step
-    if samples.zone.kind in ("path", "spots"):
-        size = max(size, SPOT_M)
-    return samples.points[inside & ok], samples.points[inside & ~ok], size
+def _within(
+    zone: requirements.PlacedZone, low: tuple[float, float], scale: float, shape: tuple[int, int]
+) -> Flags:
+    """Return an image (H, W) of the zone: samples at its edge are not painted beyond it.
+
+    A pixel is inside where a line to its right crosses the outlines an odd number of times. Paths
+    and spots have no inside: all of the image is returned.
+    """
+    if zone.kind not in ("area", "ring"):
+        return np.ones(shape, bool)
+    image = np.zeros(shape, bool)
+    columns, rows = (np.arange(n) + 0.5 for n in shape[::-1])
+    for line in zone.outlines:
+        corners = (line - low) * scale
+        for (ax, ay), (bx, by) in pairwise(corners.tolist()):
+            crossed = (ay <= rows) != (by <= rows)
+            at = ax + (rows[crossed] - ay) * (bx - ax) / (by - ay) if ay != by else rows[:0]
+            image[crossed] ^= columns[None] < at[:, None]
+    return image
 
 
 def _blocks(points: Floats, size: float, scale: float, shape: tuple[int, int]) -> Flags:
@@ -120,7 +131,8 @@ def _draw_margin(plan: PlanDrawing, verdict: requirements.Verdict, bounds: PlanB
     x, y = max(np.concatenate(lines).tolist(), key=lambda point: point[0] - point[1])
     sign = "\N{GREATER-THAN OR EQUAL TO} " if verdict.at_least else ""
     text = f"{sign}{number(verdict.margin)} m"
-    plan.canvas.text(x - 4.0, max(y - 5.0, 20.0), text, text_anchor="end", css="strong halo")
+    right = max(x - 4.0, plan.left + LETTER * (len(text) + 1))
+    plan.canvas.text(right, max(y - 5.0, 20.0), text, text_anchor="end", css="strong halo")
 
 
 def _draw_worst(plan: PlanDrawing, worst: tuple[float, float]) -> None:

@@ -46,6 +46,8 @@ SIDES = {"behind": -180.0, "right": -90.0, "ahead": 0.0, "left": 90.0, "behind "
 """Azimuths that are labelled [deg]; both ends of a full circle are behind."""
 FIGURES_RAD = math.radians(80.0)
 """Half the azimuth range in which persons and cars stand before a LiDAR."""
+FIELD_PX = 2
+"""Pixels for each range and azimuth of a picture of detections."""
 KEY_WIDTH = 190.0
 SMALL_BOX = scene.Housing("box", (0.05, 0.06, 0.05), (0.025, 0.0, 0.025))
 """About the size of a camera module."""
@@ -307,6 +309,34 @@ def _elevation_labels(ranges: kinds.RangePicture, height: int) -> tuple[tuple[fl
     return labels if len(ranges.elevations) > 1 else labels[:1]
 
 
+def field_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Markup:
+    """Return what a radar or an ultrasonic sensor detects by range and azimuth, with a caption."""
+    kind = kinds.kind_of(sensor)
+    picture = kind.field_picture(sensor, vehicle)
+    assert picture is not None
+    colors = graphics.field_colors(picture)
+    colors = np.repeat(np.repeat(colors, FIELD_PX, axis=0), FIELD_PX, axis=1)
+    height, width = colors.shape[:2]
+    png = graphics.png_bytes(graphics.as_bytes(colors))
+    degrees = np.degrees(picture.azimuths[[0, len(picture.azimuths) // 2, -1]]).tolist()
+    bottom = zip((0.0, width / 2.0, float(width)), degrees, strict=True)
+    far = float(picture.ranges[0] + picture.ranges[-1])  # they are middles of equal steps
+    ends = far, far / 2.0
+    left = zip((0.0, height / 2.0), ends, strict=True)
+    shown = LabelledPicture(
+        *(png, width, height, ()),
+        tuple((x, f"{signed(a, 0)}°") for x, a in bottom),
+        tuple((y, f"{r:.3g} m") for y, r in left),
+    )
+    alt = f"What {sensor.name} detects by range and azimuth"
+    caption = (
+        f"Range upwards, azimuth across, left is left: {kind.unit} of a {picture.target} whose "
+        f"middle is {picture.height_m:.2f} m high. Bright is many; orange: hidden by the vehicle; "
+        "grey: not detected."
+    )
+    return figure(shown.svg(alt), caption)
+
+
 def range_key(far_m: float) -> Markup:
     """Return the key of a range image: its colours from near to far."""
     alt = f"Key: near is bright, {far_m:g} m is dark; orange is the own body"
@@ -333,6 +363,14 @@ SENSOR_VIEWS = {
         housing=scene.Housing("cylinder", (0.11, 0.11, 0.08), (0.0, 0.0, 0.04)),
     ),
     "camera": SensorView(camera_figure, camera_picture, image_field=camera_field),
+    "radar": SensorView(
+        field_figure,
+        housing=scene.Housing("box", (0.03, 0.13, 0.09), (0.015, 0.0, 0.0)),
+    ),
+    "ultrasonic": SensorView(
+        field_figure,
+        housing=scene.Housing("box", (0.02, 0.03, 0.03), (0.01, 0.0, 0.0)),
+    ),
 }
 """A row for each kind of sensor, by its name."""
 OTHER_KIND = SensorView(_parameter_figure)

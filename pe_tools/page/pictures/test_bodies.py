@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import pe_core as pe
 from pe_core import sensors as kinds
 from pe_core.scoring import requirements
-from pe_core.scoring.requirements.criteria import placed
+from pe_core.scoring.requirements.definition import placed
 
 from .painted_mesh import Paint, PaintedMesh, capped
 from .reference_figures import ReferenceFigure
@@ -58,6 +58,10 @@ class WorstBody:
         paint = MET_PAINT if self.verdict.met else NOT_MET_PAINT
         low, high = self.body.low, self.body.low + self.body.size[2]
         shapes = [self._solid(low, high, self.body.size[:2])]
+        if self.body.shape is not None:
+            c, s = np.cos(self.body.headings[0]), np.sin(self.body.headings[0])
+            turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+            shapes = [self.body.shape.triangles @ turn + np.array([0.0, 0.0, low])]
         if low > 0.0:
             shapes.append(self._solid(0.0, low, (POLE_M, POLE_M)))
         triangles = np.concatenate(shapes) + np.array(self.foot)
@@ -95,7 +99,10 @@ def worst_bodies(
         foot = (*verdict.worst, verdict.requirement.zone.z[0])
         objects = placed(body, [foot], body.headings, False)
         measured = kinds.ObjectMeasurementCache(objects, vehicle).measure(rig)
-        counts = {name: float(m.min()) for name, m in measured.items()}
+        counts = {
+            name: float(m.reshape(-1, body.box_count).max(axis=1).min())
+            for name, m in measured.items()
+        }
         found.append(WorstBody(number, verdict, body, foot, counts))
     return tuple(found)
 

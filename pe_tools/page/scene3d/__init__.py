@@ -46,6 +46,12 @@ LAYER_TEXT = {
     "occluded": "occluded by the vehicle",
     "ground": "footprint on the ground",
 }
+TEXTS = {
+    "look_from": "Look from {name}",
+    "from": "From {name}",
+    "from_middle": "From {name}, the middle of its view",
+}
+"""Texts of the view's program; {name} is a sensor's name."""
 INITIAL_LAYERS = {"fov", "occluded"}
 LABEL = (
     "3-D view of the vehicle and its sensors. Arrow keys turn it, plus and minus change the "
@@ -74,6 +80,7 @@ def scene_data(context: ReportContext) -> dict[str, Any]:
             for number, sensor in enumerate(context.rig)
         ],
         "maps": maps_data(context.sight, context.rig),
+        "texts": TEXTS,
     }
 
 

@@ -2,6 +2,12 @@
 
 const RISE = 26, GAP = 3, LONGEST = 28;
 
+let texts = {};  // of the page's language; all views of a page have the same
+
+function textWith(key, name) {
+  return texts[key].replace("{name}", () => name);
+}
+
 function shortened(name) {
   return name.length > LONGEST ? `${name.slice(0, LONGEST - 1)}…` : name;
 }
@@ -11,7 +17,7 @@ function sensorLabel(sensor, onClick) {
   label.type = "button";
   label.tabIndex = -1;  // keyboards reach the same button in the table
   label.style.setProperty("--tint", sensor.color);
-  label.title = `Look from ${sensor.name}`;
+  label.title = textWith("look_from", sensor.name);
   label.addEventListener("click", onClick);
   return { label, at: new T.Vector3(...sensor.at), rise: RISE };
 }

@@ -128,6 +128,7 @@ function viewOf(root, data) {
 
 function begin(root) {
   const data = JSON.parse(document.getElementById(`data-${root.dataset.section}-${root.dataset.key}`).textContent);
+  texts = data.texts;
   const view = viewOf(root, data);
   if (!view) return;
   root.querySelector(".v3-still").hidden = true;

@@ -54,7 +54,7 @@ function fittingFov(field, aspect) {
 
 function captionOf(sensor) {
   const wider = sensor.field && Math.max(...sensor.field) > WIDEST;
-  return `From ${sensor.name}${wider ? ", the middle of its view" : ""}`;
+  return textWith(wider ? "from_middle" : "from", sensor.name);
 }
 
 /* Look from a sensor; dragging turns the view about a point just ahead of the eye. */

@@ -55,10 +55,13 @@ def question(context: ReportContext) -> Markup:
     """Return the question of the study: which sensors, which vehicle, classes and space."""
     space, prior = context.study.space, context.study.prior
     names = joined([f"a {escaped(name)}" for name in prior.class_names])
-    where = f"{_span(space.x)} m ahead and behind, {_span(space.y)} m to the sides"
-    rig = f"{_sensor_counts(context)} on {_vehicle_text(context)}"
+    rig, vehicle = _sensor_counts(context), _vehicle_text(context)
+    x, y = _span(space.x), _span(space.y)
     end = " Are there better positions for them?" if context.was_searched else ""
-    return Markup(f"How well do {rig} see {names}, {where}?{end}")
+    return Markup(
+        f"How well do {rig} on {vehicle} see {names}, {x} m ahead and behind, {y} m to the "
+        f"sides?{end}"
+    )
 
 
 def answer(context: ReportContext) -> Markup:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import pe_core as pe
 from pe_core.scoring import requirements
@@ -14,7 +14,7 @@ from ..pictures.svg import STYLE, figure, figure_grid
 from ..pictures.test_bodies import WorstBody, count_text, worst_bodies
 from ..report_context import ReportContext, Section
 
-HEADS = ("requirement", "verdict", "margin", "worst place", "why not seen", "fails without")
+HEADS = ("requirement", "verdict", "margin", "worst place (x, y)", "why not seen", "fails without")
 TAGS = {
     True: Markup('<span class="tag met">met</span>'),
     False: Markup('<span class="tag not-met">not met</span>'),
@@ -22,6 +22,9 @@ TAGS = {
 CSS = """
 .tag { display: inline-block; padding: .05rem .5rem; border-radius: 3px; color: #fff;
   font-weight: 600; white-space: nowrap; }
+.verdicts .whole, .counts td { white-space: nowrap; }
+table.verdicts td { overflow-wrap: break-word; } .verdicts td:nth-child(3) { min-width: 7.5rem; }
+.verdicts small { color: var(--soft); }
 .tag.met { background: #1a7f4b; } .tag.not-met { background: #c4320a; }
 """
 NOTE = (
@@ -47,40 +50,35 @@ def _content(context: ReportContext) -> str:
     bodies = worst_bodies(verdicts, context.rig, context.vehicle)
     return (
         f"<p><b>{counted}.</b></p>"
-        f"{table('Requirements and their verdicts', HEADS, rows, css='words')}"
+        f"{table('Requirements and their verdicts', HEADS, rows, css='words verdicts')}"
         f'{figure_grid(plans, 17.0)}<p class="note">{NOTE}</p>'
         f"{_seen_bodies(context, bodies)}{_sources(verdicts)}"
     )
 
 
 def _row(number_of: int, verdict: requirements.Verdict) -> list[object]:
-    place = "none"
+    place = Markup("none")
     if verdict.worst is not None:
-        x, y = verdict.worst
-        what = f", {verdict.body}" if verdict.body else ""
-        place = f"x {number(x)}, y {number(y)} m{what}"
+        x, y = (f"{number(value)} m" for value in verdict.worst)
+        place = Markup(f'<span class="whole">{x}, {y}</span><br>{escaped(verdict.body or "")}')
+    preset = verdict.requirement.preset
+    identifier = (
+        f"<br><small>{escaped(preset)}</small>" if preset not in (None, verdict.name) else ""
+    )
     return [
-        f"{number_of} {verdict.name}",
+        Markup(f"{number_of} {escaped(verdict.name)}{identifier}"),
         TAGS[verdict.met],
         _margin(verdict),
         place,
-        "" if verdict.met else reasons_text(verdict.hidden),
+        "" if verdict.met else verdict.hidden_text,
         joined(list(verdict.breaks_without)),
     ]
 
 
-def reasons_text(hidden: Mapping[str, str]) -> str:
-    """Return why sensors do not see a body: "roof (left, right); out of view (rear)"."""
-    by_reason: dict[str, list[str]] = {}
-    for name, reason in hidden.items():
-        by_reason.setdefault(reason, []).append(name)
-    return "; ".join(f"{reason} ({', '.join(names)})" for reason, names in by_reason.items())
-
-
 def _margin(verdict: requirements.Verdict) -> str:
     if verdict.blind_m2 is not None:
-        return f"{number(verdict.blind_m2)} m² blind"
-    share = "" if verdict.met else f", {percent(verdict.share)} of the zone"
+        return verdict.margin_text.replace("m2", "m²").replace("margin ", "")
+    share = "" if verdict.met else f"; {percent(verdict.share)} of the zone pass"
     return f"{verdict.margin_text}{share}".removeprefix("margin ")
 
 
@@ -104,7 +102,7 @@ def _seen_bodies(context: ReportContext, bodies: tuple[WorstBody, ...]) -> str:
     pictures = figure_grid(_pictures(context, bodies), 24.0)
     return (
         "<h3>Test bodies as the sensors see them</h3>"
-        f"{table(caption, ('requirement', *names), rows)}{pictures}"
+        f"{table(caption, ('requirement', *names), rows, css='counts')}{pictures}"
     )
 
 

@@ -9,7 +9,7 @@ import pe_core as pe
 from pe_core import scene, search
 from pe_core.base.errors import plural
 
-from ... import advice
+from ... import advice, jobs
 from ..markup import ARROW, Markup, capitalized, escaped, number, signed, table, triple
 from ..report_context import ReportContext, Section
 
@@ -40,8 +40,19 @@ def _method_text(context: ReportContext) -> str:
     return (
         f"Method {escaped(settings.method)}, seed {settings.seed}: "
         f"{plural(context.outcome.evaluations, 'placement')} evaluated on {', then '.join(levels)} "
-        f"{what}.{stopped}"
+        f"{what}.{stopped}{_ended_text(context)}"
     )
+
+
+def _ended_text(context: ReportContext) -> str:
+    """Return why the search ended early, and where each of its starts ended."""
+    outcome = context.outcome
+    reason = jobs.stop_text(outcome.stop_reason, context.start.search.goals.stop)
+    sentences = [f" It {reason}."] if reason else []
+    for end in outcome.starts:
+        name = f"the start {escaped(end.name)}" if end.name else "the given start"
+        sentences.append(f" From {name}: {number(end.entropy, 4)} nats.")
+    return "".join(sentences)
 
 
 def _curve(context: ReportContext) -> str:

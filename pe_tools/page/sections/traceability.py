@@ -124,8 +124,14 @@ for (const button of document.querySelectorAll("button[data-copies]")) {
     const chosen = window.getSelection();
     chosen.removeAllRanges();
     chosen.addRange(range);
-    try { await navigator.clipboard.writeText(text.textContent); button.textContent = "Copied"; }
-    catch { button.textContent = document.execCommand("copy") ? "Copied" : "Selected"; }
+    try {
+      await navigator.clipboard.writeText(text.textContent);
+      button.textContent = button.dataset.copied;
+    }
+    catch {
+      const copied = document.execCommand("copy");
+      button.textContent = copied ? button.dataset.copied : button.dataset.selected;
+    }
   });
 }
 """
@@ -195,6 +201,7 @@ def _study_file(study: pe.Study, name: str, title: str) -> str:
     assert isinstance(text, bytes)
     lines = "\n".join(escaped(line) for line in text.decode().split("\n"))
     return (
-        f'<h3>{title}</h3><button type="button" data-copies="{name}" hidden>Copy</button>'
+        f'<h3>{title}</h3><button type="button" data-copies="{name}" data-copied="Copied" '
+        'data-selected="Selected" hidden>Copy</button>'
         f'<pre id="{name}" tabindex="0">{lines}</pre>'
     )

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..ranks import holm
-from .placements import Placement, placements
+from .placements import placements
 from .plan import ACROSS, FIXED, GRID, MIXED, PLAIN, StudyPlan
+from .posed_sensors import PosedSensors
 from .rank_tests import (
     PlacementSamples,
     Resample,
@@ -28,7 +29,8 @@ from .rank_tests import (
     pooled_noise,
     rho_within,
 )
-from .runs import Run, runs
+from .result_files import PlacementRun
+from .runs import runs
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY, ComparedScore
 
 Json = dict[str, Any]
@@ -37,6 +39,10 @@ Floats = NDArray[np.float64]
 HOLDS, REFUTED, UNDECIDED, OPEN = "holds", "refuted", "not decided", "open"
 FRESH = "mixed, fresh"
 """The mixed detector at placements that it was never trained with."""
+CAMERAS = "cameras"
+"""The study of camera placements."""
+WITH_PRIMARY_TEST = (FIXED, CAMERAS)
+"""Designs in which the primary score's test is the one that counts, without a correction."""
 MIN_SO_FAR = 6
 """Fewer placements give no figures at all."""
 MOSTLY_RIGHT = 2.0 / 3.0
@@ -50,7 +56,7 @@ class DesignResults:
     Attributes
     ----------
     name : str
-    chosen : list of Placement
+    chosen : list of PosedSensors
         Those with a result.
     samples : PlacementSamples
         Their AP, of the seeds that all of them have.
@@ -59,7 +65,7 @@ class DesignResults:
     """
 
     name: str
-    chosen: list[Placement]
+    chosen: Sequence[PosedSensors]
     samples: PlacementSamples
     done: int
     planned: int
@@ -86,7 +92,7 @@ def analysis(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, 
     scores : mapping
         Scores by the name of the placement, of all placements with results.
     """
-    tables = {d.name: _table(plan, d, scores) for d in designs_of(plan, results)}
+    tables = {d.name: design_table(plan, d, scores) for d in designs_of(plan, results)}
     pairs = _pairs(plan, results, scores)
     return {
         "runs": {"done": len(results), "planned": len(runs(plan))},
@@ -112,11 +118,14 @@ def _design(
         for r in runs(plan)
         if r.placement is not None and (r.world, r.detector) == step and r.design == name
     ]
-    return _of_runs(name, wanted, results)
+    return of_runs(name, wanted, results)
 
 
-def _of_runs(name: str, wanted: Sequence[Run], results: Mapping[str, Json]) -> DesignResults:
-    aps: dict[Placement, list[float]] = {}
+def of_runs(
+    name: str, wanted: Sequence[PlacementRun], results: Mapping[str, Json]
+) -> DesignResults:
+    """Return what runs with a detector a placement have found, as far as they are done."""
+    aps: dict[PosedSensors, list[float]] = {}
     for run in wanted:
         if run.name in results and run.placement is not None:
             aps.setdefault(run.placement, []).append(results[run.name]["ap"])
@@ -128,7 +137,7 @@ def _mixed(plan: StudyPlan, results: Mapping[str, Json], name: str) -> DesignRes
     """Return the placements at which the mixed detector was tested; only fresh ones for `FRESH`."""
     by_name = {p.name: p for p in placements(plan)}
     wanted = [run for run in runs(plan) if run.placement is None]
-    aps: dict[Placement, list[float]] = {}
+    aps: dict[PosedSensors, list[float]] = {}
     done = [run for run in wanted if run.name in results]
     for run in done:
         for placement, found in results[run.name]["placements"].items():
@@ -137,16 +146,16 @@ def _mixed(plan: StudyPlan, results: Mapping[str, Json], name: str) -> DesignRes
     return DesignResults(name, list(aps), _samples(aps), len(done), len(wanted))
 
 
-def _samples(aps: Mapping[Placement, Sequence[float]]) -> PlacementSamples:
+def _samples(aps: Mapping[PosedSensors, Sequence[float]]) -> PlacementSamples:
     """Return samples with the seeds that all placements have."""
     count = min(map(len, aps.values()), default=0)
     values = np.array([list(row)[:count] for row in aps.values()]).reshape(len(aps), count)
     groups = np.array([p.vehicle for p in aps])
-    return PlacementSamples(values, groups, np.array([f"{p.lidars} x {p.channels}" for p in aps]))
+    return PlacementSamples(values, groups, np.array([p.hardware for p in aps]))
 
 
 def _values(
-    score: ComparedScore, chosen: Sequence[Placement], scores: Mapping[str, Json]
+    score: ComparedScore, chosen: Sequence[PosedSensors], scores: Mapping[str, Json]
 ) -> Floats:
     return np.array([score.value(p, scores[p.name]) for p in chosen])
 
@@ -155,13 +164,13 @@ def _of_design(name: str) -> list[ComparedScore]:
     return [s for s in COMPARED if name == ACROSS or not s.across_only]
 
 
-def _table(plan: StudyPlan, design: DesignResults, scores: Mapping[str, Json]) -> Json:
+def design_table(plan: StudyPlan, design: DesignResults, scores: Mapping[str, Json]) -> Json:
     """Return the correlations of a design with each score."""
     head = {"done": design.done, "planned": design.planned, "placements": len(design.chosen)}
     if not design.has_figures:
         return {**head, "scores": {}}
     rows = {s.name: _row(plan, design, s, scores) for s in _of_design(design.name)}
-    primary = design.name == FIXED
+    primary = design.name in WITH_PRIMARY_TEST
     corrected = [name for name in rows if not (primary and name == PRIMARY)]
     for name, p in zip(corrected, holm([rows[n]["p"] for n in corrected]), strict=True):
         rows[name]["holm"] = p
@@ -241,7 +250,7 @@ def _pairs(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Js
         for run in runs(plan)
         if run.placement is not None and (run.world, run.detector) == (PLAIN, GRID)
     ]
-    design = _of_runs("pairs", both, results)
+    design = of_runs("pairs", both, results)
     head = {"done": sum(p.done for p in parts), "planned": sum(p.planned for p in parts)}
     if not all(part.has_figures for part in parts):
         return {**head, "scores": {}}
@@ -278,7 +287,7 @@ def _steps(plan: StudyPlan, results: Mapping[str, Json], scores: Mapping[str, Js
     for step in plan.steps:
         wanted = [r for r in runs(plan) if (r.world, r.detector) == (step.world, step.detector)]
         for name in (FIXED, ACROSS):
-            design = _of_runs(name, [r for r in wanted if r.design == name], results)
+            design = of_runs(name, [r for r in wanted if r.design == name], results)
             entry: Json = {"world": step.world, "detector": step.detector, "design": name}
             entry |= {"done": design.done, "planned": design.planned, "scores": {}}
             plain = _design(plan, name, results)

@@ -7,7 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .casting import LAYERS_M, MAX_COUNT, MAX_POINTS, Cloud, RegionObjects, RegionVoxels
+from .casting import (
+    LAYERS_M,
+    MAX_COUNT,
+    MAX_POINTS,
+    Cloud,
+    RegionObjects,
+    RegionPictures,
+    RegionVoxels,
+)
 from .plan import DetectionRegion
 from .scenes import CLASSES
 
@@ -31,14 +39,20 @@ NEITHER: Mirrors = (False, False)
 
 
 Inputs = Singles | tuple[Singles, NDArray[np.int32]]
-"""Of the network *grid*, or features of points and their pillars for the network *points*."""
+"""Of the network *grid* or that of pictures, or features of points and their pillars (*points*)."""
 FEATURES = 4
+WHITE = np.float32(255.0)
 
 
 def inputs(
     scenes: Sequence[RegionObjects], region: DetectionRegion, mirrors: Sequence[Mirrors]
 ) -> Inputs:
-    """Return the input of the network for scenes of its kind, mirrored along x, y."""
+    """Return the input of the network for scenes of its kind, mirrored along x, y.
+
+    Pictures are not mirrored: a rig's mirror image is another rig.
+    """
+    if pictures := [scene.pictures for scene in scenes if isinstance(scene, RegionPictures)]:
+        return np.stack(pictures).astype(np.float32) / WHITE
     if clouds := [scene for scene in scenes if isinstance(scene, Cloud)]:
         return point_inputs(clouds, region, mirrors)
     return voxel_inputs([s for s in scenes if isinstance(s, RegionVoxels)], region, mirrors)

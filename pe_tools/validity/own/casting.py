@@ -98,6 +98,63 @@ class Cloud(RegionObjects):
     points: NDArray[np.float32]
 
 
+@dataclass(frozen=True, slots=True)
+class RegionPictures(RegionObjects):
+    """Pictures of a scene: the input of the detector of cameras. Beams are pixels.
+
+    Attributes
+    ----------
+    pictures : (S, W, H, 3) uint8
+        Red, green and blue by camera, column and row.
+    """
+
+    pictures: NDArray[np.uint8]
+
+
+def region_objects(
+    content: Scene, beams: Ints, region: DetectionRegion
+) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.int32]]:
+    """Return centres, classes and beams of the objects in the region; beams (K,) are of all."""
+    inside = np.abs(content.centers) <= (region.x_m, region.y_m)
+    which = np.flatnonzero(inside.all(axis=1))
+    return (
+        content.centers[which].astype(np.float32),
+        content.labels[which].astype(np.uint8),
+        beams[which].astype(np.int32),
+    )
+
+
+def beams_on_objects(content: Scene, face: Ints) -> Ints:
+    """Return the number of beams that end on each object (K,), from their triangles (B,)."""
+    owners = content.owners[face[face >= 0]]
+    return np.bincount(owners[owners >= 0], minlength=len(content.labels))
+
+
+def first_hits(
+    tree: TriangleTree, flat: bool, origin: Floats, directions: Floats
+) -> tuple[Floats, Ints]:
+    """Return distance (B,) [m], inf for a miss, and triangle (B,), -1 for flat ground and misses.
+
+    Parameters
+    ----------
+    tree : TriangleTree
+    flat : bool
+        Whether there is flat ground at z = 0.
+    origin : (3,) float
+    directions : (B, 3) float
+        Unit directions, ground frame.
+    """
+    hits = VisibleTriangles(tree, origin).first_hit(directions)
+    distance, face = hits.distance, hits.face
+    if flat:
+        down = directions[:, 2]
+        with np.errstate(divide="ignore"):
+            to_ground = np.where(down < 0.0, -origin[2] / down, np.inf)
+        face = np.where(to_ground < distance, NOBODY, face)
+        distance = np.minimum(distance, to_ground)
+    return distance, face
+
+
 class FreeBeams:
     """The beams of one LiDAR that its vehicle's body does not block.
 
@@ -120,14 +177,7 @@ class FreeBeams:
 
     def first_hits(self, tree: TriangleTree, flat: bool) -> tuple[Floats, Ints]:
         """Return distance (B,) [m], inf for a miss, and triangle (B,), -1 for ground and misses."""
-        hits = VisibleTriangles(tree, self.origin).first_hit(self.directions)
-        distance, face = hits.distance, hits.face
-        if flat:
-            down = self.directions[:, 2]
-            with np.errstate(divide="ignore"):
-                to_ground = np.where(down < 0.0, -self.origin[2] / down, np.inf)
-            face = np.where(to_ground < distance, NOBODY, face)
-            distance = np.minimum(distance, to_ground)
+        distance, face = first_hits(tree, flat, self.origin, self.directions)
         in_range = (distance >= self.min_range) & (distance <= self.max_range)
         return np.where(in_range, distance, np.inf), np.where(in_range, face, NOBODY)
 
@@ -142,28 +192,17 @@ class Caster:
     def voxels(self, split: str, number: int) -> RegionVoxels:
         """Return the voxels of a scene."""
         content, points = self.points(split, number)
+        region = self._plan.region
         return RegionVoxels(
-            *self._objects(content, points), *voxel_counts(points.positions, self._plan.region)
+            *region_objects(content, points.beams, region), *voxel_counts(points.positions, region)
         )
 
     def cloud(self, split: str, number: int) -> Cloud:
         """Return the points of a scene in the region."""
         content, points = self.points(split, number)
         chosen = chosen_points(points.positions, self._plan.region, number)
-        return Cloud(*self._objects(content, points), chosen.astype(np.float32))
-
-    def _objects(
-        self, content: Scene, points: Points
-    ) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.int32]]:
-        """Return centres, classes and beams of the objects in the region."""
-        region = self._plan.region
-        inside = np.abs(content.centers) <= (region.x_m, region.y_m)
-        which = np.flatnonzero(inside.all(axis=1))
-        return (
-            content.centers[which].astype(np.float32),
-            content.labels[which].astype(np.uint8),
-            points.beams[which].astype(np.int32),
-        )
+        objects = region_objects(content, points.beams, self._plan.region)
+        return Cloud(*objects, chosen.astype(np.float32))
 
     def points(self, split: str, number: int) -> tuple[Scene, Points]:
         """Return a scene, and the points of all LiDARs in it."""
@@ -175,8 +214,7 @@ class Caster:
             rng = np.random.default_rng([self._plan.seed, NOISE, SPLITS.index(split), number, k])
             distance, face = lidar.first_hits(tree, content.flat)
             met = np.flatnonzero(np.isfinite(distance))
-            owners = np.where(face[met] >= 0, content.owners[face[met]], NOBODY)
-            beams += np.bincount(owners[owners >= 0], minlength=len(beams))
+            beams += beams_on_objects(content, face[met])
             noisy = distance[met] + rng.normal(0.0, rule.range_noise_m, len(met))
             kept = rng.uniform(size=len(met)) >= rule.dropped
             directions = lidar.directions[met[kept]]

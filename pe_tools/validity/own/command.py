@@ -1,10 +1,10 @@
-"""``pe validate --own``: do the runs that are missing, then write the page."""
+"""``pe validate --own [--cameras]``: do the runs that are missing, then write the page."""
 
 from __future__ import annotations
 
 import argparse
-import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +16,13 @@ from ...cli import DONE, Answer, noted_when_interrupted, tell
 from ...reproduction.plotting import EXTRA, has_matplotlib
 from ...reproduction.task_runner import print_progress
 from ...reproduction.wording import PAGE, check_page
-from .analysis import analysis, designs_of
+from .analysis import CAMERAS, analysis, designs_of
+from .cameras.plan import CameraPlan, full_camera_plan, quick_camera_plan
+from .cameras.section import PICTURES, SHOWN_SCENE, camera_section
+from .cameras.study import CameraFiles, camera_analysis, design_of_cameras
 from .placements import Placement, placements
 from .plan import StudyPlan, full_plan, quick_plan
+from .result_files import R, ResultFiles
 from .runs import RunFiles, runs
 from .scores import placement_scores
 from .segmentation import section, segmentation_scores
@@ -26,27 +30,57 @@ from .study_page import TITLE, page, pairs_plot_name, plot_name
 
 CONCLUSIONS = "results.json"
 """What follows from the runs."""
+DETECTOR, CAMERA_DETECTOR = "detector", "camera_detector"
+"""Plugins that compute a run."""
 CAST = "cast"
 """Folder of the scenes that were cast; it may be deleted."""
-ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
-"""JAX computes with one thread, so that results do not depend on the machine's processors."""
 
 
 def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
     """Run the verb."""
     check_page(folder, TITLE, "pe validate --own")
-    files = do_runs(args, folder)
-    plan, results = files.plan, files.read()
-    scores = placement_scores(plan, _scored(plan, results), folder, print_progress)
+    folder = prepare_folder(folder)
+    plan, of_cameras = (
+        (quick_plan(), quick_camera_plan()) if args.quick else (full_plan(), full_camera_plan())
+    )
+    files, camera_files = RunFiles(folder, plan), CameraFiles(folder, of_cameras)
+    if args.cameras:
+        do_runs(args, camera_files, CAMERA_DETECTOR, lambda compute, run: compute(of_cameras, run))
+    else:
+        do_runs(args, files, DETECTOR, lambda compute, run: compute(plan, run, folder / CAST))
+    results = files.read()
+    cameras, section_of_cameras = _of_cameras(of_cameras, camera_files)
+    rigs = [(p, p.rig(plan)) for p in _scored(plan, results)]
+    scores = placement_scores(plan, rigs, folder, print_progress)
     outside = "" if args.quick else _from_outside(plan, folder)
     found = analysis(plan, results, scores)
     write_bytes(folder / CONCLUSIONS, dump_json(found).encode())
-    write_bytes(folder / PAGE, page(plan, found, results, outside).encode())
+    text = page(plan, found, results, section_of_cameras, outside)
+    write_bytes(folder / PAGE, text.encode())
     if has_matplotlib():
         _draw(plan, results, scores, folder)
+        _draw_cameras(of_cameras, camera_files)
     else:
         tell(f"no plots, as matplotlib is missing: {EXTRA}")
-    return dump_json(found) if args.json else _summary(found), DONE
+    if args.json:
+        return dump_json(cameras if args.cameras else found), DONE
+    return _camera_summary(of_cameras, cameras) if args.cameras else _summary(found), DONE
+
+
+def _of_cameras(plan: CameraPlan, files: CameraFiles) -> tuple[Mapping[str, Any], str]:
+    """Return what the runs of the cameras say, and its section of the page."""
+    results = files.read()
+    found = camera_analysis(plan, results, _camera_scores(plan, files, results))
+    if results:
+        write_bytes(files.folder / CONCLUSIONS, dump_json(found).encode())
+    return found, camera_section(plan, found, results)
+
+
+def _camera_scores(
+    plan: CameraPlan, files: CameraFiles, results: Mapping[str, Any]
+) -> dict[str, Any]:
+    rigs = [(r.placement, r.placement.rig_of(plan.model)) for r in files.all if r.name in results]
+    return placement_scores(plan.study, rigs, files.folder, print_progress) if rigs else {}
 
 
 def _from_outside(plan: StudyPlan, folder: Path) -> str:
@@ -72,6 +106,20 @@ def _draw(
             pairs_by_distance(folder / pairs_plot_name(design.name), design, scores)
 
 
+def _draw_cameras(plan: CameraPlan, files: CameraFiles) -> None:
+    from .cameras.rendering import Renderer
+    from .study_plots import ap_against_scores, pictures_of_scene
+
+    results = files.read()
+    if not results:
+        return
+    scene = Renderer(plan, files.all[0].placement).pictures(*SHOWN_SCENE)
+    pictures_of_scene(files.folder / PICTURES, scene.pictures)
+    if (design := design_of_cameras(plan, results)).has_figures:
+        scores = _camera_scores(plan, files, results)
+        ap_against_scores(files.folder / plot_name(CAMERAS), plan.study, design, scores)
+
+
 def _summary(found: Mapping[str, Any]) -> str:
     """Return the statements and their verdicts, for people."""
     done, planned = found["runs"]["done"], found["runs"]["planned"]
@@ -79,41 +127,55 @@ def _summary(found: Mapping[str, Any]) -> str:
     return "\n".join([f"{done} of {planned} runs are done", *lines])
 
 
-def do_runs(args: argparse.Namespace, folder: Path) -> RunFiles:
-    """Do the missing runs of the plan, at most `args.runs` of them; return the files of all.
+def _camera_summary(plan: CameraPlan, found: Mapping[str, Any]) -> str:
+    return (
+        f"{found['done']} of {found['planned']} runs of cameras are done\n"
+        f"{found['verdict']:12} The better-scored placement of cameras finds more "
+        f"({plan.study.statistics.primary})"
+    )
+
+
+def do_runs(
+    args: argparse.Namespace,
+    files: ResultFiles[R],
+    plugin: str,
+    result_of: Callable[[Any, R], dict[str, Any]],
+) -> None:
+    """Do the missing runs of a plan, at most `args.runs` of them.
+
+    Parameters
+    ----------
+    args : Namespace
+    files : ResultFiles
+    plugin : str
+        Of what computes a run; it is loaded if a run is missing.
+    result_of : callable
+        Returns the result of a run from what computes it and the run.
 
     Raises
     ------
     InputError
-        When there are results and `args.resume` is not set, or JAX is not installed.
+        When there are results and `args.resume` is not set, or TensorFlow is not installed.
     """
-    plan = quick_plan() if args.quick else full_plan()
-    folder = prepare_folder(folder)
-    files = RunFiles(folder, plan)
     files.read()  # complains now, not after hours
     missing = files.missing()
-    done = len(files.all) - len(missing)
+    total = len(files.all)
+    done = total - len(missing)
     if args.page_only or not missing:
-        return files
+        return
     if done and not args.resume:
-        found = f"{done} of {len(files.all)} runs; pass --resume to go on"
-        raise InputError(folder, "folder", "a folder without results", found)
-    run_one = _run_one()
-    note = f"{folder} keeps the finished runs; --resume goes on from them"
+        found = f"{done} of {total} runs; pass --resume to go on"
+        raise InputError(files.folder, "folder", "a folder without results", found)
+    compute = required_plugin(
+        "library", plugin, "validate", "--own", install_hint("library", plugin)
+    )[1]
+    note = f"{files.folder} keeps the finished runs; --resume goes on from them"
     with noted_when_interrupted(note):
-        for run in missing[: args.runs]:
-            data = run_one(plan, run, folder / CAST)
+        for run in islice(files.claimed(missing), args.runs):
+            data = result_of(compute, run)
             files.write(run, data)
-            done += 1
-            print_progress(f"[{done}/{len(files.all)}] {run.name}  {_brief(data)}")
-    return files
-
-
-def _run_one() -> Any:
-    """Return the function that needs JAX, or raise `InputError` that says how to install it."""
-    os.environ.setdefault("XLA_FLAGS", ONE_THREAD)
-    hint = install_hint("library", "detector")
-    return required_plugin("library", "detector", "validate", "--own", hint)[1]
+            done = total - len(files.missing())
+            print_progress(f"[{done}/{total}] {run.name}  {_brief(data)}")
 
 
 def _brief(data: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""One run of the study: scenes are cast, a detector is trained and tested. It needs JAX."""
+"""One run of the study: scenes are cast, a detector is trained and tested. It needs TensorFlow."""
 
 from __future__ import annotations
 
@@ -45,10 +45,23 @@ def run_one(plan: StudyPlan, run: Run, cache: Path | None) -> Json:
     started = time.process_time()
     detector = Detector(_network(plan, run.detector), plan.training.rate, plan.training.average)
     compute = _mixed if run.placement is None else _of_placement
-    data = compute(plan, run, detector, cache)
-    data["seconds"] = round(time.process_time() - started, 1)
-    made = made_by(RunIdentity(run.name, plan.digest))
-    return {**data, "made": {**made, **versions()}}
+    return with_origin(compute(plan, run, detector, cache), run.name, plan.digest, started)
+
+
+def with_origin(data: Json, name: str, digest: str, started: float) -> Json:
+    """Return the results of a run with its time and what made them.
+
+    Parameters
+    ----------
+    data : dict
+    name, digest : str
+        Of the run and of its plan.
+    started : float
+        Processor time at its beginning [s].
+    """
+    made = made_by(RunIdentity(name, digest))
+    seconds = round(time.process_time() - started, 1)
+    return {**data, "seconds": seconds, "made": {**made, **versions()}}
 
 
 def _network(plan: StudyPlan, name: str) -> Network:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -13,13 +13,15 @@ from numpy.typing import NDArray
 
 import pe_core as pe
 from pe_core import catalog
-from pe_core.geometry import Pose, rotate, rotation_matrix
+from pe_core.geometry import rotate, rotation_matrix
 from pe_core.sensors.lidar import Lidar
 
 from ...reproduction.paper import STUDIES
 from .plan import ACROSS, FIXED, MIXED, PlacementRule, StudyPlan
+from .posed_sensors import PosedSensors, PoseValues, first_of_each, numbered, pose_of, pose_texts
 
 Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 MAX_DRAWS = 20_000
 """A rule that this many draws do not satisfy is wrong."""
@@ -30,28 +32,18 @@ EDGE_M = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Placement:
-    """A rig on a vehicle.
+class Placement(PosedSensors):
+    """LiDARs of a design on a vehicle.
 
     Attributes
     ----------
-    name : str
-        Design, vehicle and number: ``fixed-sedan-01``.
-    design, vehicle : str
+    design : str
     channels : int
         Of each LiDAR.
-    poses : tuple of (x, y, z, roll, pitch, yaw)
-        Of each LiDAR [m, deg].
-    all_round : bool
-        Whether a point near the ground is seen in each direction.
     """
 
-    name: str
     design: str
-    vehicle: str
     channels: int
-    poses: tuple[tuple[float, ...], ...]
-    all_round: bool
 
     @property
     def lidars(self) -> int:
@@ -59,14 +51,13 @@ class Placement:
         return len(self.poses)
 
     @property
-    def mean_height(self) -> float:
-        """Mean height of the LiDARs above the ground [m]."""
-        return float(np.mean([pose[2] for pose in self.poses]))
+    def hardware(self) -> str:
+        """Number of LiDARs and channels."""
+        return f"{self.lidars} x {self.channels}"
 
     def rig(self, plan: StudyPlan) -> pe.Rig:
         """Return the rig, all LiDARs fused early."""
-        model = lidar_model(plan, self.channels)
-        return pe.Rig([pe.Sensor(f"lidar {k}", model, _pose(p)) for k, p in enumerate(self.poses)])
+        return self.rig_of(lidar_model(plan, self.channels))
 
 
 def lidar_model(plan: StudyPlan, channels: int) -> Lidar:
@@ -74,12 +65,6 @@ def lidar_model(plan: StudyPlan, channels: int) -> Lidar:
     model = catalog.load(plan.hardware[channels])
     assert isinstance(model, Lidar)
     return model
-
-
-def _pose(values: tuple[float, ...]) -> Pose:
-    x, y, z, *angles = values
-    roll, pitch, yaw = (math.radians(a) for a in angles)
-    return Pose((x, y, z), (roll, pitch, yaw))
 
 
 @cache
@@ -106,13 +91,7 @@ _drawn: dict[tuple[object, ...], list[Placement]] = {}
 def _fixed(plan: StudyPlan, name: str) -> list[Placement]:
     count = {True: plan.fixed["all_round"], False: plan.fixed["blind"]}
     drawn = _draws(plan, name, FIXED, plan.fixed["lidars"], plan.fixed["channels"])
-    kept: list[Placement] = []
-    for placement in drawn:
-        if sum(p.all_round == placement.all_round for p in kept) < count[placement.all_round]:
-            kept.append(placement)
-        if len(kept) == sum(count.values()):
-            break
-    return _numbered(sorted(kept, key=lambda p: not p.all_round))
+    return numbered(first_of_each(drawn, count))
 
 
 def _across(plan: StudyPlan, name: str) -> list[Placement]:
@@ -120,7 +99,7 @@ def _across(plan: StudyPlan, name: str) -> list[Placement]:
     for lidars, channels, count in plan.across:
         drawn = (p for p in _draws(plan, name, ACROSS, lidars, channels) if p.all_round)
         kept += [next(drawn) for _ in range(count)]
-    return _numbered(kept)
+    return numbered(kept)
 
 
 def _mixed(plan: StudyPlan, name: str) -> list[Placement]:
@@ -128,14 +107,7 @@ def _mixed(plan: StudyPlan, name: str) -> list[Placement]:
     drawn = _draws(plan, name, MIXED, plan.fixed["lidars"], plan.fixed["channels"])
     share = len(plan.vehicles)
     total = (plan.mixed["trained"] + plan.mixed["fresh"]) // share
-    return _numbered([next(drawn) for _ in range(total)])
-
-
-def _numbered(kept: list[Placement]) -> list[Placement]:
-    return [
-        Placement(f"{p.name}-{k:02}", p.design, p.vehicle, p.channels, p.poses, p.all_round)
-        for k, p in enumerate(kept, 1)
-    ]
+    return numbered([next(drawn) for _ in range(total)])
 
 
 def _draws(
@@ -145,21 +117,35 @@ def _draws(
     keys = (plan.seed, plan.vehicles.index(name), (FIXED, ACROSS, MIXED).index(design))
     rng = np.random.default_rng([*keys, lidars, channels])
     body, rule, model = vehicle(name), plan.placements, lidar_model(plan, channels)
+    elevations = float(model.elevations.min()), float(model.elevations.max())
+
+    def in_view(directions: Floats) -> Mask:
+        elevation = np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))
+        return np.asarray((elevation >= elevations[0]) & (elevation <= elevations[1]))
+
+    for poses in drawn_poses(body, rule, rng, lidars):
+        seen = sees_all_round(body, rule, in_view, poses)
+        yield Placement(f"{design}-{name}", name, tuple(poses), seen, design, channels)
+    raise AssertionError(f"no placement of {design} on {name} in {MAX_DRAWS} draws")
+
+
+def drawn_poses(
+    body: pe.Vehicle, rule: PlacementRule, rng: np.random.Generator, count: int
+) -> Iterator[list[PoseValues]]:
+    """Yield poses of `count` sensors that are far enough apart, `MAX_DRAWS` times."""
     pose = _pose_source(body, rule, rng)
     for _ in range(MAX_DRAWS):
-        poses: list[tuple[float, ...]] = []
-        while len(poses) < lidars:
+        poses: list[PoseValues] = []
+        while len(poses) < count:
             candidate = pose()
             if all(math.dist(candidate[:3], other[:3]) >= rule.apart_m for other in poses):
                 poses.append(candidate)
-        seen = sees_all_round(body, rule, model, poses)
-        yield Placement(f"{design}-{name}", design, name, channels, tuple(poses), seen)
-    raise AssertionError(f"no placement of {design} on {name} in {MAX_DRAWS} draws")
+        yield poses
 
 
 def _pose_source(
     body: pe.Vehicle, rule: PlacementRule, rng: np.random.Generator
-) -> Callable[[], tuple[float, ...]]:
+) -> Callable[[], PoseValues]:
     """Return a function that draws a pose on the roof or at a side, rounded as in a file."""
     low, high = body.bounds
     corners = body.triangles.reshape(-1, 3)
@@ -182,7 +168,7 @@ def _pose_source(
         along -= 2.0 * length
         return x0 + length * (along >= width), y0 + along % width, z
 
-    def pose() -> tuple[float, ...]:
+    def pose() -> PoseValues:
         position = roof() if rng.uniform() < rule.roof_share else side()
         tilts = rng.uniform(-rule.tilt_deg, rule.tilt_deg, 2)
         rounded = [round(float(w), 3) for w in position]
@@ -200,18 +186,31 @@ def _top_at(body: pe.Vehicle, x: float, y: float) -> float:
 
 
 def sees_all_round(
-    body: pe.Vehicle, rule: PlacementRule, model: Lidar, poses: list[tuple[float, ...]]
+    body: pe.Vehicle,
+    rule: PlacementRule,
+    in_view: Callable[[Floats], Mask],
+    poses: Sequence[PoseValues],
 ) -> bool:
-    """Whether in each direction a point near the ground is seen by a LiDAR.
+    """Whether in each direction a point near the ground is seen by a sensor.
 
-    A point is seen when the body is not between it and the LiDAR, and its elevation lies between
-    the lowest and the highest channel of the LiDAR.
+    Parameters
+    ----------
+    body : Vehicle
+        A point is not seen when the body is between it and the sensor.
+    rule : PlacementRule
+    in_view : callable
+        Whether the sensor's field of view has directions (N, 3), sensor frame.
+    poses : sequence of PoseValues
     """
     seen = np.zeros(rule.round_directions, bool)
     for values in poses:
-        pose = _pose(values)
+        pose = pose_of(values)
         for height in rule.round_heights_m:
-            seen |= _visible(body, model, pose, _ring(rule, height))
+            offsets = _ring(rule, height) - np.array(pose.position)
+            distance = np.sqrt((offsets**2).sum(axis=1))
+            directions = offsets / distance[:, None]
+            inside = in_view(rotate(rotation_matrix(*pose.rpy).T, directions))
+            seen |= inside & (body.first_hit(pose.position, directions).distance > distance)
     return bool(seen.all())
 
 
@@ -221,25 +220,13 @@ def _ring(rule: PlacementRule, height: float) -> Floats:
     return np.stack([x, y, np.full(len(angles), height)], axis=1)
 
 
-def _visible(body: pe.Vehicle, model: Lidar, pose: Pose, points: Floats) -> NDArray[np.bool_]:
-    position = np.array(pose.position)
-    offsets = points - position
-    distance = np.sqrt((offsets**2).sum(axis=1))
-    directions = offsets / distance[:, None]
-    in_sensor = rotate(rotation_matrix(*pose.rpy).T, directions)
-    elevation = np.arcsin(np.clip(in_sensor[:, 2], -1.0, 1.0))
-    inside = (elevation >= model.elevations.min()) & (elevation <= model.elevations.max())
-    free = body.first_hit(pose.position, directions).distance > distance
-    return np.asarray(inside & free)
-
-
 def listing(plan: StudyPlan) -> dict[str, Any]:
     """Return all placements as JSON data, for people."""
     rows = {
         p.name: {
             "lidar": plan.hardware[p.channels],
             "all_round": p.all_round,
-            "x y z roll pitch yaw": [" ".join(f"{w:g}" for w in pose) for pose in p.poses],
+            **pose_texts(p),
         }
         for p in placements(plan)
     }

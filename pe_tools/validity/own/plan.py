@@ -74,6 +74,7 @@ class TrainingRule:
     max_epochs: int
     window: int
     improvement: float
+    mirrored: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,14 +185,14 @@ def plan_of(text: str) -> StudyPlan:
         digest=hashlib.sha256(text.encode()).hexdigest()[:16],
         seed=table.whole("seed"),
         vehicles=table.table("vehicles").texts("names"),
-        placements=_placement_rule(table.table("placements")),
+        placements=placement_rule(table.table("placements")),
         hardware={int(k): str(v) for k, v in table.table("hardware").data.items()},
         fixed=_whole_numbers(table.table("fixed"), "lidars", "channels", "all_round", "blind"),
         across=tuple(tuple(map(int, row)) for row in table.table("across").raw("hardware")),  # type: ignore[misc]
         mixed=_whole_numbers(table.table("mixed"), "trained", "fresh", "scenes", "test_scenes"),
         scenes=_scene_rule(table.table("scenes")),
-        region=_region(table.table("region")),
-        training=_training_rule(table.table("training")),
+        region=region_of(table.table("region")),
+        training=training_rule(table.table("training")),
         precision=_precision_rule(table.table("precision")),
         statistics=_statistics_rule(table.table("statistics")),
         **_steps(table.table("steps")),
@@ -200,7 +201,8 @@ def plan_of(text: str) -> StudyPlan:
     return plan
 
 
-def _placement_rule(table: Table) -> PlacementRule:
+def placement_rule(table: Table) -> PlacementRule:
+    """Return the rule of a table; the reader of the table has read all other keys of it."""
     roof, side = (table.numbers(key, 2) for key in ("roof_height_m", "side_height_m"))
     rule = PlacementRule(
         table.number("roof_share"),
@@ -211,7 +213,7 @@ def _placement_rule(table: Table) -> PlacementRule:
         table.number("apart_m"),
         table.whole("round_directions"),
         table.number("round_distance_m"),
-        _numbers(table, "round_heights_m"),
+        numbers_of(table, "round_heights_m"),
     )
     table.finish()
     return rule
@@ -231,15 +233,17 @@ def _scene_rule(table: Table) -> SceneRule:
     return rule
 
 
-def _region(table: Table) -> DetectionRegion:
+def region_of(table: Table) -> DetectionRegion:
+    """Return the region of a table."""
     region = DetectionRegion(table.number("x_m"), table.number("y_m"), table.number("cell_m"))
     table.finish()
     return region
 
 
-def _training_rule(table: Table) -> TrainingRule:
+def training_rule(table: Table, mirrored: bool = True) -> TrainingRule:
+    """Return the rule of a table; whether scenes are mirrored follows from the inputs."""
     rule = TrainingRule(
-        tuple(map(int, _numbers(table, "seeds"))),
+        tuple(map(int, numbers_of(table, "seeds"))),
         table.whole("batch"),
         table.number("rate"),
         table.number("average"),
@@ -247,13 +251,14 @@ def _training_rule(table: Table) -> TrainingRule:
         table.whole("max_epochs"),
         table.whole("window"),
         table.number("improvement"),
+        mirrored,
     )
     table.finish()
     return rule
 
 
 def _precision_rule(table: Table) -> PrecisionRule:
-    rule = PrecisionRule(_numbers(table, "distances_m"), _numbers(table, "rings_m"))
+    rule = PrecisionRule(numbers_of(table, "distances_m"), numbers_of(table, "rings_m"))
     table.finish()
     return rule
 
@@ -277,14 +282,15 @@ def _steps(table: Table) -> dict[str, Any]:
     for row in table.tables("runs"):
         world = row.text("world", choices=(PLAIN, TOWN))
         detector = row.text("detector", choices=(GRID, POINTS))
-        steps.append(RealismStep(world, detector, tuple(map(int, _numbers(row, "seeds")))))
+        steps.append(RealismStep(world, detector, tuple(map(int, numbers_of(row, "seeds")))))
         row.finish()
     fixed, across = table.whole("fixed"), table.texts("across")
     table.finish()
     return {"step_fixed": fixed, "step_across": across, "steps": tuple(steps)}
 
 
-def _numbers(table: Table, key: str) -> tuple[float, ...]:
+def numbers_of(table: Table, key: str) -> tuple[float, ...]:
+    """Return the numbers of a key, however many there are."""
     return table.numbers(key, len(table.raw(key)))
 
 

@@ -1,27 +1,19 @@
-"""The runs of the plan in their order, and their results: a file each."""
+"""The runs of the plan in their order, and the files of their results."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from pe_core import InputError
-from pe_core.base import Number, Table, dump_json, write_bytes
+from pe_core.base import Table
 
-from ...reproduction.results_file import read_json
 from .placements import Placement, placements
 from .plan import ACROSS, FIXED, GRID, MIXED, PLAIN, StudyPlan
+from .result_files import ResultFiles, check_ap
 
-Json = dict[str, Any]
-
-RUNS = "runs"
-"""Folder of the results."""
-SCHEMA = 1
 FIXED_IN_TURN = 2
 """Placements of the fixed design after each one across hardware, within a seed."""
-SHARE = Number(0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,57 +102,14 @@ def step_placements(plan: StudyPlan) -> list[Placement]:
     return [*_by_turns([group[: plan.step_fixed] for group in fixed]), *across]
 
 
-class RunFiles:
-    """The results of a plan's runs in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder of the study.
-    plan : StudyPlan
-
-    Attributes
-    ----------
-    all : list of Run
-        The runs of the plan in their order.
-    """
+class RunFiles(ResultFiles[Run]):
+    """The results of a plan's runs in the folder of the study."""
 
     def __init__(self, folder: Path, plan: StudyPlan) -> None:
-        self._folder, self.plan = folder / RUNS, plan
-        self.all = runs(plan)
+        super().__init__(folder, plan.digest, runs(plan))
+        self.plan = plan
 
-    def path(self, run: Run) -> Path:
-        """Return the file of a run."""
-        return self._folder / f"{run.name}.json"
-
-    def missing(self) -> list[Run]:
-        """Return the runs without a file, in their order."""
-        return [run for run in self.all if not self.path(run).exists()]
-
-    def write(self, run: Run, data: Json) -> None:
-        """Write a run's results atomically."""
-        self._folder.mkdir(parents=True, exist_ok=True)
-        head = {"schema": SCHEMA, "plan": self.plan.digest, "run": run.name}
-        write_bytes(self.path(run), dump_json({**head, **data}).encode())
-
-    def read(self) -> dict[str, Json]:
-        """Return the results that are there, by the name of the run, in the order of the plan.
-
-        Raises
-        ------
-        InputError
-            When a file is damaged, or of another plan or run.
-        """
-        there = {run.name: self.path(run) for run in self.all if self.path(run).exists()}
-        return {name: self._checked(path, name) for name, path in there.items()}
-
-    def _checked(self, path: Path, name: str) -> Json:
-        data = read_json(path)
-        table = Table(data, str(path))
-        for key, expected in (("schema", SCHEMA), ("plan", self.plan.digest), ("run", name)):
-            if table.raw(key) != expected:
-                raise InputError(path, key, str(expected), table.raw(key))
-        parts = table.table("placements") if name.startswith(MIXED) else None
+    def _check(self, run: Run, table: Table) -> None:
+        parts = table.table("placements") if run.placement is None else None
         for part in [parts.table(k) for k in parts.names] if parts is not None else [table]:
-            part.number("ap", rule=SHARE)
-        return data
+            check_ap(part)

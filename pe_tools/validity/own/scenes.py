@@ -58,6 +58,8 @@ class Scene:
         All that beams meet besides the vehicle and flat ground [m].
     owners : (F,) int
         The object that each triangle belongs to, or `NOBODY`.
+    solids : (F,) int
+        The object, distractor or house that each triangle belongs to, from 0 up.
     centers : (N, 2) float
         Centres of the objects that are to be found, seen from above [m].
     labels : (N,) int
@@ -68,6 +70,7 @@ class Scene:
 
     triangles: Floats
     owners: Ints
+    solids: Ints
     centers: Floats
     labels: Ints
     flat: bool
@@ -110,6 +113,7 @@ def _assembled(
     return Scene(
         np.concatenate(triangles),
         np.concatenate(owners),
+        np.repeat(np.arange(len(owners)), [len(o) for o in owners]),
         objects.feet[:, :2].copy(),
         labels,
         ground is None,

@@ -15,8 +15,9 @@ from pe_core.scoring.targets import ObjectEvaluator, TargetRule
 from pe_core.sensors.lidar import Lidar
 
 from ...reproduction.results_file import read_json
-from .placements import Placement, vehicle
+from .placements import vehicle
 from .plan import StudyPlan
+from .posed_sensors import PosedSensors
 
 Json = dict[str, Any]
 
@@ -42,7 +43,7 @@ class ComparedScore:
     """
 
     name: str
-    value: Callable[[Placement, Json], float]
+    value: Callable[[PosedSensors, Json], float]
     across_only: bool = False
 
 
@@ -62,7 +63,7 @@ COMPARED = (
 
 def placement_scores(
     plan: StudyPlan,
-    needed: Iterable[Placement],
+    needed: Iterable[tuple[PosedSensors, pe.Rig]],
     folder: Path,
     report: Callable[[str], None],
 ) -> dict[str, Json]:
@@ -71,7 +72,7 @@ def placement_scores(
     Parameters
     ----------
     plan : StudyPlan
-    needed : iterable of Placement
+    needed : iterable of (PosedSensors, Rig)
     folder : Path
         Folder of scores.json.
     report : callable
@@ -89,28 +90,27 @@ def placement_scores(
         if data.get("plan") != plan.digest or not isinstance(data.get("scores"), dict):
             raise InputError(path, "plan", plan.digest, str(data.get("plan")))
         scores = data["scores"]
-    missing = [p for p in needed if p.name not in scores]
-    for placement in missing:
-        scores[placement.name] = _scores(plan, placement)
+    missing = [(p, rig) for p, rig in needed if p.name not in scores]
+    for placement, rig in missing:
+        scores[placement.name] = _scores(plan, placement.vehicle, rig)
         data = {"plan": plan.digest, "scores": dict(sorted(scores.items()))}
         write_bytes(path, dump_json(data).encode())
         report(f"scored {placement.name}")
     return scores
 
 
-def _scores(plan: StudyPlan, placement: Placement) -> Json:
-    rig = placement.rig(plan)
-    road = _voxels(placement.vehicle, "road").score(rig)
+def _scores(plan: StudyPlan, vehicle_name: str, rig: pe.Rig) -> Json:
+    road = _voxels(vehicle_name, "road").score(rig)
     return {
         "road": {"entropy": road.entropy, "coverage": road.coverage},
-        "uniform": _voxels(placement.vehicle, "uniform").entropy(rig),
-        **{t: _of_objects(plan, placement, rig, t == TRAFFIC) for t in (ALONE, TRAFFIC)},
+        "uniform": _voxels(vehicle_name, "uniform").entropy(rig),
+        **{t: _of_objects(plan, vehicle_name, rig, t == TRAFFIC) for t in (ALONE, TRAFFIC)},
         "beams": sum(s.model.beam_count for s in rig if isinstance(s.model, Lidar)),
     }
 
 
-def _of_objects(plan: StudyPlan, placement: Placement, rig: pe.Rig, traffic: bool) -> Json:
-    score = _objects(placement.vehicle, traffic, plan.statistics.scenes).score(rig)
+def _of_objects(plan: StudyPlan, vehicle_name: str, rig: pe.Rig, traffic: bool) -> Json:
+    score = _objects(vehicle_name, traffic, plan.statistics.scenes).score(rig)
     of_objects = score.objects
     assert of_objects is not None
     by_class = {name: part.ap for name, part in of_objects.per_class.items()}

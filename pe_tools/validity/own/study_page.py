@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ...reproduction.wording import joined, table, wrapped
+from ...reproduction.wording import joined, range_text, table, wrapped
 from ..findings import p_text, rho_text
 from .analysis import FRESH, HOLDS, OPEN, REFUTED, UNDECIDED
 from .plan import ACROSS, FIXED, MIXED, StudyPlan
@@ -23,7 +23,7 @@ DESIGNS = {
 SO_FAR = "so far"
 
 
-def page(plan: StudyPlan, results: Json, runs: Mapping[str, Json], outside: str) -> str:
+def page(plan: StudyPlan, results: Json, runs: Mapping[str, Json], *more: str) -> str:
     """Return the page as Markdown.
 
     Parameters
@@ -33,8 +33,8 @@ def page(plan: StudyPlan, results: Json, runs: Mapping[str, Json], outside: str)
         The analysis.
     runs : mapping
         Results by the name of the run.
-    outside : str
-        The section on results of others.
+    *more : str
+        The sections on cameras and on results of others.
     """
     sections = [
         _head(plan, results),
@@ -42,7 +42,7 @@ def page(plan: StudyPlan, results: Json, runs: Mapping[str, Json], outside: str)
         *(_design(name, results["designs"][name]) for name in DESIGNS),
         _pairs(plan, results["pairs"]),
         _steps(results["steps"]),
-        outside,
+        *more,
         _runs(runs),
         _again(),
     ]
@@ -251,21 +251,27 @@ def _sign(row: Json) -> str:
 
 
 def _runs(runs: Mapping[str, Json]) -> str:
-    trainings = [run["training"] for run in runs.values()]
-    if not trainings:
+    if not runs:
         return ""
-    epochs = [t["epochs"] for t in trainings]
-    unfinished = sum(not t["converged"] for t in trainings)
     hours = sum(run["seconds"] for run in runs.values()) / 3600.0
-    middle = sorted(run["seconds"] for run in runs.values())[len(runs) // 2] / 60.0
-    commits = sorted({run["made"]["commit"] for run in runs.values()})
-    libraries = sorted({f"JAX {run['made']['jax']}" for run in runs.values()})
+    libraries = sorted({f"TensorFlow {run['made']['tensorflow']}" for run in runs.values()})
     return f"""
 ## The runs
 
-{min(epochs)} to {max(epochs)} epochs; {unfinished} of {len(trainings)} runs had not converged at the last epoch that the
-plan allows. {hours:.1f} processor hours in all, {middle:.1f} minutes a run (median). Commit: {joined(commits)}; {joined(libraries)}.
+{trainings_text(runs)} {hours:.1f} processor hours in all; {joined(libraries)}.
 """
+
+
+def trainings_text(runs: Mapping[str, Json]) -> str:
+    """Return how the trainings of some runs went, and what they took, in words."""
+    epochs = range_text([run["training"]["epochs"] for run in runs.values()], 0)
+    unfinished = sum(not run["training"]["converged"] for run in runs.values())
+    middle = sorted(run["seconds"] for run in runs.values())[len(runs) // 2] / 60.0
+    commits = sorted({run["made"]["commit"] for run in runs.values()})
+    return (
+        f"{epochs} epochs; {unfinished} of {len(runs)} runs had not converged at the last epoch that "
+        f"the plan allows. {middle:.1f} minutes of one processor a run (median). Commit: {joined(commits)}."
+    )
 
 
 def _again() -> str:
@@ -274,5 +280,5 @@ def _again() -> str:
 
 `pip install 'perception-entropy[validate]'`, then `pe validate --own --output FOLDER`: all runs, in the order of the
 plan. Delete the file of a run, and `--resume` does it again. `--runs N` does the next N; `--page-only` writes
-the page; `--quick` shows with three placements that everything runs.
+the page; `--quick` shows with three placements that everything runs. `--cameras` does the runs of cameras instead.
 """

@@ -13,6 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from ...reproduction.plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
 from .analysis import DesignResults
@@ -54,6 +55,19 @@ def _panel(panel: Axes, plan: StudyPlan, design: DesignResults, values: np.ndarr
         panel.vlines(values[index], low, high, color=color, lw=1.0, alpha=0.5)
         panel.plot(values[index], mean[index], "o", color=color, ms=4.5, label=vehicle)
     remove_frame(panel)
+
+
+@styled
+def pictures_of_scene(path: Path, pictures: NDArray[np.uint8]) -> None:
+    """Draw the pictures (S, W, H, 3) of a scene, two beside each other."""
+    count, width, height, _ = pictures.shape
+    rows = -(-count // 2)
+    size = 9.4, rows * 9.4 / 2.0 * height / width + 0.1
+    figure, axes = plt.subplots(rows, 2, figsize=size, layout="constrained", squeeze=False)
+    for panel, picture in zip(axes.flat, pictures, strict=True):
+        panel.imshow(picture.transpose(1, 0, 2), interpolation="nearest")
+        panel.set_axis_off()
+    save_plot(figure, path)
 
 
 @styled

@@ -80,9 +80,9 @@ def _epoch(
     order = rng.permutation(len(scenes))
     for first in range(0, len(order) - rule.batch + 1, rule.batch):
         batch = [scenes[k] for k in order[first : first + rule.batch]]
-        mirrors: list[Mirrors] = [
-            (bool(a), bool(b)) for a, b in rng.integers(0, 2, (rule.batch, 2))
-        ]
+        mirrors: list[Mirrors] = [NEITHER] * rule.batch
+        if rule.mirrored:
+            mirrors = [(bool(a), bool(b)) for a, b in rng.integers(0, 2, (rule.batch, 2))]
         detector.train(state, inputs(batch, region, mirrors), targets(batch, region, mirrors))
 
 

@@ -1,0 +1,255 @@
+"""States and weathers of a scene. A state is a frame of the scene; its motions are read there.
+
+A designer poses the vehicle as usual, by an armature, drivers or an action. What has moved between
+the frame at which the vehicle is drawn and the frame of a state is read as rigid motions of parts
+and sensors, rounded as placements are. The engine moves the vehicle by these motions, here and
+without Blender alike, so the front ends agree to the bit.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import bpy
+import numpy as np
+
+from ..engine import geometry, pe, studies
+from .rig import pose_of_matrix, sensor_objects, view_layer_of
+from .scene_settings import as_typed
+from .vehicle import vehicle_from_collection
+
+LENGTH_DIGITS, ANGLE_DIGITS = 5, 4
+"""Decimals of a motion: 0.01 mm and 0.0001 degrees."""
+STILL_M, BENT_M = 2e-5, 2e-3
+"""A part that moves less than the one stays; one that differs more than the other bends [m]."""
+SAME_M, SAME_RAD = 1e-3, 1e-4
+"""A sensor that moves as a part within these moves with the part."""
+
+
+class Shown(NamedTuple):
+    """The vehicle and the sensors' poses at a frame."""
+
+    vehicle: pe.Vehicle
+    poses: dict[str, pe.Pose]
+
+
+class Rigid(NamedTuple):
+    """A rigid motion about the origin: roll, pitch, yaw [deg], and a translation [m]."""
+
+    rotation: tuple[float, float, float]
+    move: tuple[float, float, float]
+
+    def motion(self, parts: tuple[str, ...], sensors: tuple[str, ...]) -> geometry.Motion:
+        """Return the motion of some parts and sensors."""
+        roll, pitch, yaw = (math.radians(angle) for angle in self.rotation)
+        return geometry.Motion(parts, (roll, pitch, yaw), move=self.move, sensors=sensors)
+
+
+STILL = Rigid((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+def shown_state(scene: bpy.types.Scene) -> str:
+    """Return the name of the state that is shown; empty where the vehicle is shown as drawn."""
+    settings, shown = scene.perception_entropy, scene.frame_current
+    if shown == settings.drawn_frame:
+        return ""
+    return next((row.name or "?" for row in settings.states if row.frame == shown), "")
+
+
+@contextlib.contextmanager
+def as_drawn(scene: bpy.types.Scene) -> Iterator[None]:
+    """Show the frame at which the vehicle is drawn, within; only where the scene has states."""
+    if not shown_state(scene):
+        yield
+        return
+    shown = scene.frame_current
+    scene.frame_set(scene.perception_entropy.drawn_frame)
+    try:
+        yield
+    finally:
+        scene.frame_set(shown)
+
+
+def conditions_of(settings: bpy.types.PropertyGroup) -> pe.Conditions:
+    """Return the conditions of a scene that are switched on.
+
+    Raises
+    ------
+    InputError
+        When a row is wrong, names repeat, or all weights are 0.
+    """
+    states = [_state_of(row) for row in settings.states if row.enabled]
+    weathers = [_weather_of(row) for row in settings.weathers if row.enabled]
+    return pe.Conditions(states, weathers)
+
+
+def write_conditions(settings: bpy.types.PropertyGroup, conditions: pe.Conditions) -> None:
+    """Write conditions to a scene, in place of its own."""
+    settings.states.clear()
+    for state in conditions.states:
+        write_state(settings.states.add(), state)
+    settings.weathers.clear()
+    for weather in conditions.weathers:
+        row = settings.weathers.add()
+        row.name, row.weight, row.night = weather.name, weather.weight, weather.night
+        row.rain_mm_h, row.snow_mm_h = weather.rain_mm_h, weather.snow_mm_h
+        row.fog_mor_m, row.lit_m = weather.fog_mor_m or 0.0, weather.lit_m or 0.0
+        row.reflectivity = weather.reflectivity
+
+
+def write_state(row: bpy.types.PropertyGroup, state: geometry.State) -> None:
+    """Write a state to a row."""
+    table = studies.state_table(state)
+    row.name, row.weight = state.name, state.weight
+    row.frame = -1 if state.frame is None else state.frame
+    row.table = json.dumps({k: v for k, v in table.items() if k not in ("name", "weight", "frame")})
+
+
+def conditions_signature(settings: bpy.types.PropertyGroup) -> list[object]:
+    """Return what a table of conditions depends on; empty without conditions."""
+    states = [(r.name, as_typed(r.weight), r.table) for r in settings.states if r.enabled]
+    weathers = [
+        (r.name, r.night, *(as_typed(getattr(r, key)) for key in WEATHER_NUMBERS))
+        for r in settings.weathers
+        if r.enabled
+    ]
+    return [states, weathers] if states or weathers else []
+
+
+WEATHER_NUMBERS = ("weight", "rain_mm_h", "snow_mm_h", "fog_mor_m", "lit_m", "reflectivity")
+
+
+def _state_of(row: bpy.types.PropertyGroup) -> geometry.State:
+    try:
+        table = json.loads(row.table or "{}")
+    except ValueError:
+        raise pe.InputError("scene", f"state {row.name!r}", "motions", "other text") from None
+    frame = {} if row.frame < 0 else {"frame": row.frame}
+    whole = {**table, "name": row.name, "weight": as_typed(row.weight), **frame}
+    return studies.state_from_dict(whole, "scene")
+
+
+def _weather_of(row: bpy.types.PropertyGroup) -> pe.Weather:
+    values: dict[str, Any] = {key: as_typed(getattr(row, key)) for key in WEATHER_NUMBERS}
+    for key in ("fog_mor_m", "lit_m"):
+        values[key] = values[key] or None
+    if not row.night:
+        values["lit_m"] = None
+    return pe.Weather(row.name, night=row.night, **values)
+
+
+def read_states(scene: bpy.types.Scene) -> list[str]:
+    """Read the motions of all states with a frame again; return the names of those that changed.
+
+    Raises
+    ------
+    InputError
+        When a part bends or has other triangles at a frame, or the vehicle cannot be read.
+    """
+    rows = [row for row in scene.perception_entropy.states if row.frame >= 0]
+    if not rows:
+        return []
+    shown, drawn_frame = scene.frame_current, scene.perception_entropy.drawn_frame
+    changed = []
+    try:
+        drawn = _shown_at(scene, drawn_frame)
+        for row in rows:
+            moves = _motions(row.name, drawn, _shown_at(scene, row.frame))
+            state = geometry.State(row.name, moves)
+            table = json.dumps({k: v for k, v in studies.state_table(state).items() if k == "move"})
+            if table != row.table:
+                row.table = table
+                changed.append(row.name)
+    finally:
+        scene.frame_set(shown)
+    return changed
+
+
+def _shown_at(scene: bpy.types.Scene, frame: int) -> Shown:
+    scene.frame_set(frame)
+    layer = view_layer_of(scene)
+    layer.update()
+    collection = scene.perception_entropy.vehicle
+    if collection is None:
+        raise pe.InputError("scene", "vehicle", "a collection with the vehicle", "none")
+    vehicle = vehicle_from_collection(collection, layer.depsgraph)
+    poses = {
+        obj.name: pose_of_matrix(np.array(obj.matrix_world, dtype=float))
+        for obj in sensor_objects(scene)
+    }
+    return Shown(vehicle, poses)
+
+
+def _motions(name: str, drawn: Shown, posed: Shown) -> list[geometry.Motion]:
+    """Return the rigid motions from one frame to another, each with its parts and sensors."""
+    parts: dict[Rigid, list[str]] = {}
+    for number, part in enumerate(drawn.vehicle.part_names):
+        before = drawn.vehicle.triangles[drawn.vehicle.parts == number].reshape(-1, 3)
+        after = _points_of(posed.vehicle, part)
+        if after is None or len(after) != len(before):
+            field = f"state {name!r}: part {part!r}"
+            raise pe.InputError("scene", field, "the same mesh at its frame", "another one")
+        found = rigid_motion(before, after)
+        if found is None:
+            field = f"state {name!r}: part {part!r}"
+            raise pe.InputError("scene", field, "a rigid motion", "a part that bends")
+        if found != STILL:
+            parts.setdefault(found, []).append(part)
+    sensors: dict[Rigid, list[str]] = {}
+    for sensor, pose in drawn.poses.items():
+        moved = _motion_of_pose(pose, posed.poses[sensor], list(parts))
+        if moved != STILL:
+            sensors.setdefault(moved, []).append(sensor)
+    return [
+        rigid.motion(tuple(parts.get(rigid, ())), tuple(sensors.get(rigid, ())))
+        for rigid in dict.fromkeys([*parts, *sensors])
+    ]
+
+
+def _points_of(vehicle: pe.Vehicle, part: str) -> np.ndarray | None:
+    if part not in vehicle.part_names:
+        return None
+    number = list(vehicle.part_names).index(part)
+    return vehicle.triangles[vehicle.parts == number].reshape(-1, 3)
+
+
+def rigid_motion(before: np.ndarray, after: np.ndarray) -> Rigid | None:
+    """Return the rigid motion of points (N, 3) [m]; None where they bend by more than `BENT_M`.
+
+    The rotation with the least squares: Kabsch, Acta Crystallographica A32 (1976) 922.
+    """
+    if float(np.abs(after - before).max()) <= STILL_M:
+        return STILL
+    first, last = before.mean(axis=0), after.mean(axis=0)
+    left, _, right = np.linalg.svd((before - first).T @ (after - last))
+    sign = np.sign(np.linalg.det(right.T @ left.T))
+    matrix = right.T @ np.diag([1.0, 1.0, sign]) @ left.T
+    found = _rounded(matrix, last - matrix @ first)
+    motion = found.motion(("part",), ())
+    if float(np.abs(motion.points(before) - after).max()) > BENT_M:
+        return None
+    return found
+
+
+def _motion_of_pose(before: pe.Pose, after: pe.Pose, motions: list[Rigid]) -> Rigid:
+    """Return the motion of a sensor: that of a part where it moves as the part does."""
+    for rigid in (STILL, *motions):
+        moved = before if rigid == STILL else rigid.motion(("part",), ()).pose(before)
+        turned = moved.ground_from_sensor - after.ground_from_sensor
+        apart = np.subtract(moved.position, after.position)
+        if np.abs(turned).max() <= SAME_RAD and np.abs(apart).max() <= SAME_M:
+            return rigid
+    matrix = after.ground_from_sensor @ before.ground_from_sensor.T
+    return _rounded(matrix, np.asarray(after.position) - matrix @ np.asarray(before.position))
+
+
+def _rounded(matrix: np.ndarray, move: np.ndarray) -> Rigid:
+    """Return a motion with the decimals of placements."""
+    degrees = [math.degrees(angle) for angle in geometry.rpy_from_matrix(matrix)]
+    roll, pitch, yaw = (round(angle, ANGLE_DIGITS) + 0.0 for angle in degrees)
+    x, y, z = (round(length, LENGTH_DIGITS) + 0.0 for length in move.tolist())
+    return Rigid((roll, pitch, yaw), (x, y, z))

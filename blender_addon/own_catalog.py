@@ -1,0 +1,33 @@
+"""Sensors of the user's own in the catalogue, from a file that the preferences name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import bpy
+
+from .engine import catalog, pe
+
+problem = ""
+"""Why the file was not loaded, in one line; empty where it was."""
+_names: list[str] = []
+
+
+def load(filepath: str) -> None:
+    """Load a file's sensors into the catalogue, in place of those of the file before.
+
+    Parameters
+    ----------
+    filepath : str
+        TOML: a table for each sensor, by its name, as in the catalogue; "" for none.
+    """
+    global problem
+    while _names:
+        catalog.remove(_names.pop())
+    problem = ""
+    if not filepath:
+        return
+    try:
+        _names[:] = catalog.add_file(Path(bpy.path.abspath(filepath)))
+    except pe.InputError as error:
+        problem = str(error)

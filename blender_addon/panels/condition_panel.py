@@ -1,0 +1,105 @@
+"""Conditions: lists of states and weathers, and the scores of the last run under them."""
+
+from __future__ import annotations
+
+import bpy
+
+from .layout import Tab, columns, draw_properties, draw_sentence
+
+OF_WEATHER = ("weight", "rain_mm_h", "snow_mm_h", "fog_mor_m", "reflectivity", "night")
+
+
+class PE_UL_states(bpy.types.UIList):
+    """The states: used, name, and a button that shows the state"""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _settings: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        _icon: int,
+        _active_data: bpy.types.PropertyGroup,
+        _active_property: str,
+        index: int = 0,
+    ) -> None:
+        row = _draw_row(layout, item)
+        icon = "HIDE_OFF" if item.frame == context.scene.frame_current else "HIDE_ON"
+        row.operator("pe.show_state", text="", icon=icon, emboss=False).index = index
+
+
+class PE_UL_weathers(bpy.types.UIList):
+    """The weathers: used and name"""
+
+    def draw_item(
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _settings: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        _icon: int,
+        _active_data: bpy.types.PropertyGroup,
+        _active_property: str,
+    ) -> None:
+        _draw_row(layout, item)
+
+
+class PE_PT_conditions(Tab, bpy.types.Panel):
+    """States of the vehicle and weathers in which the rig is scored, too"""
+
+    bl_idname = "PE_PT_conditions"
+    bl_label = "Conditions"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_ui_units_x = 17
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, layout = context.scene.perception_entropy, self.layout
+        _draw_list(layout, settings, PE_UL_states, "state", "pe.add_state")
+        if settings.states:
+            row = layout.row(align=True)
+            row.operator("pe.show_state", text="Show as Drawn", icon="LOOP_BACK").index = -1
+            row.operator("pe.read_states", text="", icon="FILE_REFRESH")
+            draw_properties(layout, settings, ("drawn_frame",))
+        else:
+            draw_sentence(layout, context, "Pose the vehicle at another frame, then add the frame")
+        _draw_list(layout, settings, PE_UL_weathers, "weather", None)
+        if settings.weather_index < len(settings.weathers):
+            weather = settings.weathers[settings.weather_index]
+            draw_properties(layout, weather, (*OF_WEATHER, *["lit_m"] * weather.night))
+        if settings.states or settings.weathers:
+            draw_properties(layout, settings, ("search_conditions",))
+        for line in settings.result_conditions.splitlines():
+            draw_sentence(layout, context, line)
+
+
+def _draw_row(layout: bpy.types.UILayout, item: bpy.types.PropertyGroup) -> bpy.types.UILayout:
+    """Draw whether a condition is used, its name and its weight; return the row."""
+    row = layout.row(align=True)
+    row.prop(item, "enabled", text="")
+    name, weight = columns(row, 0.62)
+    name.active = item.enabled
+    name.prop(item, "name", text="", emboss=False)
+    weight.prop(item, "weight", text="")
+    return row
+
+
+def _draw_list(
+    layout: bpy.types.UILayout,
+    settings: bpy.types.PropertyGroup,
+    of: type[bpy.types.UIList],
+    name: str,
+    add: str | None,
+) -> None:
+    row = layout.row()
+    row.use_property_split = False
+    lists = (settings, f"{name}s", settings, f"{name}_index")
+    row.template_list(of.__name__, "", *lists, rows=3)
+    buttons = row.column(align=True)
+    if add is not None:
+        buttons.operator(add, text="", icon="ADD")
+    else:
+        buttons.operator_menu_enum("pe.add_weather", "weather", text="", icon="ADD")
+    buttons.operator(f"pe.remove_{name}", text="", icon="REMOVE")
+
+
+CLASSES = (PE_UL_states, PE_UL_weathers, PE_PT_conditions)

@@ -1,0 +1,157 @@
+"""The definition: what one sensor sees of a test body, and whether what the sensors see is enough.
+
+Plain functions on one body at a time; the kernels of `checker` are held to them by tests.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...scene.objects import Objects
+from ...scene.rig import Rig, Sensor
+from ...scene.vehicle import Vehicle
+from ...sensors import kind_of
+from ...sensors.object_kernel import PlacedBoxes
+from .bodies import DIAGONALS, Body, cell_plan, post_bands
+from .criteria import Criterion
+from .mesh_shape import surface_shares
+
+Floats = NDArray[np.float64]
+NEAREST_M = 1e-3
+NARROWEST_PX = 1e-9
+
+
+def sees(
+    sensor: Sensor,
+    body: Body,
+    foot: Sequence[float],
+    heading: float,
+    vehicle: Vehicle | None,
+    criterion: Criterion,
+) -> bool:
+    """Whether a sensor sees a body that stands alone at a place: the definition.
+
+    m of the body's box (of one of the boxes inside a mesh), by the definition of the sensor's kind,
+    reaches the threshold; with a share, so much of the body is visible: `visible_share` of the
+    cells that have an m above 0. What is beside a cell that is not seen does not count: it may be
+    seen in part.
+    """
+    measure = kind_of(sensor).measure_objects
+    objects = placed(body, [foot], [heading], False)
+    m = measure(sensor, objects, vehicle, False)
+    if not has_enough(sensor, objects, m, criterion).any():
+        return False
+    if criterion.share is None:
+        return True
+    cells = measure(sensor, placed(body, [foot], [heading], True), vehicle, False) > 0.0
+    return bool(visible_share(body, cells[None])[0] >= criterion.share)
+
+
+def has_enough(
+    sensor: Sensor, objects: Objects, m: Floats, criterion: Criterion
+) -> NDArray[np.bool_]:
+    """Whether m (N,) of boxes, points or pixels, is enough, for their image and solid angle too.
+
+    An image of m pixels has at least m / w rows, if no row has more than w pixels.
+    """
+    kind = kind_of(sensor)
+    counts = kind.counts_points
+    enough = m >= (criterion.points * kind.point if counts else criterion.pixels)
+    if criterion.pixels_high is not None and not counts:
+        widths = kind.image_widths(sensor, objects)
+        enough &= m >= criterion.pixels_high * np.maximum(widths, NARROWEST_PX)
+    if criterion.per_degree is not None:
+        enough &= m >= criterion.per_degree**2 * largest_solid_angle(objects, sensor.pose.position)
+    return np.asarray(enough)
+
+
+def body_has_enough(
+    body: Body, sensor: Sensor, objects: Objects, m: Floats, criterion: Criterion
+) -> NDArray[np.bool_]:
+    """Whether m of a body's boxes is enough, place after place; of one of the boxes of a mesh."""
+    enough = has_enough(sensor, objects, m, criterion).reshape(-1, body.box_count)
+    return np.asarray(enough.any(axis=1))
+
+
+def largest_solid_angle(objects: Objects, position: Sequence[float]) -> Floats:
+    """Return an upper bound (N,) of the solid angle of boxes from a position [deg2].
+
+    The solid angle of a face is the integral of h / r^3 over its area, with the distance h from its
+    plane: at most area times h over the cube of the distance to its nearest point. The position is
+    outside of the boxes.
+    """
+    boxes = PlacedBoxes.of(objects, position)
+    low, high = boxes.offsets - boxes.halves, boxes.offsets + boxes.halves
+    gap = np.maximum(np.maximum(low, -high), 0.0)  # to the nearest point of the box, by axis
+    total = np.zeros(len(gap))
+    for axis in range(3):
+        others = [k for k in range(3) if k != axis]
+        height = gap[:, axis]
+        area = 4.0 * boxes.halves[:, others[0]] * boxes.halves[:, others[1]]
+        nearest = np.sqrt(height**2 + gap[:, others[0]] ** 2 + gap[:, others[1]] ** 2)
+        total += area * height / np.maximum(nearest, NEAREST_M) ** 3
+    return np.minimum(total, 4.0 * math.pi) * (180.0 / math.pi) ** 2
+
+
+def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
+    """Return the share (N,) of a body that is visible, erring low, from its cells (N, K).
+
+    The cells of a body are bands of columns, and posts beside them (`cell_plan`); a post between
+    two that are measured is seen if both are. A column in a band counts if it and its four diagonal
+    neighbours are seen, in the bands above and below as well. Columns count alike; of a mesh, by
+    the share of its surface in them.
+    """
+    if body.is_ring:
+        return cells.mean(axis=1)
+    plan = cell_plan(body.bands, *body.columns)
+    measured = np.zeros((len(cells), *plan.shape), bool)
+    measured[:, plan] = cells
+    levels, every = np.array(post_bands(body.bands)), np.arange(body.bands)
+    below = levels[np.searchsorted(levels, every, "right") - 1]
+    above = levels[np.searchsorted(levels, every)]
+    seen = measured[:, below] & measured[:, above]
+    seen[:, :, 1:-1, 1:-1] = measured[:, :, 1:-1, 1:-1]
+    whole = seen[:, :, 1:-1, 1:-1].copy()
+    for rows, columns in DIAGONALS:
+        whole &= seen[:, :, rows, columns]
+    sure = whole.copy()
+    sure[:, 1:] &= whole[:, :-1]
+    sure[:, :-1] &= whole[:, 1:]
+    if body.shape is None:
+        return sure.mean(axis=(1, 2, 3))
+    weights = surface_shares(body.shape, body.bands, *body.columns)
+    return np.asarray((sure * weights).sum(axis=(1, 2, 3)))
+
+
+def body_met(seen: Mapping[str, bool], rig: Rig, criterion: Criterion) -> bool:
+    """Whether sensors that see a body, by name, are enough: the definition."""
+    eligible = [s for s in rig if seen.get(s.name) and (not criterion.of or s.kind in criterion.of)]
+    kinds = {sensor.kind for sensor in eligible}
+    return len(eligible) >= criterion.sensors and len(kinds) >= criterion.kinds
+
+
+def placed(
+    body: Body, feet: Sequence[Sequence[float]] | Floats, headings: Sequence[float], cells: bool
+) -> Objects:
+    """Return a body's boxes at all feet (N, 3) and headings, as objects that each stand alone.
+
+    Foot after foot, heading after heading, cell after cell.
+    """
+    centers, sizes = body.boxes(cells)
+    at = np.asarray(feet, dtype=float).reshape(-1, 1, 1, 3)
+    turns = [(math.cos(h), math.sin(h)) for h in headings]
+    x, y, z = centers.T
+    rotated = np.stack([np.stack([c * x - s * y, s * x + c * y, z], axis=1) for c, s in turns])
+    everywhere = (at + rotated[None]).reshape(-1, 3)
+    count, per = len(at), len(centers)
+    return Objects(
+        np.round(everywhere, 9),
+        np.tile(sizes, (count * len(headings), 1)),
+        np.tile(np.repeat(np.asarray(headings, dtype=float), per), count),
+        np.zeros(len(everywhere), np.int64),
+        (body.class_name or body.name,),
+    )

@@ -1,0 +1,55 @@
+"""How far a rig is off a requirement on bodies: what leads a search in."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...scene.rig import Rig
+from .body_checks import counted
+from .criteria import Requirement
+from .verdict import Judged, Samples
+from .zones import INSIDE_M
+
+SHARE_WEIGHT, LACKING_WEIGHT, AWAY_WEIGHT = 0.45, 0.45, 0.1
+"""Weights of the samples that fail, of sensors and kinds that lack, and of the angle."""
+
+
+def shortfall(requirement: Requirement, samples: Samples, judged: Judged, rig: Rig) -> float:
+    """Return 0 where a requirement is met, else how far it is off, above 0 to 1."""
+    criterion, inside = requirement.criterion, samples.inside
+    share = float(judged.passed[inside].mean())
+    if share >= criterion.zone_share:
+        return 0.0
+    counts, kinds = counted(rig, judged.seen, criterion, [s.name for s in rig])
+    spare = int(requirement.under.one_lost)
+    wanted = criterion.sensors + spare + criterion.kinds
+    has = np.minimum(counts, criterion.sensors + spare) + np.minimum(kinds, criterion.kinds)
+    lacks = 1.0 - float(has.mean()) / wanted
+    away = _turned_away(requirement, samples, rig, ~judged.passed & inside)
+    fails = 1.0 - share / criterion.zone_share
+    return SHARE_WEIGHT * fails + LACKING_WEIGHT * lacks + AWAY_WEIGHT * away
+
+
+def _turned_away(
+    requirement: Requirement, samples: Samples, rig: Rig, failing: NDArray[np.bool_]
+) -> float:
+    """Return the mean angle between failing samples and the nearest boresight, 1 for 180 deg."""
+    kinds = requirement.criterion.of
+    sensors = [s for s in rig if not kinds or s.kind in kinds]
+    if not sensors or not failing.any():
+        return 1.0
+    body, points = requirement.bodies[0], samples.points[failing]
+    middle = np.full(len(points), body.low + body.size[2] / 2.0)
+    places, cosines = np.column_stack([points, middle]), []
+    for sensor in sensors:
+        x, y, z = (places - np.asarray(sensor.pose.position)).T
+        ahead = sensor.pose.ground_from_sensor[:, 0]
+        length = np.sqrt(x * x + y * y + z * z)
+        along = ahead[0] * x + ahead[1] * y + ahead[2] * z
+        cosines.append(along / np.maximum(length, INSIDE_M))
+    nearest = np.clip(np.max(cosines, axis=0), -1.0, 1.0)
+    angles = [math.acos(c) for c in nearest.tolist()]  # the same bits in all builds
+    return sum(angles) / len(angles) / math.pi

@@ -1,0 +1,230 @@
+"""What is asked of a search besides its method: when to stop, what stays, from where, for what.
+
+By default nothing: a search then ends when its method or its budget does, moves all sensors, starts
+from the given placement alone, and minimises one value.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from ..base.errors import InputError, shown
+from ..base.read_only import ReadOnlyDict
+from ..base.setting import OneOf, Panel, check_settings, setting
+from ..base.values import A_NAME, Number, Whole, listed
+from ..geometry.poses import Pose
+from ..scene.rig import Rig
+from .mounts import Mounting
+
+FULL, OFF = "full", "off"
+"""Values of `Goals.sensitivity`."""
+ENTROPY, AP, BLIND_GROUND, HEIGHT = "entropy", "ap", "blind_ground", "height"
+PRICE, WORST_LOSS, MARGIN, BLIND_ZONES = "price", "worst_loss", "margin", "blind_zones"
+OBJECTIVES = {
+    ENTROPY: ("entropy", "nats"),
+    AP: ("expected AP", ""),
+    BLIND_GROUND: ("blind ground", "m2"),
+    HEIGHT: ("height", "m"),
+    PRICE: ("price", ""),
+    WORST_LOSS: ("worst loss", "nats"),
+    MARGIN: ("worst margin", "m"),
+    BLIND_ZONES: ("blind in zones", "m2"),
+}
+"""What may be on a Pareto front: label and unit by name."""
+HIGHER_IS_BETTER = (AP, MARGIN)
+"""Objectives that are maximised; all others are minimised."""
+OVER = 200
+"""Placements over which the gain of a search is taken by default."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """When a search ends before its budget does; each that is set may end it.
+
+    Parameters
+    ----------
+    target : float, optional
+        The value to reach: as the search minimises it, on all of its voxels [nats].
+    seconds : float, optional
+        Time of the search, without the scores before and after it. The result then depends on the
+        machine; `evaluations` of the result repeats it.
+    gain : float, optional
+        The search ends when its last `over` placements lowered the best by less than this [nats].
+    over : int
+    """
+
+    target: float | None = setting(
+        None,
+        Number(-1e6, cap=1e6),
+        "The search ends when the entropy is this or lower",
+        Panel("stop_target", "Target", min=-100.0, soft_max=5.0, zero="none", precision=3),
+    )
+    seconds: float | None = setting(
+        None,
+        Number(0.0, above=True, cap=1e9, unit="s"),
+        "The search ends after so many seconds; the result then depends on the machine",
+        Panel("stop_seconds", "Seconds", soft_max=3600.0, zero="no limit", precision=0, step=1000),
+    )
+    gain: float | None = setting(
+        None,
+        Number(0.0, above=True, cap=1e6),
+        "The search ends when the last placements lowered the entropy by less than this",
+        Panel("stop_gain", "Gain Below", soft_max=0.1, zero="none", precision=4, step=0.1),
+    )
+    over: int = setting(
+        OVER,
+        Whole(1, 1_000_000_000),
+        "Number of placements over which the gain is taken",
+        Panel("stop_over", "Over", soft_max=2000),
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self, "optimize", "stop.")
+
+    @property
+    def is_on(self) -> bool:
+        """Whether any rule is set."""
+        return self.target is not None or self.seconds is not None or self.gain is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Front:
+    """Several objectives, and how many placements of their Pareto front are looked for.
+
+    Parameters
+    ----------
+    objectives : sequence of str
+        Names of `OBJECTIVES`: at least two, or none.
+    points : int
+    """
+
+    KNOWN: ClassVar[Mapping[str, tuple[str, str]]] = OBJECTIVES
+
+    objectives: Sequence[str] = ()
+    points: int = setting(
+        6,
+        Whole(2, 64),
+        "Searches that share the budget of a front of several objectives: one for each of its "
+        "points",
+        Panel("front_points", "Points", soft_max=12),
+    )
+
+    def __post_init__(self) -> None:
+        names = listed(self.objectives)
+        known = f"two or more of {', '.join(OBJECTIVES)}"
+        if names is None or len(names) == 1 or len(set(names)) < len(names):
+            raise InputError("optimize", "front.objectives", known, shown(self.objectives))
+        for name in names:
+            if name not in OBJECTIVES:
+                raise InputError("optimize", "front.objectives", known, shown(name))
+        object.__setattr__(self, "objectives", tuple(names))
+        check_settings(self, "optimize", "front.")
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Another placement that a search starts from: poses of all sensors that it moves, by name."""
+
+    name: str
+    poses: Mapping[str, Pose]
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        put(self, "name", A_NAME.checked("optimize", "start.name", self.name))
+        put(self, "poses", ReadOnlyDict(self.poses))
+
+    @staticmethod
+    def text_of(starts: Sequence[Start]) -> str:
+        """Return starts as JSON text; empty for none."""
+        rows = [
+            [start.name, {n: [*p.position, *p.rotation_deg] for n, p in start.poses.items()}]
+            for start in starts
+        ]
+        return json.dumps(rows) if rows else ""
+
+    @staticmethod
+    def of_text(text: str) -> tuple[Start, ...]:
+        """Return the starts of a text of `text_of`; `InputError` where it is none."""
+        try:
+            return tuple(
+                Start(name, {n: Pose.from_degrees(v[:3], v[3:]) for n, v in poses.items()})
+                for name, poses in (json.loads(text) if text else ())
+            )
+        except (AttributeError, TypeError, ValueError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError("scene", "start", "starts of a search", shown(text)) from None
+
+    def placed(self, rig: Rig) -> Rig:
+        """Return a rig at the poses of this start; sensors without a pose stay.
+
+        Raises
+        ------
+        InputError
+            When the rig lacks one of the sensors.
+        """
+        names = [sensor.name for sensor in rig]
+        for name in self.poses:
+            if name not in names:
+                expected = f"sensors of {', '.join(names)}"
+                raise InputError("optimize", f"start {self.name!r}", expected, shown(name))
+        return rig.with_poses([self.poses.get(s.name, s.pose) for s in rig])
+
+
+@dataclass(frozen=True, slots=True)
+class Goals:
+    """What is asked of a search besides its method.
+
+    Parameters
+    ----------
+    stop : Stop
+    fixed : sequence of str
+        Sensors that stay where they are, whatever axes and mounts they have. Those that follow them
+        stay, too.
+    starts : sequence of Start
+        The search also starts from these; all starts share its budget.
+    front : Front
+    sensitivity : {"full", "off"}, optional
+        The analysis of the result: all of it, none, or what an eighth of the evaluations allows.
+    """
+
+    stop: Stop = field(default_factory=Stop)
+    fixed: Sequence[str] = ()
+    starts: Sequence[Start] = ()
+    front: Front = field(default_factory=Front)
+    sensitivity: str | None = setting(
+        None,
+        OneOf((FULL, OFF)),
+        "The analysis of a search's result (flatness, active constraints, other optima): all of "
+        "it or none; without the key as much as an eighth of the evaluations allow",
+    )
+
+    def __post_init__(self) -> None:
+        put, names = object.__setattr__, listed(self.fixed)
+        if names is None:
+            raise InputError("optimize", "fixed", "names of sensors", shown(self.fixed))
+        put(self, "fixed", tuple(A_NAME.checked("optimize", "fixed", name) for name in names))
+        for key, value, kind in (("stop", self.stop, Stop), ("front", self.front, Front)):
+            if not isinstance(value, kind):
+                raise InputError("optimize", key, f"a {kind.__name__}", type(value).__name__)
+        starts: Any = listed(self.starts)
+        if starts is None or not all(isinstance(each, Start) for each in starts):
+            raise InputError("optimize", "start", "a list of starts", shown(self.starts))
+        put(self, "starts", tuple(starts))
+        check_settings(self, "optimize")
+
+    def of_rig(self, rig: Rig, mounting: Mounting) -> Goals:
+        """Return itself; raise `InputError` where a sensor that is fixed or placed is none."""
+        followers = {pair[1] for pair in mounting.pairs}
+        followers |= {name for group in mounting.groups for name in group[1:]}
+        leaders = [sensor.name for sensor in rig if sensor.name not in followers]
+        for name in self.fixed:
+            if name not in leaders:
+                expected = f"sensors that follow no other: {', '.join(leaders)}"
+                raise InputError("optimize", "fixed", expected, shown(name))
+        for start in self.starts:
+            start.placed(rig)
+        return self

@@ -1,0 +1,222 @@
+"""Portfolio, the default: a survey of each sensor, then linear descents and block descents in turn.
+
+No single method is the best on every problem. Surveys find the region: each sensor tries places all
+over its range, the others kept. Linear descents move all sensors at once, and block descents find
+what a linear model does not show. Sensors on lists of slots try all slots, exchange them, and
+move two at a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..design_variable import SHARE, DesignVariable
+from ..parametrization import Candidate
+from .block_descent import FINEST, RESTART_STEP, Descent, SlotTurn
+from .block_descent import samples as samples
+from .method import Given, MethodPart, Phase, QuestionStream, sampled_candidate
+from .portfolio_linear import LinearDescent
+
+PER_SENSOR = 300
+"""Placements for each sensor that moves, where no budget is given."""
+SURVEYS, SURVEYED = 2, 6
+"""Surveys before the first descent, and places that each of them tries for each sensor,"""
+SURVEY_SHARE = 0.3
+"""but at most this share of the budget in all."""
+NEAR, NEAR_COUNT = 0.3, 3
+"""Reach of the surveys between descents, as a share of each range, and places for each sensor."""
+RADIUS, NEXT_RADIUS, LEAST_RADIUS = 1.0 / 6.0, 0.1, 0.004
+"""Radius of the first linear descent and of the next ones, and where they end, in ranges."""
+LINEAR_SHARE, BLOCK_SHARE = 0.4, 0.5
+"""Shares of the budget that is left, for each linear descent and each block descent after it."""
+TWO_MOVED = 16
+"""Placements with two sensors in other slots, tried at once."""
+STALLED = 8
+"""A search of slots alone ends after so many such batches that found nothing better."""
+
+
+class Incumbent:
+    """The best placement so far, its entropy on the level in use, and the count of evaluations."""
+
+    def __init__(self, best: Candidate, entropy: float) -> None:
+        self.best, self.entropy, self.count = best, entropy, 0
+
+    def told(self, candidates: Iterable[tuple[Candidate, float]]) -> None:
+        """Take placements and their values."""
+        for candidate, value in candidates:
+            self.count += 1
+            self._take(candidate, value)
+
+    def descended(self, descent: Descent | LinearDescent) -> None:
+        """Take the result of a descent."""
+        self.count += descent.count
+        self._take(descent.best, descent.entropy)
+
+    def _take(self, candidate: Candidate, value: float) -> None:
+        if value < self.entropy:
+            self.best, self.entropy = candidate, value
+
+
+class Survey:
+    """Tries places all over the range of each sensor, the others kept.
+
+    Places are those of an additive recurrence, which fills a range more evenly than random numbers
+    (M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018). The first survey is
+    the same for every seed, so that the seed seldom decides which region is found.
+
+    Parameters
+    ----------
+    given : Given
+    """
+
+    def __init__(self, given: Given) -> None:
+        self._parametrization, blocks = given.parametrization, given.parametrization.blocks
+        self._rng = np.random.default_rng([given.seed, len(blocks)])
+        first = [given.parametrization.variables[block[0]] for block in blocks]
+        self._turns = {
+            k: SlotTurn(given, blocks[k][0], [given.seed, k])
+            for k, variable in enumerate(first)
+            if variable.unit == SHARE
+        }
+        self._shares = {
+            k: Recurrence(len(block)) for k, block in enumerate(blocks) if k not in self._turns
+        }
+
+    @property
+    def has_slots_alone(self) -> bool:
+        """Whether every sensor takes one of a list of slots."""
+        return not self._shares
+
+    def reseed(self) -> None:
+        """Go on with places that depend on the seed."""
+        for shares in self._shares.values():
+            shares.shift(self._rng)
+
+    def survey(
+        self, incumbent: Incumbent, phase: Phase, count: int, reach: float = 1.0
+    ) -> MethodPart[None]:
+        """Try `count` places for each sensor, within a share of its range on each side."""
+        for number, block in enumerate(self._parametrization.blocks):
+            if number in self._turns:
+                incumbent.told((yield from self._turns[number].evaluate(incumbent.best, phase)))
+                continue
+            sampled = [self._sampled(incumbent.best, number, block, reach) for _ in range(count)]
+            yield from _evaluate(incumbent, phase, [c for c in sampled if c is not None])
+        if len(self._turns) > 1:
+            yield from _evaluate(incumbent, phase, list(self._exchanged(incumbent.best)))
+
+    def two_moved(self, incumbent: Incumbent, phase: Phase) -> MethodPart[None]:
+        """Try placements with two sensors in other slots."""
+        at = [self._parametrization.blocks[k][0] for k in self._turns]
+        if len(at) < 2:
+            return
+
+        def sample() -> list[float]:
+            vector = list(incumbent.best.vector)
+            for k in self._rng.choice(at, 2, replace=False).tolist():
+                vector[k] = self._rng.random()
+            return vector
+
+        sampled = [sampled_candidate(self._parametrization, sample) for _ in range(TWO_MOVED)]
+        yield from _evaluate(incumbent, phase, [c for c in sampled if c is not None])
+
+    def _exchanged(self, base: Candidate) -> Iterator[Candidate]:
+        """Yield the placements in which two sensors exchange their slots."""
+        at = [self._parametrization.blocks[k][0] for k in self._turns]
+        for one, other in combinations(at, 2):
+            vector = list(base.vector)
+            vector[one], vector[other] = vector[other], vector[one]
+            candidate = self._parametrization.candidate(vector)
+            if vector[one] != vector[other] and self._parametrization.allowed(candidate.rig):
+                yield candidate
+
+    def _sampled(
+        self, base: Candidate, number: int, block: range, reach: float
+    ) -> Candidate | None:
+        variables = self._parametrization.variables
+
+        def sample() -> list[float]:
+            vector = list(base.vector)
+            for k, share in zip(block, self._shares[number].next(), strict=True):
+                vector[k] = _within(variables[k], vector[k], reach, share)
+            return vector
+
+        return sampled_candidate(self._parametrization, sample)
+
+
+class Recurrence:
+    """Points of the unit cube, each the one before plus the same irrational step, modulo 1."""
+
+    def __init__(self, count: int) -> None:
+        root = 2.0
+        for _ in range(64):
+            root = (1.0 + root) ** (1.0 / (count + 1))
+        self._step: NDArray[np.float64] = root ** -np.arange(1.0, count + 1.0)
+        self._at = np.full(count, 0.5)
+
+    def next(self) -> list[float]:
+        """Return the next point (N,)."""
+        self._at = (self._at + self._step) % 1.0
+        return [float(value) for value in self._at]
+
+    def shift(self, rng: np.random.Generator) -> None:
+        """Go on from a random point."""
+        self._at = rng.random(len(self._at))
+
+
+def _within(variable: DesignVariable, value: float, reach: float, share: float) -> float:
+    """Return the value at a share of the range within a reach of a value."""
+    width = reach * (variable.high - variable.low)
+    low, high = max(variable.low, value - width), min(variable.high, value + width)
+    return low + share * (high - low)
+
+
+def _evaluate(incumbent: Incumbent, phase: Phase, candidates: list[Candidate]) -> MethodPart[None]:
+    """Evaluate placements of which only those better than the incumbent matter."""
+    moved = [c for c in candidates if c.vector != incumbent.best.vector]
+    if moved:
+        values = yield from phase.evaluate(moved, incumbent.entropy)
+        incumbent.told(zip(moved, values, strict=True))
+
+
+def ask(given: Given) -> QuestionStream:
+    """Survey on few voxels; then descend on all voxels of the search until the budget is spent."""
+    sensors = len(given.parametrization.blocks)
+    total = given.evaluations or PER_SENSOR * sensors
+    incumbent, survey = Incumbent(given.start, given.entropy), Survey(given)
+    count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
+    for _ in range(SURVEYS):
+        yield from survey.survey(incumbent, Phase(0, total), count)
+        survey.reseed()
+    if given.levels > 1:
+        last = Phase(1, total, given.levels - 1)
+        [incumbent.entropy] = yield from last.evaluate([incumbent.best])
+    number, stalled = 1, 0
+    while incumbent.count < total and stalled < STALLED:
+        before, phase = (incumbent.count, incumbent.entropy), Phase(number, total, given.levels - 1)
+        if survey.has_slots_alone:
+            yield from survey.two_moved(incumbent, phase)
+            stalled = 0 if incumbent.entropy < before[1] else stalled + 1
+        else:
+            yield from _descend(given, incumbent, phase, number)
+        if not stalled:
+            yield from survey.survey(incumbent, phase, NEAR_COUNT, NEAR)
+        if incumbent.count == before[0]:
+            return  # nothing can move
+        number += 1
+
+
+def _descend(given: Given, incumbent: Incumbent, phase: Phase, number: int) -> MethodPart[None]:
+    """Descend with all sensors at once, then one at a time."""
+    radius = RADIUS if number == 1 else NEXT_RADIUS
+    linear = LinearDescent(given, incumbent.best, incumbent.entropy, radius)
+    yield from linear.descend(phase, LINEAR_SHARE * (phase.total - incumbent.count), LEAST_RADIUS)
+    incumbent.descended(linear)
+    seed = [given.seed, number]
+    block = Descent(given, incumbent.best, incumbent.entropy, seed, RESTART_STEP)
+    yield from block.descend(phase, BLOCK_SHARE * (phase.total - incumbent.count), FINEST)
+    incumbent.descended(block)

@@ -1,0 +1,234 @@
+"""The measurement m of a radar by definition: expected detections, of objects and of voxels.
+
+**Cells.** An object of length l, width w and height h at the distance R, whose axis makes the angle
+a with the line of sight, is W = l |sin a| + w |cos a| wide; its mean depth along the line of sight
+is l w / W. It covers N = max(1, depth / dR) max(1, W / (R dAz)) max(1, h / (R dEl)) resolution
+cells of a mode, the last factor only where the mode measures elevations. Its RCS is shared equally
+by the cells, and a cell is detected with the probability Pd of `detection`.
+
+**Objects.** m is the sum over modes of N times the mean of Pd over the object's silhouette: 0 for
+the part that the mode does not reach, that the vehicle or, in traffic, another object hides. It is
+at most the length of the list. Points on the sides of the box that face the radar stand for the
+silhouette, each with the solid angle of its piece of the side.
+
+**Voxels.** A voxel has the share of its silhouette in that of a reference car with the same centre,
+seen from all headings alike: m = m of the car, divided by k = (l + w) h / (2 s^2) (as in
+`derived_object_curve`). The direction of the centre decides whether it is reached and hidden.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.indexing import blocks
+from ...geometry.poses import dot
+from ...scene.objects import Objects
+from ...scene.rig import Sensor
+from ...scene.vehicle import Vehicle
+from ..box_rays import Rivals, behind_others
+from ..kind import SIZES
+from ..object_kernel import NUDGE_M, PlacedBoxes
+from ..ray_fan import RayFan, angles_of, cast_fan
+from ..ray_fan_boxes import side_points
+from .detection import counted, detection_probability, signal_to_noise
+from .model import Radar, RadarMode, radar_of
+from .reflectivity import reflectivity_of
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+RivalsOf = Callable[[Ints], Rivals]
+
+TARGET = "car"
+"""Class of the object whose share a voxel has."""
+ASPECTS = np.radians(np.arange(2.5, 180.0, 5.0))
+"""Aspects over which the RCS of the reference car is averaged [rad]."""
+SIDE_POINTS = 55, 34
+"""Points of a side of a box: neighbouring Fibonacci numbers."""
+OBJECTS_AT_ONCE = 1024
+CONE_MARGIN = 1e-6
+"""Of the cosine and of the angle of the cone round the field of view."""
+NEAR_M = 1e-6
+"""Replaces the distance 0."""
+
+
+def fan_of(sensor: Sensor, vehicle: Vehicle | None) -> RayFan:
+    """Return the fan of rays of a radar, through covers of the vehicle."""
+    return cast_fan(sensor, vehicle, True)
+
+
+def mode_signal(
+    radar: Radar,
+    mode: RadarMode,
+    angles: tuple[Floats, Floats],
+    distance: Floats,
+    rcs: Floats,
+    loss_db: Floats | None,
+) -> Floats:
+    """Return Pd (...,) of cells of `rcs` [m2] in directions at distances; 0 if not `counted`.
+
+    `angles` are azimuths and elevations in the sensor frame [rad], `loss_db` the loss of covers one
+    way, None for none.
+    """
+    reach = mode.reach(*angles)
+    snr = signal_to_noise(rcs, distance, reach, radar.anchor, radar.attenuation_db_km)
+    if loss_db is not None:
+        snr = snr * np.exp(-math.log(10.0) / 5.0 * loss_db)  # both ways
+    pd = counted(detection_probability(snr, radar.false_alarm))
+    return np.where((reach > 0.0) & mode.in_range(distance), pd, 0.0)
+
+
+def cells_of(mode: RadarMode, sizes: tuple[Floats, Floats, Floats], distance: Floats) -> Floats:
+    """Return the number (...,) of cells that objects cover: depth, width, height [m], distance."""
+    depth, width, height = sizes
+    cells = np.ones(distance.shape)
+    if mode.range_resolution is not None:
+        cells = cells * np.maximum(1.0, depth / mode.range_resolution)
+    if mode.azimuth_resolution is not None:
+        cells = cells * np.maximum(1.0, width / (distance * mode.azimuth_resolution))
+    if mode.elevation_resolution is not None:
+        cells = cells * np.maximum(1.0, height / (distance * mode.elevation_resolution))
+    return np.asarray(cells)
+
+
+def measure_voxels(sensor: Sensor, centers: Floats, side: float, fan: RayFan) -> Floats:
+    """Return m (V,) of cubes with centres (V, 3) and a side [m]."""
+    offsets = centers - (np.asarray(sensor.pose.position) + NUDGE_M)
+    distance = np.maximum(np.sqrt(dot(offsets, offsets)), NEAR_M)
+    m = np.zeros(len(centers))
+    which = np.flatnonzero(_may_be_reached(sensor, offsets, distance))
+    if len(which):
+        angles = angles_of(sensor, offsets[which])
+        m[which] = measure_directions(radar_of(sensor), angles, distance[which], side, fan)
+    return m
+
+
+def measure_directions(
+    radar: Radar, angles: tuple[Floats, Floats], distance: Floats, side: float, fan: RayFan
+) -> Floats:
+    """Return m (...,) of cubes in directions, sensor frame, at distances (...,) [m]."""
+    free, loss = seen_through(fan, angles, distance)
+    m = target_detections(radar, angles, distance, loss)
+    m[~free] = 0.0
+    length, width, height = SIZES[TARGET]
+    return m * min(1.0, 2.0 * side * side / ((length + width) * height))
+
+
+def target_detections(
+    radar: Radar, angles: tuple[Floats, Floats], distance: Floats, loss_db: Floats | None
+) -> Floats:
+    """Return m (...,) of a reference car, the mean of all headings, that nothing hides."""
+    length, width, height = SIZES[TARGET]
+    across = 2.0 * (length + width) / math.pi
+    sizes = np.full(1, length * width / across), np.full(1, across), np.full(1, height)
+    rcs = float(reflectivity_of(TARGET, radar.rcs).square_metres(ASPECTS).mean())
+    m = np.zeros(distance.shape)
+    for mode in radar.modes:
+        ahead = mode.faces(angles[0])
+        some = np.flatnonzero(ahead.any(axis=1) if ahead.ndim > 1 else ahead)
+        part, far = (angles[0][some], angles[1][some]), distance[some]
+        cells, loss = cells_of(mode, sizes, far), None if loss_db is None else loss_db[some]
+        m[some] += cells * mode_signal(radar, mode, part, far, rcs / cells, loss)
+    return m if radar.list_length is None else np.minimum(m, radar.list_length)
+
+
+def _may_be_reached(sensor: Sensor, offsets: Floats, distance: Floats) -> Flags:
+    """Whether directions may be in the field of view and in range: cheap, and never too few."""
+    radar = radar_of(sensor)
+    reached = (distance <= radar.max_range) & (distance >= radar.min_range)
+    cosine = math.cos(min(radar.cone, math.pi))
+    if cosine > -1.0:
+        ahead = sensor.pose.ground_from_sensor[:, 0]
+        reached &= dot(offsets, ahead) >= (cosine - CONE_MARGIN) * distance
+    return np.asarray(reached)
+
+
+def reached_by_balls(sensor: Sensor, centers: Floats, balls: Floats) -> Flags:
+    """Whether balls (N,) round points (N, 3) [m] may reach into the field; never too few."""
+    radar = radar_of(sensor)
+    offsets = centers - np.asarray(sensor.pose.position)
+    distance = np.maximum(np.sqrt(dot(offsets, offsets)), NEAR_M)
+    reached = (distance - balls <= radar.max_range) & (distance + balls >= radar.min_range)
+    ahead = dot(offsets, sensor.pose.ground_from_sensor[:, 0])
+    angle = np.arccos(np.clip(ahead / distance, -1.0, 1.0))
+    wide = np.arcsin(np.minimum(balls / distance, 1.0))
+    return np.asarray(reached & ((angle - wide <= radar.cone + CONE_MARGIN) | (distance <= balls)))
+
+
+def seen_through(
+    fan: RayFan, angles: tuple[Floats, Floats], distance: Floats
+) -> tuple[Flags, Floats | None]:
+    """Return whether the vehicle hides nothing before the distances (...,), and the loss [dB]."""
+    if fan.is_free:
+        return np.ones(distance.shape, bool), None
+    bins = fan.bins(*angles)
+    return fan.distance.reshape(-1)[bins] >= distance, fan.loss_db.reshape(-1)[bins]
+
+
+def measure_objects(
+    sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
+) -> Floats:
+    """Return m (N,) of objects."""
+    boxes = PlacedBoxes.of(objects, sensor.pose.position)
+    scenes = objects.scenes if traffic else np.arange(len(objects))
+    fan, everything = fan_of(sensor, vehicle), np.arange(len(objects))
+    return objects_seen(sensor, objects, fan, boxes, everything, lambda own: Rivals.of(scenes, own))
+
+
+def objects_seen(
+    sensor: Sensor, objects: Objects, fan: RayFan, boxes: PlacedBoxes, which: Ints, near: RivalsOf
+) -> Floats:
+    """Return m (N,) of objects `which`, 0 of others; `near` returns boxes that may hide some."""
+    m = np.zeros(len(objects))
+    for some in blocks(len(which), OBJECTS_AT_ONCE):
+        own = which[some]
+        m[own] = _block(sensor, objects, boxes, own, fan, near(own))
+    return m
+
+
+def _block(
+    sensor: Sensor, objects: Objects, boxes: PlacedBoxes, own: Ints, fan: RayFan, near: Rivals
+) -> Floats:
+    """Return m (P,) of the objects `own` (P,)."""
+    radar = radar_of(sensor)
+    sizes, far, aspect = seen_sizes(boxes.take(own))
+    rcs = _rcs(radar, objects, own, aspect)
+    sides, solid = side_points(boxes.take(own), *SIDE_POINTS)
+    angles = angles_of(sensor, sides.directions)
+    free, loss = seen_through(fan, angles, sides.distance)
+    free &= ~behind_others(boxes, near, sides)
+    whole = np.maximum(np.bincount(sides.item, solid, len(own)), np.finfo(float).tiny)
+    m = np.zeros(len(own))
+    for mode in radar.modes:
+        cells = cells_of(mode, sizes, far)
+        pd = mode_signal(radar, mode, angles, sides.distance, (rcs / cells)[sides.item], loss)
+        m += cells * np.bincount(sides.item, solid * free * pd, len(own)) / whole
+    return m if radar.list_length is None else np.minimum(m, radar.list_length)
+
+
+def seen_sizes(boxes: PlacedBoxes) -> tuple[tuple[Floats, Floats, Floats], Floats, Floats]:
+    """Return mean depth, width and height (N,) of boxes as seen [m], their distance, and aspect.
+
+    The aspect is the angle between the heading and the direction to the radar [rad].
+    """
+    length, width, height = (2.0 * boxes.halves).T
+    x, y, _ = boxes.offsets.T
+    flat = np.maximum(np.sqrt(x * x + y * y), NEAR_M)
+    across = (length * np.abs(y) + width * np.abs(x)) / flat
+    far = np.maximum(np.sqrt(dot(boxes.offsets, boxes.offsets)), NEAR_M)
+    return (length * width / across, across, height), far, np.arctan2(np.abs(y), -x)
+
+
+def _rcs(radar: Radar, objects: Objects, own: Ints, aspect: Floats) -> Floats:
+    """Return the RCS (P,) of objects [m2]."""
+    rcs = np.zeros(len(own))
+    labels = objects.labels[own]
+    for number in np.unique(labels).tolist():
+        some = labels == number
+        reflectivity = reflectivity_of(objects.class_names[number], radar.rcs)
+        rcs[some] = reflectivity.square_metres(aspect[some])
+    return rcs

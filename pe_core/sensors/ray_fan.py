@@ -1,0 +1,210 @@
+"""A fan of rays: where the vehicle is, direction by direction, as seen from a radar or ultrasonic.
+
+The rays are the middles of a lattice of azimuths and elevations in the sensor frame. The ray of the
+bin that a point is in decides whether the vehicle hides the point: these sensors resolve directions
+by degrees, so bins of a fraction of a degree are exact enough, and each sensor needs its rays only
+once. Parts of the vehicle that are covers (`Vehicle.covers`) let the rays of radars through, at a
+loss.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.poses import rotate
+from ..scene.rig import Sensor, SensorModel
+from ..scene.vehicle import Vehicle
+from .field_of_view import FREE, EgoMask
+from .kernels import Occlusion
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+AngleWindow = tuple[tuple[float, float], tuple[float, float]]
+"""Lowest and highest azimuth, and lowest and highest elevation [rad]."""
+
+MAX_STEP_RAD = math.radians(0.5)
+"""Largest bin of a fan."""
+BINS = 240
+"""A window is divided into at least so many bins along its longer side."""
+
+
+@dataclass(frozen=True, eq=False)
+class RayFan:
+    """What the rays of a fan meet; arrays are (E, A): by elevation, lowest first, and azimuth.
+
+    Attributes
+    ----------
+    window : AngleWindow
+    distance : (E, A) float
+        Distance to what occludes [m]; inf for a free ray.
+    part : (E, A) int
+        The part of the vehicle that occludes, or `FREE`.
+    loss_db : (E, A) float
+        Loss by covers, one way [dB].
+    part_names : tuple of str
+    through : mapping of str to (E, A) bool
+        Which rays pass each cover.
+    """
+
+    window: AngleWindow
+    distance: Floats
+    part: NDArray[np.int32]
+    loss_db: Floats
+    part_names: tuple[str, ...] = ()
+    through: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+
+    def bins(self, azimuth: Floats, elevation: Floats) -> Ints:
+        """Return the flat bin (N,) of directions, sensor frame [rad]; outside: the nearest one."""
+        (left, right), (low, high) = self.window
+        rows, columns = self.distance.shape
+        column = ((azimuth - left) * (columns / (right - left))).astype(np.int64)
+        row = ((elevation - low) * (rows / (high - low))).astype(np.int64)
+        bins = np.clip(row, 0, rows - 1) * columns + np.clip(column, 0, columns - 1)
+        return np.asarray(bins)
+
+    @cached_property
+    def is_free(self) -> bool:
+        """Whether nothing occludes a ray, and no ray loses power."""
+        return not (np.isfinite(self.distance).any() or self.loss_db.any())
+
+    @cached_property
+    def angles(self) -> tuple[Floats, Floats]:
+        """Elevations (E,) and azimuths (A,) of the rays, ascending [rad]."""
+        (left, right), (low, high) = self.window
+        return _middles(low, high, len(self.distance)), _middles(
+            left, right, self.distance.shape[1]
+        )
+
+    def occlusion(self, inside: NDArray[np.bool_]) -> Occlusion:
+        """Count the rays of the field of view, `inside` (E, A), that end on the vehicle."""
+        parts = self.part[inside & (self.part >= 0)]
+        counts = np.bincount(parts, minlength=len(self.part_names))
+        order = np.argsort(-counts, kind="stable").tolist()
+        by_part = {self.part_names[k]: int(counts[k]) for k in order if counts[k]}
+        return Occlusion(int(inside.sum()), len(parts), by_part)
+
+    def mask(self) -> EgoMask:
+        """Return which rays end on the vehicle: a row an elevation, the highest first."""
+        elevations, azimuths = self.angles
+        flipped = self.part[::-1, ::-1].astype(np.int32)
+        return EgoMask(flipped, elevations[::-1].copy(), azimuths[::-1].copy())
+
+
+def window_of(model: SensorModel) -> AngleWindow:
+    """Return the azimuths and elevations between which a model of a kind with a fan measures."""
+    window: AngleWindow = model.window  # type: ignore[attr-defined]  # of these kinds alone
+    return window
+
+
+def angles_of(sensor: Sensor, offsets: Floats) -> tuple[Floats, Floats]:
+    """Return azimuths and elevations (N,) of offsets (N, 3), ground axes, in the sensor frame."""
+    x, y, z = rotate(sensor.pose.ground_from_sensor.T, offsets).T
+    return np.arctan2(y, x), np.arctan2(z, np.sqrt(x * x + y * y))
+
+
+def directions(window: AngleWindow, shape: tuple[int, int]) -> Floats:
+    """Return the directions (E * A, 3) of a fan's rays, sensor frame; scalar sines: same bits."""
+    (left, right), (low, high) = window
+    flat, up = _circle(_middles(low, high, shape[0]))
+    ahead, aside = _circle(_middles(left, right, shape[1]))
+    vectors = [np.outer(flat, ahead), np.outer(flat, aside), np.outer(up, np.ones(shape[1]))]
+    return np.stack(vectors, axis=-1).reshape(-1, 3)
+
+
+def shape_of(window: AngleWindow) -> tuple[int, int]:
+    """Return the numbers of elevations and azimuths of the fan of a window."""
+    (left, right), (low, high) = window
+    step = min(MAX_STEP_RAD, max(right - left, high - low) / BINS)
+    return tuple(max(1, math.ceil((b - a) / step)) for a, b in ((low, high), (left, right)))  # type: ignore[return-value]
+
+
+class FanCache:
+    """The fans of sensors on one vehicle: a sensor that has not moved needs no rays."""
+
+    def __init__(self, vehicle: Vehicle | None, through_covers: bool) -> None:
+        self._vehicle, self._through = vehicle, through_covers
+        self._fans: dict[str, tuple[Sensor, RayFan]] = {}
+
+    def fan(self, sensor: Sensor) -> RayFan:
+        """Return the fan of a sensor; models of the same window, as in a weather, share it."""
+        cached = self._fans.get(sensor.name)
+        if cached is not None:
+            same_window = cached[1].window == window_of(sensor.model)
+            if same_window and cached[0].pose == sensor.pose:
+                return cached[1]
+        fan = cast_fan(sensor, self._vehicle, self._through)
+        self._fans[sensor.name] = sensor, fan
+        return fan
+
+    def keep_only(self, sensors: Collection[Sensor]) -> None:
+        """Remove all other sensors."""
+        names = {sensor.name for sensor in sensors}
+        self._fans = {name: cached for name, cached in self._fans.items() if name in names}
+
+
+def cast_fan(sensor: Sensor, vehicle: Vehicle | None, through_covers: bool) -> RayFan:
+    """Cast the fan of a sensor.
+
+    A ray loses the dB of each cover that it meets, once for a part, however many skins it has.
+    """
+    window = window_of(sensor.model)
+    shape = shape_of(window)
+    distance, loss = np.full(shape, np.inf), np.zeros(shape)
+    part = np.full(shape, FREE, np.int32)
+    if vehicle is None:
+        return RayFan(window, distance, part, loss)
+    rays = rotate(sensor.pose.ground_from_sensor, directions(window, shape))
+    names, position = tuple(vehicle.part_names), sensor.pose.position
+    covers = dict(vehicle.covers) if through_covers else {}
+    body = without_parts(vehicle, tuple(covers))
+    if body is not None:
+        hits = body.first_hit(position, rays)
+        distance = hits.distance.reshape(shape)
+        hit = hits.face.reshape(shape)
+        owners = np.array([names.index(name) for name in body.part_names], np.int32)
+        part = np.where(hit >= 0, owners[np.asarray(body.parts)[hit]], FREE).astype(np.int32)
+    through = {}
+    for name, db in covers.items():
+        only = without_parts(vehicle, tuple(other for other in names if other != name))
+        if only is not None:
+            met = only.first_hit_from(np.asarray(position), rays).distance.reshape(shape)
+            through[name] = met < distance
+            loss += db * through[name]
+    return RayFan(window, distance, part, loss, names, through)
+
+
+_reduced: WeakKeyDictionary[Vehicle, dict[tuple[str, ...], Vehicle | None]] = WeakKeyDictionary()
+
+
+def without_parts(vehicle: Vehicle, parts: tuple[str, ...]) -> Vehicle | None:
+    """Return the vehicle without some parts, cached; None if nothing is left."""
+    if not parts:
+        return vehicle
+    cache = _reduced.setdefault(vehicle, {})
+    if parts not in cache:
+        names = list(vehicle.part_names)
+        gone = [names.index(name) for name in parts]
+        kept = np.flatnonzero(~np.isin(vehicle.parts, gone))
+        cache[parts] = None
+        if len(kept):
+            left = [k for k in range(len(names)) if k not in gone]
+            numbers = np.searchsorted(left, np.asarray(vehicle.parts)[kept]).astype(np.int32)
+            shown, own = np.asarray(vehicle.triangles)[kept], [names[k] for k in left]
+            cache[parts] = Vehicle(shown, numbers, own, clearance=vehicle.clearance)
+    return cache[parts]
+
+
+def _middles(low: float, high: float, count: int) -> Floats:
+    return low + (np.arange(count) + 0.5) * ((high - low) / count)
+
+
+def _circle(angles: Floats) -> tuple[Floats, Floats]:
+    values = angles.tolist()
+    return np.array([math.cos(a) for a in values]), np.array([math.sin(a) for a in values])

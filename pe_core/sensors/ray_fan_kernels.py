@@ -1,0 +1,228 @@
+"""Kernels of sensors with a fan of rays: what radars and ultrasonic sensors have in common.
+
+A fan is cast once for each sensor and kept until the sensor moves. `FanRules` is what a kind adds:
+its field of view, and its definition of m by a fan. The kernels apply the definition where the
+field of view may reach.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import partial, reduce
+from operator import add
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.grids import PerceptionSpace
+from ..metric.fusion import VisibleRows
+from ..scene.rig import Sensor
+from ..scene.vehicle import Vehicle
+from .ground_kernel import GroundKernel, GroundView, VisibleGround, heights_of_post
+from .kernels import (
+    GridKernel,
+    Measured,
+    Occlusion,
+    Planes,
+    SampleKernel,
+    Voxels,
+    block_voxels,
+)
+from .object_kernel import ObjectKernel, ObjectView
+from .ray_fan import FanCache, RayFan, cast_fan
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+VOXEL_BYTES = 200
+"""Memory of a voxel of a block while it is measured (measured)."""
+BALL_MARGIN_M = 1e-3
+NEAR_FIELD_M, FINE_M = 10.0, 0.02
+"""A sensor of a shorter range than this has squares of the ground tested every 2 cm [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class FanRules:
+    """How a kind of sensor measures by a fan of rays.
+
+    Attributes
+    ----------
+    through_covers : bool
+        Whether rays pass the covers of the vehicle.
+    field : callable
+        Of a sensor and its fan: which rays (E, A) are in the field of view.
+    reached : callable
+        Of a sensor, points (N, 3) and radii (N,) [m]: whether balls may reach into the field of
+        view and the range; never too few.
+    voxels : callable
+        Of a sensor, centres (V, 3), a side [m] and the fan: m (V,).
+    columns : callable
+        Of a sensor, centres of upright columns of cubes: x and y (C, 2) and heights (Z,), a side
+        and the fan: m (C, Z), equal to `voxels` of these centres.
+    posts : callable
+        Of a sensor, points (N, 3) of thin upright posts and the fan: whether they are detected.
+    objects : callable
+        Of a sensor, an `ObjectView` and the fan: m (N,).
+    """
+
+    through_covers: bool
+    field: Callable[[Sensor, RayFan], Flags]
+    reached: Callable[[Sensor, Floats, Floats], Flags]
+    voxels: Callable[[Sensor, Floats, float, RayFan], Floats]
+    columns: Callable[[Sensor, Floats, Floats, float, RayFan], Floats]
+    posts: Callable[[Sensor, Floats, RayFan], Flags]
+    objects: Callable[[Sensor, ObjectView, RayFan], Floats]
+
+    def fan(self, sensor: Sensor, vehicle: Vehicle | None) -> RayFan:
+        """Cast the fan of a sensor."""
+        return cast_fan(sensor, vehicle, self.through_covers)
+
+    def cache(self, vehicle: Vehicle | None) -> FanCache:
+        """Return an empty cache of fans."""
+        return FanCache(vehicle, self.through_covers)
+
+    def occlusion(self, sensor: Sensor, fan: RayFan) -> Occlusion:
+        """Count the rays of the field of view, and those of them that end on the vehicle."""
+        return fan.occlusion(self.field(sensor, fan))
+
+
+class FanSensor(NamedTuple):
+    """A mounted sensor with its fan of rays."""
+
+    sensor: Sensor
+    fan: RayFan
+
+
+class FanGrid(GridKernel):
+    """Measures the rows of a space that the field of view reaches."""
+
+    def __init__(self, rules: FanRules, space: PerceptionSpace, vehicle: Vehicle | None) -> None:
+        self._rules, self._space, self._vehicle = rules, space, vehicle
+
+    def prepare(self, sensor: Sensor) -> FanSensor:
+        """Cast the rays."""
+        return FanSensor(sensor, self._rules.fan(sensor, self._vehicle))
+
+    def planes(self, groups: Sequence[Sequence[FanSensor]], pool: Executor) -> list[Planes]:
+        """Return functions that measure a block of planes."""
+        return [partial(self._sum, sensors) for sensors in groups]
+
+    def occlusion(self, prepared: FanSensor) -> Occlusion:
+        """Count rays of the field of view that end on the vehicle."""
+        return self._rules.occlusion(*prepared)
+
+    def memory_bytes(
+        self, groups: Sequence[Sequence[Sensor]], space: PerceptionSpace, workers: int
+    ) -> int:
+        """Estimate the memory [bytes]."""
+        return workers * min(block_voxels(space), space.shape[1] * space.shape[2]) * VOXEL_BYTES
+
+    def _sum(self, sensors: Sequence[FanSensor], planes: slice) -> VisibleRows:
+        return reduce(add, (self._rows(one, planes) for one in sensors))
+
+    def _rows(self, one: FanSensor, planes: slice) -> VisibleRows:
+        """Measure plane by plane, only the columns that may be reached."""
+        x, y, z = (self._space.centers(axis) for axis in range(3))
+        columns = np.stack(np.meshgrid(x[planes], y, indexing="ij"), axis=-1)
+        reached = self._columns_reached(one.sensor, columns, z)
+        rows = np.flatnonzero(reached.any(axis=0))
+        n = planes.stop - planes.start
+        if not len(rows):
+            return VisibleRows(slice(0, 0), np.zeros((n, 0, len(z))))
+        first, last = int(rows[0]), int(rows[-1]) + 1
+        m = np.zeros((n, last - first, len(z)))
+        side = self._space.interval
+        for number in range(n):
+            some = np.flatnonzero(reached[number, first:last])
+            flat = columns[number, first:last][some]
+            m[number, some] = self._rules.columns(one.sensor, flat, z, side, one.fan)
+        return VisibleRows(slice(first, last), m)
+
+    def _columns_reached(self, sensor: Sensor, columns: Floats, z: Floats) -> Flags:
+        """Whether balls round columns (n, ny, 2) reach into the field of view."""
+        middle, half = (z[0] + z[-1]) / 2.0, (z[-1] - z[0]) / 2.0
+        shape = columns.shape[:2]
+        centers = np.concatenate([columns, np.full((*shape, 1), middle)], axis=-1).reshape(-1, 3)
+        balls = np.full(len(centers), half + BALL_MARGIN_M)
+        return self._rules.reached(sensor, centers, balls).reshape(shape)
+
+
+class FanSample(SampleKernel):
+    """Measures sampled voxels."""
+
+    def __init__(self, rules: FanRules, voxels: Voxels, vehicle: Vehicle | None) -> None:
+        self._rules, self._voxels = rules, voxels
+        self.cache, self._without = rules.cache(vehicle), rules.cache(None)
+
+    def measure(self, sensor: Sensor, approximate: bool) -> Measured:
+        """Measure a sensor, always exactly."""
+        return Measured(sensor, self._by(sensor, self.cache))
+
+    def unoccluded(self, sensor: Sensor) -> NDArray:
+        """Return m without the vehicle and its covers."""
+        return self._by(sensor, self._without)
+
+    def occlusion(self, measured: Measured) -> Occlusion:
+        """Count rays of the field of view that end on the vehicle."""
+        return self._rules.occlusion(measured.sensor, self.cache.fan(measured.sensor))
+
+    def keep_only(self, sensors: Collection[Sensor]) -> None:
+        """Drop the fans of all other sensors."""
+        super().keep_only(sensors)
+        self._without.keep_only(sensors)
+
+    def _by(self, sensor: Sensor, fans: FanCache) -> NDArray:
+        voxels = self._voxels
+        return self._rules.voxels(sensor, voxels.centers, voxels.space.interval, fans.fan(sensor))
+
+
+class FanGround(GroundKernel):
+    """Marks squares with a post in them, a point of which is detected."""
+
+    def __init__(self, rules: FanRules, view: GroundView) -> None:
+        self._rules, self._view, self.cache = rules, view, rules.cache(view.vehicle)
+
+    def mark(self, sensor: Sensor, approximate: bool) -> VisibleGround:
+        """Test the points of the posts."""
+        grid, height = self._view.grid, self._view.height
+        marked = np.zeros(grid.shape[0] * grid.shape[1], bool)
+        middles = grid.middles(np.arange(len(marked)))
+        centers = np.column_stack([middles, np.full(len(middles), height / 2.0)])
+        balls = np.full(len(centers), height / 2.0 + BALL_MARGIN_M + grid.step)
+        possible = self._rules.reached(sensor, centers, balls)
+        fan = self.cache.fan(sensor)
+        for z in heights_of_post(height).tolist():
+            for beside in places_in_square(sensor, grid.step):
+                left = np.flatnonzero(possible & ~marked)
+                points = np.column_stack([middles[left] + beside, np.full(len(left), z)])
+                marked[left] = self._rules.posts(sensor, points, fan)
+        return VisibleGround(sensor, marked.reshape(grid.shape))
+
+
+def places_in_square(sensor: Sensor, step: float) -> Floats:
+    """Return places (P, 2) that are tested, from a square's middle [m]; the middle is one of them.
+
+    A square of the side `step` [m] is marked if a post somewhere in it is detected: near the edges
+    of a cone of 2 m, and close to the body, the middles of squares of 5 cm are too few.
+    """
+    if float(sensor.model.max_range) >= NEAR_FIELD_M:  # type: ignore[attr-defined]  # as window_of
+        return np.zeros((1, 2))
+    steps = math.ceil(step / FINE_M / 2.0 - 0.5)
+    along = np.arange(-steps, steps + 1) * (step / (2 * steps + 1))
+    places = np.stack(np.meshgrid(along, along, indexing="ij"), axis=-1).reshape(-1, 2)
+    return places[np.argsort((places * places).sum(axis=1), kind="stable")]
+
+
+class FanObjects(ObjectKernel):
+    """Measures objects."""
+
+    def __init__(self, rules: FanRules, view: ObjectView) -> None:
+        self._rules, self._view, self.cache = rules, view, rules.cache(view.vehicle)
+
+    def measure(self, sensor: Sensor) -> Floats:
+        """Measure the objects; equal to the definition."""
+        return self._rules.objects(sensor, self._view, self.cache.fan(sensor))

@@ -1,0 +1,123 @@
+"""The measurement m of an ultrasonic sensor by definition: 1 where an echo comes back, else 0.
+
+An object returns an echo if a point on its sides that face the sensor is in the cone and in range,
+the ray to it is no farther from the side's normal than the largest incidence, and neither the
+vehicle nor, in traffic, another object is before it. Points of a lattice on each side, and the
+side's nearest point, are tested. A cube of the space is one point, its centre, at any incidence.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.poses import dot
+from ...scene.objects import Objects
+from ...scene.rig import Sensor
+from ...scene.vehicle import Vehicle
+from ..box_rays import BoxRays, Rivals, behind_others
+from ..object_kernel import NUDGE_M, PlacedBoxes
+from ..ray_fan import RayFan, angles_of, cast_fan
+from ..ray_fan_boxes import side_points
+from .model import Ultrasonic, ultrasonic_of
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+SIDE_POINTS = 144, 89
+"""Points of a side of a box: neighbouring Fibonacci numbers."""
+NEAR_M = 1e-6
+INCIDENCE_MARGIN = 1e-9
+
+
+def fan_of(sensor: Sensor, vehicle: Vehicle | None) -> RayFan:
+    """Return the fan of rays of a sensor; covers stop sound."""
+    return cast_fan(sensor, vehicle, False)
+
+
+def returns_echo(sensor: Sensor, fan: RayFan, offsets: Floats) -> Flags:
+    """Whether points (N, 3) from the sensor, ground axes [m], are in the cone, near and free."""
+    model = ultrasonic_of(sensor)
+    distance = np.maximum(np.sqrt(dot(offsets, offsets)), NEAR_M)
+    found = (distance >= model.min_range) & (distance <= model.max_range)
+    found &= dot(offsets, sensor.pose.ground_from_sensor[:, 0]) > 0.0
+    some = np.flatnonzero(found)
+    azimuth, elevation = angles_of(sensor, offsets[some])
+    inside = in_cone(model, azimuth, elevation)
+    if not fan.is_free:
+        bins = fan.bins(azimuth, elevation)
+        inside &= fan.distance.reshape(-1)[bins] >= distance[some]
+    found[some] = inside
+    return np.asarray(found)
+
+
+def in_cone(model: Ultrasonic, azimuth: Floats, elevation: Floats) -> Flags:
+    """Whether directions (N,) are in the elliptic cone."""
+    across, up = azimuth / (model.hfov / 2.0), elevation / (model.vfov / 2.0)
+    return np.asarray(across * across + up * up <= 1.0)
+
+
+def measure_voxels(sensor: Sensor, centers: Floats, side: float, fan: RayFan) -> Floats:
+    """Return m (V,) of cubes of any side with centres (V, 3) [m]: 1 or 0."""
+    offsets = centers - (np.asarray(sensor.pose.position) + NUDGE_M)
+    return returns_echo(sensor, fan, offsets).astype(float)
+
+
+def measure_objects(
+    sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
+) -> Floats:
+    """Return m (N,) of objects: 1 or 0."""
+    return objects_heard(sensor, objects, fan_of(sensor, vehicle), traffic)
+
+
+def objects_heard(sensor: Sensor, objects: Objects, fan: RayFan, traffic: bool) -> Floats:
+    """Return m (N,) of objects by the rays of a fan: only those near the sensor can be heard."""
+    model, boxes = ultrasonic_of(sensor), PlacedBoxes.of(objects, sensor.pose.position)
+    gap = np.maximum(np.abs(boxes.offsets) - boxes.halves, 0.0)
+    near = np.flatnonzero(dot(gap, gap) <= model.max_range**2)
+    m = np.zeros(len(objects))
+    if not len(near):
+        return m
+    own = boxes.take(near)
+    sides, _ = side_points(own, *SIDE_POINTS)
+    rays = _joined(sides, _nearest_points(own))
+    heard = returns_echo(sensor, fan, rays.directions * rays.distance[:, None])
+    heard &= _cosine(own, rays) >= math.cos(model.max_incidence) - INCIDENCE_MARGIN
+    if traffic:
+        heard &= ~behind_others(boxes, Rivals.of(objects.scenes, near), rays)
+    m[near] = np.bincount(rays.item[heard], minlength=len(near)) > 0
+    return m
+
+
+def _nearest_points(boxes: PlacedBoxes) -> BoxRays:
+    """Return a ray to the nearest point of each box that the sensor is outside of."""
+    high = boxes.offsets + boxes.halves
+    low = boxes.offsets - boxes.halves
+    nearest = np.clip(0.0, low, high)
+    distance = np.sqrt(dot(nearest, nearest))
+    item = np.flatnonzero(distance > NEAR_M)
+    x, y, z = nearest[item].T
+    c, s = boxes.headings[item].T
+    ground = np.stack([c * x - s * y, s * x + c * y, z], axis=1)
+    return BoxRays(item, ground / distance[item, None], distance[item])
+
+
+def _cosine(boxes: PlacedBoxes, rays: BoxRays) -> Floats:
+    """Return the cosine (R,) of the incidence of rays on the side of the box that they end on."""
+    local = np.stack(boxes.along(rays.item, rays.directions), axis=1)
+    ends = local * rays.distance[:, None] - boxes.offsets[rays.item]
+    beyond = np.abs(np.abs(ends) - boxes.halves[rays.item])
+    facing = np.abs(boxes.offsets[rays.item]) > boxes.halves[rays.item]
+    on_side = facing & (beyond <= 1e-6 * (1.0 + boxes.halves[rays.item]))
+    return np.asarray(np.where(on_side, np.abs(local), 0.0).max(axis=1))
+
+
+def _joined(one: BoxRays, two: BoxRays) -> BoxRays:
+    return BoxRays(
+        np.concatenate([one.item, two.item]),
+        np.concatenate([one.directions, two.directions]),
+        np.concatenate([one.distance, two.distance]),
+    )

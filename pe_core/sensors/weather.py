@@ -1,0 +1,225 @@
+"""Weather: what rain, snow, fog and night leave of a sensor's range.
+
+A kind of sensor answers with its model as it is under a weather (`Kind.in_weather`); here are the
+weather and the formulas that kinds share. A range under a weather is rounded down to 1 cm.
+
+Sources: [KO] Koschmieder's law with a contrast threshold of 5 %, extinction = ln 20 / MOR;
+[LISA] Kilic et al., arXiv 2107.07004; [FOG] Hahner et al., Fog Simulation on Real LiDAR Point
+Clouds, ICCV 2021, and the constants of MartinHahner/LiDAR_fog_sim@4278db1; [P838] ITU-R P.838-3;
+[IIHS] Headlight Test and Rating Protocol II (2016); [R112] UN Regulation 112, class B.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+from ..base.errors import InputError, shown
+from ..base.setting import FLAG, check_settings, setting
+from ..base.values import A_NAME, WEIGHT, Number
+
+RAIN, SNOW = Number(0.0, 300.0, unit="mm/h"), Number(0.0, 50.0, unit="mm/h")
+MOR = Number(1.0, 1e5, unit="m", noun="length")
+RAIN_KM = ((0.0, 0.0), (5.0, 1.00), (10.0, 1.56), (25.0, 2.77), (50.0, 4.29), (100.0, 6.64))
+"""Rain [mm/h] and extinction of light [1/km]: drops of Marshall and Palmer, efficiency 2."""
+SNOW_KM = ((0.0, 0.0), (1.0, 1.44), (2.5, 2.43), (5.0, 3.60))
+"""Snow [mm/h of water] and extinction of light [1/km], in the same way."""
+BACKSCATTER = 0.046
+"""Backscatter of fog times MOR [1/sr], [FOG]."""
+TARGET_BACKSCATTER = 1e-6 / math.pi
+PULSE_S, LIGHT_M_S = 2e-8, 299_792_458.0
+OVERLAP_M = (0.9, 1.0)
+"""[FOG]: a target's differential reflectivity, half-power width of the pulse [s], and distances
+[m] from which the receiver sees some of the beam, and all of it."""
+CONTRAST, THRESHOLD = 0.5, 0.05
+"""Contrast of an object against its background, and the least that is found, [KO]."""
+LAMP_LUX, LAMP_M, LAMPS, SEEN_LUX = 12.0, 25.0, 2, 5.0
+"""A headlamp's least illuminance at point 75R, its distance [R112], their number; the illuminance
+to which lamps are said to reach [IIHS]."""
+STEP_M = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Weather:
+    """A weather, and how much it counts.
+
+    Parameters
+    ----------
+    name : str
+        Unique in a study.
+    weight : float
+        Its part in the weighted mean over weathers.
+    rain_mm_h, snow_mm_h : float
+        Rate of rain, or of snow as water [mm/h].
+    fog_mor_m : float, optional
+        Meteorological optical range [m]: where a contrast has fallen to 5 %. At most one of rain,
+        snow and fog: a measured visibility holds all that is in the air.
+    night : bool
+        Passive cameras see what the vehicle's headlamps light.
+    lit_m : float, optional
+        At night, the distance to which objects are lit in clear air [m], in place of the lamps'.
+    reflectivity : float
+        Of targets, relative to that for which sensors state their range: wet clothes 0.5.
+
+    Raises
+    ------
+    InputError
+        When a value is out of its range, or two of rain, snow and fog are given.
+    """
+
+    name: str
+    weight: float = setting(1.0, WEIGHT, "Part of this weather in the weighted mean")
+    rain_mm_h: float = setting(0.0, RAIN, "Rate of rain [mm/h]")
+    snow_mm_h: float = setting(0.0, SNOW, "Rate of snow, as water [mm/h]")
+    fog_mor_m: float | None = setting(None, MOR, "Visibility in fog: meteorological range [m]")
+    night: bool = setting(False, FLAG, "Cameras see what headlamps light")
+    lit_m: float | None = setting(None, MOR, "At night, how far objects are lit [m]")
+    reflectivity: float = setting(
+        1.0,
+        Number(0.0, 10.0, above=True),
+        "Reflectivity of targets, relative to that for which sensors state their range",
+    )
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", A_NAME.checked("weather", "name", self.name))
+        who = f"weather {self.name!r}"
+        check_settings(self, who)
+        given = {
+            "rain_mm_h": self.rain_mm_h or None,
+            "snow_mm_h": self.snow_mm_h or None,
+            "fog_mor_m": self.fog_mor_m,
+        }
+        both = [f"{key} = {value:g}" for key, value in given.items() if value is not None]
+        if len(both) > 1:
+            expected = "one of rain, snow and visibility (fog_mor_m): it holds all in the air"
+            raise InputError(who, both[1].split()[0], expected, " and ".join(both))
+        if self.lit_m is not None and not self.night:
+            raise InputError(who, "lit_m", "night = true with it", "night = false")
+
+    @property
+    def extinction(self) -> float:
+        """Extinction of visible and near infrared light [1/m]; in fog ln 20 / MOR, [KO]."""
+        if self.fog_mor_m is not None:
+            return math.log(20.0) / self.fog_mor_m
+        return (_of_table(RAIN_KM, self.rain_mm_h) + _of_table(SNOW_KM, self.snow_mm_h)) / 1000.0
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether sensors are as they are without it."""
+        return self.extinction == 0.0 and not self.night and self.reflectivity == 1.0
+
+
+def limited(model: Any, range_m: float) -> Any:
+    """Return a model with `max_range` at most a range [m], above its minimum range."""
+    least = model.min_range + STEP_M
+    limit = max(range_m, least)
+    return model if limit >= model.max_range else replace(model, max_range=limit)
+
+
+def lidar_range(max_range: float, weather: Weather) -> float:
+    """Return the greatest range of a LiDAR under a weather [m].
+
+    A pulse returns with ``P ~ rho exp(-2 alpha R) / R^2`` [LISA]; it is found while P is at least
+    that from `max_range` in clear air: ``R^2 exp(2 alpha R) = R0^2``, ``R0 = max_range sqrt(rho)``
+    at most `max_range`. In fog a beam is also lost where the fog's own return beats it.
+    """
+    start = max_range * min(1.0, math.sqrt(weather.reflectivity))
+    alpha = weather.extinction
+    found = _greatest(lambda r: math.log(r) + alpha * r <= math.log(start), start)
+    if weather.fog_mor_m is None:
+        return found
+    return min(found, fog_return_range(weather.fog_mor_m, weather.reflectivity))
+
+
+@lru_cache(maxsize=256)
+def fog_return_range(mor: float, reflectivity: float = 1.0) -> float:
+    """Return the range from which on fog's own return is stronger than that of a target [m].
+
+    [FOG], equations 8 to 12: a target returns ``b0 exp(-2 alpha R) / R^2``, fog the greatest over
+    R of ``b integral sin^2(pi t / 2 tau) xi(r) exp(-2 alpha r) / r^2 dt`` with ``r = R - c t / 2``,
+    t from 0 to 2 tau, ``b = 0.046 / MOR``; xi rises from 0 to 1 between both `OVERLAP_M`.
+    """
+    alpha = math.log(20.0) / mor
+    soft = BACKSCATTER / mor * max(_fog_integral(alpha, 0.5 + 0.1 * k) for k in range(80))
+    level = math.log(TARGET_BACKSCATTER * reflectivity) - math.log(soft)
+    return _greatest(lambda r: 2.0 * (math.log(r) + alpha * r) <= level, 1e5)
+
+
+def _fog_integral(alpha: float, distance: float, steps: int = 600) -> float:
+    """Return the integral of a pulse over fog that ends at a distance [s / m^2]."""
+    step = 2.0 * PULSE_S / steps
+    near, full = OVERLAP_M
+    total = 0.0
+    for k in range(steps):
+        time = (k + 0.5) * step
+        r = distance - LIGHT_M_S * time / 2.0
+        if r <= near:
+            break
+        pulse = math.sin(math.pi * time / (2.0 * PULSE_S)) ** 2
+        overlap = min(1.0, (r - near) / (full - near))
+        total += pulse * overlap * math.exp(-2.0 * alpha * r) / (r * r)
+    return total * step
+
+
+def camera_range(max_range: float, weather: Weather) -> float:
+    """Return the greatest range of a passive camera under a weather [m].
+
+    Contrast falls as ``C = C0 exp(-alpha d)`` [KO]; an object is found while C is at least Ct:
+    ``d = ln(C0 / Ct) / alpha``, 0.77 MOR. At night an object is found while its headlamps' light
+    ``E (25 / d)^2 exp(-alpha d)`` is at least 5 lux: 54.7 m in clear air, ahead of the lamps; to
+    other sides this is an upper bound.
+    """
+    alpha, found = weather.extinction, max_range
+    if alpha > 0.0:
+        found = min(found, math.log(CONTRAST / THRESHOLD) / alpha)
+    if weather.night:
+        clear = LAMP_M * math.sqrt(LAMPS * LAMP_LUX / SEEN_LUX)
+        lit = clear if weather.lit_m is None else weather.lit_m
+        log_lit = 2.0 * math.log(lit)
+        found = min(found, _greatest(lambda d: 2.0 * math.log(d) + alpha * d <= log_lit, lit))
+    return _down(found)
+
+
+def rain_db_per_km(rain_mm_h: float, k: float = 1.132, exponent: float = 0.718) -> float:
+    """Return the attenuation of a radar's wave one way, ``k R^a`` [dB/km]; 77 GHz, [P838]."""
+    return k * rain_mm_h**exponent if rain_mm_h > 0.0 else 0.0
+
+
+def _greatest(holds: Callable[[float], bool], high: float) -> float:
+    """Return the greatest distance for which a falling condition holds, rounded down [m]."""
+    if holds(high):
+        return _down(high)
+    low = 1e-6
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return _down(low)
+
+
+def _down(length: float) -> float:
+    """Return a length rounded down to 1 cm; a whole number of them stays [m]."""
+    return length if math.isinf(length) else math.floor(length * 100.0 + 1e-6) / 100.0
+
+
+def _of_table(table: Sequence[tuple[float, float]], rate: float) -> float:
+    """Return an extinction [1/km] between rows, above the last by its power law."""
+    for (low, start), (high, end) in itertools.pairwise(table):
+        if rate <= high:
+            return start + (end - start) * (rate - low) / (high - low)
+    (low, start), (high, end) = table[-2:]
+    power = math.log(end / start) / math.log(high / low)
+    return float(end * (rate / high) ** power)
+
+
+def checked_weights(source: str, items: Sequence[Any]) -> None:
+    """Raise `InputError` where names repeat, or where all weights are 0."""
+    names = [item.name for item in items]
+    for number, name in enumerate(names):
+        if name in names[:number]:
+            raise InputError(source, "name", "each name once", f"{shown(name)} twice")
+    if items and not any(item.weight > 0.0 for item in items):
+        raise InputError(source, "weight", "at least one weight above 0", "0 everywhere")

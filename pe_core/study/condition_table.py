@@ -1,0 +1,232 @@
+"""A rig under all conditions of a study: states by weathers, with each sensor lost.
+
+What conditions share is computed once: each state has one evaluator, and each of its sensors is
+measured once for all weathers that only shorten its range (`sensors.weather_rig`). A study that
+scores all voxels has its conditions scored on a sample, of which the standard error is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..scene.rig import Rig
+from ..scene.vehicle import Vehicle
+from ..scene.vehicle_state import State
+from ..scoring import RigJudge, Score
+from ..scoring.score import Watch, rounded
+from .condition_set import AS_DRAWN, CLEAR, StateInWeather
+from .study import DEFAULT_SEARCH_SAMPLES, Study
+
+COVERS = 0.01
+"""A part that occludes more of a sensor than as drawn, by this share of its rays, is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionScore:
+    """The score of a rig under one condition.
+
+    Attributes
+    ----------
+    state, weather : str
+        Names; "as drawn" and "clear" where the study has none.
+    weight : float
+    entropy, stderr : float
+        Entropy under the condition and its standard error [nats].
+    coverage : float
+    per_class : dict of str to float
+        Entropy by class [nats].
+    without : dict of str to float
+        Entropy without each sensor, by name [nats].
+    ap : float or None
+        Expected AP; only for scores on objects, as the next two.
+    ap_per_class : dict of str to float
+    reach : dict of str to dict of str to float
+        By class and direction, the distance to which a lone object is found [m].
+    covered : dict of str to dict of str to float
+        By sensor and part of the vehicle, the share of its rays that the part occludes beyond what
+        it occludes as drawn; parts of the state alone.
+    """
+
+    state: str
+    weather: str
+    weight: float
+    entropy: float
+    stderr: float
+    coverage: float
+    per_class: dict[str, float]
+    without: dict[str, float]
+    ap: float | None = None
+    ap_per_class: dict[str, float] | None = None
+    reach: dict[str, dict[str, float]] | None = None
+    covered: dict[str, dict[str, float]] | None = None
+
+    @property
+    def name(self) -> str:
+        """Both names, "door open, fog"."""
+        return f"{self.state}, {self.weather}"
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionTable:
+    """Scores of a rig under all conditions of a study, on `samples` voxels or objects.
+
+    `below_ground` has parts that a state drives into the ground, by state: depth by part [m].
+    """
+
+    rows: tuple[ConditionScore, ...]
+    samples: int
+    sensors: tuple[str, ...]
+    below_ground: dict[str, dict[str, float]]
+
+    @property
+    def mean(self) -> float:
+        """Mean entropy by the weights of the conditions [nats]."""
+        return weighted_mean([r.entropy for r in self.rows], [r.weight for r in self.rows])
+
+    @property
+    def worst(self) -> ConditionScore:
+        """The condition with the highest entropy, of those with a weight."""
+        return max((r for r in self.rows if r.weight > 0.0), key=lambda row: row.entropy)
+
+    def mean_without(self, sensor: str) -> float:
+        """Mean entropy without a sensor [nats]."""
+        return weighted_mean([r.without[sensor] for r in self.rows], [r.weight for r in self.rows])
+
+    @property
+    def worst_loss(self) -> tuple[str, ConditionScore]:
+        """The lost sensor and the condition with the highest entropy, of those with a weight."""
+        cells = ((s, r) for r in self.rows if r.weight > 0.0 for s in self.sensors)
+        return max(cells, key=lambda cell: cell[1].without[cell[0]])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data."""
+        worst = self.worst
+        return {
+            "samples": self.samples,
+            "mean": self.mean,
+            "worst": {"state": worst.state, "weather": worst.weather, "entropy": worst.entropy},
+            "mean_without": {name: self.mean_without(name) for name in self.sensors},
+            "below_ground": self.below_ground,
+            "rows": [{k: v for k, v in asdict(r).items() if v is not None} for r in self.rows],
+        }
+
+
+def weighted_mean(values: Sequence[float], weights: Sequence[float]) -> float:
+    """Return the mean of values by weights."""
+    total = sum(weights)
+    return rounded(sum(v * w for v, w in zip(values, weights, strict=True)) / total)
+
+
+def condition_table(
+    study: Study, workers: int | None = None, watch: Watch | None = None
+) -> ConditionTable | None:
+    """Return the scores of a study's rig under all its conditions; None without conditions.
+
+    Raises
+    ------
+    ScoreStopped
+        When `watch` returned False.
+    """
+    if not study.conditions:
+        return None
+    samples = study.samples or DEFAULT_SEARCH_SAMPLES
+    rows: list[ConditionScore] = []
+    evaluators = StateEvaluators(study, samples, workers)
+    conditions = study.conditions.all
+    as_drawn = evaluators.in_state(None)[0].score(study.rig) if study.conditions.states else None
+    drawn = {} if as_drawn is None else _occluded(as_drawn)
+    for number, condition in enumerate(conditions):
+        evaluator, _ = evaluators.in_state(condition.state)
+        rig = condition.rig(study.rig, study.vehicle)
+        part = None if watch is None else partial(_part_of, watch, number, len(conditions))
+        known = as_drawn if condition.is_as_drawn else None
+        score = known or evaluator.score(rig, watch=part)
+        rows.append(_row(condition, score, drawn))
+        if part is not None:
+            part(1.0)
+    below = {s.name: d for s in study.conditions.states if (d := s.below_ground(study.vehicle))}
+    names = tuple(sensor.name for sensor in study.rig)
+    return ConditionTable(tuple(rows), evaluators.in_state(None)[0].samples, names, below)
+
+
+class StateEvaluators:
+    """The evaluators of a study by state of the vehicle; each is made once."""
+
+    def __init__(self, study: Study, samples: int, workers: int | None = None) -> None:
+        self._study, self._samples, self._workers = study, samples, workers
+        self._made: dict[str, tuple[RigJudge, Vehicle | None]] = {}
+
+    def in_state(self, state: State | None) -> tuple[RigJudge, Vehicle | None]:
+        """Return the evaluator on the vehicle in a state, and that vehicle."""
+        key = "" if state is None or state.is_as_drawn else state.name
+        if key not in self._made:
+            from .condition_set import Conditions, under
+
+            study = under(self._study, StateInWeather(state if key else None))
+            assert study.conditions == Conditions()
+            made = study.evaluator(self._samples, self._workers), study.vehicle
+            self._made[key] = made
+        return self._made[key]
+
+
+def _part_of(watch: Callable[[float], bool], number: int, count: int, share: float) -> bool:
+    return watch((number + share) / count)
+
+
+def _row(
+    condition: StateInWeather, score: Score, drawn: dict[str, dict[str, float]]
+) -> ConditionScore:
+    objects = score.objects
+    return ConditionScore(
+        AS_DRAWN if condition.state is None else condition.state.name,
+        CLEAR if condition.weather is None else condition.weather.name,
+        condition.weight,
+        score.entropy,
+        score.stderr,
+        score.coverage,
+        {name: part.entropy for name, part in score.per_class.items()},
+        {name: rounded(score.entropy + s.lost) for name, s in score.per_sensor.items()},
+        None if objects is None else objects.ap,
+        None if objects is None else {n: c.ap for n, c in objects.per_class.items()},
+        None if objects is None else {n: dict(c.reach) for n, c in objects.per_class.items()},
+        _covered(score, drawn) if condition.state is not None else None,
+    )
+
+
+def _occluded(score: Score) -> dict[str, dict[str, float]]:
+    """Return the share of each sensor's rays that each part occludes."""
+    return {
+        name: {part: count / s.beams for part, count in s.stopped_by.items()}
+        for name, s in score.per_sensor.items()
+        if s.beams
+    }
+
+
+def _covered(
+    score: Score, drawn: dict[str, dict[str, float]]
+) -> dict[str, dict[str, float]] | None:
+    """Return what parts occlude beyond what they occlude as drawn; None for nothing."""
+    found: dict[str, dict[str, float]] = {}
+    for name, parts in _occluded(score).items():
+        for part, share in parts.items():
+            more = share - drawn.get(name, {}).get(part, 0.0)
+            if more >= COVERS:
+                found.setdefault(name, {})[part] = round(more, 4)
+    return found or None
+
+
+def matrix(table: ConditionTable) -> np.ndarray:
+    """Return entropies (1 + sensors, conditions): the whole rig, then without each sensor."""
+    rows = [[r.entropy for r in table.rows]]
+    rows += [[r.without[name] for r in table.rows] for name in table.sensors]
+    return np.array(rows)
+
+
+def rig_under(study: Study, condition: StateInWeather, rig: Rig) -> Rig:
+    """Return another rig of the study under a condition."""
+    return condition.rig(rig, study.vehicle)

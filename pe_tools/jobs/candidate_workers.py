@@ -1,0 +1,42 @@
+"""The workers that evaluate the candidates of a job's searches: an executor, or processes here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager, suppress
+
+from pe_core.search import LazyProcesses, Objective, Unreadable, send_payload, shared_parts
+
+from .job import Job
+
+ExecutorSource = Callable[[], Executor | None]
+
+
+@contextmanager
+def candidate_workers(
+    job: Job, objectives: Iterable[Objective], others: Iterable[object] = ()
+) -> Iterator[ExecutorSource]:
+    """Yield the source of the executor that evaluates candidates of a job.
+
+    Parameters
+    ----------
+    job : Job
+        Its executor evaluates, if it has one. Otherwise processes are started, which end here.
+    objectives : iterable of Objective
+        What the searches minimise.
+    others : iterable
+        What else the searches have in common, such as models of sensors.
+    """
+    parts = [part for objective in objectives for part in shared_parts(objective)]
+    if job.executor is not None:
+        given = job.executor
+        with suppress(Unreadable):  # such candidates are evaluated here
+            send_payload(given, (*parts, *others))
+        yield lambda: given
+        return
+    helpers = LazyProcesses(job.workers, (*parts, *others))
+    try:
+        yield helpers
+    finally:
+        helpers.end()

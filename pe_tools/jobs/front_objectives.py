@@ -1,0 +1,244 @@
+"""The objectives of a Pareto front: their figures for a rig, and scalar values made of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+
+from pe_core import catalog
+from pe_core.base.errors import InputError
+from pe_core.scene.housing import hull_of
+from pe_core.scene.rig import Rig
+from pe_core.scoring import RigJudge
+from pe_core.scoring.protocol import Judgement
+from pe_core.scoring.score import Score, rounded
+from pe_core.search import objective_of
+from pe_core.search.goals import (
+    AP,
+    BLIND_GROUND,
+    BLIND_ZONES,
+    ENTROPY,
+    HEIGHT,
+    HIGHER_IS_BETTER,
+    MARGIN,
+    PRICE,
+    WORST_LOSS,
+)
+from pe_core.search.tolerance import without_each
+from pe_core.study.study import Study
+
+from ..advice import BLIND_TO_M
+
+AUGMENTED = 0.05
+"""Weight of the sum beside the maximum: it drops placements that are only weakly efficient."""
+TIE = 1e-3
+"""Weight of the other objectives while the best value of one is looked for."""
+Figures = Mapping[str, float]
+
+
+def check_objectives(study: Study, names: Sequence[str]) -> None:
+    """Raise `InputError` for an objective that the study has no figures of."""
+    wrong = {
+        AP: (not study.targets.are_objects, 'a study with metric.targets = "objects"', "voxels"),
+        WORST_LOSS: (len(study.rig) < 2, "a rig of at least two sensors", "one"),
+        MARGIN: (not study.requirements, "a study with requirements", "none"),
+        BLIND_ZONES: (not study.requirements, "a study with requirements", "none"),
+        PRICE: (not study.selection.choices, "a study with choices, which have prices", "none"),
+    }
+    for name in names:
+        is_wrong, expected, found = wrong.get(name, (False, "", ""))
+        if is_wrong:
+            raise InputError("optimize", f"front.objectives: {name}", expected, found)
+
+
+class FrontFigures:
+    """Computes the objectives of rigs of one study; a rig is evaluated once.
+
+    Parameters
+    ----------
+    study : Study
+    names : sequence of str
+    evaluator : RigJudge
+        Of the search.
+    price : float
+    """
+
+    def __init__(
+        self, study: Study, names: Sequence[str], evaluator: RigJudge, price: float = 0.0
+    ) -> None:
+        self._given = study, tuple(names), evaluator, price
+        self.names, self._study, self._evaluator = tuple(names), study, evaluator
+        tolerance, seed = study.search.tolerance, study.search.seed
+        self._objective = objective_of(evaluator, tolerance, seed)
+        self._sight = study.sight() if BLIND_GROUND in names else None
+        asks = {MARGIN, BLIND_ZONES} & set(names)
+        self._checker = study.checker() if asks else None
+        self._known: dict[tuple[object, ...], dict[str, float]] = {}
+        self._price = price
+        self._of: dict[str, Callable[[Rig], float]] = {
+            ENTROPY: self._objective.entropy,
+            AP: self._ap,
+            BLIND_GROUND: self._blind_ground,
+            HEIGHT: height_of,
+            PRICE: lambda _: self._price,
+            WORST_LOSS: self._worst_loss,
+            MARGIN: lambda rig: self._zones(rig)[0],
+            BLIND_ZONES: lambda rig: self._zones(rig)[1],
+        }
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the arguments: a worker has figures of its own from them."""
+        return FrontFigures, self._given
+
+    def __call__(self, rig: Rig) -> Figures:
+        """Return the objectives of a rig by name, each in its own unit."""
+        key = tuple((s.name, s.model.name, s.pose.position, s.pose.rpy) for s in rig)
+        if key not in self._known:
+            self._known[key] = {name: rounded(self._of[name](rig)) for name in self.names}
+        return self._known[key]
+
+    def costs(self, rig: Rig) -> list[float]:
+        """Return the objectives of a rig as values to minimise."""
+        return costs_of(self(rig), self.names)
+
+    def scored(self, rig: Rig, score: Score) -> Figures:
+        """Return the objectives with entropy and AP of a score on all voxels of the study."""
+        figures = dict(self(rig))
+        if ENTROPY in figures:
+            figures[ENTROPY] = score.entropy
+        if AP in figures and score.objects is not None:
+            figures[AP] = score.objects.ap
+        return figures
+
+    def _ap(self, rig: Rig) -> float:
+        found = self._evaluator.score(rig).objects
+        assert found is not None
+        return found.ap
+
+    def _blind_ground(self, rig: Rig) -> float:
+        assert self._sight is not None
+        return self._sight.blind(rig, max(BLIND_TO_M, self._study.space.z[0])).area
+
+    def _worst_loss(self, rig: Rig) -> float:
+        whole, *lost = self._evaluator.entropies([rig, *without_each(rig)])
+        return max(lost) - whole
+
+    def _zones(self, rig: Rig) -> tuple[float, float]:
+        """Return the worst margin of all requirements [m], and their blind ground [m2]."""
+        assert self._checker is not None
+        verdicts = self._checker.check(rig)
+        margins = [v.margin for v in verdicts if v.margin is not None]
+        return min(margins, default=0.0), sum(v.blind_m2 or 0.0 for v in verdicts)
+
+
+def height_of(rig: Rig) -> float:
+    """Return the height of the highest housing's top above the ground [m]."""
+    return max(
+        float(hull_of(s.pose, catalog.housing(s.model.name)).corners[:, 2].max()) for s in rig
+    )
+
+
+def costs_of(figures: Figures, names: Sequence[str]) -> list[float]:
+    """Return figures as values to minimise."""
+    return [-figures[n] if n in HIGHER_IS_BETTER else figures[n] for n in names]
+
+
+class ScalarValue:
+    """One value of several objectives, as a search minimises it.
+
+    The augmented weighted Chebyshev norm of the distance from the ideal point (Steuer and Choo,
+    "An interactive weighted Tchebycheff procedure", 1983): each placement of the Pareto front is
+    the best one for some weights, also where the front is not convex.
+
+    Parameters
+    ----------
+    figures : FrontFigures
+    weights : sequence of float
+    ideal, span : sequence of float
+        Best value of each objective, and how far its values are apart on the front so far.
+    """
+
+    def __init__(
+        self,
+        figures: FrontFigures,
+        weights: Sequence[float],
+        ideal: Sequence[float],
+        span: Sequence[float],
+    ) -> None:
+        self._figures, self._weights, self._ideal, self._span = figures, weights, ideal, span
+
+    def shared_parts(self) -> tuple[object, ...]:
+        """Return what workers are sent once: the figures. Weights are other ones at each point."""
+        return (self._figures,)
+
+    def scalar(self, costs: Sequence[float]) -> float:
+        """Return the value of costs."""
+        off = [(c - i) / s for c, i, s in zip(costs, self._ideal, self._span, strict=True)]
+        weighted = max(w * o for w, o in zip(self._weights, off, strict=True))
+        alone = sum(w > 0.0 for w in self._weights) == 1
+        return rounded(weighted + (TIE if alone else AUGMENTED) * sum(off) / len(off))
+
+    def entropy(self, rig: Rig) -> float:
+        """Return the value of a rig."""
+        return self.scalar(self._figures.costs(rig))
+
+    def judge(self, rig: Rig, below: float = math.inf) -> Judgement:
+        """Return the value of a rig."""
+        return Judgement(self.entropy(rig), False)
+
+
+def weights_of(count: int, objectives: int) -> list[tuple[float, ...]]:
+    """Return weights: first each objective alone, then evenly over all of them together.
+
+    Even weights are a rank-1 lattice on the unit cube, mapped to the simplex by the spacings of its
+    sorted coordinates.
+    """
+    alone = [tuple(float(k == n) for k in range(objectives)) for n in range(objectives)]
+    together = max(0, count - objectives)
+    golden = (math.sqrt(5.0) - 1.0) / 2.0
+    mixed = []
+    for number in range(together):
+        cuts = [((number + 0.5) / together)] + [
+            (number * golden ** (k + 1) + 0.5) % 1.0 for k in range(objectives - 2)
+        ]
+        edges = [0.0, *sorted(cuts), 1.0]
+        mixed.append(tuple(b - a for a, b in pairwise(edges)))
+    return [*alone, *mixed]
+
+
+def non_dominated(costs: Sequence[Sequence[float]]) -> list[int]:
+    """Return the indices of costs that no other one beats in all; of equal ones the first."""
+    kept = []
+    for k, own in enumerate(costs):
+        beaten = any(
+            all(a <= b for a, b in zip(other, own, strict=True))
+            and (list(other) != list(own) or j < k)
+            for j, other in enumerate(costs)
+            if j != k
+        )
+        if not beaten:
+            kept.append(k)
+    return kept
+
+
+def spread(costs: Sequence[Sequence[float]], count: int) -> list[int]:
+    """Return the indices of at most `count` costs, far from each other, the extremes first."""
+    if len(costs) <= count:
+        return list(range(len(costs)))
+    low = [min(column) for column in zip(*costs, strict=True)]
+    width = [max(c) - lo or 1.0 for c, lo in zip(zip(*costs, strict=True), low, strict=True)]
+    scaled = [[(v - lo) / w for v, lo, w in zip(c, low, width, strict=True)] for c in costs]
+    chosen = list(
+        dict.fromkeys(
+            min(range(len(costs)), key=lambda k: c[k])
+            for c in [[row[n] for row in scaled] for n in range(len(low))]
+        )
+    )[:count]
+    while len(chosen) < count:
+        far = max(
+            (k for k in range(len(costs)) if k not in chosen),
+            key=lambda k: min(math.dist(scaled[k], scaled[j]) for j in chosen),
+        )
+        chosen.append(far)
+    return sorted(chosen)

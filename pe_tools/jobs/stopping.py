@@ -1,0 +1,72 @@
+"""When a search ends before its budget does: at a target, after seconds, for want of gain."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Sequence
+
+from pe_core.search import Objective, Step, Stop
+
+TARGET, SECONDS, GAIN = "target", "seconds", "gain"
+"""Reasons, as result.json names them."""
+
+
+class StopWatch:
+    """Watches the steps of one search.
+
+    Parameters
+    ----------
+    stop : Stop
+    objectives : sequence of Objective
+        One for each level. A target that is reached on few voxels is checked on the last level.
+    started : float
+        `time.monotonic()` when the first search of a job began.
+    """
+
+    def __init__(self, stop: Stop, objectives: Sequence[Objective], started: float) -> None:
+        self._stop, self._objectives, self._started = stop, objectives, started
+        self._bests: deque[float] = deque(maxlen=stop.over + 1)
+        self._level = 0
+        self._checked: float | None = None
+
+    def reason(self, step: Step) -> str:
+        """Return why the search ends after a step; empty where it goes on."""
+        if self._is_at_target(step):
+            return TARGET
+        if self._has_no_gain(step):
+            return GAIN
+        seconds = self._stop.seconds
+        return SECONDS if seconds is not None and self._seconds >= seconds else ""
+
+    @property
+    def _seconds(self) -> float:
+        return time.monotonic() - self._started
+
+    def _is_at_target(self, step: Step) -> bool:
+        target = self._stop.target
+        if target is None or step.entropy > target:
+            return False
+        if step.level == len(self._objectives) - 1:
+            return True
+        if step.entropy == self._checked:
+            return False
+        self._checked = step.entropy
+        return self._objectives[-1].entropy(step.best) <= target
+
+    def _has_no_gain(self, step: Step) -> bool:
+        """Whether the last placements on the last level lowered the best by less than asked."""
+        if self._stop.gain is None or step.level < len(self._objectives) - 1:
+            return False
+        self._bests.append(step.entropy)
+        full = len(self._bests) == self._stop.over + 1
+        return full and self._bests[0] - self._bests[-1] < self._stop.gain
+
+
+def stop_text(reason: str, stop: Stop) -> str:
+    """Return why a search ended early, as text; empty without a reason."""
+    return {
+        TARGET: f"ended at its target of {stop.target or 0.0:g} nats",
+        SECONDS: f"ended after {stop.seconds or 0.0:g} s",
+        GAIN: f"ended: {stop.over:,} placements gained less than {stop.gain or 0.0:g} nats",
+    }.get(reason, "")

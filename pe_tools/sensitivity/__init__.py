@@ -1,0 +1,34 @@
+"""How sure a search is of its result: flatness, shadow prices, other optima, flattery.
+
+All of it is evaluated on voxels that the search has not seen. Nothing here changes a result.
+"""
+
+from .analysis import Flattery, Sensitivity, analyse, budget_of
+from .archive import Archive
+from .flatness import FAR, FLAT, NEAR, STEEP, AxisCost
+from .fresh_samples import Difference
+from .moves import PoseStep
+from .optima import Endings, RunnerUp
+from .reading import sensitivity_from_dict
+from .shadow_prices import ShadowPrice
+from .wording import sensitivity_lines
+
+__all__ = [
+    "FAR",
+    "FLAT",
+    "NEAR",
+    "STEEP",
+    "Archive",
+    "AxisCost",
+    "Difference",
+    "Endings",
+    "Flattery",
+    "PoseStep",
+    "RunnerUp",
+    "Sensitivity",
+    "ShadowPrice",
+    "analyse",
+    "budget_of",
+    "sensitivity_from_dict",
+    "sensitivity_lines",
+]

@@ -1,0 +1,69 @@
+"""How flat an optimum is: what 1 cm and 1 deg cost, by sensor and axis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pe_core.search import AXES
+
+from .fresh_samples import Difference, FreshSamples
+from .moves import Neighbourhood, PoseStep, lone_move
+
+NEAR, FAR = 1.0, 5.0
+"""Steps to both sides [cm or deg]."""
+FLAT, STEEP = "flat", "steep"
+STEEP_NATS = 0.01
+"""From this cost of one step on, an axis is called steep [nats]: a third of what the default search
+flatters itself by."""
+
+
+@dataclass(frozen=True, slots=True)
+class AxisCost:
+    """What moving one sensor alone along one axis costs.
+
+    Attributes
+    ----------
+    sensor, axis : str
+    status : str
+        What the search does with the axis: "free", "surface", "slot", "fixed" or "linked".
+    cost : mapping of float to Difference
+        By step [cm or deg]: how much the entropy rises [nats]; negative: it falls.
+    """
+
+    sensor: str
+    axis: str
+    status: str
+    cost: Mapping[float, Difference]
+
+    @property
+    def worst(self) -> Difference:
+        """The higher cost of one step back or forth."""
+        return max((self.cost[-NEAR], self.cost[NEAR]), key=lambda each: each.mean)
+
+    @property
+    def word(self) -> str:
+        """ "steep", "flat" (no step as far as was looked has a cost), or empty."""
+        if self.worst.is_loss and self.worst.mean >= STEEP_NATS:
+            return STEEP
+        return "" if any(each.is_loss or each.is_gain for each in self.cost.values()) else FLAT
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data."""
+        cost = {f"{step:+g}": each.to_list() for step, each in sorted(self.cost.items())}
+        return {"sensor": self.sensor, "axis": self.axis, "status": self.status, "cost": cost}
+
+
+def flatness(
+    samples: FreshSamples, neighbourhood: Neighbourhood, steps: tuple[float, ...] = (NEAR, FAR)
+) -> Iterator[AxisCost]:
+    """Yield the costs of each axis of each sensor, in the rig's order."""
+    for sensor in samples.reference:
+        for axis in AXES:
+            cost = {}
+            for units in (*(-each for each in steps), *steps):
+                step = PoseStep(sensor.name, axis, units)
+                cost[units] = samples.change(lone_move(samples.reference, step))
+            status = neighbourhood.status(sensor.name, axis)
+            yield AxisCost(sensor.name, axis, status, cost)

@@ -1,0 +1,186 @@
+"""Where a search could have ended: optima that are apart from its result, by the hill-valley test.
+
+Two placements are in one basin if no placement on the straight line between them is worse than
+both (Ursem, "Multinational evolutionary algorithms", 1999). Here the line is taken in the design
+variables and projected onto the mounts, and "worse" is beyond the error of the samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pe_core.base.degrees import degrees_in_file
+from pe_core.scene.rig import Rig
+from pe_core.search import Candidate, Parametrization
+from pe_core.search.design_variable import METRE, RADIAN, SHARE
+from pe_core.search.search_space import SearchSpace
+
+from .archive import is_near
+from .fresh_samples import Difference, FreshSamples
+
+MAX_RUNNERS_UP = 3
+EXAMINED = 16
+"""Placements of the archive that are evaluated on the fresh samples, the best first."""
+BETWEEN = (0.25, 0.5, 0.75)
+"""Shares of the way between two placements at which a hill is looked for."""
+FIRST_STEP = {METRE: 0.08, RADIAN: 0.07, SHARE: 0.0}
+"""First step of the descent of a runner-up [m, rad: 4 deg]; slots are not changed."""
+HALVINGS = 2
+DESCENT = 40
+"""Evaluations of the descent of one runner-up at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunnerUp:
+    """An optimum that the search did not choose.
+
+    Attributes
+    ----------
+    rig : Rig
+    behind : Difference
+        How much higher its entropy is than that of the result [nats].
+    moved : tuple of str
+        Sensors that are elsewhere than in the result.
+    """
+
+    rig: Rig
+    behind: Difference
+    moved: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data."""
+        mean, stderr = self.behind.to_list()
+        return {
+            "behind": mean,
+            "stderr": stderr,
+            "moved": list(self.moved),
+            "placements": {
+                s.name: {
+                    "position": list(s.pose.position),
+                    "rotation": [degrees_in_file(angle) for angle in s.pose.rpy],
+                }
+                for s in self.rig
+            },
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Endings:
+    """Where the starts of a search ended.
+
+    Attributes
+    ----------
+    examined : int
+        How many placements apart from the result were examined.
+    same_basin : int
+        How many of them lead to the result without a hill between.
+    runners_up : tuple of RunnerUp
+        Other optima, the best first; at most `MAX_RUNNERS_UP`.
+    """
+
+    examined: int
+    same_basin: int
+    runners_up: tuple[RunnerUp, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data."""
+        return {
+            "examined": self.examined,
+            "same_basin": self.same_basin,
+            "runners_up": [each.to_dict() for each in self.runners_up],
+        }
+
+
+class Basins:
+    """Sorts placements into basins of attraction.
+
+    Parameters
+    ----------
+    samples : FreshSamples
+    space : SearchSpace
+    """
+
+    def __init__(self, samples: FreshSamples, space: SearchSpace) -> None:
+        self._samples, self._space = samples, space
+        self._coding = Parametrization(samples.reference, space)
+
+    def endings(self, placements: Iterator[Rig]) -> Endings:
+        """Return the optima apart from the reference among placements of a search."""
+        apart = self._apart(placements)
+        apart.sort(key=lambda rig: self._samples.mean(rig).mean)
+        found: list[Rig] = []
+        same = 0
+        for rig in apart:
+            if not self._is_separate(rig, [self._samples.reference]):
+                same += 1
+            elif len(found) < MAX_RUNNERS_UP and self._is_separate(rig, found):
+                lower = self._descended(rig)
+                if self._is_separate(lower, [self._samples.reference, *found]):
+                    found.append(lower)
+                else:
+                    same += 1
+        runners_up = [self._runner_up(rig) for rig in found]
+        runners_up.sort(key=lambda each: each.behind.mean)
+        return Endings(len(apart), same, tuple(runners_up))
+
+    def _apart(self, placements: Iterator[Rig]) -> list[Rig]:
+        """Return the first placements that are in no other one's neighbourhood."""
+        apart: list[Rig] = []
+        for rig in placements:
+            if len(apart) == EXAMINED:
+                break
+            if not any(is_near(rig, other) for other in (self._samples.reference, *apart)):
+                apart.append(rig)
+        return apart
+
+    def _is_separate(self, rig: Rig, others: Sequence[Rig]) -> bool:
+        """Whether there is a hill between a placement and each of the others."""
+        return all(self._has_hill(rig, other) for other in others)
+
+    def _has_hill(self, one: Rig, other: Rig) -> bool:
+        if is_near(one, other):
+            return False
+        worse = one if self._samples.change(one, other).mean > 0.0 else other
+        for rig in self._between(one, other):
+            if rig is None or self._samples.change(rig, worse).is_loss:
+                return True
+        return False
+
+    def _between(self, one: Rig, other: Rig) -> Iterator[Rig | None]:
+        """Yield placements on the way; None for one that breaks a rule."""
+        first, last = (self._vector(rig) for rig in (one, other))
+        for share in BETWEEN:
+            vector = [a + share * (b - a) for a, b in zip(first, last, strict=True)]
+            rig = self._coding.candidate(vector).rig
+            yield rig if self._coding.allowed(rig) else None
+
+    def _vector(self, rig: Rig) -> tuple[float, ...]:
+        return Parametrization(rig, self._space).start.vector
+
+    def _descended(self, rig: Rig) -> Rig:
+        """Return the placement after a short compass search, which only takes what is better."""
+        coding = Parametrization(rig, self._space)
+        best, left, scale = coding.start, DESCENT, 1.0
+        for _ in range(HALVINGS + 1):
+            for candidate in list(self._around(coding, best, scale)):
+                if left and coding.allowed(candidate.rig):
+                    left -= 1
+                    if self._samples.change(candidate.rig, best.rig).mean < 0.0:
+                        best = candidate
+            scale /= 2.0
+        return best.rig
+
+    def _around(self, coding: Parametrization, at: Candidate, scale: float) -> Iterator[Candidate]:
+        for number, variable in enumerate(coding.variables):
+            for sign in (-scale, scale):
+                if FIRST_STEP[variable.unit]:
+                    vector = list(at.vector)
+                    step = sign * FIRST_STEP[variable.unit]
+                    vector[number] = variable.clipped(vector[number] + step)
+                    yield coding.candidate(vector)
+
+    def _runner_up(self, rig: Rig) -> RunnerUp:
+        moved = tuple(s.name for s in rig if s.pose != self._samples.reference[s.name].pose)
+        return RunnerUp(rig, self._samples.change(rig), moved)

@@ -1,0 +1,72 @@
+"""Read a sensitivity analysis back from result.json."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pe_core.geometry.poses import Pose
+from pe_core.scene.rig import Rig
+
+from .analysis import Flattery, Sensitivity
+from .flatness import AxisCost
+from .fresh_samples import Difference
+from .moves import PoseStep
+from .optima import Endings, RunnerUp
+from .shadow_prices import ShadowPrice
+
+
+def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitivity | None:
+    """Return the analysis that `Sensitivity.to_dict` wrote; None for None.
+
+    Parameters
+    ----------
+    table : mapping, optional
+    rig : Rig
+        Sensors of the study; runners-up have other poses.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        When the table is no such analysis.
+    """
+    if table is None:
+        return None
+    flattery = table["flattery"]
+    on_fresh = Difference(float(flattery["on_fresh"]), float(flattery["stderr"]))
+    return Sensitivity(
+        int(table["voxels"]),
+        int(table["evaluations"]),
+        tuple(_axis(row) for row in table["axes"]),
+        tuple(_price(row) for row in table["constraints"]),
+        Flattery(float(flattery["on_search"]), on_fresh),
+        None if table["endings"] is None else _endings(table["endings"], rig),
+    )
+
+
+def _axis(row: Mapping[str, Any]) -> AxisCost:
+    cost = {float(step): _difference(values) for step, values in row["cost"].items()}
+    return AxisCost(str(row["sensor"]), str(row["axis"]), str(row["status"]), cost)
+
+
+def _price(row: Mapping[str, Any]) -> ShadowPrice:
+    step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
+    gain = Difference(-float(row["gain"]), float(row["stderr"]))
+    return ShadowPrice(tuple(map(str, row["constraints"])), step, gain)
+
+
+def _endings(table: Mapping[str, Any], rig: Rig) -> Endings:
+    runners_up = tuple(_runner_up(row, rig) for row in table["runners_up"])
+    return Endings(int(table["examined"]), int(table["same_basin"]), runners_up)
+
+
+def _runner_up(row: Mapping[str, Any], rig: Rig) -> RunnerUp:
+    tables = [row["placements"][sensor.name] for sensor in rig]
+    poses = [Pose.from_degrees(each["position"], each["rotation"]) for each in tables]
+    behind = Difference(float(row["behind"]), float(row["stderr"]))
+    return RunnerUp(rig.with_poses(poses), behind, tuple(map(str, row["moved"])))
+
+
+def _difference(values: list[Any]) -> Difference:
+    mean, stderr = map(float, values)
+    return Difference(mean, stderr)

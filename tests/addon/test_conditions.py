@@ -1,0 +1,242 @@
+"""States of a scene's frames, and weathers: the panel, the study file and the engine agree."""
+
+import json
+import math
+
+import bpy
+import pytest
+
+import pe_core as pe
+from blender_addon import bridge, result_staleness
+from blender_addon.bridge import conditions
+from blender_addon.live import state
+from pe_core.study import condition_table
+from tests.addon import scenes
+from tests.engine import shapes
+
+OPEN_FRAME = 20
+
+
+def box_object(name, low, high, origin=(0.0, 0.0, 0.0)):
+    """Return an object of a box, whose origin is a hinge."""
+    mesh = bpy.data.meshes.new(name)
+    triangles = shapes.box(low, high) - origin
+    mesh.from_pydata(
+        triangles.reshape(-1, 3).tolist(),
+        [],
+        [(3 * k, 3 * k + 1, 3 * k + 2) for k in range(len(triangles))],
+    )
+    obj = bpy.data.objects.new(name, mesh)
+    obj.location = origin
+    return obj
+
+
+@pytest.fixture
+def car(scene):
+    """Return a scene with a car whose door turns by an action, with a LiDAR on it and one above."""
+    collection = bpy.data.collections.new("Car")
+    scene.collection.children.link(collection)
+    body = box_object("body", (-2.0, -0.9, 0.3), (2.0, 0.88, 1.5))
+    door = box_object("door", (-0.2, 0.88, 0.35), (0.8, 0.92, 1.3), (0.8, 0.9, 0.6))
+    collection.objects.link(body)
+    collection.objects.link(door)
+    scene.perception_entropy.vehicle = collection
+    for frame, angle in ((1, 0.0), (OPEN_FRAME, math.radians(-66.0))):
+        door.rotation_euler.z = angle
+        door.keyframe_insert("rotation_euler", frame=frame)
+    scene.frame_set(1)
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(0.0, 0.0, 1.7))
+    mirror = scenes.add_sensor("mirror", "Velodyne VLP-16 Puck", location=(0.6, 0.97, 1.1))
+    bpy.context.view_layer.update()
+    mirror.parent = door
+    mirror.matrix_parent_inverse = door.matrix_world.inverted()
+    bpy.context.view_layer.update()
+    return scene
+
+
+def add_open_state(scene):
+    scene.frame_set(OPEN_FRAME)
+    assert bpy.ops.pe.add_state() == {"FINISHED"}
+    scene.perception_entropy.states[-1].name = "door open"
+    scene.frame_set(1)
+
+
+def test_a_frame_is_a_state_and_its_motions_are_those_of_the_hinge(car):
+    bpy.ops.pe.add_state()
+    add_open_state(car)
+    drawn, opened = car.perception_entropy.states
+    assert (drawn.name, drawn.frame, json.loads(drawn.table)) == ("As Drawn", 1, {})
+    assert opened.frame == OPEN_FRAME
+    move = json.loads(opened.table)["move"]
+    assert [m["parts"] for m in move] == [["door"]] and move[0]["sensors"] == ["mirror"]
+    assert move[0]["rotation"] == pytest.approx([0.0, 0.0, -66.0], abs=2e-4)
+    car.frame_set(OPEN_FRAME)
+    bpy.context.view_layer.update()
+    shown = bpy.data.objects["mirror"].matrix_world.translation
+    study = bridge.study_as_drawn(car)
+    pose = study.conditions.one("door open").rig(study.rig, study.vehicle)["mirror"].pose
+    assert pose.position == pytest.approx(tuple(shown), abs=5e-5)
+    assert car.frame_current == OPEN_FRAME  # reading shows the frame again that was shown
+
+
+def test_panel_study_file_and_engine_have_the_same_bits(car, tmp_path):
+    """The frame that is shown does not matter: all of them score the vehicle as drawn."""
+    bpy.ops.pe.add_state()
+    add_open_state(car)
+    bpy.ops.pe.add_weather(weather="CLEAR")
+    bpy.ops.pe.add_weather(weather="FOG")
+    car.perception_entropy.weathers[1].weight = 0.1
+    car.frame_set(OPEN_FRAME)
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    shown = json.loads(car.perception_entropy.result_json)["conditions"]
+    bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml"))
+    study = pe.load_study(tmp_path / "study.toml")
+    assert condition_table(study).to_dict() == shown
+    assert [r["state"] for r in shown["rows"]] == ["As Drawn", "As Drawn", "door open", "door open"]
+    assert shown["rows"][1]["weight"] == 0.1
+    assert shown["rows"][0]["entropy"] != shown["rows"][2]["entropy"]
+    assert "mean of the conditions" in car.perception_entropy.result_conditions
+    car.frame_set(1)
+    assert pe.study_to_dict(bridge.study_as_drawn(car))["state"] == pe.study_to_dict(study)["state"]
+
+
+def test_a_study_s_conditions_are_loaded_and_undone(car):
+    study = bridge.study_as_drawn(car)
+    weather = pe.Weather("rain", 0.3, rain_mm_h=12.5)
+    sunk = pe.State("sunk", heave=-0.05, weight=0.25)
+    wanted = pe.Conditions([sunk], [weather])
+    conditions.write_conditions(car.perception_entropy, wanted)
+    assert bridge.conditions_of(car.perception_entropy) == wanted
+    assert study.conditions == pe.Conditions()
+    car.perception_entropy.state_index = car.perception_entropy.weather_index = 0
+    bpy.ops.pe.remove_state()
+    bpy.ops.pe.remove_weather()
+    assert bridge.conditions_of(car.perception_entropy) == pe.Conditions()
+
+
+def test_a_part_that_bends_is_refused_by_name(car):
+    body = bpy.data.objects["body"]
+    body.scale.x = 1.0
+    body.keyframe_insert("scale", frame=1)
+    body.scale.x = 1.1
+    body.keyframe_insert("scale", frame=OPEN_FRAME)
+    car.frame_set(OPEN_FRAME)
+    with pytest.raises(RuntimeError, match="part 'body': expected a rigid motion"):
+        bpy.ops.pe.add_state()
+    assert not car.perception_entropy.states and car.frame_current == OPEN_FRAME
+
+
+def test_a_state_is_shown_and_the_vehicle_as_drawn_again(car):
+    add_open_state(car)
+    bpy.ops.pe.show_state(index=0)
+    assert car.frame_current == OPEN_FRAME
+    bpy.ops.pe.show_state(index=-1)
+    assert car.frame_current == 1
+
+
+def idle():
+    bpy.context.view_layer.update()
+    result_staleness.update_result()
+    result_staleness.update_variants()
+
+
+def scored_with_a_state(scene):
+    """A scored scene with a variant and a state; what is stored of it."""
+    settings = scene.perception_entropy
+    settings.grid_samples = 4096
+    add_open_state(scene)
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    idle()
+    return settings
+
+
+def marks(settings):
+    return settings.result_stale, settings.variants[0].stale, settings.variant_changed
+
+
+def test_showing_another_state_makes_no_score_stale_and_a_change_there_does(car):
+    settings = scored_with_a_state(car)
+    for frame in (1, OPEN_FRAME, 1, OPEN_FRAME):
+        car.frame_set(frame)
+        idle()
+        assert marks(settings) == (False, False, False), frame
+    bpy.data.objects["roof"].location.z += 0.1
+    idle()
+    assert settings.result_stale and settings.variant_changed
+    idle()
+    assert settings.result_stale
+    bpy.data.objects["roof"].location.z -= 0.1
+    idle()
+    car.frame_set(1)
+    idle()
+    assert marks(settings) == (False, False, False)
+    car.frame_set(OPEN_FRAME)
+    idle()
+    settings.states[0].weight = 0.5
+    idle()
+    assert settings.result_stale
+    car.frame_set(1)
+    idle()
+    assert settings.result_stale
+
+
+def test_a_score_made_while_another_state_is_shown_is_current(car):
+    settings = scored_with_a_state(car)
+    drawn = settings.result_entropy
+    car.frame_set(OPEN_FRAME)
+    assert bpy.ops.pe.score() == {"FINISHED"} and settings.result_entropy == drawn
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    first, second = settings.variants
+    assert bridge.records_of(first) == bridge.records_of(second)  # both as drawn
+    assert car.frame_current == OPEN_FRAME
+    idle()
+    assert marks(settings) == (False, False, False)
+    assert bridge.shown_state(car) == "door open"
+    car.frame_set(1)
+    idle()
+    assert marks(settings) == (False, False, False) and not bridge.shown_state(car)
+
+
+def test_a_search_places_sensors_as_drawn_in_whatever_state_is_shown(car):
+    settings = scored_with_a_state(car)
+    mirror = bpy.data.objects["mirror"]
+    mirror.perception_entropy.free = (False, False, True, False, False, False)
+    bpy.data.objects["roof"].perception_entropy.free = (False,) * 6
+    car.frame_set(OPEN_FRAME)
+    settings.candidates, settings.samples = 4, 2048
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    idle()
+    assert car.frame_current == OPEN_FRAME and not settings.result_stale
+    car.frame_set(1)
+    idle()
+    assert not settings.result_stale
+    assert mirror.matrix_world.translation[:2] == pytest.approx((0.6, 0.97), abs=1e-4)
+
+
+def test_after_opening_a_file_with_another_state_shown_the_saved_mark_holds(car, tmp_path):
+    scored_with_a_state(car)
+    car.frame_set(OPEN_FRAME)
+    blend = str(tmp_path / "open.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=blend)
+    bpy.ops.wm.open_mainfile(filepath=blend)
+    scene = bpy.context.scene
+    idle()
+    assert marks(scene.perception_entropy) == (False, False, False)
+    scene.frame_set(1)
+    idle()
+    assert marks(scene.perception_entropy) == (False, False, False)
+
+
+def test_the_stored_score_is_not_shown_as_that_of_another_state(car):
+    settings = scored_with_a_state(car)
+    live, settings.live.on = state.live_state(car.name), True
+    summary = pe.Glance(2.5, 0.5, 0.01, {}, {}, 10)
+    live.put(state.LiveScore(summary, None, True, None, live.requests))
+    assert state.shown_score(car).stored
+    car.frame_set(OPEN_FRAME)
+    idle()
+    live.put(state.LiveScore(summary, None, True, None, live.requests))
+    found = state.shown_score(car)
+    assert (found.entropy, found.stored, found.state) == (2.5, False, "door open")
+    assert not settings.result_stale

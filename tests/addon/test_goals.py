@@ -1,0 +1,73 @@
+"""Goals of a search in the panel: the study that they make, fronts, runners-up as variants."""
+
+import bpy
+import pytest
+
+import pe_core as pe
+from blender_addon import bridge
+from pe_core.search import Goals
+from pe_tools import jobs
+from pe_tools.jobs import FrontJob, front_dict
+from tests.addon import scenes
+
+
+@pytest.fixture
+def asked(car):
+    """Return a scene whose search has all goals."""
+    settings = car.perception_entropy
+    settings.method, settings.evaluations, settings.search_samples = "cma-es", 60, 1024
+    settings.score_samples, settings.sensitivity = 1024, "off"
+    return car
+
+
+def test_goals_of_the_panel_are_those_of_the_study(asked):
+    settings = asked.perception_entropy
+    assert scenes.study().search.goals == Goals(sensitivity="off")
+    settings.stop_target, settings.stop_gain, settings.stop_over = -1.25, 0.002, 40
+    bpy.data.objects["roof"].perception_entropy.stays = True
+    goals = scenes.study().search.goals
+    assert (goals.stop.target, goals.stop.seconds, goals.stop.over) == (-1.25, None, 40)
+    assert goals.stop.gain == 0.002 and goals.fixed == ("roof",)
+    settings.start_variants = True
+    assert scenes.study().search.goals.starts == ()
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    bpy.data.objects["roof"].location.x += 0.2
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    [start] = scenes.study().search.goals.starts
+    now = scenes.study().rig["roof"].pose.position[0]
+    assert start.poses["roof"].position[0] == pytest.approx(now - 0.2, abs=1e-5)
+
+
+def test_the_panel_finds_the_front_of_the_job(asked):
+    settings = asked.perception_entropy
+    settings.front_objectives, settings.front_points = {"entropy", "height"}, 3
+    job = FrontJob(scenes.study(), 1)
+    list(job)
+    assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
+    names = [design.name for design in job.trade_off.front]
+    assert [row.name for row in settings.front] == names
+    assert {row.name for row in settings.variants} >= set(names)
+    figures = front_dict(job.trade_off)["designs"][0]["figures"]
+    assert settings.front[0].figures == ", ".join(f"{n} {v:.4g}" for n, v in figures.items())
+    assert settings.front_told == "Pareto front of entropy, height"
+    row = bridge.variant_named(asked, names[0])
+    study = bridge.study_of_variant(asked, row, scenes.depsgraph())
+    assert study.rig["roof"].pose == job.trade_off.front[0].study.rig["roof"].pose
+
+
+def test_a_front_needs_two_objectives(asked):
+    asked.perception_entropy.front_objectives = {"entropy"}
+    with pytest.raises(RuntimeError, match=r"front\.objectives: expected two or more of entropy"):
+        bpy.ops.pe.choose_sensors()
+
+
+def test_runners_up_are_variants_and_their_lines_are_in_the_scene(asked, monkeypatch):
+    other = scenes.study().rig
+    moved = other.with_poses([pe.Pose((0.3, 0.0, 2.0))] + [s.pose for s in other.sensors[1:]])
+    found = {"runner_up_1.toml": scenes.study().with_rig(moved)}
+    monkeypatch.setattr(jobs, "runners_up", lambda _: found)
+    asked.perception_entropy.sensitivity = "full"
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    settings = asked.perception_entropy
+    assert "Runner-up 1" in {row.name for row in settings.variants}
+    assert "1 cm or 1 deg" in settings.result_sureness

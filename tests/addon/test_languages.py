@@ -1,0 +1,156 @@
+"""The interface in other languages: texts that fit, and sentences that are translated."""
+
+import ast
+import re
+from pathlib import Path
+
+import bpy
+import pytest
+
+import blender_addon
+from blender_addon import language, translation_context
+from blender_addon.engine import catalog, languages
+from blender_addon.panels import layout, main
+from blender_addon.translation_context import CONTEXT
+from tests.addon import layouts
+
+SIDEBAR_PX, POINTS = 252.0, 11.0
+"""Width of a sidebar as Blender opens it, and size of its text, at a scale of 1."""
+NARROW = {
+    **dict.fromkeys(("Score", "Live", "Optimize"), 58.0),
+    **dict.fromkeys(("LiDAR", "Camera", "Radar", "Ultrasonic"), 66.0),
+    **dict.fromkeys(("Add", "Place"), 44.0),
+    **dict.fromkeys(("Look Through", "Picture in View", "Mirror", "Mirror Linked"), 92.0),
+    **dict.fromkeys(("X", "Y", "Z", "Roll", "Pitch", "Yaw"), 38.0),
+    **dict.fromkeys(("Sensor", "Model"), 60.0),
+    **dict.fromkeys(("Vehicle", "Mounted on"), 80.0),
+    "Loss": 84.0,
+    **dict.fromkeys(("Entropy", "Coverage", "Before"), 78.0),
+}
+"""Labels of narrow places, and the room there [px]: looked at in a window of that sidebar."""
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+@pytest.mark.parametrize("code", languages.LANGUAGES)
+def test_labels_of_narrow_places_are_not_cut_off(addon, code, scale):
+    layout.blf.size(layout.FONT, POINTS * scale)
+    catalog = languages.catalog(code)
+    shown = {text: catalog.translated(text) for text in NARROW}
+    widths = {text: layout.blf.dimensions(layout.FONT, to)[0] for text, to in shown.items()}
+    assert not {
+        (text, shown[text], width) for text, width in widths.items() if width > NARROW[text] * scale
+    }
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+@pytest.mark.parametrize("code", languages.LANGUAGES)
+def test_sentences_wrap_in_the_sidebar_in_every_language(addon, code, scale):
+    """No line is wider than the sidebar, also without gaps between words, and nothing is lost."""
+    room, size = (SIDEBAR_PX - layout.BESIDE_PX) * scale, POINTS * scale
+    layout.blf.size(layout.FONT, size)
+    for text in languages.catalog(code).messages.values():
+        lines = layout.wrapped_lines(text, room, size)
+        assert "".join(lines).replace(" ", "") == "".join(text.split()), text
+        assert all(layout.blf.dimensions(layout.FONT, line)[0] <= room for line in lines), text
+        assert not any(line[:1] in "。、，：；）" for line in lines[1:] if len(line) > 1), lines
+
+
+def test_the_panel_is_in_the_language_of_the_interface(addon, monkeypatch):
+    """What is composed is translated; what is whole is Blender's to translate."""
+    monkeypatch.setattr(language, "current", lambda: "de")
+    shown = layouts.drawn(main.PE_PT_main, **vars(layouts.Window(bpy.context.scene)))
+    assert "1  Das Fahrzeug wählen" in shown.texts("label")
+    assert "Noch keine Sensoren" in shown.texts("label")
+    assert language.shown("Added roof: 4 sensors") == "roof hinzugefügt: 4 Sensoren"
+
+
+def test_blender_is_given_every_whole_message_once(addon):
+    """In both contexts: Blender looks tooltips up in that of its own."""
+    for code in languages.LANGUAGES:
+        given = language._messages(code, ("UN R151: cyclist beside, moving",))
+        plain = languages.catalog(code).plain
+        assert len(plain) > 1000 and len(given) == 2 * len(plain) + 2
+        assert all(given[CONTEXT, text] == plain[text] == given["*", text] for text in plain)
+        assert plain["cyclist beside, moving"] in given[CONTEXT, "UN R151: cyclist beside, moving"]
+
+
+def rna_of(cls):
+    """Return the type as Blender has it; of an operator, its own."""
+    if issubclass(cls, bpy.types.Operator):
+        return getattr(bpy.ops.pe, cls.bl_idname.removeprefix("pe.")).get_rna_type()
+    return cls.bl_rna
+
+
+def test_every_name_is_looked_up_in_our_context_where_blender_has_no_word(addon):
+    """In contexts of its own Blender has "Range" and "Key" of other meanings, and these win."""
+    labelled = [c for c in blender_addon.CLASSES if issubclass(c, translation_context.LABELLED)]
+    assert len(labelled) > 90
+    assert {cls.bl_translation_context for cls in labelled} == {CONTEXT}
+    operators = [cls for cls in labelled if issubclass(cls, bpy.types.Operator)]
+    assert {rna_of(cls).translation_context for cls in operators} == {CONTEXT}
+    for cls in blender_addon.CLASSES:
+        declared = translation_context.own_properties(cls).keys() - {"name"}  # Blender's own name
+        contexts = {each: rna_of(cls).properties[each].translation_context for each in declared}
+        assert set(contexts.values()) <= {CONTEXT}, (cls, contexts)
+
+
+PROPER = re.compile(
+    r"[+-]?[XYZab]|[\d.]+ m|CMA-ES|URDF|Perception Entropy|nuScenes|KITTI.*|Argoverse 2|Waymo.*"
+    r"|Autoware.*|TIER IV.*|Paper: .*|CARLA .*|ROS 2 .*|DriveWorks .*|ASAM OSI .*"
+)
+"""Names that are the same in all languages: axes, heights, data sets, formats of files."""
+MAKERS = {e.maker for e in catalog.entries().values()} - set(catalog.OTHER_LABELS.values())
+
+
+@pytest.mark.parametrize("code", languages.LANGUAGES)
+def test_every_name_that_blender_looks_up_is_translated(addon, code):
+    """In our context no word of Blender's helps out."""
+    given, same = language._messages(code, ()), set()
+    for cls in blender_addon.CLASSES:
+        internal = getattr(cls, "bl_options", set()) >= {"INTERNAL"}
+        for name in translation_context.names_of(cls):
+            known = (CONTEXT, name) in given or language.languages.catalog(code).translated(
+                name
+            ) != name
+            proper = PROPER.fullmatch(name) or name in MAKERS
+            if name and not known and not internal and not proper:
+                same.add((cls.__name__, name))
+    assert not same
+
+
+WITH_CONTEXT = {"operator", "prop", "operator_menu_enum", "prop_search", "prop_menu_enum"}
+"""What is drawn of a type or property: a text that is written there is looked up in its context."""
+OTHERS = {"label", "menu", "popover", "progress", "invoke_props_dialog", "invoke_confirm"}
+TEXTS = {"text", "title", "confirm_text", "message"}
+
+
+def is_written_there(node):
+    """Whether a text is a literal, or one of two."""
+    if isinstance(node, ast.IfExp):
+        return is_written_there(node.body) and is_written_there(node.orelse)
+    return isinstance(node, ast.Constant)
+
+
+def left_to_blender(tree):
+    """Yield calls that draw a text which Blender looks up in a context of its own."""
+    for node in ast.walk(tree):
+        called = getattr(getattr(node, "func", None), "attr", "")
+        if called not in WITH_CONTEXT | OTHERS:
+            continue
+        given = {keyword.arg: keyword.value for keyword in node.keywords}
+        if {"translate", "text_ctxt"} & given.keys():
+            continue
+        for text in (given[name] for name in TEXTS & given.keys()):
+            is_empty = isinstance(text, ast.Constant) and not text.value
+            if not is_empty and not (called in WITH_CONTEXT and is_written_there(text)):
+                yield ast.unparse(node)
+
+
+def test_no_text_is_left_to_blender_s_own_catalogue():
+    """It would win, and also translate a sensor that is named Front."""
+    found = left_to_blender(ast.parse('layout.label(text="Range"); row.operator("a", text=name)'))
+    assert len(list(found)) == 2
+    package = Path(blender_addon.__file__).parent
+    for path in package.rglob("*.py"):
+        if not {"pe_core", "pe_tools"} & set(path.relative_to(package).parts):
+            assert not list(left_to_blender(ast.parse(path.read_text("utf-8")))), path

@@ -1,0 +1,61 @@
+"""Entries in Blender's own menus: for sensors, for meshes, and for the search of F3."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+
+from blender_addon.engine import catalog
+from blender_addon.panels import menus, sensor_menus
+from tests.addon import layouts, scenes
+
+
+def context_menu(scene, obj, mode="OBJECT"):
+    """Buttons of a right click on an object."""
+    layout = layouts.Layout()
+    context = SimpleNamespace(scene=scene, active_object=obj, mode=mode)
+    menus.draw_context_menu(SimpleNamespace(layout=layout), context)
+    return layout.texts("operator")
+
+
+def test_a_right_click_offers_what_fits_the_object(addon):
+    scene = bpy.context.scene
+    mesh = bpy.data.objects.new("part", bpy.data.meshes.new("part"))
+    assert context_menu(scene, None) == context_menu(scene, mesh, "EDIT_MESH") == []
+    assert context_menu(scene, mesh) == ["Use Selected Objects as Vehicle"]
+    sensor = scenes.add_sensor("roof")
+    assert context_menu(scene, sensor)[:2] == ["pe.look_through", "pe.stand_upright"]
+    scene.perception_entropy.vehicle = bpy.data.collections.new("Car")
+    assert context_menu(scene, mesh) == ["pe.place_sensor"]
+
+
+def test_every_button_of_the_menu_is_an_operator(addon):
+    class Names(layouts.Layout):
+        def operator(self, name, **_):
+            self.notes.append(name)
+
+    layout = Names()
+    menus.PE_MT_object.draw(SimpleNamespace(layout=layout), bpy.context)
+    names = [name for name in layout.notes if isinstance(name, str)]
+    assert len(names) > 10
+    for name in names:
+        module, function = name.split(".")
+        getattr(getattr(bpy.ops, module), function).get_rna_type()
+
+
+@pytest.mark.parametrize("name", [name for name, _ in menus.PLACES])
+def test_entries_are_added_and_removed(addon, name):
+    drawn = [each.__name__ for each in getattr(bpy.types, name)._dyn_ui_initialize()]
+    assert "draw_context_menu" in drawn or "draw_object_menu" in drawn
+
+
+def test_each_sensor_is_below_its_maker_in_a_search(addon):
+    """The search visits a menu's class once, without what a button passes to it."""
+    listed = layouts.drawn(sensor_menus.PE_MT_add_sensor).texts("menu")
+    assert len(listed) == len(set(listed)) > 5
+    found = {}
+    for name in listed:
+        menu = getattr(bpy.types, name)
+        texts = layouts.drawn(menu).texts("operator")
+        found |= {text.partition("   ")[0]: menu.bl_label for text in texts}
+    assert found == {name: entry.maker for name, entry in catalog.entries().items()}

@@ -1,0 +1,54 @@
+"""Radars and ultrasonic sensors in Blender: added, scored as the engine does, covers, pictures."""
+
+import bpy
+import numpy as np
+import pytest
+
+from tests.addon import scenes
+
+ARS, PARKING = "Continental ARS408-21", "Parking module 2.5 m"
+
+
+@pytest.fixture
+def front(car):
+    """Return the car's scene with a radar and an ultrasonic sensor ahead of it."""
+    scenes.add_sensor("front", ARS, location=(2.5, 0.0, 0.5))
+    scenes.add_sensor("parking", PARKING, location=(2.5, 0.4, 0.5))
+    return car
+
+
+def test_they_are_scored_as_the_engine_does(front):
+    study = scenes.study()
+    expected = study.evaluator().score(study.rig)
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    for name in ("front", "parking"):
+        own = bpy.data.objects[name].perception_entropy
+        assert own.entropy == pytest.approx(expected.per_sensor[name].entropy, abs=1e-5)
+        assert own.beams == expected.per_sensor[name].beams > 0
+    assert expected.per_sensor["front"].entropy < 16.0 < expected.per_sensor["parking"].entropy
+
+
+def test_objects_of_the_vehicle_are_covers(front):
+    bpy.data.objects["front"].location.x = 1.8  # in the body
+    parts = [o for o in front.perception_entropy.vehicle.objects if o.type == "MESH"]
+    bpy.context.view_layer.update()
+    blocked = scenes.study()
+    for part in parts:
+        part.perception_entropy.cover_loss_db = 1.7
+    study = scenes.study()
+    assert (
+        dict(study.vehicle.covers) == {part.name: 1.7 for part in parts}
+        and not blocked.vehicle.covers
+    )
+    before, after = (
+        s.evaluator().score(s.rig).per_sensor["front"].coverage for s in (blocked, study)
+    )
+    assert before < after
+
+
+@pytest.mark.parametrize("name", ["front", "parking"])
+def test_looking_through_shows_range_over_azimuth(front, name):
+    assert bpy.ops.pe.look_through(name=name) == {"FINISHED"}
+    image = bpy.data.images[f"{name} range"]
+    values = np.array(image.pixels[:]).reshape(image.size[1], image.size[0], 4)
+    assert len(np.unique(values[..., :3].reshape(-1, 3), axis=0)) >= 2

@@ -1,0 +1,178 @@
+"""What radars, weather and states are for, as whole runs: nuScenes' rig, a truck, a parked car.
+
+`tests/addon/test_conditions_done.py` holds the panel, headless Blender and `pe` to the same bits.
+"""
+
+import csv
+import io
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import catalog
+from pe_core.study import Conditions, condition_table, save_study
+from pe_core.study.requirement_file import preset
+from pe_tools.cli import study_of_rig
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import conditions_csv
+from tests.engine import shapes
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+WEATHERS = [
+    pe.Weather("sun", 0.7),
+    pe.Weather("rain", 0.2, rain_mm_h=25.0),
+    pe.Weather("fog", 0.1, fog_mor_m=50.0),
+]
+
+
+def written(tmp_path, study):
+    """The study in a file, with its vehicle beside it."""
+    car = study.vehicle
+    pe.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
+    path = tmp_path / "study.toml"
+    save_study(replace(study, mesh="car.npz"), path)
+    return path
+
+
+def scored(capsys, path):
+    """``conditions`` of the result of ``pe score --json``."""
+    assert main(["score", str(path), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)["conditions"]
+
+
+@pytest.mark.parametrize("targets", ["voxels", "objects"])
+def test_nuscenes_rig_with_five_radars_in_sun_rain_and_fog(targets, tmp_path, capsys):
+    """By class; fog takes most from all, and a rig without its radars loses more in it."""
+    plain = study_of_rig(catalog.known_rig("nuscenes"), shapes.box_car(), stretched=True)
+    study = replace(
+        plain,
+        samples=4096,
+        targets=pe.TargetRule(targets),
+        conditions=Conditions(weathers=WEATHERS),
+    )
+    assert sum(sensor.kind == "radar" for sensor in study.rig) == 5
+    table = condition_table(study)
+    sun, rain, fog = table.rows
+    for name in ("car", "pedestrian", "cyclist"):
+        assert sun.per_class[name] < rain.per_class[name] < fog.per_class[name]
+    if targets == "objects":
+        assert all(1.0 > sun.ap_per_class[n] > fog.ap_per_class[n] for n in ("car", "pedestrian"))
+        rows = list(csv.DictReader(io.StringIO(conditions_csv(table))))
+        reach = [float(row["reach ahead for car"]) for row in rows]
+        assert reach == [row.reach["car"]["front"] for row in table.rows] and reach[2] < reach[0]
+    else:
+        without = pe.Rig([sensor for sensor in study.rig if sensor.kind != "radar"])
+        clear, foggy = condition_table(study.with_rig(without)).rows[::2]
+        assert foggy.entropy - clear.entropy > fog.entropy - sun.entropy > 0.5
+    assert all(fog.without[s.name] >= fog.entropy for s in study.rig)
+    assert scored(capsys, written(tmp_path, study)) == json.loads(json.dumps(table.to_dict()))
+
+
+CAB_REAR, HITCH = 1.2, (-0.5, 0.0, 1.1)
+
+
+def truck():
+    """A tractor and its trailer, 2.5 m wide, 1.0 m of the trailer ahead of the kingpin."""
+    boxes = [
+        shapes.box((CAB_REAR, -1.25, 0.4), (3.5, 1.25, 3.4)),
+        shapes.box((-11.5, -1.25, 1.15), (0.5, 1.25, 3.95)),
+    ]
+    parts = np.repeat([0, 1], [len(b) for b in boxes])
+    return pe.Vehicle(np.concatenate(boxes), parts, ("cab", "trailer"))
+
+
+def test_a_turned_trailer_takes_from_the_sensors_of_its_side(tmp_path, capsys):
+    """It turns left: the left side's radar and camera lose, those of the right side win."""
+    radar, camera = catalog.load("Continental ARS408-21"), pe.Camera("c", 640, 480, 1.0)
+    sensors = []
+    for side, sign in (("left", 1), ("right", -1)):
+        back = pe.Pose.from_degrees((2.9, sign * 1.45, 1.9), (0, 8, sign * 175))
+        corner = pe.Pose.from_degrees((1.5, sign * 1.35, 0.8), (0, 0, sign * 150))
+        sensors += [pe.Sensor(f"mirror_{side}", camera, back)]
+        sensors += [pe.Sensor(f"radar_{side}", radar, corner)]
+    turned = pe.State(
+        "trailer turned",
+        [pe.Motion(["trailer"], (0.0, 0.0, math.radians(-35.0)), HITCH, sensors=())],
+    )
+    study = pe.Study(
+        pe.Rig(sensors),
+        truck(),
+        samples=8192,
+        conditions=Conditions([pe.State("straight"), turned]),
+    )
+    table = condition_table(study)
+    straight, turn = table.rows
+    assert straight.covered is None and {"mirror_left", "radar_left"} <= set(turn.covered)
+    hidden = {name: turn.covered.get(name, {}).get("trailer", 0.0) for name in straight.without}
+    assert hidden["mirror_left"] > max(0.2, 2.0 * hidden["mirror_right"]), hidden
+    assert hidden["radar_left"] > 0.05 > hidden["radar_right"], hidden
+    assert turn.entropy > straight.entropy
+    lost = {}
+    for sensor in study.rig:
+        before, after = condition_table(study.with_rig(pe.Rig([sensor]))).rows
+        lost[sensor.name] = after.entropy - before.entropy
+    assert lost["mirror_left"] > max(0.1, lost["mirror_right"]) and lost["radar_left"] > 0.02, lost
+    assert scored(capsys, written(tmp_path, study)) == table.to_dict()
+
+
+def test_the_example_s_turned_trailer_takes_from_the_mirror_and_corner_of_its_side():
+    """Turned to the left its rear is on the right: `examples/truck_trailer`, on its real mesh."""
+    study = pe.load_study(EXAMPLES / "truck_trailer" / "decided.toml")
+    rows = condition_table(replace(study, samples=1024, requirements=())).rows
+    straight, turned = rows
+    assert (straight.state, turned.state) == ("trailer straight", "trailer turned")
+    covered = {"lidar_right": {"trailer": 0.0457}, "low_right": {"trailer": 0.014}}
+    assert turned.covered == covered  # as in docs/examples/truck_trailer.md
+    assert turned.entropy > straight.entropy + 0.1 and turned.coverage < straight.coverage
+
+
+def parked(radar):
+    """A car at the kerb with its driver's door; cameras on its mirror and the wing look back."""
+    boxes = [
+        shapes.box((-2.0, -0.9, 0.3), (2.0, 0.88, 1.5)),
+        shapes.box((-0.2, 0.88, 0.35), (0.8, 0.92, 1.3)),
+    ]
+    parts = np.repeat([0, 1], [len(b) for b in boxes])
+    car = pe.Vehicle(np.concatenate(boxes), parts, ("body", "door_left"))
+    camera = pe.Camera("c", 1280, 720, math.radians(50.0))
+    mirror = pe.Sensor("mirror", camera, pe.Pose.from_degrees((0.6, 0.97, 1.1), (0, 0, 170)))
+    wing = pe.Sensor("wing", camera, pe.Pose.from_degrees((1.2, 0.97, 0.9), (0, 0, 170)))
+    corner = pe.Pose.from_degrees((-1.0, 0.95, 0.85), (0, 0, 165))
+    side = pe.Sensor("side radar", catalog.load("TI AWR2944 corner"), corner)
+    # about its hinge, ahead, the door's rear edge swings out: to the left, clockwise from above
+    opened = pe.Motion(["door_*"], (0.0, 0.0, math.radians(-65.0)), (0.8, 0.9, 0.6))
+    dooring = replace(
+        preset("ncap26_dooring").requirement(), under=pe.requirements.Under(states=("*",))
+    )
+    return pe.Study(
+        pe.Rig([mirror, wing, *[side] * radar]),
+        car,
+        samples=4096,
+        reference=pe.Reference(-1.3, 0.3, 2.6),
+        requirements=(dooring,),
+        conditions=Conditions([pe.State("shut"), pe.State("door open", [opened])]),
+    )
+
+
+def test_a_parked_car_with_a_door_open_is_held_to_the_dooring_zone(tmp_path, capsys):
+    study = parked(radar=False)
+    moved = study.conditions.one("door open").vehicle(study.vehicle)
+    assert moved.bounds[1][1] > 1.6, "the door is open outwards"
+    (verdict,) = study.verdicts()
+    assert not verdict.met and verdict.condition == "door open"
+    shut = replace(study, conditions=Conditions([study.conditions.states[0]]))
+    assert shut.verdicts()[0].met, "with the doors shut the mirror's camera sees the cyclist"
+    (verdict,) = parked(radar=True).verdicts()
+    assert verdict.met
+    row = condition_table(study).rows[1]
+    assert row.covered is not None and set(row.covered) == {"wing"}
+    assert row.covered["wing"]["door_left"] > 0.3, "the open door is before it"
+    path = written(tmp_path, study)
+    assert main(["check", str(path), "--json"]) != 0
+    (told,) = json.loads(capsys.readouterr().out)["requirements"]
+    assert (told["met"], told["condition"]) == (False, "door open")

@@ -1,0 +1,90 @@
+"""Radars and ultrasonic sensors go out and come back: poses, models where a format has room."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import catalog
+from pe_tools.exchange.yaml_text import parse_yaml_blocks
+from pe_tools.outputs import scene_files
+
+AXLE = pe.Reference(-1.38, 0.3)
+RADARS = {"front": (3.4, 0.0, 0.5, 0.0), "corner_radar": (3.2, 0.8, 0.55, 50.0)}
+
+
+@pytest.fixture
+def rig():
+    own = catalog.from_table("own radar", catalog.to_table(catalog.load("Delphi ESR")))
+    models = {"front": catalog.load("Continental ARS408-21"), "corner_radar": own}
+    sensors = [
+        pe.Sensor(name, models[name], pe.Pose.from_degrees((x, y, z), (0, 0, yaw)))
+        for name, (x, y, z, yaw) in RADARS.items()
+    ]
+    parking = catalog.load("Bosch Ultrasonic 3.1")
+    sensors.append(pe.Sensor("uss", parking, pe.Pose.from_degrees((3.5, 0.3, 0.45), (0, 0, 20))))
+    return pe.Rig(sensors)
+
+
+@pytest.mark.parametrize("name", ["nuscenes", "carla", "autoware", "osi", "urdf", "csv"])
+def test_they_come_back_where_they_were(rig, name, tmp_path):
+    pe.export_rig(rig, name, tmp_path / "out", AXLE)
+    found = pe.import_rig(tmp_path / "out", name, AXLE)
+    kinds = ["radar", "radar"] if name == "carla" else ["radar", "radar", "ultrasonic"]
+    assert [sensor.kind for sensor in found.rig] == kinds
+    for before, after in zip(rig, found.rig, strict=False):
+        assert after.pose.position == pytest.approx(before.pose.position, abs=1e-6)
+        assert after.pose.rotation_deg == pytest.approx(before.pose.rotation_deg, abs=1e-4)
+        if name in ("urdf", "csv"):
+            assert catalog.to_table(after.model) == catalog.to_table(before.model)
+            assert after.model.name == before.model.name
+        elif name in ("carla", "osi"):
+            far = 250.0 if name == "osi" else before.model.max_range  # OSI has one for all
+            assert after.model.max_range == pytest.approx(far)
+            (low, high), (_, up) = after.model.window
+            (left, right), (_, top) = before.model.window
+            assert (low, high, up) == pytest.approx((left, right, top))
+
+
+def test_a_radar_of_carla_is_its_field_of_view(tmp_path):
+    radar = {
+        "type": "sensor.other.radar",
+        "id": "radar_front",
+        "spawn_point": {"x": 2.0, "y": 0.0, "z": 1.5},
+        "horizontal_fov": 40.0,
+        "range": 80.0,
+    }
+    path = tmp_path / "objects.json"
+    path.write_text(json.dumps({"objects": [{"type": "vehicle.a", "id": "e", "sensors": [radar]}]}))
+    (sensor,) = pe.import_rig(path).rig
+    (mode,) = sensor.model.modes
+    assert math.degrees(mode.azimuths[1]) == pytest.approx(20.0)
+    assert math.degrees(mode.elevations[1]) == pytest.approx(15.0)
+    assert mode.max_range == 80.0 and mode.range_resolution is None
+
+
+def test_nebula_gets_positions_angles_and_the_damping_of_covers():
+    """From the front axle; the radar's own cover and the bumper before it are 1.5 + 2 dB."""
+    model = catalog.load("Continental ARS408-21")
+    lossy = catalog.from_table("lossy", {**catalog.to_table(model), "cover_loss_db": 1.5})
+    wall = np.array([[3.5, -2, 0], [3.5, 2, 0], [3.5, 2, 2], [3.5, -2, 2]], float)
+    body = np.concatenate([wall[[[0, 1, 2], [0, 2, 3]]], wall[[[0, 1, 2], [0, 2, 3]]] - (6, 0, 0)])
+    covers = {"bumper": 2.0}
+    car = pe.Vehicle(body, np.array([0, 0, 1, 1]), ("bumper", "body"), covers=covers)
+    front = pe.Sensor("front", lossy, pe.Pose.from_degrees((3.4, 0.1, 0.5), (0, -1, 30)))
+    rear = pe.Sensor("rear", model, pe.Pose.from_degrees((-2.9, 0, 0.5), (2, 0, 180)))
+    study = pe.Study(pe.Rig([front, rear]), car, reference=pe.Reference(-1.4, 0.3, 2.8))
+    files, lines = scene_files(study, "nebula")
+    found = parse_yaml_blocks("nebula", files["nebula_radars.yaml"].decode())
+    assert found["front"] == {
+        "model": "lossy", "longitudinal": 2.0, "lateral": 0.1, "vertical": 0.5,
+        "yaw": pytest.approx(math.radians(30), abs=1e-6),
+        "pitch": pytest.approx(math.radians(-1), abs=1e-6), "cover_damping": 3.5,
+    }  # fmt: skip
+    assert found["rear"]["longitudinal"] == -4.3 and found["rear"]["cover_damping"] == 0.0
+    assert lines == ["rear: nebula has no roll; left out"]
+    camera = pe.Sensor("eye", catalog.load("nuScenes front"), pe.Pose((0, 0, 1)))
+    _, lines = scene_files(pe.Study(pe.Rig([camera])), "nebula")
+    assert "no radar in the rig: the file names none" in lines

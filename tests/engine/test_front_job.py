@@ -1,0 +1,225 @@
+"""A Pareto front of several objectives: its figures, who is on it, its files and its commands."""
+
+import json
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.search import Front, Goals, Payload
+from pe_tools.cli.choose_verb import front_summary
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import FrontJob, FrontJournals, front_dict, write_front
+from pe_tools.jobs.front_objectives import (
+    FrontFigures,
+    ScalarValue,
+    height_of,
+    non_dominated,
+    spread,
+    weights_of,
+)
+from tests.engine import shapes
+
+NAMES = ("entropy", "height", "worst_loss")
+
+
+def study(objectives=("entropy", "height"), points=4, **more):
+    model = shapes.small_lidar(4, 90)
+    sensors = [
+        shapes.lidar_on_roof(model, (x, 0.0, 1.8), name=n)
+        for n, x in (("roof", 0.0), ("front", 1.0))
+    ]
+    goals = Goals(front=Front(objectives, points))
+    free = {"roof": ("z", "pitch"), "front": ("z",)}
+    limits = {name: {"z": (1.6, 2.6)} for name in free}
+    search = pe.Search(free, limits, samples=1024, method="cma-es", evaluations=160, goals=goals)
+    given = {"search": search, "samples": 1024} | more
+    return pe.Study(pe.Rig(sensors), shapes.box_car(), shapes.small_space(), **given)
+
+
+@pytest.fixture(scope="module")
+def found():
+    job = FrontJob(study(), 1)
+    steps = list(job)
+    assert steps[-1].stage == "done" and {s.stage for s in steps} > {"searching 4 points"}
+    return job.trade_off
+
+
+def test_no_design_of_the_front_is_beaten_and_its_figures_are_those_of_its_rig(found):
+    assert 2 <= len(found.front) <= 4 and found.objectives == ("entropy", "height")
+    for design in found.front:
+        rig = design.study.rig
+        assert design.figures["height"] == pytest.approx(height_of(rig), abs=1e-9)
+        assert design.figures["entropy"] == study().evaluator(1024).entropy(rig)
+        for other in found.designs:
+            beats = [other.figures[n] <= design.figures[n] for n in found.objectives]
+            assert not all(beats) or other.figures == design.figures
+    lowest = min(found.front, key=lambda d: d.figures["height"])
+    assert lowest.figures["height"] < 1.65 and "best height" in lowest.name
+    best = min(found.front, key=lambda d: d.figures["entropy"])
+    plain = pe.OptimizeJob(replace(study(), search=replace(study().search, evaluations=40)), 1)
+    list(plain)
+    assert best.figures["entropy"] <= plain.outcome.before.entropy
+
+
+def test_it_is_written_and_printed(found, tmp_path):
+    data = write_front(found, tmp_path)
+    assert data["objectives"] == ["entropy", "height"]
+    table = json.loads((tmp_path / "front.json").read_text())
+    assert table["designs"][0]["figures"].keys() == {"entropy", "height"}
+    head = (tmp_path / "front.csv").read_text().splitlines()[0]
+    assert "objective.entropy,objective.height" in head
+    files = [d["study"] for d in data["designs"] if d["on_front"]]
+    assert (
+        pe.load_study(tmp_path / files[0]).rig["roof"].pose == found.front[0].study.rig["roof"].pose
+    )
+    text = front_summary(found)
+    assert "entropy [nats]  height [m]" in text and "on the front of entropy, height" in text
+
+
+def test_figures_are_those_of_plain_functions():
+    given = study(NAMES)
+    evaluator = given.evaluator(1024)
+    figures = FrontFigures(given, NAMES, evaluator)(given.rig)
+    alone = [evaluator.entropy(pe.Rig([s])) for s in given.rig]
+    assert figures["worst_loss"] == pytest.approx(max(alone) - figures["entropy"], abs=2e-9)
+    blind = FrontFigures(given, ("blind_ground", "height"), evaluator)(given.rig)
+    assert blind["blind_ground"] == pytest.approx(given.sight().blind(given.rig, 0.5).area)
+
+
+def test_margins_and_blind_zones_are_those_of_the_verdicts():
+    body = pe.requirements.Body("post", (0.3, 0.3, 0.5))
+    zone = pe.requirements.Zone(x=(4.0, 5.0), y=(-1.0, 1.0))
+    ask = pe.requirements.Requirement("ahead", zone, [body], pe.requirements.Criterion())
+    names = ("margin", "blind_zones", "entropy")
+    given = study(names, requirements=(ask,))
+    figures = FrontFigures(given, names, given.evaluator(1024))
+    [verdict] = given.checker().check(given.rig)
+    assert figures(given.rig)["margin"] == pytest.approx(verdict.margin)
+    assert figures.costs(given.rig)[0] == pytest.approx(-verdict.margin)
+
+
+def test_weights_are_on_the_simplex_and_each_objective_comes_first_alone():
+    for objectives in (2, 3, 4):
+        weights = weights_of(9, objectives)
+        assert len(weights) == 9
+        assert [max(w) for w in weights[:objectives]] == [1.0] * objectives
+        assert np.allclose(np.sum(weights, axis=1), 1.0) and np.min(weights) >= 0.0
+        assert len(set(weights)) == 9
+
+
+def test_the_front_of_points_is_what_no_other_beats():
+    rng = np.random.default_rng(3)
+    points = rng.integers(0, 6, (60, 3)).tolist()
+    kept = non_dominated(points)
+    for k, own in enumerate(points):
+        better = [o for o in points if all(a <= b for a, b in zip(o, own, strict=True))]
+        worse_than_some = any(o != own for o in better)
+        assert (k in kept) == (not worse_than_some and points.index(own) == k)
+    chosen = spread([points[k] for k in kept], 3)
+    assert len(chosen) == 3 == len(set(chosen))
+
+
+def test_a_concave_front_is_reached_between_its_ends():
+    """A weighted sum would find its ends alone."""
+
+    class Quarter:
+        def costs(self, t):
+            return [math.cos(t), math.sin(t)]
+
+    value = ScalarValue(Quarter(), (0.5, 0.5), (0.0, 0.0), (1.0, 1.0))
+    best = min(np.linspace(0.0, math.pi / 2.0, 91), key=value.entropy)
+    assert math.degrees(best) == pytest.approx(45.0, abs=1.1)
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (("entropy", "ap"), 'front.objectives: ap: expected a study with metric.targets = "obj'),
+        (("entropy", "price"), "front.objectives: price: expected a study with choices"),
+        (("entropy", "margin"), "front.objectives: margin: expected a study with requirements"),
+    ],
+)
+def test_objectives_that_a_study_has_no_figures_of_are_refused(names, message):
+    with pytest.raises(pe.InputError, match=message):
+        FrontJob(study(names))
+
+
+def test_prices_of_choices_are_an_objective(tmp_path):
+    models = [shapes.small_lidar(4, 90), replace(shapes.small_lidar(8, 90), name="large")]
+    options = [pe.Option(m, p) for m, p in zip(models, (100.0, 300.0), strict=True)]
+    given = study(("entropy", "price", "height"), 3)
+    given = replace(given, selection=pe.Selection([pe.Choice(options, ["roof"])]))
+    job = FrontJob(given, 1)
+    list(job)
+    prices = {design.figures["price"] for design in job.trade_off.designs}
+    assert prices == {100.0, 300.0}
+    assert all(design.figures["price"] == design.price for design in job.trade_off.designs)
+
+
+def test_the_command_line_writes_the_front_of_the_job(found, tmp_path, capsys):
+    given = study(())
+    pe.export_study(given, tmp_path / "study.toml")
+    line = ["optimize", str(tmp_path / "study.toml"), "--front", "entropy,height", "--json"]
+    assert main([*line, "-o", str(tmp_path / "out"), "--workers", "1"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["objectives"] == ["entropy", "height"] and len(data["front"]) >= 2
+    assert (tmp_path / "out" / "front.html").exists()
+
+
+def test_a_front_that_resumes_is_the_same(found):
+    whole = FrontJob(study(), 1)
+    list(whole)
+    again = FrontJob(study(), 1)
+    entries = whole.journals.entries()
+    again.journals = FrontJournals({n: rows[: len(rows) // 2] for n, rows in entries.items()})
+    list(again)
+    assert again.journals.entries() == entries
+    one, other = (front_dict(each) for each in (again.trade_off, found))
+    assert {**one, "run": 0} == {**other, "run": 0}
+
+
+class Counted(ThreadPoolExecutor):
+    """Two threads as workers, which unpickle what they are sent; `tasks` counts them."""
+
+    tasks = 0
+
+    def submit(self, *args, **kwargs):
+        self.tasks += 1
+        return super().submit(*args, **kwargs)
+
+
+@pytest.mark.parametrize("keeps", [False, True])
+def test_a_front_by_an_executor_is_the_same(keeps):
+    asked = {}
+    names = ("entropy", "height", "worst_loss", "blind_ground")
+    given = replace(study(names, 2), search=replace(study(names, 2).search, evaluations=40))
+    if keeps:
+        zone = pe.requirements.Zone(x=(4.0, 5.0), y=(-1.0, 1.0))
+        body = pe.requirements.Body("post", (0.3, 0.3, 0.5))
+        ask = pe.requirements.Requirement("ahead", zone, [body], pe.requirements.Criterion())
+        search = replace(given.search, requirements="keep")
+        given = replace(given, search=search, requirements=(ask,))
+    with Counted(2) as workers:
+        for executor in (None, workers):
+            job = FrontJob(given, 1)
+            job.executor = executor
+            list(job)
+            designs = job.trade_off.designs
+            found = [(d.name, d.figures, [s.pose for s in d.study.rig]) for d in designs]
+            asked[executor] = found, job.journals.entries()
+    assert asked[None] == asked[workers]
+    evaluated = sum(map(len, asked[None][1].values()))
+    assert workers.tasks == evaluated - len(asked[None][1]), "all but the starts"
+
+
+def test_weights_go_to_the_workers_without_the_mesh():
+    given = study(NAMES)
+    figures = FrontFigures(given, NAMES, given.evaluator(1024))
+    value = ScalarValue(figures, (0.2, 0.3, 0.5), (0.0,) * 3, (1.0,) * 3)
+    models = [sensor.model for sensor in given.rig]
+    payload = Payload((*value.shared_parts(), *models))
+    assert len(payload.pickled((value, given.rig))) < 1500 < len(payload.packed.data)

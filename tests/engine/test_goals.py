@@ -1,0 +1,155 @@
+"""What is asked of a search: when it stops, which sensors stay, from where it starts; the file."""
+
+from dataclasses import replace
+
+import pytest
+
+import pe_core as pe
+from pe_core.search import Front, Goals, Start, Stop
+from pe_core.study import load_study_data, study_from_dict, study_to_dict
+from pe_tools.cli.command import with_options
+from pe_tools.cli.terminal import summary
+from pe_tools.cli.verbs import parser
+from pe_tools.jobs import result_dict
+from tests.engine import shapes
+
+
+def study(goals=None, names=("roof",), **search):
+    model = shapes.small_lidar(4, 90)
+    rig = pe.Rig(
+        [shapes.lidar_on_roof(model, (0.0, 0.5 * k, 1.6), name=n) for k, n in enumerate(names)]
+    )
+    goals = replace(goals or Goals(), sensitivity="off")
+    given = {"free": dict.fromkeys(names, ("z", "pitch")), "evaluations": 60} | search
+    settings = pe.Search(samples=2048, method="cma-es", goals=goals, **given)
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=2048)
+
+
+def finished(given, **more):
+    job = pe.OptimizeJob(given, 1, **more)
+    for _ in job:
+        pass
+    return job.outcome
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return finished(study())
+
+
+def test_a_search_stops_at_its_target_with_the_steps_of_the_whole_one(plain):
+    target = plain.history[2].entropy
+    outcome = finished(study(Goals(Stop(target=target))))
+    assert outcome.stop_reason == "target" and not outcome.stopped
+    assert outcome.history == plain.history[:3] or [r.entropy for r in outcome.history] == [
+        r.entropy for r in plain.history[:3]
+    ]
+    assert outcome.evaluations < plain.evaluations
+    assert outcome.judged == plain.judged[: len(outcome.judged)]
+    assert f"ended at its target of {target:g} nats" in summary(outcome)
+    assert result_dict(outcome)["stop_reason"] == "target"
+
+
+def test_a_search_stops_for_want_of_gain(plain):
+    outcome = finished(study(Goals(Stop(gain=100.0, over=20))))
+    assert outcome.stop_reason == "gain" and outcome.evaluations == 21
+    assert finished(study(Goals(Stop(gain=1e-9, over=1000)))).judged == plain.judged
+
+
+def test_a_search_stops_after_seconds():
+    outcome = finished(study(Goals(Stop(seconds=1e-6))))
+    assert outcome.stop_reason == "seconds" and outcome.evaluations == 1
+
+
+def test_fixed_sensors_stay_and_the_others_move():
+    outcome = finished(study(Goals(fixed=("roof",)), ("roof", "front")))
+    start, best = outcome.start.rig, outcome.study.rig
+    assert best["roof"].pose == start["roof"].pose and best["front"].pose != start["front"].pose
+    with pytest.raises(pe.InputError, match="optimize: fixed: expected sensors that follow no"):
+        study(Goals(fixed=("bogus",)))
+
+
+def test_a_fixed_sensor_keeps_its_slot():
+    """Another sensor may not take it."""
+    slots = [pe.Slot(n, pe.Pose((0.0, y, 1.6))) for n, y in (("a", 0.0), ("b", 0.5), ("c", 1.0))]
+    mounting = pe.Mounting({"rack": pe.SlotMount(slots)}, dict.fromkeys(("roof", "front"), "rack"))
+    given = study(Goals(fixed=("roof",)), ("roof", "front"), mounting=mounting)
+    coding = given.coding()
+    assert len(coding.variables) == 1
+    taken = [coding.candidate([share]).rig for share in (0.1, 0.5, 0.9)]
+    assert [coding.allowed(rig) for rig in taken] == [False, True, True]
+
+
+def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
+    poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
+    outcome = finished(study(Goals(starts=[Start("high", poses)])))
+    assert [end.name for end in outcome.starts] == ["", "high"]
+    assert outcome.evaluations == 60 and outcome.starts[0].evaluations == 30
+    best = min(outcome.starts, key=lambda end: end.entropy)
+    evaluator = study().evaluator(2048)
+    assert evaluator.entropy(outcome.study.rig) == pytest.approx(best.entropy, abs=1e-12)
+    assert "the start high ended at" in summary(outcome)
+    again = finished(study(Goals(starts=[Start("high", poses)])), journal=journal_of(outcome, 40))
+    assert result_dict(again)["placements"] == result_dict(outcome)["placements"]
+
+
+def journal_of(outcome, count):
+    return pe.search.Journal(outcome.judged[:count])
+
+
+GOALS = Goals(
+    Stop(-1.0, 60.0, 0.001, 50),
+    ("roof",),
+    [Start("other", {"front": pe.Pose.from_degrees((0.0, 0.5, 2.0), (0.0, 5.0, 90.0))})],
+    Front(("entropy", "height"), 4),
+    "full",
+)
+
+
+def test_goals_are_in_the_file_and_nothing_is_written_of_the_default(tmp_path):
+    given = study(names=("roof", "front"))
+    given = replace(given, vehicle=None, search=replace(given.search, goals=GOALS))
+    pe.save_study(given, tmp_path / "study.toml")
+    table = load_study_data(tmp_path / "study.toml")["optimize"]
+    assert table["stop"] == {"target": -1.0, "seconds": 60.0, "gain": 0.001, "over": 50}
+    assert table["front"] == {"objectives": ["entropy", "height"], "points": 4}
+    again = pe.load_study(tmp_path / "study.toml")
+    assert study_to_dict(again) == study_to_dict(given)
+    assert again.search.goals.starts[0].poses["front"].rotation_deg == (0.0, 5.0, 90.0)
+    bare = study_to_dict(replace(given, search=replace(given.search, goals=Goals())))
+    assert not {"stop", "fixed", "start", "front", "sensitivity"} & set(bare["optimize"])
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("stop", {"gain": 0}, r"optimize\.stop\.gain: expected a number above 0"),
+        ("stop", {"bogus": 1}, r"optimize\.stop\.bogus: expected one of"),
+        ("fixed", ["bogus"], "fixed: expected sensors that follow no other: roof, found 'bogus'"),
+        ("front", {"objectives": ["entropy"]}, "front.objectives: expected two or more of entropy"),
+        ("front", {"objectives": ["entropy", "x"]}, "front.objectives: expected two or more of"),
+        ("start", [{"name": "a", "placements": {"x": [0] * 6}}], "start 'a': expected sensors of"),
+        ("start", [{"name": "a", "placements": {"roof": [0]}}], "expected a list of 6 numbers"),
+        ("sensitivity", "on", "sensitivity: expected one of full, off|sensitivity: expected"),
+    ],
+)
+def test_wrong_goals_are_refused_in_one_line(key, value, message):
+    data = study_to_dict(replace(study(), vehicle=None))
+    data["optimize"][key] = value
+    with pytest.raises(pe.InputError, match=message) as told:
+        study_from_dict(data, "study.toml")
+    assert "\n" not in str(told.value)
+
+
+def test_options_of_the_command_line_are_the_goals_of_the_study(tmp_path):
+    given = replace(study(names=("roof", "front")), vehicle=None)
+    pe.save_study(given, tmp_path / "other.toml")
+    line = ["optimize", "study.toml", "--stop-at", "-1.5", "--stop-gain", "0.01", "--fix", "roof"]
+    line += ["--start", str(tmp_path / "other.toml"), "--front", "entropy,height"]
+    args = parser().parse_args([*line, "--sensitivity", "full"])
+    goals = with_options(given, args).search.goals
+    assert (goals.stop.target, goals.stop.gain, goals.stop.seconds) == (-1.5, 0.01, None)
+    assert goals.fixed == ("roof",) and goals.starts[0].name == "other"
+    assert goals.front.objectives == ("entropy", "height") and goals.sensitivity == "full"
+    plain_args = parser().parse_args(["optimize", "study.toml"])
+    assert with_options(given, plain_args).search.goals == given.search.goals

@@ -1,0 +1,186 @@
+"""The default method: surveys, linear descents and slots, where the lowest place is known."""
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.search import METHODS, Judgement, Parametrization, pose_values
+from pe_core.search.methods import portfolio
+from pe_core.search.methods.method import Given, Phase
+from pe_core.search.methods.portfolio import Incumbent, Recurrence, Survey
+from pe_core.search.methods.portfolio_linear import LinearDescent, _inverse
+from tests.engine import mounting
+from tests.engine.mounting import can
+from tests.engine.recording import Recorder, distance_to, flat
+
+PHASE = Phase(0, 1000)
+
+
+def searched(landscape, rig, space, evaluations=0, seed=1):
+    recorder = Recorder(landscape)
+    options = {"method": "portfolio", "evaluations": evaluations}
+    return recorder, list(pe.optimize(recorder, rig, space, seed, **options))
+
+
+def answered(part, landscape):
+    """Drive a part of a method to its end; return the sizes of its questions."""
+    sizes = []
+    try:
+        question = next(part)
+        while True:
+            sizes.append(len(question.candidates))
+            question = part.send([Judgement(landscape(c.rig), False) for c in question.candidates])
+    except StopIteration:
+        return sizes
+
+
+def linear(landscape, rig, space, radius=0.2):
+    coding = Parametrization(rig, space)
+    given = Given(coding, coding.start, landscape(rig))
+    return LinearDescent(given, coding.start, given.entropy, radius)
+
+
+def test_a_smooth_valley_is_found():
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
+    target = {"x": 0.71, "y": -0.33, "z": 1.9, "pitch": 0.1}
+    recorder, steps = searched(distance_to(target), rig, space)
+    assert 0 <= len(recorder.rigs) - 2 * portfolio.PER_SENSOR < 60
+    assert math.sqrt(steps[-1].entropy) < 0.02 < math.sqrt(steps[0].entropy) / 50
+
+
+def test_a_hollow_far_from_the_start_is_found_though_all_around_the_start_is_worse():
+    def hollows(rig):
+        x, y, _ = rig["roof"].pose.position
+        return min(
+            depth + (x - cx) ** 2 + (y - cy) ** 2
+            for depth, cx, cy in ((1.0, -2.0, -0.8), (0.0, 2.0, 0.7))
+        )
+
+    rig, space = mounting.space(can((-2.0, -0.8, 1.6)))
+    assert searched(hollows, rig, space)[1][-1].entropy < 0.01
+
+
+def test_two_sensors_that_only_move_together_are_moved_together():
+    """A valley along x of both: a sensor alone gets 0.25 m far."""
+
+    def ridge(rig):
+        a, b = (pose_values(sensor.pose) for sensor in rig)
+        return 2.0 * (a["x"] - b["x"]) ** 2 + abs(a["x"] - 1.5)
+
+    rig, space = mounting.space(can((-1.0, 0.3, 1.6)), can((-1.0, -0.3, 1.6), "b"), free=("x",))
+    descent = linear(ridge, rig, space)
+    answered(descent.descend(PHASE, 150, 1e-4), ridge)
+    assert descent.entropy < 0.5 < ridge(rig)
+
+
+def test_a_linear_landscape_takes_few_placements_to_the_end_of_its_range():
+    """Of a plane the model is exact: after the simplex, each step is downhill to a corner."""
+
+    def plane(rig):
+        return sum(-pose_values(sensor.pose)["x"] - pose_values(sensor.pose)["y"] for sensor in rig)
+
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"), free=("x", "y"))
+    descent = linear(plane, rig, space)
+    sizes = answered(descent.descend(PHASE, 60, 0.01), plane)
+    assert sizes[:2] == [2, 2]  # the variables of one sensor after the other
+    corner = [variable.high for variable in Parametrization(rig, space).variables]
+    assert descent.best.vector == pytest.approx(corner, abs=0.02)
+
+
+def test_a_linear_descent_neither_leaves_its_ranges_nor_breaks_a_rule():
+    limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.2, 3.0))])
+    rig, space = mounting.space(can((-1.0, 0.0, 1.6)), constraints=limits)
+    coding = Parametrization(rig, space)
+    recorder, steps = searched(lambda rig: -rig["roof"].pose.position[0], rig, space)
+    assert not any(coding.broken(asked) for asked in recorder.rigs)
+    found = steps[-1].best["roof"].pose.position[0]
+    assert found == pytest.approx(-0.2 - mounting.RADIUS, abs=0.02)
+
+
+def test_sensors_in_slots_exchange_them_and_move_two_at_a_time():
+    """Alone no sensor gains: what each wants the other one has, or both must go."""
+    poses = [(-1.0, 0.0, 1.6), (-0.5, 0.3, 1.6), (0.0, -0.3, 1.6), (0.5, 0.0, 1.6)]
+    slots = [pe.Slot(f"s{k}", pe.Pose(place)) for k, place in enumerate(poses)]
+    rig = pe.Rig([can(poses[0]), can(poses[1], "b")])
+    rack = pe.Mounting(mounts={"rack": pe.SlotMount(slots)}, on={"roof": "rack", "b": "rack"})
+    space = pe.SearchSpace.on_vehicle(rig, mounting.car(), mounting=rack)
+
+    def worth(rig):
+        at = tuple(poses.index(sensor.pose.position) for sensor in rig)
+        return {(0, 1): 3.0, (1, 0): 2.0, (3, 2): 1.0}.get(at, 4.0)
+
+    recorder, steps = searched(worth, rig, space)
+    assert steps[-1].entropy == 1.0
+    assert len(recorder.rigs) < 600  # it ends where nothing better is left
+
+
+def test_nothing_that_can_move_ends_the_search():
+    ends = {
+        "roof": {axis: (value, value) for axis, value in zip("xyz", (-0.4, 0.0, 1.6), strict=True)}
+    }
+    rig, space = mounting.space(can((-0.4, 0.0, 1.6)), limits=ends, free=("x", "y", "z"))
+    recorder, _ = searched(flat, rig, space)
+    assert len(recorder.rigs) <= 3
+
+
+def test_surveys_are_on_few_voxels_and_descents_on_all():
+    rig, space = mounting.space(can())
+    both = [Recorder(distance_to({"x": 0.5})), Recorder(distance_to({"x": 0.6}))]
+    steps = list(pe.optimize(both, rig, space, method="portfolio", evaluations=200))
+    assert METHODS["portfolio"].samples(65_536) == (16_384, 65_536)
+    assert len(both[0].rigs) == 1 + portfolio.SURVEYS * portfolio.SURVEYED
+    assert pose_values(steps[-1].best["roof"].pose)["x"] == pytest.approx(0.6, abs=0.01)
+    for before, after in pairwise(steps):
+        assert after.entropy <= before.entropy or after.level > before.level
+
+
+def test_the_first_survey_is_the_same_for_every_seed_and_the_second_is_not():
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
+    asked = [searched(flat, rig, space, 60, seed)[0].rigs for seed in (0, 1)]
+    first, second = (
+        [[s.pose for s in rig] for rig in rigs[: 1 + 4 * portfolio.SURVEYED]] for rigs in asked
+    )
+    half = 1 + 2 * (18 // 4)
+    assert first[:half] == second[:half] and first[half] != second[half]
+
+
+def test_a_survey_asks_for_one_sensor_at_a_time_and_tells_what_the_next_has_to_be_below():
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
+    coding = Parametrization(rig, space)
+    survey = Survey(Given(coding, coding.start, 5.0))
+    part = survey.survey(Incumbent(coding.start, 5.0), PHASE, 4)
+    question = next(part)
+    assert (len(question.candidates), question.cutoff) == (4, 5.0)
+    assert {c.rig["b"].pose for c in question.candidates} == {rig["b"].pose}
+    question = part.send([Judgement(value, False) for value in (6.0, 3.0, 4.0, 7.0)])
+    assert question.cutoff == 3.0
+    assert len({c.rig["roof"].pose for c in question.candidates}) == 1
+
+
+def test_the_recurrence_fills_a_square_evenly():
+    """64 points meet more than 50 of 64 cells; random ones would meet 41."""
+    points = Recurrence(2)
+    cells = [tuple((8 * np.array(points.next())).astype(int)) for _ in range(64)]
+    assert len(set(cells)) > 50
+
+
+def test_the_inverse_is_that_of_the_matrix():
+    matrix = np.random.default_rng(0).normal(size=(20, 20))
+    matrix[0, 0] = 0.0
+    np.testing.assert_allclose(_inverse(matrix) @ matrix, np.eye(20), atol=1e-11)
+
+
+def test_workers_take_the_same_steps():
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
+
+    def steps(executor):
+        landscape = Recorder(distance_to({"x": 0.5}))
+        found = pe.optimize(landscape, rig, space, evaluations=120, executor=executor)
+        return [(s.entropy, s.evaluations, [own.pose for own in s.best]) for s in found]
+
+    with ThreadPoolExecutor(2) as executor:
+        assert steps(executor) == steps(None)

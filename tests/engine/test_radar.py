@@ -1,0 +1,258 @@
+"""Radars: formulas at round numbers, m against an oracle, kernels, bad input."""
+
+import math
+import tomllib
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core import catalog
+from pe_core import sensors as kinds
+from pe_core.sensors.radar import Reflectivity, detection_probability, signal_to_noise, snr_for
+from pe_tools.advice.mount_checks import SensorAtBody, odd_mounting
+from pe_tools.advice.vehicle_checks import Bodywork
+from tests.engine import shapes
+from tests.engine.radar_oracle import expected_detections
+
+ARS = "Continental ARS408-21"
+MODE = {
+    "name": "scan",
+    "azimuth_deg": [-50, 0, 50],
+    "range_m": [40, 100, 60],
+    "elevation_deg": [-15, 0, 15],
+    "elevation_scale": [0.5, 1.0, 0.6],
+    "range_resolution_m": 0.5,
+    "azimuth_resolution_deg": 2.0,
+    "elevation_resolution_deg": 4.0,
+    "min_range_m": 1.0,
+}
+TABLE = {"kind": "radar", "mode": [MODE], "list_length": 400}
+SIZES = {"car": (4.6, 1.9, 1.7), "pedestrian": (0.8, 0.7, 1.75), "truck": (7.5, 2.55, 3.0)}
+
+
+def radar(table=TABLE, position=(2.6, 0.1, 0.55), rotation=(0, 0, 0), name="front"):
+    model = table if not isinstance(table, dict) else catalog.from_table("own", table)
+    return pe.Sensor(name, model, pe.Pose.from_degrees(position, rotation))
+
+
+def objects(seed=3, count=60, names=tuple(SIZES), ground=30.0):
+    rng = np.random.default_rng(seed)
+    labels = rng.integers(0, len(names), count)
+    sizes = np.array([SIZES[names[k]] for k in labels]) * rng.uniform(0.9, 1.1, (count, 3))
+    x, y = rng.uniform(6, 6 + 2 * ground, count), rng.uniform(-ground, ground, count)
+    centers = np.column_stack([x, y, sizes[:, 2] / 2])
+    return pe.Objects(centers, sizes, rng.uniform(-3, 3, count), labels, names)
+
+
+def test_formulas_at_round_numbers():
+    """21.1 dB for Pd 0.9 at Pfa 1e-6; twice the range is 12 dB; 6 dB of cover both ways, too."""
+    snr = snr_for(0.9, 1e-6)
+    assert 10 * math.log10(snr) == pytest.approx(21.14, abs=0.01)
+    assert detection_probability(snr, 1e-6) == pytest.approx(0.9)
+    assert detection_probability(0.0, 1e-6) == pytest.approx(1e-6)
+    anchor = (snr, 10.0)
+    assert signal_to_noise(10.0, 100.0, 100.0, anchor) == pytest.approx(snr)
+    assert signal_to_noise(10.0, 200.0, 100.0, anchor) == pytest.approx(snr / 16)
+    assert signal_to_noise(1.0, 100.0, 100.0, anchor) == pytest.approx(snr / 10)
+    lossy = signal_to_noise(10.0, 100.0, 100.0, anchor, attenuation_db_km=30.0)
+    assert lossy == pytest.approx(snr * 10 ** (-0.6))
+
+
+def test_a_reference_target_is_detected_with_its_probability_at_its_range():
+    mode = {**MODE, "azimuth_deg": [-20, 20], "range_m": 80.0, "max_range_m": 200.0}
+    mode = {k: v for k, v in mode.items() if "resolution" not in k and k != "elevation_scale"}
+    table = {"kind": "radar", "mode": [mode], "rcs_dbsm": {"ball": 10.0}}
+    sensor = radar(table, (0, 0, 1))
+    ball = pe.Objects([[80.05, 0, 1.0]], [[0.1, 0.1, 0.1]], [0], [0], ("ball",))
+    assert kinds.measure_objects(sensor, ball)[0] == pytest.approx(0.9, abs=1e-4)
+    covered = radar({**table, "cover_loss_db": 2.0}, (0, 0, 1))
+    near = pe.Objects([[80 / 10**0.1 + 0.05, 0, 1.0]], [[0.1, 0.1, 0.1]], [0], [0], ("ball",))
+    assert kinds.measure_objects(covered, near)[0] == pytest.approx(0.9, abs=1e-4)
+
+
+def assert_close_but_at_edges(found, expected):
+    """Within 1 %, but where an edge of the field or of the body cuts an object."""
+    apart = np.abs(found - expected) / np.maximum(expected, 0.5)
+    assert np.quantile(apart, 0.85) < 0.01 and apart.max() < 0.06, np.sort(apart)[-12:]
+
+
+def test_objects_are_those_of_the_oracle():
+    """The oracle integrates over rays of its own and computes in dB."""
+    sensor = radar(rotation=(2, 3, 10))
+    some = objects()
+    found = kinds.measure_objects(sensor, some)
+    expected = expected_detections(tomllib_of(TABLE), sensor.pose, some)
+    assert_close_but_at_edges(found, expected)
+    assert (found > 1.0).sum() > 15 and (found == 0.0).sum() > 5
+
+
+def test_the_body_hides_as_rays_of_the_oracle_do():
+    sensor = radar(position=(1.0, 1.1, 0.6), rotation=(0, 0, -20))
+    some, car = objects(ground=12.0, count=40), shapes.box_car()
+    found = kinds.measure_objects(sensor, some, car)
+    expected = expected_detections(tomllib_of(TABLE), sensor.pose, some, car.triangles)
+    assert_close_but_at_edges(found, expected)
+    hidden = kinds.measure_objects(sensor, some) - found
+    assert (hidden > 0.5).any()
+
+
+def tomllib_of(table):
+    """The table as a file has it: the oracle reads no model."""
+    lines = [f"{key} = {value}" for key, value in table.items() if key not in ("kind", "mode")]
+    for mode in table["mode"]:
+        lines += ["[[mode]]", *(f"{k} = {v!r}".replace("'", '"') for k, v in mode.items())]
+    return tomllib.loads("\n".join(lines))
+
+
+@pytest.mark.parametrize("traffic", [False, True])
+def test_the_kernel_of_objects_is_the_definition(traffic):
+    some = objects(count=80)
+    scenes = np.arange(80) // 10
+    some = pe.Objects(some.centers, some.sizes, some.yaws, some.labels, some.class_names, scenes)
+    car, kind = shapes.box_car(), kinds.KINDS["radar"]
+    view = kinds.ObjectView(some, car, traffic)
+    for sensor in (radar(rotation=(0, 2, 0)), radar(catalog.load(ARS), (0, 1.2, 0.6), (0, 0, 90))):
+        kernel = kind.on_objects(view).measure(sensor)
+        np.testing.assert_array_equal(kernel, kinds.measure_objects(sensor, some, car, traffic))
+        assert (kernel > 0).any()
+
+
+def test_traffic_hides():
+    some = pe.Objects(
+        [[20, 0, 1.5], [40, 0, 0.875]], [SIZES["truck"], SIZES["pedestrian"]], [0, 0], [0, 1],
+        ("truck", "pedestrian"), [0, 0],
+    )  # fmt: skip
+    sensor = radar(catalog.load(ARS), (0, 0, 0.6))
+    alone, together = (kinds.measure_objects(sensor, some, None, t) for t in (False, True))
+    assert alone[1] > 0.5 and together[1] == 0.0 and alone[0] == together[0] > 2.0
+
+
+def test_voxels_have_their_share_of_a_car():
+    """On the axis: m of the mean car over k; the kernels of grid and sample are the definition."""
+    sensor = radar(rotation=(1, 4, -20))
+    space = pe.PerceptionSpace((-4, 36), (-20, 20), (0, 3), 0.5)
+    car = shapes.box_car()
+    index = np.stack(np.meshgrid(*map(np.arange, space.shape), indexing="ij"), -1).reshape(-1, 3)
+    m = pe.measure(sensor, space.center_of(index), 0.5, car)
+    kind = kinds.KINDS["radar"]
+    grid = kind.on_grid(space, car, 1)
+    (planes,) = grid.planes([[grid.prepare(sensor)]], None)
+    block = planes(slice(0, space.shape[0]))
+    whole = np.zeros(space.shape)
+    whole[:, block.rows] = block.m
+    np.testing.assert_allclose(whole.reshape(-1), m, rtol=1e-12)
+    assert 0.1 < (m > 0).mean() < 0.6
+    sample = kind.on_sample(kinds.Voxels(space, index, space.center_of(index)), car, 1)
+    np.testing.assert_allclose(sample.measure(sensor, False).m, m, rtol=1e-12)
+    assert (sample.unoccluded(sensor) >= m * (1 - 1e-12)).all()
+    inside = radar(position=(1.0, 1.1, 0.6), rotation=(0, 0, -20))
+    occlusion = sample.occlusion(sample.measure(inside, False))
+    assert 0 < occlusion.occluded == sum(occlusion.by_part.values()) <= occlusion.rays
+
+
+def test_a_cover_takes_decibels_and_a_bumper_blocks():
+    wall, body = _wall(1.0), _wall(-2.0)
+    triangles = np.concatenate([wall, body])
+    parts = np.repeat([0, 1], [len(wall), len(body)])
+    names = ("bumper", "body")
+    sensor = radar(catalog.load(ARS), (0.0, 0.0, 0.6))
+    target = pe.Objects([[30, 0, 0.85]], [SIZES["car"]], [0], [0], ("car",))
+    plain = pe.Vehicle(triangles, parts, names)
+    covered = pe.Vehicle(triangles, parts, names, covers={"bumper": 2.0})
+    free = kinds.measure_objects(sensor, target)[0]
+    assert kinds.measure_objects(sensor, target, plain)[0] == 0.0
+    through = kinds.measure_objects(sensor, target, covered)[0]
+    assert 0.0 < through < free
+    lossy = catalog.from_table("lossy", {**catalog.to_table(sensor.model), "cover_loss_db": 2.0})
+    same = kinds.measure_objects(pe.Sensor("x", lossy, sensor.pose), target)[0]
+    assert through == pytest.approx(same, rel=1e-9)
+    with pytest.raises(pe.InputError, match="covers: expected a part such as bumper"):
+        pe.Vehicle(triangles, parts, names, covers={"bumber": 2.0})
+    with pytest.raises(pe.InputError, match=r"covers\.bumper: expected a loss from 0 to 100 dB"):
+        pe.Vehicle(triangles, parts, names, covers={"bumper": -2.0})
+
+
+def _wall(x):
+    corners = np.array([[x, -3, -3], [x, 3, -3], [x, 3, 3], [x, -3, 3]], float)
+    return corners[[[0, 1, 2], [0, 2, 3]]]
+
+
+def test_presets_and_tables_go_through_files():
+    names = catalog.names("radar")
+    assert ARS in names and len(names) >= 8
+    for name in names:
+        model = catalog.load(name)
+        again = catalog.from_table(name, catalog.to_table(model))
+        assert catalog.to_table(again) == catalog.to_table(model)
+        assert catalog.entries()[name].source
+    own = {**TABLE, "rcs_dbsm": {"car": {"aspect_deg": [0, 90, 180], "dbsm": [10, 20, 12]}}}
+    assert catalog.to_table(catalog.from_table("own", own))["rcs_dbsm"] == own["rcs_dbsm"]
+    side = Reflectivity((10.0, 20.0, 12.0), (0.0, math.pi / 2, math.pi))
+    assert side.square_metres(np.radians([0, 45, 90])) == pytest.approx([10, 10**1.5, 100])
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"min_range_m": 200.0}, "mode 'scan': min_range_m: expected a length below 100 m, found"),
+        ({"range_resolution_m": 0}, "range_resolution_m: expected a .*length above 0 m, found 0"),
+        ({"azimuth_resolution_deg": 0}, "azimuth_resolution_deg: expected"),
+        ({"elevation_resolution_deg": 0.0}, "elevation_resolution_deg: expected"),
+        ({"azimuth_deg": [10, -10, 20]}, "azimuth_deg: expected two or more ascending angles"),
+        ({"azimuth_deg": 10}, "azimuth_deg: expected two or more ascending angles"),
+        ({"range_m": [1, 2]}, "range_m: expected a number, or 3: one an angle"),
+        ({"range_m": 0}, "range_m: expected a .*length above 0 m"),
+        ({"elevation_scale": 2}, "elevation_scale: expected a number from 0 to 1"),
+        ({"widht": 2}, "mode 1: widht: expected one of .*, found an unknown key"),
+    ],
+)
+def test_bad_modes_are_one_line(change, message):
+    with pytest.raises(pe.InputError, match=message) as error:
+        catalog.from_table("own", {"kind": "radar", "mode": [{**MODE, **change}]})
+    assert "\n" not in str(error.value) and str(error.value).startswith("own")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"detection_probability": 1.0}, "detection_probability: expected a number above 0 and be"),
+        ({"detection_probability": 0.0}, "detection_probability: expected a number above 0 and be"),
+        ({"false_alarm": 0.95}, "false_alarm: expected a probability below detection_probability"),
+        ({"list_length": 0}, "list_length: expected a whole number of detections"),
+        ({"cover_loss_db": -1}, "cover_loss_db: expected a number from 0 to 100 dB"),
+        ({"rcs_dbsm": {"car": "big"}}, "rcs_dbsm.car: expected"),
+        ({"rcs_dbsm": {"car": {"aspect_deg": [9, 3], "dbsm": [1, 2]}}}, "ascending angles"),
+        ({"mode": []}, "mode: expected a list of tables"),
+        ({"mode": [MODE, MODE]}, "mode.name: expected a name used once"),
+    ],
+)
+def test_bad_radars_are_one_line(change, message):
+    with pytest.raises(pe.InputError, match=message):
+        catalog.from_table("own", {**TABLE, **change})
+
+
+def test_a_study_of_radars_scores_voxels_and_objects(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(
+        f'[[sensor]]\nname = "front"\nmodel = "{ARS}"\nposition = [2.6, 0.0, 0.5]\n'
+        "[optimize]\nsamples = 2048\n"
+    )
+    study = pe.load_study(path)
+    score = study.evaluator().score(study.rig)
+    assert score.entropy < 16.0 and 0.05 < score.coverage < 0.7
+    scored = pe.ObjectEvaluator(study.space, study.prior).score(study.rig)
+    assert scored.entropy < 16.6 and scored.per_sensor["front"].coverage > 0.05
+
+
+def test_a_cover_is_told_and_a_radar_behind_it_is_not_inside():
+    """In a closed box: without the cover it is inside; with it the loss is told, once."""
+    shell = shapes.box((1.0, -0.8, 0.2), (2.3, 0.8, 0.9))
+    sensor = radar(catalog.load(ARS), (2.2, 0.0, 0.5))
+    told = {}
+    for covers in ({}, {"bumper": 2.0}):
+        vehicle = pe.Vehicle(shell, None, ("bumper",), covers=covers)
+        mounted = SensorAtBody(sensor, Bodywork(vehicle))
+        told[bool(covers)] = {advice.code: advice.text for advice in odd_mounting(mounted)}
+    assert "inside" in told[False] and "inside" not in told[True]
+    assert told[True]["cover"] == "the cover bumper takes 2 dB one way from 100% of its field"

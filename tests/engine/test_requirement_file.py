@@ -1,0 +1,133 @@
+"""Presets, requirements in files, and bad input."""
+
+import math
+import re
+from dataclasses import replace
+
+import pe_core as pe
+from pe_core.base.degrees import as_in_file
+from pe_core.base.serialization import dumps
+from pe_core.base.table_reader import Table
+from pe_core.scoring.requirements import (
+    BODIES,
+    Body,
+    Criterion,
+    Requirement,
+    Under,
+    Zone,
+)
+from pe_core.study.requirement_file import presets, read_requirement, requirement_table
+from pe_core.study.study_file import study_from_dict, study_to_dict
+from tests.engine.requirement_scene import AHEAD, check, rig, van
+
+
+def test_presets_have_sources_and_come_back_from_a_file_the_same():
+    found = []
+    for key, each in presets().items():
+        if each.confidence not in ("A", "B") or len(each.source) < 10 or not each.check:
+            found.append(f"{key}: confidence or source")
+        requirement = each.requirement()
+        for name in (key, "another name"):
+            changed = replace(requirement, name=name, under=Under(one_lost=name != key))
+            again = read_requirement(Table(requirement_table(changed), "file"))
+            if again != changed:
+                found.append(f"{key}: {requirement_table(changed)}")
+    assert not found and len(presets()) > 20
+
+
+def test_a_preset_whose_keys_are_changed_is_said_to_be_changed():
+    """By a file, or in Python; not by a name, the driver's eyes, the kerb, or a word for it."""
+
+    def after(**keys):
+        table = {"name": "mine", "preset": "r158_camera", **keys}
+        return read_requirement(Table(table, "file")).after
+
+    assert after() == after(zone={"eyes": 1.0, "near_side": "left"}) == "UN R158"
+    assert after(check="our rule", body="child") == "our rule"
+    assert after(preset="r158_detection", source="a letter of 2026") == "UN R158"
+    changes = (
+        {"zone": {"step": 0.5}},
+        {"zone": {"ring": [0.3, 1.0]}},
+        {"body": "child"},
+        {"headings": [45.0]},
+        {"criterion": {"share": 0.9}},
+        {"under": {"one_lost": True}},
+    )
+    assert {after(**keys) for keys in changes} == {"UN R158, changed"}
+    shipped = presets()["r158_camera"].requirement()
+    assert replace(shipped, under=Under(one_lost=True)).after == "UN R158, changed"
+    assert replace(shipped, name="own").after == "UN R158"
+    (verdict,) = check(replace(shipped, criterion=Criterion(share=0.9)))
+    assert verdict.text.startswith("geometric check after UN R158, changed: ")
+    assert verdict.to_dict()["check"] == "UN R158, changed"
+
+
+def test_a_requirement_of_ones_own_comes_back_from_a_file_the_same():
+    own = Requirement(
+        "own",
+        Zone(
+            polygon=(("front", 0.0), ("front + 2", "left + 1"), (5.0, -1.0)), z=(0.0, 1.0), step=0.5
+        ),
+        (
+            BODIES["car"],
+            Body("bin", (0.4, 0.4, 1.1), is_round=True, low=0.1, headings=BODIES["car"].headings),
+        ),
+        Criterion(kinds=2, points=5, share=0.5, ap=None, zone_share=0.9),
+        Under(one_lost=True),
+    )
+    study = pe.Study(rig(), van(), requirements=(own, replace(own, name="two", zone=AHEAD)))
+    odd = replace(BODIES["child"], headings=(as_in_file(math.radians(33.3)), as_in_file(-1.234567)))
+    table = requirement_table(Requirement("odd", AHEAD, (odd,)))
+    assert read_requirement(Table(table, "file")).bodies == (odd,)
+    data = study_to_dict(study)
+    assert [read_requirement(Table(each, "f")) for each in data["requirement"]] == list(
+        study.requirements
+    )
+    assert dumps(data).count("[[requirement]]") == 2
+
+
+TABLE = {"name": "a", "body": "child", "zone": {"x": ["front", "front + 1"], "y": [-1, 1]}}
+BAD = {
+    "no zone": ({"zone": {}}, "zone"),
+    "two shapes": ({"zone": {"x": [0, 1], "y": [0, 1], "ring": [0, 1]}}, "one of x and y"),
+    "no extent": ({"zone": {"x": [4, 4], "y": [0, 1]}}, "some extent"),
+    "inside": ({"zone": {"x": [-1, 1], "y": [-0.5, 0.5]}}, "inside the vehicle"),
+    "outside": ({"zone": {"x": [500, 501], "y": [0, 1]}}, "in the space"),
+    "step": ({"zone": {"x": [0, 90], "y": [2, 40], "step": 0.02}}, "at most 20,000 samples"),
+    "anchor": ({"zone": {"x": ["bow", 1], "y": [0, 1]}}, "planes front"),
+    "door": ({"zone": {"x": ["door", 9], "y": [2, 3]}}, "word door"),
+    "axle": ({"zone": {"x": ["front_axle", 9], "y": [2, 3]}}, "named wheel"),
+    "narrow": ({"body": "car"}, "not larger than the zone"),
+    "body": ({"body": "dragon"}, "one of cylinder"),
+    "kinds": ({"criterion": {"kinds": 3}}, "the number of kinds"),
+    "of": ({"criterion": {"of": ["lidar", "sonar"]}}, "sonar"),
+    "lacking": ({"criterion": {"of": ["camera"]}}, "that the rig has (lidar)"),
+    "rows": ({"criterion": {"pixels_high": 9}}, "a kind that counts pixels"),
+    "no row": ({"criterion": {"pixels_high": 0}}, "above 0"),
+    "key": ({"zone": {"x": [3, 4], "y": [0, 1], "stepp": 1}}, "unknown key"),
+    "preset": ({"preset": "r000"}, "pe requirements"),
+    "ap": ({"body": "pole_ring", "criterion": {"ap": 0.5}}, "a class"),
+    "twice": ({}, "each name once"),
+    "mounting": ({"under": {"mounting": True}}, "tolerance"),
+    "heading": ({"headings": "north"}, "angles"),
+}
+
+
+def test_bad_input_is_one_line_that_names_it(tmp_path):
+    """Through the study file: the line has the file or the requirement, and what was expected."""
+    lidar = study_to_dict(pe.Study(pe.Rig([rig()["top"]]), van()))
+    mesh = tmp_path / "van.npz"
+    pe.write_mesh(mesh, pe.Mesh(van().triangles, van().parts, van().part_names))
+    lidar["vehicle"] = {"mesh": mesh.name}
+    offenders = []
+    for name, (change, expected) in BAD.items():
+        tables = [{**TABLE, **change}] * (2 if name == "twice" else 1)
+        try:
+            study = study_from_dict({**lidar, "requirement": tables}, "file.toml", tmp_path)
+            study.verdicts()
+            offenders.append(f"{name}: accepted")
+        except pe.InputError as error:
+            line = str(error)
+            if expected not in line or "\n" in line or not re.search("requirement", line):
+                offenders.append(f"{name}: {line}")
+    assert not offenders

@@ -1,0 +1,182 @@
+"""How sure a search is: costs by axis, active constraints, other optima, flattery; its limits."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.search import Goals, Judgement, Parametrization
+from pe_tools.cli.terminal import summary
+from pe_tools.jobs import result_dict
+from pe_tools.sensitivity import (
+    Archive,
+    Difference,
+    analyse,
+    budget_of,
+    sensitivity_from_dict,
+    sensitivity_lines,
+)
+from pe_tools.sensitivity.fresh_samples import SAMPLES, FreshSamples
+from pe_tools.sensitivity.moves import Neighbourhood
+from pe_tools.sensitivity.optima import Basins
+from pe_tools.sensitivity.shadow_prices import shadow_prices
+from tests.engine import shapes
+
+TOP_M = 1.8
+
+
+def study(sensitivity="full", **search):
+    model = shapes.small_lidar(4, 90)
+    rig = pe.Rig([shapes.lidar_on_roof(model, (0.0, 0.0, TOP_M - 0.004))])
+    limits = {"roof": {"z": (1.6, TOP_M)}}
+    goals = Goals(sensitivity=sensitivity)
+    given = {"free": {"roof": ("z", "pitch")}, "limits": limits, "goals": goals} | search
+    settings = pe.Search(samples=2048, method="cma-es", evaluations=30, **given)
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=2048)
+
+
+def finished(job):
+    for _ in job:
+        pass
+    return job.outcome
+
+
+@pytest.fixture(scope="module")
+def outcome():
+    return finished(pe.OptimizeJob(study(), 1))
+
+
+def test_costs_are_those_of_plain_evaluations_and_the_result_is_not_touched(outcome):
+    found, rig = outcome.sensitivity, outcome.study.rig
+    samples = FreshSamples(study(), rig, 1)
+    assert found.voxels == samples.size and len(samples._objectives) == SAMPLES
+    row = next(each for each in found.axes if each.axis == "z")
+    pose = rig["roof"].pose
+    x, y, z = pose.position
+    lower = rig.with_poses([pe.Pose.from_degrees((x, y, z - 0.01), pose.rotation_deg)])
+    each = [one.entropy(lower) - one.entropy(rig) for one in samples._objectives]
+    assert row.cost[-1.0].mean == pytest.approx(np.mean(each), abs=1e-9)
+    assert row.cost[-1.0].stderr == pytest.approx(np.std(each, ddof=1) / 2.0, abs=1e-9)
+    assert row.status == "free"
+    assert {a.axis for a in found.axes if a.status == "fixed"} == {"x", "y", "roll", "yaw"}
+    without = finished(pe.OptimizeJob(study("off"), 1))
+    assert without.sensitivity is None and without.judged == outcome.judged
+    assert without.study.rig["roof"].pose == pose and without.after.entropy == outcome.after.entropy
+
+
+def test_yaw_of_a_spinning_lidar_is_flatter_than_its_height(outcome):
+    cost = {each.axis: each.worst.mean for each in outcome.sensitivity.axes}
+    assert abs(cost["yaw"]) < max(abs(cost["z"]), abs(cost["pitch"]))
+
+
+class Slope:
+    """Fresh samples of a value that is known: the higher the better, the more ahead the better."""
+
+    def __init__(self, rig):
+        self.reference = rig
+
+    def value(self, rig):
+        x, _, z = rig["roof"].pose.position
+        return -3.0 * z - 2.0 * x
+
+    def change(self, rig, base=None):
+        return Difference(self.value(rig) - self.value(base or self.reference), 0.0)
+
+
+def test_shadow_prices_name_the_constraint_and_the_gain_of_a_step():
+    given = study(free={"roof": ("x", "z")})
+    search = replace(given.search, mounting=pe.Mounting(constraints=pe.Constraints(max_width=0.5)))
+    given = replace(given, search=search)
+    slope = Slope(given.rig)
+    around = Neighbourhood(given.rig, given.search_space())
+    prices = {p.constraints: p for p in shadow_prices(slope, around, ())}
+    top = prices["bounds of z of 'roof'",]
+    assert top.step.text == "roof z +1 cm" and top.gain.mean == pytest.approx(-0.03)
+    allowed = prices[()]
+    assert allowed.step.text == "roof x +1 cm" and allowed.gain.mean == pytest.approx(-0.02)
+    held = study(free={"roof": ("z",)})
+    prices = shadow_prices(slope, Neighbourhood(held.rig, held.search_space()), ())
+    assert [p.name for p in prices] == ["bounds of z of 'roof'", "x of 'roof' held"]
+
+
+class Wells:
+    """Two wells along x, at -1 and at 1.2; the second is 0.1 less deep."""
+
+    def __init__(self, rig):
+        self.reference = rig
+
+    def value(self, rig):
+        x = rig["roof"].pose.position[0]
+        return min((x + 1.0) ** 2, (x - 1.2) ** 2 + 0.1)
+
+    def mean(self, rig):
+        return Difference(self.value(rig), 0.0)
+
+    change = Slope.change
+
+
+def at(rig, x):
+    _, y, z = rig["roof"].pose.position
+    return rig.with_poses([pe.Pose.from_degrees((x, y, z), (0.0, 0.0, 0.0))])
+
+
+def test_another_optimum_is_told_from_the_flank_of_the_same_one():
+    given = study(free={"roof": ("x",)}, limits={"roof": {"x": (-2.0, 2.0)}})
+    best = at(given.rig, -1.0)
+    archive = Archive()
+    for x in (-1.0, -0.98, -0.4, -0.1, 0.7, 1.0, 1.05):
+        rig = at(given.rig, x)
+        archive.note(rig, 0, Judgement(Wells(best).value(rig), False))
+    archive.note(at(given.rig, 1.9), 0, Judgement(0.0, True))  # a lower bound is none to rank by
+    xs = [rig["roof"].pose.position[0] for rig in archive.placements()]
+    assert xs == [-1.0, 1.05, 0.7, -0.4, -0.1]
+    endings = Basins(Wells(best), given.search_space()).endings(archive.placements())
+    assert (endings.examined, endings.same_basin, len(endings.runners_up)) == (4, 2, 1)
+    [other] = endings.runners_up
+    assert other.rig["roof"].pose.position[0] == pytest.approx(1.2, abs=0.03)
+    assert other.behind.mean == pytest.approx(0.1, abs=0.002) and other.moved == ("roof",)
+
+
+def test_a_search_that_resumes_says_the_same(outcome):
+    job = pe.OptimizeJob(study(), 1)
+    job.journal = pe.search.Journal(outcome.judged[:11])
+    again = result_dict(finished(job))
+    assert again["sensitivity"] == result_dict(outcome)["sensitivity"]
+
+
+def test_it_is_in_result_json_on_the_terminal_and_read_back(outcome):
+    table = result_dict(outcome)["sensitivity"]
+    found = sensitivity_from_dict(table, outcome.study.rig)
+    assert found.to_dict() == table and len(table["axes"]) == 6
+    text = summary(outcome)
+    for line in sensitivity_lines(outcome.sensitivity):
+        assert line in text
+    assert "1 cm or 1 deg" in text and "fresh voxels" in text
+
+
+def test_a_short_search_is_not_outlasted_by_its_analysis():
+    auto = study(None)
+    assert budget_of(auto, 100) is None and budget_of(study("off"), 10**6) is None
+    assert budget_of(auto, 200) == ((1.0,), False)
+    assert budget_of(auto, 300) == ((1.0, 5.0), False)
+    assert budget_of(auto, 2000) == ((1.0, 5.0), True)
+    evaluator = auto.evaluator(2048)
+    given = (auto, auto, evaluator, Archive(), 10**6, 1)
+    assert analyse(*given, lambda: False) is None
+
+
+def test_linked_sensors_move_together_and_the_price_of_the_link_is_told():
+    model = shapes.small_lidar(4, 90)
+    names = {"left": 0.4, "right": -0.4}
+    rig = pe.Rig([shapes.lidar_on_roof(model, (0.0, y, 1.7), name=n) for n, y in names.items()])
+    mounting = pe.Mounting(pairs=[("left", "right")])
+    settings = pe.Search(free={"left": ("x",)}, mounting=mounting)
+    given = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings)
+    around = Neighbourhood(rig, given.search_space())
+    assert around.leaders == ("left",) and around.status("right", "x") == "linked"
+    move = next(m for m in around.design_moves() if m.step.text == "left x +1 cm")
+    assert [s.pose.position[0] for s in move.rig] == [0.01, 0.01] and not move.forbidden_by
+    assert len(Parametrization(rig, given.search_space()).variables) == 1
+    assert math.isclose(around.rig["left"].pose.position[1], 0.4)

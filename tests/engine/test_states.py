@@ -1,0 +1,229 @@
+"""States: parts and sensors that move, what a study file says of them, the table of conditions."""
+
+import math
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.base.table_reader import Table
+from pe_core.study import (
+    Conditions,
+    StateInWeather,
+    condition_table,
+    study_from_dict,
+    study_to_dict,
+)
+from pe_core.study.condition_file import read_conditions, state_table
+from pe_core.study.condition_search import study_objective
+from pe_tools.jobs import conditions_csv
+from pe_tools.page.sections.conditions import content as conditions_html
+from tests.engine import shapes
+
+BODY, DOOR, WHEEL = range(3)
+HINGE = (0.8, 0.9, 0.6)
+
+
+def car():
+    """A body with a door on its left and a wheel."""
+    boxes = [
+        shapes.box((-2.0, -0.9, 0.3), (2.0, 0.88, 1.5)),
+        shapes.box((-0.2, 0.88, 0.35), (0.8, 0.92, 1.3)),
+        shapes.box((1.2, 0.7, 0.0), (1.8, 0.9, 0.6)),
+    ]
+    parts = np.repeat(np.arange(3), [len(b) for b in boxes])
+    return pe.Vehicle(np.concatenate(boxes), parts, ("body", "door_left", "wheel_left"))
+
+
+def rig():
+    lidar = pe.catalog.load("Velodyne VLP-16 Puck")
+    return pe.Rig(
+        [
+            pe.Sensor("roof", lidar, pe.Pose((0.0, 0.0, 1.7))),
+            pe.Sensor("mirror", lidar, pe.Pose.from_degrees((0.6, 0.97, 1.1), (0, 20, 90))),
+        ]
+    )
+
+
+OPEN = pe.State("open", [pe.Motion(["door_*"], (0.0, 0.0, math.radians(70.0)), HINGE)])
+
+
+def test_a_door_turns_about_its_hinge_and_takes_its_mirror_along():
+    vehicle = car()
+    moved = OPEN.vehicle(vehicle)
+    door = vehicle.parts == DOOR
+    assert np.array_equal(moved.triangles[~door], vehicle.triangles[~door])
+    for before, after in zip(
+        vehicle.triangles[door].reshape(-1, 3), moved.triangles[door].reshape(-1, 3), strict=True
+    ):
+        x, y, z = before - HINGE
+        c, s = math.cos(math.radians(70.0)), math.sin(math.radians(70.0))
+        assert after == pytest.approx((0.8 + c * x - s * y, 0.9 + s * x + c * y, 0.6 + z))
+    roof, mirror = OPEN.rig(rig(), vehicle)
+    assert roof.pose == rig()["roof"].pose
+    assert mirror.pose.rotation_deg == pytest.approx((0.0, 20.0, 160.0))
+    x, y = -0.2, 0.07
+    assert mirror.pose.position[:2] == pytest.approx((0.8 + c * x - s * y, 0.9 + s * x + c * y))
+    fixed = replace(OPEN, motions=[replace(OPEN.motions[0], sensors=["roof"])])
+    roof, mirror = fixed.rig(rig(), vehicle)
+    assert roof.pose != rig()["roof"].pose and mirror.pose == rig()["mirror"].pose
+
+
+def test_a_body_heaves_pitches_and_leans_on_its_wheels():
+    nose_down = pe.State(
+        "loaded", heave=-0.1, pitch_rad=math.radians(2.0), unsprung=["wheel_*"], weight=0.5
+    )
+    vehicle = car()
+    moved = nose_down.vehicle(vehicle)
+    wheel = vehicle.parts == WHEEL
+    assert np.array_equal(moved.triangles[wheel], vehicle.triangles[wheel])
+    front, rear = (moved.triangles[..., 0] > 1.5) & ~wheel[:, None], moved.triangles[..., 0] < -1.5
+    assert moved.triangles[front][:, 2].max() < moved.triangles[rear][:, 2].max() - 0.1
+    pose = nose_down.rig(rig(), vehicle)["roof"].pose
+    assert pose.rotation_deg == pytest.approx((0.0, 2.0, 0.0))
+    assert pose.position[2] == pytest.approx(1.7 * math.cos(math.radians(2.0)) - 0.1)
+    lean = pe.State("lean", roll_rad=math.radians(3.0))
+    left, right = (
+        lean.vehicle(vehicle).triangles[vehicle.triangles[..., 1] * side > 0.85][:, 2].max()
+        for side in (1, -1)
+    )
+    assert left > right  # it leans to the right
+
+
+def test_a_part_driven_through_the_ground_is_told():
+    sunk = pe.State("sunk", heave=-0.5, unsprung=["wheel_left"])
+    assert sunk.below_ground(car()) == pytest.approx({"body": 0.2, "door_left": 0.15})
+    assert OPEN.below_ground(car()) == {}
+
+
+@pytest.mark.parametrize(
+    ("state", "text"),
+    [
+        (pe.State("s", [pe.Motion(["dor_left"])]), "door_left"),
+        (pe.State("s", [pe.Motion(["door_left"], sensors=["miror"])]), "mirror"),
+        (pe.State("s", heave=0.1, unsprung=["weel_left"]), "wheel_left"),
+    ],
+)
+def test_unknown_names_are_refused_and_the_nearest_ones_offered(state, text):
+    with pytest.raises(pe.InputError, match=text):
+        pe.Study(rig(), car(), conditions=Conditions([state]))
+
+
+def test_states_need_a_vehicle():
+    with pytest.raises(pe.InputError, match="vehicle"):
+        pe.Study(rig(), None, conditions=Conditions([OPEN]))
+
+
+def test_states_and_weathers_stay_the_same_in_a_study_file():
+    weathers = [pe.Weather("sun", 0.9), pe.Weather("fog", 0.1, fog_mor_m=80.0, reflectivity=0.5)]
+    body = pe.State("b", heave=0.02, roll_rad=math.radians(1.5), about=(0.1, 0, 0.3), frame=20)
+    conditions = Conditions([OPEN, body, pe.State("driving")], weathers)
+    study = pe.Study(rig(), car(), conditions=conditions)
+    data = study_to_dict(study)
+    assert read_conditions(Table(data, "study")) == conditions
+    assert data["state"][0]["move"][0]["rotation"] == [0.0, 0.0, 70.0]
+    with pytest.raises(pe.InputError, match=r"state\[0\]\.move\[0\]\.rotation"):
+        state = {"name": "a", "move": [{"parts": ["x"], "rotation": [1]}]}
+        study_from_dict({**data, "vehicle": {}, "state": [state]})
+    assert state_table(OPEN)["move"][0]["about"] == list(HINGE)
+
+
+def test_the_table_has_the_figures_of_each_condition_scored_alone():
+    weathers = [pe.Weather("sun", 0.75), pe.Weather("fog", 0.25, fog_mor_m=40.0)]
+    conditions = Conditions([pe.State("driving", weight=3.0), OPEN], weathers)
+    study = pe.Study(rig(), car(), shapes.small_space(), samples=4096, conditions=conditions)
+    table = condition_table(study)
+    assert [(r.state, r.weather) for r in table.rows] == [
+        (s, w) for s in ("driving", "open") for w in ("sun", "fog")
+    ]
+    alone = []
+    for row, condition in zip(table.rows, conditions.all, strict=True):
+        vehicle = condition.vehicle(study.vehicle)
+        moved = condition.rig(study.rig, study.vehicle)
+        moved = pe.Rig([replace(s, model=replace(s.model)) for s in moved])
+        evaluator = pe.Evaluator(study.space, study.prior, vehicle, samples=4096)
+        score = evaluator.score(moved)
+        assert (row.entropy, row.stderr, row.coverage) == (
+            *(score.entropy, score.stderr, score.coverage),
+        )
+        less = evaluator.entropy(pe.Rig([moved["roof"]]))
+        assert row.without["mirror"] == pytest.approx(less, abs=2e-9)
+        alone.append(score.entropy)
+    assert table.mean == pytest.approx(np.average(alone, weights=[9, 3, 3, 1]), abs=1e-9)
+    assert table.worst.entropy == max(alone)
+    assert table.rows[2].covered["mirror"]["body"] > 0.05  # turned with its door, it faces the body
+    assert table.rows[0].covered is None
+    html = conditions_html(table)
+    assert html.count("heat worst") in (1, 2) and f"{abs(table.mean):.4f}" in html
+    assert "without mirror" in html and "open, fog" in html
+    rows = conditions_csv(table).splitlines()
+    assert len(rows) == 5 and rows[0].startswith("state,weather,weight,entropy,stderr,coverage")
+    data = table.to_dict()
+    assert data["worst"]["entropy"] == max(alone) and len(data["rows"]) == 4
+
+
+def parked(**under):
+    """The car with a LiDAR on its left door's mirror, held to a cyclist who comes from behind."""
+    zone = pe.requirements.Zone(path=((-7.0, 1.9), (-4.0, 1.9)))
+    wanted = pe.requirements.Requirement(
+        "dooring",
+        zone,
+        (pe.requirements.BODIES["cyclist"],),
+        under=pe.requirements.Under(**under),
+    )
+    camera = pe.Camera("c", 640, 480, math.radians(40.0))
+    back = pe.Sensor("back", camera, pe.Pose.from_degrees((0.6, 0.97, 1.1), (0, 0, 170)))
+    conditions = Conditions([OPEN], [pe.Weather("dense fog", fog_mor_m=5.0)])
+    return pe.Study(pe.Rig([back]), car(), requirements=(wanted,), conditions=conditions)
+
+
+def test_a_requirement_is_met_under_each_state_and_weather_that_it_names():
+    as_drawn, opened, foggy, both = (
+        parked(**under).verdicts()[0]
+        for under in (
+            {},
+            {"states": ["open"]},
+            {"weathers": ["dense fog"]},
+            {"states": ["*"], "weathers": ["*"]},
+        )
+    )
+    assert as_drawn.met and as_drawn.condition == ""
+    assert not opened.met and opened.condition == "open" and "in open" in opened.text
+    assert not foggy.met and foggy.condition == "dense fog"
+    assert not both.met and both.to_dict()["condition"] in ("open", "open, dense fog", "dense fog")
+    study = parked(states=["open"])
+    assert study_to_dict(study)["requirement"][0]["under"] == {"states": ["open"]}
+    checker = pickle.loads(pickle.dumps(study.checker()))
+    assert checker.shortfalls(study.rig)[0] > 0.0 == parked().checker().shortfalls(study.rig)[0]
+    with pytest.raises(pe.InputError, match="open"):
+        parked(states=["opne"]).verdicts()
+
+
+@pytest.mark.parametrize("how", ["mean", "worst"])
+def test_a_search_minimises_the_mean_or_the_worst_of_the_table(how):
+    weathers = [pe.Weather("sun", 0.75), pe.Weather("fog", 0.25, fog_mor_m=40.0)]
+    study = pe.Study(
+        rig(),
+        car(),
+        shapes.small_space(),
+        samples=4096,
+        conditions=Conditions([pe.State("driving"), OPEN, pe.State("never", weight=0.0)], weathers),
+        search=pe.Search(conditions=how),
+    )
+    objective = pickle.loads(pickle.dumps(study_objective(study, study.evaluator(), 4096)))
+    table = condition_table(study)
+    expected = table.mean if how == "mean" else table.worst.entropy
+    assert objective.entropy(study.rig) == expected
+    bound = objective.judge(study.rig, -100.0)
+    assert bound.is_lower_bound == (how == "worst") and bound.entropy <= expected
+    assert study_to_dict(study)["optimize"]["conditions"] == how
+    with pytest.raises(pe.InputError, match=r"\[\[state\]\] or \[\[weather\]\]"):
+        plain = replace(study, conditions=Conditions())
+        study_objective(plain, plain.evaluator(), 4096)
+
+
+def test_a_study_without_conditions_has_no_table():
+    assert condition_table(pe.Study(rig(), samples=4096)) is None
+    assert StateInWeather().name == "clear" and not Conditions()

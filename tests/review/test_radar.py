@@ -1,0 +1,52 @@
+"""A rig with a radar and an ultrasonic sensor goes through the page: pictures and the 3-D view."""
+
+import dataclasses
+
+import pytest
+
+import pe_core as pe
+from pe_core import catalog
+from pe_tools import graphics
+from pe_tools.page import ReportContext, page_bytes
+from pe_tools.page.scene3d import scene_data
+from tests.review.conftest import outcome_of, small_study
+from tests.review.test_page import Elements
+
+
+@pytest.fixture(scope="module")
+def parking():
+    study = dataclasses.replace(small_study(), samples=1024)
+    front = pe.Sensor("front", catalog.load("Continental ARS408-21"), pe.Pose((2.5, 0.0, 0.5)))
+    rear = pe.Pose.from_degrees((-2.6, 0.3, 0.5), (0, 0, 180))
+    sonar = pe.Sensor("rear", catalog.load("Bosch Ultrasonic 3.1"), rear)
+    study = study.with_rig(pe.Rig([*study.rig, front, sonar]))
+    return ReportContext("parking", outcome_of(pe.ScoreJob(study)))
+
+
+def test_a_page_shows_them(parking):
+    text = page_bytes([parking]).decode()
+    elements = Elements(text)
+    assert not elements.open and len(elements.ids) == len(set(elements.ids))
+    assert "What front detects by range and azimuth" in text
+    assert "detections of a car whose" in text and "echoes of a post whose" in text
+
+
+def test_the_3d_view_has_their_fields_and_the_ground_below(parking):
+    for each, kind in zip(
+        scene_data(parking)["sensors"][-2:], ("Radar", "Ultrasonic"), strict=True
+    ):
+        assert each["kind"] == kind and each["drawn_as"] == "view"
+        assert each["layers"]["fov"]["lines"]["at"] and each["layers"]["fov"]["faces"]["at"]
+        assert each["layers"]["ground"]["lines"]["at"]
+
+
+def test_occluded_lines_of_a_radar_pass_its_covers(parking):
+    """With the whole body a cover nothing occludes a radar; sound still ends on it."""
+    radar = pe.Sensor("front", catalog.load("Continental ARS408-21"), pe.Pose((2.0, 0.0, 0.5)))
+    sonar = dataclasses.replace(radar, model=catalog.load("Bosch Ultrasonic 3.1"))
+    plain = parking.study.vehicle
+    covered = dataclasses.replace(plain, covers=dict.fromkeys(plain.part_names, 1.0))
+    color = (1.0, 0.5, 0.0, 1.0)
+    assert len(graphics.hidden_lines(radar, plain, color).points)
+    assert not len(graphics.hidden_lines(radar, covered, color).points)
+    assert len(graphics.hidden_lines(sonar, covered, color).points)

@@ -1,0 +1,259 @@
+"""The site of the documentation: built strictly, served, and walked through in a real browser.
+
+By default without docstrings, and some pages in the browser; in CI all of it.
+"""
+
+import functools
+import http.server
+import importlib.util
+import json
+import os
+import re
+import subprocess
+import sys
+import threading
+import urllib.parse
+from collections import deque
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from pe_core import catalog
+from pe_core.study import setting_keys
+from pe_tools.cli.verbs import parser
+from tests.needed import unavailable
+from tests.review.browser import DESKTOP, PHONE, Heard, settle
+from tests.thorough import THOROUGH
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILD_TIMEOUT_S = 300
+SIDEWAYS = "() => document.documentElement.scrollWidth - window.innerWidth"
+SOME = ("index.html", "guide.html", "settings.html", "howto/requirements.html",
+        "reference/catalogue/hesai.html", "reference/commands.html")  # fmt: skip
+"""Pages that are always opened in the browser."""
+QUESTIONS = {
+    "How do I install it and get updates in Blender?": ("installing.html", "Add Remote Repository"),
+    "How do I bring in my own car?": ("howto/vehicle.html", "Use Selected Objects"),
+    "What is the default and the range of a key?": ("settings.html", "optimize.max_height"),
+    "My LiDAR is not in the catalogue; now what?": ("howto/own_sensor.html", "elevations_deg"),
+    "What does the number mean, and is it good?": ("howto/read_a_score.html", "lower is better"),
+    "Does my rig see a child behind the car?": ("howto/requirements.html", "ncap26_reverse_static"),
+    "How do I tell the search where sensors may be?": ("howto/better_placement.html", "mount"),
+    "Which sensors should I buy for my money?": ("howto/choose_sensors.html", "max_price"),
+    "How do I get the rig into ROS or CARLA?": ("howto/hand_over.html", "--to carla"),
+    "Can I trust the score?": ("validity/index.html", "What this supports, and what it does not"),
+}
+"""A newcomer's questions, the page that answers each, and a phrase of the answer."""
+CLICKS = 3
+
+
+class Page(HTMLParser):
+    """Addresses, identifiers and text of a page."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.sources: list[str] = []
+        self.names: set[str] = set()
+        self.text = ""
+        self.feed(html)
+
+    def handle_starttag(self, tag, attributes):
+        given = dict(attributes)
+        self.names |= {given[key] for key in ("id", "name") if given.get(key)}
+        if tag == "a" and given.get("href"):
+            self.links.append(given["href"])
+        if tag in ("img", "script", "source", "iframe") and given.get("src"):
+            self.sources.append(given["src"])
+        if tag == "link" and given.get("rel") != "canonical":
+            self.sources.append(given["href"])
+
+    def handle_data(self, data):
+        self.text += data
+
+
+def built(folder: Path, docstrings: bool) -> None:
+    """Build the site strictly into a folder."""
+    options = ("--site-dir", str(folder))  # not --quiet: it silences what a strict build counts
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", *options],
+        cwd=ROOT,
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1", "PE_SITE_DOCSTRINGS": str(int(docstrings))},
+        capture_output=True,
+        text=True,
+        timeout=BUILD_TIMEOUT_S,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "WARNING" not in done.stderr, done.stderr
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The folder of the site."""
+    if importlib.util.find_spec("mkdocs") is None:
+        unavailable("there is no MkDocs: install the extra docs")
+    folder = tmp_path_factory.mktemp("site")
+    built(folder, docstrings=THOROUGH)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def pages(site):
+    """Every page, by its path in the site."""
+    found = {p.relative_to(site).as_posix(): p for p in sorted(site.rglob("*.html"))}
+    own = {name: p for name, p in found.items() if not is_result(name)}
+    return {name: Page(path.read_text("utf-8")) for name, path in own.items()}
+
+
+def is_result(name):
+    """Whether a page is a result that the site only carries along."""
+    return name.startswith("reviews/") or name.endswith("/review.html")
+
+
+@pytest.fixture(scope="module")
+def address(site):
+    """The address of a local server of the site."""
+
+    class Quiet(http.server.SimpleHTTPRequestHandler):
+        def log_message(self, *_):
+            pass
+
+    handler = functools.partial(Quiet, directory=str(site))
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_address[1]}"
+        server.shutdown()
+
+
+def is_elsewhere(link):
+    return re.match(r"\w+:|//", link) is not None
+
+
+def target_of(page, link):
+    """Return the path in the site and the anchor that a link of a page leads to."""
+    path, _, anchor = urllib.parse.unquote(link).partition("#")
+    joined = os.path.normpath(os.path.join(os.path.dirname(page), path)) if path else page
+    return joined, anchor
+
+
+def test_every_link_leads_to_a_file_and_an_anchor(site, pages):
+    for name, page in pages.items():
+        if name == "404.html":  # its addresses begin at the server's root
+            continue
+        for link in filter(lambda link: not is_elsewhere(link), page.links):
+            path, anchor = target_of(name, link)
+            assert (site / path).is_file() or link == ".", f"{name}: {link}"
+            if anchor and path in pages:
+                assert anchor in pages[path].names, f"{name}: {link}"
+
+
+def test_no_page_loads_anything_from_another_host(site, pages):
+    for name, page in pages.items():
+        for source in page.sources:
+            assert not is_elsewhere(source) or source.startswith("data:"), f"{name}: {source}"
+            if name != "404.html":
+                assert (site / target_of(name, source)[0]).is_file(), f"{name}: {source}"
+    for style in site.rglob("*.css"):
+        assert not re.search(r"url\(\W?(https?:)?//", style.read_text("utf-8")), style
+
+
+def test_the_search_has_every_key_verb_and_sensor(site):
+    documents = json.loads((site / "search" / "search_index.json").read_text("utf-8"))["docs"]
+    text = "\n".join(f"{entry['title']}\n{entry['text']}" for entry in documents)
+    for key, _ in setting_keys():
+        assert key in text, key
+    verbs = next(a for a in parser()._actions if a.dest == "==SUPPRESS==" or a.choices)
+    for verb in verbs.choices:
+        assert f"pe {verb}" in text, verb
+    for name in catalog.names():
+        assert name in text, name
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_a_newcomer_s_question_is_answered_within_three_clicks(pages, question):
+    answer, phrase = QUESTIONS[question]
+    assert phrase in pages[answer].text, phrase
+    assert answer in clicks_from(pages, "index.html", CLICKS)
+
+
+def clicks_from(pages, first, most):
+    """Return how many links lead from a page to each other one, of at most so many."""
+    distance, waiting = {first: 0}, deque([first])
+    while waiting:
+        here = waiting.popleft()
+        if distance[here] == most:
+            continue
+        for link in pages[here].links:
+            there = target_of(here, link)[0]
+            if not is_elsewhere(link) and there in pages and there not in distance:
+                distance[there] = distance[here] + 1
+                waiting.append(there)
+    return distance
+
+
+def test_every_page_is_within_three_clicks(pages):
+    assert set(pages) - set(clicks_from(pages, "index.html", CLICKS)) <= {"404.html"}
+
+
+def fits(page):
+    """Whether the page ends up as wide as the window; a busy machine draws it again late."""
+    for _ in range(20):
+        settle(page)
+        if page.evaluate(SIDEWAYS) <= 0:
+            return True
+    return False
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_pages_open_without_complaints_and_fit_the_width(chromium, address, pages, size):
+    """With CI=true all pages, made as narrow as a phone after they were opened."""
+    width, height = size
+    context = chromium.new_context(
+        viewport={"width": width, "height": height},
+        is_mobile=size == PHONE,
+        has_touch=size == PHONE,
+    )
+    page = context.new_page()
+    heard = Heard(page)
+    for name in sorted(pages) if THOROUGH and size == DESKTOP else SOME:
+        page.goto(f"{address}/{name}")
+        for each in (PHONE[0], width):
+            page.set_viewport_size({"width": each, "height": height})
+            assert fits(page), (name, each)
+        assert not heard.complaints, (name, heard.complaints)
+    assert all(asked.startswith((address, "data:", "blob:")) for asked in heard.asked)
+    context.close()
+
+
+def test_the_search_finds_a_key_and_leads_to_it(chromium, address):
+    context = chromium.new_context(viewport={"width": DESKTOP[0], "height": DESKTOP[1]})
+    page = context.new_page()
+    page.goto(f"{address}/index.html")
+    page.get_by_role("textbox", name="Search").click()
+    page.keyboard.type("max_height")
+    found = page.locator(".md-search-result__link", has_text="optimize").first
+    found.wait_for()
+    found.click()
+    page.wait_for_url(re.compile("settings|mounts_and_search"))
+    assert "max_height" in page.inner_text("main")
+    context.close()
+
+
+@pytest.mark.parametrize("link", ["[gone](gone.md)", "[gone](#gone)", "![gone](gone.png)"])
+def test_a_dead_link_or_a_missing_picture_stops_the_build(tmp_path, link):
+    """Our own settings are strict: here for a site of one page."""
+    settings = pytest.importorskip("mkdocs.config")
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "index.md").write_text(f"# Page\n\n{link}\n", "utf-8")
+    changes = {"plugins": [], "hooks": [], "nav": None, "extra_css": []}
+    folders = {"docs_dir": str(tmp_path / "docs"), "site_dir": str(tmp_path / "site")}
+    (tmp_path / "theme").mkdir()
+    (tmp_path / "theme" / "main.html").write_text("{{ page.content }}", "utf-8")
+    changes["theme"] = {"name": None, "custom_dir": str(tmp_path / "theme")}
+    config = settings.load_config(str(ROOT / "mkdocs.yml"), **changes, **folders)
+    from mkdocs.commands.build import build
+    from mkdocs.exceptions import Abort
+
+    with pytest.raises(Abort, match="strict mode"):
+        build(config)

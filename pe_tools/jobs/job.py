@@ -5,8 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import Executor, Future
-from concurrent.futures import TimeoutError as NotYet
+from concurrent.futures import Executor, Future, wait
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeVar
@@ -212,11 +211,10 @@ class Job:
         self, future: Future[T], waiting: Callable[[], Progress], to_the_end: bool = False
     ) -> Generator[Progress, None, T | None]:
         while self._goes_on(to_the_end):
-            try:
-                return future.result(timeout=WAIT_S)
-            except NotYet:
-                if future.done():
-                    raise
+            # Not result(timeout=...): work may end between its TimeoutError and a look at done().
+            wait([future], timeout=WAIT_S)
+            if future.done():
+                return future.result()
             yield waiting()
         return None
 

@@ -36,8 +36,9 @@ PRIORS = (
 """In the form of a Blender menu; a .blend file holds the numbers."""
 
 
-OBJECTS = "objects"
-"""The targets of a score that panels treat in another way; all are declared by the engine."""
+OBJECTS, EXPECTED_AP = "objects", "expected_ap"
+"""Targets of a score, and objective of a search, that panels treat in another way; all are declared
+by the engine."""
 
 
 @dataclass(frozen=True)

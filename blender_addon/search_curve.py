@@ -34,7 +34,8 @@ LINE: Rgba = (0.45, 0.78, 0.96, 1.0)
 class SearchProgress:
     """How far a search is.
 
-    `points` are the placements that became the best, (evaluation, entropy) each, the start first;
+    `points` are the placements that became the best, (evaluation, figure) each, the start first;
+    the figure is the entropy [nats], or with `by_ap` the expected AP, of which more is better;
     `tried` placements were evaluated so far. `sensors` are the best placement; none while that is
     the start. `sampled`: entropies are of a sample, hence approximate.
     """
@@ -43,6 +44,7 @@ class SearchProgress:
     tried: int
     sensors: tuple[pe.Sensor, ...] = ()
     sampled: bool = True
+    by_ap: bool = False
 
 
 searches: dict[str, SearchProgress] = {}
@@ -95,9 +97,12 @@ def curve_of(progress: SearchProgress) -> SearchCurve:
     steps.append((1.0, steps[-1][1]))
     about = "\N{ALMOST EQUAL TO} " if progress.sampled else ""
     title, aside = f"Best so far {about}{best:.3f} nats", f"from {entropies[0]:.3f}"
-    return SearchCurve(
-        tuple(steps), f"{low:.2f}", f"{high:.2f}", f"{last:,} placements", title, aside
-    )
+    if progress.by_ap:
+        title = f"Best expected AP so far {about}{best:.3f}"
+    digits = 3 if progress.by_ap else 2
+    low_text, high_text = (f"{value:.{digits}f}" for value in (low, high))
+    placements = f"{last:,} placements"
+    return SearchCurve(tuple(steps), low_text, high_text, placements, title, aside)
 
 
 class PlotAxes(NamedTuple):

@@ -53,6 +53,7 @@ def store_outcome(
     store_text(scene, outcome.study, outcome.after)
     _store_breakdown(settings, outcome.after)
     store_object_score(settings, outcome.after.objects)
+    settings.result_in_traffic = _in_traffic_text(outcome)
     settings.result_stale = False
     settings.has_result = True
 
@@ -150,6 +151,14 @@ def store_robustness(settings: bpy.types.PropertyGroup, outcome: pe.Outcome) -> 
     settings.result_sureness = "\n".join(jobs.sureness_lines(outcome))
     fragile = (warning.text for warning in outcome.warnings if warning.code == advice.FRAGILE)
     settings.result_fragile = next(fragile, "")
+
+
+def _in_traffic_text(outcome: pe.Outcome) -> str:
+    """Return the expected AP that a search by it began and ended with; empty for others."""
+    if outcome.in_traffic is None:
+        return ""
+    before, after = (each.ap for each in outcome.in_traffic)
+    return f"{before:.3f} \N{RIGHTWARDS ARROW} {after:.3f}"
 
 
 def _change(before: float | None, after: float | None) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ..choices import OBJECTS
+from ..choices import EXPECTED_AP, OBJECTS
 from ..engine import exchange, kinds, pe, search, studies
 
 if TYPE_CHECKING:
@@ -119,9 +119,13 @@ def clearance_of(scene: bpy.types.Scene) -> float:
 
 
 def targets_of(settings: bpy.types.PropertyGroup) -> pe.TargetRule:
-    """Return whether voxels or objects are scored; traffic and scenes concern objects alone."""
+    """Return whether voxels or objects are scored; traffic concerns objects alone.
+
+    So do scenes, unless a search goes by the expected AP of objects.
+    """
     if settings.targets != OBJECTS:
-        return pe.TargetRule()
+        by_ap = settings.objective == EXPECTED_AP
+        return pe.TargetRule(scenes=settings.scenes) if by_ap else pe.TargetRule()
     return pe.TargetRule(**values_of(settings, pe.TargetRule))
 
 
@@ -254,7 +258,7 @@ def settings_signature(settings: bpy.types.PropertyGroup) -> list[object]:
 def targets_signature(settings: bpy.types.PropertyGroup) -> list[object]:
     """Return the settings of targets if they differ from the paper's voxels."""
     rule = targets_of(settings)
-    return [] if rule == pe.TargetRule() else [rule.targets, rule.traffic, rule.scenes]
+    return [rule.targets, rule.traffic, rule.scenes] if rule.are_objects else []
 
 
 def _plain(value: Any) -> object:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -112,6 +114,15 @@ def score_of(variant: Variant) -> pe.Score:
     return score_from_dict(json.loads(variant.score_json))
 
 
+def hardware_note(variants: Sequence[Variant]) -> str:
+    """Return the note on variants with other models or numbers of sensors; empty for none."""
+    rigs = []
+    for variant in variants:
+        with suppress(pe.InputError):  # a sensor that the catalogue does not know, or none
+            rigs.append([sensor.model for sensor in rig_of(records_of(variant))])
+    return advice.hardware_note(rigs)
+
+
 def check_choosable(scene: bpy.types.Scene, study: pe.Study) -> None:
     """Check that a scene has sensors to choose, and that they can be placed.
 
@@ -150,10 +161,12 @@ def store_front(scene: bpy.types.Scene, trade_off: pe.TradeOff, surroundings: st
         figures = ", ".join(f"{n} {v:.4g}" for n, v in design.figures.items())
         row.figures = figures.replace("_", " ")
         row.name, row.key = f"{design.name}{met}", variant.key
-        row.price, row.entropy = design.price, design.entropy
+        row.price = design.price
+        row.entropy = 0.0 if math.isnan(design.entropy) else design.entropy
     count = len(trade_off.designs) + len(trade_off.refused)
     more = "all there are" if trade_off.is_complete else "of more"
     note = f"; {trade_off.requirements_note}" if trade_off.requirements_note else ""
+    settings.front_note = trade_off.hardware_note
     names = ", ".join(trade_off.objectives).replace("_", " ")
     looked = f"Pareto front of {names}" if names else ""
     told = f"{trade_off.searched} searched of {count} looked at, {more}"

@@ -46,7 +46,7 @@ def readout_of(score: LiveScore, shown: ShownScore) -> ReadoutText:
         change,
         sense,
         f"compared with {shortened(score.baseline.label)}" if score.baseline and before else "",
-        (coverage, *zone_lines(now, before)),
+        (coverage, *ap_lines(now, before), *zone_lines(now, before)),
     )
 
 
@@ -80,6 +80,14 @@ def coverage_change(now: pe.Glance, before: pe.Glance | None) -> str:
     """Return how the coverage changed, in percentage points; nothing where it did not."""
     by = 0.0 if before is None else round(100.0 * (now.coverage - before.coverage), 1)
     return f" ({by:+.1f})".replace("-", MINUS) if by else ""
+
+
+def ap_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:
+    """Return "Expected AP 0.653 (+0.012)" where objects are scored; nothing for voxels."""
+    if now.ap is None:
+        return []
+    by = None if before is None or before.ap is None else now.ap - before.ap
+    return [f"Expected AP {now.ap:.3f}{change_text(by, 3)}"]
 
 
 def zone_lines(now: pe.Glance, before: pe.Glance | None) -> list[str]:

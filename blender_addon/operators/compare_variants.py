@@ -175,7 +175,9 @@ class PE_OT_show_comparison(bpy.types.Operator):
         """Compute the table, and open it under the mouse."""
         self.names, self.rows = comparison_of(context.scene)
         width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
-        self.said = sentences(self.names, self.rows, width // LETTER_PX)
+        letters = width // LETTER_PX
+        self.said = sentences(self.names, self.rows, letters)
+        self.said += wrap(shown(hardware_note(context.scene)), letters)
         return context.window_manager.invoke_popup(self, width=width)
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -236,11 +238,21 @@ def comparison_of(
     scene: bpy.types.Scene,
 ) -> tuple[list[str], tuple[advice.ComparedRow, ...]]:
     """Return the names of the scored variants, the active one first, and the table's rows."""
-    active = scene.perception_entropy.variant_key
-    rows = [row for row in scene.perception_entropy.variants if row.has_result]
-    rows = sorted(rows, key=lambda row: row.key != active)[:MAX_VARIANTS]
+    rows = compared_variants(scene)
     scores = {row.name: bridge.score_of(row) for row in rows}
     return list(scores), (*advice.compare(scores), *figure_rows(scene, rows))
+
+
+def compared_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
+    """Return the scored variants that the table has room for, the active one first."""
+    active = scene.perception_entropy.variant_key
+    rows = [row for row in scene.perception_entropy.variants if row.has_result]
+    return sorted(rows, key=lambda row: row.key != active)[:MAX_VARIANTS]
+
+
+def hardware_note(scene: bpy.types.Scene) -> str:
+    """Return the note on compared variants with other sensors; empty where only poses differ."""
+    return bridge.hardware_note(compared_variants(scene))
 
 
 def figure_rows(

@@ -12,7 +12,7 @@ from typing import Any, cast
 import bpy
 
 from .. import search_curve, signals, viewport
-from ..engine import pe
+from ..engine import jobs, pe
 from ..language import draw_label, shown
 
 TICK_S = 0.05
@@ -70,10 +70,12 @@ class RunningJob:
         if self.job.dropped:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
-        entropy = self.progress.entropy
+        entropy, figure = self.progress.entropy, self.progress.figure
         if entropy is None:
             return stage
         sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
+        if figure.higher_is_better:
+            return f"{stage}, best AP {'≈ ' if sampled else ''}{figure.to_figure(entropy):.3f}"
         return f"{stage}, best {'≈ ' if sampled else ''}{entropy:.3f}"
 
     def refuse_undo(self, context: bpy.types.Context) -> None:
@@ -114,11 +116,14 @@ class RunningJob:
         if not history or time.monotonic() - self._seen < wait:
             return
         self._seen, self._better = time.monotonic(), len(history)
-        points = tuple((row.evaluation, row.entropy) for row in history)
+        figure = jobs.searched_figure(self.job.study)
+        points = tuple((row.evaluation, figure.to_figure(row.entropy)) for row in history)
         sensors = tuple(history[-1].rig) if len(history) > 1 else ()
         sampled = bool(self.job.study.search.samples)
         count = cast(Any, self.job).evaluations  # a job with a history searches
-        seen = search_curve.SearchProgress(points, count, sensors, sampled)
+        seen = search_curve.SearchProgress(
+            points, count, sensors, sampled or figure.higher_is_better, figure.higher_is_better
+        )
         search_curve.note(self.scene_name, seen)
         if better:
             signals.view_changed.emit()  # the best placement is drawn as ghosts

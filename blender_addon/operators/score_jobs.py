@@ -221,6 +221,10 @@ class PE_OT_optimize(JobOperator, bpy.types.Operator):
         """Return the result in a line."""
         before, after = outcome.before.entropy, outcome.after.entropy
         best = "best so far, stopped early" if outcome.stopped else f"{outcome.evaluations} tried"
+        if outcome.in_traffic is not None:
+            first, last = (each.ap for each in outcome.in_traffic)
+            nats = f"perception entropy {before:.4f} to {after:.4f} nats"
+            return f"Expected AP in traffic {first:.4f} to {last:.4f}, {nats} ({best})"
         return f"Perception entropy {before:.4f} to {after:.4f} nats ({best})"
 
 

@@ -82,6 +82,8 @@ def draw_stored(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     settings = context.scene.perception_entropy
     column = layout.box().column(align=True)
     column.active = not settings.result_stale
+    if settings.result_in_traffic:
+        draw_figure(column, "AP in Traffic", settings.result_in_traffic)
     error = f" ± {max(settings.result_stderr, 1e-4):.4f}" if settings.result_stderr else ""
     draw_figure(column, "Entropy", f"{settings.result_entropy:.4f}{error} nats")
     if settings.result_kind == "optimize":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, OBJECTS, ON_SLOTS
+from ..choices import BY_GROUP, BY_MATERIAL, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS
 from ..language import shown
 from .layout import Tab, columns, draw_list, draw_properties, draw_with_zero
 from .variant_panels import draw_front
@@ -22,10 +22,14 @@ class PE_PT_search(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.perception_entropy
-        draw_properties(self.layout, settings, ("method", "candidates"))
+        draw_properties(self.layout, settings, ("objective", "method", "candidates"))
         draw_with_zero(self.layout, settings, "evaluations", "All")
         self.layout.prop(settings, "seed")
-        if settings.targets != OBJECTS:
+        if settings.targets == OBJECTS:
+            return
+        if settings.objective == EXPECTED_AP:
+            self.layout.prop(settings, "scenes")
+        else:
             draw_with_zero(self.layout, settings, "search_samples", "All")
 
 

@@ -156,6 +156,8 @@ def draw_front(
 ) -> None:
     """Draw the Pareto front: price, entropy and name, with a button for each design's variant."""
     column = layout.box().column(align=True)
+    if settings.front_note:
+        draw_sentence(column, context, settings.front_note, icon="INFO")
     if settings.front[0].figures:
         draw_front_of_objectives(column, settings, context)
         return

@@ -358,6 +358,10 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     result_ap: StringProperty(
         name="Expected AP", description="Weighted mean over all objects, and its standard error"
     )
+    result_in_traffic: StringProperty(
+        name="AP in Traffic",
+        description="Expected AP of objects in traffic before and after a search by it",
+    )
     result_mounted_off: StringProperty(
         name="Mounted Off",
         description="Mean rise of the entropy by mounting errors, before and after",
@@ -380,6 +384,9 @@ class PE_SceneSettings(StudySettings, bpy.types.PropertyGroup):
     )
     front_told: StringProperty(
         name="Search", description="How many designs were evaluated, and how"
+    )
+    front_note: StringProperty(
+        name="Note", description="What limits a comparison of designs with other sensors"
     )
 
     variants: CollectionProperty(

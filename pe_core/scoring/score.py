@@ -191,7 +191,7 @@ def ground_map(columns: NDArray[np.float64]) -> GroundMap:
 class Glance:
     """The summary of a sampled score: the whole rig, without the part by sensor.
 
-    The fields are those of `Score`, with the same numbers to the bit.
+    The fields are those of `Score`, with the same numbers to the bit; `ap` is that of its objects.
     """
 
     entropy: float
@@ -201,6 +201,7 @@ class Glance:
     per_zone: dict[str, PartScore]
     voxels: int
     draft: bool = False
+    ap: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

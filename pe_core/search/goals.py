@@ -47,19 +47,19 @@ class Stop:
     Parameters
     ----------
     target : float, optional
-        The value to reach: as the search minimises it, on all of its voxels [nats].
+        The figure to reach, on all voxels of the search: an entropy [nats], or an expected AP.
     seconds : float, optional
         Time of the search, without the scores before and after it. The result then depends on the
         machine; `evaluations` of the result repeats it.
     gain : float, optional
-        The search ends when its last `over` placements lowered the best by less than this [nats].
+        The search ends when its last `over` placements gained less than this [nats, or AP].
     over : int
     """
 
     target: float | None = setting(
         None,
         Number(-1e6, cap=1e6),
-        "The search ends when the entropy is this or lower",
+        "The search ends at this entropy or below; by expected AP, at this AP or above",
         Panel("stop_target", "Target", min=-100.0, soft_max=5.0, zero="none", precision=3),
     )
     seconds: float | None = setting(
@@ -71,7 +71,7 @@ class Stop:
     gain: float | None = setting(
         None,
         Number(0.0, above=True, cap=1e6),
-        "The search ends when the last placements lowered the entropy by less than this",
+        "The search ends when the last placements gained less than this",
         Panel("stop_gain", "Gain Below", soft_max=0.1, zero="none", precision=4, step=0.1),
     )
     over: int = setting(

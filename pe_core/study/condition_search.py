@@ -34,7 +34,7 @@ class ConditionObjective:
         self._study, self._samples, self._workers = study, samples, workers
         self._worst = study.search.conditions == WORST
         self._conditions = [c for c in study.conditions.all if c.weight > 0.0]
-        self._evaluators = StateEvaluators(study, samples, workers)
+        self._evaluators = StateEvaluators(study, samples, workers, searching=True)
 
     def __reduce__(self) -> tuple[object, ...]:
         return ConditionObjective, (self._study, self._samples, self._workers)

@@ -20,6 +20,7 @@ from ..scene.vehicle_state import State
 from ..scoring import RigJudge, Score
 from ..scoring.score import Watch, rounded
 from .condition_set import AS_DRAWN, CLEAR, StateInWeather
+from .objective_search import search_evaluator
 from .study import DEFAULT_SEARCH_SAMPLES, Study
 
 COVERS = 0.01
@@ -155,10 +156,13 @@ def condition_table(
 
 
 class StateEvaluators:
-    """The evaluators of a study by state of the vehicle; each is made once."""
+    """The evaluators of a study by state of the vehicle, or of its search; each is made once."""
 
-    def __init__(self, study: Study, samples: int, workers: int | None = None) -> None:
+    def __init__(
+        self, study: Study, samples: int, workers: int | None = None, searching: bool = False
+    ) -> None:
         self._study, self._samples, self._workers = study, samples, workers
+        self._make = search_evaluator if searching else Study.evaluator
         self._made: dict[str, tuple[RigJudge, Vehicle | None]] = {}
 
     def in_state(self, state: State | None) -> tuple[RigJudge, Vehicle | None]:
@@ -169,7 +173,7 @@ class StateEvaluators:
 
             study = under(self._study, StateInWeather(state if key else None))
             assert study.conditions == Conditions()
-            made = study.evaluator(self._samples, self._workers), study.vehicle
+            made = self._make(study, self._samples, self._workers), study.vehicle
             self._made[key] = made
         return self._made[key]
 

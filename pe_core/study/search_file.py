@@ -29,6 +29,7 @@ from ..search.tolerance import CASES, ERRORS
 from ..sensors import KINDS
 from .goals_file import goals_tables, read_goals
 from .mounting_file import mounting_tables, read_mounting
+from .objective_setting import ENTROPY
 from .study import Search
 
 Bounds = tuple[float, float]
@@ -116,6 +117,7 @@ def search_table(search: Search) -> dict[str, Any]:
         "method": search.method,
         **settings_table(search, KEYS_FIRST),
         **settings_table(search),
+        "objective": None if search.objective == ENTROPY else search.objective,
         **settings_table(search.schedule),
         **_tolerance_keys(search.tolerance),
         **goals_tables(search.goals),

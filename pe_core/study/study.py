@@ -47,6 +47,7 @@ from ..search import (
 from ..sensors import PerceptionModel
 from .catalog_lookup import check_pairs, housings_of
 from .condition_set import Conditions
+from .objective_setting import OBJECTIVE
 from .passthrough import Passthrough
 from .requirement_check import checker_of, verdicts_of
 
@@ -86,6 +87,8 @@ class Search:
         When to stop, what stays, further starts, several objectives, the analysis of the result.
     conditions : {"mean", "worst"}, optional
         What is minimised over the study's states and weathers, in place of the score as drawn.
+    objective : {"entropy", "expected_ap"}
+        What is improved: the study's entropy, or the expected AP of objects in traffic.
 
     Raises
     ------
@@ -119,6 +122,7 @@ class Search:
     conditions: str | None = setting(
         None, OneOf(("mean", "worst")), "Minimise the mean, or the worst, over states and weathers"
     )
+    objective: str = OBJECTIVE
 
     def __post_init__(self) -> None:
         who = "optimize"
@@ -203,17 +207,23 @@ class Study:
             return None
         return f"{self.mesh or 'vehicle'}: {vehicle_line(self.vehicle, self.faces)}"
 
-    def evaluator(self, samples: int | None = None, workers: int | None = None) -> RigJudge:
+    def evaluator(
+        self,
+        samples: int | None = None,
+        workers: int | None = None,
+        on_objects: type[ObjectEvaluator] = ObjectEvaluator,
+    ) -> RigJudge:
         """Return the evaluator of this study; `samples` replaces the study's own.
 
-        Objects stand in fewer scenes for a search's coarser levels, else in all of them.
+        Objects stand in fewer scenes for a search's coarser levels, else in all of them;
+        `on_objects` evaluates them.
         """
         samples = self.samples if samples is None else samples
         problem = self.space, self.prior, self.vehicle
         with self._naming_vehicle():
             if self.targets.are_objects:
                 targets = replace(self.targets, scenes=self.looks_at(samples))
-                return ObjectEvaluator(*problem, targets=targets, model=self.model)
+                return on_objects(*problem, targets=targets, model=self.model)
             return Evaluator(*problem, samples=samples, model=self.model, workers=workers)
 
     def looks_at(self, samples: int) -> int:

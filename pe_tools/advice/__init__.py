@@ -7,6 +7,7 @@ from pe_tools.advice.advice import joined, percent
 
 from .advice import FRAGILE, UNMET, Advice, fragile, off_by, unmet
 from .condition_checks import condition_warnings
+from .hardware import OTHER_HARDWARE, hardware_note
 from .key_figures import (
     SENSOR_COLUMNS,
     SHORT_ZONES,
@@ -36,6 +37,7 @@ from .warnings import HiddenSensor, hidden_sensors, hidden_words, warnings
 __all__ = [
     "BLIND_TO_M",
     "FRAGILE",
+    "OTHER_HARDWARE",
     "SENSOR_COLUMNS",
     "SHORT_ZONES",
     "UNMET",
@@ -55,6 +57,7 @@ __all__ = [
     "compare_figures",
     "condition_warnings",
     "fragile",
+    "hardware_note",
     "hidden_sensors",
     "hidden_words",
     "joined",

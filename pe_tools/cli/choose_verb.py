@@ -51,9 +51,11 @@ def front_summary(chosen: TradeOff) -> str:
 
 def _objectives_summary(chosen: TradeOff) -> str:
     """Return a front of several objectives as a table, with the pose of each sensor."""
-    labels = [OBJECTIVES[name] for name in chosen.objectives]
+    named = [name for name in chosen.objectives if all(name in d.figures for d in chosen.front)]
+    beside = [name for d in chosen.front[:1] for name in d.figures if name not in named]
+    labels = [OBJECTIVES[name] for name in (*named, *beside)]
     head = [f"{label} [{unit}]" if unit else label for label, unit in labels]
-    rows = [[f"{d.figures[name]:,.4g}" for name in chosen.objectives] for d in chosen.front]
+    rows = [[f"{d.figures[name]:,.4g}" for name in (*named, *beside)] for d in chosen.front]
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
 
     def line(cells: Sequence[str], name: str) -> str:
@@ -64,6 +66,8 @@ def _objectives_summary(chosen: TradeOff) -> str:
     for row, design in zip(rows, chosen.front, strict=True):
         met = f" ({design.met_text})" if design.met_text else ""
         lines += [line(row, f"{design.name}{met}"), *_placed(design, " " * (sum(widths) + 2))]
+    if not chosen.study.search.goals.front.objectives:  # of choices, by expected AP
+        return "\n".join([*lines, "", *search_notes(chosen)])
     count = len(chosen.front)
     lines += ["", f"{count} on the front of {', '.join(label for label, _ in labels)}"]
     return "\n".join([*lines, *_more_notes(chosen)])
@@ -76,7 +80,8 @@ def search_notes(chosen: TradeOff) -> Iterator[str]:
     every = "all that the limits allow" if chosen.is_complete else more
     yield f"{len(chosen.front)} on the front; {searched} searched of {count} looked at ({every})"
     if not searched:
-        yield "none was searched in full: entropies are those of a first look"
+        figures = "figures" if chosen.objectives else "entropies"
+        yield f"none was searched in full: {figures} are those of a first look"
     yield from _more_notes(chosen)
 
 
@@ -84,6 +89,8 @@ def _more_notes(chosen: TradeOff) -> Iterator[str]:
     """Yield what the designs make of requirements, an early stop, and infeasible designs."""
     if chosen.requirements_note:
         yield chosen.requirements_note
+    if chosen.hardware_note:
+        yield chosen.hardware_note
     if chosen.stopped:
         yield "stopped early: this is the front of what was found so far"
     for name, why in chosen.refused.items():

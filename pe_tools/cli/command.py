@@ -17,7 +17,7 @@ from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import quoted
 from pe_core.sensors import kind_of
-from pe_core.study import METHODS, SCHEDULED_METHOD, Study, under
+from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study, under
 
 from .goal_options import add_goal_options, with_goals
 from .interrupts import FATAL, signals_interrupt
@@ -64,6 +64,8 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     )
     about = f"how to search: one of {', '.join(METHODS)}"
     parser.add_argument("--method", choices=METHODS, metavar="NAME", help=about)
+    about = "what to improve: the study's entropy, or the expected AP of objects in traffic"
+    parser.add_argument("--objective", choices=OBJECTIVES, metavar="|".join(OBJECTIVES), help=about)
     for option, greatest, about in options:
         parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
     add_goal_options(parser)
@@ -100,7 +102,7 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     if state or weather:
         study = under(study, study.conditions.one(state, weather))
     search = study.search
-    for name in ("method", "seed", "samples", "evaluations"):
+    for name in ("method", "objective", "seed", "samples", "evaluations"):
         if (value := getattr(args, name, None)) is not None:
             search = replace(search, **{name: value})
     if getattr(args, "candidates", None) is not None:

@@ -149,7 +149,10 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     said = [*advice.ranking(names, rows), *advice.win_words(names, rows)]
     data["words"] = said
     error = max(score.stderr for score in scores.values())
-    lines = [*comparison(names, [*rows, *figure_rows]), *said, *_notes(error, alike)]
+    models = ([sensor.model for sensor in study.rig] for study in studies.values())
+    notes = [note] if (note := advice.hardware_note(models)) else []
+    data["notes"] = notes
+    lines = [*comparison(names, [*rows, *figure_rows]), *said, *_notes(error, alike), *notes]
     return _answer(data, lines, args.json)
 
 

@@ -20,11 +20,11 @@ def add_goal_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of a search's goals to a parser."""
     real = _number()
     parser.add_argument(
-        "--stop-at", type=real, metavar="NATS", help="end at this entropy or a lower one"
+        "--stop-at", type=real, metavar="VALUE", help="end at this entropy (or AP), or a better one"
     )
     parser.add_argument("--stop-after", type=real, metavar="S", help="end after so many seconds")
     about = "end when the last placements gained less than this"
-    parser.add_argument("--stop-gain", type=real, metavar="NATS", help=about)
+    parser.add_argument("--stop-gain", type=real, metavar="VALUE", help=about)
     about = "sensors that stay where they are, besides those of the study"
     parser.add_argument("--fix", type=_names, metavar="NAME,...", help=about)
     about = "start from the placement of this study, too; any number"

@@ -6,7 +6,6 @@ import time
 from typing import Any, Protocol, TextIO
 
 from pe_core.base.plugins import optional_package
-from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
 
 from ..jobs import Progress
 from .terminal import is_terminal, show
@@ -130,7 +129,7 @@ class Bar:
             )
         self._bar.set_description_str(progress.stage, refresh=False)
         if progress.entropy is not None:
-            self._bar.set_postfix_str(value_text(progress.entropy), refresh=False)
+            self._bar.set_postfix_str(progress.value_text, refresh=False)
         self._bar.update(max(0.0, min(1.0, progress.fraction) - self._bar.n))
         self._bar.refresh()
 
@@ -142,12 +141,5 @@ class Bar:
 
 
 def _text(progress: Progress) -> str:
-    entropy = "" if progress.entropy is None else f"  {value_text(progress.entropy)}"
-    return f"{progress.stage} {progress.fraction:4.0%}{entropy}"
-
-
-def value_text(value: float) -> str:
-    """Return a placement's value as text: its entropy, or by how much it breaks requirements."""
-    if is_infeasible(value):
-        return f"requirements broken by {value - INFEASIBLE:.3f}"
-    return f"entropy {value:.4f}"
+    value = progress.value_text
+    return f"{progress.stage} {progress.fraction:4.0%}{'  ' if value else ''}{value}"

@@ -12,7 +12,7 @@ from pe_core.sensors import kind_of
 from pe_core.study import Robustness
 
 from ..advice import hidden_sensors, hidden_words, object_words, objects_looked_at, off_by
-from ..jobs import Outcome, condition_lines, sureness_lines
+from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
 
 DONE, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
 Answer = tuple[str, int]
@@ -118,6 +118,7 @@ def summary(outcome: Outcome) -> str:
     else:
         before, after = outcome.before, outcome.after
         lines = [
+            *_in_traffic(outcome),
             f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats",
             f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}",
             *_moves(outcome.robustness),
@@ -150,6 +151,16 @@ def summary(outcome: Outcome) -> str:
     return "\n".join([*lines, *warned(outcome)])
 
 
+def _in_traffic(outcome: Outcome) -> list[str]:
+    """Return the expected AP that a search by it began and ended with; empty for other searches."""
+    if outcome.in_traffic is None:
+        return []
+    before, after = outcome.in_traffic
+    error = f"standard error {max(after.ap_stderr, MIN_SHOWN_ERROR):.4f}"
+    scenes = f"on {after.scenes:,} scenes"
+    return [f"expected AP in traffic  {before.ap:.4f} -> {after.ap:.4f} ({error}, {scenes})"]
+
+
 def _requirements(outcome: Outcome) -> list[str]:
     """Return how many requirements are met, and which are not."""
     broken = [each for each in outcome.verdicts if not each.met]
@@ -175,9 +186,7 @@ def _moves(found: Robustness | None) -> list[str]:
 def searched(outcome: Outcome) -> str:
     """Describe a search: method, seed, and the number of voxels that evaluate a candidate."""
     study, search = outcome.start, outcome.start.search
-    looks = [study.looks_at(samples) for samples in search.level_samples]
-    levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
-    what = "scenes of objects" if study.targets.are_objects else "voxels"
+    levels, what = searched_on(study)
     count = f"{outcome.evaluations:,} placements"
     return f"searched by {search.method}, seed {search.seed}: {count} judged on {levels} {what}"
 

@@ -29,6 +29,7 @@ from .results import (
     write_outcome,
 )
 from .score_and_optimize import OptimizeJob, ScoreJob
+from .searched_figure import IN_NATS, SearchedFigure, searched_figure, searched_on
 from .stopping import stop_text
 from .study_export import export_study, fingerprint, study_writers
 from .sureness import sureness_lines
@@ -41,6 +42,7 @@ __all__ = [
     "FRONT_PAGE",
     "FRONT_PLOT",
     "FRONT_SEARCH",
+    "IN_NATS",
     "SAVE_EVERY_S",
     "BegunSearch",
     "Checkpoint",
@@ -56,6 +58,7 @@ __all__ = [
     "Progress",
     "ScoreJob",
     "SearchState",
+    "SearchedFigure",
     "StartEnd",
     "TradeOff",
     "add_to_result",
@@ -75,6 +78,8 @@ __all__ = [
     "result_names",
     "runners_up",
     "save_front_search",
+    "searched_figure",
+    "searched_on",
     "set_aside_files_of_other_runs",
     "stop_text",
     "study_writers",

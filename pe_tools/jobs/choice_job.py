@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
@@ -11,10 +12,12 @@ from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import DesignSearch, Objective, Picks, above_front, pareto_front
+from pe_core.search.goals import AP, ENTROPY, PRICE
+from pe_core.study.objective_search import is_by_ap, search_evaluator
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Search, Study
 
-from ..advice import Advice
+from ..advice import Advice, hardware_note
 from .candidate_workers import ExecutorSource, candidate_workers
 from .designed import Models, design_names, design_study
 from .front_checkpoint import FrontJournals
@@ -26,9 +29,9 @@ ALL_SEARCHED_UP_TO = 16
 PAPER_METHOD = "random"
 FIRST_LOOK = 16
 """Screening is a search by Algorithm 1 with the number of candidates divided by this."""
-MARGIN = 0.3
-"""A design higher above the front than this after screening is not searched [nats]: usually the
-rest of a search gains less."""
+MARGIN, MARGIN_AP = 0.3, 0.05
+"""A design worse than the front by more than this after screening is not searched [nats; expected
+AP]: usually the rest of a search gains less."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,14 +48,14 @@ class Design:
         The design as a study, with the best placement found and without choices.
     entropy : float
         Entropy of that placement [nats]: that of the score, or, for a design that was only
-        screened, that of the search.
+        screened, that of the search; NaN after a screening by expected AP.
     score : Score, optional
         Score without a ground map; None for a design that was only screened.
     warnings : tuple of Advice
     verdicts : tuple of Verdict
         On the study's requirements; none for a design that was only screened.
     figures : mapping of str to float
-        Its objectives by name, on a front of several.
+        Its objectives by name, on a front of several. By expected AP: price, AP, and the entropy.
     """
 
     name: str
@@ -77,6 +80,11 @@ class Design:
         return f"{count - len(self.broken)} of {count} met" if count else ""
 
     @property
+    def value(self) -> float:
+        """What its search minimised, as scored: entropy [nats], or minus the expected AP."""
+        return -self.figures[AP] if AP in self.figures else self.entropy
+
+    @property
     def is_led_in(self) -> bool:
         """Whether `entropy` is no entropy: the screening found no placement to keep."""
         return self.score is None and is_infeasible(self.entropy)
@@ -93,9 +101,9 @@ class TradeOff:
     designs : tuple of Design
         All evaluated designs with a feasible placement, cheapest first.
     front : tuple of Design
-        Designs that no other design beats in both price and entropy, cheapest first. Only designs
-        that were searched are compared, if there are any; if the search keeps requirements, only
-        those of them that break the fewest.
+        Designs that no other design beats in both price and entropy (or AP), cheapest first. Only
+        designs that were searched are compared, if there are any; if the search keeps
+        requirements, only those of them that break the fewest.
     refused : mapping of name to str
         Names of designs without a feasible placement, and the reason.
     is_complete : bool
@@ -134,9 +142,16 @@ class TradeOff:
         good = sum(not design.broken for design in self.front)
         return f"{good} of {len(self.front)} on the front meet all {count} requirements"
 
+    @property
+    def hardware_note(self) -> str:
+        """What limits a front by entropy of designs with other sensors; empty for others."""
+        if self.objectives and ENTROPY not in self.objectives:
+            return ""
+        return hardware_note([s.model for s in design.study.rig] for design in self.front)
+
 
 class ChoiceJob(Job):
-    """Computes the Pareto front of price and entropy among the designs of a study.
+    """Computes the Pareto front of price and entropy (or AP) among the designs of a study.
 
     Up to `ALL_SEARCHED_UP_TO` designs are searched one by one with `OptimizeJob`. More designs are
     screened first with fewer candidates, and those within `MARGIN` of the front are searched. Of
@@ -159,6 +174,7 @@ class ChoiceJob(Job):
         self._inner: _DesignJob | None = None
         self._possible: int | None = None
         self._evaluators: dict[int, RigJudge] = {}
+        self._in_traffic: dict[int, RigJudge] = {}
         self._helpers: ExecutorSource | None = None
         self._open = ExitStack()
         self.journals = FrontJournals()
@@ -168,11 +184,11 @@ class ChoiceJob(Job):
         """The result so far; None before the first design, and after `drop`."""
         if self.dropped or not self._found:
             return None
-        ordered = sorted(self._named(), key=lambda design: (design.price, design.entropy))
+        ordered = sorted(self._named(), key=lambda design: (design.price, design.value))
         compared = [d for d in ordered if d.score is not None] or ordered
         if self.study.search.requirements:
             compared = _fewest_broken(compared)
-        front = pareto_front([(design.price, design.entropy) for design in compared])
+        front = pareto_front([(design.price, design.value) for design in compared])
         names = design_names([self._designs.models(picks) for picks in self._errors])
         refused = {n: str(e) for n, e in zip(names, self._errors.values(), strict=True)}
         return TradeOff(
@@ -183,6 +199,7 @@ class ChoiceJob(Job):
             self._possible is not None and len(self._found) + len(self._errors) == self._possible,
             self.stopped,
             self.seconds,
+            (PRICE, AP) if is_by_ap(self.study) else (),
         )
 
     def stop(self) -> None:
@@ -226,14 +243,14 @@ class ChoiceJob(Job):
                     return
                 done = (len(self._found) + len(self._errors)) / search.max_designs
                 yield from self._screen(picks, Progress("looking at designs", done))
-            search.tell({picks: design.entropy for picks, design in self._found.items()})
+            search.tell({picks: design.value for picks, design in self._found.items()})
 
     def _promising(self) -> list[Picks]:
-        """Return the designs within `MARGIN` of the front, those nearest to it first."""
-        evaluated = list(self._found)
-        figures = [(self._found[picks].price, self._found[picks].entropy) for picks in evaluated]
+        """Return the designs within a margin of the front, those nearest to it first."""
+        evaluated, margin = list(self._found), MARGIN_AP if is_by_ap(self.study) else MARGIN
+        figures = [(self._found[picks].price, self._found[picks].value) for picks in evaluated]
         above = dict(zip(evaluated, above_front(figures), strict=True))
-        near = [picks for picks in evaluated if above[picks] <= MARGIN]
+        near = [picks for picks in evaluated if above[picks] <= margin]
         return sorted(near, key=lambda picks: (above[picks], self._found[picks].price, picks))
 
     def _screen(self, picks: Picks, progress: Progress) -> Iterator[Progress]:
@@ -248,8 +265,11 @@ class ChoiceJob(Job):
             self._errors[picks] = error
             return
         if job.history:
-            study, entropy = replace(job.best, search=full_search), job.history[-1].entropy
-            self._keep(picks, Design("", 0.0, {}, study, entropy))
+            study, value = replace(job.best, search=full_search), job.history[-1].entropy
+            if is_by_ap(self.study) and not is_infeasible(value):
+                self._keep(picks, Design("", 0.0, {}, study, math.nan, figures={AP: -value}))
+            else:
+                self._keep(picks, Design("", 0.0, {}, study, value))
 
     def _search(self, picks: Picks, number: int, count: int) -> Iterator[Progress]:
         """Search a design in full, and store the result."""
@@ -270,11 +290,14 @@ class ChoiceJob(Job):
         if (outcome := job.outcome) is not None:
             score = replace(outcome.after, ground_map=None)
             found = (outcome.study, score.entropy, score, outcome.warnings, outcome.verdicts)
-            self._keep(picks, Design("", 0.0, {}, *found))
+            after = outcome.in_traffic
+            figures = {} if after is None else {AP: after[1].ap, ENTROPY: score.entropy}
+            self._keep(picks, Design("", 0.0, {}, *found, figures))
 
     def _keep(self, picks: Picks, design: Design) -> None:
         models, price = self._designs.models(picks), self._designs.price(picks)
-        self._found[picks] = replace(design, models=models, price=price)
+        figures = {PRICE: price, **design.figures} if design.figures else {}
+        self._found[picks] = replace(design, models=models, price=price, figures=figures)
 
     def _named(self) -> list[Design]:
         names = design_names([design.models for design in self._found.values()])
@@ -298,6 +321,14 @@ class ChoiceJob(Job):
             self._evaluators[sample_count] = self.study.evaluator(samples, self.workers)
         return self._evaluators[sample_count]
 
+    def search_evaluator_of(self, samples: int) -> RigJudge:
+        """Return what evaluates candidates with this number of samples; all designs share it."""
+        if not is_by_ap(self.study):
+            return self.evaluator_of(samples)
+        if samples not in self._in_traffic:
+            self._in_traffic[samples] = search_evaluator(self.study, samples, self.workers)
+        return self._in_traffic[samples]
+
     def helpers(self, objectives: Sequence[Objective]) -> ExecutorSource:
         """Return what evaluates the candidates of all designs; it is made for the first one.
 
@@ -305,7 +336,7 @@ class ChoiceJob(Job):
         """
         if self._helpers is None:
             offered = [o.model for c in self.study.selection.choices for o in c.options]
-            levels = map(self.evaluator_of, self.study.search.level_samples)
+            levels = map(self.search_evaluator_of, self.study.search.level_samples)
             common = [*levels, *offered, *(sensor.model for sensor in self.study.rig)]
             self._helpers = self._open.enter_context(candidate_workers(self, objectives, common))
         return self._helpers
@@ -326,6 +357,9 @@ class _DesignJob(OptimizeJob):
         return self._parent.evaluator_of(self.study.samples)
 
     def _evaluator_of(self, samples: int) -> RigJudge:
+        return self._parent.search_evaluator_of(samples)
+
+    def _own_evaluator_of(self, samples: int) -> RigJudge:
         return self._parent.evaluator_of(samples)
 
     @contextmanager

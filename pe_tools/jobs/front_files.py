@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import re
 import unicodedata
 from collections.abc import Mapping
@@ -50,6 +51,7 @@ def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[
         "front": [design.name for design in chosen.front],
         "designs": [_design_dict(d, d in chosen.front, files) for d in chosen.designs],
         "refused": chosen.refused,
+        "notes": [chosen.hardware_note] if chosen.hardware_note else [],
         "inputs": {
             "study": study_to_dict(chosen.study),
             "vehicle_sha256": vehicle_digest(chosen.study.vehicle),
@@ -106,7 +108,7 @@ def front_csv(chosen: TradeOff) -> str:
         models_by_sensor = {sensor.name: sensor.model.name for sensor in design.study.rig}
         figures = (design.price, _entropy(design), _coverage(design), int(design.score is not None))
         met: list[object] = [_met(design)] if asked else []
-        met += [design.figures[name] for name in chosen.objectives]
+        met += [design.figures.get(name) for name in chosen.objectives]
         on_front = int(design in chosen.front)
         models = (models_by_sensor.get(name, "") for name in sensors)
         writer.writerow([design.name, on_front, *figures, *met, *models])
@@ -172,8 +174,9 @@ def _met(design: Design) -> int | None:
 
 
 def _entropy(design: Design) -> float | None:
-    """Return the entropy; None where the screening found no placement that keeps requirements."""
-    return None if design.is_led_in else design.entropy
+    """Return the entropy; None where a screening found no placement that keeps requirements, or
+    went by expected AP."""
+    return None if design.is_led_in or math.isnan(design.entropy) else design.entropy
 
 
 def _model_name(model: SensorModel | None) -> str | None:

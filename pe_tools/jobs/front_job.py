@@ -10,6 +10,7 @@ from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import RequirementChecker
 from pe_core.search import Journal, Objective, Picks, feasible_start, optimize
+from pe_core.study.objective_search import is_by_ap, search_evaluator
 from pe_core.study.requirement_search import FeasibleFirst, feasible_first
 from pe_core.study.study import Study
 
@@ -100,6 +101,8 @@ class FrontJob(Job):
         self._complete = len(picks) <= ALL_SEARCHED_UP_TO
         samples = self.study.search.samples
         shared: RigJudge = self.study.evaluator(samples, self.workers)
+        by_ap = is_by_ap(self.study)
+        in_traffic = search_evaluator(self.study, samples, self.workers) if by_ap else None
         for each in picks[:ALL_SEARCHED_UP_TO]:
             models, price = self._choice.models(each), self._choice.price(each)
             try:
@@ -111,7 +114,7 @@ class FrontJob(Job):
             self._designs.append((models, price, study))
             keeps = study.search.requirements and study.requirements
             self._checkers.append(study.checker() if keeps else None)
-            self._figures.append(FrontFigures(study, self.names, shared, price))
+            self._figures.append(FrontFigures(study, self.names, shared, price, in_traffic))
         return True
 
     def _values(self) -> Iterator[Objective]:

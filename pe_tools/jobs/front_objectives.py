@@ -26,6 +26,8 @@ from pe_core.search.goals import (
     WORST_LOSS,
 )
 from pe_core.search.tolerance import without_each
+from pe_core.study.objective_search import is_by_ap
+from pe_core.study.objective_setting import EXPECTED_AP
 from pe_core.study.study import Study
 
 from ..advice import BLIND_TO_M
@@ -38,9 +40,18 @@ Figures = Mapping[str, float]
 
 
 def check_objectives(study: Study, names: Sequence[str]) -> None:
-    """Raise `InputError` for an objective that the study has no figures of."""
+    """Raise `InputError` for an objective that the study has no figures of.
+
+    Expected AP is that of the study's objects; with `objective = "expected_ap"` in traffic,
+    whatever the study's targets.
+    """
+    if is_by_ap(study) and AP not in names:
+        expected = f'{AP!r} among them, with objective = "{EXPECTED_AP}"'
+        raise InputError("optimize", "front.objectives", expected, ", ".join(names))
+    no_objects = not (study.targets.are_objects or is_by_ap(study))
+    of_objects = f'metric.targets = "objects", or objective = "{EXPECTED_AP}"'
     wrong = {
-        AP: (not study.targets.are_objects, 'a study with metric.targets = "objects"', "voxels"),
+        AP: (no_objects, f"a study with {of_objects}", "voxels"),
         WORST_LOSS: (len(study.rig) < 2, "a rig of at least two sensors", "one"),
         MARGIN: (not study.requirements, "a study with requirements", "none"),
         BLIND_ZONES: (not study.requirements, "a study with requirements", "none"),
@@ -62,12 +73,20 @@ class FrontFigures:
     evaluator : RigJudge
         Of the search.
     price : float
+    in_traffic : RigJudge, optional
+        Evaluates the expected AP of a study whose objective it is.
     """
 
     def __init__(
-        self, study: Study, names: Sequence[str], evaluator: RigJudge, price: float = 0.0
+        self,
+        study: Study,
+        names: Sequence[str],
+        evaluator: RigJudge,
+        price: float = 0.0,
+        in_traffic: RigJudge | None = None,
     ) -> None:
-        self._given = study, tuple(names), evaluator, price
+        self._given = study, tuple(names), evaluator, price, in_traffic
+        self._in_traffic = in_traffic
         self.names, self._study, self._evaluator = tuple(names), study, evaluator
         tolerance, seed = study.search.tolerance, study.search.seed
         self._objective = objective_of(evaluator, tolerance, seed)
@@ -107,11 +126,13 @@ class FrontFigures:
         figures = dict(self(rig))
         if ENTROPY in figures:
             figures[ENTROPY] = score.entropy
-        if AP in figures and score.objects is not None:
+        if AP in figures and score.objects is not None and self._in_traffic is None:
             figures[AP] = score.objects.ap
         return figures
 
     def _ap(self, rig: Rig) -> float:
+        if self._in_traffic is not None:
+            return -self._in_traffic.entropy(rig)
         found = self._evaluator.score(rig).objects
         assert found is not None
         return found.ap

@@ -13,18 +13,23 @@ from typing import Any, TypeVar
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import Verdict
-from pe_core.scoring.score import Score, ScoreStopped
+from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, Robustness
 from pe_core.study.condition_table import ConditionTable, condition_table
 from pe_core.study.study import Study
 
 from ..advice import Advice, warnings
 from ..sensitivity import Sensitivity
+from .searched_figure import IN_NATS, SearchedFigure
 
 
 @dataclass(frozen=True, slots=True)
 class HistoryRow:
-    """A placement that became the best: evaluation number, round, entropy [nats], and the rig."""
+    """A placement that became the best: evaluation number, round, entropy [nats], and the rig.
+
+    Of a search by expected AP, `entropy` is the value that it minimised: minus the AP
+    (`searched_figure`).
+    """
 
     evaluation: int
     round: int
@@ -34,8 +39,8 @@ class HistoryRow:
 
 @dataclass(frozen=True, slots=True)
 class StartEnd:
-    """Where a start of a search ended: its name (empty: the given one), entropy [nats], and how
-    many rigs were evaluated until then."""
+    """Where a start of a search ended: its name (empty: the given one), entropy [nats] (or value,
+    as in `HistoryRow`), and how many rigs were evaluated until then."""
 
     name: str
     entropy: float
@@ -80,6 +85,8 @@ class Outcome:
         Where each start of a search ended, if it had several.
     stop_reason : str
         Why the search ended before its budget did: "target", "seconds", "gain", or empty.
+    in_traffic : tuple of ObjectScore, or None
+        Of a search by expected AP: start and result on objects in traffic.
     """
 
     kind: str
@@ -100,6 +107,7 @@ class Outcome:
     sensitivity: Sensitivity | None = None
     starts: tuple[StartEnd, ...] = ()
     stop_reason: str = ""
+    in_traffic: tuple[ObjectScore, ObjectScore] | None = None
 
 
 T = TypeVar("T")
@@ -119,15 +127,23 @@ class Progress:
     fraction : float
         Completed part of the stage, 0 to 1.
     entropy : float or None
-        Best entropy so far [nats]; None before the first.
+        Best entropy so far [nats], or value of the search; None before the first.
     evaluations : int
         Rigs evaluated so far.
+    figure : SearchedFigure
+        How people read that value.
     """
 
     stage: str
     fraction: float
     entropy: float | None = None
     evaluations: int = 0
+    figure: SearchedFigure = IN_NATS
+
+    @property
+    def value_text(self) -> str:
+        """The best so far: "entropy 1.2345"; empty before the first."""
+        return "" if self.entropy is None else self.figure.text(self.entropy)
 
 
 class Job:

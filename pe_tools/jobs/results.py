@@ -12,7 +12,6 @@ import json
 import platform
 from collections.abc import Collection, Mapping
 from contextlib import suppress
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -37,13 +36,15 @@ from pe_core.study.file_names import (
     STUDY,
 )
 from pe_core.study.mounting_file import areas_of
+from pe_core.study.objective_setting import EXPECTED_AP
 from pe_core.study.study import Study
 from pe_core.version import __version__
 
 from .checkpoint import SearchState
 from .condition_files import conditions_csv
 from .folder import FileSet, Write, our_files, prepare_folder, sha256_of
-from .job import HistoryRow, Outcome
+from .job import HistoryRow, Outcome, StartEnd
+from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 from .study_export import inputs_of, study_writers
 
 EARLIER = ".earlier"
@@ -68,6 +69,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
 
 
 def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
+    figure = searched_figure(outcome.start)
     return {
         "schema": SCHEMA,
         "kind": outcome.kind,
@@ -85,11 +87,12 @@ def _result(outcome: Outcome, host: dict[str, str]) -> dict[str, Any]:
         **_requirements(outcome),
         **({} if outcome.conditions is None else {"conditions": outcome.conditions.to_dict()}),
         **_search_dict(outcome),
+        **_in_traffic(outcome),
         **_sensitivity(outcome),
         "evaluations": outcome.evaluations,
         "stopped": outcome.stopped,
         "warnings": [each.to_dict() for each in outcome.warnings],
-        "history": [_history_dict(row) for row in outcome.history],
+        "history": [_history_dict(row, figure) for row in outcome.history],
         "inputs": outcome.inputs or inputs_of(outcome.start),
         "run": run_dict(outcome.seconds, host),
     }
@@ -103,6 +106,14 @@ def _search_dict(outcome: Outcome) -> dict[str, Any]:
         "method": search.method if is_search else None,
         "level_samples": list(search.level_samples) if is_search else [],
     }
+
+
+def _in_traffic(outcome: Outcome) -> dict[str, Any]:
+    """Return the objective of a search by expected AP, and the AP it began and ended with."""
+    if outcome.in_traffic is None:
+        return {}
+    before, after = (each.to_dict() for each in outcome.in_traffic)
+    return {"objective": EXPECTED_AP, EXPECTED_AP: {"before": before, "after": after}}
 
 
 def run_dict(seconds: float, host: Mapping[str, str]) -> dict[str, Any]:
@@ -156,7 +167,8 @@ def write_outcome(
     folder, data = prepare_folder(folder), result_dict(outcome, host)
     writers = study_writers(outcome.study, STUDY)
     if outcome.kind == "optimize":
-        writers[HISTORY] = history_csv(outcome.history).encode(errors="backslashreplace")
+        text = history_csv(outcome.history, searched_figure(outcome.start))
+        writers[HISTORY] = text.encode(errors="backslashreplace")
         for name, each in runners_up(outcome).items():
             writers[name] = study_writers(each, STUDY)[STUDY]
         writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.judged)
@@ -236,17 +248,18 @@ def set_aside_files_of_other_runs(folder: Path) -> dict[str, str]:
     return renamed
 
 
-def history_csv(history: tuple[HistoryRow, ...]) -> str:
+def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NATS) -> str:
     """Return the history as CSV: one row each time a better placement was found."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     names = [s.name for s in history[0].rig] if history else []
     units = {a: "m" if a in "xyz" else "deg" for a in AXES}
     columns = [f"{name}.{axis}_{units[axis]}" for name in names for axis in AXES]
-    writer.writerow(["evaluation", "round", "entropy", *columns])
+    writer.writerow(["evaluation", "round", figure.key, *columns])
     for row in history:
         poses = [(*s.pose.position, *s.pose.rotation_deg) for s in row.rig]
-        writer.writerow([row.evaluation, row.round, row.entropy, *(v for p in poses for v in p)])
+        best = figure.to_figure(row.entropy)
+        writer.writerow([row.evaluation, row.round, best, *(v for p in poses for v in p)])
     return text.getvalue()
 
 
@@ -271,7 +284,7 @@ def _sensitivity(outcome: Outcome) -> dict[str, Any]:
     found = outcome.sensitivity
     return {
         "sensitivity": None if found is None else found.to_dict(),
-        "starts": [asdict(each) for each in outcome.starts],
+        "starts": [_start_dict(each, searched_figure(outcome.start)) for each in outcome.starts],
         "stop_reason": outcome.stop_reason or None,
     }
 
@@ -282,10 +295,18 @@ def _requirements(outcome: Outcome) -> dict[str, Any]:
     return {"requirements": verdicts} if verdicts else {}
 
 
-def _history_dict(row: HistoryRow) -> dict[str, Any]:
+def _start_dict(end: StartEnd, figure: SearchedFigure) -> dict[str, Any]:
+    return {
+        "name": end.name,
+        figure.key: figure.to_figure(end.entropy),
+        "evaluations": end.evaluations,
+    }
+
+
+def _history_dict(row: HistoryRow, figure: SearchedFigure) -> dict[str, Any]:
     return {
         "evaluation": row.evaluation,
         "round": row.round,
-        "entropy": row.entropy,
+        figure.key: figure.to_figure(row.entropy),
         "placements": placements(row.rig),
     }

@@ -7,12 +7,12 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigJudge
 from pe_core.scoring.requirements import Verdict
-from pe_core.scoring.score import Score
+from pe_core.scoring.score import ObjectScore, Score
 from pe_core.search import (
     Journal,
     Objective,
@@ -23,6 +23,7 @@ from pe_core.search import (
     robustness,
 )
 from pe_core.study.condition_search import study_objective
+from pe_core.study.objective_search import is_by_ap, search_evaluator, searched_study
 from pe_core.study.requirement_search import conflicts, feasible_first, is_infeasible
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
@@ -30,7 +31,28 @@ from ..advice import Advice, condition_warnings, fragile, unmet
 from ..sensitivity import Archive, Sensitivity, analyse
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, begun
+from .searched_figure import IN_AP, searched_figure
 from .stopping import TARGET, StopWatch
+
+
+class _Scored(NamedTuple):
+    """A score, and that on objects in traffic where the search goes by expected AP."""
+
+    score: Score
+    in_traffic: ObjectScore | None = None
+
+    @property
+    def value(self) -> float:
+        """What the search minimises, of a placement as scored."""
+        return (
+            self.score.entropy if self.in_traffic is None else IN_AP.to_figure(self.in_traffic.ap)
+        )
+
+
+def _both(
+    first: ObjectScore | None, last: ObjectScore | None
+) -> tuple[ObjectScore, ObjectScore] | None:
+    return None if first is None or last is None else (first, last)
 
 
 class ScoreJob(Job):
@@ -130,6 +152,13 @@ class OptimizeJob(Job):
         return [self._evaluator_of(samples) for samples in self.study.search.level_samples]
 
     def _evaluator_of(self, samples: int) -> RigJudge:
+        """Return what evaluates candidates on a number of voxels, or in its share of scenes."""
+        if is_by_ap(self.study):
+            return search_evaluator(self.study, samples, self.workers)
+        return self._own_evaluator_of(samples)
+
+    def _own_evaluator_of(self, samples: int) -> RigJudge:
+        """Return the evaluator of the study's own targets."""
         if self.study.looks_at(samples) == self.study.looks_at(self.study.samples):
             return self._evaluator
         return self.study.evaluator(samples, self.workers)
@@ -138,15 +167,16 @@ class OptimizeJob(Job):
         preparing = Progress("preparing", 0.0)
         if (yield from self._beside(self._checked, lambda: preparing)) is None:
             return
-        before = self.before
-        if before is None:
-            before = yield from self._score(self.study.rig, Progress("scoring the start", 0.0))
-        if before is None:
+        first = yield from self._scored(
+            self.study.rig, Progress("scoring the start", 0.0), self.before
+        )
+        if first is None:
             return
         yield from self._search()
         stopped = self.stopped
-        after, best = yield from self._better_of(before)
-        looking = Progress("scoring the result", 1.0, after.entropy, self.evaluations)
+        last, best = yield from self._better_of(first)
+        before, after = first.score, last.score
+        looking = self._about("scoring the result", last.value)
         robustness_result = yield from self._robustness(best, looking)
         warnings = yield from self._warnings(best, after, looking)
         verdicts = yield from self._verdicts(best, looking)
@@ -178,8 +208,9 @@ class OptimizeJob(Job):
             sensitivity,
             tuple(self.ends),
             self.stop_reason,
+            _both(first.in_traffic, last.in_traffic),
         )
-        yield Progress("done", 1.0, after.entropy, self.evaluations)
+        yield self._about("done", last.value)
 
     def _checked(self) -> list[Objective]:
         """Return the objectives; raise `InputError` before the search if it is infeasible.
@@ -189,15 +220,32 @@ class OptimizeJob(Job):
         feasible_start(self.study.coding(), self.study.search.seed)
         return self._objectives
 
-    def _better_of(self, before: Score) -> Generator[Progress, None, tuple[Score, Study]]:
+    def _scored(
+        self, rig: Rig, waiting: Progress, known: Score | None = None, to_the_end: bool = False
+    ) -> Generator[Progress, None, _Scored | None]:
+        """Score a placement; of a search by expected AP, on objects in traffic, too."""
+        score = known or (yield from self._score(rig, waiting, to_the_end=to_the_end))
+        if score is None or not is_by_ap(self.study):
+            return None if score is None else _Scored(score)
+        if searched_study(self.study).targets == self.study.targets:
+            return _Scored(score, score.objects)
+        work = partial(self._evaluators[-1].score, rig)
+        found = yield from self._beside(work, lambda: waiting, to_the_end)
+        return None if found is None else _Scored(score, found.objects)
+
+    def _better_of(self, before: _Scored) -> Generator[Progress, None, tuple[_Scored, Study]]:
         """Score the best placement; return the start instead if it is feasible and no worse."""
         if self.best.rig is self.study.rig:
             return before, self.study
-        waiting = Progress("scoring the result", 1.0, self.history[-1].entropy, self.evaluations)
-        score = yield from self._score(self.best.rig, waiting, to_the_end=True)
-        if score is not None and (score.entropy < before.entropy or not self._start_may_stay):
-            return score, self.best
+        waiting = self._about("scoring the result", self.history[-1].entropy)
+        found = yield from self._scored(self.best.rig, waiting, to_the_end=True)
+        if found is not None and (found.value < before.value or not self._start_may_stay):
+            return found, self.best
         return before, self.study  # the search's sample overrated the placement
+
+    def _about(self, stage: str, value: float) -> Progress:
+        """Return the progress of a stage after the search."""
+        return Progress(stage, 1.0, value, self.evaluations, searched_figure(self.study))
 
     def _robustness(
         self, best: Study, waiting: Progress
@@ -206,8 +254,9 @@ class OptimizeJob(Job):
         search = self.study.search
 
         def work() -> Robustness:
-            last = self._evaluators[-1]
-            sampled = last if last.samples else self._evaluator_of(DEFAULT_SEARCH_SAMPLES)
+            by_ap = is_by_ap(self.study)
+            last = self._own_evaluator_of(search.samples) if by_ap else self._evaluators[-1]
+            sampled = last if last.samples else self._own_evaluator_of(DEFAULT_SEARCH_SAMPLES)
             return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
 
         return (yield from self._beside(work, lambda: waiting, to_the_end=True))
@@ -262,7 +311,8 @@ class OptimizeJob(Job):
                     break
                 if number:  # the best so far stays the job's until a start ends better
                     self.history = []
-                watch = StopWatch(self.study.search.goals.stop, self._objectives, began)
+                figure = searched_figure(self.study)
+                watch = StopWatch(self.study.search.goals.stop, self._objectives, began, figure)
                 share = number / len(rigs), 1.0 / len(rigs)
                 yield from self._search_from(rig, objectives, helpers, watch, share)
                 if len(rigs) > 1 and self.history:
@@ -312,7 +362,10 @@ class OptimizeJob(Job):
 
     def _note(self, step: Step) -> None:
         self.evaluations, self.round = step.evaluations, step.round
-        self._progress = Progress("optimizing", step.fraction, step.entropy, step.evaluations)
+        figure = searched_figure(self.study)
+        self._progress = Progress(
+            "optimizing", step.fraction, step.entropy, step.evaluations, figure
+        )
         if step.improved or not self.history:
             row = HistoryRow(step.evaluations, step.round, step.entropy, step.best)
             self.history.append(row)

@@ -7,6 +7,9 @@ from collections import deque
 from collections.abc import Sequence
 
 from pe_core.search import Objective, Step, Stop
+from pe_core.study.study import Study
+
+from .searched_figure import IN_NATS, SearchedFigure, searched_figure
 
 TARGET, SECONDS, GAIN = "target", "seconds", "gain"
 """Reasons, as result.json names them."""
@@ -22,10 +25,19 @@ class StopWatch:
         One for each level. A target that is reached on few voxels is checked on the last level.
     started : float
         `time.monotonic()` when the first search of a job began.
+    figure : SearchedFigure
+        What the target is of.
     """
 
-    def __init__(self, stop: Stop, objectives: Sequence[Objective], started: float) -> None:
+    def __init__(
+        self,
+        stop: Stop,
+        objectives: Sequence[Objective],
+        started: float,
+        figure: SearchedFigure = IN_NATS,
+    ) -> None:
         self._stop, self._objectives, self._started = stop, objectives, started
+        self._target = None if stop.target is None else figure.to_figure(stop.target)
         self._bests: deque[float] = deque(maxlen=stop.over + 1)
         self._level = 0
         self._checked: float | None = None
@@ -44,7 +56,7 @@ class StopWatch:
         return time.monotonic() - self._started
 
     def _is_at_target(self, step: Step) -> bool:
-        target = self._stop.target
+        target = self._target
         if target is None or step.entropy > target:
             return False
         if step.level == len(self._objectives) - 1:
@@ -63,10 +75,12 @@ class StopWatch:
         return full and self._bests[0] - self._bests[-1] < self._stop.gain
 
 
-def stop_text(reason: str, stop: Stop) -> str:
-    """Return why a search ended early, as text; empty without a reason."""
+def stop_text(reason: str, study: Study) -> str:
+    """Return why the search of a study ended early, as text; empty without a reason."""
+    stop, figure = study.search.goals.stop, searched_figure(study)
+    target, gain = (figure.amount(f"{value or 0.0:g}") for value in (stop.target, stop.gain))
     return {
-        TARGET: f"ended at its target of {stop.target or 0.0:g} nats",
+        TARGET: f"ended at its target of {target}",
         SECONDS: f"ended after {stop.seconds or 0.0:g} s",
-        GAIN: f"ended: {stop.over:,} placements gained less than {stop.gain or 0.0:g} nats",
+        GAIN: f"ended: {stop.over:,} placements gained less than {gain}",
     }.get(reason, "")

@@ -152,10 +152,12 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
     best = start.with_rig(pe.load_study(folder / studies.STUDY).rig)
     try:
         result = json.loads(text.read_bytes(path, MAX_RESULT_BYTES))
-        history = tuple(_history_row(start.rig, row) for row in result["history"])
+        figure = jobs.searched_figure(start)
+        history = tuple(_history_row(start.rig, row, figure) for row in result["history"])
         robustness = _robustness(result.get("robustness"))
         sure = sensitivity_from_dict(result.get("sensitivity"), start.rig)
-        starts = tuple(jobs.StartEnd(**table) for table in result.get("starts", ()))
+        starts = tuple(_start_end(table, figure) for table in result.get("starts", ()))
+        in_traffic = _in_traffic(result.get(figure.key) if figure.higher_is_better else None)
         reason = str(result.get("stop_reason") or "")
         warnings = tuple(_advice(table) for table in result["warnings"])
         evaluations, stopped = int(result["evaluations"]), bool(result["stopped"])
@@ -168,7 +170,16 @@ def outcome_of_folder(folder: Path, score: Callable[[pe.Study], pe.Outcome]) -> 
     last = first if best.rig == start.rig else score(best)
     parts = (start, best, first.after, last.after, history, evaluations, stopped, 0.0, warnings)
     held = last.verdicts, last.conditions
-    more = (checkpoint.inputs, checkpoint.judged, robustness, *held, sure, starts, reason)
+    more = (
+        checkpoint.inputs,
+        checkpoint.judged,
+        robustness,
+        *held,
+        sure,
+        starts,
+        reason,
+        in_traffic,
+    )
     return pe.Outcome("optimize", *parts, *more)
 
 
@@ -178,11 +189,26 @@ def command_of_folder(folder: Path) -> str:
     return str(result.get("run", {}).get("command", ""))
 
 
-def _history_row(rig: pe.Rig, row: Mapping[str, Any]) -> jobs.HistoryRow:
+def _in_traffic(table: Any) -> tuple[pe.ObjectScore, pe.ObjectScore] | None:
+    if table is None:
+        return None
+    before, after = (pe.ObjectScore.from_dict(table[which]) for which in ("before", "after"))
+    return before, after
+
+
+def _start_end(table: Mapping[str, Any], figure: jobs.SearchedFigure) -> jobs.StartEnd:
+    value = figure.to_figure(float(table[figure.key]))
+    return jobs.StartEnd(str(table["name"]), value, int(table["evaluations"]))
+
+
+def _history_row(
+    rig: pe.Rig, row: Mapping[str, Any], figure: jobs.SearchedFigure
+) -> jobs.HistoryRow:
     tables = [row["placements"][sensor.name] for sensor in rig]
     poses = [pe.Pose.from_degrees(table["position"], table["rotation"]) for table in tables]
-    numbers = int(row["evaluation"]), int(row["round"]), float(row["entropy"])
-    return jobs.HistoryRow(*numbers, rig.with_poses(poses))
+    numbers = int(row["evaluation"]), int(row["round"])
+    value = figure.to_figure(float(row[figure.key]))
+    return jobs.HistoryRow(*numbers, value, rig.with_poses(poses))
 
 
 def _robustness(table: Mapping[str, Any] | None) -> search.Robustness | None:

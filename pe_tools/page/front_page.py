@@ -71,13 +71,21 @@ def front_page(data: Mapping[str, Any]) -> str:
             f"<h1>{escaped(', '.join(labels))}</h1></header>",
             '<main id="page"><section>',
             f"<p>{_lead(data, front)}</p>",
+            *(f"<p>{escaped(note)}</p>" for note in data.get("notes", ())),
             f'<div class="fronts">{"".join(_plots(names, front, others, currency))}</div>',
             "</section><section><h2>The designs</h2>",
-            _table(names, front, currency),
+            _table([*names, *_beside(names, front)], front, currency),
             _placements(front),
             "</section></main></body>\n</html>\n",
         ]
     )
+
+
+def _beside(names: Sequence[str], front: Sequence[DesignRow]) -> list[str]:
+    """Return the figures of all designs that are no objective of the front."""
+    figures = [design.get("figures", {}) for design in front]
+    shared = set(figures[0]).intersection(*figures) if figures else set()
+    return [name for name in OBJECTIVES if name in shared and name not in names]
 
 
 def _has_figures(design: DesignRow, names: Sequence[str]) -> bool:

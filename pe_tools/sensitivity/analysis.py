@@ -11,6 +11,7 @@ from pe_core.scoring import RigJudge
 from pe_core.scoring.score import rounded
 from pe_core.search import AXES, objective_of
 from pe_core.search.goals import FULL, OFF
+from pe_core.study.objective_search import is_by_ap
 from pe_core.study.study import Study
 
 from .archive import Archive
@@ -110,7 +111,7 @@ def budget_of(study: Study, evaluations: int) -> tuple[tuple[float, ...], bool] 
         Of the search. Short searches have less, so that the analysis does not outlast them.
     """
     wanted, sensors = study.search.goals.sensitivity, len(study.rig)
-    if wanted == OFF or study.search.conditions is not None:
+    if wanted == OFF or study.search.conditions is not None or is_by_ap(study):
         return None  # a search over states and weathers minimises what no fresh sample has
     if wanted == FULL:
         return (NEAR, FAR), True

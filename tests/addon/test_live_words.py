@@ -1,5 +1,7 @@
 """What the live read-out says, word by word."""
 
+from dataclasses import replace
+
 import pytest
 
 from blender_addon.engine import advice, pe
@@ -31,6 +33,12 @@ def test_the_first_reading_has_nothing_to_compare_with():
     assert found.headline == "3.000 nats" and found.error == "± 0.022  exact"
     assert (found.change, found.sense, found.against) == ("", readout_text.SAME, "")
     assert found.lines == ("Coverage 85.0%",)
+
+
+def test_a_score_on_objects_has_its_expected_ap_beside_it():
+    now, before = (replace(glance(), voxels=0, ap=ap) for ap in (0.653, 0.641))
+    assert said(now).lines == ("Objects visible: 85.0%", "Expected AP 0.653")
+    assert said(now, before).lines[1] == "Expected AP 0.653 (+0.012)"
 
 
 def test_a_draft_says_so():

@@ -135,7 +135,7 @@ def rich(car):
     bpy.ops.pe.add_state()
     bpy.ops.pe.add_weather(weather="FOG")
     settings.search_conditions = "worst"
-    settings.keep_requirements = True
+    settings.keep_requirements, settings.objective = True, "expected_ap"
     assert bpy.ops.pe.add_requirement(preset="r158_camera") == {"FINISHED"}
     set_what_is_by_default(settings)
     scenes.add_sensor("hidden", CAN, location=(0.0, 0.0, 3.0)).hide_set(True)

@@ -71,12 +71,13 @@ LINES_OF_ROOMS = {
     "pe_core/sensors/weather": 360,
     "pe_core/scene/vehicle_state": 280,
     "pe_core/study/condition_": 700,
+    "pe_core/study/objective_": 80,
     "pe_core/search/goals": 240,
     "pe_core/study/goals_": 90,
     "pe_core/search/methods/portfolio": 460,
 }
 """Lines of requirements, of conditions, of the kinds of sensors that are not the paper's, and of a
-search's goals and its default method, beside `MAX_LINES` of all others."""
+search's goals, its objective and its default method, beside `MAX_LINES` of all others."""
 LIBRARIES = {
     "collada": {"pe_tools/formats"},
     "pxr": {"pe_tools/formats"},

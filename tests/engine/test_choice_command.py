@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.search import EvaluatedRig
-from pe_tools import jobs
+from pe_tools import advice, jobs
 from pe_tools.cli import choose_verb, executors, verbs
 from tests.engine import mounting
 from tests.engine.test_choice_job import options, study
@@ -32,7 +32,10 @@ def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path
     assert out[1].endswith(f"%  {mounting.CAN}")
     assert out[2].strip() == f"roof: {mounting.CAN}; (-0.43, 0, 1.478) m"
     count = len(data["front"])
-    assert out[-1] == f"{count} on the front; 3 searched of 3 looked at (all that the limits allow)"
+    assert out[-2] == f"{count} on the front; 3 searched of 3 looked at (all that the limits allow)"
+    assert out[-1] == advice.OTHER_HARDWARE and data["notes"] == [advice.OTHER_HARDWARE]
+    page = (tmp_path / "out" / "front.html").read_text("utf-8")
+    assert "that it orders different hardware has not been shown" in page
     study = tmp_path / "out" / first["study"]
     assert verbs.main(["score", str(study)]) == 0
     assert f"{first['entropy']:.4f}" in capsys.readouterr().out

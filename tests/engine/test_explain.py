@@ -104,6 +104,19 @@ def test_compare_puts_studies_side_by_side(study, tmp_path, capsys):
     data = json.loads(capsys.readouterr().out)
     assert [s["entropy"] for s in data["scores"].values()] == values
     assert data["rows"][0]["values"] == values
+    assert data["notes"] == [] and not any("hardware" in line for line in lines)
+
+
+@pytest.mark.parametrize(("channels", "count"), [(8, 1), (16, 2)])
+def test_compare_has_a_note_on_other_hardware(study, channels, count, tmp_path, capsys):
+    """Other models or another number of sensors, but not other poses or names."""
+    model = shapes.small_lidar(channels, 180)
+    names = ("top", "bow")[:count]
+    sensors = [shapes.lidar_on_roof(model, (k, 0, 1.9), name=n) for k, n in enumerate(names)]
+    other = saved(tmp_path, "other.toml", pe.Rig(sensors))
+    assert main(["compare", study, other, "--grid-samples", "1024"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == advice.OTHER_HARDWARE
+    assert "docs/validity/own" in advice.OTHER_HARDWARE
 
 
 def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path, capsys):

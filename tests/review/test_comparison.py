@@ -14,7 +14,7 @@ from pe_tools.page.sections.comparison import comparison as comparison_section
 from pe_tools.page.sections.overview import cautions, overview
 from pe_tools.page.sections.sensor_details import sensor_details
 from pe_tools.page.sections.sensor_differences import sensor_differences
-from tests.review.conftest import NAMES, small_study
+from tests.review.conftest import NAMES, outcome_of, small_study
 
 LIDAR, CAMERA = NAMES
 
@@ -98,6 +98,22 @@ def test_the_comparison_says_the_engine_s_sentences(scored, other, comparison):
     assert comparison.index("Differences between the rigs") < comparison.index(
         "Maps of the difference"
     )
+
+
+def test_expected_ap_stands_beside_the_entropy_of_voxels(scored, other, comparison):
+    """And there is no note on hardware where only poses differ."""
+    _, found, table = comparison.partition("Expected AP of voxels by class, without traffic")
+    assert found and "different hardware" not in comparison
+    rows = {row[0]: row[1:] for row in cells(table)}
+    own = [one.sight.expected_ap(one.rig) for one in (scored, other)]
+    assert rows["Car"] == [f"{each['car']:.3f}" for each in own]
+
+
+def test_other_hardware_is_a_line_of_the_comparison():
+    wide = outcome_of(pe.ScoreJob(small_study().with_rig(rig(camera="Camera 120 deg"))))
+    narrow = outcome_of(pe.ScoreJob(small_study().with_rig(rig())))
+    both = [ReportContext("wide", wide), ReportContext("narrow", narrow)]
+    assert escaped(pe.advice.OTHER_HARDWARE) in comparison_section(keyed_contexts(both)).html
 
 
 def test_tables_of_several_studies_are_one(scored, other, comparison):

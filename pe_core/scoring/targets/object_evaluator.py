@@ -83,13 +83,13 @@ class ObjectEvaluator:
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes an evaluator of its own from them."""
         what = self.space, self.prior, self.vehicle
-        return _evaluator_again, (*what, self.targets, self._model, self._shift)
+        return _evaluator_again, (type(self), *what, self.targets, self._model, self._shift)
 
     def entropy(self, rig: Rig, *, draft: bool = False) -> float:
         """Return the object entropy of a rig [nats]; `draft` has no effect."""
         with self._lock:
             self._fused.check(rig)
-            return self._entropy(rig, self._sensors.measure(rig))
+            return self._value(rig, self._sensors.measure(rig))
 
     def judge(self, rig: Rig, below: float = inf) -> Judgement:
         """Return a rig's entropy, or a lower bound that is not below `below`.
@@ -105,7 +105,7 @@ class ObjectEvaluator:
                 self._bounds.note(bound >= below)
                 if bound >= below:
                     return Judgement(bound, True)
-            return Judgement(self._entropy(rig, self._sensors.measure(rig)), False)
+            return Judgement(self._value(rig, self._sensors.measure(rig)), False)
 
     def _lower_bound(self, rig: Rig, cutoff: float) -> float:
         """Return a lower bound of a rig's entropy, which may already reach the cutoff."""
@@ -117,12 +117,12 @@ class ObjectEvaluator:
             m[sensor.name] = self._sensors.measure_again(sensor) if known is None else known
         if not occluded:
             return -inf
-        bound = self._entropy(rig, m) - ROUNDING
+        bound = self._value(rig, m) - ROUNDING
         for sensor in sorted(occluded, key=lambda s: kind_of(s).counts_points)[:-1]:
             if bound >= cutoff:
                 break
             m[sensor.name] = self._sensors.measure_again(sensor)
-            bound = self._entropy(rig, m) - ROUNDING
+            bound = self._value(rig, m) - ROUNDING
         return bound
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
@@ -131,7 +131,7 @@ class ObjectEvaluator:
         with self._lock:
             self._fused.check(scenarios.all)
             m = self._sensors.measure(scenarios.all)
-            return [self._entropy(part, m) for part in scenarios.parts]
+            return [self._value(part, m) for part in scenarios.parts]
 
     def judge_together(self, rigs: Sequence[Rig], below: float, worst: bool = False) -> Judgement:
         """Return the mean of several rigs' entropies, or the highest, whatever the cutoff."""
@@ -175,9 +175,11 @@ class ObjectEvaluator:
             self._sums.classes(entropies, visible),
             self._sums.zones(entropies, visible),
             0,
+            ap=self._sums.expected_ap(entropies),
         )
 
-    def _entropy(self, rig: Rig, m: MByName) -> float:
+    def _value(self, rig: Rig, m: MByName) -> float:
+        """Return what `entropy` and `judge` return; a subclass may have another value."""
         return self._sums.part(*self._fused.entropies(rig, m)).entropy
 
     def _sensor(self, name: str, rig: Rig, m: MByName, entropy: float) -> SensorScore:
@@ -204,6 +206,7 @@ def _report(watch: Watch | None, share: float) -> None:
 
 
 def _evaluator_again(
+    cls: type[ObjectEvaluator],
     space: PerceptionSpace,
     prior: Prior,
     vehicle: Vehicle | None,
@@ -212,4 +215,4 @@ def _evaluator_again(
     shift: float,
 ) -> ObjectEvaluator:
     """Make an evaluator from its pickled arguments, in a worker process."""
-    return ObjectEvaluator(space, prior, vehicle, targets=targets, model=model, shift=shift)
+    return cls(space, prior, vehicle, targets=targets, model=model, shift=shift)

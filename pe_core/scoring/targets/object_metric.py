@@ -144,8 +144,12 @@ class ObjectSums:
                 {} if total is None else self._shares(total, mask),
                 reach(name),
             )
-        whole = rounded(self._mean(ap, None)), self._scatter(ap, None)
+        whole = self.expected_ap(entropies), self._scatter(ap, None)
         return ObjectScore(*whole, len(ap), self._drawn.scenes, traffic, per_class)
+
+    def expected_ap(self, entropies: Floats) -> float:
+        """Return the expected AP of all objects, by their weights."""
+        return rounded(self._mean(ap_of_entropy(entropies), None))
 
     def scatter(self, entropies: Floats, visible: Bools) -> Scatter:
         """Return residuals by batch of scenes: entropy and coverage of all parts, AP of classes."""

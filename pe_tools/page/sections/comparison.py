@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 import pe_core as pe
 from pe_core.scoring import sight
@@ -46,6 +47,7 @@ def comparison(contexts: tuple[ReportContext, ...]) -> Section:
             _pictures(contexts),
             _difference_maps(contexts),
             *(_measure_table(contexts, rows, measure) for measure in MEASURES),
+            _voxel_ap_table(contexts),
             _pairwise_table(contexts, rows),
             _blind_ground_table(contexts),
             _contribution_table(contexts),
@@ -69,6 +71,8 @@ def _summary_lines(
     vehicles = {context.study.vehicle_line for context in contexts}
     if len(vehicles) > 1:
         yield "The vehicles differ."
+    if note := advice.hardware_note([s.model for s in context.rig] for context in contexts):
+        yield escaped(note)
     if error := max(context.after.stderr for context in contexts):
         yield (
             f"Scores are based on samples, with a standard error up to {error:.4f} nats. ± is the "
@@ -144,6 +148,23 @@ def _measure_table(
             name = capitalized(advice.WHERE.get(row.name, row.name)) or "Overall"
             body.append([name, *(_cell(contexts, row, k) for k in range(len(contexts)))])
     return table(MEASURES[measure], _heads(contexts, ""), body) if body else ""
+
+
+def _voxel_ap_table(contexts: Sequence[ReportContext]) -> str:
+    """Return the expected AP by class of studies on voxels; scores on objects have their own."""
+    if any(context.study.targets.are_objects for context in contexts):
+        return ""
+    by_class = [context.cached("ap", partial(_expected_ap, context)) for context in contexts]
+    rows = [
+        [capitalized(n), *(number(each[n], 3) if n in each else "none" for each in by_class)]
+        for n in by_class[0]
+    ]
+    title = "Expected AP of voxels by class, without traffic: higher is better"
+    return table(title, _heads(contexts, ""), rows)
+
+
+def _expected_ap(context: ReportContext) -> dict[str, float]:
+    return context.sight.expected_ap(context.rig)
 
 
 def _cell(contexts: Sequence[ReportContext], row: advice.ComparedRow, k: int) -> str | Markup:

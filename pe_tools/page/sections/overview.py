@@ -75,14 +75,36 @@ def answer(context: ReportContext) -> Markup:
             f"Perception entropy is {number(after.entropy)} nats (lower is better); "
             f"{percent(after.coverage, 1)} of the expected objects are seen.{ends}"
         )
+    if context.outcome.in_traffic is not None:
+        return Markup(f"{_ap_answer(context, *context.outcome.in_traffic)}{ends}")
     gain = before.entropy - after.entropy
     if gain <= 0.0:
         return Markup(f"No placement better than {number(after.entropy)} nats was found.{ends}")
-    moved = sum(a.pose != b.pose for a, b in zip(context.start.rig, context.rig, strict=True))
+    moved = _moved(context)
     return Markup(
         f"Moving {plural(moved, 'sensor')} lowers perception entropy by {number(gain)} nats to "
         f"{number(after.entropy)} (lower is better); {percent(after.coverage, 1)} of the expected "
         f"objects are seen, {percent_points(after.coverage - before.coverage)}.{ends}"
+    )
+
+
+def _moved(context: ReportContext) -> int:
+    """Return how many sensors a search moved."""
+    return sum(a.pose != b.pose for a, b in zip(context.start.rig, context.rig, strict=True))
+
+
+def _ap_answer(context: ReportContext, first: pe.ObjectScore, last: pe.ObjectScore) -> str:
+    """Return the result of a search by expected AP; the entropy stands beside it."""
+    if last.ap <= first.ap:
+        best = number(last.ap, 3)
+        return f"No placement with a higher expected AP in traffic than {best} was found."
+    before, after = context.before.entropy, context.after.entropy
+    moved, gain = _moved(context), last.ap - first.ap
+    return (
+        f"Moving {plural(moved, 'sensor')} raises the expected AP of objects in traffic by "
+        f"{number(gain, 3)} to {number(last.ap, 3)} (higher is better). The perception entropy "
+        f"goes from {number(before)} to {number(after)} nats (lower is better); "
+        f"{percent(context.after.coverage, 1)} of the expected objects are seen."
     )
 
 
@@ -170,12 +192,22 @@ def _tiles(context: ReportContext) -> str:
     before, after = context.before, context.after
     gained = after.coverage - before.coverage
     tiles = [
+        *_ap_tile(context),
         _tile("Perception entropy", number(after.entropy), "nats", _entropy_note(context)),
         _tile("Coverage", percent(after.coverage, 1), "", _coverage_note(context, gained)),
         _tile("Blind ground, 0.5 m tall", *_farthest_blind(context)),
         _tile("Worst loss of one sensor", *_worst_loss(context)),
     ]
     return f'<dl class="tiles">{"".join(tiles)}</dl>'
+
+
+def _ap_tile(context: ReportContext) -> list[str]:
+    """Return the tile of a search by expected AP; empty for other runs."""
+    if context.outcome.in_traffic is None:
+        return []
+    first, last = (each.ap for each in context.outcome.in_traffic)
+    below = f"{number(first, 3)} {ARROW} {number(last, 3)}, {signed(last - first, 3)}"
+    return [_tile("Expected AP in traffic", number(last, 3), "", below)]
 
 
 def _tile(what: str, figure: str, unit: str, below: str) -> str:

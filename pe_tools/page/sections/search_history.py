@@ -33,37 +33,40 @@ def search_history(context: ReportContext) -> Section:
 
 def _method_text(context: ReportContext) -> str:
     settings = context.start.search
-    samples = dict.fromkeys(map(context.start.looks_at, settings.level_samples))
-    levels = [f"{n:,}" if n else "all" for n in samples]
-    what = "scenes of objects" if context.start.targets.are_objects else "voxels"
+    levels, what = jobs.searched_on(context.start)
     stopped = " It was stopped early." if context.outcome.stopped else ""
     return (
         f"Method {escaped(settings.method)}, seed {settings.seed}: "
-        f"{plural(context.outcome.evaluations, 'placement')} evaluated on {', then '.join(levels)} "
-        f"{what}.{stopped}{_ended_text(context)}"
+        f"{plural(context.outcome.evaluations, 'placement')} evaluated on "
+        f"{levels} {what}.{stopped}{_ended_text(context)}"
     )
 
 
 def _ended_text(context: ReportContext) -> str:
     """Return why the search ended early, and where each of its starts ended."""
-    outcome = context.outcome
-    reason = jobs.stop_text(outcome.stop_reason, context.start.search.goals.stop)
+    outcome, figure = context.outcome, jobs.searched_figure(context.start)
+    reason = jobs.stop_text(outcome.stop_reason, context.start)
     sentences = [f" It {reason}."] if reason else []
     for end in outcome.starts:
         name = f"the start {escaped(end.name)}" if end.name else "the given start"
-        sentences.append(f" From {name}: {number(end.entropy, 4)} nats.")
+        at = figure.amount(number(figure.to_figure(end.entropy), 4))
+        sentences.append(f" From {name}: {at}.")
     return "".join(sentences)
 
 
 def _curve(context: ReportContext) -> str:
     if len(context.history) < 2:
         return ""
-    points = [(row.evaluation, row.entropy) for row in context.history]
-    curve = step_curve(points, context.outcome.evaluations, "placements evaluated", "nats")
-    first, last = points[0][1], points[-1][1]
+    figure = jobs.searched_figure(context.start)
+    points = [(row.evaluation, figure.to_figure(row.entropy)) for row in context.history]
+    by_ap = figure.higher_is_better
+    unit, digits = (figure.label, 3) if by_ap else ("nats", 2)
+    curve = step_curve(points, context.outcome.evaluations, "placements evaluated", unit)
+    first, last = (number(points[k][1], digits) for k in (0, -1))
     caption = (
-        f"Best entropy so far: from {number(first)} to {number(last)} nats, on the samples of the "
-        "search."
+        f"Best expected AP so far: from {first} to {last}, on the samples of the search."
+        if by_ap
+        else f"Best entropy so far: from {first} to {last} nats, on the samples of the search."
     )
     alt = f"Convergence curve. {caption}"
     return (

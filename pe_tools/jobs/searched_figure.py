@@ -1,0 +1,69 @@
+"""The figure that a search improves, as people read it: entropy, or expected AP in traffic.
+
+A search minimises one value. By expected AP the value is minus the AP, which nobody is shown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pe_core.study.objective_search import searched_study
+from pe_core.study.objective_setting import ENTROPY, EXPECTED_AP
+from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
+from pe_core.study.study import Study
+
+
+@dataclass(frozen=True, slots=True)
+class SearchedFigure:
+    """The figure that a search improves.
+
+    Attributes
+    ----------
+    key : str
+        Its name in a study and in files of results.
+    label : str
+        Its name in sentences.
+    sign : float
+        The figure is this times the value that the search minimises.
+    """
+
+    key: str
+    label: str
+    sign: float
+
+    @property
+    def higher_is_better(self) -> bool:
+        """Whether a search raises the figure."""
+        return self.sign < 0.0
+
+    def to_figure(self, value: float) -> float:
+        """Return the figure of a value that a search minimises; or the value of a figure."""
+        return self.sign * value
+
+    def amount(self, figure: str) -> str:
+        """Return a figure in a sentence: "0.50 nats", "an expected AP of 0.65"."""
+        return f"an expected AP of {figure}" if self.higher_is_better else f"{figure} nats"
+
+    def text(self, value: float) -> str:
+        """Return a placement's value as text: the figure, or by how much it breaks requirements."""
+        if is_infeasible(value):
+            return f"requirements broken by {value - INFEASIBLE:.3f}"
+        return f"{self.label} {self.to_figure(value):.4f}"
+
+
+IN_NATS = SearchedFigure(ENTROPY, "entropy", 1.0)
+IN_AP = SearchedFigure(EXPECTED_AP, "expected AP", -1.0)
+FIGURES = {figure.key: figure for figure in (IN_NATS, IN_AP)}
+
+
+def searched_on(study: Study) -> tuple[str, str]:
+    """Return on what a study's search evaluates: "16,384, then 65,536" and "voxels"."""
+    searched = searched_study(study)
+    looks = [searched.looks_at(samples) for samples in study.search.level_samples]
+    levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
+    return levels, "scenes of objects" if searched.targets.are_objects else "voxels"
+
+
+def searched_figure(study: Study) -> SearchedFigure:
+    """Return the figure that a study's search improves."""
+    return FIGURES[study.search.objective]

@@ -1,0 +1,125 @@
+"""Expected AP in traffic as the objective: the panel, headless Blender, `pe` and a job agree."""
+
+import json
+
+import bpy
+import pytest
+
+import pe_core as pe
+from blender_addon import bridge, search_curve
+from blender_addon.operators import compare_variants
+from blender_addon.operators.running_job import RunningJob
+from blender_addon.search_curve import SearchProgress, searches
+from pe_tools.jobs import result_dict
+from tests.addon import scenes
+from tests.addon.command_line import pe_here, run_here
+from tests.addon.test_searching import Manager
+
+OPTIONS = ("--objective", "expected_ap", "--evaluations", "12", "--seed", "4", "--json")
+ALONE = ("run", "inputs")
+
+
+@pytest.fixture
+def settings(car):
+    """Settings of a scene whose search goes by expected AP, on few scenes."""
+    scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(0.0, 0.0, 1.7))
+    found = car.perception_entropy
+    found.objective, found.scenes, found.method = "expected_ap", 8, "portfolio"
+    found.evaluations, found.search_samples, found.score_samples, found.seed = 12, 1024, 1024, 4
+    return found
+
+
+def test_the_panel_s_objective_and_scenes_are_those_of_the_study(settings, tmp_path):
+    study = scenes.study()
+    assert study.search.objective == "expected_ap"
+    assert study.targets == pe.TargetRule(scenes=8)
+    assert bpy.ops.pe.export_study(filepath=str(tmp_path / "car.toml")) == {"FINISHED"}
+    settings.objective, settings.scenes = "entropy", 256
+    assert scenes.study().search.objective == "entropy"
+    assert scenes.study().targets == pe.TargetRule()
+    assert bpy.ops.pe.import_study(filepath=str(tmp_path / "car.toml")) == {"FINISHED"}
+    settings = bpy.context.scene.perception_entropy
+    assert (settings.objective, settings.scenes) == ("expected_ap", 8)
+
+
+def test_a_job_the_command_lines_and_the_panel_find_the_same_bits(settings, tmp_path):
+    blend = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
+    answer = run_here(blend, "optimize", "--no-review", *OPTIONS, "-o", inside, "--no-render")
+    assert answer.returncode == 0, answer.stderr
+    settings = bpy.context.scene.perception_entropy
+    study.mkdir()
+    assert bpy.ops.pe.export_study(filepath=str(study / "study.toml")) == {"FINISHED"}
+    job = pe.OptimizeJob(pe.load_study(study / "study.toml"))
+    list(job)
+    answer = pe_here("optimize", "--no-review", study / "study.toml", *OPTIONS, "-o", outside)
+    assert answer.returncode == 0, answer.stderr
+    assert "expected AP 0." in answer.stderr
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    panel = {**json.loads(settings.result_json), "after": job.outcome.after.to_dict()}
+    found = [
+        result_dict(job.outcome),
+        json.loads((outside / "result.json").read_text("utf-8")),
+        json.loads((inside / "result.json").read_text("utf-8")),
+        panel,
+    ]
+    assert found[0]["expected_ap"]["after"]["ap"] > found[0]["expected_ap"]["before"]["ap"]
+    for each in found[1:]:
+        own = {name: each[name] for name in each if name not in ALONE}
+        assert own == {name: found[0][name] for name in found[0] if name not in ALONE}
+    assert (inside / "history.csv").read_bytes() == (outside / "history.csv").read_bytes()
+    first, last = (each.ap for each in job.outcome.in_traffic)
+    assert settings.result_in_traffic == f"{first:.3f} \N{RIGHTWARDS ARROW} {last:.3f}"
+
+
+def test_the_curve_of_a_running_search_is_an_ap_that_rises(settings, monkeypatch):
+    job = pe.OptimizeJob(scenes.study(), 1)
+    scene = bpy.context.scene
+    context = type("Context", (), {"scene": scene, "window_manager": Manager(), "window": None})
+    running = RunningJob(context, job)
+    monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)
+    texts = []
+    for progress in job:
+        running.progress = progress
+        running._show_search()
+        texts.append(running.text)
+    shown = searches[scene.name]
+    search_curve.drop(scene.name)
+    assert shown.points == tuple((row.evaluation, -row.entropy) for row in job.history)
+    assert shown.by_ap and 0.0 < shown.points[0][1] < shown.points[-1][1] < 1.0
+    assert any(", best AP ≈ 0." in text for text in texts)
+    curve = search_curve.curve_of(SearchProgress(((1, 0.25), (3, 0.5)), 5, by_ap=True))
+    assert curve.points[0] == (0.0, 0.0) and curve.points[-1] == (1.0, 1.0)
+    assert curve.title == "Best expected AP so far ≈ 0.500"
+    assert (curve.low, curve.high, curve.aside) == ("0.250", "0.500", "from 0.250")
+
+
+def test_choices_by_ap_are_variants_with_their_figures(settings):
+    for model, price in (("Velodyne VLP-16 Puck", 2.0), ("Pandar40", 9.0)):
+        row = bpy.data.objects["roof"].perception_entropy.options.add()
+        row.model, row.price = model, price
+    assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
+    assert [row.figures.split()[::2] for row in settings.front] == [
+        ["price", "ap", "entropy"] for _ in settings.front
+    ]
+    assert settings.front_note == "" and settings.front_told == "Pareto front of price, ap"
+    settings.objective = "entropy"
+    assert bpy.ops.pe.choose_sensors() == {"FINISHED"}
+    assert len(settings.front) == 2 and settings.front_note == pe.advice.OTHER_HARDWARE
+
+
+def test_variants_with_other_hardware_are_compared_with_a_note(settings):
+    scene, roof = bpy.context.scene, bpy.data.objects["roof"]
+    bpy.ops.pe.save_variant()
+    roof.location.z += 0.2
+    bpy.context.view_layer.update()
+    bpy.ops.pe.save_variant()
+    bpy.ops.pe.compare_variants()
+    assert compare_variants.hardware_note(scene) == ""
+    roof.perception_entropy.model = "Pandar40"
+    bpy.ops.pe.save_variant()
+    bpy.ops.pe.compare_variants()
+    assert len(compare_variants.compared_variants(scene)) == 3
+    assert compare_variants.hardware_note(scene) == pe.advice.OTHER_HARDWARE
+    assert bridge.hardware_note([]) == ""

@@ -1,0 +1,310 @@
+"""Expected AP in traffic as the objective of a search: its values, all that goes with it, files."""
+
+import json
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+from pe_core.scoring.requirements import BODIES, Requirement, Zone
+from pe_core.search import Front, Goals, Journal, Start, Stop
+from pe_core.search.tolerance import without_each
+from pe_core.study import Conditions, load_study_data, study_from_dict, study_to_dict
+from pe_core.study.condition_search import study_objective
+from pe_core.study.objective_search import ExpectedApEvaluator, search_evaluator, searched_study
+from pe_tools import jobs
+from pe_tools.cli.choose_verb import front_summary
+from pe_tools.cli.terminal import summary
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import choice_job, front_dict, result_dict
+from pe_tools.jobs.results import history_csv
+from pe_tools.page.build import outcome_of_folder
+from tests.engine import shapes
+
+pytestmark = pytest.mark.usefixtures("few_errors")
+AP = "expected_ap"
+
+
+def study(goals=None, names=("roof",), **more):
+    """A LiDAR or more on a box car among eight scenes of traffic; 30 placements."""
+    model = shapes.small_lidar(16, 180)
+    rig = pe.Rig(
+        [shapes.lidar_on_roof(model, (0.0, 0.5 * k, 1.7), name=n) for k, n in enumerate(names)]
+    )
+    changes = {k: more.pop(k) for k in list(more) if k in ("rig", "conditions", "requirements")}
+    given = {"free": dict.fromkeys(names, ("z", "pitch")), "objective": AP} | more
+    search = pe.Search(samples=1024, evaluations=given.pop("evaluations", 30), **given)
+    search = replace(search, goals=goals or Goals())
+    targets, space = pe.TargetRule(scenes=8), pe.PerceptionSpace((-40, 40), (-20, 20), (0, 3), 0.5)
+    own = {"rig": rig, "targets": targets, "samples": 1024, "search": search} | changes
+    if "keep" in (given.get("requirements") or ""):
+        own["search"] = replace(own["search"], requirements="keep")
+    return pe.Study(vehicle=shapes.box_car(), space=space, **own)
+
+
+def finished(given, workers=1, **more):
+    job = pe.OptimizeJob(given, workers, **more)
+    for _ in job:
+        pass
+    return job.outcome
+
+
+def ap_of(given, rig):
+    """The expected AP that a score of the study on objects in traffic has."""
+    targets = pe.TargetRule("objects", traffic=True, scenes=given.targets.scenes)
+    return replace(given, targets=targets).evaluator().score(rig).objects.ap
+
+
+def placed(given, count):
+    """Random placements of the study's search."""
+    rng, coding = np.random.default_rng(5), given.coding()
+    return [
+        coding.candidate([rng.uniform(v.low, v.high) for v in coding.variables]).rig
+        for _ in range(count)
+    ]
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return finished(study())
+
+
+def test_the_value_is_minus_the_ap_of_a_score_in_traffic_and_bounds_are_below_it():
+    given = study(names=("roof", "front"))
+    evaluator = search_evaluator(given, given.search.samples)
+    values = [evaluator.entropy(rig) for rig in placed(given, 12)]
+    assert values == [-ap_of(given, rig) for rig in placed(given, 12)]
+    assert len(set(values)) > 6
+    settled = 0
+    for rig, value in zip(placed(given, 12), values, strict=True):
+        for cutoff in (value - 0.01, value + 0.01, min(values)):
+            judged = search_evaluator(given, given.search.samples).judge(rig, cutoff)
+            assert judged.entropy <= value and (judged.is_lower_bound or judged.entropy == value)
+            assert not judged.is_lower_bound or judged.entropy >= cutoff
+            settled += judged.is_lower_bound
+    assert settled
+    again = pickle.loads(pickle.dumps(evaluator))
+    assert isinstance(again, ExpectedApEvaluator) and again.entropy(rig) == values[-1]
+    together = evaluator.judge_together(placed(given, 3), 0.0, worst=True)
+    assert together.entropy == max(values[:3])
+
+
+def test_the_study_s_own_score_does_not_change():
+    given = study()
+    default = replace(given, search=replace(given.search, objective="entropy"))
+    assert given.evaluator().score(given.rig) == default.evaluator().score(given.rig)
+    assert searched_study(default) is default
+
+
+def test_a_search_raises_the_ap_and_tells_both(plain):
+    first, last = plain.in_traffic
+    assert last.ap > first.ap and last.traffic and last.scenes == 8
+    assert (first.ap, last.ap) == tuple(
+        ap_of(plain.start, o.rig) for o in (plain.start, plain.study)
+    )
+    values = [row.entropy for row in plain.history]
+    assert values[-1] == -last.ap and values == sorted(values, reverse=True)
+    own = study().evaluator().score(plain.study.rig)
+    assert plain.after.entropy == own.entropy and plain.before.entropy != own.entropy
+    assert plain.robustness.after.entropy == plain.after.entropy
+    text = summary(plain)
+    assert text.startswith(f"expected AP in traffic  {first.ap:.4f} -> {last.ap:.4f} (standard ")
+    assert f"{plain.before.entropy:.4f} -> {plain.after.entropy:.4f} nats" in text
+    assert "30 placements judged on 8 scenes of objects" in text
+
+
+def test_files_have_the_ap_and_never_its_negative(plain):
+    data = result_dict(plain)
+    assert data["objective"] == AP and data[AP]["after"]["ap"] == plain.in_traffic[1].ap
+    assert data["entropy"] == plain.after.entropy
+    aps = [row[AP] for row in data["history"]]
+    assert aps == [-row.entropy for row in plain.history] and "entropy" not in data["history"][0]
+    text = history_csv(plain.history, jobs.searched_figure(plain.start))
+    assert text.startswith("evaluation,round,expected_ap,roof.x_m")
+    assert [float(line.split(",")[2]) for line in text.splitlines()[1:]] == aps
+
+
+def test_nothing_is_written_of_the_default():
+    given = study(objective="entropy")
+    assert "objective" not in study_to_dict(replace(given, vehicle=None))["optimize"]
+    data = result_dict(finished(given))
+    assert not {"objective", AP} & set(data) and "entropy" in data["history"][0]
+
+
+def test_the_objective_is_in_the_file_and_another_one_is_refused(tmp_path):
+    given = replace(study(), vehicle=None)
+    pe.save_study(given, tmp_path / "study.toml")
+    assert load_study_data(tmp_path / "study.toml")["optimize"]["objective"] == AP
+    assert study_to_dict(pe.load_study(tmp_path / "study.toml")) == study_to_dict(given)
+    data = study_to_dict(given)
+    data["optimize"]["objective"] = "ap"
+    with pytest.raises(pe.InputError, match="objective: expected one of entropy, expected_ap, fo"):
+        study_from_dict(data, "study.toml")
+
+
+def test_progress_is_an_ap():
+    texts = {p.stage: p.value_text for p in pe.OptimizeJob(study(), 1)}
+    assert texts["optimizing"].startswith("expected AP 0.")
+    assert texts["done"] == f"expected AP {finished(study()).in_traffic[1].ap:.4f}"
+
+
+@pytest.mark.parametrize("method", ["portfolio", "block-descent", "random"])
+def test_workers_do_not_change_the_result(method):
+    given = study(names=("roof", "front"), method=method)
+    alone = result_dict(finished(given))
+    job = pe.OptimizeJob(given)
+    with ThreadPoolExecutor(3) as job.executor:
+        list(job)
+    beside = result_dict(job.outcome)
+    assert {**alone, "run": 0} == {**beside, "run": 0}
+
+
+def test_a_search_goes_on_from_its_journal():
+    whole = finished(study())
+    again = finished(study(), journal=Journal(whole.judged[:11]))
+    assert {**result_dict(again), "run": 0} == {**result_dict(whole), "run": 0}
+
+
+def test_a_target_is_an_ap(plain):
+    target = -plain.history[-1].entropy - 1e-6
+    outcome = finished(study(Goals(Stop(target=target))))
+    assert outcome.stop_reason == "target" and outcome.in_traffic[1].ap >= target
+    assert f"ended at its target of an expected AP of {target:g}" in summary(outcome)
+    with pytest.raises(pe.InputError, match=r"stop\.target: expected an expected AP, 0 to 1, with"):
+        finished(study(Goals(Stop(target=-1.25))))
+
+
+def test_starts_end_at_an_ap():
+    poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
+    outcome = finished(study(Goals(starts=[Start("high", poses)])))
+    rows = result_dict(outcome)["starts"]
+    assert [row["name"] for row in rows] == ["", "high"]
+    assert max(row[AP] for row in rows) == pytest.approx(outcome.in_traffic[1].ap, abs=1e-9)
+    assert "the start high ended at an expected AP of 0." in summary(outcome)
+
+
+def test_tolerance_and_conditions_are_means_of_the_ap():
+    tolerance = pe.Tolerance(0.05, 0.02, draws=2, failures=True)
+    given = study(names=("roof", "front"), tolerance=tolerance)
+    evaluator = search_evaluator(given, 1024)
+    objective = study_objective(given, evaluator, 1024)
+    cases = [-ap_of(given, rig) for rig in tolerance.cases(given.rig)]
+    assert objective.entropy(given.rig) == pytest.approx(np.mean(cases), abs=2e-9)
+    lost = replace(given.search, tolerance=pe.Tolerance(failures=True, worst=True))
+    worst = study_objective(replace(given, search=lost), evaluator, 1024)
+    assert worst.entropy(given.rig) == max(-ap_of(given, r) for r in without_each(given.rig))
+    weathers = Conditions(weathers=[pe.Weather("sun", 0.7), pe.Weather("fog", 0.3, fog_mor_m=20.0)])
+    search = replace(study().search, conditions="mean")
+    foggy = replace(study(), conditions=weathers, search=search)
+    values = [-ap_of(foggy, c.rig(foggy.rig, foggy.vehicle)) for c in weathers.all]
+    mean = study_objective(foggy, search_evaluator(foggy, 1024), 1024)
+    assert values[1] > values[0]
+    expected = 0.7 * values[0] + 0.3 * values[1]
+    assert mean.entropy(foggy.rig) == pytest.approx(expected, abs=2e-9)
+    outcome = finished(foggy)
+    assert outcome.in_traffic[1].ap > 0.0 and outcome.conditions is not None
+
+
+def test_requirements_come_before_the_ap():
+    """The start looks over a child ahead; the search first meets the requirement."""
+    zone = Zone(x=("front + 1.5", "front + 3.5"), y=(-0.6, 0.6), step=0.5)
+    given = study(
+        evaluations=120,
+        requirements=[Requirement("ahead", zone, (BODIES["child"],))],
+        rig=pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-1.5, 0.0, 1.7))]),
+        free={"roof": ("x", "z", "pitch")},
+    )
+    given = replace(given, search=replace(given.search, requirements="keep"))
+    job = pe.OptimizeJob(given, 1)
+    texts = [p.value_text for p in job if p.stage == "optimizing"]
+    assert [v.met for v in given.verdicts()] == [False]
+    assert [v.met for v in job.outcome.verdicts] == [True]
+    assert any(text.startswith("requirements broken by ") for text in texts)
+    assert texts[-1].startswith("expected AP 0.")
+    first = result_dict(job.outcome)["history"][0]
+    assert first[AP] < -100.0  # no AP: what breaks a requirement is worse than any
+
+
+def test_a_curve_of_voxels_is_refused_in_a_line():
+    own = replace(study().rig["roof"], curve=pe.ApCurve(0.2, 0.3))
+    with pytest.raises(pe.InputError, match="'roof': ap: expected none: objects have curves"):
+        finished(study(rig=pe.Rig([own])))
+
+
+def test_the_command_line_and_a_job_find_the_same_bits(tmp_path, capsys):
+    given = study(objective="entropy")
+    pe.export_study(given, tmp_path / "study.toml")
+    call = ["optimize", str(tmp_path / "study.toml"), "-o", str(tmp_path / "out"), "--json"]
+    assert main([*call, "--objective", AP, "--no-review"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    loaded = pe.load_study(tmp_path / "study.toml")
+    asked = replace(loaded, search=replace(loaded.search, objective=AP))
+    assert {**printed, "run": 0} == {**result_dict(finished(asked, None)), "run": 0}
+    read = outcome_of_folder(tmp_path / "out", lambda s: _scored(s))
+    assert read.in_traffic[1].ap == printed[AP]["after"]["ap"]
+    assert [-row.entropy for row in read.history] == [row[AP] for row in printed["history"]]
+    assert main(["review", str(tmp_path / "out"), "-o", str(tmp_path / "page")]) == 0
+    page = (tmp_path / "page" / "review.html").read_text("utf-8")
+    assert "Expected AP in traffic" in page and "Best expected AP so far: from 0." in page
+    assert "raises the expected AP of objects in traffic by" in page
+    assert "Best entropy so far" not in page
+
+
+def _scored(given):
+    job = pe.ScoreJob(given, 1)
+    list(job)
+    return job.outcome
+
+
+def chosen(**more):
+    """A study with a choice of two LiDARs, many beams for more money."""
+    given = study(**more)
+    many, few = shapes.small_lidar(32, 360), shapes.small_lidar(4, 90)
+    options = [pe.Option(replace(many, name="many"), 9.0), pe.Option(replace(few, name="few"), 2.0)]
+    return replace(given, selection=pe.Selection([pe.Choice(options, ["roof"])]))
+
+
+@pytest.mark.parametrize("screened", [False, True])
+def test_choices_are_a_front_of_price_and_ap(screened, monkeypatch):
+    if screened:
+        monkeypatch.setattr(choice_job, "ALL_SEARCHED_UP_TO", 1)
+    job = pe.ChoiceJob(chosen(), 1)
+    list(job)
+    found = job.trade_off
+    assert found.objectives == ("price", "ap") and found.searched == 2
+    for design in found.designs:
+        assert design.figures["ap"] == ap_of(design.study, design.study.rig) == -design.value
+        assert design.figures["entropy"] == design.entropy == design.score.entropy
+    by_price = {d.name: d.figures["ap"] for d in found.designs}
+    assert by_price["many"] > by_price["few"] and len(found.front) == 2
+    data = front_dict(found)
+    assert data["objectives"] == ["price", "ap"] and data["notes"] == []
+    head = front_summary(found).splitlines()[0].split("  ")
+    assert [cell.strip() for cell in head if cell] == [
+        *("price", "expected AP", "entropy [nats]", "design")
+    ]
+
+
+def test_a_front_by_entropy_of_other_hardware_has_a_note():
+    job = pe.ChoiceJob(chosen(objective="entropy"), 1)
+    list(job)
+    note = "The rigs differ in models or numbers of sensors. Entropy orders placements of one"
+    assert job.trade_off.hardware_note.startswith(note)
+    assert note in front_summary(job.trade_off)
+    assert front_dict(job.trade_off)["notes"] == [job.trade_off.hardware_note]
+
+
+def test_a_front_of_objectives_has_the_ap_in_traffic_and_wants_it_among_them():
+    goals = Goals(front=Front(("ap", "height"), 2))
+    job = jobs.FrontJob(study(goals, evaluations=40), 1)
+    list(job)
+    for design in job.trade_off.front:
+        assert design.figures["ap"] == ap_of(design.study, design.study.rig)
+    without = Goals(front=Front(("entropy", "height"), 2))
+    with pytest.raises(pe.InputError, match=r"'ap' among them, with objective = \"expected_ap\""):
+        jobs.FrontJob(study(without), 1)
+    with pytest.raises(pe.InputError, match=r"front\.objectives: ap: expected a study with metric"):
+        jobs.FrontJob(study(goals, objective="entropy"), 1)

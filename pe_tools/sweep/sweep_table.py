@@ -14,6 +14,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.files import read_bytes
 from pe_core.base.serialization import dump_json, finite
 from pe_core.study import RESULT
+from pe_core.study.objective_setting import EXPECTED_AP
 from pe_core.version import __version__
 
 from ..jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_folder
@@ -38,6 +39,8 @@ class SweepRow:
     coverage : float or None
     message : str
         Why the run failed.
+    ap_before, ap : float or None
+        Expected AP in traffic of the given study and of the result, of a search by it.
     """
 
     run: SweepRun
@@ -46,6 +49,8 @@ class SweepRow:
     entropy: float | None = None
     coverage: float | None = None
     message: str = ""
+    ap_before: float | None = None
+    ap: float | None = None
 
 
 def row_of(run: SweepRun, result: Outcome | InputError) -> SweepRow:
@@ -53,7 +58,8 @@ def row_of(run: SweepRun, result: Outcome | InputError) -> SweepRow:
     if isinstance(result, InputError):
         return SweepRow(run, FAILED, message=str(result))
     before, after = result.before, result.after
-    return SweepRow(run, DONE, before.entropy, after.entropy, after.coverage)
+    aps = (None, None) if result.in_traffic is None else tuple(o.ap for o in result.in_traffic)
+    return SweepRow(run, DONE, before.entropy, after.entropy, after.coverage, "", *aps)
 
 
 def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
@@ -68,7 +74,9 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
         if made != (kind, False, __version__) or not same or files_of_other_runs(folder):
             return None
         before, entropy = float(data["before"]["entropy"]), float(data["entropy"])
-        return SweepRow(run, DONE, before, entropy, float(data["coverage"]))
+        found = data.get(EXPECTED_AP)
+        aps = () if found is None else [float(found[k]["ap"]) for k in ("before", "after")]
+        return SweepRow(run, DONE, before, entropy, float(data["coverage"]), "", *aps)
     except (KeyError, RecursionError, TypeError, ValueError):
         return None
 
@@ -89,10 +97,13 @@ def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, 
 
 
 def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
-    """Return the lines of the table for the terminal; the lowest entropy is marked."""
+    """Return the lines of the table for the terminal; lowest entropy and highest AP are marked."""
     keys, several = _keys(rows), len({row.run.study_name for row in rows}) > 1
     heads = [*["study"] * several, *keys, *["start"] * (kind != "score"), "entropy", "coverage"]
     lowest = min((r.entropy for r in rows if r.entropy is not None), default=None)
+    highest = max((r.ap for r in rows if r.ap is not None), default=None)
+    texts = len(heads) - 2 - (kind != "score")
+    heads += ["start", "expected AP"] * (highest is not None)
     table = [heads]
     for row in rows:
         before = [_figure(row.before)] if kind != "score" else []
@@ -100,8 +111,10 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
         entropy = row.status if row.entropy is None else f"{row.entropy:.4f}{best}"
         coverage = "-" if row.coverage is None else f"{row.coverage:.1%}"
         named = [*[row.run.study_name] * several, *(row.run.changes.get(k, "") for k in keys)]
-        table.append([*named, *before, entropy, coverage])
-    return _aligned(table, len(heads) - 2 - (kind != "score"))
+        best = BEST if row.ap is not None and row.ap == highest else " "
+        aps = [_figure(row.ap_before), f"{_figure(row.ap)}{best}"] * (highest is not None)
+        table.append([*named, *before, entropy, coverage, *aps])
+    return _aligned(table, texts)
 
 
 def _aligned(table: list[list[str]], texts: int) -> list[str]:
@@ -132,16 +145,19 @@ def _dict(row: SweepRow) -> dict[str, Any]:
         "entropy": row.entropy,
         "coverage": row.coverage,
         "message": row.message,
+        **({} if row.ap is None else {f"{EXPECTED_AP}_before": row.ap_before, EXPECTED_AP: row.ap}),
     }
 
 
 def _csv(rows: Sequence[SweepRow]) -> str:
     text, keys = io.StringIO(), _keys(rows)
     writer = csv.writer(text, lineterminator="\n")
-    figures = ("status", "entropy_before", "entropy", "coverage", "message")
+    figures = ["status", "entropy_before", "entropy", "coverage", "message"]
+    if any(row.ap is not None for row in rows):
+        figures += [f"{EXPECTED_AP}_before", EXPECTED_AP]
     writer.writerow(["run", "study", *keys, *figures])
     for row in rows:
         data, changes = _dict(row), row.run.changes
         named = [data["run"], data["study"], *(changes.get(key, "") for key in keys)]
-        writer.writerow([*named, *("" if data[f] is None else data[f] for f in figures)])
+        writer.writerow([*named, *("" if data.get(f) is None else data[f] for f in figures)])
     return text.getvalue()

@@ -15,7 +15,7 @@ import pytest
 import pe_core as pe
 from pe_core.search import Journal
 from pe_core.study import SEARCH
-from pe_tools import jobs
+from pe_tools import advice, jobs
 from pe_tools.cli.executors import workplace
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import Checkpoint, Outcome, read_search
@@ -182,6 +182,29 @@ def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
         job = pe.OptimizeJob(changed.with_rig(pe.Rig([placed])))
         list(job)
         assert job.outcome.after.entropy == result["entropy"]
+
+
+def test_a_sweep_by_expected_ap_has_a_column_of_it(study, out, capsys):
+    """Read again from the folders, it is the same table."""
+    call = ["sweep", str(study), "--optimize", "--set", "optimize.seed=1,2", "-o", str(out)]
+    call += ["--objective", "expected_ap", "--set", "metric.scenes=8", "--workers", "1"]
+    call += ["--set", "optimize.candidates=1"]
+    assert main(call) == 0
+    first = capsys.readouterr().out
+    assert "coverage   start  expected AP" in first.splitlines()[0] and "*" in first
+    for row in table(out):
+        data = json.loads((out / row["run"] / "result.json").read_text())["expected_ap"]
+        aps = [float(row[f"expected_ap{when}"]) for when in ("_before", "")]
+        assert aps == [data[when]["ap"] for when in ("before", "after")]
+    assert main(call) == 0
+    assert capsys.readouterr().out == first
+
+
+def test_a_sweep_over_models_has_the_note_on_hardware(study, out, capsys):
+    models = "sensor.roof.model=Pandar40,HDL-64E"
+    call = ["sweep", str(study), "--set", models, "-o", str(out), "--grid-samples", "1024"]
+    assert main(call) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == advice.OTHER_HARDWARE
 
 
 def test_a_sweep_goes_on_and_does_nothing_twice(study, out, capsys):

@@ -31,7 +31,8 @@ FIRST_LOOK = 16
 """Screening is a search by Algorithm 1 with the number of candidates divided by this."""
 MARGIN, MARGIN_AP = 0.3, 0.05
 """A design worse than the front by more than this after screening is not searched [nats; expected
-AP]: usually the rest of a search gains less."""
+AP]: usually the rest of a search gains less. The rest gained 0 to 0.016 of AP for four designs of
+`blend_assets/choices` with 160 candidates."""
 
 
 @dataclass(frozen=True, slots=True)

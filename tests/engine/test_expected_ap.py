@@ -179,7 +179,9 @@ def test_a_target_is_an_ap(plain):
 
 def test_starts_end_at_an_ap():
     poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
-    outcome = finished(study(Goals(starts=[Start("high", poses)])))
+    outcome = finished(study(Goals(starts=[Start("high", poses)], sensitivity="full")))
+    assert outcome.sensitivity is None
+    assert "not analysed: the analysis is of entropies, the search was by" in summary(outcome)
     rows = result_dict(outcome)["starts"]
     assert [row["name"] for row in rows] == ["", "high"]
     assert max(row[AP] for row in rows) == pytest.approx(outcome.in_traffic[1].ap, abs=1e-9)

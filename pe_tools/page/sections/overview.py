@@ -188,6 +188,10 @@ def _span(bounds: tuple[float, float]) -> str:
     return f"{high:g}" if low == -high else f"{number(low, 0)} to {number(high, 0)}"
 
 
+TILES = 4
+"""Tiles of a row. The last one gives way to the expected AP; its figure is in the note, too."""
+
+
 def _tiles(context: ReportContext) -> str:
     before, after = context.before, context.after
     gained = after.coverage - before.coverage
@@ -197,7 +201,7 @@ def _tiles(context: ReportContext) -> str:
         _tile("Coverage", percent(after.coverage, 1), "", _coverage_note(context, gained)),
         _tile("Blind ground, 0.5 m tall", *_farthest_blind(context)),
         _tile("Worst loss of one sensor", *_worst_loss(context)),
-    ]
+    ][:TILES]
     return f'<dl class="tiles">{"".join(tiles)}</dl>'
 
 

@@ -98,7 +98,7 @@ def curve_of(progress: SearchProgress) -> SearchCurve:
     about = "\N{ALMOST EQUAL TO} " if progress.sampled else ""
     title, aside = f"Best so far {about}{best:.3f} nats", f"from {entropies[0]:.3f}"
     if progress.by_ap:
-        title = f"Best expected AP so far {about}{best:.3f}"
+        title = f"Best AP so far {about}{best:.3f}"
     digits = 3 if progress.by_ap else 2
     low_text, high_text = (f"{value:.{digits}f}" for value in (low, high))
     placements = f"{last:,} placements"

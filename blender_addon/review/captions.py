@@ -38,6 +38,10 @@ def caption_of(study: pe.Study, outcome: pe.Outcome) -> Caption:
     if outcome.kind == "optimize":
         entropy = f"{before.entropy:.3f} → {entropy}"
         coverage = f"{before.coverage:.1%} → {coverage}"
+    if outcome.in_traffic is not None:
+        ap = " → ".join(f"{each.ap:.3f}" for each in outcome.in_traffic)
+        detail = f"higher is better        entropy {entropy} nats, coverage {coverage}"
+        return Caption(f"Expected AP in traffic  {ap}", detail, _table(study, outcome))
     error = f", ± {max(after.stderr, 1e-3):.3f}" if after.stderr else ""
     detail = f"nats{error}; lower is better        coverage {coverage}"
     return Caption(f"Perception entropy  {entropy}", detail, _table(study, outcome))

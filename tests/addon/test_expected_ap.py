@@ -9,9 +9,10 @@ import pe_core as pe
 from blender_addon import bridge, search_curve
 from blender_addon.operators import compare_variants
 from blender_addon.operators.running_job import RunningJob
+from blender_addon.panels import main, search_panels
 from blender_addon.search_curve import SearchProgress, searches
 from pe_tools.jobs import result_dict
-from tests.addon import scenes
+from tests.addon import layouts, scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.addon.test_searching import Manager
 
@@ -91,8 +92,28 @@ def test_the_curve_of_a_running_search_is_an_ap_that_rises(settings, monkeypatch
     assert any(", best AP ≈ 0." in text for text in texts)
     curve = search_curve.curve_of(SearchProgress(((1, 0.25), (3, 0.5)), 5, by_ap=True))
     assert curve.points[0] == (0.0, 0.0) and curve.points[-1] == (1.0, 1.0)
-    assert curve.title == "Best expected AP so far ≈ 0.500"
+    assert curve.title == "Best AP so far ≈ 0.500"
     assert (curve.low, curve.high, curve.aside) == ("0.250", "0.500", "from 0.250")
+
+
+def test_the_panels_show_what_an_objective_needs_and_found(settings):
+    scene = bpy.context.scene
+
+    def props(cls):
+        notes = layouts.drawn(cls, **vars(layouts.Window(scene))).notes
+        return [name for kind, name in notes if kind == "prop"]
+
+    assert "objective" in props(search_panels.PE_PT_search)
+    assert "scenes" in props(search_panels.PE_PT_search)
+    assert "search_samples" not in props(search_panels.PE_PT_search)
+    settings.evaluations = 2
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
+    shown = layouts.drawn(main.PE_PT_main, **vars(layouts.Window(scene))).texts("label")
+    assert shown[shown.index("AP in Traffic") + 1] == settings.result_in_traffic != ""
+    settings.objective = "entropy"
+    assert "scenes" not in props(search_panels.PE_PT_search)
+    assert "search_samples" in props(search_panels.PE_PT_search)
+    assert bpy.ops.pe.score() == {"FINISHED"} and settings.result_in_traffic == ""
 
 
 def test_choices_by_ap_are_variants_with_their_figures(settings):

@@ -253,6 +253,17 @@ def test_the_command_line_and_a_job_find_the_same_bits(tmp_path, capsys):
     assert "Expected AP in traffic" in page and "Best expected AP so far: from 0." in page
     assert "raises the expected AP of objects in traffic by" in page
     assert "Best entropy so far" not in page
+    begun = jobs.read_search(tmp_path / "out")
+    jobs.SearchState(begun.study, begun.inputs).save(
+        tmp_path / "out", begun.study, begun.judged[:7]
+    )
+    resume = ["optimize", str(tmp_path / "study.toml"), "--resume", str(tmp_path / "out")]
+    capsys.readouterr()
+    assert main([*resume, "--objective", AP, "--no-review", "--json"]) == 0
+    resumed, told = capsys.readouterr()
+    assert {**json.loads(resumed), "run": 0} == {**printed, "run": 0}
+    assert "going on after 7 placements" in told
+    assert main([*resume, "--no-review"]) == 1  # the search of another objective
 
 
 def _scored(given):

@@ -33,6 +33,11 @@ def is_by_ap(study: Study) -> bool:
     return study.search.objective == EXPECTED_AP
 
 
+def on_objects(study: Study) -> type[ObjectEvaluator]:
+    """Return what evaluates candidates of a study's search on objects."""
+    return ExpectedApEvaluator if is_by_ap(study) else ObjectEvaluator
+
+
 def searched_study(study: Study) -> Study:
     """Return the study that a search evaluates candidates of: by expected AP, one in traffic."""
     if not is_by_ap(study):
@@ -48,5 +53,4 @@ def search_evaluator(
     study: Study, samples: int | None = None, workers: int | None = None
 ) -> RigJudge:
     """Return the evaluator of a search's candidates; arguments are those of `Study.evaluator`."""
-    on_objects = ExpectedApEvaluator if is_by_ap(study) else ObjectEvaluator
-    return searched_study(study).evaluator(samples, workers, on_objects)
+    return searched_study(study).evaluator(samples, workers, on_objects(study))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pe_core.search.goals import FULL
-
 from ..sensitivity import sensitivity_lines
 from .job import Outcome
 from .searched_figure import searched_figure
@@ -14,8 +12,6 @@ def sureness_lines(outcome: Outcome) -> list[str]:
     """Describe how sure a search is of its result; empty for a score."""
     figure = searched_figure(outcome.start)
     lines = [] if outcome.sensitivity is None else list(sensitivity_lines(outcome.sensitivity))
-    if figure.higher_is_better and outcome.start.search.goals.sensitivity == FULL:
-        lines.append("not analysed: the analysis is of entropies, the search was by expected AP")
     for end in outcome.starts:
         name = f"the start {end.name}" if end.name else "the given start"
         at = figure.amount(f"{figure.to_figure(end.entropy):.4f}")

@@ -12,6 +12,7 @@ from pe_core.scoring.score import rounded
 from pe_core.search import AXES, objective_of
 from pe_core.search.goals import FULL, OFF
 from pe_core.study.objective_search import is_by_ap
+from pe_core.study.objective_setting import EXPECTED_AP
 from pe_core.study.study import Study
 
 from .archive import Archive
@@ -34,9 +35,10 @@ class Flattery:
     Attributes
     ----------
     on_search : float
-        Entropy of the result on the voxels that the search minimised it on [nats].
+        Entropy of the result on the voxels that the search minimised it on [nats]; of a search by
+        expected AP the value that it minimised: minus the AP.
     on_fresh : Difference
-        Its entropy on fresh voxels, and the standard error.
+        The same on fresh voxels (or scenes), and the standard error.
     """
 
     on_search: float
@@ -44,13 +46,13 @@ class Flattery:
 
     @property
     def nats(self) -> float:
-        """How much worse the result is on fresh voxels [nats]."""
+        """How much worse the result is on fresh voxels [nats, or expected AP]."""
         return rounded(self.on_fresh.mean - self.on_search)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as plain JSON data."""
+    def to_dict(self, sign: float = 1.0) -> dict[str, Any]:
+        """Return it as plain JSON data; values times `sign`."""
         mean, stderr = self.on_fresh.to_list()
-        return {"on_search": self.on_search, "on_fresh": mean, "stderr": stderr}
+        return {"on_search": sign * self.on_search, "on_fresh": sign * mean, "stderr": stderr}
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +72,9 @@ class Sensitivity:
     flattery : Flattery
     endings : Endings or None
         Where the starts ended; None where the budget was too small.
+    by_ap : bool
+        Whether the search was by expected AP: costs and gains are then differences of the AP, and
+        positive is still worse.
     """
 
     voxels: int
@@ -78,6 +83,12 @@ class Sensitivity:
     prices: tuple[ShadowPrice, ...]
     flattery: Flattery
     endings: Endings | None
+    by_ap: bool = False
+
+    @property
+    def sign(self) -> float:
+        """Values times this are figures for people."""
+        return -1.0 if self.by_ap else 1.0
 
     @property
     def active(self) -> tuple[ShadowPrice, ...]:
@@ -96,8 +107,9 @@ class Sensitivity:
             "evaluations": self.evaluations,
             "axes": [each.to_dict() for each in self.axes],
             "constraints": [each.to_dict() for each in self.prices],
-            "flattery": self.flattery.to_dict(),
+            "flattery": self.flattery.to_dict(self.sign),
             "endings": None if self.endings is None else self.endings.to_dict(),
+            **({"objective": EXPECTED_AP} if self.by_ap else {}),
         }
 
 
@@ -111,7 +123,7 @@ def budget_of(study: Study, evaluations: int) -> tuple[tuple[float, ...], bool] 
         Of the search. Short searches have less, so that the analysis does not outlast them.
     """
     wanted, sensors = study.search.goals.sensitivity, len(study.rig)
-    if wanted == OFF or study.search.conditions is not None or is_by_ap(study):
+    if wanted == OFF or study.search.conditions is not None:
         return None  # a search over states and weathers minimises what no fresh sample has
     if wanted == FULL:
         return (NEAR, FAR), True
@@ -171,6 +183,7 @@ def analyse(
         prices,
         _flattery(best, searched_on, samples),
         endings,
+        is_by_ap(best),
     )
 
 

@@ -8,15 +8,12 @@ from typing import Any
 
 from pe_core.search import AXES
 
-from .fresh_samples import Difference, FreshSamples
+from .fresh_samples import STEEP_NATS, Difference, FreshSamples
 from .moves import Neighbourhood, PoseStep, lone_move
 
 NEAR, FAR = 1.0, 5.0
 """Steps to both sides [cm or deg]."""
 FLAT, STEEP = "flat", "steep"
-STEEP_NATS = 0.01
-"""From this cost of one step on, an axis is called steep [nats]: a third of what the default search
-flatters itself by."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +26,17 @@ class AxisCost:
     status : str
         What the search does with the axis: "free", "surface", "slot", "fixed" or "linked".
     cost : mapping of float to Difference
-        By step [cm or deg]: how much the entropy rises [nats]; negative: it falls.
+        By step [cm or deg]: how much the entropy rises [nats] (or the expected AP falls); negative:
+        it falls (or rises).
+    steep : float
+        From this cost of one step on the axis is steep.
     """
 
     sensor: str
     axis: str
     status: str
     cost: Mapping[float, Difference]
+    steep: float = STEEP_NATS
 
     @property
     def worst(self) -> Difference:
@@ -45,7 +46,7 @@ class AxisCost:
     @property
     def word(self) -> str:
         """ "steep", "flat" (no step as far as was looked has a cost), or empty."""
-        if self.worst.is_loss and self.worst.mean >= STEEP_NATS:
+        if self.worst.is_loss and self.worst.mean >= self.steep:
             return STEEP
         return "" if any(each.is_loss or each.is_gain for each in self.cost.values()) else FLAT
 
@@ -66,4 +67,4 @@ def flatness(
                 step = PoseStep(sensor.name, axis, units)
                 cost[units] = samples.change(lone_move(samples.reference, step))
             status = neighbourhood.status(sensor.name, axis)
-            yield AxisCost(sensor.name, axis, status, cost)
+            yield AxisCost(sensor.name, axis, status, cost, samples.steep)

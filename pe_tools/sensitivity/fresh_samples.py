@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from pe_core.scene.rig import Rig
 from pe_core.scoring import Evaluator, RigJudge
 from pe_core.scoring.score import rounded
-from pe_core.scoring.targets import ObjectEvaluator
 from pe_core.search import Objective, objective_of
+from pe_core.study.objective_search import is_by_ap, on_objects, searched_study
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 
 Floats = NDArray[np.float64]
@@ -32,6 +32,9 @@ MAX_VOXELS = 8_192
 """Size of one sample at most: all of them together are half of the default search's voxels."""
 GOLDEN = (0.8191725133961645, 0.6710436067037893, 0.5497004779019703)
 """Powers of the inverse of 1.2207..., the root of x^4 = x + 1 (Roberts' R3 sequence)."""
+STEEP_NATS, STEEP_AP = 0.01, 0.001
+"""From this cost of one step on, an axis is called steep [nats; expected AP]: a third of what the
+default search flatters itself by; half of that by AP, for 600 placements of experiment 3."""
 WORTH_SHOWING = 5e-5
 """A smaller difference is 0 in the four decimals that are shown [nats]."""
 
@@ -91,6 +94,11 @@ class FreshSamples:
         """How many rigs were evaluated so far."""
         return len(self._values)
 
+    @property
+    def steep(self) -> float:
+        """From this cost of one step on, an axis is called steep [nats, or expected AP]."""
+        return STEEP_AP if is_by_ap(self._study) else STEEP_NATS
+
     def values(self, rig: Rig) -> Floats:
         """Return the entropy of a rig on each sample, (SAMPLES,) [nats]."""
         key = tuple((s.name, s.pose.position, s.pose.rpy) for s in rig)
@@ -114,7 +122,7 @@ def _mean(values: Floats) -> Difference:
 
 def _size(study: Study) -> int:
     """Return the voxels (or scenes) of one sample: fewer where a tolerance has many cases."""
-    if study.targets.are_objects:
+    if searched_study(study).targets.are_objects:
         return max(MIN_SCENES, study.targets.scenes // SAMPLES)
     cases = len(study.search.tolerance.cases(study.rig)) if study.search.tolerance.is_on else 1
     wanted = (study.search.samples or DEFAULT_SEARCH_SAMPLES) // (2 * SAMPLES)
@@ -127,7 +135,7 @@ def _evaluator(study: Study, number: int, workers: int | None) -> RigJudge:
     """Return the evaluator of a sample."""
     problem, size = (study.space, study.prior, study.vehicle), _size(study)
     x, y, z = ((0.5 + (number + 1) * share) % 1.0 for share in GOLDEN)
-    if study.targets.are_objects:
-        targets = replace(study.targets, scenes=size)
-        return ObjectEvaluator(*problem, targets=targets, model=study.model, shift=x)
+    targets, kind = searched_study(study).targets, on_objects(study)
+    if targets.are_objects:
+        return kind(*problem, targets=replace(targets, scenes=size), model=study.model, shift=x)
     return Evaluator(*problem, samples=size, shift=(x, y, z), model=study.model, workers=workers)

@@ -7,10 +7,11 @@ from typing import Any
 
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
+from pe_core.study.objective_setting import EXPECTED_AP
 
 from .analysis import Flattery, Sensitivity
 from .flatness import AxisCost
-from .fresh_samples import Difference
+from .fresh_samples import STEEP_AP, STEEP_NATS, Difference
 from .moves import PoseStep
 from .optima import Endings, RunnerUp
 from .shadow_prices import ShadowPrice
@@ -32,21 +33,23 @@ def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitiv
     """
     if table is None:
         return None
-    flattery = table["flattery"]
-    on_fresh = Difference(float(flattery["on_fresh"]), float(flattery["stderr"]))
+    flattery, by_ap = table["flattery"], table.get("objective") == EXPECTED_AP
+    sign = -1.0 if by_ap else 1.0
+    on_fresh = Difference(sign * float(flattery["on_fresh"]), float(flattery["stderr"]))
     return Sensitivity(
         int(table["voxels"]),
         int(table["evaluations"]),
-        tuple(_axis(row) for row in table["axes"]),
+        tuple(_axis(row, STEEP_AP if by_ap else STEEP_NATS) for row in table["axes"]),
         tuple(_price(row) for row in table["constraints"]),
-        Flattery(float(flattery["on_search"]), on_fresh),
+        Flattery(sign * float(flattery["on_search"]), on_fresh),
         None if table["endings"] is None else _endings(table["endings"], rig),
+        by_ap,
     )
 
 
-def _axis(row: Mapping[str, Any]) -> AxisCost:
+def _axis(row: Mapping[str, Any], steep: float) -> AxisCost:
     cost = {float(step): _difference(values) for step, values in row["cost"].items()}
-    return AxisCost(str(row["sensor"]), str(row["axis"]), str(row["status"]), cost)
+    return AxisCost(str(row["sensor"]), str(row["axis"]), str(row["status"]), cost, steep)
 
 
 def _price(row: Mapping[str, Any]) -> ShadowPrice:

@@ -21,18 +21,23 @@ def nats(change: Difference) -> str:
 
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     """Yield the analysis in lines: steep and flat axes, constraints, other optima, flattery."""
-    yield from _axes_lines(found.axes)
+    yield from _axes_lines(found.axes, unit_of(found))
     yield from _constraint_lines(found)
     yield from _ending_lines(found)
     yield _flattery_line(found)
 
 
-def _axes_lines(axes: Sequence[AxisCost]) -> Iterator[str]:
+def unit_of(found: Sensitivity) -> str:
+    """Return the unit of costs and gains: "nats", or "of AP" after a search by expected AP."""
+    return "of AP" if found.by_ap else "nats"
+
+
+def _axes_lines(axes: Sequence[AxisCost], unit: str) -> Iterator[str]:
     ordered = sorted(axes, key=lambda each: -each.worst.mean)
     steep = [each for each in ordered if each.worst.is_loss][:NAMED]
     if steep:
         named = ", ".join(f"{each.sensor} {each.axis} {each.worst.mean:+.4f}" for each in steep)
-        yield f"1 cm or 1 deg off costs most at: {named} nats"
+        yield f"1 cm or 1 deg off costs most at: {named} {unit}"
     else:
         yield "1 cm or 1 deg off costs nothing that can be measured, at no sensor and axis"
     if flat := [each for each in axes if each.word == FLAT]:
@@ -45,16 +50,16 @@ def _axes_lines(axes: Sequence[AxisCost]) -> Iterator[str]:
 
 
 def _constraint_lines(found: Sensitivity) -> Iterator[str]:
+    unit = unit_of(found)
     for price in found.active[:NAMED]:
-        yield f"held by {price.name}: {price.step.text} would gain {price_text(price)} nats"
+        yield f"held by {price.name}: {price.step.text} would gain {price_text(price)} {unit}"
     if len(found.active) > NAMED:
         yield f"held by {len(found.active) - NAMED} more constraints"
     if not found.active:
         yield "no constraint holds it back: no step that is forbidden would gain"
     if (more := found.unfinished) is not None:
-        yield (
-            f"not quite settled: {more.step.text} is allowed and would gain {price_text(more)} nats"
-        )
+        gain = f"{price_text(more)} {unit}"
+        yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
 
 
 def price_text(price: ShadowPrice) -> str:
@@ -71,17 +76,19 @@ def _ending_lines(found: Sensitivity) -> Iterator[str]:
     if not count:
         yield f"one optimum: {same} placements far from it lead to it without a hill between"
         return
-    yield f"{count + 1} optima found; runners-up, {found.voxels:,} fresh voxels:"
+    what, unit = "scenes" if found.by_ap else "voxels", unit_of(found)
+    yield f"{count + 1} optima found; runners-up, {found.voxels:,} fresh {what}:"
     for number, each in enumerate(found.endings.runners_up, 1):
-        yield f"  {number}: {nats(each.behind)} nats, with {', '.join(each.moved)} elsewhere"
+        yield f"  {number}: {nats(each.behind)} {unit}, with {', '.join(each.moved)} elsewhere"
 
 
 def _flattery_line(found: Sensitivity) -> str:
     own = found.flattery
-    error = max(own.on_fresh.stderr, 1e-4)
+    error, what = max(own.on_fresh.stderr, 1e-4), "scenes" if found.by_ap else "voxels"
+    on_search, on_fresh = (found.sign * value for value in (own.on_search, own.on_fresh.mean))
     return (
-        f"the search's sample flatters it by {own.nats:+.4f} +- {error:.4f} nats: "
-        f"{own.on_search:.4f} there, {own.on_fresh.mean:.4f} on fresh voxels"
+        f"the search's sample flatters it by {own.nats:+.4f} +- {error:.4f} {unit_of(found)}: "
+        f"{on_search:.4f} there, {on_fresh:.4f} on fresh {what}"
     )
 
 

@@ -21,7 +21,11 @@ from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import choice_job, front_dict, result_dict
 from pe_tools.jobs.results import history_csv
+from pe_tools.page import ReportContext
 from pe_tools.page.build import outcome_of_folder
+from pe_tools.page.sections.sensitivity import sensitivity as sensitivity_section
+from pe_tools.sensitivity import sensitivity_from_dict
+from pe_tools.sensitivity.fresh_samples import GOLDEN, SAMPLES, FreshSamples
 from tests.engine import shapes
 
 pytestmark = pytest.mark.usefixtures("few_errors")
@@ -177,11 +181,40 @@ def test_a_target_is_an_ap(plain):
         finished(study(Goals(Stop(target=-1.25))))
 
 
+def test_the_analysis_is_of_the_ap_on_fresh_scenes():
+    outcome = finished(study(Goals(sensitivity="full")))
+    found = outcome.sensitivity
+    own, best = found.flattery, outcome.study.rig
+    assert found.by_ap and found.voxels == 4 * 8
+    assert own.on_search == -ap_of(outcome.study, best)
+    fresh = FreshSamples(outcome.study, best)
+    moved = best.with_poses([replace(best["roof"].pose, position=(0.0, 0.0, 1.2))])
+    change = fresh.change(moved)
+    shifts = [(0.5 + (k + 1) * GOLDEN[0]) % 1.0 for k in range(SAMPLES)]
+    rule = pe.TargetRule("objects", traffic=True, scenes=8)
+    given = outcome.study
+    judges = [
+        pe.ObjectEvaluator(given.space, given.prior, given.vehicle, targets=rule, shift=x)
+        for x in shifts
+    ]
+    aps = [[judge.score(rig).objects.ap for judge in judges] for rig in (best, moved)]
+    assert own.on_fresh.mean == pytest.approx(-np.mean(aps[0]), abs=1e-9)
+    assert change.mean == pytest.approx(np.mean(aps[0]) - np.mean(aps[1]), abs=1e-9)
+    assert change.mean > 0.0, "lower is worse"
+    table = result_dict(outcome)["sensitivity"]
+    assert table["objective"] == AP and table["flattery"]["on_search"] == -own.on_search > 0.0
+    assert sensitivity_from_dict(table, best).to_dict() == table
+    text = summary(outcome)
+    assert f" of AP: {-own.on_search:.4f} there, {-own.on_fresh.mean:.4f} on fresh scenes" in text
+    assert "nats: " not in text and "fresh voxels" not in text
+    page = sensitivity_section(ReportContext("by AP", outcome)).html
+    assert f"the result has an expected AP of {-own.on_search:.4f}, on fresh ones" in page
+    assert "What a step costs [expected AP]" in page and "nats" not in page
+
+
 def test_starts_end_at_an_ap():
     poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
-    outcome = finished(study(Goals(starts=[Start("high", poses)], sensitivity="full")))
-    assert outcome.sensitivity is None
-    assert "not analysed: the analysis is of entropies, the search was by" in summary(outcome)
+    outcome = finished(study(Goals(starts=[Start("high", poses)])))
     rows = result_dict(outcome)["starts"]
     assert [row["name"] for row in rows] == ["", "high"]
     assert max(row[AP] for row in rows) == pytest.approx(outcome.in_traffic[1].ap, abs=1e-9)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+from ... import jobs
 from ... import sensitivity as sure
 from ..markup import Markup, escaped, number, signed, table, triple
 from ..report_context import ReportContext, Section
@@ -12,8 +13,8 @@ AxisMap = Callable[[float], float]
 """Maps a value to its position on the drawing."""
 WIDTH = 460
 LEFT, RIGHT, ROW, GROUP, TOP, BOTTOM = 96, 40, 18, 30, 10, 26
-LEAST_NATS = 0.004
-"""The axis of costs shows at least this, so that noise does not look like a slope [nats]."""
+LEAST_NATS, LEAST_AP = 0.004, 0.0004
+"""The axis of costs shows at least this, so that noise does not look like a slope [nats; AP]."""
 STATUS = {
     "free": "free",
     "surface": "on its mount",
@@ -54,7 +55,14 @@ def sensitivity(context: ReportContext) -> Section:
 def _lead(found: sure.Sensitivity, context: ReportContext) -> str:
     own = found.flattery
     error = number(max(own.on_fresh.stderr, 1e-4), 4)
-    what = "scenes of objects" if context.start.targets.are_objects else "voxels"
+    _, what = jobs.searched_on(context.start)
+    if found.by_ap:
+        on_search, on_fresh = (number(-v, 4) for v in (own.on_search, own.on_fresh.mean))
+        return (
+            f"<p>Everything here is evaluated on {found.voxels:,} {what} that the search has not "
+            f"seen. On its own scenes the result has an expected AP of {on_search}, on fresh ones "
+            f"{on_fresh} &plusmn; {error}: the sample flatters it by {signed(own.nats, 4)}.</p>"
+        )
     return (
         f"<p>Everything here is evaluated on {found.voxels:,} {what} that the search "
         f"has not seen. On its own sample the result has {number(own.on_search, 4)} nats, on fresh "
@@ -67,14 +75,15 @@ def _picture(found: sure.Sensitivity) -> str:
     """Draw what one step back and forth costs, a row for each axis of each sensor."""
     sensors = list(dict.fromkeys(row.sensor for row in found.axes))
     costs = [row.cost[step] for row in found.axes for step in (-sure.NEAR, sure.NEAR)]
-    low = min(-LEAST_NATS, *(each.mean - each.stderr for each in costs))
-    high = max(LEAST_NATS, *(each.mean + each.stderr for each in costs))
+    least = LEAST_AP if found.by_ap else LEAST_NATS
+    low = min(-least, *(each.mean - each.stderr for each in costs))
+    high = max(least, *(each.mean + each.stderr for each in costs))
     height = TOP + len(sensors) * GROUP + len(found.axes) * ROW + BOTTOM
 
-    def to_x(nats: float) -> float:
-        return LEFT + (nats - low) / (high - low) * (WIDTH - LEFT - RIGHT)
+    def to_x(cost: float) -> float:
+        return LEFT + (cost - low) / (high - low) * (WIDTH - LEFT - RIGHT)
 
-    inside = [*_grid(low, high, to_x, height)]
+    inside = [*_grid(low, high, to_x, height, "AP" if found.by_ap else "nats")]
     y = float(TOP)
     for sensor in sensors:
         y += GROUP
@@ -82,9 +91,11 @@ def _picture(found: sure.Sensitivity) -> str:
         for row in (each for each in found.axes if each.sensor == sensor):
             inside += _bars(row, y, to_x)
             y += ROW
+    by_ap = found.by_ap
     caption = (
         "What 1 cm (x, y, z) or 1&deg; (roll, pitch, yaw) back (upper bar) and forth (lower bar) "
-        "costs, each sensor alone. To the right the entropy rises; a bar to the left is a step "
+        "costs, each sensor alone. To the right "
+        f"{'the expected AP falls' if by_ap else 'the entropy rises'}; a bar to the left is a step "
         "that would gain and is not allowed, or an error of the sample (thin lines: 1 sigma)."
     )
     alt = "What a step of each sensor along each axis costs; the figures are in the table below."
@@ -98,18 +109,34 @@ def _picture(found: sure.Sensitivity) -> str:
     )
 
 
-def _grid(low: float, high: float, to_x: AxisMap, height: float) -> Iterator[str]:
+def _grid(low: float, high: float, to_x: AxisMap, height: float, unit: str) -> Iterator[str]:
     for value in round_values(low, high):
         x, css = to_x(value), "axis" if value == 0.0 else "grid"
         yield f'<line class="{css}" x1="{x:.1f}" x2="{x:.1f}" y1="{TOP}" y2="{height - BOTTOM}"/>'
         text = "0" if value == 0.0 else f"{value:+g}".replace("-", "\N{MINUS SIGN}")
         yield f'<text x="{x:.1f}" y="{height - 7:.0f}" text-anchor="middle">{text}</text>'
-    yield f'<text x="{WIDTH - 4}" y="{height - 7:.0f}" text-anchor="end">nats</text>'
+    yield f'<text x="{WIDTH - 4}" y="{height - 7:.0f}" text-anchor="end">{unit}</text>'
 
 
 def round_values(low: float, high: float) -> list[float]:
     """Return three to six round values between two, 0 among them."""
-    for unit in (1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0):
+    for unit in (
+        1e-4,
+        2e-4,
+        5e-4,
+        1e-3,
+        2e-3,
+        5e-3,
+        0.01,
+        0.02,
+        0.05,
+        0.1,
+        0.2,
+        0.5,
+        1.0,
+        2.0,
+        5.0,
+    ):
         first, last = -int(-low / unit), int(high / unit)
         if last - first <= 5:
             return [round(k * unit, 6) + 0.0 for k in range(first, last + 1)]
@@ -146,10 +173,12 @@ def _table(found: sure.Sensitivity) -> str:
             rows.append([sensor])
         cells = [_cost(row.cost[step]) for step in steps]
         rows.append([row.axis, STATUS[row.status], *cells, row.word])
-    title = "What a step costs [nats]: cm along x, y, z, degrees of roll, pitch, yaw"
+    unit, steep = ("expected AP", "0.001 of expected AP") if found.by_ap else ("nats", "0.01 nats")
+    title = f"What a step costs [{unit}]: cm along x, y, z, degrees of roll, pitch, yaw"
     note = (
-        "<p>Grey: within the error of the sample (95 %). <em>steep</em>: a step of 1 costs 0.01 "
-        "nats or more; <em>flat</em>: no step in the table has a cost that can be told from 0.</p>"
+        "<p>Grey: within the error of the sample (95 %). <em>steep</em>: a step of 1 costs "
+        f"{steep} or more; <em>flat</em>: no step in the table has a cost that can be told from 0."
+        "</p>"
     )
     return f"<details><summary>The figures</summary>{table(title, heads, rows)}{note}</details>"
 
@@ -175,10 +204,11 @@ def _constraints(found: sure.Sensitivity) -> str:
     ]
     if not rows:
         return (
-            "<p>No constraint is active: no step of 1 cm or 1&deg; that is forbidden would lower "
-            "the entropy.</p>"
+            "<p>No constraint is active: no step of 1 cm or 1&deg; that is forbidden would "
+            f"{'raise the expected AP' if found.by_ap else 'lower the entropy'}.</p>"
         )
-    heads = ("constraint", "step that gains most", "gain [nats], at least")
+    gain = f"gain [{'expected AP' if found.by_ap else 'nats'}], at least"
+    heads = ("constraint", "step that gains most", gain)
     title = "Active constraints, and what relaxing each by 1 cm or 1 degree gains (shadow prices)"
     return table(title, heads, rows)
 
@@ -194,7 +224,8 @@ def _endings(found: sure.Sensitivity, context: ReportContext) -> str:
             f"<p>One optimum was found: of {ends.examined} placements far from it, each leads to "
             "it without a hill between, or is no optimum of its own.</p>"
         )
-    heads = ("optimum", "entropy against the result", "sensor", "x, y, z [m]", "roll, pitch, yaw")
+    what = "expected AP lost" if found.by_ap else "entropy against the result"
+    heads = ("optimum", what, "sensor", "x, y, z [m]", "roll, pitch, yaw")
     rows: list[Sequence[object]] = []
     for number_, each in enumerate(ends.runners_up, 1):
         error = number(max(each.behind.stderr, 1e-4), 4)

@@ -10,9 +10,11 @@ import pytest
 import pe_core as pe
 from pe_core.search import METHODS, Judgement, Parametrization, pose_values
 from pe_core.search.methods import portfolio
+from pe_core.search.methods.block_descent import PLACEMENTS_PER_START, race
 from pe_core.search.methods.method import Given, Phase
 from pe_core.search.methods.portfolio import Incumbent, Recurrence, Survey
 from pe_core.search.methods.portfolio_linear import LinearDescent, _inverse
+from pe_core.search.methods.portfolio_steps import BATCH, Steps
 from tests.engine import mounting
 from tests.engine.mounting import can
 from tests.engine.recording import Recorder, distance_to, flat
@@ -48,7 +50,7 @@ def test_a_smooth_valley_is_found():
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
     target = {"x": 0.71, "y": -0.33, "z": 1.9, "pitch": 0.1}
     recorder, steps = searched(distance_to(target), rig, space)
-    assert 0 <= len(recorder.rigs) - 2 * portfolio.PER_SENSOR < 60
+    assert 0 <= len(recorder.rigs) - portfolio.budget(2) < 100  # with corners of the bounds
     assert math.sqrt(steps[-1].entropy) < 0.02 < math.sqrt(steps[0].entropy) / 50
 
 
@@ -75,6 +77,63 @@ def test_two_sensors_that_only_move_together_are_moved_together():
     descent = linear(ridge, rig, space)
     answered(descent.descend(PHASE, 150, 1e-4), ridge)
     assert descent.entropy < 0.5 < ridge(rig)
+
+
+def test_a_large_budget_races_from_several_starts_and_a_small_one_does_not(monkeypatch):
+    raced = []
+    monkeypatch.setattr(
+        portfolio, "race", lambda starts, *a: raced.append(starts) or race(starts, *a)
+    )
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
+    for evaluations in (0, 2 * 4 * PLACEMENTS_PER_START, 2 * 4 * PLACEMENTS_PER_START - 1):
+        searched(distance_to({"x": 0.5}), rig, space, evaluations)
+    assert [len(starts) for starts in raced] == [4, 4]
+    given, corner, surveyed, _ = (descent.best.vector for descent in raced[0])
+    assert given != surveyed and corner != given
+
+
+def test_a_valley_as_narrow_as_a_step_is_found_beside_a_wide_one():
+    """A descent by a model or by a distribution ends in the wide valley, at 1."""
+
+    def valleys(rig):
+        x = pose_values(rig["roof"].pose)["x"]
+        return min(1.0 + x**2, 80.0 * abs(x - 0.4))
+
+    rig, space = mounting.space(can((0.0, 0.0, 1.6)), free=("x",))
+    coding = Parametrization(rig, space)
+    incumbent = Incumbent(coding.start, valleys(rig))
+    steps = Steps(Given(coding, coding.start, incumbent.entropy), [0])
+    sizes = answered(steps.descend(incumbent, PHASE, 300), valleys)
+    assert set(sizes) == {BATCH} and incumbent.count == sum(sizes) < 300 + BATCH
+    assert incumbent.entropy < 0.2
+
+
+def test_steps_are_of_all_lengths():
+    rig, space = mounting.space(can())
+    coding = Parametrization(rig, space)
+    steps = Steps(Given(coding, coding.start, 0.0), [0])
+    lengths = [abs(steps._step()) for _ in range(900)]
+    per_halving = np.bincount(np.floor(-np.log2(lengths)).astype(int), minlength=10)
+    assert per_halving[0] == 0 and (per_halving[1:10] > 60).all()
+
+
+def test_a_variable_whose_steps_gain_is_moved_more_often():
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"), free=("x", "y"))
+    coding = Parametrization(rig, space)
+    incumbent, moved = Incumbent(coding.start, 100.0), []
+
+    def only_y_of_b_gains(rig):
+        now, best = (
+            [pose_values(s.pose)[axis] for s in each for axis in "xy"]
+            for each in (rig, incumbent.best.rig)
+        )
+        moved.append([a != b for a, b in zip(now, best, strict=True)])
+        return incumbent.entropy + (-0.02 if moved[-1][3] else 1.0)
+
+    steps = Steps(Given(coding, coding.start, incumbent.entropy), [0])
+    answered(steps.descend(incumbent, PHASE, 400), only_y_of_b_gains)
+    shares = np.mean(moved[200:], axis=0)
+    assert shares[3] > 0.7 and max(shares[:2]) < 0.1
 
 
 def test_a_linear_landscape_takes_few_placements_to_the_end_of_its_range():

@@ -184,8 +184,8 @@ COARSENING, MIN_SAMPLES = 4, 2048
 """The first level evaluates a fourth of the voxels, but at least so many."""
 BELOW_GRID = 65_536
 """Where the last level is the grid, the first level is as if the last had so many voxels."""
-RACES = (0.05, 0.05)
-"""Shares of the budget for each start; after each race, the better half of the starts continues."""
+RACES, RACE_SHARE = 2, 0.05
+"""Races, and the share of the budget for each start in each race."""
 PLACEMENTS_PER_START = 80
 """Placements for each sensor that a start takes: a smaller budget means fewer starts."""
 FIRST_LEVEL = 0.4
@@ -229,17 +229,24 @@ def _repeated(given: Given, best: Descent, total: int, left: float) -> MethodPar
 
 def _raced(given: Given, total: int) -> MethodPart[tuple[Descent, float]]:
     """Race several starts; return the best descent, and how many placements all of them took."""
-    race, count = (
-        Phase(0, total),
-        total // (PLACEMENTS_PER_START * len(given.parametrization.blocks)),
-    )
-    starts = []
-    for number in range(min(len(STARTS), count) or 1):
-        start, entropy = yield from STARTS[number](given, race)
+    phase, starts = Phase(0, total), []
+    for number in range(min(len(STARTS), starts_of(given, total)) or 1):
+        start, entropy = yield from STARTS[number](given, phase)
         starts.append(Descent(given, start, entropy, [given.seed, number]))
-    racing = starts
-    for share in RACES:
+    best = yield from race(starts, phase, RACE_SHARE * total)
+    return best, float(sum(descent.count for descent in starts))
+
+
+def starts_of(given: Given, total: int) -> int:
+    """Return how many starts a budget is enough for."""
+    return total // (PLACEMENTS_PER_START * len(given.parametrization.blocks))
+
+
+def race(starts: Sequence[Descent], phase: Phase, count: float) -> MethodPart[Descent]:
+    """Race descents, each for about `count` placements; after each race the better half goes on."""
+    racing = list(starts)
+    for _ in range(RACES):
         for descent in racing:
-            yield from descent.descend(race, share * total)
+            yield from descent.descend(phase, count)
         racing = sorted(racing, key=lambda descent: descent.entropy)[: max(1, len(racing) // 2)]
-    return racing[0], float(sum(descent.count for descent in starts))
+    return racing[0]

@@ -1,14 +1,16 @@
-"""Portfolio, the default: a survey of each sensor, then linear descents and block descents in turn.
+"""Portfolio, the default: a survey of each sensor, then several kinds of descents in turn.
 
 No single method is the best on every problem. Surveys find the region: each sensor tries places all
-over its range, the others kept. Linear descents move all sensors at once, and block descents find
-what a linear model does not show. Sensors on lists of slots try all slots, exchange them, and
-move two at a time.
+over its range, the others kept. A large budget is for a race of block descents from several starts,
+then for block descents and steps of all lengths. A small one is for linear descents, which move all
+sensors at once, and block descents, which find what a linear model does not show. Sensors on lists
+of slots try all slots, exchange them, and move two at a time.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -16,13 +18,27 @@ from numpy.typing import NDArray
 
 from ..design_variable import SHARE, DesignVariable
 from ..parametrization import Candidate
-from .block_descent import FINEST, RESTART_STEP, Descent, SlotTurn
+from .block_descent import (
+    FINEST,
+    FIRST_LEVEL,
+    RACE_SHARE,
+    RESTART_STEP,
+    STARTS,
+    Descent,
+    SlotTurn,
+    corner_start,
+    given_start,
+    race,
+    starts_of,
+)
 from .block_descent import samples as samples
 from .method import Given, MethodPart, Phase, QuestionStream, sampled_candidate
 from .portfolio_linear import LinearDescent
+from .portfolio_steps import Steps
 
-PER_SENSOR = 300
-"""Placements for each sensor that moves, where no budget is given."""
+PER_SENSOR, PER_OTHER, MOST_PER_SENSOR = 300, 175, 800
+"""Placements for each sensor that moves, where no budget is given: so many, and so many more for
+each other one that moves, up to so many."""
 SURVEYS, SURVEYED = 2, 6
 """Surveys before the first descent, and places that each of them tries for each sensor,"""
 SURVEY_SHARE = 0.3
@@ -33,6 +49,10 @@ RADIUS, NEXT_RADIUS, LEAST_RADIUS = 1.0 / 6.0, 0.1, 0.004
 """Radius of the first linear descent and of the next ones, and where they end, in ranges."""
 LINEAR_SHARE, BLOCK_SHARE = 0.4, 0.5
 """Shares of the budget that is left, for each linear descent and each block descent after it."""
+RACED_BLOCK_SHARE, STEP_SHARE = 0.6, 0.3
+"""After a race: shares of the budget that is left, for each block descent and then for steps,"""
+LAST_STEPS = 30
+"""and for so many placements a sensor at the end, steps alone."""
 TWO_MOVED = 16
 """Placements with two sensors in other slots, tried at once."""
 STALLED = 8
@@ -186,12 +206,16 @@ def _evaluate(incumbent: Incumbent, phase: Phase, candidates: list[Candidate]) -
 def ask(given: Given) -> QuestionStream:
     """Survey on few voxels; then descend on all voxels of the search until the budget is spent."""
     sensors = len(given.parametrization.blocks)
-    total = given.evaluations or PER_SENSOR * sensors
+    total = given.evaluations or budget(sensors)
     incumbent, survey = Incumbent(given.start, given.entropy), Survey(given)
+    steps = Steps(given, [given.seed, sensors, 1])
+    races = starts_of(given, total) >= len(STARTS) and not survey.has_slots_alone
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
     for _ in range(SURVEYS):
         yield from survey.survey(incumbent, Phase(0, total), count)
         survey.reseed()
+    if races:
+        yield from _race(given, incumbent, total)
     if given.levels > 1:
         last = Phase(1, total, given.levels - 1)
         [incumbent.entropy] = yield from last.evaluate([incumbent.best])
@@ -201,6 +225,8 @@ def ask(given: Given) -> QuestionStream:
         if survey.has_slots_alone:
             yield from survey.two_moved(incumbent, phase)
             stalled = 0 if incumbent.entropy < before[1] else stalled + 1
+        elif races:
+            yield from _settle(given, incumbent, phase, number, steps)
         else:
             yield from _descend(given, incumbent, phase, number)
         if not stalled:
@@ -210,13 +236,56 @@ def ask(given: Given) -> QuestionStream:
         number += 1
 
 
+def budget(sensors: int) -> int:
+    """Return how many placements are evaluated where no budget is given."""
+    return sensors * min(PER_SENSOR + PER_OTHER * (sensors - 1), MOST_PER_SENSOR)
+
+
+def _race(given: Given, incumbent: Incumbent, total: int) -> MethodPart[None]:
+    """Race block descents on few voxels; the best goes on there until its share is spent.
+
+    They begin at the given placement and at the surveyed one, and at both with each sensor in the
+    best corner of its bounds.
+    """
+    phase = Phase(0, total)
+    surveyed = replace(given, start=incumbent.best, entropy=incumbent.entropy)
+    racing = []
+    for number, place in enumerate((given, given, surveyed, surveyed)):
+        start = corner_start if number % 2 else given_start
+        racing.append(Descent(place, *(yield from start(place, phase)), [given.seed, number]))
+    best = yield from race(racing, phase, RACE_SHARE * total)
+    done = incumbent.count + sum(descent.count for descent in racing)
+    yield from best.descend(phase, FIRST_LEVEL * total - done)
+    for descent in racing:
+        incumbent.descended(descent)
+
+
+def _settle(
+    given: Given, incumbent: Incumbent, phase: Phase, number: int, steps: Steps
+) -> MethodPart[None]:
+    """Descend with one sensor at a time, then by steps of all lengths."""
+    left = phase.total - incumbent.count
+    count = float(left)
+    if left > LAST_STEPS * len(given.parametrization.blocks):
+        seed = [given.seed, len(STARTS) + number]
+        yield from _block_descent(given, incumbent, phase, seed, RACED_BLOCK_SHARE)
+        count = STEP_SHARE * left
+    yield from steps.descend(incumbent, phase, count)
+
+
 def _descend(given: Given, incumbent: Incumbent, phase: Phase, number: int) -> MethodPart[None]:
     """Descend with all sensors at once, then one at a time."""
     radius = RADIUS if number == 1 else NEXT_RADIUS
     linear = LinearDescent(given, incumbent.best, incumbent.entropy, radius)
     yield from linear.descend(phase, LINEAR_SHARE * (phase.total - incumbent.count), LEAST_RADIUS)
     incumbent.descended(linear)
-    seed = [given.seed, number]
+    yield from _block_descent(given, incumbent, phase, [given.seed, number], BLOCK_SHARE)
+
+
+def _block_descent(
+    given: Given, incumbent: Incumbent, phase: Phase, seed: list[int], share: float
+) -> MethodPart[None]:
+    """Descend with one sensor at a time, for a share of the budget that is left."""
     block = Descent(given, incumbent.best, incumbent.entropy, seed, RESTART_STEP)
-    yield from block.descend(phase, BLOCK_SHARE * (phase.total - incumbent.count), FINEST)
+    yield from block.descend(phase, share * (phase.total - incumbent.count), FINEST)
     incumbent.descended(block)

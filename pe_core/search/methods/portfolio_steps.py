@@ -1,0 +1,104 @@
+"""Steps of all lengths: one or two variables of one sensor at a time, from the best so far.
+
+The share of beams that meet an object jumps where a LiDAR rises by a centimetre or tilts by a tenth
+of a degree, so the entropy has many small valleys beside each other. A step whose logarithm of
+length is uniform finds the small ones and leaps over the large ones; nothing has to be tuned
+(J. E. Rowe, D. Hidovic, An evolution strategy using a continuous version of the Gray-code
+neighbourhood distribution, 2004). Variables whose steps gained lately are moved more often.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from ..design_variable import SHARE
+from ..parametrization import Candidate
+from .method import Given, MethodPart, Phase, sampled_candidate
+
+BATCH = 8
+"""Placements that are tried at once."""
+HALVINGS = 9
+"""The longest step is half a variable's range; the shortest ones are 2^-8 of that."""
+SECOND = 0.7
+"""Probability that a second variable of the same sensor moves, too."""
+EVEN = 0.1
+"""Probability that a variable is chosen whatever its steps gained."""
+FULL_GAIN, MEMORY = 0.02, 0.1
+"""The gain of a step counts up to this [nats], with this weight beside those of earlier steps."""
+
+
+class Searched(Protocol):
+    """The best placement so far, its entropy, and the count of evaluations."""
+
+    best: Candidate
+    entropy: float
+    count: int
+
+    def told(self, candidates: Sequence[tuple[Candidate, float]]) -> None:
+        """Take placements and their values."""
+
+
+class Steps:
+    """Steps of all lengths, the more of a variable the more its steps gained.
+
+    Parameters
+    ----------
+    given : Given
+    seed : sequence of int
+    """
+
+    def __init__(self, given: Given, seed: Sequence[int]) -> None:
+        self._parametrization, variables = given.parametrization, given.parametrization.variables
+        self._rng = np.random.default_rng(seed)
+        movable = [v.low < v.high and v.unit != SHARE for v in variables]
+        sensors = [[k for k in block if movable[k]] for block in given.parametrization.blocks]
+        self._free = [(sensor, k) for sensor in sensors for k in sensor]
+        self._gains = np.ones(len(self._free))
+
+    def descend(self, incumbent: Searched, phase: Phase, count: float) -> MethodPart[None]:
+        """Try about `count` placements; each batch starts from the best of those before."""
+        end = incumbent.count + count
+        while self._free and incumbent.count < end:
+            tried = self._batch(incumbent.best)
+            if not tried:
+                return
+            before, candidates = incumbent.entropy, [candidate for _, candidate in tried]
+            values = yield from phase.evaluate(candidates, before)
+            for (number, _), value in zip(tried, values, strict=True):
+                gain = min(max(before - value, 0.0) / FULL_GAIN, 1.0)
+                self._gains[number] += MEMORY * (gain - self._gains[number])
+            incumbent.told(list(zip(candidates, values, strict=True)))
+
+    def _batch(self, base: Candidate) -> list[tuple[int, Candidate]]:
+        """Return placements a step away that break no rule, each with its variable's number."""
+        shares = self._gains / np.cumsum(self._gains)[-1]
+        ends = np.cumsum((1.0 - EVEN) * shares + EVEN / len(shares))
+        tried = []
+        for _ in range(BATCH):
+            number = min(int(np.searchsorted(ends, self._rng.random())), len(ends) - 1)
+            candidate = self._stepped(base, *self._free[number])
+            if candidate is not None and candidate.vector != base.vector:
+                tried.append((number, candidate))
+        return tried
+
+    def _stepped(self, base: Candidate, sensor: list[int], first: int) -> Candidate | None:
+        others = [k for k in sensor if k != first]
+
+        def sample() -> list[float]:
+            vector, moved = list(base.vector), [first]
+            if others and self._rng.random() < SECOND:
+                moved.append(others[int(self._rng.integers(len(others)))])
+            for k in moved:
+                variable = self._parametrization.variables[k]
+                vector[k] += (variable.high - variable.low) * self._step()
+            return vector
+
+        return sampled_candidate(self._parametrization, sample)
+
+    def _step(self) -> float:
+        """Return a step, as a share of a range: each halving of its length is as probable."""
+        length = 0.5 ** int(self._rng.integers(1, HALVINGS + 1)) * (0.5 + 0.5 * self._rng.random())
+        return length if self._rng.random() < 0.5 else -length

@@ -230,21 +230,15 @@ def _repeated(given: Given, best: Descent, total: int, left: float) -> MethodPar
 def _raced(given: Given, total: int) -> MethodPart[tuple[Descent, float]]:
     """Race several starts; return the best descent, and how many placements all of them took."""
     phase, starts = Phase(0, total), []
-    for number in range(min(len(STARTS), starts_of(given, total)) or 1):
-        start, entropy = yield from STARTS[number](given, phase)
-        starts.append(Descent(given, start, entropy, [given.seed, number]))
-    best = yield from race(starts, phase, RACE_SHARE * total)
-    return best, float(sum(descent.count for descent in starts))
+    count = total // (PLACEMENTS_PER_START * len(given.parametrization.blocks))
+    for number in range(min(len(STARTS), count) or 1):
+        start = yield from STARTS[number](given, phase)
+        starts.append(Descent(given, *start, [given.seed, number]))
+    return (yield from race(starts, phase, RACE_SHARE * total)), float(sum(d.count for d in starts))
 
 
-def starts_of(given: Given, total: int) -> int:
-    """Return how many starts a budget is enough for."""
-    return total // (PLACEMENTS_PER_START * len(given.parametrization.blocks))
-
-
-def race(starts: Sequence[Descent], phase: Phase, count: float) -> MethodPart[Descent]:
+def race(racing: list[Descent], phase: Phase, count: float) -> MethodPart[Descent]:
     """Race descents, each for about `count` placements; after each race the better half goes on."""
-    racing = list(starts)
     for _ in range(RACES):
         for descent in racing:
             yield from descent.descend(phase, count)

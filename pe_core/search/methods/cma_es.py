@@ -19,7 +19,6 @@ SCALE = {METRE: 1.0, RADIAN: math.radians(30.0), SHARE: 1.0}
 """The scale of each unit: the first reach of Algorithm 1, and all of a list."""
 STEP = 0.15
 """First standard deviation: 0.15 m and 4.5 deg."""
-SEEDS = 2**32
 
 
 class SymmetricCma(CMA):
@@ -66,7 +65,7 @@ class Evolution:
         self._free = [k for k in free if variables[k].low < variables[k].high]
         self._scale = np.array([SCALE[variables[k].unit] for k in self._free])
         mean = np.array([start.vector[k] for k in self._free]) / self._scale
-        cma_seed = int(np.random.default_rng(seed).integers(SEEDS))
+        cma_seed = int(np.random.default_rng(seed).integers(2**32))
         self._cma = SymmetricCma(mean, step, seed=cma_seed) if self._free else None
 
     @property

@@ -21,6 +21,7 @@ from ..parametrization import Candidate
 from .block_descent import (
     FINEST,
     FIRST_LEVEL,
+    PLACEMENTS_PER_START,
     RACE_SHARE,
     RESTART_STEP,
     STARTS,
@@ -29,7 +30,6 @@ from .block_descent import (
     corner_start,
     given_start,
     race,
-    starts_of,
 )
 from .block_descent import samples as samples
 from .method import Given, MethodPart, Phase, QuestionStream, sampled_candidate
@@ -209,7 +209,8 @@ def ask(given: Given) -> QuestionStream:
     total = given.evaluations or budget(sensors)
     incumbent, survey = Incumbent(given.start, given.entropy), Survey(given)
     steps = Steps(given, [given.seed, sensors, 1])
-    races = starts_of(given, total) >= len(STARTS) and not survey.has_slots_alone
+    each = len(STARTS) * PLACEMENTS_PER_START
+    races = total >= each * sensors and not survey.has_slots_alone
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
     for _ in range(SURVEYS):
         yield from survey.survey(incumbent, Phase(0, total), count)
@@ -251,8 +252,8 @@ def _race(given: Given, incumbent: Incumbent, total: int) -> MethodPart[None]:
     surveyed = replace(given, start=incumbent.best, entropy=incumbent.entropy)
     racing = []
     for number, place in enumerate((given, given, surveyed, surveyed)):
-        start = corner_start if number % 2 else given_start
-        racing.append(Descent(place, *(yield from start(place, phase)), [given.seed, number]))
+        start = yield from (corner_start if number % 2 else given_start)(place, phase)
+        racing.append(Descent(place, *start, [given.seed, number]))
     best = yield from race(racing, phase, RACE_SHARE * total)
     done = incumbent.count + sum(descent.count for descent in racing)
     yield from best.descend(phase, FIRST_LEVEL * total - done)

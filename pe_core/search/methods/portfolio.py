@@ -49,8 +49,9 @@ RADIUS, NEXT_RADIUS, LEAST_RADIUS = 1.0 / 6.0, 0.1, 0.004
 """Radius of the first linear descent and of the next ones, and where they end, in ranges."""
 LINEAR_SHARE, BLOCK_SHARE = 0.4, 0.5
 """Shares of the budget that is left, for each linear descent and each block descent after it."""
-RACED_BLOCK_SHARE, STEP_SHARE = 0.6, 0.3
-"""After a race: shares of the budget that is left, for each block descent and then for steps,"""
+RACED_LINEAR_SHARE, RACED_BLOCK_SHARE, STEP_SHARE = 0.1, 0.6, 0.3
+"""After a race: shares of the budget that is left, for the one linear descent, and each time for a
+block descent and then for steps,"""
 LAST_STEPS = 30
 """and for so many placements a sensor at the end, steps alone."""
 TWO_MOVED = 16
@@ -264,7 +265,9 @@ def _race(given: Given, incumbent: Incumbent, total: int) -> MethodPart[None]:
 def _settle(
     given: Given, incumbent: Incumbent, phase: Phase, number: int, steps: Steps
 ) -> MethodPart[None]:
-    """Descend with one sensor at a time, then by steps of all lengths."""
+    """Descend with all sensors at once the first time, then with one at a time, then by steps."""
+    if number == 1:
+        yield from _linear_descent(given, incumbent, phase, NEXT_RADIUS, RACED_LINEAR_SHARE)
     left = phase.total - incumbent.count
     count = float(left)
     if left > LAST_STEPS * len(given.parametrization.blocks):
@@ -277,10 +280,17 @@ def _settle(
 def _descend(given: Given, incumbent: Incumbent, phase: Phase, number: int) -> MethodPart[None]:
     """Descend with all sensors at once, then one at a time."""
     radius = RADIUS if number == 1 else NEXT_RADIUS
-    linear = LinearDescent(given, incumbent.best, incumbent.entropy, radius)
-    yield from linear.descend(phase, LINEAR_SHARE * (phase.total - incumbent.count), LEAST_RADIUS)
-    incumbent.descended(linear)
+    yield from _linear_descent(given, incumbent, phase, radius, LINEAR_SHARE)
     yield from _block_descent(given, incumbent, phase, [given.seed, number], BLOCK_SHARE)
+
+
+def _linear_descent(
+    given: Given, incumbent: Incumbent, phase: Phase, radius: float, share: float
+) -> MethodPart[None]:
+    """Descend with all sensors at once, for a share of the budget that is left."""
+    linear = LinearDescent(given, incumbent.best, incumbent.entropy, radius)
+    yield from linear.descend(phase, share * (phase.total - incumbent.count), LEAST_RADIUS)
+    incumbent.descended(linear)
 
 
 def _block_descent(

@@ -14,7 +14,7 @@ from pe_core.search.methods.block_descent import PLACEMENTS_PER_START, race
 from pe_core.search.methods.method import Given, Phase
 from pe_core.search.methods.portfolio import Incumbent, Recurrence, Survey
 from pe_core.search.methods.portfolio_linear import LinearDescent, _inverse
-from pe_core.search.methods.portfolio_steps import BATCH, Steps
+from pe_core.search.methods.portfolio_steps import BATCH, MultiscaleDescent
 from tests.engine import mounting
 from tests.engine.mounting import can
 from tests.engine.recording import Recorder, distance_to, flat
@@ -102,7 +102,7 @@ def test_a_valley_as_narrow_as_a_step_is_found_beside_a_wide_one():
     rig, space = mounting.space(can((0.0, 0.0, 1.6)), free=("x",))
     coding = Parametrization(rig, space)
     incumbent = Incumbent(coding.start, valleys(rig))
-    steps = Steps(Given(coding, coding.start, incumbent.entropy), [0])
+    steps = MultiscaleDescent(Given(coding, coding.start, incumbent.entropy), [0])
     sizes = answered(steps.descend(incumbent, PHASE, 300), valleys)
     assert set(sizes) == {BATCH} and incumbent.count == sum(sizes) < 300 + BATCH
     assert incumbent.entropy < 0.2
@@ -111,7 +111,7 @@ def test_a_valley_as_narrow_as_a_step_is_found_beside_a_wide_one():
 def test_steps_are_of_all_lengths():
     rig, space = mounting.space(can())
     coding = Parametrization(rig, space)
-    steps = Steps(Given(coding, coding.start, 0.0), [0])
+    steps = MultiscaleDescent(Given(coding, coding.start, 0.0), [0])
     lengths = [abs(steps._step()) for _ in range(900)]
     per_halving = np.bincount(np.floor(-np.log2(lengths)).astype(int), minlength=10)
     assert per_halving[0] == 0 and (per_halving[1:10] > 60).all()
@@ -130,7 +130,7 @@ def test_a_variable_whose_steps_gain_is_moved_more_often():
         moved.append([a != b for a, b in zip(now, best, strict=True)])
         return incumbent.entropy + (-0.02 if moved[-1][3] else 1.0)
 
-    steps = Steps(Given(coding, coding.start, incumbent.entropy), [0])
+    steps = MultiscaleDescent(Given(coding, coding.start, incumbent.entropy), [0])
     answered(steps.descend(incumbent, PHASE, 400), only_y_of_b_gains)
     shares = np.mean(moved[200:], axis=0)
     assert shares[3] > 0.7 and max(shares[:2]) < 0.1

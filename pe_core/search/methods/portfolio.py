@@ -34,7 +34,7 @@ from .block_descent import (
 from .block_descent import samples as samples
 from .method import Given, MethodPart, Phase, QuestionStream, sampled_candidate
 from .portfolio_linear import LinearDescent
-from .portfolio_steps import Steps
+from .portfolio_steps import MultiscaleDescent
 
 PER_SENSOR, PER_OTHER, MOST_PER_SENSOR = 300, 175, 800
 """Placements for each sensor that moves, where no budget is given: so many, and so many more for
@@ -209,7 +209,7 @@ def ask(given: Given) -> QuestionStream:
     sensors = len(given.parametrization.blocks)
     total = given.evaluations or budget(sensors)
     incumbent, survey = Incumbent(given.start, given.entropy), Survey(given)
-    steps = Steps(given, [given.seed, sensors, 1])
+    steps = MultiscaleDescent(given, [given.seed, sensors, 1])
     each = len(STARTS) * PLACEMENTS_PER_START
     races = total >= each * sensors and not survey.has_slots_alone
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
@@ -263,7 +263,7 @@ def _race(given: Given, incumbent: Incumbent, total: int) -> MethodPart[None]:
 
 
 def _settle(
-    given: Given, incumbent: Incumbent, phase: Phase, number: int, steps: Steps
+    given: Given, incumbent: Incumbent, phase: Phase, number: int, steps: MultiscaleDescent
 ) -> MethodPart[None]:
     """Descend with all sensors at once the first time, then with one at a time, then by steps."""
     if number == 1:

@@ -41,7 +41,7 @@ class Searched(Protocol):
         """Take placements and their values."""
 
 
-class Steps:
+class MultiscaleDescent:
     """Steps of all lengths, the more of a variable the more its steps gained.
 
     Parameters

@@ -8,8 +8,9 @@ ANSWER_TIMEOUT_S = 90
 
 def test_save_move_and_come_back_by_clicks(window, screenshots):
     start = window.state["places"]
-    window.press("pe.save_variant")
-    window.wait_for(lambda: window.state["variants"] == ["Variant"], EFFECT_TIMEOUT_S, "a variant")
+    window.press_until(
+        "pe.save_variant", lambda: window.state["variants"] == ["Variant"], "a variant"
+    )
     assert not window.state["variant_changed"]
 
     window.press("pe.select_sensor")
@@ -21,8 +22,7 @@ def test_save_move_and_come_back_by_clicks(window, screenshots):
     window.screenshot(screenshots / "window_variant_changed.png")
 
     window.scroll_sidebar()  # the way back stands below the list
-    window.press("pe.switch_variant")
-    window.wait_for(lambda: window.state["places"] == start, EFFECT_TIMEOUT_S, "the way back")
+    window.press_until("pe.switch_variant", lambda: window.state["places"] == start, "the way back")
     window.wait_for(
         lambda: window.state["variants"] == ["Variant", "Unsaved"],
         EFFECT_TIMEOUT_S,

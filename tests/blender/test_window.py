@@ -8,9 +8,8 @@ SCORE_TIMEOUT_S = 180
 
 def test_add_a_sensor_and_score(window, screenshots):
     before = len(window.state["sensors"])
-    window.press("pe.add_sensor")
-    window.wait_for(
-        lambda: len(window.state["sensors"]) == before + 1, EFFECT_TIMEOUT_S, "a new sensor"
+    window.press_until(
+        "pe.add_sensor", lambda: len(window.state["sensors"]) == before + 1, "a new sensor"
     )
 
     assert not window.state["has_result"], "a result that nobody asked for"
@@ -27,8 +26,7 @@ def test_optimize_runs_beside_the_window_esc_keeps_the_best_and_undo_brings_back
     window, screenshots
 ):
     start = window.state["places"]
-    window.press("pe.optimize")
-    window.wait_for(lambda: window.state["running"], EFFECT_TIMEOUT_S, "the search to start")
+    window.press_until("pe.optimize", lambda: window.state["running"], "the search to start")
     window.wait_for(lambda: window.state["better_found"], SCORE_TIMEOUT_S, "a better placement")
     window.screenshot(screenshots / "window_optimize.png")
     assert window.state["running"], "the search was over before anyone could press Esc"

@@ -46,8 +46,7 @@ def sensors(window):
 
 def start(window, pointer):
     """Press the button and hold a sensor over the roof, until it is there."""
-    window.press("pe.place_sensor")
-    window.wait_for(lambda: window.state["placing"], EFFECT_TIMEOUT_S, "a sensor to place")
+    window.press_until("pe.place_sensor", lambda: window.state["placing"], "a sensor to place")
     pointer.over(ROOF)
     held_at(window, lambda place: place is not None and place[2] > 1.4)
 
@@ -130,15 +129,17 @@ def test_a_duplicate_by_shift_d_is_a_sensor_without_a_result(window):
 def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
     before = sensors(window)
     window.do("bpy.context.scene.perception_entropy.kind_to_add = 'camera'")
-    window.press("pe.add_sensor", "Camera")
-    window.wait_for(lambda: sensors(window) != before, EFFECT_TIMEOUT_S, "a sensor")
+    window.press_until(
+        "pe.add_sensor", lambda: sensors(window) != before, "a sensor", words="Camera"
+    )
     (name,) = sensors(window) - before
     window.point_at_view()
     window.key("KP_3")
     window.wait_for(lambda: window.state["view"]["along_axis"], EFFECT_TIMEOUT_S, "a side view")
     view = window.state["view"]
-    window.press("pe.look_through")
-    window.wait_for(lambda: window.state["perspective"] == "CAMERA", EFFECT_TIMEOUT_S, "its view")
+    window.press_until(
+        "pe.look_through", lambda: window.state["perspective"] == "CAMERA", "its view"
+    )
     assert window.state["camera"] == f"{name} view"
     window.screenshot(screenshots / "window_look_through.png")
     window.point_at_view()
@@ -148,8 +149,9 @@ def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
     assert (seen["perspective"], seen["along_axis"]) == ("ORTHO", True)
     assert seen["numbers"] == pytest.approx(view["numbers"], abs=1e-5)
 
-    window.press("pe.look_through")
-    window.wait_for(lambda: window.state["perspective"] == "CAMERA", EFFECT_TIMEOUT_S, "its view")
+    window.press_until(
+        "pe.look_through", lambda: window.state["perspective"] == "CAMERA", "its view"
+    )
     window.point_at_view()
     window.key("ctrl+z")
     window.wait_for(lambda: window.state["camera"] is None, EFFECT_TIMEOUT_S, "undo")
@@ -163,9 +165,8 @@ def test_look_through_a_camera_and_esc_comes_back(window, pointer, screenshots):
 
 
 def test_a_lidar_s_ranges_are_shown_as_a_picture(window, screenshots):
-    window.press("pe.look_through")  # the one that the file was saved with is active
-    window.wait_for(
-        lambda: window.state["pictures"] == ["roof_lidar range"], EFFECT_TIMEOUT_S, "its picture"
+    window.press_until(  # the one that the file was saved with is active
+        "pe.look_through", lambda: window.state["pictures"] == ["roof_lidar range"], "its picture"
     )
     window.screenshot(screenshots / "window_ranges.png")
     assert "Traceback" not in window.log.read_text()

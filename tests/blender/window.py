@@ -31,6 +31,7 @@ SETTLE_TIMEOUT_S = 30
 TURNS = 4  # of Blender's loop between moving and pressing: it finds the button by the move
 
 SCROLLS = 30  # of the wheel: more than the sidebar is long
+CLICKS, CLICK_LOST_S = 3, 60  # of a button that acts at once; it was lost if nothing came of it
 SEARCHES = 4  # for a button: panels may move while one is looked for
 ANSWER_TIMEOUT_S = 120
 COPY_TIMEOUT_S = 5
@@ -122,6 +123,20 @@ class Window:
         Of several, the first whose call holds the `words`.
         """
         self.click(*self.find_button(operator, words))
+
+    def press_until(
+        self, operator: str, condition: Callable[[], object], what: str, words: str = ""
+    ) -> None:
+        """Click the button of an operator that acts at once, again where the click was lost.
+
+        A click without any effect was seen twice on busy machines, never again on the same commit.
+        """
+        for _ in range(CLICKS - 1):
+            self.press(operator, words)
+            with suppress(AssertionError):
+                return self.wait_for(condition, CLICK_LOST_S, what)
+        self.press(operator, words)
+        self.wait_for(condition, CLICK_LOST_S, what)
 
     def scroll_sidebar(self) -> None:
         """Scroll the sidebar to its end, where sections are that have no room in the window."""

@@ -29,6 +29,8 @@ def add_verb(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     own.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
     about = "do at most so many runs now"
     own.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
+    about = 'write the curves of [ap] model = "scans", fitted to the runs, to this file'
+    own.add_argument("--curves", metavar="FILE", help=about)
     parser.set_defaults(function=_validate)
 
 

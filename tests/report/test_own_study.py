@@ -21,6 +21,7 @@ from pe_tools.validity.own.cameras.section import camera_section
 from pe_tools.validity.own.cameras.study import CameraFiles, camera_analysis
 from pe_tools.validity.own.cast_cache import FIELDS, cached
 from pe_tools.validity.own.casting import GROUND_M, MAX_POINTS, Caster, FreeBeams
+from pe_tools.validity.own.curve_section import curve_section
 from pe_tools.validity.own.placements import placements
 from pe_tools.validity.own.plan import PLAIN, TOWN, full_plan, quick_plan
 from pe_tools.validity.own.precision import ClassScene, average_precision, in_ring
@@ -282,7 +283,8 @@ def test_the_page_is_that_of_the_saved_results():
     if done_with_cameras:
         found = json.loads((folder / "cameras" / "results.json").read_text("utf-8"))
     assert found["done"] == len(done_with_cameras)
-    more = camera_section(cameras, found, done_with_cameras), outside
+    curves = curve_section(saved["ap_curves"])
+    more = curves, camera_section(cameras, found, done_with_cameras), outside
     assert (folder / "README.md").read_text("utf-8") == page(PLAN, saved, done, *more)
 
 

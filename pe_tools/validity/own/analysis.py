@@ -110,25 +110,36 @@ def designs_of(plan: StudyPlan, results: Mapping[str, Json]) -> list[DesignResul
 
 
 def _design(
-    plan: StudyPlan, name: str, results: Mapping[str, Json], step: tuple[str, str] = (PLAIN, GRID)
+    plan: StudyPlan, name: str, results: Mapping[str, Json], of_class: str | None = None
 ) -> DesignResults:
     """Return the finished part of a design with a detector a placement."""
-    wanted = [
-        r
-        for r in runs(plan)
-        if r.placement is not None and (r.world, r.detector) == step and r.design == name
-    ]
-    return of_runs(name, wanted, results)
+    wanted = [r for r in runs(plan) if r.design == name and (r.world, r.detector) == (PLAIN, GRID)]
+    return of_runs(name, wanted, results, of_class)
+
+
+def fixed_design(
+    plan: StudyPlan, results: Mapping[str, Json], of_class: str | None = None
+) -> DesignResults:
+    """Return the finished part of the fixed design: mean AP of the classes, or the AP of one."""
+    return _design(plan, FIXED, results, of_class=of_class)
 
 
 def of_runs(
-    name: str, wanted: Sequence[PlacementRun], results: Mapping[str, Json]
+    name: str,
+    wanted: Sequence[PlacementRun],
+    results: Mapping[str, Json],
+    of_class: str | None = None,
 ) -> DesignResults:
-    """Return what runs with a detector a placement have found, as far as they are done."""
+    """Return what runs with a detector a placement have found, as far as they are done.
+
+    Their AP is the mean of the classes, or that of the class `of_class`.
+    """
     aps: dict[PosedSensors, list[float]] = {}
     for run in wanted:
         if run.name in results and run.placement is not None:
-            aps.setdefault(run.placement, []).append(results[run.name]["ap"])
+            found = results[run.name]
+            ap = found["ap"] if of_class is None else found["by_class"][of_class]
+            aps.setdefault(run.placement, []).append(ap)
     done = sum(map(len, aps.values()))
     return DesignResults(name, list(aps), _samples(aps), done, len(wanted))
 

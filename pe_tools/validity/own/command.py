@@ -20,10 +20,13 @@ from .analysis import CAMERAS, analysis, designs_of
 from .cameras.plan import CameraPlan, full_camera_plan, quick_camera_plan
 from .cameras.section import PICTURES, SHOWN_SCENE, camera_section
 from .cameras.study import CameraFiles, camera_analysis, design_of_cameras
+from .curve_section import PLOT as CURVE_PLOT
+from .curve_section import curve_section, write_curves
 from .placements import Placement, placements
 from .plan import StudyPlan, full_plan, quick_plan
 from .result_files import R, ResultFiles
 from .runs import RunFiles, runs
+from .scan_curves import scan_curves
 from .scores import placement_scores
 from .segmentation import section, segmentation_scores
 from .study_page import TITLE, page, pairs_plot_name, plot_name
@@ -53,12 +56,16 @@ def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
     rigs = [(p, p.rig(plan)) for p in _scored(plan, results)]
     scores = placement_scores(plan, rigs, folder, print_progress)
     outside = "" if args.quick else _from_outside(plan, folder)
-    found = analysis(plan, results, scores)
+    found = analysis(plan, results, scores) | {"ap_curves": scan_curves(plan, results)}
     write_bytes(folder / CONCLUSIONS, dump_json(found).encode())
-    text = page(plan, found, results, section_of_cameras, outside)
+    if args.curves:
+        write_curves(Path(args.curves), found["ap_curves"])
+    curves = curve_section(found["ap_curves"])
+    text = page(plan, found, results, curves, section_of_cameras, outside)
     write_bytes(folder / PAGE, text.encode())
     if has_matplotlib():
         _draw(plan, results, scores, folder)
+        _draw_curves(found["ap_curves"], folder)
         _draw_cameras(of_cameras, camera_files)
     else:
         tell(f"no plots, as matplotlib is missing: {EXTRA}")
@@ -104,6 +111,13 @@ def _draw(
         if design.has_figures:
             ap_against_scores(folder / plot_name(design.name), plan, design, scores)
             pairs_by_distance(folder / pairs_plot_name(design.name), design, scores)
+
+
+def _draw_curves(found: Mapping[str, Any], folder: Path) -> None:
+    from .study_plots import expected_against_found
+
+    if found["classes"]:
+        expected_against_found(folder / CURVE_PLOT, found["classes"])
 
 
 def _draw_cameras(plan: CameraPlan, files: CameraFiles) -> None:

@@ -110,7 +110,7 @@ def _scores(plan: StudyPlan, vehicle_name: str, rig: pe.Rig) -> Json:
 
 
 def _of_objects(plan: StudyPlan, vehicle_name: str, rig: pe.Rig, traffic: bool) -> Json:
-    score = _objects(vehicle_name, traffic, plan.statistics.scenes).score(rig)
+    score = scored_objects(vehicle_name, traffic, plan.statistics.scenes).score(rig)
     of_objects = score.objects
     assert of_objects is not None
     by_class = {name: part.ap for name, part in of_objects.per_class.items()}
@@ -124,6 +124,7 @@ def _voxels(vehicle_name: str, prior: str) -> pe.Evaluator:
 
 
 @lru_cache(maxsize=4)
-def _objects(vehicle_name: str, traffic: bool, scenes: int) -> ObjectEvaluator:
+def scored_objects(vehicle_name: str, traffic: bool, scenes: int) -> ObjectEvaluator:
+    """Return the evaluator of objects on a vehicle, as shipped; it is kept for all placements."""
     rule = TargetRule("objects", traffic, scenes)
     return ObjectEvaluator(SPACE, pe.Prior.road(), vehicle(vehicle_name), targets=rule)

@@ -34,7 +34,7 @@ def page(plan: StudyPlan, results: Json, runs: Mapping[str, Json], *more: str) -
     runs : mapping
         Results by the name of the run.
     *more : str
-        The sections on cameras and on results of others.
+        The sections on AP curves, on cameras and on results of others.
     """
     sections = [
         _head(plan, results),

@@ -27,6 +27,7 @@ SHOWN = (PRIMARY, EXPECTED_AP, HEIGHT)
 LABELS = ("perception entropy [nats]", "expected AP in traffic", "mean height [m]")
 PAIR_LABELS = ("perception entropy", "expected AP in traffic", "mean height")
 COLORS = (BLUE, ORANGE)
+CURVES, CURVE_LABELS = ("shipped", "scans"), ("shipped curves", "from scans")
 
 
 @styled
@@ -67,6 +68,25 @@ def pictures_of_scene(path: Path, pictures: NDArray[np.uint8]) -> None:
     for panel, picture in zip(axes.flat, pictures, strict=True):
         panel.imshow(picture.transpose(1, 0, 2), interpolation="nearest")
         panel.set_axis_off()
+    save_plot(figure, path)
+
+
+@styled
+def expected_against_found(path: Path, classes: Mapping[str, dict[str, Any]]) -> None:
+    """Draw expected AP against the AP found, by class, with the shipped and the fitted curves."""
+    size = 9.4, 2.4
+    figure, axes = plt.subplots(1, len(classes), figsize=size, sharey=True, layout="constrained")
+    for panel, (name, row) in zip(axes, classes.items(), strict=True):
+        panel.plot([0.0, 1.0], [0.0, 1.0], color=GREY, lw=0.8, ls="--")
+        for model, color, label in zip(CURVES, (GREY, BLUE), CURVE_LABELS, strict=True):
+            panel.plot(row["found"], row["expected"][model], "o", color=color, ms=4, label=label)
+        panel.set_title(name)
+        panel.set_xlim(0.0, 1.0)
+        panel.set_ylim(0.0, 1.0)
+        remove_frame(panel)
+    axes[0].set_ylabel("expected AP in traffic")
+    axes[0].legend(loc="lower right", frameon=False, handletextpad=0.1)
+    axes[len(axes) // 2].set_xlabel("AP found")
     save_plot(figure, path)
 
 

@@ -1,0 +1,247 @@
+"""AP curves of whole objects, fitted to our own detector: `[ap] model = "scans"`.
+
+The plan: a and b of each class are fitted so that expected AP in traffic has the AP of the
+placements with odd numbers of the fixed design; the error is judged on those with even numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import pe_core as pe
+from pe_core.metric import AP_MAX, AP_MIN, average_precision
+from pe_core.metric.fusion import early_fusion
+from pe_core.sensors import ObjectMeasurementCache
+from pe_core.sensors.lidar import LIDAR
+
+from .analysis import DesignResults, fixed_design
+from .placements import Placement, vehicle
+from .plan import StudyPlan
+from .rank_tests import PlacementSamples, resamples
+from .scores import scored_objects
+
+Json = dict[str, Any]
+Floats = NDArray[np.float64]
+
+A_BOUNDS, B_BOUNDS = (0.001, 1.0), (-4.0, 1.5)
+"""Bounds of the fit. A curve at a bound is reported as such by its figures."""
+STARTS = 25
+"""Values of a and of b that are tried before the descent."""
+MAX_STEPS, DAMPING, SMALLEST = 200, 1e-6, 1e-6
+"""Of the descent: steps, damping at first, and a step that ends it; figures have four decimals."""
+TINY = 1e-12
+"""Keeps the equations of a step solvable where no object changes its AP."""
+MAX_RESAMPLES = 1000
+"""Bootstraps of the intervals: each one is a fit."""
+MIN_HALF = 4
+"""Fewer placements in a half give no figures."""
+
+
+@dataclass(frozen=True, eq=False)
+class BeamCounts:
+    """How many beams end on the objects of a class at each of several placements, in traffic.
+
+    Attributes
+    ----------
+    m : (K,) float
+        Numbers of beams of all LiDARs together that occur.
+    shares : (P, K) float
+        Share of the class's objects with each number, by placement; each row sums to 1.
+    """
+
+    m: Floats
+    shares: Floats
+
+    def expected_ap(self, curve: pe.ApCurve) -> Floats:
+        """Return the expected AP (P,) of the class at each placement."""
+        return np.asarray(self.shares @ average_precision(self.m, curve))
+
+    def subset(self, index: NDArray[np.int64]) -> BeamCounts:
+        """Return some of the placements, without numbers of beams that none of them has."""
+        shares = self.shares[index]
+        kept = shares.any(axis=0)
+        return BeamCounts(self.m[kept], shares[:, kept])
+
+
+def beam_counts(plan: StudyPlan, chosen: Sequence[Placement]) -> dict[str, BeamCounts]:
+    """Return how many beams end on the objects of the shipped score's scenes, by class.
+
+    Parameters
+    ----------
+    plan : StudyPlan
+    chosen : sequence of Placement
+        LiDARs that are fused early.
+    """
+    found: dict[str, list[tuple[Floats, Floats]]] = {}
+    for name in plan.vehicles:
+        drawn = scored_objects(name, True, plan.statistics.scenes).drawn
+        cache = ObjectMeasurementCache(drawn.objects, vehicle(name), True)
+        for placement in (p for p in chosen if p.vehicle == name):
+            m = early_fusion(list(cache.measure(placement.rig(plan)).values()))
+            for label, of_class in enumerate(drawn.objects.class_names):
+                rows = drawn.objects.labels == label
+                found.setdefault(of_class, []).append((m[rows], drawn.weights[rows]))
+    order = [k for name in plan.vehicles for k, p in enumerate(chosen) if p.vehicle == name]
+    back = np.argsort(order)
+    return {name: _counts([rows[k] for k in back]) for name, rows in found.items()}
+
+
+def _counts(by_placement: Sequence[tuple[Floats, Floats]]) -> BeamCounts:
+    m = np.unique(np.concatenate([each for each, _ in by_placement]))
+    shares = [
+        np.bincount(np.searchsorted(m, each), weights, len(m)) / weights.sum()
+        for each, weights in by_placement
+    ]
+    return BeamCounts(m, np.array(shares))
+
+
+def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None) -> pe.ApCurve:
+    """Return the curve whose expected AP is nearest to the AP found: least squares.
+
+    A coarse grid gives the start; damped Gauss-Newton steps descend from there within `A_BOUNDS`
+    and `B_BOUNDS` (Levenberg and Marquardt), until a step is below `SMALLEST`.
+
+    Parameters
+    ----------
+    beams : BeamCounts
+    ap : (P,) float
+        AP found at each placement.
+    start : ApCurve, optional
+        Where the descent starts, in place of the grid.
+    """
+    start = start or min(_grid(), key=lambda curve: _square(beams, ap, curve))
+    at, damping = np.array([start.a, start.b]), DAMPING
+    logs = np.log(np.maximum(beams.m, 1.0))
+    error = _square(beams, ap, start)
+    for _ in range(MAX_STEPS):
+        curve = pe.ApCurve(*at)
+        of_m = average_precision(beams.m, curve)
+        free = ((of_m > AP_MIN) & (of_m < AP_MAX)).astype(float)
+        slopes = np.stack([beams.shares @ (free * logs), beams.shares @ free], axis=1)
+        square = slopes.T @ slopes
+        damped = square + damping * (np.diag(np.diag(square)) + TINY * np.eye(2))
+        step = np.linalg.solve(damped, slopes.T @ (ap - beams.shares @ of_m))
+        there = np.clip(at + step, *np.transpose([A_BOUNDS, B_BOUNDS]))
+        if np.abs(there - at).max() < SMALLEST:
+            break
+        now = _square(beams, ap, pe.ApCurve(*there))
+        better = now < error
+        damping = damping / 10.0 if better else damping * 10.0
+        if better:
+            at, error = there, now
+    return pe.ApCurve(*map(float, at))
+
+
+def _grid() -> Iterator[pe.ApCurve]:
+    for a in np.geomspace(0.005, 0.4, STARTS):
+        for b in np.linspace(-1.5, 1.0, STARTS):
+            yield pe.ApCurve(float(a), float(b))
+
+
+def _square(beams: BeamCounts, ap: Floats, curve: pe.ApCurve) -> float:
+    return float(((beams.expected_ap(curve) - ap) ** 2).sum())
+
+
+def scan_curves(plan: StudyPlan, results: Mapping[str, Json]) -> Json:
+    """Return the curves of all classes with their errors, as JSON data.
+
+    Parameters
+    ----------
+    plan : StudyPlan
+    results : mapping
+        Results by the name of the run.
+    """
+    whole = fixed_design(plan, results)
+    chosen = [p for p in whole.chosen if isinstance(p, Placement)]
+    odd, even = (
+        np.array([k for k, p in enumerate(chosen) if _number(p) % 2 == rest], np.int64)
+        for rest in (1, 0)
+    )
+    found: Json = {"done": whole.done, "planned": whole.planned}
+    found |= {"fitted": len(odd), "judged": len(even), "classes": {}}
+    if min(len(odd), len(even)) < MIN_HALF:
+        return found
+    beams = beam_counts(plan, chosen)
+    designs = {name: fixed_design(plan, results, name) for name in beams}
+    found["seeds"] = whole.samples.aps.shape[1]
+    classes = {name: _of_class(plan, name, beams[name], designs[name], odd, even) for name in beams}
+    return {**found, "placements": [chosen[k].name for k in even], "classes": classes}
+
+
+def _number(placement: Placement) -> int:
+    """Return the number of a placement in its design and vehicle."""
+    return int(placement.name.rsplit("-", 1)[1])
+
+
+def _of_class(
+    plan: StudyPlan,
+    name: str,
+    beams: BeamCounts,
+    design: DesignResults,
+    odd: NDArray[np.int64],
+    even: NDArray[np.int64],
+) -> Json:
+    samples, shipped = design.samples, LIDAR.object_curves[name]
+    fitted, judged = beams.subset(odd), beams.subset(even)
+    own = _rounded_curve(fitted_curve(fitted, samples.ap[odd]))
+    level = np.full(len(even), samples.ap[odd].mean())
+    of_odd, of_even = samples.ap[odd], samples.ap[even]
+    before, after = judged.expected_ap(shipped), judged.expected_ap(own)
+    return {
+        **_written(own),
+        **_intervals(plan, fitted, judged, samples, odd, even, own),
+        "shipped": _written(shipped),
+        "rmse": {
+            "fitted": [_rmse(fitted.expected_ap(c), of_odd) for c in (shipped, own)],
+            "judged": [_rmse(expected, of_even) for expected in (before, after)],
+            "judged_by_mean": _rmse(level, of_even),
+        },
+        "found": _rows(of_even),
+        "expected": {"shipped": _rows(before), "scans": _rows(after)},
+    }
+
+
+def _intervals(
+    plan: StudyPlan,
+    fitted: BeamCounts,
+    judged: BeamCounts,
+    samples: PlacementSamples,
+    odd: NDArray[np.int64],
+    even: NDArray[np.int64],
+    own: pe.ApCurve,
+) -> Json:
+    """Return intervals of a, b and the error judged: placements and seeds are drawn again."""
+    curves, errors = list[tuple[float, float]](), list[float]()
+    rule = replace(plan.statistics, resamples=min(plan.statistics.resamples, MAX_RESAMPLES))
+    parts = (resamples(samples.subset(half), rule, plan.seed) for half in (odd, even))
+    for of_odd, of_even in zip(*parts, strict=True):
+        draws = zip(of_odd.index, of_odd.ap, of_even.index, of_even.ap, strict=True)
+        for index, ap, other, other_ap in draws:
+            curve = fitted_curve(BeamCounts(fitted.m, fitted.shares[index]), ap, own)
+            curves.append((curve.a, curve.b))
+            errors.append(_rmse(judged.expected_ap(curve)[other], other_ap))
+    a, b = np.percentile(np.array(curves), [2.5, 97.5], axis=0).T
+    error = np.percentile(errors, [2.5, 97.5])
+    return {"a_interval": _rows(a), "b_interval": _rows(b), "rmse_interval": _rows(error)}
+
+
+def _rmse(expected: Floats, found: Floats) -> float:
+    return round(float(np.sqrt(((expected - found) ** 2).mean())), 4)
+
+
+def _rows(values: Floats) -> list[float]:
+    return [round(float(v), 4) for v in values]
+
+
+def _rounded_curve(curve: pe.ApCurve) -> pe.ApCurve:
+    """Return a curve as a file has it: its errors are those of what is shipped."""
+    return pe.ApCurve(round(curve.a, 4), round(curve.b, 4))
+
+
+def _written(curve: pe.ApCurve) -> Json:
+    return {"a": round(curve.a, 4), "b": round(curve.b, 4)}
